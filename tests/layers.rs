@@ -6,7 +6,7 @@
 //! re-export as a path to the file that defines the item. It reads only paths: calls of methods are not found.
 //!
 //! ```text
-//!           net
+//!        net   peer
 //!          report   check
 //! scenes   replay
 //!       \  /
@@ -17,7 +17,7 @@
 //!         collision
 //!            body
 //!            simd
-//! math, hash, codec, threads, inspect
+//! math, hash, codec, threads, inspect, session
 //! ```
 
 #[path = "source/paths.rs"]
@@ -36,6 +36,7 @@ const LAYERS: Rules = &[
     ("codec", &[]),
     ("hash", &["codec"]),
     ("threads", &[]),
+    ("session", &[]),
     ("inspect", &["math"]),
     ("simd", &["math"]),
     ("body", &["math", "codec", "hash"]),
@@ -52,6 +53,22 @@ const LAYERS: Rules = &[
     (
         "check",
         &["math", "codec", "hash", "inspect", "body", "collision", "solver", "world", "lockstep", "replay"],
+    ),
+    (
+        "peer",
+        &[
+            "math",
+            "codec",
+            "hash",
+            "session",
+            "body",
+            "collision",
+            "solver",
+            "world",
+            "lockstep",
+            "replay",
+            "report",
+        ],
     ),
     ("net", &["math", "codec", "hash", "lockstep", "replay", "report"]),
     ("scenes", &["math", "codec", "hash", "body", "collision", "solver", "world", "lockstep"]),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use lockstep2d::math::Rng;
-use lockstep2d_fuzz::bytes::{packet, replay, report, snapshot};
+use lockstep2d_fuzz::bytes::{packet, replay, report, session, snapshot};
 
 fn inputs(count: u64) -> impl Iterator<Item = Vec<u8>> {
     (0..count).map(|seed| {
@@ -58,6 +58,12 @@ fn reports_are_judged() {
 fn packets_are_heard() {
     let answers = answers(20_000, packet::run);
     assert!(answers.len() >= 3, "{answers:?}");
+}
+
+#[test]
+fn sessions_mostly_survive() {
+    let answers = answers(300, session::run);
+    assert!(answers[&true] > 20, "{answers:?}");
 }
 
 /// Writes the initial seeds of the fuzzer: `cargo test --test bytes -- --ignored`.

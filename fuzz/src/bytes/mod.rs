@@ -6,6 +6,7 @@
 pub mod packet;
 pub mod replay;
 pub mod report;
+pub mod session;
 pub mod snapshot;
 
 use crate::forge::mutate;

@@ -1,0 +1,87 @@
+//! [`PeerError`]: reasons why a peer cannot continue.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::fmt;
+
+use super::parameters::ParameterDifference;
+use crate::replay::RecordError;
+use crate::session::ConfigError;
+
+/// Reason why a peer cannot continue.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PeerError {
+    /// The setup cannot start a game, or the replay cannot be written.
+    Record(RecordError),
+    /// An option is out of its range.
+    Config(ConfigError),
+    /// An input takes another number of bytes than [`PeerOptions::input_bytes`](super::PeerOptions::input_bytes) allows.
+    InputLength {
+        /// Bytes of the encoded input.
+        bytes: usize,
+        /// Bytes that are possible.
+        possible: usize,
+    },
+    /// The number of inputs is not that of the own seats.
+    InputCount {
+        /// Number of own seats.
+        seats: usize,
+        /// Number of inputs.
+        inputs: usize,
+    },
+    /// The parameters of the others differ.
+    Parameters(Vec<ParameterDifference>),
+    /// The contact refuses.
+    Refused {
+        /// Reason.
+        why: &'static str,
+    },
+    /// The received state is not a state of this game.
+    State {
+        /// Reason.
+        why: String,
+    },
+    /// The session asks for a state that is not kept.
+    NoState {
+        /// Number of ticks played.
+        tick: u64,
+    },
+}
+
+impl fmt::Display for PeerError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            PeerError::Record(error) => error.fmt(f),
+            PeerError::Config(error) => error.fmt(f),
+            PeerError::InputLength { bytes, possible } => {
+                write!(f, "an input of {bytes} bytes, {possible} are possible")
+            }
+            PeerError::InputCount { seats, inputs } => write!(f, "{inputs} inputs for {seats} own seats"),
+            PeerError::Parameters(differences) => {
+                write!(f, "the peers have different parameters:")?;
+                for (at, ParameterDifference { what, ours, theirs }) in differences.iter().enumerate() {
+                    let comma = if at > 0 { "," } else { "" };
+                    write!(f, "{comma} {what} {ours} here and {theirs} there")?;
+                }
+                Ok(())
+            }
+            PeerError::Refused { why } => write!(f, "refused: {why}"),
+            PeerError::State { why } => write!(f, "the received state cannot be used: {why}"),
+            PeerError::NoState { tick } => write!(f, "the state after {tick} ticks is not kept"),
+        }
+    }
+}
+
+impl core::error::Error for PeerError {}
+
+impl From<RecordError> for PeerError {
+    fn from(error: RecordError) -> Self {
+        PeerError::Record(error)
+    }
+}
+
+impl From<ConfigError> for PeerError {
+    fn from(error: ConfigError) -> Self {
+        PeerError::Config(error)
+    }
+}

@@ -1,0 +1,95 @@
+//! [`InputSlot`]: inputs of a game in the fixed number of bytes that a session carries.
+
+use alloc::vec::Vec;
+
+use serde::{Serialize, de::DeserializeOwned};
+
+use super::error::PeerError;
+use crate::codec;
+
+/// How inputs are carried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum InputSlot {
+    /// Every input has this many bytes.
+    Fixed(u16),
+    /// Two bytes say how many bytes an input has, at most this many. The rest is zero.
+    Prefixed(u16),
+}
+
+impl InputSlot {
+    /// The slot for a game: as large as its default input, or for inputs of up to `bytes` bytes.
+    pub(super) fn of<I: Serialize + Default>(bytes: Option<u16>) -> Result<Self, PeerError> {
+        let default = codec::encode(&I::default()).len();
+        match (bytes, u16::try_from(default)) {
+            (Some(bytes), _) => Ok(InputSlot::Prefixed(bytes)),
+            (None, Ok(bytes)) => Ok(InputSlot::Fixed(bytes)),
+            (None, Err(_)) => Err(PeerError::InputLength { bytes: default, possible: usize::from(u16::MAX) }),
+        }
+    }
+
+    /// Bytes that an input takes in the session.
+    pub(super) fn bytes(self) -> u16 {
+        match self {
+            // A session carries at least a byte.
+            InputSlot::Fixed(bytes) => bytes.max(1),
+            InputSlot::Prefixed(bytes) => bytes.saturating_add(2),
+        }
+    }
+
+    /// Appends an input.
+    pub(super) fn put<I: Serialize>(self, input: &I, slots: &mut Vec<u8>) -> Result<(), PeerError> {
+        let encoded = codec::encode(input);
+        let end = slots.len() + usize::from(self.bytes());
+        let possible = match self {
+            InputSlot::Fixed(bytes) => {
+                let fits = encoded.len() == usize::from(bytes);
+                (!fits).then_some(bytes)
+            }
+            InputSlot::Prefixed(bytes) => (encoded.len() > usize::from(bytes)).then_some(bytes),
+        };
+        if let Some(possible) = possible {
+            return Err(PeerError::InputLength { bytes: encoded.len(), possible: possible.into() });
+        }
+        if let InputSlot::Prefixed(_) = self {
+            let length = u16::try_from(encoded.len()).unwrap_or(0);
+            slots.extend_from_slice(&length.to_le_bytes());
+        }
+        slots.extend_from_slice(&encoded);
+        slots.resize(end, 0);
+        Ok(())
+    }
+
+    /// The input in a slot. Bytes that are not one count as the default, for every peer.
+    pub(super) fn take<I: Default + DeserializeOwned>(self, slot: &[u8]) -> I {
+        let encoded = match self {
+            InputSlot::Fixed(bytes) => slot.get(..usize::from(bytes)),
+            InputSlot::Prefixed(_) => slot
+                .split_first_chunk()
+                .and_then(|(length, rest)| rest.get(..usize::from(u16::from_le_bytes(*length)))),
+        };
+        encoded.and_then(|encoded| codec::decode(encoded).ok()).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inputs_survive_in_their_slots() {
+        let mut slots = Vec::new();
+        let fixed = InputSlot::of::<u32>(None).unwrap();
+        fixed.put(&7_u32, &mut slots).unwrap();
+        assert_eq!((fixed.bytes(), fixed.take::<u32>(&slots)), (4, 7));
+        let list = InputSlot::of::<Vec<u8>>(Some(12)).unwrap();
+        let mut slots = Vec::new();
+        list.put(&alloc::vec![1_u8, 2], &mut slots).unwrap();
+        assert_eq!((slots.len(), list.take::<Vec<u8>>(&slots)), (14, alloc::vec![1, 2]));
+        assert_eq!(
+            list.put(&alloc::vec![0_u8; 5], &mut slots),
+            Err(PeerError::InputLength { bytes: 13, possible: 12 })
+        );
+        assert_eq!(list.take::<Vec<u8>>(&[255; 14]), Vec::<u8>::new(), "not an input");
+        assert_eq!(InputSlot::of::<()>(None).unwrap().bytes(), 1);
+    }
+}

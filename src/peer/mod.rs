@@ -1,0 +1,42 @@
+//! A participant of a match of any [`Game`]: a [`session`](crate::session) with a game, its saved states and its replay.
+//!
+//! Everything works without a clock and without sockets: the time is passed to [`Peer::update`], and packets go through a
+//! [`Transport`]. Lockstep and rollback are one mechanism: [`PeerOptions::guess`] is how many ticks may be played with
+//! guessed inputs.
+//!
+//! ```no_run
+//! # use lockstep2d::lockstep::Game;
+//! # use lockstep2d::peer::{Peer, PeerError, PeerIdentity, PeerOptions, Udp};
+//! # fn read_pad<G: Game>() -> G::Input { G::Input::default() }
+//! # fn draw<G: Game>(_: &G) {}
+//! # fn random() -> [u64; 3] { [1, 2, 3] }
+//! # fn play<MyGame: Game>(setup: &MyGame::Setup) -> Result<(), Box<dyn std::error::Error>> {
+//! let me = PeerIdentity::new(random());
+//! let mut peer = Peer::<MyGame, _>::host(setup, PeerOptions::rollback(), me, Udp::bind("0.0.0.0:7000")?)?;
+//! # let start = std::time::Instant::now();
+//! loop {
+//!     peer.update(start.elapsed())?;
+//!     while peer.is_due() {
+//!         peer.advance(&[read_pad::<MyGame>()])?;
+//!     }
+//!     draw(peer.game());
+//!     std::thread::sleep(std::time::Duration::from_millis(1));
+//! }
+//! # }
+//! ```
+
+mod error;
+mod input_slot;
+mod options;
+mod parameters;
+mod participant;
+mod simulation;
+mod transport;
+
+pub use error::PeerError;
+pub use options::{PeerIdentity, PeerOptions};
+pub use parameters::{ParameterDifference, PeerParameters};
+pub use participant::{Peer, PeerDesync, PeerEvent};
+pub use transport::Transport;
+#[cfg(feature = "std")]
+pub use transport::{Udp, socket_address};

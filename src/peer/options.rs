@@ -1,0 +1,102 @@
+//! [`PeerOptions`] and [`PeerIdentity`].
+
+use core::time::Duration;
+
+use crate::lockstep::Game;
+use crate::replay::CHECKPOINT_INTERVAL;
+use crate::session::{Config, Key, PeerId, Timing};
+
+use super::error::PeerError;
+use super::input_slot::InputSlot;
+
+/// Options of a peer. `patience` and `input_bytes` have to be the same for all peers of a match.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PeerOptions {
+    /// Largest number of ticks that are played with guessed inputs; 0 is lockstep. Each peer chooses its own.
+    pub guess: u16,
+    /// Bounds of the delay of own inputs in ticks. Within them it follows the latency.
+    pub delay: (u16, u16),
+    /// How long all wait for a peer that cannot be heard, before they go on without it. `Duration::MAX`: for ever.
+    pub patience: Duration,
+    /// Number of seats that have to be taken before the first tick.
+    pub start_with: u8,
+    /// Number of own seats.
+    pub seats: u8,
+    /// Largest encoded input in bytes, for games whose inputs differ in length. `None`: all are as long as the default.
+    pub input_bytes: Option<u16>,
+    /// Distinguishes matches of the same game.
+    pub match_tag: u64,
+    /// Number of ticks per block of the replay.
+    pub checkpoint_interval: u32,
+}
+
+impl PeerOptions {
+    /// Lockstep, with a delay of up to 20 ticks.
+    #[must_use]
+    pub const fn lockstep() -> Self {
+        PeerOptions {
+            guess: 0,
+            delay: (0, 20),
+            patience: Duration::from_secs(2),
+            start_with: 2,
+            seats: 1,
+            input_bytes: None,
+            match_tag: 0,
+            checkpoint_interval: CHECKPOINT_INTERVAL,
+        }
+    }
+
+    /// Up to 8 guessed ticks, with a delay of at least 1 tick.
+    #[must_use]
+    pub const fn rollback() -> Self {
+        PeerOptions { guess: 8, delay: (1, 20), ..Self::lockstep() }
+    }
+
+    /// The configuration of the session.
+    pub(super) fn config<G: Game>(&self, game: &G, slot: InputSlot) -> Result<Config, PeerError> {
+        let seats = u8::try_from(game.players()).unwrap_or(u8::MAX);
+        let mut config = Config::new(self.match_tag, seats);
+        config.input_bytes = slot.bytes();
+        config.tick_micros = 1_000_000 / game.tick_rate().max(1);
+        config.start_with = self.start_with.min(seats);
+        config.guess = self.guess;
+        (config.delay_min, config.delay_max) = self.delay;
+        let patience = u64::try_from(self.patience.as_micros()).unwrap_or(u64::MAX);
+        config.timing = Timing { patience, ..Timing::DEFAULT };
+        // Checkpoints of the replay need the hash of the state, so states are saved at those ticks, too.
+        let divides = |interval: &u16| self.checkpoint_interval.is_multiple_of(u32::from(*interval));
+        let longest = if self.guess > 0 { 1 } else { 8 };
+        config.save_interval = (1..=longest).rev().find(divides).unwrap_or(1);
+        config.check_interval = config.save_interval * (10 / config.save_interval).max(1);
+        config.validate()?;
+        Ok(config)
+    }
+}
+
+/// Who a peer is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PeerIdentity {
+    /// A random number, new for each process.
+    pub id: PeerId,
+    /// The identity that outlives processes. Whoever returns with the same key gets its seat back.
+    pub key: Key,
+    /// Random numbers that nobody else knows.
+    pub secret: [u64; 2],
+}
+
+impl PeerIdentity {
+    /// A new identity from random numbers, which have to differ for every process.
+    #[must_use]
+    pub fn new(random: [u64; 3]) -> Self {
+        let [key, a, b] = random;
+        let [id, ..] = [a.rotate_left(17) ^ key, 0];
+        let [w, x, y, z, ..] = id.to_le_bytes();
+        PeerIdentity { id: PeerId(u32::from_le_bytes([w, x, y, z])), key: Key(key), secret: [a, b] }
+    }
+
+    /// The same with a key that the lobby has given.
+    #[must_use]
+    pub fn with_key(self, key: Key) -> Self {
+        PeerIdentity { key, ..self }
+    }
+}

@@ -1,0 +1,363 @@
+//! [`Peer`]: one participant of a match.
+
+use alloc::collections::VecDeque;
+use alloc::vec::Vec;
+use core::fmt;
+use core::time::Duration;
+
+use super::error::PeerError;
+use super::input_slot::InputSlot;
+use super::options::{PeerIdentity, PeerOptions};
+use super::parameters::PeerParameters;
+use super::simulation::Simulation;
+use super::transport::Transport;
+use crate::codec;
+use crate::hash::StateHash;
+use crate::lockstep::{Game, History};
+use crate::session::{
+    Address, Endpoint, Event, Identity, JoinEvent, Key, Link, PeerId, RefusalReason, Role, Session, Status,
+    Tick,
+};
+
+/// Something that happened in a match.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PeerEvent {
+    /// An event of the session.
+    Session(Event),
+    /// The state to begin with has arrived; the game goes on from it.
+    Joined {
+        /// Number of ticks that lead to it.
+        tick: u64,
+    },
+    /// Another peer has another state. Write [`Peer::report`] to a file.
+    Desync(PeerDesync),
+}
+
+/// Two peers had different states.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PeerDesync {
+    /// The other peer.
+    pub peer: PeerId,
+    /// Number of ticks played.
+    pub tick: u64,
+    /// Hash of this peer.
+    pub ours: StateHash,
+    /// Hash of the other peer.
+    pub theirs: StateHash,
+}
+
+/// Packets that are read in one update, at most.
+const PACKETS_PER_UPDATE: usize = 4096;
+
+/// One participant of a match: opens it, joins it, or watches it.
+///
+/// It owns the game and decides when a tick can be played; the caller owns the clock and the transport. Call
+/// [`update`](Peer::update) every few milliseconds, and [`advance`](Peer::advance) while [`is_due`](Peer::is_due).
+pub struct Peer<G: Game, T> {
+    transport: T,
+    endpoint: Endpoint,
+    simulation: Simulation<G>,
+    parameters: PeerParameters,
+    slot: InputSlot,
+    now: u64,
+    /// Bytes of the inputs of a tick, reused.
+    inputs: Vec<u8>,
+    events: VecDeque<PeerEvent>,
+}
+
+impl<G: Game, T: fmt::Debug> fmt::Debug for Peer<G, T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let tick = self.simulation.tick;
+        f.debug_struct("Peer")
+            .field("transport", &self.transport)
+            .field("tick", &tick)
+            .finish_non_exhaustive()
+    }
+}
+
+/// How a peer comes into a match.
+enum Way {
+    Host,
+    Join(Role, Address),
+}
+
+impl<G: Game, T: Transport> Peer<G, T> {
+    /// Opens a match, and waits for [`PeerOptions::start_with`] seats to be taken. Without own seats
+    /// ([`PeerOptions::seats`] is 0) it is a dedicated server.
+    ///
+    /// # Errors
+    /// [`PeerError`] when the setup or the options cannot start a game.
+    pub fn host(
+        setup: &G::Setup,
+        options: PeerOptions,
+        me: PeerIdentity,
+        transport: T,
+    ) -> Result<Self, PeerError> {
+        Self::new(setup, options, me, transport, Way::Host)
+    }
+
+    /// Asks somebody who takes part for seats. It plays as soon as it has caught up and seats are free.
+    ///
+    /// # Errors
+    /// As [`Peer::host`].
+    pub fn join(
+        setup: &G::Setup,
+        options: PeerOptions,
+        me: PeerIdentity,
+        transport: T,
+        contact: Address,
+    ) -> Result<Self, PeerError> {
+        let role = Role::Player { seats: options.seats.max(1) };
+        Self::new(setup, options, me, transport, Way::Join(role, contact))
+    }
+
+    /// Asks somebody who takes part to watch. Spectators may be asked, too.
+    ///
+    /// # Errors
+    /// As [`Peer::host`].
+    pub fn watch(
+        setup: &G::Setup,
+        options: PeerOptions,
+        me: PeerIdentity,
+        transport: T,
+        contact: Address,
+    ) -> Result<Self, PeerError> {
+        Self::new(setup, options, me, transport, Way::Join(Role::Spectator, contact))
+    }
+
+    fn new(
+        setup: &G::Setup,
+        options: PeerOptions,
+        me: PeerIdentity,
+        transport: T,
+        way: Way,
+    ) -> Result<Self, PeerError> {
+        let slot = InputSlot::of::<G::Input>(options.input_bytes)?;
+        let mut simulation = Simulation::<G>::start(setup, options.checkpoint_interval, slot)?;
+        let config = options.config(&simulation.game, slot)?;
+        simulation.set_memory(
+            u32::from(config.history) + u32::from(config.guess) + 2 * u32::from(config.save_interval),
+        );
+        let parameters = PeerParameters::of(&simulation.game, setup, &config);
+        let identity =
+            Identity { id: me.id, key: me.key, offer: codec::encode(&parameters), secret: me.secret };
+        let endpoint = match way {
+            Way::Host => {
+                let seats = 1_u64.checked_shl(options.seats.into()).map_or(u64::MAX, |above| above - 1);
+                Endpoint::host(config, identity, seats)?
+            }
+            Way::Join(role, contact) => Endpoint::join(config, identity, role, contact)?,
+        };
+        let (inputs, events) = (Vec::new(), VecDeque::new());
+        Ok(Peer { transport, endpoint, simulation, parameters, slot, now: 0, inputs, events })
+    }
+
+    /// Reads all received packets and sends what is due. `now` is the time since a fixed moment in the past.
+    ///
+    /// # Errors
+    /// [`PeerError`] when this peer cannot continue.
+    pub fn update(&mut self, now: Duration) -> Result<(), PeerError> {
+        self.now = self.now.max(u64::try_from(now.as_micros()).unwrap_or(u64::MAX));
+        for _ in 0..PACKETS_PER_UPDATE {
+            let Some((from, bytes)) = self.transport.receive() else { break };
+            self.endpoint.receive(self.now, from, &bytes);
+        }
+        self.endpoint.update(self.now);
+        self.take_join_events()?;
+        if self.endpoint.wants_state() {
+            let state = self.simulation.state_for(self.simulation.committed);
+            if let Some((tick, bytes)) = state {
+                self.endpoint.offer_state(Tick::try_from(tick).unwrap_or(Tick::MAX), bytes);
+            }
+        }
+        self.fulfil()?;
+        self.send();
+        Ok(())
+    }
+
+    fn take_join_events(&mut self) -> Result<(), PeerError> {
+        while let Some(event) = self.endpoint.next_event() {
+            match event {
+                JoinEvent::State { tick, bytes } => {
+                    self.simulation.resume(tick.into(), &bytes)?;
+                    self.events.push_back(PeerEvent::Joined { tick: tick.into() });
+                }
+                JoinEvent::Refused { reason, offer } => match reason {
+                    RefusalReason::Offer => {
+                        let theirs = codec::decode::<PeerParameters>(&offer).ok();
+                        let differences = theirs.map(|theirs| self.parameters.differences(&theirs));
+                        return Err(PeerError::Parameters(differences.unwrap_or_default()));
+                    }
+                    RefusalReason::Full => return Err(PeerError::Refused { why: "too many peers watch" }),
+                    RefusalReason::Taken => return Err(PeerError::Refused { why: "the identity is taken" }),
+                    // It is asked again.
+                    RefusalReason::NotReady => {}
+                },
+                JoinEvent::BadState => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Fulfils the requests of the session, and takes its events.
+    fn fulfil(&mut self) -> Result<(), PeerError> {
+        let Some(session) = self.endpoint.session_mut() else { return Ok(()) };
+        self.simulation.fulfil(session)?;
+        while let Some(event) = session.next_event() {
+            self.events.push_back(match event {
+                Event::Desync { peer, tick, ours, theirs } => PeerEvent::Desync(PeerDesync {
+                    peer,
+                    tick: tick.into(),
+                    ours: StateHash(ours),
+                    theirs: StateHash(theirs),
+                }),
+                event => PeerEvent::Session(event),
+            });
+        }
+        Ok(())
+    }
+
+    fn send(&mut self) {
+        self.endpoint.flush();
+        while let Some((to, bytes)) = self.endpoint.next_packet() {
+            self.transport.send(&bytes, &to);
+        }
+    }
+
+    /// Whether it is time for the next tick.
+    #[must_use]
+    pub fn is_due(&self) -> bool {
+        self.endpoint.session().is_some_and(|session| session.is_due(self.now))
+    }
+
+    /// Issues the inputs of the own seats, in the order of the seats, and plays a tick if those of the others allow it.
+    /// Without own seats the list is empty. Returns whether the inputs were issued; otherwise they may be used again.
+    ///
+    /// # Errors
+    /// [`PeerError`] when the inputs cannot be issued, or the game or its replay cannot continue.
+    pub fn advance(&mut self, inputs: &[G::Input]) -> Result<bool, PeerError> {
+        let Some(session) = self.endpoint.session_mut() else { return Ok(false) };
+        let seats = usize::try_from(session.seats().count_ones()).unwrap_or(0);
+        // A peer whose seat is not decided yet may pass its input already.
+        let inputs = if seats == 0 { &[] } else { inputs };
+        if seats != inputs.len() {
+            return Err(PeerError::InputCount { seats, inputs: inputs.len() });
+        }
+        self.inputs.clear();
+        for input in inputs {
+            self.slot.put(input, &mut self.inputs)?;
+        }
+        let issued = session
+            .advance(self.now, &self.inputs)
+            .map_err(|_| PeerError::InputCount { seats, inputs: inputs.len() })?;
+        self.fulfil()?;
+        self.send();
+        Ok(issued)
+    }
+
+    /// The next event, oldest first.
+    pub fn next_event(&mut self) -> Option<PeerEvent> {
+        self.events.pop_front()
+    }
+
+    /// The current state of the game; it may depend on guessed inputs.
+    #[must_use]
+    pub const fn game(&self) -> &G {
+        &self.simulation.game
+    }
+
+    /// Number of ticks played, including guessed ones.
+    #[must_use]
+    pub const fn tick(&self) -> u64 {
+        self.simulation.tick
+    }
+
+    /// Number of final ticks that are in the replay.
+    #[must_use]
+    pub const fn confirmed(&self) -> u64 {
+        self.simulation.committed
+    }
+
+    /// The recent states.
+    #[must_use]
+    pub const fn history(&self) -> &History<G> {
+        &self.simulation.history
+    }
+
+    /// The session, once this peer takes part: its view, delay, links and statistics.
+    #[must_use]
+    pub fn session(&self) -> Option<&Session> {
+        self.endpoint.session()
+    }
+
+    /// The session, to leave, end, kick or pause.
+    pub fn session_mut(&mut self) -> Option<&mut Session> {
+        self.endpoint.session_mut()
+    }
+
+    /// Where the session stands; nothing before the state to begin with has arrived.
+    #[must_use]
+    pub fn status(&self) -> Option<Status> {
+        self.endpoint.session().map(Session::status)
+    }
+
+    /// The own seats, in ascending order.
+    #[must_use]
+    pub fn seats(&self) -> Vec<u32> {
+        let seats = self.endpoint.session().map_or(0, Session::seats);
+        (0..64).filter(|seat| seats >> seat & 1 == 1).collect()
+    }
+
+    /// Measurements of the way to another peer.
+    #[must_use]
+    pub fn link(&self, peer: PeerId) -> Option<Link> {
+        self.endpoint.session().and_then(|session| session.link(peer))
+    }
+
+    /// Removes somebody for good.
+    pub fn kick(&mut self, key: Key) {
+        if let Some(session) = self.endpoint.session_mut() {
+            session.kick(key);
+        }
+    }
+
+    /// Asks somebody else to join, or the same one again, for example when no answer comes.
+    pub fn ask(&mut self, contact: Address) {
+        self.endpoint.ask(contact);
+    }
+
+    /// The transport.
+    pub fn transport_mut(&mut self) -> &mut T {
+        &mut self.transport
+    }
+
+    /// This peer's report of a desync, as bytes for a file. The reports of any two peers tell which one diverged, when and
+    /// where.
+    ///
+    /// # Errors
+    /// [`PeerError`] when the states that it needs are not kept.
+    pub fn report(&mut self, desync: &PeerDesync) -> Result<Vec<u8>, PeerError> {
+        let theirs = self.endpoint.session().map_or(0, |session| session.view().seats_of(desync.peer));
+        let players = self.simulation.game.players();
+        let hash = |seat: u32| (theirs >> seat & 1 == 1).then_some(desync.theirs);
+        let hashes = (0..players).map(hash).collect();
+        let seats = self.seats();
+        Ok(self.simulation.report(desync.tick, seats, hashes)?.to_bytes())
+    }
+
+    /// Takes the finished bytes of the replay, to be appended to its file. Every byte is returned once. A peer that
+    /// joined after the first tick has no replay.
+    #[must_use]
+    pub fn take_replay(&mut self) -> Vec<u8> {
+        self.simulation.take_replay()
+    }
+
+    /// Ends the replay after the last final tick, and returns the bytes that have not been taken yet. Leave or end the
+    /// match first, and call [`update`](Peer::update) until the status is [`Status::Closed`].
+    ///
+    /// # Errors
+    /// [`PeerError`] when the replay cannot be finished.
+    pub fn finish(self) -> Result<Vec<u8>, PeerError> {
+        self.simulation.finish()
+    }
+}

@@ -1,0 +1,227 @@
+//! [`Simulation`]: a game, its saved states and its replay, driven by the requests of a session.
+
+use alloc::collections::VecDeque;
+use alloc::vec::Vec;
+
+use super::error::PeerError;
+use super::input_slot::InputSlot;
+use crate::codec;
+use crate::hash::StateHash;
+use crate::lockstep::{EncodedInputs, Game, History};
+use crate::replay::{RecordError, Recorder};
+use crate::report::{Desync, DesyncReport};
+use crate::session::{InputStatus, Request, Session, Tick, TickInputs};
+
+/// A game that is played by a session.
+pub(super) struct Simulation<G: Game> {
+    pub(super) game: G,
+    /// Number of ticks played.
+    pub(super) tick: u64,
+    pub(super) history: History<G>,
+    slot: InputSlot,
+    /// Inputs of the ticks from `first_input` on.
+    inputs: VecDeque<EncodedInputs<G::Input>>,
+    first_input: u64,
+    /// Number of ticks whose inputs are final.
+    pub(super) committed: u64,
+    recorder: Option<Recorder<G>>,
+    checkpoint_interval: u64,
+    /// The part of the replay that has been taken, kept for reports.
+    taken: Vec<u8>,
+}
+
+impl<G: Game> Simulation<G> {
+    /// Starts a game and its replay.
+    pub(super) fn start(
+        setup: &G::Setup,
+        checkpoint_interval: u32,
+        slot: InputSlot,
+    ) -> Result<Self, RecordError> {
+        let (recorder, game) = Recorder::<G>::start(setup, checkpoint_interval)?;
+        let mut history = History::new(&game);
+        history.push(0, game.save(), game.state_hash());
+        Ok(Simulation {
+            game,
+            tick: 0,
+            history,
+            slot,
+            inputs: VecDeque::new(),
+            first_input: 0,
+            committed: 0,
+            recorder: Some(recorder),
+            checkpoint_interval: u64::from(checkpoint_interval).max(1),
+            taken: Vec::new(),
+        })
+    }
+
+    /// Keeps the states of at least this many ticks.
+    pub(super) fn set_memory(&mut self, ticks: u32) {
+        if self.history.capacity() < u64::from(ticks) {
+            self.history = History::of_ticks(ticks);
+            self.history.push(self.tick, self.game.save(), self.game.state_hash());
+        }
+    }
+
+    /// Goes on from a state that others have played to. There is no replay: the earlier inputs are unknown.
+    pub(super) fn resume(&mut self, tick: u64, bytes: &[u8]) -> Result<(), PeerError> {
+        let wrong = |why: &dyn core::fmt::Display| PeerError::State { why: alloc::format!("{why}") };
+        let (hash, save): (StateHash, G::Save) = codec::decode(bytes).map_err(|error| wrong(&error))?;
+        self.game.load(&save);
+        if self.game.state_hash() != hash {
+            return Err(wrong(&"its hash is another one"));
+        }
+        if tick > 0 {
+            self.recorder = None;
+        }
+        self.history = History::of_ticks(u32::try_from(self.history.capacity()).unwrap_or(u32::MAX));
+        self.history.push(tick, save, hash);
+        (self.tick, self.first_input, self.committed) = (tick, tick, tick);
+        self.inputs.clear();
+        Ok(())
+    }
+
+    /// The newest kept state of at most `tick` ticks, as bytes for somebody who joins.
+    pub(super) fn state_for(&self, tick: u64) -> Option<(u64, Vec<u8>)> {
+        let past = self.history.iter().rev().find(|past| past.tick <= tick)?;
+        Some((past.tick, codec::encode(&(past.hash, &past.save))))
+    }
+
+    /// Fulfils all requests of a session.
+    pub(super) fn fulfil(&mut self, session: &mut Session) -> Result<(), PeerError> {
+        while let Some(request) = session.next_request() {
+            match request {
+                Request::Save { .. } => {
+                    self.history.push(self.tick, self.game.save(), self.game.state_hash());
+                }
+                Request::Load { tick } => self.rewind(tick.into())?,
+                Request::Advance { inputs, .. } => self.step(&inputs)?,
+                Request::Checksum { tick } => {
+                    if let Some(past) = self.history.get(tick.into()) {
+                        session.report_hash(tick, past.hash.0);
+                    }
+                }
+                Request::Forget { .. } => {}
+            }
+        }
+        self.commit(session.confirmed())
+    }
+
+    fn rewind(&mut self, tick: u64) -> Result<(), PeerError> {
+        let past = self.history.get(tick).ok_or(PeerError::NoState { tick })?;
+        self.game.load(&past.save);
+        self.history.truncate(tick);
+        let played = tick.saturating_sub(self.first_input);
+        self.inputs.truncate(usize::try_from(played).unwrap_or(usize::MAX));
+        self.tick = tick;
+        Ok(())
+    }
+
+    fn step(&mut self, inputs: &TickInputs) -> Result<(), PeerError> {
+        let players = self.game.players();
+        let of_seat = |seat: u32| {
+            let (slot, status) = inputs.seat(u8::try_from(seat).ok()?)?;
+            (status != InputStatus::Absent).then(|| self.slot.take(slot))
+        };
+        let inputs: Vec<G::Input> =
+            (0..players).map(|seat| of_seat(seat).unwrap_or_else(G::absent)).collect();
+        let encoded = EncodedInputs::new(&inputs, players).map_err(RecordError::Inputs)?;
+        self.game.step(encoded.inputs());
+        self.tick += 1;
+        self.inputs.push_back(encoded);
+        Ok(())
+    }
+
+    /// Writes the ticks that no rollback changes any more to the replay.
+    fn commit(&mut self, ticks: Tick) -> Result<(), PeerError> {
+        while self.committed < u64::from(ticks).min(self.tick) {
+            let tick = self.committed;
+            if let Some(mut recorder) = self.recorder.take() {
+                let recorded = self.record(tick, &mut recorder);
+                // The ticks recorded so far are kept.
+                self.recorder = Some(recorder);
+                if !recorded? {
+                    break;
+                }
+            }
+            self.committed += 1;
+        }
+        // Inputs since the oldest state are needed to end the replay, and for reports.
+        let oldest = self.history.oldest().unwrap_or(0).min(self.committed);
+        while self.first_input < oldest {
+            self.inputs.pop_front();
+            self.first_input += 1;
+        }
+        Ok(())
+    }
+
+    /// Records a tick. Returns whether that was possible: at the end of a block the hash of the state has to be known.
+    fn record(&self, tick: u64, recorder: &mut Recorder<G>) -> Result<bool, PeerError> {
+        let place = tick.checked_sub(self.first_input).and_then(|place| usize::try_from(place).ok());
+        let inputs = place.and_then(|place| self.inputs.get(place)).ok_or(PeerError::NoState { tick })?;
+        let next = tick + 1;
+        let hash = self.history.get(next).map(|past| past.hash);
+        let hash = hash.or_else(|| (self.tick == next).then(|| self.game.state_hash()));
+        if next.is_multiple_of(self.checkpoint_interval) && hash.is_none() {
+            return Ok(false);
+        }
+        recorder.record_encoded(inputs)?;
+        if let Some(hash) = hash {
+            recorder.checkpoint(hash);
+        }
+        Ok(true)
+    }
+
+    /// Takes the finished bytes of the replay. Empty without one.
+    pub(super) fn take_replay(&mut self) -> Vec<u8> {
+        let bytes = self.recorder.as_mut().map(Recorder::take_bytes).unwrap_or_default();
+        self.taken.extend_from_slice(&bytes);
+        bytes
+    }
+
+    /// Ends the replay after the last committed tick, and returns the bytes that have not been taken yet.
+    pub(super) fn finish(mut self) -> Result<Vec<u8>, PeerError> {
+        let Some(recorder) = self.recorder.take() else { return Ok(Vec::new()) };
+        self.play_to(self.committed)?;
+        Ok(recorder.finish(&self.game)?)
+    }
+
+    /// Restores the state after a number of ticks that have been played.
+    fn play_to(&mut self, tick: u64) -> Result<(), PeerError> {
+        if self.tick == tick {
+            return Ok(());
+        }
+        let past =
+            self.history.iter().rev().find(|past| past.tick <= tick).ok_or(PeerError::NoState { tick })?;
+        let mut at = past.tick;
+        self.game.load(&past.save);
+        while at < tick {
+            let place = at.checked_sub(self.first_input).and_then(|place| usize::try_from(place).ok());
+            let inputs =
+                place.and_then(|place| self.inputs.get(place)).ok_or(PeerError::NoState { tick: at })?;
+            self.game.step(inputs.inputs());
+            at += 1;
+        }
+        self.tick = tick;
+        Ok(())
+    }
+
+    /// A report of a desync, in which `hashes` are those of the other seats.
+    pub(super) fn report(
+        &mut self,
+        tick: u64,
+        seats: Vec<u32>,
+        hashes: Vec<Option<StateHash>>,
+    ) -> Result<DesyncReport, PeerError> {
+        let players = self.game.players();
+        let known = self.committed;
+        let (now, state) = (self.tick, self.game.save());
+        self.play_to(known)?;
+        let hash = self.game.state_hash();
+        self.game.load(&state);
+        self.tick = now;
+        let recorder = self.recorder.as_ref();
+        let replay = recorder.map(|recorder| [&self.taken[..], &recorder.so_far(hash)].concat());
+        let found = Desync { players, tick, known, seats, hashes };
+        Ok(DesyncReport::new(&found, &self.history, replay.unwrap_or_default()))
+    }
+}

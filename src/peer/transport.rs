@@ -1,0 +1,154 @@
+//! [`Transport`]: sends and receives packets. [`Udp`] is one.
+
+use alloc::vec::Vec;
+
+use crate::session::Address;
+
+/// Carries packets between peers. Packets may be lost, doubled, delayed and reordered, and may come from anybody.
+pub trait Transport {
+    /// Sends a packet of at most [`PACKET_BYTES_MAX`](crate::session::PACKET_BYTES_MAX) bytes, or drops it.
+    fn send(&mut self, packet: &[u8], to: &Address);
+
+    /// The next received packet and its sender. Does not block.
+    fn receive(&mut self) -> Option<(Address, Vec<u8>)>;
+}
+
+#[cfg(feature = "std")]
+pub use udp::{Udp, socket_address};
+
+#[cfg(feature = "std")]
+mod udp {
+    use alloc::vec;
+    use alloc::vec::Vec;
+    use core::fmt;
+    use core::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
+    use std::io;
+    use std::net::{ToSocketAddrs, UdpSocket};
+
+    use super::Transport;
+    use crate::session::{Address, PACKET_BYTES_MAX};
+
+    /// A UDP socket.
+    pub struct Udp {
+        socket: UdpSocket,
+        buffer: Vec<u8>,
+        is_v6: bool,
+    }
+
+    impl fmt::Debug for Udp {
+        fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            self.socket.fmt(f)
+        }
+    }
+
+    /// The address of a socket. IPv4 addresses that are mapped to IPv6 are IPv4 addresses.
+    #[must_use]
+    pub fn socket_address(address: SocketAddr) -> Address {
+        let port = address.port().to_le_bytes();
+        let bytes = match address.ip().to_canonical() {
+            IpAddr::V4(ip) => [&ip.octets()[..], &port].concat(),
+            IpAddr::V6(ip) => [&ip.octets()[..], &port].concat(),
+        };
+        // At most 18 bytes, which fit into an address.
+        Address::new(&bytes).unwrap_or_else(Address::nowhere)
+    }
+
+    /// The socket address that [`socket_address`] made an address from.
+    fn to_socket(address: &Address) -> Option<SocketAddr> {
+        let (ip, port) = address.bytes().split_last_chunk::<2>()?;
+        let ip = match ip.len() {
+            4 => IpAddr::V4(Ipv4Addr::from(<[u8; 4]>::try_from(ip).ok()?)),
+            _ => IpAddr::V6(Ipv6Addr::from(<[u8; 16]>::try_from(ip).ok()?)),
+        };
+        Some(SocketAddr::new(ip, u16::from_le_bytes(*port)))
+    }
+
+    impl Udp {
+        /// Opens a socket; port 0 lets the system choose one.
+        ///
+        /// # Errors
+        /// Errors of the operating system.
+        pub fn bind(address: impl ToSocketAddrs) -> io::Result<Self> {
+            let socket = UdpSocket::bind(address)?;
+            socket.set_nonblocking(true)?;
+            let is_v6 = socket.local_addr()?.is_ipv6();
+            Ok(Udp { socket, buffer: vec![0; PACKET_BYTES_MAX + 1], is_v6 })
+        }
+
+        /// The local address of the socket.
+        ///
+        /// # Errors
+        /// Errors of the operating system.
+        pub fn local_address(&self) -> io::Result<SocketAddr> {
+            self.socket.local_addr()
+        }
+    }
+
+    impl Transport for Udp {
+        fn send(&mut self, packet: &[u8], to: &Address) {
+            let Some(mut to) = to_socket(to) else { return };
+            // A socket for IPv6 reaches IPv4 addresses in their mapped form only.
+            if let (true, IpAddr::V4(ip)) = (self.is_v6, to.ip()) {
+                to.set_ip(IpAddr::V6(ip.to_ipv6_mapped()));
+            }
+            // A packet that cannot be sent counts as lost.
+            let _ = self.socket.send_to(packet, to);
+        }
+
+        fn receive(&mut self) -> Option<(Address, Vec<u8>)> {
+            loop {
+                match self.socket.recv_from(&mut self.buffer) {
+                    Ok((length, from)) => {
+                        return Some((socket_address(from), self.buffer.get(..length)?.to_vec()));
+                    }
+                    Err(error) if error.kind() == io::ErrorKind::WouldBlock => return None,
+                    // The system reports unreachable receivers of earlier packets here.
+                    Err(error)
+                        if matches!(
+                            error.kind(),
+                            io::ErrorKind::ConnectionReset
+                                | io::ErrorKind::ConnectionRefused
+                                | io::ErrorKind::Interrupted
+                        ) => {}
+                    Err(_) => return None,
+                }
+            }
+        }
+    }
+
+    #[cfg(test)]
+    mod tests {
+        use super::*;
+
+        #[test]
+        fn an_address_has_one_form() {
+            let plain: SocketAddr = "10.1.2.3:7000".parse().unwrap();
+            let mapped: SocketAddr = "[::ffff:10.1.2.3]:7000".parse().unwrap();
+            assert_eq!(socket_address(plain), socket_address(mapped));
+            for address in ["10.1.2.3:7000", "[2001:db8::1]:9"] {
+                let address: SocketAddr = address.parse().unwrap();
+                assert_eq!(to_socket(&socket_address(address)), Some(address));
+            }
+            assert_eq!(to_socket(&Address::new(&[1, 2, 3]).unwrap()), None);
+        }
+
+        #[test]
+        fn sockets_of_both_families_reach_each_other() {
+            let mut v4 = Udp::bind("127.0.0.1:0").unwrap();
+            let Ok(mut v6) = Udp::bind("[::]:0") else { return };
+            let port = v6.local_address().unwrap().port();
+            let to = socket_address(SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), port));
+            v4.send(&[1, 2, 3], &to);
+            let mut received = None;
+            for _ in 0..1000 {
+                received = v6.receive();
+                if received.is_some() {
+                    break;
+                }
+                std::thread::sleep(core::time::Duration::from_millis(1));
+            }
+            let own = socket_address(v4.local_address().unwrap());
+            assert_eq!(received, Some((own, vec![1, 2, 3])));
+        }
+    }
+}

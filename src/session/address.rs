@@ -1,0 +1,55 @@
+//! [`Address`]: where packets go, as bytes that only the transport understands.
+
+use core::fmt;
+
+use super::bytes::{Decoded, Malformed, Reader};
+
+/// Largest address in bytes.
+pub const ADDRESS_BYTES_MAX: usize = 32;
+
+/// An address of a transport, such as an IP address with a port. The transport has to give one address in one form
+/// only: IPv4 addresses mapped to IPv6 count as others than the IPv4 addresses.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Address {
+    length: u8,
+    bytes: [u8; ADDRESS_BYTES_MAX],
+}
+
+impl Address {
+    /// The address with these bytes, of which there are at most [`ADDRESS_BYTES_MAX`].
+    #[must_use]
+    pub fn new(bytes: &[u8]) -> Option<Self> {
+        let length = u8::try_from(bytes.len()).ok()?;
+        let mut address = Address { length, bytes: [0; ADDRESS_BYTES_MAX] };
+        address.bytes.get_mut(..bytes.len())?.copy_from_slice(bytes);
+        Some(address)
+    }
+
+    /// An address that reaches nobody.
+    #[must_use]
+    pub const fn nowhere() -> Self {
+        Address { length: 0, bytes: [0; ADDRESS_BYTES_MAX] }
+    }
+
+    /// The bytes.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        self.bytes.get(..usize::from(self.length)).unwrap_or_default()
+    }
+
+    pub(super) fn write(&self, bytes: &mut alloc::vec::Vec<u8>) {
+        bytes.push(self.length);
+        bytes.extend_from_slice(self.bytes());
+    }
+
+    pub(super) fn read(reader: &mut Reader) -> Decoded<Self> {
+        let length = usize::from(reader.u8()?);
+        Address::new(reader.take(length)?).ok_or(Malformed)
+    }
+}
+
+impl fmt::Debug for Address {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.bytes().iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+    }
+}

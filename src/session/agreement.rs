@@ -1,0 +1,215 @@
+//! Changes of the view: one instance of single-decree Paxos for each view number, with all of its state in rows.
+//!
+//! A voter that sees a higher ballot promises it and freezes its acknowledgement. The proposer of a ballot that a
+//! quorum promised chooses the change: what the highest ballot among the promisers has accepted, or its own
+//! (`proposal.rs`). A voter accepts a change of the ballot that it promised, or of a higher one, if it holds all
+//! ticks before the cut. A change that a quorum of the old view accepted in one ballot is decided, whoever sees that
+//! installs it. As every final tick was acknowledged by a quorum before its members froze, the cut, the largest
+//! frozen acknowledgement of a quorum, lies at or above every final tick.
+
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+use super::config::Fault;
+use super::event::Event;
+use super::peers::within;
+use super::proposal::Proposal;
+use super::row::Ballot;
+use super::state::Session;
+use super::view::{Change, View, bit, has_bit};
+
+/// What a voter remembers of the ballots of its view.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Agreement {
+    pub(super) promised: Option<Ballot>,
+    pub(super) promised_at: u64,
+    pub(super) accepted: Option<(Ballot, Arc<Change>)>,
+    /// The own ballot, if one is under way.
+    pub(super) proposal: Option<Proposal>,
+    /// No own ballot starts before this time.
+    pub(super) not_before: u64,
+    /// Highest round that was seen, and that at the start of the view.
+    pub(super) round: u32,
+    pub(super) base_round: u32,
+    /// Since when somebody wants a change.
+    pub(super) wanted_since: Option<u64>,
+}
+
+/// Transitions after one packet, at most. Each view takes a few.
+const STEPS_MAX: usize = 64;
+
+impl Session {
+    /// Takes all steps of the agreement that packets make possible.
+    pub(super) fn agree(&mut self) {
+        for _ in 0..STEPS_MAX {
+            if !self.agreement_step() {
+                return;
+            }
+        }
+    }
+
+    /// Takes the steps that time makes possible.
+    pub(super) fn agree_in_time(&mut self) {
+        if self.view.voter(self.me).is_some() && self.agreement.proposal.is_none() {
+            self.begin_ballot();
+        }
+        self.agree();
+    }
+
+    /// Takes a step. Returns whether another one may be possible.
+    fn agreement_step(&mut self) -> bool {
+        if let Some(change) = self.decided() {
+            return self.install(&[(*change).clone()]);
+        }
+        if self.view.voter(self.me).is_none() {
+            return false;
+        }
+        self.promise();
+        self.give_up_outbid();
+        if self.accept() {
+            return true;
+        }
+        self.agreement.proposal.is_some() && self.conduct_ballot()
+    }
+
+    /// A change that a quorum has accepted in one ballot.
+    fn decided(&self) -> Option<Arc<Change>> {
+        let mut tally: Vec<(Ballot, &Arc<Change>, u64)> = Vec::new();
+        for (index, _, row) in self.peers.rows(self.view.number) {
+            let Some((ballot, change)) = &row.accepted else { continue };
+            match tally.iter_mut().find(|(other, _, _)| other == ballot) {
+                Some((_, _, set)) => *set |= bit(index),
+                None => tally.push((*ballot, change, bit(index))),
+            }
+        }
+        let decided = tally.into_iter().find(|&(_, _, set)| self.is_quorum(set));
+        decided.map(|(_, change, _)| Arc::clone(change))
+    }
+
+    fn promise(&mut self) {
+        let rows = self.peers.rows(self.view.number);
+        let Some(highest) = rows.filter_map(|(_, _, row)| row.promised).max() else { return };
+        self.agreement.round = self.agreement.round.max(highest.round);
+        if self.agreement.promised.is_none_or(|promised| highest > promised) {
+            self.set_promise(highest);
+        }
+    }
+
+    pub(super) fn set_promise(&mut self, ballot: Ballot) {
+        self.agreement.promised = Some(ballot);
+        self.agreement.promised_at = self.clock.active;
+        self.refresh_row();
+    }
+
+    fn give_up_outbid(&mut self) {
+        let own = self.agreement.proposal.as_ref().map(|proposal| proposal.ballot);
+        if own.is_some() && own != self.agreement.promised {
+            self.agreement.proposal = None;
+            self.agreement.not_before = self.clock.active + self.backoff();
+        }
+    }
+
+    /// A random time, so that proposers do not get in each other's way again.
+    pub(super) fn backoff(&mut self) -> u64 {
+        let ballot = self.config.timing.ballot;
+        ballot / 5 + self.random.below(ballot / 2)
+    }
+
+    /// Accepts what somebody accepted in the highest ballot.
+    fn accept(&mut self) -> bool {
+        let rows = self.peers.rows(self.view.number);
+        let accepted = rows.filter_map(|(_, _, row)| row.accepted.as_ref());
+        let Some((ballot, change)) = accepted.max_by_key(|(ballot, _)| *ballot) else { return false };
+        let promised = self.agreement.promised.is_none_or(|promised| *ballot >= promised);
+        let newer = self.agreement.accepted.as_ref().is_none_or(|(own, _)| ballot > own);
+        if !promised || !newer || !self.holds(change) {
+            return false;
+        }
+        let (ballot, change) = (*ballot, Arc::clone(change));
+        self.set_accepted(ballot, change);
+        true
+    }
+
+    /// Whether this peer holds all ticks before the cut of a change.
+    pub(super) fn holds(&self, change: &Change) -> bool {
+        self.progress.complete >= change.cut || self.config.has(Fault::AcceptBlind)
+    }
+
+    pub(super) fn set_accepted(&mut self, ballot: Ballot, change: Arc<Change>) {
+        if self.agreement.promised != Some(ballot) {
+            self.agreement.promised_at = self.clock.active;
+        }
+        self.agreement.promised = Some(ballot);
+        self.agreement.accepted = Some((ballot, change));
+        self.refresh_row();
+    }
+
+    /// Applies changes that have been decided, which lead from this view to a newer one. Returns whether they fit.
+    pub(super) fn install(&mut self, changes: &[Change]) -> bool {
+        let mut next = self.view.clone();
+        for change in changes {
+            let Some(changed) = next.changed_by(change) else { return false };
+            next = changed;
+        }
+        if next.number == self.view.number {
+            return false;
+        }
+        self.changes.list.extend_from_slice(changes);
+        let before = core::mem::replace(&mut self.view, next);
+        self.tell_difference(&before);
+        let agreement = &mut self.agreement;
+        agreement.promised = None;
+        agreement.accepted = None;
+        agreement.proposal = None;
+        agreement.wanted_since = None;
+        agreement.base_round = agreement.round;
+        self.peers.follow(&self.view, self.clock.active);
+        self.log.follow(&self.view.spans);
+        // Views may have been skipped: everything beyond the own final tick is determined again.
+        let (complete, moved_at) = (self.progress.complete, self.progress.moved_at);
+        if !self.config.has(Fault::KeepComplete) {
+            self.progress.complete = self.progress.fin;
+        }
+        self.progress.follow(&self.view, self.play.needed_from().min(self.progress.fin));
+        self.play.note_change(self.progress.fin);
+        self.lifecycle_after_change(&before);
+        self.settle();
+        if self.progress.complete <= complete {
+            self.progress.moved_at = moved_at;
+        }
+        true
+    }
+
+    fn tell_difference(&mut self, before: &View) {
+        self.events.push_back(Event::View { number: self.view.number });
+        for (index, span) in self.view.spans.iter().enumerate() {
+            let (peer, seat) = (span.owner, span.seat);
+            match before.spans.get(index) {
+                None => self.events.push_back(Event::Seated { peer, seat, from: span.from }),
+                Some(old) if old.is_open() && !span.is_open() => {
+                    self.events.push_back(Event::Unseated { peer, seat, from: span.until });
+                }
+                Some(_) => {}
+            }
+        }
+        if let (None, Some(ticks)) = (before.end, self.view.end) {
+            self.events.push_back(Event::End { ticks });
+        }
+    }
+
+    /// Whether rows of a quorum are fresh.
+    pub(super) fn is_connected(&self) -> bool {
+        let (fresh, active) = (self.config.timing.fresh, self.clock.active);
+        let set =
+            self.peers.voters_that(|remote| remote.id == self.me || within(remote.fresh, fresh, active));
+        self.is_quorum(set)
+    }
+
+    /// Place of this voter among those that are alive, and the number of voters.
+    pub(super) fn rank(&self) -> u64 {
+        let (fresh, active) = (self.config.timing.fresh, self.clock.active);
+        let alive = self.peers.voters_that(|remote| within(remote.fresh, fresh, active));
+        let own = self.view.voter(self.me).unwrap_or(0);
+        (0..own).map(|index| u64::from(has_bit(alive, index))).sum()
+    }
+}

@@ -1,0 +1,209 @@
+//! [`Config`]: the parameters of a session.
+
+use core::fmt;
+
+use super::view::SEATS_MAX;
+
+/// Milliseconds, in the microseconds in which a session counts.
+pub(super) const MS: u64 = 1000;
+
+/// Largest number of ticks that may be played with guessed inputs.
+pub const GUESS_MAX: u16 = 32;
+/// Largest delay of inputs in ticks.
+pub const DELAY_MAX: u16 = 60;
+/// Largest size of an input in bytes.
+pub const INPUT_BYTES_MAX: u16 = 512;
+
+/// Periods of a session, in microseconds. `patience` has to be the same for all peers of a match.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Timing {
+    /// How long play stands still for somebody before the others go on without it. `u64::MAX`: for ever, until somebody
+    /// asks to go on.
+    pub patience: u64,
+    /// A peer is heard while its last packet is younger than this.
+    pub heard: u64,
+    /// A row is fresh while it is younger than this.
+    pub fresh: u64,
+    /// How long a proposer waits for promises beyond a quorum.
+    pub promises: u64,
+    /// After this time without a decision, another proposer tries.
+    pub ballot: u64,
+    /// Shortest time for which somebody that has finished or left still answers.
+    pub linger: u64,
+    /// Longest such time.
+    pub linger_max: u64,
+    /// Between two calls not more than this counts: a process that was suspended does not blame the others.
+    pub step_max: u64,
+}
+
+impl Timing {
+    /// Periods for matches over the internet: a patience of 2 s.
+    pub const DEFAULT: Timing = Timing {
+        patience: 2000 * MS,
+        heard: 300 * MS,
+        fresh: 1000 * MS,
+        promises: 500 * MS,
+        ballot: 1500 * MS,
+        linger: 2000 * MS,
+        linger_max: 12_000 * MS,
+        step_max: 250 * MS,
+    };
+}
+
+/// Parameters of a session.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Config {
+    /// Distinguishes matches: packets with another tag are ignored.
+    pub match_tag: u64,
+    /// Number of seats, 1 to [`SEATS_MAX`].
+    pub seats: u8,
+    /// Bytes of an input, 1 to [`INPUT_BYTES_MAX`].
+    pub input_bytes: u16,
+    /// Duration of a tick in microseconds, 1000 to 1 000 000.
+    pub tick_micros: u32,
+    /// Number of seats that have to be taken before the first tick.
+    pub start_with: u8,
+    /// Number of ticks that may be played with guessed inputs, at most [`GUESS_MAX`]; 0 is lockstep. Each peer chooses
+    /// its own.
+    pub guess: u16,
+    /// Smallest delay of inputs in ticks. Each peer chooses its own.
+    pub delay_min: u16,
+    /// Largest delay of inputs in ticks, at most [`DELAY_MAX`].
+    pub delay_max: u16,
+    /// First tick of those who join, counted from the cut. It should be longer than two network delays.
+    pub seat_lead: u16,
+    /// Somebody who lags by at most this many ticks has caught up and may have a seat.
+    pub seat_within: u16,
+    /// Number of ticks that may be played beyond the last final one, at least 16.
+    pub history: u16,
+    /// Number of final ticks whose inputs are kept for peers that return.
+    pub log_ticks: u32,
+    /// Interval in ticks at which states are saved, at least 1.
+    pub save_interval: u16,
+    /// Interval in ticks at which states are compared: a multiple of `save_interval`.
+    pub check_interval: u16,
+    /// Periods.
+    pub timing: Timing,
+    /// Deliberate mistakes, for tests that have to notice them.
+    #[cfg(feature = "__faults")]
+    #[doc(hidden)]
+    pub fault: Option<Fault>,
+}
+
+/// A parameter that is out of its range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ConfigError {
+    /// Name of the field.
+    pub field: &'static str,
+}
+
+impl fmt::Display for ConfigError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the session cannot start: {} is out of its range", self.field)
+    }
+}
+
+impl core::error::Error for ConfigError {}
+
+impl Config {
+    /// Lockstep at 60 ticks a second, with inputs of one byte.
+    #[must_use]
+    pub const fn new(match_tag: u64, seats: u8) -> Self {
+        Config {
+            match_tag,
+            seats,
+            input_bytes: 1,
+            tick_micros: 16_667,
+            start_with: 1,
+            guess: 0,
+            delay_min: 0,
+            delay_max: 20,
+            seat_lead: 8,
+            seat_within: 40,
+            history: 128,
+            log_ticks: 36_000,
+            save_interval: 8,
+            check_interval: 64,
+            timing: Timing::DEFAULT,
+            #[cfg(feature = "__faults")]
+            fault: None,
+        }
+    }
+
+    /// Checks all ranges.
+    ///
+    /// # Errors
+    /// The first field that is out of its range.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        let seats = usize::from(self.seats);
+        let ranges = [
+            ("seats", (1..=SEATS_MAX).contains(&seats)),
+            ("input_bytes", (1..=INPUT_BYTES_MAX).contains(&self.input_bytes)),
+            ("tick_micros", (1000..=1_000_000).contains(&self.tick_micros)),
+            ("start_with", self.start_with <= self.seats),
+            ("guess", self.guess <= GUESS_MAX),
+            ("delay_min", self.delay_min <= self.delay_max),
+            ("delay_max", self.delay_max <= DELAY_MAX),
+            ("history", self.history >= 16),
+            ("save_interval", self.save_interval >= 1 && self.save_interval <= self.history / 2),
+            (
+                "check_interval",
+                self.check_interval >= 1 && self.check_interval.is_multiple_of(self.save_interval.max(1)),
+            ),
+            ("log_ticks", self.log_ticks >= u32::from(self.history)),
+        ];
+        match ranges.into_iter().find(|(_, right)| !right) {
+            Some((field, _)) => Err(ConfigError { field }),
+            None => Ok(()),
+        }
+    }
+
+    /// Bit for each seat of the match.
+    pub(super) fn seat_set(&self) -> u64 {
+        if usize::from(self.seats) >= SEATS_MAX { u64::MAX } else { (1 << self.seats) - 1 }
+    }
+
+    /// Whether a mistake is planted. Without the feature the answer is a constant.
+    #[cfg(not(feature = "__faults"))]
+    #[expect(clippy::unused_self, reason = "the other version needs it")]
+    pub(super) const fn has(&self, _: Fault) -> bool {
+        false
+    }
+
+    #[cfg(feature = "__faults")]
+    pub(super) fn has(&self, fault: Fault) -> bool {
+        self.fault == Some(fault)
+    }
+}
+
+/// Mistakes in the protocol that tests plant, to show that they would be noticed.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// A promise does not freeze the acknowledgement.
+    NoFreeze,
+    /// The cut is what the proposer alone has acknowledged.
+    OwnCut,
+    /// What is complete counts as final.
+    FinalComplete,
+    /// Half of the weight counts as a quorum.
+    HalfIsEnough,
+    /// What was complete stays so when a view changes.
+    KeepComplete,
+    /// No rows and inputs of others are passed on.
+    NoRelay,
+    /// The own idea of the end counts, not the decided one.
+    LocalEnd,
+    /// Ballots start while a promise stands.
+    Duel,
+    /// Who has not promised is out at once.
+    Accuse,
+    /// A proposer forgets what others have accepted.
+    ForgetAccepted,
+    /// A change is accepted without the inputs before its cut.
+    AcceptBlind,
+    /// Who leaves does not wait for the others.
+    HastyLeave,
+    /// Wrong guesses are not corrected.
+    NoRollback,
+}

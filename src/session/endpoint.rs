@@ -1,0 +1,303 @@
+//! [`Endpoint`]: a session with addresses. It opens a match or joins one, admits those who join, sends them a state,
+//! and finds addresses.
+
+use alloc::boxed::Box;
+use alloc::collections::VecDeque;
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+use super::address::Address;
+use super::config::{Config, ConfigError};
+use super::guests::Guests;
+use super::id::{Key, PeerId, Tick};
+use super::join_packet::{JoinPacket, OFFER_BYTES_MAX, ROSTER_MAX, RefusalReason};
+use super::routes::{Routes, token};
+use super::siphash::Secret;
+use super::start_state::StartState;
+use super::state::{Role, Session};
+use super::transfer::{Download, Pinned};
+use super::view::View;
+
+/// Largest state that is accepted, in bytes.
+pub const STATE_BYTES_MAX: u64 = 256 << 20;
+/// Time between attempts to reach the contact, in microseconds.
+const HELLO_INTERVAL: u64 = 200_000;
+/// After this time without a new chunk a download starts again.
+const DOWNLOAD_PATIENCE: u64 = 3_000_000;
+/// Time between lists of addresses in microseconds.
+const ROSTER_INTERVAL: u64 = 500_000;
+/// Packets that wait at most.
+const PACKETS_MAX: usize = 8192;
+
+/// What happened, besides the events of the session.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum JoinEvent {
+    /// The contact refuses; with the offer that it expects.
+    Refused {
+        /// The reason.
+        reason: RefusalReason,
+        /// The offer of the contact.
+        offer: Vec<u8>,
+    },
+    /// The state to begin with is here: the game has to restore it, after which it follows the requests of the session.
+    State {
+        /// Number of ticks that lead to it.
+        tick: Tick,
+        /// The bytes that [`Endpoint::offer_state`] was given on the other side.
+        bytes: Vec<u8>,
+    },
+    /// What was downloaded is not a state. The endpoint asks again.
+    BadState,
+}
+
+/// The way into a match.
+#[derive(Debug)]
+pub(super) enum Phase {
+    /// Asks the contact.
+    Asking { nonce: u64, cookie: u64, next_at: u64 },
+    /// Downloads the state.
+    Downloading { nonce: u64, download: Download },
+    /// Takes part.
+    InMatch(Box<Session>),
+    /// Was refused.
+    Refused,
+}
+
+/// One participant of a match.
+///
+/// In a loop: pass packets to [`receive`](Endpoint::receive), call [`update`](Endpoint::update), offer a state while
+/// [`wants_state`](Endpoint::wants_state), drive the [`session`](Endpoint::session) as described there, and send what
+/// [`next_packet`](Endpoint::next_packet) returns.
+#[derive(Debug)]
+pub struct Endpoint {
+    pub(super) config: Config,
+    pub(super) me: PeerId,
+    pub(super) key: Key,
+    pub(super) role: Role,
+    pub(super) offer: Vec<u8>,
+    pub(super) secret: Secret,
+    pub(super) contact: Option<Address>,
+    pub(super) phase: Phase,
+    pub(super) routes: Routes,
+    pub(super) guests: Guests,
+    pub(super) pinned: Option<Arc<Pinned>>,
+    pub(super) roster_at: u64,
+    pub(super) packets: VecDeque<(Address, Vec<u8>)>,
+    pub(super) events: VecDeque<JoinEvent>,
+}
+
+/// Who somebody is, and what it brings along.
+#[derive(Clone, Debug)]
+pub struct Identity {
+    /// A random number, new for each process.
+    pub id: PeerId,
+    /// The identity that outlives processes.
+    pub key: Key,
+    /// What has to be equal for all peers of a match: versions, rules, setup. At most [`OFFER_BYTES_MAX`] bytes count.
+    pub offer: Vec<u8>,
+    /// 16 random bytes that nobody else knows, for cookies.
+    pub secret: [u64; 2],
+}
+
+impl Endpoint {
+    fn new(config: Config, identity: Identity, role: Role, phase: Phase, contact: Option<Address>) -> Self {
+        let Identity { id, key, mut offer, secret } = identity;
+        offer.truncate(OFFER_BYTES_MAX);
+        Endpoint {
+            config,
+            me: id,
+            key,
+            role,
+            offer,
+            secret: Secret(secret),
+            contact,
+            phase,
+            routes: Routes::default(),
+            guests: Guests::default(),
+            pinned: None,
+            roster_at: 0,
+            packets: VecDeque::new(),
+            events: VecDeque::new(),
+        }
+    }
+
+    /// Opens a match. `seats` are the own seats, one bit for each; none for a dedicated server.
+    ///
+    /// # Errors
+    /// A parameter that is out of its range.
+    pub fn host(config: Config, identity: Identity, seats: u64) -> Result<Self, ConfigError> {
+        let begun = u32::from(config.start_with) <= seats.count_ones();
+        let view = View::opened_by(identity.id, identity.key, seats & config.seat_set(), begun);
+        let role = match u8::try_from(seats.count_ones()).unwrap_or(0) {
+            0 => Role::Spectator,
+            seats => Role::Player { seats },
+        };
+        let seed = identity.secret[0];
+        let session = Session::new(config.clone(), identity.id, identity.key, role, view, seed)?;
+        Ok(Endpoint::new(config, identity, role, Phase::InMatch(Box::new(session)), None))
+    }
+
+    /// Asks somebody who takes part in a match.
+    ///
+    /// # Errors
+    /// A parameter that is out of its range.
+    pub fn join(
+        config: Config,
+        identity: Identity,
+        role: Role,
+        contact: Address,
+    ) -> Result<Self, ConfigError> {
+        config.validate()?;
+        let mut endpoint = Endpoint::new(config, identity, role, Phase::Refused, Some(contact));
+        endpoint.ask(contact);
+        Ok(endpoint)
+    }
+
+    /// Asks somebody else, or again.
+    pub fn ask(&mut self, contact: Address) {
+        self.contact = Some(contact);
+        let nonce = token(self.secret, self.me, &contact).wrapping_add(self.packets_seed());
+        self.phase = Phase::Asking { nonce, cookie: 0, next_at: 0 };
+    }
+
+    fn packets_seed(&self) -> u64 {
+        match self.phase {
+            Phase::Asking { nonce, .. } | Phase::Downloading { nonce, .. } => nonce,
+            Phase::InMatch(_) | Phase::Refused => 1,
+        }
+    }
+
+    /// The session, once this peer takes part.
+    #[must_use]
+    pub fn session(&self) -> Option<&Session> {
+        match &self.phase {
+            Phase::InMatch(session) => Some(session),
+            _ => None,
+        }
+    }
+
+    /// The session, once this peer takes part.
+    pub fn session_mut(&mut self) -> Option<&mut Session> {
+        match &mut self.phase {
+            Phase::InMatch(session) => Some(session),
+            _ => None,
+        }
+    }
+
+    /// Received and all bytes of the state, while it is downloaded.
+    #[must_use]
+    pub fn download(&self) -> Option<(u64, u64)> {
+        match &self.phase {
+            Phase::Downloading { download, .. } => Some(download.progress()),
+            _ => None,
+        }
+    }
+
+    /// The address of a peer that has answered.
+    #[must_use]
+    pub fn address(&self, peer: PeerId) -> Option<Address> {
+        self.routes.address(peer)
+    }
+
+    /// Next packet to send.
+    pub fn next_packet(&mut self) -> Option<(Address, Vec<u8>)> {
+        self.packets.pop_front()
+    }
+
+    /// Next event.
+    pub fn next_event(&mut self) -> Option<JoinEvent> {
+        self.events.pop_front()
+    }
+
+    pub(super) fn send(&mut self, to: Address, packet: &JoinPacket) {
+        let bytes = packet.encode(self.config.match_tag, self.me);
+        self.packets.push_back((to, bytes));
+    }
+
+    /// Whether somebody waits for a state. The game then calls [`offer_state`](Endpoint::offer_state).
+    #[must_use]
+    pub fn wants_state(&self) -> bool {
+        self.guests.anybody_waits()
+    }
+
+    /// Offers the state after a number of final ticks. It is kept, and sent to all who wait, while play goes on.
+    pub fn offer_state(&mut self, tick: Tick, state: Vec<u8>) {
+        let Phase::InMatch(session) = &self.phase else { return };
+        if tick > session.final_tick() {
+            return;
+        }
+        let addresses = self.routes.known(usize::MAX);
+        let start = StartState { view: session.view().clone(), addresses, tick, state };
+        let pinned = Arc::new(Pinned::new(tick, start.encode()));
+        self.guests.serve(&pinned);
+        self.pinned = Some(pinned);
+    }
+
+    /// Passes the time.
+    pub fn update(&mut self, now: u64) {
+        match &mut self.phase {
+            Phase::Asking { nonce, cookie, next_at } => {
+                if now >= *next_at {
+                    *next_at = now + HELLO_INTERVAL;
+                    let (nonce, cookie) = (*nonce, *cookie);
+                    let hello = JoinPacket::Hello { nonce, key: self.key, cookie, offer: self.offer.clone() };
+                    if let Some(contact) = self.contact {
+                        self.send(contact, &hello);
+                    }
+                }
+            }
+            Phase::Downloading { download, .. } => {
+                if now >= download.moved_at.saturating_add(DOWNLOAD_PATIENCE) {
+                    if let Some(contact) = self.contact {
+                        self.ask(contact);
+                    }
+                } else if let (Some(want), Some(contact)) = (download.want(now), self.contact) {
+                    self.send(contact, &want);
+                }
+            }
+            Phase::InMatch(session) => {
+                session.update(now);
+                self.serve(now);
+            }
+            Phase::Refused => {}
+        }
+        while self.packets.len() > PACKETS_MAX {
+            self.packets.pop_front();
+        }
+    }
+
+    fn serve(&mut self, now: u64) {
+        let Phase::InMatch(session) = &mut self.phase else { return };
+        for (id, packet) in self.guests.update(now, session) {
+            if let Some(address) = self.routes.address(id) {
+                self.send(address, &packet);
+            }
+        }
+        for (id, address) in self.routes.probes(now) {
+            let token = token(self.secret, id, &address);
+            self.send(address, &JoinPacket::Probe { token });
+        }
+        if now >= self.roster_at {
+            self.roster_at = now + ROSTER_INTERVAL;
+            let Phase::InMatch(session) = &self.phase else { return };
+            self.routes.retain(|id| session.link(id).is_some());
+            let addresses = self.routes.known(ROSTER_MAX);
+            let all = self.routes.known(usize::MAX);
+            for (_, address) in &all {
+                self.send(*address, &JoinPacket::Roster { addresses: addresses.clone() });
+            }
+        }
+        self.flush();
+    }
+
+    /// Takes the packets of the session, so that [`next_packet`](Endpoint::next_packet) returns them. Call it after
+    /// [`Session::advance`].
+    pub fn flush(&mut self) {
+        let Phase::InMatch(session) = &mut self.phase else { return };
+        while let Some((id, bytes)) = session.next_packet() {
+            if let Some(address) = self.routes.address(id) {
+                self.packets.push_back((address, bytes));
+            }
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! What an endpoint does with packets.
+
+use alloc::boxed::Box;
+
+use super::address::Address;
+use super::endpoint::{Endpoint, JoinEvent, Phase, STATE_BYTES_MAX};
+use super::guests::Guests;
+use super::id::{Key, PeerId};
+use super::join_packet::{JoinPacket, RefusalReason, is_join_packet};
+use super::packet;
+use super::routes::token;
+use super::start_state::StartState;
+use super::state::Session;
+use super::transfer::Download;
+
+impl Endpoint {
+    /// Takes a packet that arrived.
+    pub fn receive(&mut self, now: u64, from: Address, bytes: &[u8]) {
+        let Ok(body) = packet::open(self.config.match_tag, bytes) else { return };
+        if is_join_packet(body) {
+            match JoinPacket::read(body) {
+                Ok((sender, packet)) if sender != self.me => self.take(now, from, sender, packet),
+                _ => {}
+            }
+            return;
+        }
+        let Phase::InMatch(session) = &mut self.phase else { return };
+        if let Some(sender) = session.receive(now, bytes) {
+            self.routes.heard(sender, from, now);
+        }
+    }
+
+    fn take(&mut self, now: u64, from: Address, sender: PeerId, packet: JoinPacket) {
+        match packet {
+            JoinPacket::Hello { nonce, key, cookie, offer } => {
+                self.take_hello(now, from, sender, (nonce, key, cookie), &offer);
+            }
+            JoinPacket::Challenge { nonce, cookie } => {
+                if let Phase::Asking { nonce: own, cookie: known, next_at } = &mut self.phase
+                    && *own == nonce
+                    && *known != cookie
+                {
+                    (*known, *next_at) = (cookie, 0);
+                }
+            }
+            JoinPacket::Refused { nonce, reason, offer } => {
+                if matches!(self.phase, Phase::Asking { nonce: own, .. } if own == nonce) {
+                    if reason != RefusalReason::NotReady {
+                        self.phase = Phase::Refused;
+                    }
+                    self.events.push_back(JoinEvent::Refused { reason, offer });
+                }
+            }
+            JoinPacket::Welcome { nonce, tick: _, hash, length } => {
+                let own = matches!(self.phase, Phase::Asking { nonce: own, .. } if own == nonce);
+                if own && length <= STATE_BYTES_MAX {
+                    self.routes.prove(sender, from, now);
+                    if let Some(download) = Download::new(now, hash, length) {
+                        self.phase = Phase::Downloading { nonce, download };
+                    }
+                }
+            }
+            JoinPacket::Chunk { hash, index, bytes } => self.take_chunk(now, hash, index, &bytes),
+            JoinPacket::Want { hash, next, window, masks } => {
+                if self.routes.address(sender) == Some(from) {
+                    self.guests.take_want(now, sender, hash, next, window, masks);
+                }
+            }
+            JoinPacket::Probe { token } => {
+                if self.knows(sender) {
+                    self.routes.heard(sender, from, now);
+                    self.send(from, &JoinPacket::Pong { token });
+                }
+            }
+            JoinPacket::Pong { token: theirs } => {
+                if self.knows(sender) && theirs == token(self.secret, sender, &from) {
+                    self.routes.prove(sender, from, now);
+                }
+            }
+            JoinPacket::Roster { addresses } => {
+                if self.routes.address(sender) == Some(from) {
+                    for (id, address) in addresses {
+                        let unknown = self.routes.address(id).is_none();
+                        if unknown && id != self.me && self.knows(id) {
+                            self.routes.suggest(id, address);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether the session knows a peer.
+    fn knows(&self, id: PeerId) -> bool {
+        self.session().is_some_and(|session| session.link(id).is_some())
+    }
+
+    fn take_hello(
+        &mut self,
+        now: u64,
+        from: Address,
+        sender: PeerId,
+        (nonce, key, cookie): (u64, Key, u64),
+        offer: &[u8],
+    ) {
+        let right = Guests::cookies(self.secret, now, &from, sender, key, nonce);
+        if !right.contains(&cookie) {
+            let [cookie, _] = right;
+            return self.send(from, &JoinPacket::Challenge { nonce, cookie });
+        }
+        // The sender does receive what is sent to its address.
+        let reason = if offer != self.offer {
+            Some(RefusalReason::Offer)
+        } else if let Phase::InMatch(session) = &mut self.phase {
+            self.guests.admit(session, sender, key, nonce)
+        } else {
+            Some(RefusalReason::NotReady)
+        };
+        match reason {
+            Some(reason) => {
+                let offer = self.offer.clone();
+                self.send(from, &JoinPacket::Refused { nonce, reason, offer });
+            }
+            None => self.routes.prove(sender, from, now),
+        }
+    }
+
+    fn take_chunk(&mut self, now: u64, hash: u64, index: u32, bytes: &[u8]) {
+        let Phase::Downloading { download, .. } = &mut self.phase else { return };
+        if download.hash == hash {
+            download.take(now, index, bytes);
+        }
+        if download.is_complete() {
+            self.begin(now);
+        }
+    }
+
+    /// Begins to take part, with the downloaded state.
+    fn begin(&mut self, now: u64) {
+        let refused = Phase::Refused;
+        let Phase::Downloading { download, .. } = core::mem::replace(&mut self.phase, refused) else {
+            return;
+        };
+        let start = download.finish().and_then(|bytes| StartState::decode(&bytes).ok());
+        let session = start.and_then(|start| {
+            let seed = self.secret.0[0];
+            let session = Session::resume(
+                self.config.clone(),
+                self.me,
+                self.key,
+                self.role,
+                start.view,
+                start.tick,
+                seed,
+            );
+            Some((session.ok()?, start.addresses, start.tick, start.state))
+        });
+        let Some((session, addresses, tick, bytes)) = session else {
+            self.events.push_back(JoinEvent::BadState);
+            if let Some(contact) = self.contact {
+                self.ask(contact);
+            }
+            return;
+        };
+        let mut session = Box::new(session);
+        let contact = self.routes.known(usize::MAX);
+        for (id, _) in &contact {
+            session.attach(*id, None);
+        }
+        session.look(now);
+        self.phase = Phase::InMatch(session);
+        for (id, address) in addresses.into_iter().filter(|(id, _)| *id != self.me) {
+            self.routes.suggest(id, address);
+        }
+        self.events.push_back(JoinEvent::State { tick, bytes });
+    }
+}

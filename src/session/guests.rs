@@ -1,0 +1,163 @@
+//! [`Guests`]: peers that follow the match without a vote, and the states that are sent to them. Nothing is kept about
+//! anybody whose address has not answered.
+
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+use super::address::Address;
+use super::bytes::Write;
+use super::id::{Key, PeerId};
+use super::join_packet::{JoinPacket, RefusalReason};
+use super::siphash::Secret;
+use super::state::Session;
+use super::transfer::{Pinned, RATE, Upload};
+
+/// Largest number of peers that follow the match without a vote.
+pub const GUESTS_MAX: usize = 64;
+/// A cookie holds for one to two of these, in microseconds.
+const COOKIE_LIFE: u64 = 15_000_000;
+/// A guest that asks for nothing is forgotten after this time.
+const GUEST_PATIENCE: u64 = 5_000_000;
+/// Time between announcements of a state to somebody who has not asked for it yet, in microseconds.
+const WELCOME_INTERVAL: u64 = 200_000;
+/// Bytes that may be sent at once.
+const BURST: u64 = 48_000;
+
+/// A peer that joins or watches.
+#[derive(Debug)]
+struct Guest {
+    id: PeerId,
+    nonce: u64,
+    upload: Option<Upload>,
+    /// Whether it has asked for chunks.
+    asked: bool,
+    welcome_at: u64,
+    /// When it last asked for something.
+    heard_at: Option<u64>,
+}
+
+/// All guests.
+#[derive(Debug, Default)]
+pub(super) struct Guests {
+    list: Vec<Guest>,
+    /// Bytes that may be sent now, and when they were last counted.
+    budget: u64,
+    budget_at: u64,
+}
+
+impl Guests {
+    /// The cookies that are right for somebody who asks: the newest one, and the one before it.
+    pub(super) fn cookies(
+        secret: Secret,
+        now: u64,
+        address: &Address,
+        id: PeerId,
+        key: Key,
+        nonce: u64,
+    ) -> [u64; 2] {
+        let epoch = now / COOKIE_LIFE;
+        [epoch, epoch.wrapping_sub(1)].map(|epoch| {
+            let mut bytes = Vec::with_capacity(80);
+            address.write(&mut bytes);
+            bytes.put_u32(id.0);
+            bytes.put_u64(key.0);
+            bytes.put_u64(nonce);
+            bytes.put_u64(epoch);
+            // 0 stands for no cookie.
+            secret.hash(&bytes).max(1)
+        })
+    }
+
+    /// Admits somebody whose address has answered. Returns the reason if it is refused.
+    pub(super) fn admit(
+        &mut self,
+        session: &mut Session,
+        id: PeerId,
+        key: Key,
+        nonce: u64,
+    ) -> Option<RefusalReason> {
+        if let Some(guest) = self.list.iter_mut().find(|guest| guest.id == id) {
+            if guest.nonce != nonce {
+                // It begins again.
+                (guest.nonce, guest.upload, guest.asked, guest.heard_at) = (nonce, None, false, None);
+            }
+            return None;
+        }
+        if session.view().voter(id).is_some() {
+            return Some(RefusalReason::Taken);
+        }
+        if self.list.len() >= GUESTS_MAX {
+            return Some(RefusalReason::Full);
+        }
+        session.attach(id, Some(key));
+        self.list.push(Guest { id, nonce, upload: None, asked: false, welcome_at: 0, heard_at: None });
+        None
+    }
+
+    pub(super) fn anybody_waits(&self) -> bool {
+        self.list.iter().any(|guest| guest.upload.is_none())
+    }
+
+    /// Sends a state to all who wait for one.
+    pub(super) fn serve(&mut self, state: &Arc<Pinned>) {
+        for guest in self.list.iter_mut().filter(|guest| guest.upload.is_none()) {
+            guest.upload = Some(Upload::new(Arc::clone(state)));
+        }
+    }
+
+    pub(super) fn take_want(
+        &mut self,
+        now: u64,
+        id: PeerId,
+        hash: u64,
+        next: u32,
+        window: u32,
+        masks: Vec<u64>,
+    ) {
+        let Some(guest) = self.list.iter_mut().find(|guest| guest.id == id) else { return };
+        let Some(upload) = guest.upload.as_mut().filter(|upload| upload.state.hash == hash) else { return };
+        guest.asked = true;
+        guest.heard_at = Some(now);
+        upload.take(now, next, window, masks);
+    }
+
+    /// Packets to guests. Forgets those who have begun to take part, or have gone.
+    pub(super) fn update(&mut self, now: u64, session: &mut Session) -> Vec<(PeerId, JoinPacket)> {
+        let passed = now.saturating_sub(self.budget_at).min(1_000_000);
+        self.budget_at = now;
+        self.budget = (self.budget + passed * RATE / 1_000_000).min(BURST);
+        let mut packets = Vec::new();
+        for guest in &mut self.list {
+            let Some(upload) = &mut guest.upload else { continue };
+            let since = *guest.heard_at.get_or_insert(now);
+            if now >= since.saturating_add(GUEST_PATIENCE) {
+                continue;
+            }
+            if !guest.asked && now >= guest.welcome_at {
+                guest.welcome_at = now + WELCOME_INTERVAL;
+                let length = u64::try_from(upload.state.bytes.len()).unwrap_or(u64::MAX);
+                let (tick, hash) = (upload.state.tick, upload.state.hash);
+                packets.push((guest.id, JoinPacket::Welcome { nonce: guest.nonce, tick, hash, length }));
+            }
+            while self.budget > 0 {
+                let Some(chunk) = upload.next_chunk(now) else { break };
+                let JoinPacket::Chunk { bytes, .. } = &chunk else { break };
+                self.budget = self.budget.saturating_sub(u64::try_from(bytes.len()).unwrap_or(u64::MAX));
+                packets.push((guest.id, chunk));
+            }
+        }
+        // Another one comes first next time, so that all get their share.
+        if !self.list.is_empty() {
+            self.list.rotate_left(1);
+        }
+        self.list.retain(|guest| {
+            let begun = session.has_row(guest.id);
+            let gone = guest.heard_at.is_some_and(|at| now >= at.saturating_add(GUEST_PATIENCE));
+            if gone && !begun {
+                session.detach(guest.id);
+            }
+            !begun && !gone
+        });
+        packets
+    }
+}

@@ -1,0 +1,27 @@
+//! Who takes part: [`PeerId`] and [`Key`].
+
+use core::fmt;
+
+/// Number of a tick: tick `t` leads from the state after `t` ticks to the state after `t + 1`.
+pub type Tick = u32;
+
+/// A tick that is never reached: the end of a span whose owner still plays, and of a match without an end.
+pub const NEVER: Tick = u32::MAX;
+
+/// Incarnation of a peer: a random number that a process chooses when it starts, unique in its match.
+///
+/// A process that restarts must choose another number. The old one stands for promises that the new process does not
+/// remember.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct PeerId(pub u32);
+
+impl fmt::Display for PeerId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:08x}", self.0)
+    }
+}
+
+/// Identity of a participant that outlives its process: the lobby assigns it, or the game derives it from a public key.
+/// Whoever returns with the same key gets its former seat, if that is still free.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Key(pub u64);

@@ -1,0 +1,120 @@
+//! [`InputLog`]: the inputs of all spans. An input is issued once by the owner of its span and never changes.
+
+use alloc::vec::Vec;
+
+use super::id::Tick;
+use super::view::Span;
+
+/// The inputs of a span, without gaps.
+#[derive(Clone, Debug)]
+struct SpanLog {
+    /// First tick in `bytes`. Earlier ones have been forgotten.
+    first: Tick,
+    /// First tick that is missing.
+    next: Tick,
+    bytes: Vec<u8>,
+}
+
+/// Result of adding inputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Added {
+    /// Nothing new.
+    Nothing,
+    /// The inputs from this tick on are new.
+    From(Tick),
+    /// The owner has issued another input for this tick before.
+    Conflict(Tick),
+}
+
+/// The inputs of all spans of a view, by the index of the span.
+#[derive(Clone, Debug)]
+pub(super) struct InputLog {
+    /// Bytes of an input.
+    size: usize,
+    spans: Vec<SpanLog>,
+}
+
+impl InputLog {
+    pub(super) fn new(size: u16) -> Self {
+        InputLog { size: usize::from(size), spans: Vec::new() }
+    }
+
+    pub(super) const fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Makes room for the spans of a newer view.
+    pub(super) fn follow(&mut self, spans: &[Span]) {
+        let new = spans.get(self.spans.len()..).unwrap_or_default();
+        let empty = |span: &Span| SpanLog { first: span.from, next: span.from, bytes: Vec::new() };
+        self.spans.extend(new.iter().map(empty));
+    }
+
+    /// Forgets everything before a tick at which a state is loaded.
+    pub(super) fn start_at(&mut self, spans: &[Span], tick: Tick) {
+        self.spans.clear();
+        let empty = |span: &Span| {
+            let first = span.from.max(tick);
+            SpanLog { first, next: first, bytes: Vec::new() }
+        };
+        self.spans.extend(spans.iter().map(empty));
+    }
+
+    /// First tick whose input is missing.
+    pub(super) fn next(&self, span: usize) -> Tick {
+        self.spans.get(span).map_or(0, |log| log.next)
+    }
+
+    /// The input for a tick.
+    pub(super) fn get(&self, span: usize, tick: Tick) -> Option<&[u8]> {
+        self.range(span, tick, tick.checked_add(1)?)
+    }
+
+    /// The inputs for the ticks `from <= tick < until`, if all of them are here.
+    pub(super) fn range(&self, span: usize, from: Tick, until: Tick) -> Option<&[u8]> {
+        let log = self.spans.get(span)?;
+        let at = |tick: Tick| usize::try_from(tick.checked_sub(log.first)?).ok()?.checked_mul(self.size);
+        log.bytes.get(at(from)?..at(until)?)
+    }
+
+    /// Adds the inputs from tick `start` on. Inputs that would leave a gap are ignored; they will be sent again.
+    pub(super) fn add(&mut self, span: usize, start: Tick, inputs: &[u8]) -> Added {
+        let size = self.size;
+        let Some(log) = self.spans.get_mut(span) else { return Added::Nothing };
+        if start > log.next {
+            return Added::Nothing;
+        }
+        let before = log.next;
+        for (tick, input) in (start..).zip(inputs.chunks_exact(size)) {
+            if tick == log.next {
+                log.bytes.extend_from_slice(input);
+                log.next += 1;
+                continue;
+            }
+            let Some(at) = tick.checked_sub(log.first) else { continue };
+            let at = usize::try_from(at).unwrap_or(usize::MAX).saturating_mul(size);
+            if log.bytes.get(at..).is_some_and(|known| !known.starts_with(input)) {
+                return Added::Conflict(tick);
+            }
+        }
+        if log.next > before { Added::From(before) } else { Added::Nothing }
+    }
+
+    /// Forgets inputs before a tick, once that is worth moving the others.
+    pub(super) fn forget_before(&mut self, tick: Tick) {
+        for log in &mut self.spans {
+            let until = tick.min(log.next);
+            let Some(count) = until.checked_sub(log.first) else { continue };
+            let bytes = usize::try_from(count).unwrap_or(0).saturating_mul(self.size);
+            if 2 * bytes > log.bytes.len() {
+                log.bytes.drain(..bytes.min(log.bytes.len()));
+                log.first = until;
+            }
+        }
+    }
+
+    /// Number of bytes that are kept.
+    pub(super) fn bytes(&self) -> usize {
+        self.spans.iter().map(|log| log.bytes.len()).sum()
+    }
+}

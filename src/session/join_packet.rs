@@ -1,0 +1,229 @@
+//! Packets besides those of the match: asking to join, states, and the search for addresses.
+
+use alloc::vec::Vec;
+
+use super::address::Address;
+use super::bytes::{Decoded, Malformed, Reader, Write};
+use super::id::{Key, PeerId, Tick};
+use super::packet::{PACKET_BYTES_MAX, checksum};
+
+/// Largest length of an offer in bytes.
+pub const OFFER_BYTES_MAX: usize = 512;
+/// Bytes of a state in a packet.
+pub(super) const CHUNK_BYTES: usize = 1152;
+/// Largest number of words of received chunks that a request lists.
+pub(super) const MASKS_MAX: usize = 16;
+/// Largest number of addresses in a packet.
+pub(super) const ROSTER_MAX: usize = 24;
+
+/// Reason why somebody may not join.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RefusalReason {
+    /// The offers differ: another game, setup or version.
+    Offer,
+    /// Too many peers follow the match.
+    Full,
+    /// The incarnation is that of somebody else.
+    Taken,
+    /// This peer is not in a match yet.
+    NotReady,
+}
+
+/// A packet.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum JoinPacket {
+    /// Somebody asks to join; the cookie is 0 at first.
+    Hello {
+        nonce: u64,
+        key: Key,
+        cookie: u64,
+        offer: Vec<u8>,
+    },
+    /// Proves that the sender receives what is sent to its address. The receiver keeps nothing.
+    Challenge {
+        nonce: u64,
+        cookie: u64,
+    },
+    Refused {
+        nonce: u64,
+        reason: RefusalReason,
+        offer: Vec<u8>,
+    },
+    /// The state to begin with.
+    Welcome {
+        nonce: u64,
+        tick: Tick,
+        hash: u64,
+        length: u64,
+    },
+    /// Chunks before `next` are here, and those after it whose bit is set. Up to `window` chunks from `next` on may
+    /// be sent.
+    Want {
+        hash: u64,
+        next: u32,
+        window: u32,
+        masks: Vec<u64>,
+    },
+    Chunk {
+        hash: u64,
+        index: u32,
+        bytes: Vec<u8>,
+    },
+    /// Asks whether packets reach an address.
+    Probe {
+        token: u64,
+    },
+    /// Answers with the token.
+    Pong {
+        token: u64,
+    },
+    /// Addresses of others.
+    Roster {
+        addresses: Vec<(PeerId, Address)>,
+    },
+}
+
+/// Place of the kind in the body of a packet, where packets of the match have their flags.
+const KIND_AT: usize = 4;
+/// Kinds start here; flags are smaller.
+const KIND_FIRST: u8 = 0x80;
+
+/// Whether the body of a packet is not one of the match.
+pub(super) fn is_join_packet(body: &[u8]) -> bool {
+    body.get(KIND_AT).is_some_and(|&kind| kind >= KIND_FIRST)
+}
+
+impl JoinPacket {
+    pub(super) fn encode(&self, match_tag: u64, sender: PeerId) -> Vec<u8> {
+        let mut body = Vec::new();
+        body.put_u32(sender.0);
+        match self {
+            JoinPacket::Hello { nonce, key, cookie, offer } => {
+                body.push(KIND_FIRST);
+                body.put_u64(*nonce);
+                body.put_u64(key.0);
+                body.put_u64(*cookie);
+                put_bytes(&mut body, offer);
+            }
+            JoinPacket::Challenge { nonce, cookie } => {
+                body.push(KIND_FIRST + 1);
+                body.put_u64(*nonce);
+                body.put_u64(*cookie);
+            }
+            JoinPacket::Refused { nonce, reason, offer } => {
+                body.push(KIND_FIRST + 2);
+                body.put_u64(*nonce);
+                body.push(match reason {
+                    RefusalReason::Offer => 0,
+                    RefusalReason::Full => 1,
+                    RefusalReason::Taken => 2,
+                    RefusalReason::NotReady => 3,
+                });
+                put_bytes(&mut body, offer);
+            }
+            JoinPacket::Welcome { nonce, tick, hash, length } => {
+                body.push(KIND_FIRST + 3);
+                body.put_u64(*nonce);
+                body.put_u32(*tick);
+                body.put_u64(*hash);
+                body.put_var64(*length);
+            }
+            JoinPacket::Want { hash, next, window, masks } => {
+                body.push(KIND_FIRST + 4);
+                body.put_u64(*hash);
+                body.put_var(*next);
+                body.put_var(*window);
+                body.put_count(masks.len());
+                masks.iter().for_each(|&mask| body.put_u64(mask));
+            }
+            JoinPacket::Chunk { hash, index, bytes } => {
+                body.push(KIND_FIRST + 5);
+                body.put_u64(*hash);
+                body.put_var(*index);
+                body.extend_from_slice(bytes);
+            }
+            JoinPacket::Probe { token } => {
+                body.push(KIND_FIRST + 6);
+                body.put_u64(*token);
+            }
+            JoinPacket::Pong { token } => {
+                body.push(KIND_FIRST + 7);
+                body.put_u64(*token);
+            }
+            JoinPacket::Roster { addresses } => {
+                body.push(KIND_FIRST + 8);
+                body.put_count(addresses.len());
+                for (id, address) in addresses {
+                    body.put_u32(id.0);
+                    address.write(&mut body);
+                }
+            }
+        }
+        let mut bytes = checksum(match_tag, &body).to_vec();
+        bytes.extend_from_slice(&body);
+        bytes
+    }
+
+    /// Decodes the body of a packet.
+    pub(super) fn read(body: &[u8]) -> Decoded<(PeerId, JoinPacket)> {
+        let reader = &mut Reader::new(body);
+        let sender = PeerId(reader.u32()?);
+        let packet = match reader.u8()?.checked_sub(KIND_FIRST).ok_or(Malformed)? {
+            0 => JoinPacket::Hello {
+                nonce: reader.u64()?,
+                key: Key(reader.u64()?),
+                cookie: reader.u64()?,
+                offer: read_bytes(reader)?,
+            },
+            1 => JoinPacket::Challenge { nonce: reader.u64()?, cookie: reader.u64()? },
+            2 => JoinPacket::Refused {
+                nonce: reader.u64()?,
+                reason: match reader.u8()? {
+                    0 => RefusalReason::Offer,
+                    1 => RefusalReason::Full,
+                    2 => RefusalReason::Taken,
+                    3 => RefusalReason::NotReady,
+                    _ => return Err(Malformed),
+                },
+                offer: read_bytes(reader)?,
+            },
+            3 => JoinPacket::Welcome {
+                nonce: reader.u64()?,
+                tick: reader.u32()?,
+                hash: reader.u64()?,
+                length: reader.var64()?,
+            },
+            4 => {
+                let (hash, next, window) = (reader.u64()?, reader.var()?, reader.var()?);
+                let count = reader.count(MASKS_MAX)?;
+                let masks = (0..count).map(|_| reader.u64()).collect::<Decoded<_>>()?;
+                JoinPacket::Want { hash, next, window, masks }
+            }
+            5 => {
+                JoinPacket::Chunk { hash: reader.u64()?, index: reader.var()?, bytes: reader.rest().to_vec() }
+            }
+            6 => JoinPacket::Probe { token: reader.u64()? },
+            7 => JoinPacket::Pong { token: reader.u64()? },
+            8 => {
+                let count = reader.count(ROSTER_MAX)?;
+                let address = |reader: &mut Reader| Ok((PeerId(reader.u32()?), Address::read(reader)?));
+                JoinPacket::Roster { addresses: (0..count).map(|_| address(reader)).collect::<Decoded<_>>()? }
+            }
+            _ => return Err(Malformed),
+        };
+        if reader.is_empty() { Ok((sender, packet)) } else { Err(Malformed) }
+    }
+}
+
+fn put_bytes(body: &mut Vec<u8>, bytes: &[u8]) {
+    body.put_count(bytes.len());
+    body.extend_from_slice(bytes);
+}
+
+fn read_bytes(reader: &mut Reader) -> Decoded<Vec<u8>> {
+    let length = reader.count(OFFER_BYTES_MAX)?;
+    Ok(reader.take(length)?.to_vec())
+}
+
+const _: () = assert!(CHUNK_BYTES + 32 <= PACKET_BYTES_MAX && OFFER_BYTES_MAX + 64 <= PACKET_BYTES_MAX);
+const _: () = assert!(ROSTER_MAX * (5 + super::address::ADDRESS_BYTES_MAX) + 32 <= PACKET_BYTES_MAX);

@@ -1,0 +1,203 @@
+//! Where a session stands: [`Status`] is determined in one place, after each update.
+
+use super::config::Fault;
+use super::event::{Event, Status};
+use super::id::{PeerId, Tick};
+use super::row::{Removal, SeatWant};
+use super::state::{Role, Session};
+use super::view::View;
+
+/// The status and what it depends on besides the view.
+#[derive(Clone, Debug)]
+pub(super) struct Lifecycle {
+    pub(super) status: Status,
+    /// When a leave was first wanted, decided, or the last tick became final.
+    since: Option<u64>,
+    /// Whether this peer had a seat and lost it against its will.
+    dropped: bool,
+    kicked: bool,
+    left: bool,
+    /// Whom play waits for, as the game was told.
+    waiting_for: Option<PeerId>,
+    too_far_behind: bool,
+    /// Peers that ask for a pause, as the game was told.
+    paused: alloc::vec::Vec<PeerId>,
+}
+
+/// Play stands still for this many ticks before the game is told whom it waits for.
+const WAITING_TICKS: u64 = 6;
+
+impl Lifecycle {
+    pub(super) fn new(role: Role) -> Self {
+        let status = match role {
+            Role::Player { .. } => Status::Joining,
+            Role::Spectator => Status::Watching,
+        };
+        Lifecycle {
+            status,
+            since: None,
+            dropped: false,
+            kicked: false,
+            left: false,
+            waiting_for: None,
+            too_far_behind: false,
+            paused: alloc::vec::Vec::new(),
+        }
+    }
+}
+
+impl Session {
+    /// Follows a change of the view.
+    pub(super) fn lifecycle_after_change(&mut self, before: &View) {
+        let (was, is) = (before.voter(self.me).is_some(), self.view.voter(self.me).is_some());
+        if is {
+            self.lifecycle.dropped = false;
+            if !was {
+                self.hurry();
+            }
+        } else if was {
+            self.lifecycle.kicked = self
+                .peers
+                .list
+                .iter()
+                .filter_map(|remote| remote.row.as_ref())
+                .any(|row| row.wants.removals.contains(&Removal::Kick(self.key)));
+            self.lifecycle.left = self.wants.leave;
+            self.lifecycle.dropped = !self.wants.leave;
+            self.lifecycle.since = None;
+        }
+        // Somebody that play went on without may return.
+        let view = &self.view;
+        self.wants.removals.retain(|removal| match *removal {
+            Removal::Without(id) => view.voter(id).is_some(),
+            Removal::Kick(_) => true,
+        });
+    }
+
+    /// First tick that is not played by this peer.
+    pub(super) fn stop(&self) -> Tick {
+        let own = self.wants.end.filter(|_| self.config.has(Fault::LocalEnd));
+        own.map_or(self.view.stop(), |own| own.min(self.view.stop()))
+    }
+
+    /// What this peer wants of the others.
+    pub(super) fn update_wants(&mut self) {
+        let lead = self.peers.voters().filter_map(|(_, remote)| remote.row.as_ref()).map(|row| row.ack).max();
+        let within = Tick::from(self.config.seat_within);
+        let caught_up = lead.is_some_and(|lead| self.play.played.saturating_add(within) >= lead);
+        let may_have = self.view.voter(self.me).is_none()
+            && !self.wants.leave
+            && !self.lifecycle.left
+            && !self.lifecycle.kicked
+            && self.view.end.is_none();
+        let seats = match self.role {
+            Role::Player { seats } => seats,
+            Role::Spectator => 0,
+        };
+        let wants = seats > 0 && may_have && caught_up && self.is_connected();
+        self.wants.seats = wants.then_some(SeatWant { seats, key: self.key });
+    }
+
+    /// Determines the status, and tells the game if it is another one.
+    pub(super) fn update_status(&mut self) {
+        let status = self.determine_status();
+        if status != self.lifecycle.status {
+            self.lifecycle.status = status;
+            self.events.push_back(Event::Status(status));
+        }
+        self.tell_waiting();
+        self.tell_pauses();
+    }
+
+    fn determine_status(&mut self) -> Status {
+        if self.lifecycle.status.is_closed() {
+            return Status::Closed;
+        }
+        let votes = self.view.voter(self.me).is_some();
+        let stop = self.stop();
+        if self.progress.fin >= stop && !self.lifecycle.left {
+            let since = *self.lifecycle.since.get_or_insert(self.clock.active);
+            let acknowledged = || self.all_voters(|row| row.ack >= stop);
+            let own = self.config.has(Fault::LocalEnd);
+            return if self.lingered(since, own || acknowledged()) {
+                Status::Closed
+            } else {
+                Status::Finished { ticks: stop }
+            };
+        }
+        if self.lifecycle.left || self.wants.leave && !votes {
+            let since = *self.lifecycle.since.get_or_insert(self.clock.active);
+            let known = !self.lifecycle.left || self.all_voters(|_| true);
+            return if self.lingered(since, known) { Status::Closed } else { Status::Left };
+        }
+        if self.wants.leave {
+            // A minority cannot decide: it goes without.
+            let since = *self.lifecycle.since.get_or_insert(self.clock.active);
+            let waited = self.clock.active > since.saturating_add(self.config.timing.linger_max);
+            return if waited { Status::Closed } else { Status::Leaving };
+        }
+        match (votes, self.role) {
+            (true, _) if !self.view.begun => Status::Waiting,
+            (true, _) if !self.is_connected() => Status::Paused,
+            (true, _) => Status::Playing,
+            (false, _) if self.lifecycle.kicked => Status::Kicked,
+            (false, _) if self.lifecycle.dropped => Status::Dropped,
+            (false, Role::Player { .. }) => Status::Joining,
+            (false, Role::Spectator) => Status::Watching,
+        }
+    }
+
+    /// Whether a peer that is done may stop answering: the others know all they need, or it has waited long enough.
+    fn lingered(&self, since: u64, known: bool) -> bool {
+        let timing = &self.config.timing;
+        let hasty = self.config.has(Fault::HastyLeave);
+        let waited = |period: u64| hasty || self.clock.active > since.saturating_add(period);
+        waited(timing.linger) && known || waited(timing.linger_max)
+    }
+
+    /// Whether the rows of all voters are in this view and fulfil a condition.
+    fn all_voters(&self, condition: impl Fn(&super::row::Row) -> bool) -> bool {
+        let count = self.peers.rows(self.view.number).filter(|(_, _, row)| condition(row)).count();
+        count == self.view.voters.len()
+    }
+
+    fn tell_waiting(&mut self) {
+        let tick = u64::from(self.config.tick_micros);
+        let begun = self.view.begun && self.progress.complete < self.stop();
+        let still = begun && self.clock.active > self.progress.moved_at.saturating_add(WAITING_TICKS * tick);
+        let peer = self.waiting_for().filter(|&peer| still && peer != self.me);
+        if peer == self.lifecycle.waiting_for {
+            return;
+        }
+        self.lifecycle.waiting_for = peer;
+        let Some(peer) = peer else {
+            self.events.push_back(Event::Resumed);
+            return;
+        };
+        let since = self.peers.find(peer).and_then(|remote| remote.fresh);
+        let heard = super::peers::within(since, self.config.timing.heard, self.clock.active);
+        self.events.push_back(Event::Waiting { peer, heard });
+        let lead = self.peers.voters().filter_map(|(_, remote)| remote.row.as_ref()).map(|row| row.fin).max();
+        let behind = lead.unwrap_or(0).saturating_sub(self.progress.complete);
+        if behind > self.config.log_ticks && !self.lifecycle.too_far_behind {
+            self.lifecycle.too_far_behind = true;
+            self.events.push_back(Event::TooFarBehind);
+        }
+    }
+
+    fn tell_pauses(&mut self) {
+        let paused = &mut self.lifecycle.paused;
+        for (_, remote) in self.peers.voters().filter(|(_, remote)| remote.id != self.me) {
+            let asks = remote.row.as_ref().is_some_and(|row| row.paused);
+            let peer = remote.id;
+            match paused.iter().position(|&other| other == peer) {
+                None if asks => paused.push(peer),
+                Some(place) if !asks => {
+                    paused.remove(place);
+                }
+                _ => continue,
+            }
+            self.events.push_back(Event::Pause { peer, paused: asks });
+        }
+    }
+}

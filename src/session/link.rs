@@ -1,0 +1,90 @@
+//! [`Link`]: measurements of the way to a peer.
+
+/// Unit of times in packets, in microseconds: a power of two.
+const UNIT_SHIFT: u32 = 7;
+/// Longest round trip that is believed, in microseconds. Times in packets wrap after 8.4 s.
+const ROUND_TRIP_MAX: u64 = 4_000_000;
+/// Number of packets over which loss is counted.
+const LOSS_WINDOW: u32 = 64;
+
+/// Measurements of the way to a peer and back.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Link {
+    /// Smoothed round trip in microseconds; 0 if none was measured.
+    pub round_trip: u64,
+    /// Smoothed deviation of the round trip, in microseconds.
+    pub jitter: u64,
+    /// Packets of the last [64 or so](self) that did not arrive, in thousandths.
+    pub loss_per_mille: u32,
+    /// Bytes sent, without the headers of the transport.
+    pub bytes_sent: u64,
+    /// Bytes received.
+    pub bytes_received: u64,
+    /// Packets sent.
+    pub packets_sent: u64,
+    /// Packets received.
+    pub packets_received: u64,
+    pub(super) next_sequence: u16,
+    /// Last time of sending in a packet of the peer, and when that packet arrived.
+    last_sent: Option<(u16, u64)>,
+    last_sequence: Option<u16>,
+    expected: u32,
+    arrived: u32,
+}
+
+/// A time in the units of packets.
+pub(super) fn stamp(now: u64) -> u16 {
+    let [low, high, ..] = (now >> UNIT_SHIFT).to_le_bytes();
+    u16::from_le_bytes([low, high])
+}
+
+impl Link {
+    /// What the next packet to the peer echoes.
+    pub(super) fn echo(&self, now: u64) -> Option<u16> {
+        let (sent, arrived) = self.last_sent?;
+        let held = now.checked_sub(arrived).filter(|&held| held < ROUND_TRIP_MAX)?;
+        Some(sent.wrapping_add(stamp(held)))
+    }
+
+    /// Notes a packet of the peer. Returns whether it is newer than all others.
+    pub(super) fn arrived(&mut self, sequence: u16, sent: u16, echo: Option<u16>, bytes: usize, now: u64) {
+        self.packets_received += 1;
+        self.bytes_received += u64::try_from(bytes).unwrap_or(0);
+        if let Some(echo) = echo {
+            let trip = u64::from(stamp(now).wrapping_sub(echo)) << UNIT_SHIFT;
+            if trip < ROUND_TRIP_MAX {
+                self.measure(trip);
+            }
+        }
+        let step = self.last_sequence.map_or(1, |last| sequence.wrapping_sub(last));
+        self.arrived += 1;
+        if (1..1 << 15).contains(&step) {
+            self.last_sequence = Some(sequence);
+            self.last_sent = Some((sent, now));
+            self.expected += u32::from(step);
+        }
+        if self.expected >= LOSS_WINDOW {
+            let lost = self.expected.saturating_sub(self.arrived);
+            self.loss_per_mille = 1000 * lost / self.expected;
+            (self.expected, self.arrived) = (0, 0);
+        }
+    }
+
+    fn measure(&mut self, trip: u64) {
+        if self.round_trip == 0 {
+            self.round_trip = trip.max(1);
+            self.jitter = trip / 4;
+            return;
+        }
+        let deviation = trip.abs_diff(self.round_trip);
+        self.jitter = (7 * self.jitter + deviation) / 8;
+        self.round_trip = ((7 * self.round_trip + trip) / 8).max(1);
+    }
+
+    /// Notes a packet to the peer.
+    pub(super) fn sent(&mut self, bytes: usize) {
+        self.next_sequence = self.next_sequence.wrapping_add(1);
+        self.packets_sent += 1;
+        self.bytes_sent += u64::try_from(bytes).unwrap_or(0);
+    }
+}

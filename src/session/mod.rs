@@ -1,0 +1,61 @@
+//! A match between peers, without sockets, clocks or threads: bytes in, bytes out, time as an argument.
+//!
+//! All peers play the same ticks with the same inputs, and only inputs are sent. A [`Session`] agrees with those of the
+//! other peers on one history: who plays from which tick on, which inputs are final, and where the match ends. It
+//! neither reads a clock nor opens a socket, and given the same calls it does the same.
+//!
+//! - [`Session`]: takes packets and local inputs, returns packets, [`Request`]s to the game, and [`Event`]s.
+//! - [`Endpoint`]: a session with addresses, which opens or joins a match and sends states to those who join.
+//! - [`View`]: who plays and who decides. Views change by agreement of a majority.
+//! - [`Config`]: the parameters of a match and of a peer. Lockstep is a [`Config::guess`] of 0.
+//!
+//! `docs/PROTOCOL.md` has the rules, the packets byte by byte, and the invariants that simulations check.
+
+mod address;
+mod agreement;
+mod bytes;
+mod config;
+mod endpoint;
+mod endpoint_receive;
+mod event;
+mod guests;
+mod id;
+mod input_log;
+mod join_packet;
+mod lifecycle;
+mod link;
+mod pace;
+mod packet;
+mod peers;
+mod play;
+mod progress;
+mod proposal;
+mod receive;
+mod request;
+mod routes;
+mod row;
+mod runs;
+mod siphash;
+mod start_state;
+mod state;
+#[cfg(test)]
+mod tests;
+mod transfer;
+mod transmit;
+mod view;
+mod wire_row;
+
+pub use address::{ADDRESS_BYTES_MAX, Address};
+#[doc(hidden)]
+pub use config::Fault;
+pub use config::{Config, ConfigError, DELAY_MAX, GUESS_MAX, INPUT_BYTES_MAX, Timing};
+pub use endpoint::{Endpoint, Identity, JoinEvent, STATE_BYTES_MAX};
+pub use event::{Event, Status};
+pub use guests::GUESTS_MAX;
+pub use id::{Key, NEVER, PeerId, Tick};
+pub use join_packet::{OFFER_BYTES_MAX, RefusalReason};
+pub use link::Link;
+pub use packet::PACKET_BYTES_MAX;
+pub use request::{InputStatus, Request, TickInputs};
+pub use state::{InputSize, Role, Session, Statistics};
+pub use view::{SEATS_MAX, SPANS_MAX, Span, View, Voter};

@@ -1,0 +1,174 @@
+//! [`Pace`]: when the next tick is due, and by how many ticks own inputs are delayed.
+//!
+//! Ticks of the others are estimated: those of their newest row, plus half a round trip. A peer steers to the median of
+//! these: it stretches its ticks by up to 1/8 when it is ahead, and shortens them by up to 1/16 when it is behind. So
+//! nobody has to wait abruptly, and clocks that run differently do no harm.
+
+use alloc::vec::Vec;
+
+use super::config::Config;
+use super::id::{PeerId, Tick};
+use super::peers::within;
+use super::state::Session;
+
+/// The tick clock of a peer.
+#[derive(Clone, Debug)]
+pub(super) struct Pace {
+    tick_micros: u64,
+    /// When the next tick is due. Nothing before the first one.
+    next_at: Option<u64>,
+    /// Duration of a tick now, in microseconds.
+    length: u64,
+    /// Delay of own inputs in ticks.
+    pub(super) delay: u16,
+    delay_at: u64,
+    /// Whether somebody is far behind.
+    held: bool,
+    /// Number of ticks that may be made up at once.
+    behind: Tick,
+    /// Whether this peer has just got a seat, and plays all ticks that are complete at once.
+    hurries: bool,
+}
+
+/// Ticks by which nobody runs ahead of the slowest.
+const AHEAD_MAX: i64 = 6;
+/// Lateness that is made up, in ticks. What goes beyond is dropped.
+const LATE_MAX: u64 = 3;
+/// From this many ticks behind what is complete, ticks are made up at once.
+const CATCH_UP: Tick = 12;
+/// Time between changes of the delay, in microseconds.
+const DELAY_INTERVAL: u64 = 500_000;
+/// Somebody without a seat plays this many ticks behind the final ones.
+const FOLLOW: i64 = 2;
+/// Lateness is measured in 1/256 ticks.
+const PART: i64 = 256;
+
+impl Pace {
+    pub(super) fn new(config: &Config) -> Self {
+        let tick_micros = u64::from(config.tick_micros);
+        Pace {
+            tick_micros,
+            next_at: None,
+            length: tick_micros,
+            delay: config.delay_min,
+            delay_at: 0,
+            held: false,
+            behind: 0,
+            hurries: false,
+        }
+    }
+
+    pub(super) fn is_time(&self, now: u64) -> bool {
+        let due = self.next_at.is_none_or(|at| now >= at);
+        self.behind >= CATCH_UP || self.hurries && self.behind > 0 || due && !self.held
+    }
+
+    /// Notes that a tick was played.
+    pub(super) fn played(&mut self, now: u64) {
+        let at = self.next_at.unwrap_or(now);
+        let oldest = now.saturating_sub(LATE_MAX * self.tick_micros);
+        let at_once = self.behind >= CATCH_UP || self.hurries && self.behind > 0;
+        if !at_once || now >= at {
+            self.next_at = Some(at.max(oldest) + self.length);
+        }
+        self.behind = self.behind.saturating_sub(1);
+    }
+
+    /// Notes that the inputs were issued but the tick cannot be played yet.
+    pub(super) fn blocked(&mut self, now: u64) {
+        let oldest = now.saturating_sub(LATE_MAX * self.tick_micros);
+        self.next_at = Some(self.next_at.unwrap_or(now).max(oldest));
+    }
+}
+
+impl Session {
+    /// Adapts the duration of ticks and the delay of inputs.
+    pub(super) fn steer(&mut self) {
+        let ahead = self.ticks_ahead();
+        let own = self.view.voter(self.me).is_some();
+        let slowest = ahead.last().copied();
+        self.pace.held = own && slowest.is_some_and(|ahead| ahead > AHEAD_MAX * PART);
+        let tick = self.pace.tick_micros;
+        let median = ahead.get(ahead.len() / 2).copied().unwrap_or(0);
+        let ahead = if own { median } else { (FOLLOW - i64::from(self.pace.behind)) * PART };
+        // A difference of a tick is made up within 32 ticks.
+        let adjust = ahead * i64::try_from(tick).unwrap_or(0) / (PART * 32);
+        let most = i64::try_from(tick / 8).unwrap_or(0);
+        let adjust = adjust.clamp(-most / 2, most);
+        self.pace.length = tick.saturating_add_signed(adjust);
+        let lead = if own { self.progress.complete } else { self.progress.fin };
+        self.pace.behind = lead.saturating_sub(self.play.played);
+        self.pace.hurries &= self.pace.behind > 0;
+        self.adapt_delay();
+    }
+
+    /// By how much this peer is ahead of each of the others that play, in 1/256 ticks, ascending.
+    fn ticks_ahead(&self) -> Vec<i64> {
+        let (fresh, active) = (self.config.timing.fresh, self.clock.active);
+        let tick = self.pace.tick_micros.max(1);
+        let own = i64::from(self.play.played) * PART + self.phase();
+        let mut ahead: Vec<i64> = self
+            .peers
+            .voters()
+            .filter(|(_, remote)| remote.id != self.me && within(remote.fresh, fresh, active))
+            .filter(|(_, remote)| self.plays_at(remote.id, self.play.played))
+            .filter_map(|(_, remote)| {
+                let row = remote.row.as_ref()?;
+                let age = active.saturating_sub(remote.fresh?).min(4 * tick) + remote.link.round_trip / 2;
+                let theirs = i64::from(row.played) * PART + i64::try_from(age * 256 / tick).unwrap_or(0);
+                Some(own - theirs)
+            })
+            .collect();
+        ahead.sort_unstable();
+        ahead
+    }
+
+    /// Whether a peer plays a seat at a tick.
+    fn plays_at(&self, id: PeerId, tick: Tick) -> bool {
+        self.view.spans.iter().any(|span| span.owner == id && span.is_open() && span.from <= tick)
+    }
+
+    /// Part of the current tick that has passed, in 1/256.
+    fn phase(&self) -> i64 {
+        let left = self.pace.next_at.unwrap_or(0).saturating_sub(self.clock.now).min(self.pace.tick_micros);
+        i64::try_from((self.pace.tick_micros - left) * 256 / self.pace.tick_micros.max(1)).unwrap_or(0)
+    }
+
+    /// Catches up with those who play, after this peer got a seat. Its first inputs have to arrive in time.
+    pub(super) fn hurry(&mut self) {
+        self.pace.hurries = true;
+        self.pace.delay = self.delay_aim();
+        self.pace.delay_at = self.clock.now;
+    }
+
+    fn adapt_delay(&mut self) {
+        let now = self.clock.now;
+        // Inputs have to arrive in time when somebody else begins to play, too.
+        let played = self.play.played;
+        if self.view.spans.iter().any(|span| span.is_open() && span.from > played) {
+            self.pace.delay = self.pace.delay.max(self.delay_aim());
+        }
+        if now < self.pace.delay_at.saturating_add(DELAY_INTERVAL) {
+            return;
+        }
+        let aim = self.delay_aim();
+        if aim != self.pace.delay {
+            self.pace.delay_at = now;
+            self.pace.delay = if aim > self.pace.delay { self.pace.delay + 1 } else { self.pace.delay - 1 };
+        }
+    }
+
+    /// The delay follows the slowest way to another peer: half a round trip, its jitter, and the interval of sending.
+    fn delay_aim(&self) -> u16 {
+        let (least, most) = (self.config.delay_min, self.config.delay_max);
+        let tick = self.pace.tick_micros.max(1);
+        let (fresh, active) = (self.config.timing.fresh, self.clock.active);
+        let players = self.peers.voters().filter(|(_, remote)| {
+            remote.id != self.me && within(remote.heard, fresh, active) && self.view.seats_of(remote.id) != 0
+        });
+        let latency = players.map(|(_, remote)| remote.link.round_trip / 2 + 2 * remote.link.jitter).max();
+        let needed = latency.unwrap_or(0).div_ceil(tick) + u64::from(latency.is_some());
+        let needed = u16::try_from(needed).unwrap_or(most).saturating_sub(self.config.guess);
+        needed.clamp(least, most)
+    }
+}

@@ -1,0 +1,253 @@
+//! Packets between peers of a match. `docs/PROTOCOL.md` has their layout as tables.
+//!
+//! The decoder is strict: a packet with a wrong checksum, an unknown flag, a number that is not in its shortest form, a
+//! length beyond its bound or bytes after its end is dropped like one that the network has lost.
+
+use alloc::vec::Vec;
+
+use super::bytes::{Decoded, Malformed, Reader, Write};
+use super::id::{PeerId, Tick};
+use super::row::Row;
+use super::runs;
+use super::view::Change;
+
+/// Largest packet in bytes: most networks pass it in one piece.
+pub const PACKET_BYTES_MAX: usize = 1200;
+/// Largest number of rows of others in a packet.
+pub(super) const FOREIGN_ROWS_MAX: usize = 3;
+/// Largest number of changes in a packet.
+pub(super) const CHANGES_MAX: usize = 16;
+/// Largest number of input runs in a packet.
+pub(super) const RUNS_MAX: usize = 128;
+/// Largest number of ticks in a run.
+pub(super) const RUN_TICKS_MAX: u32 = 64;
+/// Largest number of bytes of inputs in a packet, decoded.
+pub(super) const INPUTS_MAX: usize = 1 << 16;
+
+/// Bits of the flags of a packet.
+mod flag {
+    pub(super) const ECHO: u8 = 1;
+    pub(super) const CHANGES: u8 = 1 << 1;
+    pub(super) const RUNS: u8 = 1 << 2;
+    pub(super) const FOREIGN: u8 = 1 << 3;
+    pub(super) const ALL: u8 = (1 << 4) - 1;
+}
+
+/// Inputs of a span for consecutive ticks.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Run {
+    pub(super) span: u16,
+    pub(super) start: Tick,
+    /// Place of the inputs in [`Packet::inputs`].
+    pub(super) bytes: core::ops::Range<usize>,
+}
+
+/// First part of a packet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Header {
+    pub(super) sender: PeerId,
+    pub(super) sequence: u16,
+    /// Time of sending in units of 128 us.
+    pub(super) sent: u16,
+    /// The receiver's last time of sending, plus the time since its packet arrived.
+    pub(super) echo: Option<u16>,
+}
+
+/// A decoded packet.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Packet {
+    pub(super) header: Header,
+    pub(super) row: Row,
+    /// Changes that lead to consecutive views, and the number of the first of these.
+    pub(super) changes: (u32, Vec<Change>),
+    pub(super) runs: Vec<Run>,
+    pub(super) inputs: Vec<u8>,
+    pub(super) foreign: Vec<(PeerId, Row)>,
+}
+
+/// The first bytes of a packet: a checksum that depends on the match, so that packets of other matches are not
+/// accepted.
+pub(super) fn checksum(match_tag: u64, body: &[u8]) -> [u8; 4] {
+    let digest = twox_hash::XxHash3_128::oneshot_with_seed(match_tag, body).to_le_bytes();
+    [digest[0], digest[1], digest[2], digest[3]]
+}
+
+/// The body of a packet whose checksum is right.
+pub(super) fn open(match_tag: u64, bytes: &[u8]) -> Decoded<&[u8]> {
+    let (sum, body) = bytes.split_first_chunk::<4>().ok_or(Malformed)?;
+    if bytes.len() <= PACKET_BYTES_MAX && checksum(match_tag, body) == *sum {
+        Ok(body)
+    } else {
+        Err(Malformed)
+    }
+}
+
+/// Composes a packet part by part, in the order of the methods, and never beyond [`PACKET_BYTES_MAX`].
+pub(super) struct Composer {
+    bytes: Vec<u8>,
+    flags: u8,
+}
+
+/// Place of the flags: after the checksum and the sender.
+const FLAGS_AT: usize = 8;
+/// Bytes of the lengths of sections that may follow.
+const RESERVE: usize = 4;
+
+impl Composer {
+    /// Starts with the sender's own row, already encoded.
+    pub(super) fn new(header: &Header, row: &[u8]) -> Self {
+        let mut bytes = Vec::with_capacity(row.len() + 96);
+        bytes.put_u32(0);
+        bytes.put_u32(header.sender.0);
+        bytes.push(0);
+        bytes.put_u16(header.sequence);
+        bytes.put_u16(header.sent);
+        let mut flags = 0;
+        if let Some(echo) = header.echo {
+            bytes.put_u16(echo);
+            flags |= flag::ECHO;
+        }
+        bytes.extend_from_slice(row);
+        Composer { bytes, flags }
+    }
+
+    /// Appends a section with as many parts as fit; `write` appends one. A section without parts is left out.
+    fn section<T>(
+        &mut self,
+        flag: u8,
+        most: usize,
+        parts: impl IntoIterator<Item = T>,
+        mut write: impl FnMut(T, &mut Vec<u8>),
+    ) {
+        let at = self.bytes.len();
+        self.bytes.push(0);
+        let mut count = 0;
+        for part in parts.into_iter().take(most) {
+            let end = self.bytes.len();
+            write(part, &mut self.bytes);
+            if self.bytes.len() + RESERVE > PACKET_BYTES_MAX {
+                self.bytes.truncate(end);
+                break;
+            }
+            count += 1;
+        }
+        if count == 0 {
+            self.bytes.truncate(at);
+            return;
+        }
+        self.flags |= flag;
+        if let Some(byte) = self.bytes.get_mut(at) {
+            *byte = count;
+        }
+    }
+
+    /// Appends changes that lead to views `first` and later.
+    pub(super) fn changes<'a>(&mut self, first: u32, changes: impl IntoIterator<Item = &'a Change>) {
+        let at = self.bytes.len();
+        self.bytes.put_var(first);
+        let flags = self.flags;
+        self.section(flag::CHANGES, CHANGES_MAX, changes, Change::write);
+        if self.flags == flags {
+            self.bytes.truncate(at);
+        }
+    }
+
+    /// Appends input runs: span, first tick, inputs of `size` bytes each.
+    pub(super) fn runs<'a>(&mut self, size: usize, runs: impl IntoIterator<Item = (u16, Tick, &'a [u8])>) {
+        let mut total = 0;
+        let fitting = runs.into_iter().take_while(|(_, _, inputs)| {
+            total += inputs.len();
+            total <= INPUTS_MAX
+        });
+        self.section(flag::RUNS, RUNS_MAX, fitting, |(span, start, inputs), bytes| {
+            bytes.put_var(u32::from(span));
+            bytes.put_var(start);
+            bytes.put_count(inputs.len() / size.max(1));
+            runs::encode(inputs, size, bytes);
+        });
+    }
+
+    /// Appends rows of others.
+    pub(super) fn foreign<'a>(&mut self, rows: impl IntoIterator<Item = (PeerId, &'a Row)>) {
+        self.section(flag::FOREIGN, FOREIGN_ROWS_MAX, rows, |(id, row), bytes| {
+            bytes.put_u32(id.0);
+            row.write(bytes);
+        });
+    }
+
+    /// The finished packet.
+    pub(super) fn finish(mut self, match_tag: u64) -> Vec<u8> {
+        if let Some(byte) = self.bytes.get_mut(FLAGS_AT) {
+            *byte = self.flags;
+        }
+        let sum = checksum(match_tag, self.bytes.get(4..).unwrap_or_default());
+        if let Some(place) = self.bytes.first_chunk_mut::<4>() {
+            *place = sum;
+        }
+        self.bytes
+    }
+}
+
+impl Packet {
+    /// Decodes the body of a packet with inputs of `size` bytes.
+    pub(super) fn read(body: &[u8], size: usize) -> Decoded<Packet> {
+        let reader = &mut Reader::new(body);
+        let sender = PeerId(reader.u32()?);
+        let flags = reader.u8()?;
+        if flags & !flag::ALL != 0 {
+            return Err(Malformed);
+        }
+        let has = |flag| flags & flag != 0;
+        let (sequence, sent) = (reader.u16()?, reader.u16()?);
+        let echo = if has(flag::ECHO) { Some(reader.u16()?) } else { None };
+        let header = Header { sender, sequence, sent, echo };
+        let row = Row::read(reader)?;
+        let mut packet = Packet {
+            header,
+            row,
+            changes: (0, Vec::new()),
+            runs: Vec::new(),
+            inputs: Vec::new(),
+            foreign: Vec::new(),
+        };
+        if has(flag::CHANGES) {
+            packet.changes.0 = reader.var()?;
+            let count = section_count(reader, CHANGES_MAX)?;
+            packet.changes.1 = (0..count).map(|_| Change::read(reader)).collect::<Decoded<_>>()?;
+        }
+        if has(flag::RUNS) {
+            packet.read_runs(reader, size)?;
+        }
+        if has(flag::FOREIGN) {
+            let count = section_count(reader, FOREIGN_ROWS_MAX)?;
+            let row = |reader: &mut Reader| Ok((PeerId(reader.u32()?), Row::read(reader)?));
+            packet.foreign = (0..count).map(|_| row(reader)).collect::<Decoded<_>>()?;
+        }
+        if reader.is_empty() { Ok(packet) } else { Err(Malformed) }
+    }
+
+    fn read_runs(&mut self, reader: &mut Reader, size: usize) -> Decoded<()> {
+        for _ in 0..section_count(reader, RUNS_MAX)? {
+            let span = u16::try_from(reader.var()?).map_err(|_| Malformed)?;
+            let start = reader.var()?;
+            let ticks = reader.var()?;
+            if ticks == 0 || ticks > RUN_TICKS_MAX || start.checked_add(ticks).is_none() {
+                return Err(Malformed);
+            }
+            let at = self.inputs.len();
+            let count = usize::try_from(ticks).map_err(|_| Malformed)?;
+            if at + count * size > INPUTS_MAX {
+                return Err(Malformed);
+            }
+            runs::decode(reader, count * size, size, &mut self.inputs)?;
+            self.runs.push(Run { span, start, bytes: at..self.inputs.len() });
+        }
+        Ok(())
+    }
+}
+
+/// A section that is announced is not empty.
+fn section_count(reader: &mut Reader, most: usize) -> Decoded<usize> {
+    let count = usize::from(reader.u8()?);
+    if (1..=most).contains(&count) { Ok(count) } else { Err(Malformed) }
+}

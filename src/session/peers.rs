@@ -1,0 +1,126 @@
+//! [`Peers`]: what a session knows of everybody, by the time at which it learned it.
+
+use alloc::vec::Vec;
+
+use super::id::{Key, PeerId};
+use super::link::Link;
+use super::row::Row;
+use super::view::{View, bit};
+
+/// Largest number of peers that are known at a time. Beyond it, who has been silent longest is forgotten.
+pub(super) const PEERS_MAX: usize = 192;
+
+/// What is known of a peer.
+#[derive(Clone, Debug)]
+pub(super) struct Remote {
+    pub(super) id: PeerId,
+    pub(super) key: Option<Key>,
+    pub(super) row: Option<Row>,
+    /// When a newer row arrived, by whatever way.
+    pub(super) fresh: Option<u64>,
+    /// When a packet arrived from the peer itself.
+    pub(super) heard: Option<u64>,
+    /// When a row arrived that said that the peer was connected to a quorum.
+    pub(super) contact: u64,
+    /// Whether the peer is served although it has no vote.
+    pub(super) attached: bool,
+    /// Whether it issued two inputs for a tick, or has another state.
+    pub(super) faulty: bool,
+    pub(super) link: Link,
+}
+
+/// All known peers. The first one is this peer itself.
+#[derive(Clone, Debug)]
+pub(super) struct Peers {
+    pub(super) list: Vec<Remote>,
+    /// Place in the list of each voter of the view.
+    voters: Vec<Option<usize>>,
+}
+
+impl Peers {
+    pub(super) fn new(me: PeerId, key: Key) -> Self {
+        let mut peers = Peers { list: Vec::new(), voters: Vec::new() };
+        peers.add(me, Some(key), 0);
+        peers
+    }
+
+    pub(super) fn find(&self, id: PeerId) -> Option<&Remote> {
+        self.list.iter().find(|remote| remote.id == id)
+    }
+
+    pub(super) fn find_mut(&mut self, id: PeerId) -> Option<&mut Remote> {
+        self.list.iter_mut().find(|remote| remote.id == id)
+    }
+
+    /// Adds a peer, unless it is known. `now` counts as the last contact.
+    pub(super) fn add(&mut self, id: PeerId, key: Option<Key>, now: u64) {
+        if let Some(remote) = self.find_mut(id) {
+            remote.key = remote.key.or(key);
+            return;
+        }
+        self.list.push(Remote {
+            id,
+            key,
+            row: None,
+            fresh: None,
+            heard: None,
+            contact: now,
+            attached: false,
+            faulty: false,
+            link: Link::default(),
+        });
+    }
+
+    /// Finds the voters of a view in the list. Adds those that are not known.
+    pub(super) fn follow(&mut self, view: &View, now: u64) {
+        for voter in &view.voters {
+            self.add(voter.id, Some(voter.key), now);
+        }
+        self.index(view);
+    }
+
+    fn index(&mut self, view: &View) {
+        let place = |id: PeerId| self.list.iter().position(|remote| remote.id == id);
+        self.voters = view.voters.iter().map(|voter| place(voter.id)).collect();
+    }
+
+    /// Forgets peers without a vote while there are more than [`PEERS_MAX`].
+    pub(super) fn bound(&mut self, view: &View) {
+        while self.list.len() > PEERS_MAX {
+            let silent = |(_, remote): &(usize, &Remote)| remote.fresh.max(remote.heard);
+            let strangers = self.list.iter().enumerate().skip(1);
+            let oldest = strangers.filter(|(_, remote)| view.voter(remote.id).is_none()).min_by_key(silent);
+            let Some((place, _)) = oldest else { return };
+            self.list.remove(place);
+            self.index(view);
+        }
+    }
+
+    /// A voter of the view by its index.
+    pub(super) fn voter(&self, index: usize) -> Option<&Remote> {
+        self.list.get((*self.voters.get(index)?)?)
+    }
+
+    /// Voters of the view with their index.
+    pub(super) fn voters(&self) -> impl Iterator<Item = (usize, &Remote)> {
+        (0..self.voters.len()).filter_map(|index| Some((index, self.voter(index)?)))
+    }
+
+    /// Rows of voters that are in this view, with their index.
+    pub(super) fn rows(&self, view: u32) -> impl Iterator<Item = (usize, &Remote, &Row)> {
+        self.voters().filter_map(move |(index, remote)| {
+            let row = remote.row.as_ref().filter(|row| row.view == view)?;
+            Some((index, remote, row))
+        })
+    }
+
+    /// Bit for each voter that fulfils a condition.
+    pub(super) fn voters_that(&self, condition: impl Fn(&Remote) -> bool) -> u64 {
+        self.voters().filter(|(_, remote)| condition(remote)).fold(0, |set, (index, _)| set | bit(index))
+    }
+}
+
+/// Whether a time lies less than `period` before `now`.
+pub(super) fn within(time: Option<u64>, period: u64, now: u64) -> bool {
+    time.is_some_and(|time| now < time.saturating_add(period))
+}

@@ -1,0 +1,140 @@
+//! Ticks on their way to finality.
+//!
+//! A tick is *complete* when all inputs of the view's spans are here, also if nobody plays in it while somebody does
+//! later. It is *acknowledged* when it is complete and no promise stands, and *final* when a quorum of this view
+//! acknowledges it, or when it lies before the view's cut; both only if it is held here. Complete ticks may be taken
+//! back when the view changes; final ones never.
+
+use alloc::vec::Vec;
+
+use super::config::Fault;
+use super::id::{NEVER, Tick};
+use super::state::Session;
+use super::view::{View, bit};
+
+/// How far the ticks have come.
+#[derive(Clone, Debug)]
+pub(super) struct Progress {
+    pub(super) complete: Tick,
+    pub(super) ack: Tick,
+    pub(super) fin: Tick,
+    /// When a tick last became complete that was not complete before.
+    pub(super) moved_at: u64,
+    /// Indices of the spans that do not end before `live_from`. Earlier ticks are not played again.
+    pub(super) live: Vec<usize>,
+    pub(super) live_from: Tick,
+    /// Tick of the last clean-up.
+    cleaned: Tick,
+}
+
+/// Interval in ticks at which old inputs are forgotten.
+const CLEAN_INTERVAL: Tick = 256;
+
+impl Progress {
+    pub(super) fn new(view: &View, tick: Tick) -> Self {
+        let mut progress = Progress {
+            complete: tick,
+            ack: tick,
+            fin: tick,
+            moved_at: 0,
+            live: Vec::new(),
+            live_from: tick,
+            cleaned: tick,
+        };
+        progress.follow(view, tick);
+        progress
+    }
+
+    /// Lists the spans that do not end before a tick.
+    pub(super) fn follow(&mut self, view: &View, tick: Tick) {
+        self.live.clear();
+        self.live_from = tick;
+        let live = |(index, span): (usize, &super::view::Span)| (span.until > tick).then_some(index);
+        self.live.extend(view.spans.iter().enumerate().filter_map(live));
+    }
+}
+
+impl Session {
+    /// Determines which ticks are complete, acknowledged and final.
+    pub(super) fn settle(&mut self) {
+        self.complete_ticks();
+        if self.agreement.promised.is_none() || self.config.has(Fault::NoFreeze) {
+            self.progress.ack = self.progress.complete;
+        }
+        self.refresh_row();
+        self.finalise_ticks();
+    }
+
+    fn complete_ticks(&mut self) {
+        while self.progress.complete < self.view.stop() && self.view.begun {
+            let tick = self.progress.complete;
+            // Up to the next border of a span the same spans count.
+            let mut limit = self.view.stop();
+            let mut somebody = false;
+            for &index in &self.progress.live {
+                let Some(span) = self.view.spans.get(index) else { continue };
+                if span.contains(tick) {
+                    somebody = true;
+                    limit = limit.min(span.until).min(self.log.next(index));
+                } else if span.from > tick && span.from < span.until {
+                    somebody |= span.is_open();
+                    limit = limit.min(span.from);
+                }
+            }
+            if !somebody || limit <= tick || limit == NEVER {
+                return;
+            }
+            self.progress.complete = limit;
+            self.progress.moved_at = self.clock.active;
+        }
+    }
+
+    fn finalise_ticks(&mut self) {
+        let mut fin = self.acknowledged().max(self.view.cut);
+        if self.config.has(Fault::FinalComplete) {
+            fin = self.progress.complete;
+        }
+        fin = fin.min(self.progress.complete);
+        if fin <= self.progress.fin {
+            return;
+        }
+        self.progress.fin = fin;
+        if fin - self.progress.cleaned >= CLEAN_INTERVAL {
+            self.progress.cleaned = fin;
+            self.progress.follow(&self.view, self.play.needed_from().min(fin));
+            self.log.forget_before(fin.saturating_sub(self.config.log_ticks));
+        }
+    }
+
+    /// Number of ticks that a quorum acknowledges in rows of this view, or that somebody in this view calls final.
+    fn acknowledged(&self) -> Tick {
+        let view = self.view.number;
+        let mut acks = [(0, 0_u64); super::view::SEATS_MAX];
+        let mut count = 0;
+        let mut acknowledged = 0;
+        for (index, _, row) in self.peers.rows(view) {
+            if let Some(place) = acks.get_mut(count) {
+                *place = (row.ack, bit(index));
+                count += 1;
+            }
+            acknowledged = acknowledged.max(row.fin);
+        }
+        let acks = acks.get_mut(..count).unwrap_or_default();
+        acks.sort_unstable_by(|a, b| b.cmp(a));
+        let mut set = 0;
+        for &mut (ack, voter) in acks {
+            set |= voter;
+            if self.is_quorum(set) {
+                return acknowledged.max(ack);
+            }
+        }
+        acknowledged
+    }
+
+    /// Whether a set of voters of the view is a quorum.
+    pub(super) fn is_quorum(&self, set: u64) -> bool {
+        let half = self.config.has(Fault::HalfIsEnough)
+            && 2 * self.view.weight_of(set) + 1 >= self.view.weight_of(u64::MAX);
+        half || self.view.is_quorum(set)
+    }
+}

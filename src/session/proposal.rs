@@ -1,0 +1,317 @@
+//! Ballots of this peer: when it starts one, and which change it proposes.
+
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+use super::agreement::Agreement;
+use super::config::Fault;
+use super::id::{Key, PeerId, Tick};
+use super::peers::{Remote, within};
+use super::row::{Ballot, Removal, Row};
+use super::state::Session;
+use super::view::{Change, JOINS_MAX, Join, SEATS_MAX, SPANS_MAX, bit, bits, has_bit};
+
+/// A ballot of this peer.
+#[derive(Clone, Debug)]
+pub(super) struct Proposal {
+    pub(super) ballot: Ballot,
+    started_at: u64,
+    /// When a quorum had promised.
+    quorum_at: Option<u64>,
+    /// The change that is proposed, once it is chosen.
+    change: Option<Arc<Change>>,
+}
+
+/// Waiting times grow with the rounds that led to no decision: at first in proportion, up to this factor; beyond it
+/// only if they are shorter than `BALLOT_MAX` microseconds, and faster.
+const ROUNDS_MAX: u64 = 4;
+const BALLOT_MAX: u64 = 6_000_000;
+
+impl Session {
+    /// Starts a ballot if there is a reason for one.
+    pub(super) fn begin_ballot(&mut self) {
+        let active = self.clock.active;
+        if active < self.agreement.not_before {
+            return;
+        }
+        let rank = self.rank();
+        let ballot = self.config.timing.ballot;
+        let wanted = self.change_is_wanted();
+        let since = if wanted { Some(*self.agreement.wanted_since.get_or_insert(active)) } else { None };
+        self.agreement.wanted_since = since;
+        let Agreement { promised, promised_at, round, .. } = self.agreement;
+        let free = promised.is_none() || self.config.has(Fault::Duel);
+        let waited = free && since.is_some_and(|since| active >= since + rank * ballot / 3);
+        let stalled = free && self.is_stalled(rank);
+        let stuck = promised.is_some() && active > promised_at + self.ballot_time() * (5 + rank) / 5;
+        if !(stuck || waited || stalled) || !self.is_connected() {
+            return;
+        }
+        self.agreement.round = round.saturating_add(1);
+        let own = Ballot { round: self.agreement.round, proposer: self.me };
+        self.set_promise(own);
+        self.agreement.proposal =
+            Some(Proposal { ballot: own, started_at: active, quorum_at: None, change: None });
+        self.agreement.not_before = active + self.backoff();
+    }
+
+    /// Time that a ballot gets. It grows with the rounds of the view that led to no decision.
+    fn ballot_time(&self) -> u64 {
+        let ballot = self.config.timing.ballot.max(1);
+        let rounds = u64::from(self.agreement.round.saturating_sub(self.agreement.base_round));
+        let factor = if rounds <= ROUNDS_MAX { rounds.max(1) } else { rounds * rounds / ROUNDS_MAX };
+        ballot.saturating_mul(factor).min((ballot * ROUNDS_MAX).max(BALLOT_MAX))
+    }
+
+    /// Whether a voter has been out of contact for the time of patience, and play stands still or does not need it.
+    fn is_stalled(&self, rank: u64) -> bool {
+        let active = self.clock.active;
+        let patience = self.config.timing.patience.saturating_add(rank * self.config.timing.ballot / 15);
+        let stop = self.view.stop();
+        if self.progress.fin >= stop {
+            return false;
+        }
+        let stands_still = active > self.progress.moved_at.saturating_add(patience);
+        self.peers.voters().any(|(_, remote)| {
+            remote.id != self.me
+                && active >= remote.contact.saturating_add(patience)
+                && (stands_still || self.view.seats_of(remote.id) == 0)
+        })
+    }
+
+    /// Whether a fresh row wants a change that is possible.
+    fn change_is_wanted(&self) -> bool {
+        let (number, ends) = (self.view.number, self.view.end.is_some());
+        let voters = self.fresh_rows().any(|(_, row)| row.wants.leave || row.wants.end.is_some() && !ends);
+        let removed = || {
+            let some = self.peers.rows(number).any(|(_, _, row)| !row.wants.removals.is_empty());
+            some && self.view.voters.iter().any(|voter| self.is_removed(voter.id, voter.key))
+        };
+        voters || removed() || !ends && (self.seat_wants(number).next().is_some() || self.may_begin())
+    }
+
+    /// Whether the match has not begun although enough seats are taken.
+    fn may_begin(&self) -> bool {
+        !self.view.begun
+            && (!self.view.free_seats() & self.config.seat_set()).count_ones() >= self.first_seats()
+    }
+
+    fn first_seats(&self) -> u32 {
+        u32::from(self.config.start_with.max(1))
+    }
+
+    /// Fresh rows of voters that are in this view.
+    fn fresh_rows(&self) -> impl Iterator<Item = (&Remote, &Row)> {
+        let (fresh, active) = (self.config.timing.fresh, self.clock.active);
+        let rows = self.peers.rows(self.view.number);
+        rows.filter(move |(_, remote, _)| within(remote.fresh, fresh, active))
+            .map(|(_, remote, row)| (remote, row))
+    }
+
+    /// Peers without a vote that want seats and may have some.
+    fn seat_wants(&self, number: u32) -> impl Iterator<Item = (PeerId, Key, u8)> {
+        let (fresh, active) = (self.config.timing.fresh, self.clock.active);
+        self.peers.list.iter().filter_map(move |remote| {
+            let row = remote.row.as_ref().filter(|row| row.view == number)?;
+            let want = row.wants.seats?;
+            let may = self.view.voter(remote.id).is_none()
+                && within(remote.fresh, fresh, active)
+                && !remote.faulty
+                && !row.wants.leave
+                && !self.is_removed(remote.id, want.key)
+                && !self
+                    .peers
+                    .voters()
+                    .any(|(_, voter)| voter.key == Some(want.key) && within(voter.fresh, fresh, active));
+            let fits = may && self.seats_for(want.key, want.seats, self.free_after(0)).is_some();
+            fits.then_some((remote.id, want.key, want.seats))
+        })
+    }
+
+    /// Bit for each voter that was replaced: another incarnation with its key wants seats, and it is silent.
+    fn replaced(&self) -> u64 {
+        let (fresh, active) = (self.config.timing.fresh, self.clock.active);
+        let number = self.view.number;
+        let wanted = |key: Key| {
+            self.peers.list.iter().any(|remote| {
+                let row = remote.row.as_ref().filter(|row| row.view == number);
+                let wants = row.and_then(|row| row.wants.seats).is_some_and(|want| want.key == key);
+                wants && self.view.voter(remote.id).is_none() && within(remote.fresh, fresh, active)
+            })
+        };
+        let silent = |remote: &Remote| remote.id != self.me && !within(remote.fresh, fresh, active);
+        self.peers.voters_that(|remote| silent(remote) && remote.key.is_some_and(wanted))
+    }
+
+    /// Seats that are free when some voters have left, one bit for each.
+    fn free_after(&self, leaves: u64) -> u64 {
+        let leaves = leaves | self.replaced();
+        let voters = self.view.voters.iter().enumerate();
+        let kept = voters.filter(|(index, _)| !has_bit(leaves, *index)).map(|(_, voter)| voter.id);
+        let taken = kept.fold(0, |set, id| set | self.view.seats_of(id));
+        self.config.seat_set() & !taken
+    }
+
+    /// Whether the tie-holder or a quorum votes for the removal of a peer.
+    pub(super) fn is_removed(&self, id: PeerId, key: Key) -> bool {
+        let mut set = 0;
+        for (index, remote, row) in self.peers.rows(self.view.number) {
+            let votes = row.wants.removals.iter().any(|removal| match *removal {
+                Removal::Without(other) => other == id,
+                Removal::Kick(other) => other == key,
+            });
+            if votes {
+                set |= bit(index);
+                if remote.id == self.view.tie_holder {
+                    return true;
+                }
+            }
+        }
+        self.is_quorum(set)
+    }
+
+    /// Free seats for a newcomer: first those that its key had, then those that nobody had, then others.
+    fn seats_for(&self, key: Key, count: u8, free: u64) -> Option<u64> {
+        let mut own = 0;
+        let mut had = 0;
+        for span in &self.view.spans {
+            had |= bit(usize::from(span.seat));
+            own |= if span.key == key { bit(usize::from(span.seat)) } else { 0 };
+        }
+        let ordered = [free & own, free & !had, free & had & !own];
+        let chosen = ordered.into_iter().flat_map(bits).take(usize::from(count));
+        let chosen = chosen.fold(0, |set, seat| set | bit(usize::from(seat)));
+        (count > 0 && chosen.count_ones() == u32::from(count)).then_some(chosen)
+    }
+
+    /// Goes on with the own ballot. Returns whether another step may be possible.
+    pub(super) fn conduct_ballot(&mut self) -> bool {
+        let Some(mut proposal) = self.agreement.proposal.take() else { return false };
+        let active = self.clock.active;
+        if proposal.change.is_none() {
+            let promisers = self.promisers(proposal.ballot);
+            if self.is_quorum(promisers) {
+                let since = *proposal.quorum_at.get_or_insert(active);
+                let all = promisers.count_ones() >= u32::try_from(self.view.voters.len()).unwrap_or(u32::MAX);
+                if all || active >= since + self.config.timing.promises {
+                    proposal.change = Some(self.choose_change(proposal.ballot));
+                }
+            }
+        }
+        let is_new = self.agreement.accepted.as_ref().is_none_or(|(own, _)| *own < proposal.ballot);
+        if let Some(change) = proposal.change.clone().filter(|change| is_new && self.holds(change)) {
+            let ballot = proposal.ballot;
+            self.agreement.proposal = Some(proposal);
+            self.set_accepted(ballot, change);
+            return true;
+        }
+        if active > proposal.started_at + 2 * self.ballot_time() {
+            self.agreement.not_before = active + self.backoff();
+            self.agreement.promised_at = active;
+        } else {
+            self.agreement.proposal = Some(proposal);
+        }
+        false
+    }
+
+    /// Bit for each voter that promised a ballot.
+    fn promisers(&self, ballot: Ballot) -> u64 {
+        let rows = self.peers.rows(self.view.number);
+        rows.filter(|(_, _, row)| row.promised == Some(ballot)).fold(0, |set, (index, _, _)| set | bit(index))
+    }
+
+    /// The change of a ballot that a quorum promised: what the promisers have accepted before, or a new one.
+    fn choose_change(&self, ballot: Ballot) -> Arc<Change> {
+        let promisers = self.promisers(ballot);
+        let rows = || self.peers.rows(self.view.number).filter(|(index, _, _)| has_bit(promisers, *index));
+        let accepted =
+            rows().filter_map(|(_, _, row)| row.accepted.as_ref()).max_by_key(|(ballot, _)| *ballot);
+        if let Some((_, change)) = accepted.filter(|_| !self.config.has(Fault::ForgetAccepted)) {
+            return Arc::clone(change);
+        }
+        let mut cut = rows().map(|(_, _, row)| row.ack).max().unwrap_or(0);
+        if self.config.has(Fault::OwnCut) {
+            cut = self.progress.ack;
+        }
+        Arc::new(self.new_change(promisers, cut.max(self.view.cut)))
+    }
+
+    fn new_change(&self, promisers: u64, cut: Tick) -> Change {
+        let mut leaves = self.leaving(promisers) | self.replaced();
+        let mut end = self.view.end;
+        let keeps = |leaves: u64| {
+            self.view.voters.iter().enumerate().filter(move |(index, _)| !has_bit(leaves, *index))
+        };
+        if keeps(leaves).next().is_none() {
+            // The last voter leaves: the match is over.
+            end = end.or(Some(cut));
+            leaves &= !self.view.voter(self.me).map_or(0, bit);
+        }
+        let wanted = self.fresh_rows().filter_map(|(_, row)| row.wants.end).max();
+        end = end.or(wanted.map(|wanted| wanted.max(cut)));
+        let joins = if end.is_some() { Vec::new() } else { self.joins(leaves) };
+        let stays = |id: PeerId| keeps(leaves).any(|(_, voter)| voter.id == id);
+        let tie_holder = if stays(self.view.tie_holder) {
+            self.view.tie_holder
+        } else {
+            keeps(leaves).next().map_or(self.me, |(_, voter)| voter.id)
+        };
+        let taken = keeps(leaves).fold(0, |set, (_, voter)| set | self.view.seats_of(voter.id));
+        let taken = joins.iter().fold(taken, |set, join| set | join.seats);
+        let begun = self.view.begun || taken.count_ones() >= self.first_seats() || end.is_some();
+        let lead = if self.view.begun { self.seat_lead(&joins) } else { 0 };
+        Change { cut, end, begun, leaves, tie_holder, joins, from: cut.saturating_add(lead) }
+    }
+
+    /// Number of ticks from the cut to the first one of those who join. Until then promises and acceptances have to
+    /// travel to and fro, and the first inputs have to arrive.
+    fn seat_lead(&self, joins: &[Join]) -> Tick {
+        let matters = |remote: &&Remote| {
+            self.view.voter(remote.id).is_some() || joins.iter().any(|join| join.id == remote.id)
+        };
+        let round_trips = self.peers.list.iter().filter(matters).map(|remote| remote.link.round_trip);
+        let ticks = 3 * round_trips.max().unwrap_or(0) / u64::from(self.config.tick_micros.max(1));
+        let lead = Tick::from(self.config.seat_lead);
+        lead.saturating_add(Tick::try_from(ticks).unwrap_or(0))
+            .min(Tick::from(self.config.history / 2).max(lead))
+    }
+
+    /// Bit for each voter that is no longer one: it wants to leave, is removed, or has neither promised nor been in
+    /// contact for the time of patience.
+    fn leaving(&self, promisers: u64) -> u64 {
+        let active = self.clock.active;
+        let number = self.view.number;
+        let gone = |index: usize, remote: &Remote| {
+            let silent = active >= remote.contact.saturating_add(self.config.timing.patience);
+            !has_bit(promisers, index) && (silent || self.config.has(Fault::Accuse))
+        };
+        let leaves = |remote: &Remote| {
+            remote.row.as_ref().is_some_and(|row| row.view == number && row.wants.leave)
+                || remote.key.is_some_and(|key| self.is_removed(remote.id, key))
+        };
+        let voters = self.peers.voters();
+        voters
+            .filter(|(index, remote)| gone(*index, remote) || leaves(remote))
+            .fold(0, |set, (index, _)| set | bit(index))
+    }
+
+    fn joins(&self, leaves: u64) -> Vec<Join> {
+        let mut joins: Vec<Join> = Vec::new();
+        let mut free = self.free_after(leaves);
+        let staying =
+            self.view.voters.len().saturating_sub(usize::try_from(leaves.count_ones()).unwrap_or(0));
+        for (id, key, count) in self.seat_wants(self.view.number) {
+            let full = joins.len() == JOINS_MAX
+                || staying + joins.len() >= SEATS_MAX
+                || self.view.spans.len() + usize::from(count) + 64 > SPANS_MAX;
+            if full {
+                break;
+            }
+            if let Some(seats) = self.seats_for(key, count, free) {
+                free &= !seats;
+                joins.push(Join { id, key, seats });
+            }
+        }
+        joins
+    }
+}

@@ -1,0 +1,130 @@
+//! What arrives: packets, and the time.
+
+use super::config::Fault;
+use super::event::Event;
+use super::id::{PeerId, Tick};
+use super::input_log::Added;
+use super::packet::{self, Packet};
+use super::peers::PEERS_MAX;
+use super::row::Row;
+use super::state::Session;
+
+/// Inputs further ahead of the complete ticks than this are not kept, so that nobody fills the memory.
+const INPUTS_AHEAD_MAX: Tick = 1024;
+
+impl Session {
+    /// Notes the time. Of a long pause of the process only a part counts.
+    pub(super) fn look(&mut self, now: u64) {
+        let passed = now.saturating_sub(self.clock.now);
+        self.clock.active = self.clock.active.saturating_add(passed.min(self.config.timing.step_max));
+        self.clock.now = self.clock.now.max(now);
+    }
+
+    /// Takes a packet that arrived. Returns its sender, or nothing if it is not a packet of this match from somebody
+    /// who is known.
+    pub fn receive(&mut self, now: u64, bytes: &[u8]) -> Option<PeerId> {
+        self.look(now);
+        if self.status().is_closed() {
+            return None;
+        }
+        let body = packet::open(self.config.match_tag, bytes).ok()?;
+        let packet = Packet::read(body, self.log.size()).ok()?;
+        let sender = packet.header.sender;
+        let (active, wall) = (self.clock.active, self.clock.now);
+        let remote = self.peers.find_mut(sender).filter(|_| sender != self.me)?;
+        remote.heard = Some(active);
+        let header = packet.header;
+        remote.link.arrived(header.sequence, header.sent, header.echo, bytes.len(), wall);
+        self.take_changes(packet.changes.0, &packet.changes.1);
+        self.take_row(sender, packet.row);
+        for (id, row) in packet.foreign {
+            self.take_foreign_row(id, row);
+        }
+        for run in packet.runs {
+            let inputs = packet.inputs.get(run.bytes).unwrap_or_default();
+            self.take_inputs(usize::from(run.span), run.start, inputs);
+        }
+        self.settle();
+        self.agree();
+        Some(sender)
+    }
+
+    fn take_changes(&mut self, first: u32, changes: &[super::view::Change]) {
+        let known = self.view.number.saturating_add(1).checked_sub(first);
+        let new = known.and_then(|known| usize::try_from(known).ok()).and_then(|known| changes.get(known..));
+        if let Some(new) = new.filter(|new| !new.is_empty()) {
+            self.install(new);
+        }
+    }
+
+    fn take_row(&mut self, id: PeerId, row: Row) {
+        let active = self.clock.active;
+        let Some(remote) = self.peers.find_mut(id) else { return };
+        if remote.row.as_ref().is_some_and(|known| known.version >= row.version) {
+            return;
+        }
+        remote.fresh = Some(active);
+        if row.connected {
+            remote.contact = active;
+        }
+        if let Some(want) = row.wants.seats {
+            remote.key.get_or_insert(want.key);
+        }
+        if let Some(ballot) = row.promised.filter(|_| row.view == self.view.number) {
+            self.agreement.round = self.agreement.round.max(ballot.round);
+        }
+        let hash = row.hash;
+        remote.row = Some(row);
+        if let Some((tick, hash)) = hash {
+            self.compare_hash(id, tick, hash);
+        }
+    }
+
+    /// A row that somebody passed on. It may be that of a peer that is not known: one that wants a seat.
+    fn take_foreign_row(&mut self, id: PeerId, row: Row) {
+        if id == self.me || self.config.has(Fault::NoRelay) {
+            return;
+        }
+        if self.peers.find(id).is_none() {
+            if self.peers.list.len() >= PEERS_MAX || row.wants.seats.is_none() {
+                return;
+            }
+            self.peers.add(id, None, self.clock.active);
+        }
+        self.take_row(id, row);
+    }
+
+    fn take_inputs(&mut self, index: usize, start: u32, inputs: &[u8]) {
+        let Some(span) = self.view.spans.get(index) else { return };
+        let owner = span.owner;
+        // Whoever is behind gets the inputs of a few hundred ticks at a time.
+        let far = self.progress.complete.saturating_add(INPUTS_AHEAD_MAX);
+        if owner == self.me || self.log.next(index) > far.max(span.from) {
+            return;
+        }
+        match self.log.add(index, start, inputs) {
+            Added::Nothing => {}
+            Added::From(tick) => self.play.note_change(tick),
+            Added::Conflict(tick) => {
+                let Some(remote) = self.peers.find_mut(owner).filter(|remote| !remote.faulty) else { return };
+                remote.faulty = true;
+                self.events.push_back(Event::Conflict { peer: owner, tick });
+            }
+        }
+    }
+
+    /// Passes the time. Call it often: every few milliseconds, and after packets have arrived.
+    pub fn update(&mut self, now: u64) {
+        self.look(now);
+        if self.status().is_closed() {
+            return;
+        }
+        self.settle();
+        self.update_wants();
+        self.agree_in_time();
+        self.resolve();
+        self.steer();
+        self.update_status();
+        self.transmit();
+    }
+}

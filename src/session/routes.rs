@@ -1,0 +1,133 @@
+//! [`Routes`]: the addresses of peers. A packet counts for the peer whose incarnation it names, wherever it comes
+//! from; but traffic goes to an address only after that has answered a probe. So a peer whose address changes is
+//! found again, and nobody can direct traffic to somebody else.
+
+use alloc::vec::Vec;
+
+use super::address::Address;
+use super::bytes::Write;
+use super::id::PeerId;
+use super::siphash::Secret;
+
+/// Time between probes of an address in microseconds.
+const PROBE_INTERVAL: u64 = 250_000;
+/// Probes of an address that does not answer.
+const PROBES_MAX: u8 = 40;
+/// Addresses of a peer that are tried at a time.
+const CANDIDATES_MAX: usize = 4;
+/// An address that was heard within this time is not given up for another one.
+const KEPT: u64 = 500_000;
+/// Largest number of peers with addresses.
+const ROUTES_MAX: usize = 192;
+
+/// An address that may be that of a peer.
+#[derive(Clone, Debug)]
+struct Candidate {
+    address: Address,
+    next_at: u64,
+    probes: u8,
+}
+
+/// The addresses of a peer.
+#[derive(Clone, Debug)]
+struct Route {
+    id: PeerId,
+    /// The one that has answered.
+    address: Option<Address>,
+    heard_at: u64,
+    candidates: Vec<Candidate>,
+}
+
+/// The addresses of all peers.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Routes {
+    list: Vec<Route>,
+    turn: usize,
+}
+
+impl Routes {
+    fn find(&mut self, id: PeerId) -> Option<&mut Route> {
+        self.list.iter_mut().find(|route| route.id == id)
+    }
+
+    fn add(&mut self, id: PeerId) -> Option<&mut Route> {
+        if self.find(id).is_none() {
+            if self.list.len() >= ROUTES_MAX {
+                return None;
+            }
+            self.list.push(Route { id, address: None, heard_at: 0, candidates: Vec::new() });
+        }
+        self.find(id)
+    }
+
+    /// The address of a peer that has answered.
+    pub(super) fn address(&self, id: PeerId) -> Option<Address> {
+        self.list.iter().find(|route| route.id == id).and_then(|route| route.address)
+    }
+
+    /// Notes that an address has proven to be that of a peer.
+    pub(super) fn prove(&mut self, id: PeerId, address: Address, now: u64) {
+        let Some(route) = self.add(id) else { return };
+        if route.address != Some(address)
+            && (route.address.is_none() || now >= route.heard_at.saturating_add(KEPT))
+        {
+            route.address = Some(address);
+            route.heard_at = now;
+        }
+        route.candidates.retain(|candidate| candidate.address != address);
+    }
+
+    /// Notes a packet of a peer.
+    pub(super) fn heard(&mut self, id: PeerId, address: Address, now: u64) {
+        match self.find(id) {
+            Some(route) if route.address == Some(address) => route.heard_at = now,
+            _ => self.suggest(id, address),
+        }
+    }
+
+    /// Notes an address that may be that of a peer.
+    pub(super) fn suggest(&mut self, id: PeerId, address: Address) {
+        let Some(route) = self.add(id).filter(|route| route.address != Some(address)) else { return };
+        if route.candidates.iter().all(|candidate| candidate.address != address) {
+            if route.candidates.len() == CANDIDATES_MAX {
+                route.candidates.remove(0);
+            }
+            route.candidates.push(Candidate { address, next_at: 0, probes: 0 });
+        }
+    }
+
+    /// Addresses to probe now.
+    pub(super) fn probes(&mut self, now: u64) -> Vec<(PeerId, Address)> {
+        let mut probes = Vec::new();
+        for route in &mut self.list {
+            for candidate in route.candidates.iter_mut().filter(|candidate| now >= candidate.next_at) {
+                candidate.next_at = now + PROBE_INTERVAL;
+                candidate.probes += 1;
+                probes.push((route.id, candidate.address));
+            }
+            route.candidates.retain(|candidate| candidate.probes < PROBES_MAX);
+        }
+        probes
+    }
+
+    /// Forgets peers that do not matter any more.
+    pub(super) fn retain(&mut self, matters: impl Fn(PeerId) -> bool) {
+        self.list.retain(|route| matters(route.id));
+    }
+
+    /// Addresses to tell others, beginning with another one each time.
+    pub(super) fn known(&mut self, most: usize) -> Vec<(PeerId, Address)> {
+        let known: Vec<_> = self.list.iter().filter_map(|route| Some((route.id, route.address?))).collect();
+        self.turn = self.turn.wrapping_add(most);
+        let start = self.turn.checked_rem(known.len()).unwrap_or(0);
+        known.iter().cycle().skip(start).take(most.min(known.len())).copied().collect()
+    }
+}
+
+/// The token that a peer has to return from an address.
+pub(super) fn token(secret: Secret, id: PeerId, address: &Address) -> u64 {
+    let mut bytes = Vec::with_capacity(64);
+    bytes.put_u32(id.0);
+    address.write(&mut bytes);
+    secret.hash(&bytes)
+}

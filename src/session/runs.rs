@@ -1,0 +1,107 @@
+//! Inputs of consecutive ticks in few bytes: each tick XOR the tick before it, then run-length coded. Inputs that are
+//! held for many ticks become zeros, and zeros take two bytes however many they are.
+//!
+//! The coded form is a list of runs, until all bytes are there. A run starts with a LEB128 number: its length times
+//! two, plus one if it is a run of zeros; otherwise the bytes follow.
+
+use alloc::vec::Vec;
+
+use super::bytes::{Decoded, Malformed, Reader, Write};
+
+/// Zeros that are worth a run of their own within other bytes.
+const ZEROS_MIN: usize = 3;
+
+/// Appends the coded form of inputs of `size` bytes each.
+pub(super) fn encode(inputs: &[u8], size: usize, bytes: &mut Vec<u8>) {
+    let differences = |at: usize| {
+        let before = at.checked_sub(size).and_then(|at| inputs.get(at)).copied().unwrap_or(0);
+        inputs.get(at).copied().unwrap_or(0) ^ before
+    };
+    let zeros_from = |at: usize| (at..inputs.len()).take_while(|&at| differences(at) == 0).count();
+    let mut at = 0;
+    while at < inputs.len() {
+        let zeros = zeros_from(at);
+        if zeros > 0 {
+            bytes.put_count(2 * zeros + 1);
+            at += zeros;
+            continue;
+        }
+        let start = at;
+        while at < inputs.len() {
+            let zeros = zeros_from(at);
+            if zeros >= ZEROS_MIN || zeros > 0 && at + zeros == inputs.len() {
+                break;
+            }
+            at += zeros.max(1);
+        }
+        bytes.put_count(2 * (at - start));
+        bytes.extend((start..at).map(differences));
+    }
+}
+
+/// Appends `count` decoded bytes of inputs of `size` bytes each to `inputs`.
+pub(super) fn decode(reader: &mut Reader, count: usize, size: usize, inputs: &mut Vec<u8>) -> Decoded<()> {
+    let start = inputs.len();
+    let end = start + count;
+    while inputs.len() < end {
+        let run = reader.count(2 * (end - inputs.len()) + 1)?;
+        let length = run / 2;
+        if length == 0 || length > end - inputs.len() {
+            return Err(Malformed);
+        }
+        if run % 2 == 1 {
+            inputs.resize(inputs.len() + length, 0);
+        } else {
+            inputs.extend_from_slice(reader.take(length)?);
+        }
+    }
+    for at in start + size..end {
+        let before = inputs.get(at - size).copied().unwrap_or(0);
+        if let Some(byte) = inputs.get_mut(at) {
+            *byte ^= before;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn round_trip(inputs: &[u8], size: usize) -> usize {
+        let mut bytes = Vec::new();
+        encode(inputs, size, &mut bytes);
+        let mut decoded = alloc::vec![9];
+        let mut reader = Reader::new(&bytes);
+        decode(&mut reader, inputs.len(), size, &mut decoded).unwrap();
+        assert_eq!((&decoded[1..], reader.is_empty()), (inputs, true));
+        bytes.len()
+    }
+
+    #[test]
+    fn inputs_survive_and_held_ones_take_few_bytes() {
+        assert_eq!(round_trip(&[], 1), 0);
+        assert_eq!(round_trip(&[7; 30], 1), 3);
+        assert_eq!(round_trip(&[0; 64], 2), 2);
+        assert_eq!(round_trip(&[1, 2, 1, 2, 1, 3, 1, 3], 2), 3 + 1 + 2 + 1);
+        let mut noise = 1_u32;
+        let noise: Vec<u8> = (0..500)
+            .map(|_| {
+                noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                if noise >> 30 == 0 { noise.to_le_bytes()[2] } else { 0 }
+            })
+            .collect();
+        for size in [1, 2, 5, 64] {
+            for length in 0..noise.len() / size {
+                assert!(round_trip(&noise[..length * size], size) <= length * size + 4);
+            }
+        }
+    }
+
+    #[test]
+    fn a_run_beyond_the_end_or_of_nothing_is_refused() {
+        for bytes in [&[2 * 5 + 1][..], &[2 * 5, 1, 2, 3, 4, 5], &[0], &[1], &[2 * 4, 1, 2]] {
+            assert_eq!(decode(&mut Reader::new(bytes), 4, 1, &mut Vec::new()), Err(Malformed), "{bytes:?}");
+        }
+    }
+}

@@ -1,0 +1,378 @@
+//! [`Session`]: its parts, its construction, and what the game may ask it to do.
+
+use alloc::collections::VecDeque;
+use alloc::vec::Vec;
+use core::fmt;
+
+use super::agreement::Agreement;
+use super::config::{Config, ConfigError};
+use super::event::{Event, Status};
+use super::id::{Key, PeerId, Tick};
+use super::input_log::InputLog;
+use super::lifecycle::Lifecycle;
+use super::link::Link;
+use super::pace::Pace;
+use super::peers::Peers;
+use super::play::Play;
+use super::progress::Progress;
+use super::request::Request;
+use super::row::{REMOVALS_MAX, Removal, Wants};
+use super::transmit::Outbox;
+use super::view::{Change, View};
+
+/// What a peer is in a match.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Plays a number of seats as soon as it may.
+    Player {
+        /// Number of seats, at least 1.
+        seats: u8,
+    },
+    /// Follows the final ticks.
+    Spectator,
+}
+
+/// Inputs that do not have the size that the session was configured for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct InputSize {
+    /// Number of bytes that were expected: the size of an input times the number of own seats.
+    pub expected: usize,
+    /// Number of bytes that were given.
+    pub given: usize,
+}
+
+impl fmt::Display for InputSize {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} bytes of inputs, {} are expected", self.given, self.expected)
+    }
+}
+
+impl core::error::Error for InputSize {}
+
+/// Figures of a session.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Statistics {
+    /// Ticks that were played again, because inputs had been guessed wrongly or a view changed.
+    pub replayed: u64,
+    /// Most ticks that were played again at a time.
+    pub replayed_max: Tick,
+    /// Bytes of inputs that are kept.
+    pub input_bytes: usize,
+    /// Number of peers that are known, this one included.
+    pub peers: usize,
+}
+
+/// The part of one peer in a match.
+///
+/// In a loop: pass every packet that arrives to [`receive`](Session::receive), call [`update`](Session::update), call
+/// [`advance`](Session::advance) while [`is_due`](Session::is_due), and fulfil what
+/// [`next_request`](Session::next_request) returns in order; then send what [`next_packet`](Session::next_packet)
+/// returns.
+///
+/// Times are microseconds since any fixed moment and never decrease.
+#[derive(Clone, Debug)]
+pub struct Session {
+    pub(super) config: Config,
+    pub(super) me: PeerId,
+    pub(super) key: Key,
+    pub(super) clock: Clock,
+    pub(super) random: Random,
+    pub(super) view: View,
+    pub(super) changes: Changes,
+    pub(super) peers: Peers,
+    pub(super) log: InputLog,
+    pub(super) agreement: Agreement,
+    pub(super) progress: Progress,
+    pub(super) play: Play,
+    pub(super) pace: Pace,
+    pub(super) role: Role,
+    pub(super) wants: Wants,
+    pub(super) paused: bool,
+    pub(super) lifecycle: Lifecycle,
+    pub(super) outbox: Outbox,
+    pub(super) events: VecDeque<Event>,
+}
+
+/// Two clocks.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Clock {
+    /// The last time that was passed.
+    pub(super) now: u64,
+    /// Time for which the process was running: between two calls at most [`Timing::step_max`](super::Timing) counts.
+    pub(super) active: u64,
+}
+
+/// Pseudo-random numbers (SplitMix64). They only spread out attempts in time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Random(u64);
+
+impl Random {
+    #[cfg(test)]
+    pub(super) const fn new(seed: u64) -> Self {
+        Random(seed)
+    }
+
+    /// A number below `bound`, or 0.
+    pub(super) fn below(&mut self, bound: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mixed = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (mixed ^ mixed >> 31).checked_rem(bound).unwrap_or(0)
+    }
+}
+
+/// The decided changes, for those who missed some.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Changes {
+    /// Number of the view that the first change leads to.
+    pub(super) first: u32,
+    pub(super) list: Vec<Change>,
+}
+
+impl Changes {
+    /// The changes that lead to views `number` and later.
+    pub(super) fn since(&self, number: u32) -> &[Change] {
+        let skipped = number.checked_sub(self.first).and_then(|skipped| usize::try_from(skipped).ok());
+        skipped.and_then(|skipped| self.list.get(skipped..)).unwrap_or_default()
+    }
+}
+
+impl Session {
+    /// Takes part in a match whose first view is known: as one of its voters, or as somebody who follows from the first
+    /// tick on. `me` has to be random, different for each process, and `seed` may be anything.
+    ///
+    /// # Errors
+    /// A parameter that is out of its range.
+    pub fn new(
+        config: Config,
+        me: PeerId,
+        key: Key,
+        role: Role,
+        first: View,
+        seed: u64,
+    ) -> Result<Self, ConfigError> {
+        config.validate()?;
+        let mut log = InputLog::new(config.input_bytes);
+        log.follow(&first.spans);
+        let mut peers = Peers::new(me, key);
+        peers.follow(&first, 0);
+        let changes = Changes { first: first.number.saturating_add(1), list: Vec::new() };
+        let lifecycle = Lifecycle::new(role);
+        let mut session = Session {
+            me,
+            key,
+            clock: Clock::default(),
+            random: Random(seed ^ u64::from(me.0)),
+            changes,
+            peers,
+            log,
+            agreement: Agreement::default(),
+            progress: Progress::new(&first, 0),
+            play: Play::new(0, config.seats),
+            pace: Pace::new(&config),
+            view: first,
+            role,
+            wants: Wants::default(),
+            paused: false,
+            lifecycle,
+            outbox: Outbox::default(),
+            events: VecDeque::new(),
+            config,
+        };
+        session.settle();
+        Ok(session)
+    }
+
+    /// Follows a match from the state after `tick` ticks on, all of which are final.
+    pub(super) fn resume(
+        config: Config,
+        me: PeerId,
+        key: Key,
+        role: Role,
+        view: View,
+        tick: Tick,
+        seed: u64,
+    ) -> Result<Self, ConfigError> {
+        let mut session = Session::new(config, me, key, role, view, seed)?;
+        session.log.start_at(&session.view.spans, tick);
+        session.progress = Progress::new(&session.view, tick);
+        session.play = Play::new(tick, session.config.seats);
+        session.settle();
+        Ok(session)
+    }
+
+    /// Whether a row of a peer has arrived.
+    pub(super) fn has_row(&self, id: PeerId) -> bool {
+        self.peers.find(id).is_some_and(|remote| remote.row.is_some())
+    }
+
+    /// Serves a peer that has no vote: it receives what the match decides and plays. Somebody who joins does this with
+    /// those whom it knows, too.
+    pub fn attach(&mut self, id: PeerId, key: Option<Key>) {
+        let active = self.clock.active;
+        self.peers.add(id, key, active);
+        if let Some(remote) = self.peers.find_mut(id) {
+            remote.attached = true;
+        }
+        self.peers.bound(&self.view);
+    }
+
+    /// Stops serving a peer, for example because its transport says that the connection is closed.
+    pub fn detach(&mut self, id: PeerId) {
+        if let Some(remote) = self.peers.find_mut(id) {
+            remote.attached = false;
+            remote.heard = None;
+        }
+    }
+
+    /// Leaves the match. The others go on without this peer from a tick that all agree on. Call
+    /// [`update`](Session::update) until the status is [`Status::Closed`].
+    pub fn leave(&mut self) {
+        self.wants.leave = true;
+    }
+
+    /// Asks for an end of the match after `ticks` ticks. Once a majority has decided on it, nothing changes the end.
+    pub fn end_at(&mut self, ticks: Tick) {
+        self.wants.end.get_or_insert(ticks);
+    }
+
+    /// Asks all others to stop for now, or not to any longer. What a game does with [`Event::Pause`] is its decision.
+    pub fn pause(&mut self, paused: bool) {
+        self.paused = paused;
+    }
+
+    /// Votes for going on without a peer that is missing. It may return. The vote of the tie-holder is enough.
+    pub fn go_on_without(&mut self, peer: PeerId) {
+        if self.view.voter(peer).is_some() {
+            self.remove(Removal::Without(peer));
+        }
+    }
+
+    /// Votes for removing somebody for good. The vote of the tie-holder is enough.
+    pub fn kick(&mut self, key: Key) {
+        self.remove(Removal::Kick(key));
+    }
+
+    fn remove(&mut self, removal: Removal) {
+        if !self.wants.removals.contains(&removal) {
+            // The oldest request gives way: removals of those who have gone are kept only against their return.
+            if self.wants.removals.len() == REMOVALS_MAX {
+                self.wants.removals.remove(0);
+            }
+            self.wants.removals.push(removal);
+        }
+    }
+
+    /// Changes the role: a spectator asks for seats, or a player that has none no longer does.
+    pub fn set_role(&mut self, role: Role) {
+        self.role = role;
+    }
+
+    /// Sets the bounds of the delay of own inputs, in ticks.
+    pub fn set_delay(&mut self, least: u16, most: u16) {
+        self.config.delay_max = most.min(super::config::DELAY_MAX);
+        self.config.delay_min = least.min(self.config.delay_max);
+    }
+
+    /// Sets how many ticks may be played with guessed inputs. 0 is lockstep.
+    pub fn set_guess(&mut self, ticks: u16) {
+        self.config.guess = ticks.min(super::config::GUESS_MAX);
+    }
+
+    /// Next event.
+    pub fn next_event(&mut self) -> Option<Event> {
+        self.events.pop_front()
+    }
+
+    /// Next request to the game. Requests have to be fulfilled in order.
+    pub fn next_request(&mut self) -> Option<Request> {
+        self.play.requests.pop_front()
+    }
+
+    /// Next packet to send, and to whom.
+    pub fn next_packet(&mut self) -> Option<(PeerId, Vec<u8>)> {
+        self.outbox.packets.pop_front()
+    }
+
+    /// The view in force.
+    #[must_use]
+    pub fn view(&self) -> &View {
+        &self.view
+    }
+
+    /// Where the session stands.
+    #[must_use]
+    pub fn status(&self) -> Status {
+        self.lifecycle.status
+    }
+
+    /// This peer.
+    #[must_use]
+    pub fn id(&self) -> PeerId {
+        self.me
+    }
+
+    /// Number of ticks whose inputs are all here. Ticks beyond [`final_tick`](Session::final_tick) may still change.
+    #[must_use]
+    pub fn complete_tick(&self) -> Tick {
+        self.progress.complete
+    }
+
+    /// Number of final ticks: no rollback, departure or failure changes their inputs for anybody.
+    #[must_use]
+    pub fn final_tick(&self) -> Tick {
+        self.progress.fin
+    }
+
+    /// Number of ticks that the game has been asked to play.
+    #[must_use]
+    pub fn played(&self) -> Tick {
+        self.play.played
+    }
+
+    /// Number of ticks that are final and that the game has been asked to play with their final inputs.
+    #[must_use]
+    pub fn confirmed(&self) -> Tick {
+        self.play.confirmed
+    }
+
+    /// Bit for each own seat.
+    #[must_use]
+    pub fn seats(&self) -> u64 {
+        self.view.seats_of(self.me)
+    }
+
+    /// The delay of own inputs in ticks.
+    #[must_use]
+    pub fn delay(&self) -> u16 {
+        self.pace.delay
+    }
+
+    /// Measurements of the way to a peer.
+    #[must_use]
+    pub fn link(&self, peer: PeerId) -> Option<Link> {
+        self.peers.find(peer).map(|remote| remote.link)
+    }
+
+    /// Whose inputs are missing for the next tick that is not complete.
+    #[must_use]
+    pub fn waiting_for(&self) -> Option<PeerId> {
+        let tick = self.progress.complete;
+        let missing = |&span: &usize| {
+            let here = self.log.next(span);
+            self.view.spans.get(span).filter(|span| span.contains(tick) && here <= tick)
+        };
+        self.progress.live.iter().find_map(missing).map(|span| span.owner)
+    }
+
+    /// What the session has done so far.
+    #[must_use]
+    pub fn statistics(&self) -> Statistics {
+        Statistics {
+            replayed: self.play.replayed,
+            replayed_max: self.play.replayed_max,
+            input_bytes: self.log.bytes(),
+            peers: self.peers.list.len(),
+        }
+    }
+}

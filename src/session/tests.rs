@@ -1,0 +1,201 @@
+//! Packets: what is written is read again, and no bytes do harm.
+
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+use super::bytes::{Reader, Write};
+use super::config::Config;
+use super::id::{Key, NEVER, PeerId};
+use super::join_packet::{JoinPacket, RefusalReason};
+use super::packet::{Composer, Header, Packet, checksum};
+use super::row::{Ballot, Removal, Row, SeatWant};
+use super::start_state::StartState;
+use super::state::{Random, Role, Session};
+use super::view::{Change, Join, View};
+
+fn change() -> Change {
+    let join = Join { id: PeerId(7), key: Key(8), seats: 0b110 };
+    Change {
+        cut: 300,
+        end: Some(900),
+        begun: true,
+        leaves: 5,
+        tie_holder: PeerId(3),
+        joins: [join].into(),
+        from: 310,
+    }
+}
+
+fn row() -> Row {
+    let mut row = Row::new(4);
+    row.version = 70_000;
+    (row.fin, row.ack, row.played) = (500, 497, 503);
+    row.have = [(0, 505), (1, 500), (9, 700), (10, 501)].into();
+    row.hears = u64::MAX;
+    row.hears_others = [PeerId(1), PeerId(u32::MAX)].into();
+    (row.connected, row.paused) = (true, true);
+    row.promised = Some(Ballot { round: 9, proposer: PeerId(2) });
+    row.accepted = Some((Ballot { round: 8, proposer: PeerId(2) }, Arc::new(change())));
+    row.wants.seats = Some(SeatWant { seats: 2, key: Key(77) });
+    (row.wants.leave, row.wants.end) = (true, Some(1000));
+    row.wants.removals = [Removal::Without(PeerId(5)), Removal::Kick(Key(6))].into();
+    row.hash = Some((496, 0x1234_5678_9abc_def0_1234));
+    row
+}
+
+fn packet_bytes() -> Vec<u8> {
+    let header = Header { sender: PeerId(11), sequence: 12, sent: 13, echo: Some(14) };
+    let mut own = Vec::new();
+    row().write(&mut own);
+    let mut composer = Composer::new(&header, &own);
+    composer.changes(4, [&change(), &change()]);
+    composer.runs(2, [(0, 500, &[1, 2, 1, 2, 3, 4][..]), (9, 77, &[0; 128])]);
+    composer.foreign([(PeerId(21), &row())]);
+    composer.finish(5)
+}
+
+#[test]
+fn what_is_written_is_read_again() {
+    let bytes = packet_bytes();
+    let packet = Packet::read(&bytes[4..], 2).unwrap();
+    assert_eq!(packet.header, Header { sender: PeerId(11), sequence: 12, sent: 13, echo: Some(14) });
+    assert_eq!((packet.row, packet.foreign), (row(), [(PeerId(21), row())].into()));
+    assert_eq!(packet.changes, (4, [change(), change()].into()));
+    assert_eq!(packet.runs.iter().map(|run| (run.span, run.start)).collect::<Vec<_>>(), [(0, 500), (9, 77)]);
+    assert_eq!(&packet.inputs[..6], [1, 2, 1, 2, 3, 4]);
+}
+
+/// A row of eight players in the middle of a match, and a whole packet with their inputs, are small.
+#[test]
+fn a_packet_of_eight_players_is_small() {
+    let mut row = Row::new(7);
+    (row.version, row.fin, row.ack, row.played) = (60_000, 60_000, 60_003, 60_004);
+    row.have = (0..8).map(|span| (span, 60_005)).collect();
+    (row.hears, row.connected) = (0xff, true);
+    let mut own = Vec::new();
+    row.write(&mut own);
+    assert_eq!(own.len(), 21);
+    let header = Header { sender: PeerId(11), sequence: 12, sent: 13, echo: Some(14) };
+    let mut composer = Composer::new(&header, &own);
+    composer.runs(1, [(0, 60_000, &[3; 8][..])]);
+    assert_eq!(composer.finish(5).len(), 45);
+}
+
+/// Every bit of a packet flipped, every prefix, and random bytes: nothing panics, and what is accepted has one
+/// encoding.
+#[test]
+fn no_bytes_panic() {
+    let bytes = packet_bytes();
+    let body = &bytes[4..];
+    let mut accepted = 0;
+    for bit in 0..body.len() * 8 {
+        let mut flipped = body.to_vec();
+        flipped[bit / 8] ^= 1 << (bit % 8);
+        accepted += u32::from(Packet::read(&flipped, 2).is_ok());
+    }
+    assert!(accepted > 100, "flips of values are accepted, flips of lengths are not: {accepted}");
+    for length in 0..body.len() {
+        assert!(Packet::read(&body[..length], 2).is_err(), "a packet that ends after {length} bytes");
+        let _ = JoinPacket::read(&body[..length]);
+        let _ = StartState::decode(&body[..length]);
+    }
+    let longer: Vec<u8> = body.iter().copied().chain([0]).collect();
+    assert!(Packet::read(&longer, 2).is_err(), "a byte after the end");
+}
+
+/// Packets with right checksums and flipped bits do not bring a session down, whatever they say.
+#[test]
+fn forged_packets_do_not_panic_and_do_not_fill_the_memory() {
+    let mut random = random();
+    let mut config = Config::new(5, 4);
+    config.input_bytes = 2;
+    for _ in 0..300 {
+        let mut view = View::opened_by(PeerId(11), Key(1), 1, true);
+        view.found(PeerId(21), Key(2), 1, 2);
+        view.found(PeerId(31), Key(3), 1, 4);
+        let role = Role::Player { seats: 1 };
+        let mut session = Session::new(config.clone(), PeerId(31), Key(3), role, view, 9).unwrap();
+        for step in 0..40_u64 {
+            let mut bytes = packet_bytes();
+            for _ in 0..random.below(6) {
+                let bit = usize::try_from(random.below(8 * bytes.len() as u64 - 32)).unwrap() + 32;
+                bytes[bit / 8] ^= 1 << (bit % 8);
+            }
+            // The version and the view make rows count.
+            let sum = checksum(5, &bytes[4..]);
+            bytes[..4].copy_from_slice(&sum);
+            session.receive(step * 16_000, &bytes);
+            session.update(step * 16_000);
+            while session.is_due(step * 16_000) && session.advance(step * 16_000, &[1, 2]).unwrap_or(false) {}
+            while session.next_request().is_some() {}
+            while session.next_packet().is_some() {}
+        }
+        let statistics = session.statistics();
+        assert!(statistics.peers < 200 && statistics.input_bytes < 100_000, "{statistics:?}");
+    }
+}
+
+fn random() -> Random {
+    Random::new(77)
+}
+
+#[test]
+fn numbers_have_one_form() {
+    for value in [0, 1, 127, 128, 16_383, 16_384, u64::from(u32::MAX), u64::MAX] {
+        let mut bytes = Vec::new();
+        bytes.put_var64(value);
+        assert_eq!(Reader::new(&bytes).var64(), Ok(value));
+    }
+    for long in [&[0x80, 0][..], &[0xff, 0x80, 0], &[0xff; 10], &[0x80; 11]] {
+        assert!(Reader::new(long).var64().is_err(), "{long:?}");
+    }
+    for (value, base) in [(5, 9), (9, 5), (0, u32::MAX), (u32::MAX, 0), (7, 7)] {
+        let mut bytes = Vec::new();
+        bytes.put_near(value, base);
+        assert_eq!(Reader::new(&bytes).near(base), Ok(value));
+    }
+}
+
+#[test]
+fn a_start_state_survives_and_an_unsound_view_is_refused() {
+    let mut view = View::opened_by(PeerId(11), Key(1), 0b11, true);
+    view.found(PeerId(21), Key(2), 9, 0b100);
+    let address = super::address::Address::new(&[1, 2, 3]).unwrap();
+    let start =
+        StartState { view, addresses: [(PeerId(11), address)].into(), tick: 70, state: [9; 50].into() };
+    assert_eq!(StartState::decode(&start.encode()), Ok(start.clone()));
+    let unsound = [
+        |view: &mut View| view.tie_holder = PeerId(99),
+        |view: &mut View| view.voters.push(view.voters[0]),
+        |view: &mut View| view.spans.push(view.spans[0]),
+        |view: &mut View| view.spans[0].seat = 64,
+        |view: &mut View| view.spans[0].owner = PeerId(99),
+        |view: &mut View| view.spans[0].from = NEVER,
+        |view: &mut View| view.end = Some(60),
+    ];
+    for (number, spoil) in unsound.into_iter().enumerate() {
+        let mut wrong = start.clone();
+        spoil(&mut wrong.view);
+        let decoded = StartState::decode(&wrong.encode());
+        assert!(decoded.is_err() || number == 5, "{number}: {decoded:?}");
+    }
+}
+
+#[test]
+fn join_packets_survive() {
+    let packets = [
+        JoinPacket::Hello { nonce: 1, key: Key(2), cookie: 3, offer: [4; 512].into() },
+        JoinPacket::Challenge { nonce: 1, cookie: 2 },
+        JoinPacket::Refused { nonce: 1, reason: RefusalReason::Full, offer: [1].into() },
+        JoinPacket::Welcome { nonce: 1, tick: 2, hash: 3, length: u64::MAX },
+        JoinPacket::Want { hash: 1, next: 2, window: 3, masks: [4; 16].into() },
+        JoinPacket::Chunk { hash: 1, index: 2, bytes: [3; 1152].into() },
+        JoinPacket::Probe { token: 1 },
+        JoinPacket::Pong { token: 1 },
+    ];
+    for packet in packets {
+        let bytes = packet.encode(5, PeerId(6));
+        assert!(bytes.len() <= super::packet::PACKET_BYTES_MAX, "{packet:?}");
+        assert_eq!(JoinPacket::read(&bytes[4..]), Ok((PeerId(6), packet)));
+    }
+}

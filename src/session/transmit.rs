@@ -1,0 +1,226 @@
+//! What is sent: the own row to everybody, and to each receiver what it lacks.
+
+use alloc::collections::VecDeque;
+use alloc::vec::Vec;
+
+use super::config::Fault;
+use super::id::{PeerId, Tick};
+use super::link::stamp;
+use super::packet::{Composer, Header, RUN_TICKS_MAX};
+use super::peers::{Remote, within};
+use super::row::{Row, STRANGERS_MAX};
+use super::state::Session;
+use super::view::has_bit;
+
+/// Packets that wait to be sent.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Outbox {
+    pub(super) packets: VecDeque<(PeerId, Vec<u8>)>,
+    /// When packets are sent at the latest.
+    next_at: u64,
+    /// Whether there are new own inputs.
+    pub(super) urgent: bool,
+    version: u32,
+}
+
+/// Packets that are kept at most; the oldest ones give way.
+const PACKETS_MAX: usize = 4096;
+/// Peers without a vote are served for this many microseconds after their last packet.
+const SERVED: u64 = 5_000_000;
+/// If somebody lacks more ticks than this of a peer that it hears, others help.
+const HELP_TICKS: Tick = 20;
+/// Whoever is lost tries all peers with every row whose version is a multiple of this.
+const TRY_ROWS: u32 = 8;
+/// Longest time between packets in microseconds.
+const INTERVAL_MAX: u64 = 100_000;
+/// A hash is in every row with a version that is a multiple of this.
+const HASH_ROWS: u32 = 4;
+
+impl Session {
+    /// Time between packets: that of a tick, and longer in large matches.
+    pub(super) fn send_interval(&self) -> u64 {
+        let many = match self.peers.list.len() {
+            0..=16 => 1,
+            17..=32 => 2,
+            _ => 3,
+        };
+        many * u64::from(self.config.tick_micros).min(INTERVAL_MAX)
+    }
+
+    /// Brings those parts of the own row up to date that the agreement reads.
+    pub(super) fn refresh_row(&mut self) {
+        let Some(own) = self.peers.list.first_mut() else { return };
+        let row = own.row.get_or_insert_with(|| Row::new(0));
+        row.view = self.view.number;
+        row.ack = self.progress.ack;
+        row.fin = self.progress.fin;
+        row.promised = self.agreement.promised;
+        row.accepted.clone_from(&self.agreement.accepted);
+        if row.wants != self.wants {
+            row.wants.clone_from(&self.wants);
+        }
+        own.fresh = Some(self.clock.active);
+        own.contact = self.clock.active;
+    }
+
+    /// Brings the whole own row up to date, as a new version.
+    fn renew_row(&mut self) {
+        self.refresh_row();
+        let version = self.outbox.version.saturating_add(1);
+        self.outbox.version = version;
+        let (active, timing) = (self.clock.active, self.config.timing);
+        let hears = self.peers.voters_that(|remote| within(remote.heard, timing.heard, active));
+        let others = self.peers.list.iter().skip(1);
+        let others = others.filter(|remote| self.view.voter(remote.id).is_none());
+        let others = others.filter(|remote| within(remote.heard, timing.heard, active));
+        let others: Vec<PeerId> = others.map(|remote| remote.id).take(STRANGERS_MAX).collect();
+        let connected = self.is_connected();
+        let hash = self.play.last_hash().filter(|_| version.is_multiple_of(HASH_ROWS));
+        let (played, paused, fin) = (self.play.played, self.paused, self.progress.fin);
+        let Some(row) = self.peers.list.first_mut().and_then(|own| own.row.as_mut()) else { return };
+        row.version = version;
+        row.played = played;
+        row.hears = hears;
+        row.hears_others = others;
+        row.connected = connected;
+        row.paused = paused;
+        row.hash = hash;
+        row.have.clear();
+        for &index in &self.progress.live {
+            let (Ok(number), Some(span)) = (u16::try_from(index), self.view.spans.get(index)) else {
+                continue;
+            };
+            if span.until > fin {
+                row.have.push((number, self.log.next(index).max(fin)));
+            }
+        }
+    }
+
+    /// Sends to everybody, if it is time.
+    pub(super) fn transmit(&mut self) {
+        let now = self.clock.now;
+        let interval = self.send_interval();
+        let in_large = self.peers.list.len() > 16;
+        let early = self.outbox.urgent && !in_large;
+        if now < self.outbox.next_at && !early {
+            return;
+        }
+        // New inputs are about to be issued, unless the game does not advance: they go with this packet.
+        if !early && self.is_due(now) && self.issues() && now < self.outbox.next_at.saturating_add(interval) {
+            return;
+        }
+        self.outbox.urgent = false;
+        self.outbox.next_at = now + interval;
+        self.renew_row();
+        let Some(own) = self.peers.list.first().and_then(|own| own.row.as_ref()) else { return };
+        let mut row = Vec::with_capacity(64);
+        own.write(&mut row);
+        for place in 1..self.peers.list.len() {
+            self.transmit_to(place, &row);
+        }
+        while self.outbox.packets.len() > PACKETS_MAX {
+            self.outbox.packets.pop_front();
+        }
+    }
+
+    /// Whether packets go to a peer. Somebody who has lost contact, or its seat, tries everybody whom it knows from time to
+    /// time.
+    fn is_served(&self, remote: &Remote) -> bool {
+        let tries = self.outbox.version.is_multiple_of(TRY_ROWS)
+            && (self.view.voter(self.me).is_none() || !self.is_connected());
+        tries
+            || remote.attached
+            || within(remote.heard, SERVED, self.clock.active)
+            || self.view.voter(remote.id).is_some()
+    }
+
+    fn transmit_to(&mut self, place: usize, own: &[u8]) {
+        let Some(to) = self.peers.list.get(place).filter(|remote| self.is_served(remote)) else { return };
+        let now = self.clock.now;
+        let header = Header {
+            sender: self.me,
+            sequence: to.link.next_sequence,
+            sent: stamp(now),
+            echo: to.link.echo(now),
+        };
+        let mut packet = Composer::new(&header, own);
+        if let Some(row) = to.row.as_ref().filter(|row| row.view < self.view.number) {
+            let first = row.view.saturating_add(1);
+            packet.changes(first, self.changes.since(first));
+        }
+        let behind = to.row.as_ref().map_or(0, |row| row.fin) < self.progress.live_from;
+        let all = if behind { 0..self.view.spans.len() } else { 0..0 };
+        let live = if behind { &[] } else { self.progress.live.as_slice() };
+        let spans = all.chain(live.iter().copied());
+        packet.runs(self.log.size(), spans.filter_map(|span| self.run_for(to, span)));
+        let foreign = self.foreign_rows(to);
+        packet.foreign(
+            foreign
+                .iter()
+                .map(|remote| (remote.id, remote.row.as_ref()))
+                .filter_map(|(id, row)| Some((id, row?))),
+        );
+        let bytes = packet.finish(self.config.match_tag);
+        let id = to.id;
+        if let Some(to) = self.peers.list.get_mut(place) {
+            to.link.sent(bytes.len());
+        }
+        self.outbox.packets.push_back((id, bytes));
+    }
+
+    /// Whether a peer says that it hears another one. In an older view nothing is known of that.
+    fn hears(&self, receiver: &Remote, other: PeerId) -> bool {
+        let Some(row) = receiver.row.as_ref() else { return false };
+        let as_voter = self.view.voter(other).filter(|_| row.view == self.view.number);
+        as_voter.is_some_and(|index| has_bit(row.hears, index)) || row.hears_others.contains(&other)
+    }
+
+    /// First tick of a span whose input a peer lacks.
+    fn lacks(&self, receiver: &Remote, index: usize) -> Tick {
+        let Some(span) = self.view.spans.get(index) else { return 0 };
+        let Some(row) = receiver.row.as_ref() else { return span.from };
+        let listed = row.have.iter().find(|(number, _)| usize::from(*number) == index);
+        match listed {
+            Some(&(_, next)) => next.max(span.from),
+            // It does not know the span yet.
+            None if span.since > row.view => span.from.max(row.fin),
+            None => span.until,
+        }
+    }
+
+    /// The inputs of a span that a peer lacks, oldest first: the own ones, and those of others whom it does not hear.
+    fn run_for(&self, receiver: &Remote, index: usize) -> Option<(u16, Tick, &[u8])> {
+        let span = self.view.spans.get(index)?;
+        let start = self.lacks(receiver, index);
+        let until = self.log.next(index).min(span.until);
+        if start >= until || span.owner == receiver.id {
+            return None;
+        }
+        let helps = || !self.hears(receiver, span.owner) || start.saturating_add(HELP_TICKS) < until;
+        if span.owner != self.me && (self.config.has(Fault::NoRelay) || !helps()) {
+            return None;
+        }
+        let inputs = self.log.range(index, start, until.min(start.saturating_add(RUN_TICKS_MAX)))?;
+        Some((u16::try_from(index).ok()?, start, inputs))
+    }
+
+    /// Rows of others whom the receiver does not hear, beginning with another one each time.
+    fn foreign_rows(&self, receiver: &Remote) -> Vec<&Remote> {
+        if self.config.has(Fault::NoRelay) {
+            return Vec::new();
+        }
+        let others = self.peers.list.iter().skip(1);
+        let mut rows: Vec<&Remote> = others
+            .filter(|other| {
+                let matters = self.view.voter(other.id).is_some()
+                    || other.row.as_ref().is_some_and(|row| row.wants.seats.is_some());
+                matters && other.id != receiver.id && other.row.is_some() && !self.hears(receiver, other.id)
+            })
+            .collect();
+        if !rows.is_empty() {
+            let turn = usize::try_from(self.outbox.version).unwrap_or(0) % rows.len();
+            rows.rotate_left(turn);
+        }
+        rows
+    }
+}

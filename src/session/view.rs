@@ -1,0 +1,236 @@
+//! [`View`]: who plays which seat in which ticks, and who decides about changes of it.
+//!
+//! Views are numbered. A [`Change`] leads from each view to the next one, and all peers apply the same changes
+//! (`agreement.rs`). Spans are never removed, so that the index of a span means the same in all later views.
+
+use alloc::vec::Vec;
+
+use super::id::{Key, NEVER, PeerId, Tick};
+
+/// Largest number of seats of a match, and of voters of a view.
+pub const SEATS_MAX: usize = 64;
+/// Largest number of spans of a match. Each join adds one for each of its seats.
+pub const SPANS_MAX: usize = 1 << 14;
+/// Largest number of peers that one change seats.
+pub(super) const JOINS_MAX: usize = 8;
+
+/// A peer that takes part in decisions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Voter {
+    /// Incarnation.
+    pub id: PeerId,
+    /// Identity.
+    pub key: Key,
+    /// Share in decisions; 1 for players. A dedicated server that outweighs all others decides alone.
+    pub weight: u8,
+}
+
+/// The ticks in which a peer plays a seat: `from <= tick < until`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Span {
+    /// Number of the player, below [`SEATS_MAX`].
+    pub seat: u8,
+    /// Incarnation of the peer.
+    pub owner: PeerId,
+    /// Identity of the peer.
+    pub key: Key,
+    /// Number of the view that began the span.
+    pub since: u32,
+    /// First tick.
+    pub from: Tick,
+    /// First tick after the span; [`NEVER`] while its owner plays.
+    pub until: Tick,
+}
+
+impl Span {
+    /// Whether the span contains a tick.
+    #[must_use]
+    pub const fn contains(&self, tick: Tick) -> bool {
+        self.from <= tick && tick < self.until
+    }
+
+    /// Whether the owner plays, or is going to.
+    #[must_use]
+    pub const fn is_open(&self) -> bool {
+        self.until == NEVER
+    }
+}
+
+/// A peer that a [`Change`] makes a voter, with its seats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Join {
+    pub(super) id: PeerId,
+    pub(super) key: Key,
+    /// Bit for each seat.
+    pub(super) seats: u64,
+}
+
+/// A decided step from one view to the next.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Change {
+    /// First tick that is not final at the change: ticks before it keep their inputs.
+    pub(super) cut: Tick,
+    /// First tick that is not played, once the end of the match is decided.
+    pub(super) end: Option<Tick>,
+    /// Whether the first tick may be played.
+    pub(super) begun: bool,
+    /// Bit for each voter of the old view that is no longer one.
+    pub(super) leaves: u64,
+    pub(super) tie_holder: PeerId,
+    pub(super) joins: Vec<Join>,
+    /// First tick of those who join.
+    pub(super) from: Tick,
+}
+
+/// Membership of a match.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct View {
+    /// 0 at the start, and one more after each change.
+    pub number: u32,
+    /// Whether enough seats were taken to begin.
+    pub begun: bool,
+    /// Tick of the last change. Ticks before it are final.
+    pub cut: Tick,
+    /// First tick that is not played, once the end of the match is decided.
+    pub end: Option<Tick>,
+    /// Voter with the casting vote.
+    pub tie_holder: PeerId,
+    /// In the order in which they joined; at most [`SEATS_MAX`].
+    pub voters: Vec<Voter>,
+    /// All spans of the match so far.
+    pub spans: Vec<Span>,
+}
+
+impl View {
+    /// The first view of a match that one peer opens, with some seats of its own (one bit for each).
+    #[must_use]
+    pub fn opened_by(id: PeerId, key: Key, seats: u64, begun: bool) -> Self {
+        let mut view = View {
+            number: 0,
+            begun,
+            cut: 0,
+            end: None,
+            tie_holder: id,
+            voters: Vec::new(),
+            spans: Vec::new(),
+        };
+        view.found(id, key, 1, seats);
+        view
+    }
+
+    /// Adds a voter to a view that is not in use yet. Seats that are taken are left out.
+    pub fn found(&mut self, id: PeerId, key: Key, weight: u8, seats: u64) {
+        self.voters.push(Voter { id, key, weight });
+        let seats = seats & self.free_seats();
+        self.begin_spans(Join { id, key, seats }, 0);
+    }
+
+    fn begin_spans(&mut self, join: Join, from: Tick) {
+        let since = self.number;
+        let Join { id, key, seats } = join;
+        let span = |seat| Span { seat, owner: id, key, since, from, until: NEVER };
+        self.spans.extend(bits(seats).map(span));
+    }
+
+    /// Index of a voter.
+    #[must_use]
+    pub fn voter(&self, id: PeerId) -> Option<usize> {
+        self.voters.iter().position(|voter| voter.id == id)
+    }
+
+    /// Doubled, so that the casting vote of the tie-holder is half a vote.
+    fn weight(&self, voter: &Voter) -> u32 {
+        2 * u32::from(voter.weight) + u32::from(voter.id == self.tie_holder)
+    }
+
+    /// Weight of the voters in a set: a bit for each index.
+    pub(super) fn weight_of(&self, set: u64) -> u32 {
+        let members = self.voters.iter().enumerate().filter(|(index, _)| has_bit(set, *index));
+        members.map(|(_, voter)| self.weight(voter)).sum()
+    }
+
+    /// Whether a set of voters is a quorum: more than half of the weight. There are no ties.
+    #[must_use]
+    pub fn is_quorum(&self, set: u64) -> bool {
+        2 * self.weight_of(set) > self.weight_of(u64::MAX)
+    }
+
+    /// First tick that is not played: [`NEVER`] as long as no end is decided.
+    #[must_use]
+    pub fn stop(&self) -> Tick {
+        self.end.unwrap_or(NEVER)
+    }
+
+    /// Bit for each seat that nobody plays.
+    #[must_use]
+    pub fn free_seats(&self) -> u64 {
+        let taken = self.spans.iter().filter(|span| span.is_open());
+        !taken.fold(0, |set, span| set | bit(usize::from(span.seat)))
+    }
+
+    /// Bit for each seat of a peer that it plays or is going to play.
+    #[must_use]
+    pub fn seats_of(&self, id: PeerId) -> u64 {
+        let own = self.spans.iter().filter(|span| span.is_open() && span.owner == id);
+        own.fold(0, |set, span| set | bit(usize::from(span.seat)))
+    }
+
+    /// The view after a change, or nothing if the change does not fit this view.
+    pub(super) fn changed_by(&self, change: &Change) -> Option<View> {
+        let mut next = self.clone();
+        next.number = self.number.checked_add(1)?;
+        next.begun = change.begun;
+        next.cut = change.cut;
+        next.end = change.end;
+        next.tie_holder = change.tie_holder;
+        let leaves = |voter: &Voter| self.voter(voter.id).is_some_and(|index| has_bit(change.leaves, index));
+        next.voters.retain(|voter| !leaves(voter));
+        for span in next.spans.iter_mut().filter(|span| span.is_open()) {
+            let votes = self.voter(span.owner).is_some_and(|index| !has_bit(change.leaves, index));
+            if !votes {
+                span.until = change.cut.max(span.from);
+            }
+        }
+        for join in &change.joins {
+            let is_new = next.voter(join.id).is_none() && join.seats != 0;
+            if !is_new || join.seats & !next.free_seats() != 0 {
+                return None;
+            }
+            next.voters.push(Voter { id: join.id, key: join.key, weight: 1 });
+            next.begin_spans(*join, change.from);
+        }
+        let ends_right = match (self.end, change.end) {
+            (Some(end), new) => new == Some(end),
+            (None, Some(end)) => end >= change.cut,
+            (None, None) => true,
+        };
+        let sound = ends_right
+            && change.cut >= self.cut
+            && change.from >= change.cut
+            && (change.begun || !self.begun)
+            && next.voters.len() <= SEATS_MAX
+            && next.spans.len() <= SPANS_MAX
+            && next.voter(change.tie_holder).is_some();
+        sound.then_some(next)
+    }
+}
+
+/// The set with one member.
+pub(super) const fn bit(index: usize) -> u64 {
+    if index < 64 { 1 << index } else { 0 }
+}
+
+/// Whether a set has a member.
+pub(super) const fn has_bit(set: u64, index: usize) -> bool {
+    set & bit(index) != 0
+}
+
+/// The members of a set, in ascending order.
+pub(super) fn bits(mut set: u64) -> impl Iterator<Item = u8> {
+    core::iter::from_fn(move || {
+        let [lowest, ..] = set.trailing_zeros().to_le_bytes();
+        let some = set != 0;
+        set &= set.wrapping_sub(1);
+        some.then_some(lowest)
+    })
+}

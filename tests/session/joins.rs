@@ -1,0 +1,400 @@
+//! Joining: strangers, states in chunks, late joins while the others play, spectators, changed addresses.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use lockstep2d::session::{
+    Address, Config, Endpoint, Identity, JoinEvent, Key, PeerId, RefusalReason, Request, Role, Status, Tick,
+};
+
+use super::game::{START, mix_inputs};
+use super::sim::{MS, Rng, S, Us, id, key};
+
+/// An endpoint with a game whose state is a hash and a number of bytes without a meaning.
+struct Node {
+    endpoint: Endpoint,
+    address: u8,
+    on: bool,
+    tick: Tick,
+    state: u64,
+    saved: Vec<(Tick, u64)>,
+    events: Vec<JoinEvent>,
+    joined_at: Option<Us>,
+    desynced: bool,
+    /// Longest time between two ticks since it began to play, and when the last one was.
+    stall: Us,
+    last_tick: Us,
+}
+
+/// A packet on its way: when it arrives, its number, sender, receiver and bytes.
+type Datagram = (Us, u64, u8, u8, Vec<u8>);
+
+/// Endpoints that reach each other.
+struct Net {
+    now: Us,
+    rng: Rng,
+    nodes: Vec<Node>,
+    heap: BinaryHeap<Reverse<Datagram>>,
+    sequence: u64,
+    latency: Us,
+    loss: u64,
+    state_bytes: usize,
+    /// Bytes that were sent to and received from addresses.
+    sent_to: [u64; 256],
+    received_from: [u64; 256],
+    blocked: Vec<(u8, u8)>,
+}
+
+fn address(number: u8) -> Address {
+    Address::new(&[10, 0, 0, number]).unwrap()
+}
+
+fn identity(index: usize) -> Identity {
+    let secret = [index as u64 * 77 + 1, 12345];
+    Identity { id: id(index), key: key(index), offer: vec![1, 2, 3], secret }
+}
+
+fn config() -> Config {
+    let mut config = Config::new(9, 4);
+    (config.save_interval, config.check_interval) = (4, 8);
+    config
+}
+
+impl Net {
+    fn new(latency: Us, loss: u64, state_bytes: usize) -> Self {
+        Net {
+            now: 0,
+            rng: Rng(77),
+            nodes: Vec::new(),
+            heap: BinaryHeap::new(),
+            sequence: 0,
+            latency,
+            loss,
+            state_bytes,
+            sent_to: [0; 256],
+            received_from: [0; 256],
+            blocked: Vec::new(),
+        }
+    }
+
+    fn add(&mut self, endpoint: Endpoint) -> usize {
+        let number = self.nodes.len() as u8 + 1;
+        self.nodes.push(Node {
+            endpoint,
+            address: number,
+            on: true,
+            tick: 0,
+            state: START,
+            saved: Vec::new(),
+            events: Vec::new(),
+            joined_at: None,
+            desynced: false,
+            stall: 0,
+            last_tick: 0,
+        });
+        self.nodes.len() - 1
+    }
+
+    fn host(&mut self) -> usize {
+        self.add(Endpoint::host(config(), identity(self.nodes.len()), 1).unwrap())
+    }
+
+    fn join(&mut self, role: Role, contact: u8) -> usize {
+        self.add(Endpoint::join(config(), identity(self.nodes.len()), role, address(contact)).unwrap())
+    }
+
+    fn run(&mut self, until: Us) {
+        while self.now < until {
+            self.now += MS;
+            while self.heap.peek().is_some_and(|Reverse(packet)| packet.0 <= self.now) {
+                let Reverse((_, _, from, to, bytes)) = self.heap.pop().unwrap();
+                let node = self.nodes.iter_mut().find(|node| node.address == to && node.on);
+                if let Some(node) = node {
+                    self.received_from[from as usize] += bytes.len() as u64;
+                    node.endpoint.receive(self.now, address(from), &bytes);
+                }
+            }
+            for index in 0..self.nodes.len() {
+                if self.nodes[index].on {
+                    self.step(index);
+                    self.send(index);
+                }
+            }
+        }
+    }
+
+    fn step(&mut self, index: usize) {
+        let now = self.now;
+        let state_bytes = self.state_bytes;
+        let node = &mut self.nodes[index];
+        node.endpoint.update(now);
+        while let Some(event) = node.endpoint.next_event() {
+            if let JoinEvent::State { tick, bytes } = &event {
+                node.tick = *tick;
+                node.state = u64::from_le_bytes(bytes[..8].try_into().unwrap());
+                assert!(bytes[8..].iter().all(|&byte| byte == 7), "the bytes that were sent");
+                node.joined_at = Some(now);
+            }
+            node.events.push(event);
+        }
+        if node.endpoint.wants_state() {
+            let confirmed = node.endpoint.session().unwrap().confirmed();
+            if let Some(&(tick, state)) = node.saved.iter().rev().find(|(tick, _)| *tick <= confirmed) {
+                let mut bytes = state.to_le_bytes().to_vec();
+                bytes.resize(8 + state_bytes, 7);
+                node.endpoint.offer_state(tick, bytes);
+            }
+        }
+        let mut turns = 0;
+        while let Some(session) = node.endpoint.session_mut() {
+            let due = session.is_due(now) && turns < 8;
+            if due {
+                let input = vec![(now / 100_000 % 7) as u8; session.seats().count_ones() as usize];
+                session.advance(now, &input).unwrap();
+                turns += 1;
+            }
+            while let Some(request) = session.next_request() {
+                match request {
+                    Request::Save { tick } => {
+                        node.saved.retain(|(saved, _)| *saved < tick);
+                        node.saved.push((tick, node.state));
+                    }
+                    Request::Load { tick } => {
+                        (node.tick, node.state) =
+                            *node.saved.iter().find(|(saved, _)| *saved == tick).unwrap();
+                    }
+                    Request::Advance { tick, inputs } => {
+                        assert_eq!(tick, node.tick);
+                        node.state = mix_inputs(node.state, &inputs);
+                        node.tick += 1;
+                        if node.last_tick > 0 && now > 2 * S {
+                            node.stall = node.stall.max(now - node.last_tick);
+                        }
+                        node.last_tick = now;
+                    }
+                    Request::Checksum { tick } => {
+                        let &(_, state) = node.saved.iter().find(|(saved, _)| *saved == tick).unwrap();
+                        session.report_hash(tick, u128::from(state));
+                    }
+                    Request::Forget { tick } => node.saved.retain(|(saved, _)| *saved >= tick),
+                }
+            }
+            while let Some(event) = session.next_event() {
+                node.desynced |= matches!(event, lockstep2d::session::Event::Desync { .. });
+            }
+            if !due {
+                break;
+            }
+        }
+        node.endpoint.flush();
+    }
+
+    fn send(&mut self, index: usize) {
+        while let Some((to, bytes)) = self.nodes[index].endpoint.next_packet() {
+            let (from, to) = (self.nodes[index].address, to.bytes()[3]);
+            self.sent_to[to as usize] += bytes.len() as u64;
+            let lost = self.rng.percent(self.loss) || self.blocked.contains(&(from, to));
+            if !lost {
+                self.post(from, to, bytes);
+            }
+        }
+    }
+
+    fn post(&mut self, from: u8, to: u8, bytes: Vec<u8>) {
+        self.sequence += 1;
+        let at = self.now + self.latency + self.rng.range(0, 2 * MS);
+        self.heap.push(Reverse((at, self.sequence, from, to, bytes)));
+    }
+
+    fn status(&self, index: usize) -> Option<Status> {
+        self.nodes[index].endpoint.session().map(|session| session.status())
+    }
+
+    fn assert_all_play(&self) {
+        let lead = self.nodes.iter().filter(|node| node.on).map(|node| node.tick).max().unwrap();
+        for (index, node) in self.nodes.iter().enumerate().filter(|(_, node)| node.on) {
+            let status = self.status(index);
+            assert!(matches!(status, Some(Status::Playing | Status::Watching)), "{index}: {status:?}");
+            assert!(node.tick + 60 > lead, "{index}: {} of {lead}", node.tick);
+            assert!(!node.desynced, "{index}");
+        }
+    }
+}
+
+#[test]
+fn players_join_while_the_others_play_at_full_speed() {
+    let mut net = Net::new(50 * MS, 2, 20_000);
+    net.host();
+    net.run(3 * S);
+    net.join(Role::Player { seats: 1 }, 1);
+    net.run(6 * S);
+    net.assert_all_play();
+    // The second one is asked by the third one, and knows the first one only from it.
+    net.join(Role::Player { seats: 2 }, 2);
+    net.run(10 * S);
+    net.assert_all_play();
+    assert_eq!(net.nodes[2].endpoint.session().unwrap().seats(), 0b1100);
+    assert!(
+        net.nodes[0].endpoint.address(id(2)).is_some(),
+        "the host has found the address of the third one"
+    );
+    assert!(net.nodes[0].stall <= 60 * MS, "{} us", net.nodes[0].stall);
+    // The match is full: the next one stays without a seat.
+    net.join(Role::Player { seats: 1 }, 1);
+    net.run(14 * S);
+    assert_eq!(net.status(3), Some(Status::Joining));
+}
+
+#[test]
+fn a_state_of_4_mb_takes_three_seconds_at_50_ms_and_5_percent_loss() {
+    let mut net = Net::new(50 * MS, 0, 4 << 20);
+    net.host();
+    net.join(Role::Player { seats: 1 }, 1);
+    net.run(8 * S);
+    net.assert_all_play();
+    net.loss = 5;
+    net.nodes.iter_mut().for_each(|node| node.stall = 0);
+    let start = net.now;
+    let newcomer = net.join(Role::Player { seats: 1 }, 1);
+    net.run(14 * S);
+    net.assert_all_play();
+    let took = net.nodes[newcomer].joined_at.unwrap() - start;
+    assert!(took <= 3 * S, "{took} us");
+    for node in &net.nodes[..2] {
+        assert!(node.stall <= 50 * MS, "a stall of {} us", node.stall);
+    }
+}
+
+#[test]
+fn nothing_is_sent_to_an_address_that_has_not_answered() {
+    let mut net = Net::new(10 * MS, 0, 50_000);
+    net.host();
+    net.run(S);
+    // The hellos of somebody who does not exist, from an address that is somebody else's.
+    let mut forged = Endpoint::join(config(), identity(7), Role::Spectator, address(1)).unwrap();
+    let mut sent = 0;
+    for _ in 0..100 {
+        net.run(net.now + 250 * MS);
+        forged.update(net.now);
+        while let Some((_, bytes)) = forged.next_packet() {
+            sent += bytes.len() as u64;
+            net.post(200, 1, bytes);
+        }
+    }
+    net.run(net.now + S);
+    assert!(sent > 1000 && net.sent_to[200] <= 3 * sent, "{} bytes for {sent}", net.sent_to[200]);
+    let session = net.nodes[0].endpoint.session().unwrap();
+    assert_eq!(session.statistics().peers, 1, "nothing is remembered");
+}
+
+#[test]
+fn other_games_are_refused_with_what_is_expected() {
+    let mut net = Net::new(10 * MS, 0, 100);
+    net.host();
+    let other = Identity { offer: vec![9], ..identity(1) };
+    net.add(Endpoint::join(config(), other, Role::Spectator, address(1)).unwrap());
+    net.run(2 * S);
+    let expected = JoinEvent::Refused { reason: RefusalReason::Offer, offer: vec![1, 2, 3] };
+    assert_eq!(net.nodes[1].events, [expected]);
+}
+
+/// Twelve spectators, each through the one before: nobody but its own contact knows them.
+#[test]
+fn spectators_feed_spectators() {
+    let mut net = Net::new(15 * MS, 1, 5000);
+    net.host();
+    net.join(Role::Player { seats: 1 }, 1);
+    net.run(3 * S);
+    for contact in 2..8 {
+        net.join(Role::Spectator, contact);
+        net.run(net.now + 2 * S);
+    }
+    net.run(net.now + 3 * S);
+    net.assert_all_play();
+    assert_eq!(net.nodes[0].endpoint.session().unwrap().view().voters.len(), 2);
+    // A player still finds a seat.
+    net.join(Role::Player { seats: 1 }, 1);
+    net.run(net.now + 4 * S);
+    net.assert_all_play();
+}
+
+/// A NAT gives a player another port: it is found under its new address, and keeps its seat.
+#[test]
+fn an_address_may_change() {
+    let mut net = Net::new(30 * MS, 0, 1000);
+    net.host();
+    net.join(Role::Player { seats: 1 }, 1);
+    net.run(4 * S);
+    net.nodes[1].address = 99;
+    net.run(8 * S);
+    net.assert_all_play();
+    assert_eq!(net.nodes[0].endpoint.address(id(1)), Some(address(99)));
+    let session = net.nodes[0].endpoint.session().unwrap();
+    assert_eq!((session.view().voters.len(), session.view().number), (2, 1), "no seat was lost");
+}
+
+/// Two of three cannot reach each other: the third one passes everything on.
+#[test]
+fn somebody_in_between_relays() {
+    let mut net = Net::new(20 * MS, 0, 1000);
+    net.blocked = vec![(2, 3), (3, 2)];
+    net.host();
+    net.join(Role::Player { seats: 1 }, 1);
+    net.run(2 * S);
+    net.join(Role::Player { seats: 1 }, 1);
+    net.run(8 * S);
+    net.assert_all_play();
+    assert_eq!(net.nodes[0].endpoint.session().unwrap().view().voters.len(), 3);
+}
+
+/// A process that crashes and starts again has its old seat, as another incarnation with the same key.
+#[test]
+fn a_restarted_process_gets_its_seat_back() {
+    let mut net = Net::new(20 * MS, 0, 1000);
+    net.host();
+    net.join(Role::Player { seats: 1 }, 1);
+    net.run(2 * S);
+    net.join(Role::Player { seats: 1 }, 1);
+    net.run(4 * S);
+    assert_eq!(net.nodes[1].endpoint.session().unwrap().seats(), 0b10);
+    net.nodes[1].on = false;
+    net.run(4500 * MS);
+    let again = Identity { key: key(1), ..identity(5) };
+    let index = net.add(Endpoint::join(config(), again, Role::Player { seats: 1 }, address(1)).unwrap());
+    net.run(10 * S);
+    net.assert_all_play();
+    assert_eq!(net.nodes[index].endpoint.session().unwrap().seats(), 0b10);
+}
+
+/// The contact dies during the download: the newcomer asks another one.
+#[test]
+fn another_contact_can_be_asked() {
+    let mut net = Net::new(20 * MS, 0, 8 << 20);
+    net.host();
+    net.join(Role::Player { seats: 1 }, 1);
+    net.run(6 * S);
+    let newcomer = net.join(Role::Player { seats: 1 }, 1);
+    net.run(7 * S);
+    assert!(net.nodes[newcomer].endpoint.download().is_some());
+    net.nodes[0].on = false;
+    net.run(8 * S);
+    net.nodes[newcomer].endpoint.ask(address(2));
+    net.run(9 * S);
+    assert_eq!(net.status(1), Some(Status::Paused), "the guest of two waits for its host");
+    net.nodes[0].on = true;
+    net.run(20 * S);
+    net.assert_all_play();
+}
+
+#[test]
+fn an_incarnation_of_somebody_else_is_refused() {
+    let mut net = Net::new(10 * MS, 0, 100);
+    net.host();
+    net.join(Role::Player { seats: 1 }, 1);
+    net.run(3 * S);
+    let copy = Identity { key: Key(999), id: PeerId(id(1).0), ..identity(6) };
+    let index = net.add(Endpoint::join(config(), copy, Role::Player { seats: 1 }, address(1)).unwrap());
+    net.run(5 * S);
+    let refused = JoinEvent::Refused { reason: RefusalReason::Taken, offer: vec![1, 2, 3] };
+    assert_eq!(net.nodes[index].events.first(), Some(&refused));
+}

@@ -1,0 +1,137 @@
+//! Pace: lockstep plays at full speed with a delay of the one-way latency and a tick, whatever the clocks do.
+
+use lockstep2d::session::{Config, Role, View};
+
+use super::sim::{MS, S, Sim, Us, Way, id, key};
+
+/// A match of players who look every millisecond.
+pub(crate) fn players(count: usize, way: Way, configure: impl Fn(&mut Config)) -> Sim {
+    let mut sim = Sim::new(count as u64 + way.latency, count);
+    sim.look = MS;
+    sim.doubled = 0;
+    sim.ways = vec![vec![way; count]; count];
+    let mut first = View::opened_by(id(0), key(0), 0, true);
+    first.voters.clear();
+    for index in 0..count {
+        first.found(id(index), key(index), 1, 1 << index);
+    }
+    let mut config = Config::new(5, count as u8);
+    configure(&mut config);
+    for index in 0..count {
+        let skew = [1000, 1003, 998, 1001, 999, 1002, 1000, 997][index % 8];
+        sim.add(config.clone(), Role::Player { seats: 1 }, &first, skew);
+        sim.start(index, index as u64 * 7 * MS);
+    }
+    sim
+}
+
+pub(crate) fn way(latency: Us) -> Way {
+    Way { exists: true, latency, jitter: 0, loss: 0, cut_until: 0 }
+}
+
+/// Ticks that all have played, in each of some seconds after a start of 5 s, in hundredths of a tick per second.
+pub(crate) fn pace(sim: &mut Sim, seconds: u64) -> u64 {
+    let played =
+        |sim: &Sim| sim.peers.iter().map(|peer| u64::from(peer.session.confirmed())).min().unwrap_or(0);
+    sim.run(5 * S);
+    let before = played(sim);
+    sim.run((5 + seconds) * S);
+    assert_eq!(sim.failure, None);
+    (played(sim) - before) * 100 / seconds
+}
+
+/// The documented delay: the latency and a tick. A millisecond is for the interval of the calls.
+fn documented_delay(latency: Us) -> u16 {
+    ((latency + MS) * 60).div_ceil(S) as u16 + 1
+}
+
+#[test]
+fn lockstep_plays_at_full_speed_at_any_latency() {
+    for latency in [1, 5, 20, 40, 60, 100, 150].map(|latency| latency * MS) {
+        for count in [2, 4] {
+            let mut sim = players(count, way(latency), |_| ());
+            let pace = pace(&mut sim, 20);
+            assert!(pace >= 5950, "{latency} us: {pace} hundredths of a tick per second");
+            for peer in &sim.peers {
+                assert!(
+                    peer.session.delay() <= documented_delay(latency),
+                    "{latency} us: {}",
+                    peer.session.delay()
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_fixed_delay_of_the_latency_and_a_tick_is_enough() {
+    for latency in [20, 60, 150].map(|latency| latency * MS) {
+        let delay = documented_delay(latency);
+        let mut sim =
+            players(2, way(latency), |config| (config.delay_min, config.delay_max) = (delay, delay));
+        let pace = pace(&mut sim, 20);
+        assert!(pace >= 5950, "{latency} us: {pace} hundredths of a tick per second");
+    }
+}
+
+#[test]
+fn the_delay_follows_the_latency_within_its_bounds_and_without_a_stall() {
+    let mut sim = players(2, way(20 * MS), |config| (config.delay_min, config.delay_max) = (1, 12));
+    assert!(pace(&mut sim, 5) >= 5950);
+    assert!(sim.peers.iter().all(|peer| peer.session.delay() == 3));
+    sim.ways = vec![vec![way(90 * MS); 2]; 2];
+    sim.run(15 * S);
+    assert!(sim.peers.iter().all(|peer| (7..=8).contains(&peer.session.delay())));
+    sim.peers[0].session.set_delay(0, 5);
+    sim.ways = vec![vec![way(30 * MS); 2]; 2];
+    sim.run(25 * S);
+    assert_eq!(sim.failure, None);
+    assert!(sim.peers.iter().all(|peer| (3..=4).contains(&peer.session.delay())));
+}
+
+#[test]
+fn rollback_hides_latency_and_corrects_guesses() {
+    let configure = |config: &mut Config| {
+        (config.guess, config.save_interval) = (8, 1);
+        (config.delay_min, config.delay_max) = (1, 1);
+    };
+    let mut sim = players(4, Way { jitter: 20 * MS, loss: 5, ..way(60 * MS) }, configure);
+    let pace = pace(&mut sim, 20);
+    assert!(pace >= 5900, "{pace} hundredths of a tick per second");
+    for peer in &sim.peers {
+        assert_eq!(peer.session.delay(), 1);
+        let statistics = peer.session.statistics();
+        assert!(statistics.replayed > 0 && statistics.replayed_max <= 16, "{statistics:?}");
+    }
+}
+
+/// Ping, jitter and loss are those of the links; bytes are counted.
+#[test]
+fn measurements_are_those_of_the_links() {
+    let mut sim = players(2, Way { jitter: 10 * MS, loss: 20, ..way(50 * MS) }, |_| ());
+    pace(&mut sim, 20);
+    let link = sim.peers[0].session.link(id(1)).unwrap();
+    assert!((100 * MS..130 * MS).contains(&link.round_trip), "{link:?}");
+    assert!((MS..15 * MS).contains(&link.jitter), "{link:?}");
+    assert!((50..400).contains(&link.loss_per_mille), "{link:?}");
+    assert_eq!(link.bytes_sent, sim.bytes_from(0));
+}
+
+#[test]
+fn a_slow_peer_slows_others_only_in_lockstep_and_is_named() {
+    let mut sim = players(3, way(20 * MS), |_| ());
+    pace(&mut sim, 2);
+    sim.peers[2].in_menu = true;
+    sim.run(9 * S);
+    let played = sim.peers[0].session.played();
+    assert_eq!(sim.peers[0].session.waiting_for(), Some(id(2)));
+    sim.run(14 * S);
+    assert_eq!(sim.peers[0].session.played(), played, "a peer that is heard is not dropped");
+    assert_eq!(sim.peers[0].session.view().number, 0);
+    let waiting = sim.peers[0].waiting.clone();
+    assert_eq!(waiting, vec![(id(2), true)], "the game is told once, and that the peer is heard");
+    sim.peers[2].in_menu = false;
+    sim.run(16 * S);
+    assert!(sim.peers[0].session.played() > played + 60);
+    assert_eq!(sim.failure, None);
+}

@@ -1,0 +1,504 @@
+//! A match in simulated time: peers with clocks of their own, and links that delay, lose, double, reorder and cut.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
+
+use lockstep2d::session::{Config, Event, Key, PeerId, Role, Session, Status, Tick, View};
+
+use super::game::{Game, START, mix, mix_inputs};
+
+pub(crate) type Us = u64;
+pub(crate) const MS: Us = 1000;
+pub(crate) const S: Us = 1_000_000;
+
+/// Pseudo-random numbers.
+#[derive(Clone, Debug)]
+pub(crate) struct Rng(pub(crate) u64);
+
+impl Rng {
+    pub(crate) fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 11
+    }
+
+    /// A number from `low` to `high`.
+    pub(crate) fn range(&mut self, low: u64, high: u64) -> u64 {
+        low + self.next() % (high - low + 1)
+    }
+
+    pub(crate) fn percent(&mut self, percent: u64) -> bool {
+        self.next() % 100 < percent
+    }
+
+    pub(crate) fn pick<T: Copy>(&mut self, values: &[T]) -> T {
+        values[self.range(0, values.len() as u64 - 1) as usize]
+    }
+}
+
+/// The way from a peer to another one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Way {
+    pub(crate) exists: bool,
+    pub(crate) latency: Us,
+    /// Largest addition to the latency.
+    pub(crate) jitter: Us,
+    pub(crate) loss: u64,
+    /// Packets that are sent before this time are lost.
+    pub(crate) cut_until: Us,
+}
+
+/// A peer of the simulation.
+#[derive(Debug)]
+pub(crate) struct Peer {
+    pub(crate) session: Session,
+    pub(crate) game: Game,
+    pub(crate) on: bool,
+    pub(crate) started: bool,
+    pub(crate) leaves: bool,
+    pub(crate) kicked: bool,
+    pub(crate) spectator: bool,
+    pub(crate) stopped_until: Us,
+    /// Speed of the clock in thousandths.
+    pub(crate) skew: u64,
+    pub(crate) queue: Vec<Vec<u8>>,
+    pub(crate) lost_seats: u32,
+    /// Whether its game does not advance.
+    pub(crate) in_menu: bool,
+    /// Whom it was said to wait for, and whether that peer was heard.
+    pub(crate) waiting: Vec<(PeerId, bool)>,
+    pub(crate) desyncs: u32,
+    bytes: u64,
+    pub(crate) finished: Option<(Tick, u64)>,
+    /// Whether it was a voter when it asked to leave.
+    was_leaving: bool,
+    /// When the newest view was installed.
+    view_at: Us,
+    seen_view: u32,
+    seen_final: Tick,
+    seen_confirmed: Tick,
+    input: u64,
+}
+
+/// What happens next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    Look(usize),
+    Packet(usize),
+    Crash(usize),
+}
+
+/// A match.
+pub(crate) struct Sim {
+    pub(crate) now: Us,
+    pub(crate) rng: Rng,
+    heap: BinaryHeap<Reverse<(Us, u64, Kind)>>,
+    sequence: u64,
+    packets: Vec<Option<(usize, Vec<u8>)>>,
+    free: Vec<usize>,
+    pub(crate) peers: Vec<Peer>,
+    pub(crate) ways: Vec<Vec<Way>>,
+    /// Percentage of packets that are very late, that are doubled, and by which a new view kills somebody.
+    pub(crate) late: u64,
+    pub(crate) doubled: u64,
+    pub(crate) assassin: u64,
+    pub(crate) look: Us,
+    /// State before each tick of the one history.
+    pub(crate) history: Vec<u64>,
+    pub(crate) views: BTreeMap<u32, View>,
+    pub(crate) failure: Option<String>,
+    pub(crate) sent: u64,
+    pub(crate) bytes: u64,
+    pub(crate) expects_conflicts: bool,
+}
+
+pub(crate) fn id(index: usize) -> PeerId {
+    PeerId((index as u32 + 1).wrapping_mul(0x9e37_79b1))
+}
+
+pub(crate) fn key(index: usize) -> Key {
+    Key(index as u64 + 100)
+}
+
+impl Sim {
+    pub(crate) fn new(seed: u64, count: usize) -> Self {
+        let way = Way { exists: true, latency: 0, jitter: 0, loss: 0, cut_until: 0 };
+        Sim {
+            now: 0,
+            rng: Rng(seed | 1),
+            heap: BinaryHeap::new(),
+            sequence: 0,
+            packets: Vec::new(),
+            free: Vec::new(),
+            peers: Vec::new(),
+            ways: vec![vec![way; count]; count],
+            late: 0,
+            doubled: 2,
+            assassin: 0,
+            look: 50 * MS,
+            history: vec![START],
+            views: BTreeMap::new(),
+            failure: None,
+            sent: 0,
+            bytes: 0,
+            expects_conflicts: false,
+        }
+    }
+
+    pub(crate) fn add(&mut self, config: Config, role: Role, first: &View, skew: u64) -> usize {
+        let index = self.peers.len();
+        let seed = self.rng.next();
+        let session =
+            Session::new(config, id(index), key(index), role, first.clone(), seed).expect("a valid config");
+        self.views.entry(first.number).or_insert_with(|| first.clone());
+        self.peers.push(Peer {
+            session,
+            game: Game::new(),
+            on: false,
+            started: false,
+            leaves: false,
+            kicked: false,
+            spectator: role == Role::Spectator,
+            stopped_until: 0,
+            skew,
+            queue: Vec::new(),
+            lost_seats: 0,
+            in_menu: false,
+            waiting: Vec::new(),
+            desyncs: 0,
+            bytes: 0,
+            finished: None,
+            was_leaving: false,
+            view_at: 0,
+            seen_view: first.number,
+            seen_final: 0,
+            seen_confirmed: 0,
+            input: seed,
+        });
+        index
+    }
+
+    /// Starts a peer.
+    pub(crate) fn start(&mut self, index: usize, at: Us) {
+        self.peers[index].on = true;
+        self.peers[index].started = true;
+        self.push(at, Kind::Look(index));
+    }
+
+    pub(crate) fn crash_at(&mut self, index: usize, at: Us) {
+        self.push(at, Kind::Crash(index));
+    }
+
+    /// Lets two peers know each other, as the join does.
+    pub(crate) fn introduce(&mut self, a: usize, b: usize) {
+        self.peers[a].session.attach(id(b), Some(key(b)));
+        self.peers[b].session.attach(id(a), Some(key(a)));
+    }
+
+    pub(crate) fn fail(&mut self, what: String) {
+        let at = self.now / MS;
+        self.failure.get_or_insert_with(|| format!("{at} ms: {what}"));
+    }
+
+    fn push(&mut self, at: Us, kind: Kind) {
+        self.sequence += 1;
+        self.heap.push(Reverse((at, self.sequence, kind)));
+    }
+
+    /// Runs until a time, or to the first failure.
+    pub(crate) fn run(&mut self, until: Us) {
+        while let Some(&Reverse((at, _, kind))) = self.heap.peek() {
+            if at > until || self.failure.is_some() {
+                break;
+            }
+            self.heap.pop();
+            self.now = at;
+            match kind {
+                Kind::Look(peer) => self.look(peer),
+                Kind::Crash(peer) => self.peers[peer].on = false,
+                Kind::Packet(place) => {
+                    let Some((to, bytes)) = self.packets[place].take() else { continue };
+                    self.free.push(place);
+                    self.deliver(to, bytes);
+                }
+            }
+        }
+        self.now = until;
+    }
+
+    fn deliver(&mut self, to: usize, bytes: Vec<u8>) {
+        let now = self.now;
+        let peer = &mut self.peers[to];
+        if !peer.on {
+            return;
+        }
+        if peer.stopped_until > now {
+            if peer.queue.len() < 200 {
+                peer.queue.push(bytes);
+            }
+            return;
+        }
+        let local = now * peer.skew / 1000;
+        peer.session.receive(local, &bytes);
+        self.check(to);
+    }
+
+    fn look(&mut self, index: usize) {
+        let now = self.now;
+        let look = self.look;
+        let peer = &mut self.peers[index];
+        if !peer.on {
+            return;
+        }
+        if peer.stopped_until > now {
+            let at = peer.stopped_until;
+            self.push(at, Kind::Look(index));
+            return;
+        }
+        let local = now * peer.skew / 1000;
+        for bytes in std::mem::take(&mut peer.queue) {
+            peer.session.receive(local, &bytes);
+        }
+        peer.session.update(local);
+        let mut turns = 0;
+        while !peer.in_menu && peer.session.is_due(local) && turns < 8 {
+            turns += 1;
+            let seats = peer.session.seats().count_ones() as u64;
+            let input: Vec<u8> = (0..seats).map(|seat| (mix(peer.input, seat) % 5) as u8).collect();
+            if peer.session.advance(local, &input) == Ok(true) {
+                // Inputs are held for a while.
+                peer.input =
+                    if peer.input.is_multiple_of(3) { mix(peer.input, local) } else { peer.input + 1 };
+            }
+            if let Err(what) = peer.game.fulfil(&mut peer.session) {
+                self.fail(format!("peer {index}: {what}"));
+                return;
+            }
+        }
+        let Peer { game, session, .. } = &mut self.peers[index];
+        if let Err(what) = game.fulfil(session) {
+            self.fail(format!("peer {index}: {what}"));
+            return;
+        }
+        self.check(index);
+        self.send(index);
+        if self.peers[index].session.status().is_closed() {
+            self.peers[index].on = false;
+            self.check_goodbye(index);
+            return;
+        }
+        let peer = &self.peers[index];
+        let at = now + look * 1000 / peer.skew.max(1);
+        self.push(at, Kind::Look(index));
+    }
+
+    fn send(&mut self, from: usize) {
+        while let Some((to, bytes)) = self.peers[from].session.next_packet() {
+            let Some(to) = (0..self.peers.len()).find(|&index| id(index) == to) else { continue };
+            self.sent += 1;
+            self.bytes += bytes.len() as u64;
+            self.peers[from].bytes += bytes.len() as u64;
+            let way = self.ways[from][to];
+            let lost = !way.exists || self.now < way.cut_until || self.rng.percent(way.loss);
+            if lost {
+                continue;
+            }
+            if self.doubled > 0 && self.rng.percent(self.doubled) {
+                self.carry(to, bytes.clone(), way);
+            }
+            self.carry(to, bytes, way);
+        }
+    }
+
+    fn carry(&mut self, to: usize, bytes: Vec<u8>, way: Way) {
+        let mut at = self.now + way.latency + self.rng.range(0, way.jitter);
+        if self.late > 0 && self.rng.percent(self.late) {
+            at += self.rng.range(0, 2500) * MS;
+        }
+        let place = self.free.pop().unwrap_or_else(|| {
+            self.packets.push(None);
+            self.packets.len() - 1
+        });
+        self.packets[place] = Some((to, bytes));
+        self.push(at, Kind::Packet(place));
+    }
+
+    /// Checks everything that must always hold, for a peer after each of its steps.
+    fn check(&mut self, index: usize) {
+        self.check_events(index);
+        self.check_view(index);
+        self.check_final(index);
+        self.check_played(index);
+        let peer = &mut self.peers[index];
+        if let (Status::Finished { ticks }, None) = (peer.session.status(), peer.finished) {
+            let hash = self.history.get(ticks as usize).copied().unwrap_or(0);
+            peer.finished = Some((ticks, hash));
+        }
+    }
+
+    fn check_events(&mut self, index: usize) {
+        while let Some(event) = self.peers[index].session.next_event() {
+            match event {
+                Event::Desync { .. } if self.peers[index].game.is_broken() => {}
+                Event::Desync { peer, .. } if self.is_broken(peer) => self.peers[index].desyncs += 1,
+                Event::Waiting { peer, heard } => self.peers[index].waiting.push((peer, heard)),
+                Event::Desync { peer, tick, .. } => {
+                    self.fail(format!("S1 {index} and {peer} differ at tick {tick}"))
+                }
+                Event::Conflict { peer, tick } if !self.expects_conflicts => {
+                    self.fail(format!("S6 two inputs of {peer} for tick {tick}"));
+                }
+                Event::Status(Status::Leaving) => self.peers[index].was_leaving = true,
+                Event::Status(Status::Dropped) => self.peers[index].lost_seats += 1,
+                _ => {}
+            }
+        }
+    }
+
+    fn is_broken(&self, peer: PeerId) -> bool {
+        (0..self.peers.len()).any(|index| id(index) == peer && self.peers[index].game.is_broken())
+    }
+
+    /// Somebody who has left stops answering only when all others know it, or after a long time.
+    fn check_goodbye(&mut self, index: usize) {
+        let leaver = &self.peers[index];
+        let view = leaver.session.view();
+        let left = leaver.was_leaving && view.voter(id(index)).is_none() && leaver.finished.is_none();
+        if !left || self.now > leaver.view_at + 11 * S {
+            return;
+        }
+        let ignorant = (0..self.peers.len()).find(|&other| {
+            let peer = &self.peers[other];
+            peer.on && view.voter(id(other)).is_some() && peer.session.view().number < view.number
+        });
+        if let Some(other) = ignorant {
+            self.fail(format!("L4 {index} is gone before {other} knows that it left"));
+        }
+    }
+
+    fn check_view(&mut self, index: usize) {
+        let peer = &self.peers[index];
+        let view = peer.session.view();
+        if view.number == peer.seen_view {
+            return;
+        }
+        let final_before = peer.seen_final;
+        if view.cut < final_before {
+            let what = format!("S2 cut {} below {final_before} final ticks of {index}", view.cut);
+            return self.fail(what);
+        }
+        match self.views.get(&view.number) {
+            Some(known) if known != view => {
+                let what = format!("S3 two views {}: {known:?} and {view:?}", view.number);
+                return self.fail(what);
+            }
+            Some(_) => {}
+            None => {
+                let view = view.clone();
+                self.check_cut_is_held(&view);
+                self.views.insert(view.number, view);
+                if self.assassin > 0 && self.rng.percent(self.assassin) {
+                    self.assassin = self.assassin.saturating_sub(8);
+                    let at = self.now + self.rng.range(0, 250) * MS;
+                    self.crash_at(index, at);
+                }
+            }
+        }
+        self.peers[index].view_at = self.now;
+        self.peers[index].seen_view = self.peers[index].session.view().number;
+    }
+
+    /// A quorum of the view before holds all ticks before the cut.
+    fn check_cut_is_held(&mut self, view: &View) {
+        let Some(before) = view.number.checked_sub(1).and_then(|number| self.views.get(&number)) else {
+            return;
+        };
+        let holds = |(_, voter): &(usize, &lockstep2d::session::Voter)| {
+            let peer = (0..self.peers.len()).find(|&index| id(index) == voter.id);
+            peer.is_some_and(|peer| self.peers[peer].session.complete_tick() >= view.cut)
+        };
+        let holders =
+            before.voters.iter().enumerate().filter(holds).fold(0, |set, (index, _)| set | 1 << index);
+        if !before.is_quorum(holders) {
+            let what = format!("S7 view {}: ticks before {} not held by a quorum", view.number, view.cut);
+            self.fail(what);
+        }
+    }
+
+    /// All final ticks are those of the one history.
+    fn check_final(&mut self, index: usize) {
+        let fin = self.peers[index].session.final_tick();
+        let from = self.peers[index].seen_final;
+        if fin < from {
+            self.fail(format!("S1 final ticks of {index} fell from {from} to {fin}"));
+        }
+        for tick in from..fin {
+            let Some(inputs) = self.peers[index].session.final_inputs(tick) else {
+                return self.fail(format!("S1 {index} lacks inputs of final tick {tick}"));
+            };
+            let Some(&before) = self.history.get(tick as usize) else {
+                return self.fail(format!("S1 tick {tick} of {index} follows no known tick"));
+            };
+            let state = mix_inputs(before, &inputs);
+            match self.history.get(tick as usize + 1) {
+                None => self.history.push(state),
+                Some(&known) if known == state => {}
+                Some(_) => {
+                    let number = self.peers[index].session.view().number;
+                    return self.fail(format!("S1 two histories at tick {tick}, {index} in view {number}"));
+                }
+            }
+        }
+        self.peers[index].seen_final = fin;
+    }
+
+    /// What the game has played and is confirmed is the one history; memory is bounded.
+    fn check_played(&mut self, index: usize) {
+        let peer = &self.peers[index];
+        let confirmed = peer.session.confirmed();
+        let wrong = (peer.seen_confirmed..=confirmed)
+            .find(|&tick| peer.game.states.get(tick as usize) != self.history.get(tick as usize));
+        let kept = peer.game.kept();
+        self.peers[index].seen_confirmed = confirmed;
+        let broken = self.peers[index].game.is_broken();
+        if let Some(tick) = wrong.filter(|_| !broken) {
+            self.fail(format!("S1 the game of {index} has another state before tick {tick}"));
+        }
+        if kept > 140 {
+            self.fail(format!("memory: {kept} states"));
+        }
+    }
+
+    /// Bytes that a peer has sent.
+    pub(crate) fn bytes_from(&self, index: usize) -> u64 {
+        self.peers[index].bytes
+    }
+
+    /// Whether all peers that are on can reach each other, over others if need be.
+    pub(crate) fn reach(&self, from: usize) -> u64 {
+        let mut seen = 1_u64 << from;
+        for _ in 0..self.peers.len() {
+            for (a, ways) in self.ways.iter().enumerate() {
+                for (b, way) in ways.iter().enumerate() {
+                    let both =
+                        self.peers.get(a).is_some_and(|a| a.on) && self.peers.get(b).is_some_and(|b| b.on);
+                    if both && way.exists && seen >> a & 1 == 1 {
+                        seen |= 1 << b;
+                    }
+                }
+            }
+        }
+        seen
+    }
+
+    /// The newest view that anybody has installed.
+    pub(crate) fn newest_view(&self) -> &View {
+        self.views.last_key_value().expect("the first view").1
+    }
+
+    /// Index of a peer's place among the voters of a view, for quorums.
+    pub(crate) fn voters_among(view: &View, peers: impl Iterator<Item = usize>) -> u64 {
+        peers.filter_map(|index| view.voter(id(index))).fold(0, |set, index| set | 1 << index)
+    }
+}

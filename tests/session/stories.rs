@@ -1,0 +1,209 @@
+//! Single courses of events: outages of two players, kicks, ends, returns, spectators, mistakes of the game.
+
+use lockstep2d::session::{Config, Role, Status};
+
+use super::pace::{pace, players, way};
+use super::sim::{MS, S, Sim, id, key};
+
+fn cut(sim: &mut Sim, a: usize, b: usize, until: u64) {
+    sim.ways[a][b].cut_until = until;
+    sim.ways[b][a].cut_until = until;
+}
+
+fn played(sim: &Sim, index: usize) -> u32 {
+    sim.peers[index].session.played()
+}
+
+fn status(sim: &Sim, index: usize) -> Status {
+    sim.peers[index].session.status()
+}
+
+/// With two players the host goes on and the guest waits; when the line is back the guest has its seat again, and both
+/// have the same history.
+#[test]
+fn of_two_players_the_host_goes_on_and_the_guest_returns() {
+    let mut sim = players(2, way(30 * MS), |_| ());
+    pace(&mut sim, 1);
+    cut(&mut sim, 0, 1, 12 * S);
+    sim.run(11 * S);
+    assert_eq!((status(&sim, 0), status(&sim, 1)), (Status::Playing, Status::Paused));
+    assert_eq!(sim.peers[0].session.view().voters.len(), 1);
+    assert!(played(&sim, 0) > played(&sim, 1) + 120, "{} {}", played(&sim, 0), played(&sim, 1));
+    sim.run(16 * S);
+    assert_eq!((status(&sim, 0), status(&sim, 1)), (Status::Playing, Status::Playing));
+    assert_eq!((sim.peers[0].session.seats(), sim.peers[1].session.seats()), (1, 2));
+    assert!(played(&sim, 0).abs_diff(played(&sim, 1)) < 8);
+    assert_eq!(sim.failure, None);
+}
+
+/// With infinite patience everybody waits, until the host goes on without the missing one.
+#[test]
+fn with_infinite_patience_somebody_has_to_ask() {
+    let mut sim = players(3, way(30 * MS), |config| config.timing.patience = u64::MAX);
+    pace(&mut sim, 1);
+    for other in [0, 1] {
+        cut(&mut sim, other, 2, 40 * S);
+    }
+    sim.run(30 * S);
+    let still = played(&sim, 0);
+    assert!(still < 60 * 7);
+    sim.peers[0].session.go_on_without(id(2));
+    sim.run(32 * S);
+    assert!(played(&sim, 0) > still + 60);
+    sim.run(46 * S);
+    assert_eq!((sim.failure.clone(), status(&sim, 2)), (None, Status::Playing));
+}
+
+#[test]
+fn an_outage_of_all_that_is_shorter_than_the_patience_costs_nobody_a_seat() {
+    let mut sim = players(4, way(60 * MS), |_| ());
+    pace(&mut sim, 1);
+    for a in 0..4 {
+        (0..a).for_each(|b| cut(&mut sim, a, b, 7700 * MS));
+    }
+    sim.run(7700 * MS);
+    let still = played(&sim, 0);
+    sim.run(10 * S);
+    assert!(played(&sim, 0) > still + 100);
+    assert_eq!((sim.failure.clone(), sim.peers[0].session.view().number), (None, 0));
+}
+
+#[test]
+fn a_crash_of_the_host_ends_no_match() {
+    let mut sim = players(4, way(40 * MS), |_| ());
+    pace(&mut sim, 1);
+    sim.peers[0].on = false;
+    sim.run(12 * S);
+    assert!(played(&sim, 1) > 60 * 8);
+    let view = sim.peers[1].session.view();
+    assert_eq!((view.voters.len(), view.tie_holder), (3, id(1)));
+    assert_eq!(sim.failure, None);
+}
+
+#[test]
+fn somebody_who_is_kicked_does_not_return_and_knows_it() {
+    let mut sim = players(3, way(30 * MS), |_| ());
+    pace(&mut sim, 1);
+    sim.peers[0].session.kick(key(2));
+    sim.run(10 * S);
+    assert_eq!(status(&sim, 2), Status::Kicked);
+    assert_eq!(sim.peers[0].session.view().voters.len(), 2);
+    assert!(played(&sim, 0) > 60 * 9 && sim.failure.is_none());
+}
+
+/// Only the tie-holder decides alone; others need a quorum.
+#[test]
+fn one_vote_of_three_kicks_nobody_and_two_do() {
+    let mut sim = players(4, way(30 * MS), |_| ());
+    pace(&mut sim, 1);
+    sim.peers[1].session.kick(key(3));
+    sim.run(9 * S);
+    assert_eq!(sim.peers[0].session.view().number, 0);
+    for index in [0, 2] {
+        sim.peers[index].session.kick(key(3));
+    }
+    sim.run(12 * S);
+    assert_eq!((sim.failure.clone(), status(&sim, 3)), (None, Status::Kicked));
+}
+
+#[test]
+fn all_finish_at_the_same_tick_also_whoever_asked_for_another_one() {
+    let mut sim = players(4, way(60 * MS), |_| ());
+    pace(&mut sim, 1);
+    sim.peers[1].session.end_at(500);
+    sim.peers[2].session.end_at(520);
+    sim.run(20 * S);
+    let ends: Vec<_> = sim.peers.iter().map(|peer| peer.finished).collect();
+    assert!(
+        ends.iter().all(|end| end.is_some_and(|(ticks, _)| ticks == 500 || ticks == 520) && *end == ends[0])
+    );
+    assert!(sim.peers.iter().all(|peer| peer.session.status() == Status::Closed && !peer.on));
+    assert_eq!(sim.failure, None);
+}
+
+/// A spectator that knows one peer only follows the match, and keeps no player out.
+#[test]
+fn spectators_watch_through_one_another() {
+    let count = 6;
+    let mut sim = players(2, way(30 * MS), |config| config.seats = 2);
+    sim.ways = vec![vec![way(30 * MS); count]; count];
+    let (first, config) = (sim.peers[0].session.view().clone(), Config::new(5, 2));
+    for index in 2..count {
+        sim.add(config.clone(), Role::Spectator, &first, 1000);
+        // Each knows the one before it.
+        sim.introduce(index, index - 1);
+        sim.start(index, (index as u64) * S);
+    }
+    sim.run(15 * S);
+    for index in 2..count {
+        assert_eq!(status(&sim, index), Status::Watching);
+        assert!(
+            played(&sim, index) + 60 > played(&sim, 0),
+            "{index}: {} of {}",
+            played(&sim, index),
+            played(&sim, 0)
+        );
+    }
+    assert_eq!(sim.failure, None);
+}
+
+/// A match that starts with one peer begins when enough seats are taken, at tick 0 for all of them.
+#[test]
+fn the_first_tick_waits_for_enough_players() {
+    let configure = |config: &mut Config| (config.seats, config.start_with) = (4, 3);
+    let mut sim = Sim::new(3, 3);
+    sim.look = MS;
+    sim.ways = vec![vec![way(40 * MS); 3]; 3];
+    let mut config = Config::new(5, 4);
+    configure(&mut config);
+    let first = lockstep2d::session::View::opened_by(id(0), key(0), 1, false);
+    for index in 0..3 {
+        sim.add(config.clone(), Role::Player { seats: 1 }, &first, 1000);
+        (0..index).for_each(|other| sim.introduce(index, other));
+        sim.start(index, index as u64 * 2 * S);
+    }
+    sim.run(4 * S);
+    assert_eq!((status(&sim, 0), status(&sim, 1), played(&sim, 0)), (Status::Waiting, Status::Waiting, 0));
+    sim.run(8 * S);
+    assert!((0..3).all(|index| status(&sim, index) == Status::Playing && played(&sim, index) > 60));
+    let spans = &sim.peers[0].session.view().spans;
+    assert_eq!(spans.iter().map(|span| (span.seat, span.from)).collect::<Vec<_>>(), [(0, 0), (1, 0), (2, 0)]);
+    assert_eq!(sim.failure, None);
+}
+
+#[test]
+fn another_state_is_noticed_by_all_others() {
+    let mut sim = players(3, way(30 * MS), |_| ());
+    sim.peers[1].game.mistake = Some(70);
+    sim.run(5 * S);
+    assert_eq!((sim.peers[0].desyncs, sim.peers[2].desyncs), (1, 1));
+    assert_eq!(sim.failure, None);
+}
+
+#[test]
+fn somebody_who_leaves_costs_no_waiting() {
+    let mut sim = players(3, way(60 * MS), |_| ());
+    let before = pace(&mut sim, 1);
+    assert!(before >= 5900);
+    let start = played(&sim, 0);
+    sim.peers[2].leaves = true;
+    sim.peers[2].session.leave();
+    sim.run(8 * S);
+    assert!(played(&sim, 0) - start >= 118, "{} ticks in 2 s", played(&sim, 0) - start);
+    sim.run(12 * S);
+    assert_eq!(status(&sim, 2), Status::Closed);
+    assert_eq!(sim.failure, None);
+}
+
+/// 64 peers, all of them players.
+#[test]
+fn sixty_four_peers_play() {
+    let mut sim = players(64, way(40 * MS), |config| config.tick_micros = 33_333);
+    sim.look = 5 * MS;
+    sim.run(5 * S);
+    let before = played(&sim, 0);
+    sim.run(8 * S);
+    assert_eq!(sim.failure, None);
+    let ticks = sim.peers.iter().map(|peer| peer.session.confirmed()).min().unwrap() - before;
+    assert!(ticks >= 80, "{ticks} of 90 ticks");
+}

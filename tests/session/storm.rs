@@ -1,0 +1,524 @@
+//! Random matches: a seed gives the peers, the links, and what goes wrong when. All links heal after 20 s; then all
+//! that are alive have to play and to finish.
+
+use lockstep2d::session::{Config, Role, Timing, View};
+
+use super::game::mix;
+use super::sim::{MS, Rng, S, Sim, Us, Way, id, key};
+
+/// Kinds of matches; the last digit of the seed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Class {
+    ShortOutages,
+    Partitions,
+    OneWay,
+    Crashes,
+    Stalls,
+    JoinsAndLeaves,
+    Everything,
+    EndInTheMiddle,
+    Storm,
+    StormWithEnd,
+}
+
+const CLASSES: [Class; 10] = [
+    Class::ShortOutages,
+    Class::Partitions,
+    Class::OneWay,
+    Class::Crashes,
+    Class::Stalls,
+    Class::JoinsAndLeaves,
+    Class::Everything,
+    Class::EndInTheMiddle,
+    Class::Storm,
+    Class::StormWithEnd,
+];
+
+/// What goes wrong, or what somebody does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Trouble {
+    Halves,
+    Quarters,
+    DeafOrMute,
+    Crash,
+    Stall,
+    Leave,
+    Links,
+    Join(usize),
+    End,
+    Kick,
+    GoOn,
+    Delay,
+}
+
+use Trouble::{Crash, DeafOrMute, Delay, GoOn, Halves, Kick, Leave, Links, Quarters, Stall};
+
+impl Class {
+    fn troubles(self) -> &'static [Trouble] {
+        match self {
+            Class::ShortOutages => &[Halves, Quarters, DeafOrMute, Stall, Delay],
+            Class::Partitions => &[Halves, Quarters],
+            Class::OneWay => &[DeafOrMute],
+            Class::Crashes => &[Crash, Halves],
+            Class::Stalls => &[Stall, Halves],
+            Class::JoinsAndLeaves => &[Links, Leave, Halves, Kick, GoOn],
+            Class::Everything | Class::EndInTheMiddle => {
+                &[Halves, Quarters, DeafOrMute, Crash, Stall, Leave, Links, DeafOrMute, Halves, Delay, GoOn]
+            }
+            Class::Storm | Class::StormWithEnd => &[
+                Halves, Quarters, DeafOrMute, Stall, Links, DeafOrMute, Halves, Quarters, DeafOrMute, Stall,
+                Links, DeafOrMute, Halves, Halves, Crash, Quarters, DeafOrMute, Halves, Leave,
+            ],
+        }
+    }
+
+    fn is_storm(self) -> bool {
+        matches!(self, Class::Storm | Class::StormWithEnd)
+    }
+
+    fn ends_early(self) -> bool {
+        matches!(self, Class::EndInTheMiddle | Class::StormWithEnd)
+    }
+}
+
+/// Figures of a match.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Figures {
+    pub(crate) ticks: u64,
+    pub(crate) views: u64,
+    pub(crate) packets: u64,
+    pub(crate) bytes: u64,
+    pub(crate) finished: u64,
+    pub(crate) lost_seats: u64,
+    /// Time until all were seated again after the links healed.
+    pub(crate) healed: Us,
+    pub(crate) no_quorum: u64,
+}
+
+const HEAL: Us = 20 * S;
+/// Time in which all have to be seated after that, and time after which all must have moved.
+const SEATED: Us = 12 * S;
+const MOVED: Us = 3 * S;
+
+/// An event that is planned for this time happens when all else has been checked.
+const LATE: Us = 100 * S;
+
+struct Match {
+    sim: Sim,
+    rng: Rng,
+    class: Class,
+    players: usize,
+    total: usize,
+}
+
+/// Plays the match of a seed, with a change of the configuration. Returns the first violation.
+pub(crate) fn play(seed: u64, configure: impl Fn(&mut Config)) -> (Option<String>, Figures) {
+    let mut game = Match::new(seed, configure);
+    let mut figures = Figures::default();
+    game.play(&mut figures);
+    let sim = &game.sim;
+    figures.ticks = sim.history.len() as u64;
+    figures.views = sim.views.len() as u64 - 1;
+    figures.packets = sim.sent;
+    figures.bytes = sim.bytes;
+    figures.finished = sim.peers.iter().filter(|peer| peer.finished.is_some()).count() as u64;
+    figures.lost_seats = sim.peers.iter().map(|peer| u64::from(peer.lost_seats)).sum();
+    (sim.failure.clone(), figures)
+}
+
+fn timing(storm: bool, rng: &mut Rng) -> Timing {
+    if !storm {
+        return Timing::DEFAULT;
+    }
+    let fast = rng.pick(&[1, 4, 15]);
+    Timing {
+        patience: rng.range(300, 700) * MS,
+        promises: 500 * MS / (fast * fast),
+        ballot: 1500 * MS / fast,
+        ..Timing::DEFAULT
+    }
+}
+
+impl Match {
+    fn new(seed: u64, configure: impl Fn(&mut Config)) -> Self {
+        let mut rng = Rng(mix(seed, 77) | 1);
+        (0..8).for_each(|_| _ = rng.next());
+        let class = CLASSES[(seed % 10) as usize];
+        let storm = class.is_storm();
+        let players = rng.range(2, 8) as usize;
+        let may_join = matches!(
+            class,
+            Class::ShortOutages | Class::JoinsAndLeaves | Class::Everything | Class::EndInTheMiddle
+        );
+        let joiners = if may_join || storm { rng.range(0, 3) as usize } else { 0 };
+        let total = players + joiners;
+        let mut sim = Sim::new(rng.next(), total);
+        sim.late = if storm { rng.range(0, 15) } else { 0 };
+        sim.assassin = if storm { rng.range(0, 25) } else { 0 };
+        let base = rng.range(5, 120);
+        let lossy = rng.pick(&[0, 2, 10, if storm { 40 } else { 25 }]);
+        for from in 0..total {
+            for to in 0..total {
+                let latency = (base + rng.range(0, 60)) * MS;
+                let jitter = latency / 4;
+                sim.ways[from][to] =
+                    Way { exists: true, latency, jitter, loss: rng.range(0, lossy), cut_until: 0 };
+            }
+        }
+        if rng.percent(30) && total > 2 {
+            sparse(&mut sim, total, &mut rng);
+        }
+        let mut first = View::opened_by(id(0), key(0), 0, true);
+        first.voters.clear();
+        let mut seat = 0;
+        for index in 0..players {
+            // Some peers have two local players.
+            let seats = if rng.percent(10) { 3 } else { 1 };
+            first.found(id(index), key(index), 1, seats << seat);
+            seat += if seats == 3 { 2 } else { 1 };
+        }
+        let mut config = Config::new(seed, (seat + joiners).min(64) as u8);
+        let tick = rng.pick(&[50, 100, 100]);
+        sim.look = tick * MS;
+        config.tick_micros = tick as u32 * 1000;
+        config.timing = timing(storm, &mut rng);
+        configure(&mut config);
+        config.guess = rng.pick(&[0, 0, 3, 8]);
+        config.save_interval = rng.pick(&[1, 1, 4, 8]);
+        config.check_interval = 8;
+        for index in 0..total {
+            let mut config = config.clone();
+            config.delay_min = rng.range(0, 4) as u16;
+            config.delay_max = config.delay_min + rng.pick(&[0, 6]);
+            let spectates = index >= players && rng.percent(25);
+            let role = if spectates { Role::Spectator } else { Role::Player { seats: 1 } };
+            let skew = rng.range(970, 1030);
+            sim.add(config, role, &first, skew);
+        }
+        let mut game = Match { sim, rng, class, players, total };
+        for index in 0..players {
+            let at = game.rng.range(0, 60) * MS;
+            game.sim.start(index, at);
+        }
+        game
+    }
+
+    fn play(&mut self, figures: &mut Figures) {
+        let mut events = self.plan();
+        events.sort_unstable();
+        let (before, after): (Vec<_>, Vec<_>) = events.into_iter().partition(|event| event.0 <= HEAL);
+        for (at, trouble, duration, random) in before {
+            if !self.run(at) {
+                return;
+            }
+            self.cause(trouble, (at + duration).min(HEAL), random);
+        }
+        if !self.run(HEAL) {
+            return;
+        }
+        self.heal(figures);
+        self.check_healed(figures);
+        let now = self.sim.now;
+        let finals: Vec<u32> = self.sim.peers.iter().map(|peer| peer.session.confirmed()).collect();
+        // Somebody may have crashed just before: that takes the time of patience and a change.
+        for wait in [MOVED, 2 * MOVED, 2 * MOVED] {
+            if !self.run(now + wait) {
+                return;
+            }
+            if self.stands_still(&finals).is_none() {
+                break;
+            }
+        }
+        if let Some(index) = self.stands_still(&finals) {
+            let what = self.describe();
+            self.sim.fail(format!("L2 {index} does not move from {}: {what}", finals[index]));
+        }
+        // The rest of the plan is the end.
+        let shift = self.sim.now;
+        for (at, trouble, _, random) in after {
+            if !self.run(shift + at - LATE) {
+                return;
+            }
+            self.cause(trouble, 0, random);
+        }
+        for _ in 0..30 {
+            let now = self.sim.now;
+            if !self.run(now + S) {
+                return;
+            }
+            if self.sim.peers.iter().all(|peer| !peer.on) {
+                break;
+            }
+        }
+        self.check_finished();
+    }
+
+    fn run(&mut self, until: Us) -> bool {
+        self.sim.run(until);
+        self.sim.failure.is_none()
+    }
+
+    fn plan(&mut self) -> Vec<(Us, Trouble, Us, u64)> {
+        let rng = &mut self.rng;
+        let storm = self.class.is_storm();
+        let kinds = self.class.troubles();
+        let mut events = Vec::new();
+        let count = if storm { rng.range(8, 40) } else { rng.range(1, 6) };
+        for number in 0..count {
+            let kind = rng.pick(kinds);
+            let short = self.class == Class::ShortOutages;
+            let duration = match (short, storm) {
+                (true, _) => rng.range(100, 1600),
+                (_, true) => rng.range(50, 1800),
+                _ => rng.pick(&[300, 1500, 2500, 4000, 8000]) + rng.range(0, 900),
+            };
+            let last = !short && rng.percent(40);
+            let second = if short {
+                2 + 3 * number
+            } else if last {
+                17
+            } else {
+                rng.range(2, 14)
+            };
+            let duration = if last && rng.percent(60) { 3000 } else { duration };
+            events.push((second * S + rng.range(0, 999) * MS, kind, duration * MS, rng.next()));
+        }
+        for joiner in self.players..self.total {
+            events.push((rng.range(2, 14) * S, Trouble::Join(joiner), 0, 0));
+        }
+        let end = if self.class.ends_early() { rng.range(4, 18) * S + rng.range(0, 999) * MS } else { LATE };
+        events.push((end, Trouble::End, 0, rng.next()));
+        if rng.percent(30) {
+            events.push((end + rng.range(0, 300) * MS, Trouble::End, 0, rng.next()));
+        }
+        events
+    }
+
+    fn cause(&mut self, trouble: Trouble, until: Us, random: u64) {
+        let total = self.total;
+        let pick = (random % self.players as u64) as usize;
+        match trouble {
+            Halves => self.cut(until, |_, a, b| (random >> a ^ random >> b) & 1 == 1),
+            Quarters => self.cut(until, |_, a, b| (random >> (2 * a) ^ random >> (2 * b)) & 3 != 0),
+            DeafOrMute => {
+                let mode = random / 64 % 4;
+                self.cut(until, |rng, a, b| {
+                    a == pick && mode != 1 || b == pick && mode != 0 || mode == 3 && rng.percent(30)
+                });
+            }
+            Links => self.cut(until, |rng, _, _| rng.percent(15)),
+            Crash => {
+                if self.rng.percent(70) {
+                    self.sim.peers[pick].on = false;
+                }
+            }
+            Stall => self.sim.peers[pick].stopped_until = until,
+            Leave => {
+                if self.sim.peers[pick].on {
+                    self.sim.peers[pick].leaves = true;
+                    self.sim.peers[pick].session.leave();
+                }
+            }
+            Trouble::Join(joiner) => {
+                for other in (0..total).filter(|&other| other != joiner) {
+                    self.sim.introduce(joiner, other);
+                }
+                let now = self.sim.now;
+                self.sim.start(joiner, now);
+            }
+            Trouble::End => self.end(random),
+            Kick => {
+                if self.players > 2 && self.rng.percent(30) {
+                    let by = self.tie_holder();
+                    if by != pick {
+                        self.sim.peers[pick].kicked = true;
+                        self.sim.peers[by].session.kick(key(pick));
+                    }
+                }
+            }
+            GoOn => {
+                let by = self.tie_holder();
+                if by != pick {
+                    self.sim.peers[by].session.go_on_without(id(pick));
+                }
+            }
+            Delay => {
+                let least = self.rng.range(0, 5) as u16;
+                let guess = self.rng.pick(&[0, 2, 6]);
+                self.sim.peers[pick].session.set_delay(least, least + 5);
+                self.sim.peers[pick].session.set_guess(guess);
+            }
+        }
+    }
+
+    fn tie_holder(&self) -> usize {
+        let holder = self.sim.newest_view().tie_holder;
+        (0..self.total).find(|&index| id(index) == holder).unwrap_or(0)
+    }
+
+    fn cut(&mut self, until: Us, mut is_cut: impl FnMut(&mut Rng, usize, usize) -> bool) {
+        for from in 0..self.total {
+            for to in (0..self.total).filter(|&to| to != from) {
+                if is_cut(&mut self.rng, from, to) {
+                    let way = &mut self.sim.ways[from][to];
+                    way.cut_until = way.cut_until.max(until);
+                }
+            }
+        }
+    }
+
+    fn end(&mut self, random: u64) {
+        let able = |&index: &usize| {
+            let peer = &self.sim.peers[index];
+            peer.on && !peer.leaves && peer.session.seats() != 0
+        };
+        let able: Vec<usize> = (0..self.total).filter(able).collect();
+        if let Some(&index) = able.get((random as usize) % able.len().max(1)) {
+            let played = self.sim.peers[index].session.played();
+            self.sim.peers[index].session.end_at(played + 10 + (random % 20) as u32);
+        }
+    }
+
+    /// Lets storms subside, and measures how long it takes until all are seated.
+    fn heal(&mut self, figures: &mut Figures) {
+        if self.class.is_storm() {
+            self.sim.late = 0;
+            self.sim.assassin = 0;
+            for way in self.sim.ways.iter_mut().flatten() {
+                way.loss = way.loss.min(15);
+            }
+        }
+        let mut at = HEAL;
+        let settling = |game: &Self| {
+            game.all_seated() == Some(false) || game.all_seated().is_none() && game.sim.now < HEAL + S
+        };
+        while at < HEAL + SEATED && !self.class.ends_early() && settling(self) {
+            at += 50 * MS;
+            if !self.run(at) {
+                return;
+            }
+        }
+        figures.healed = at - HEAL;
+    }
+
+    /// Peers that should play on.
+    fn alive(&self) -> Vec<usize> {
+        let alive = |&index: &usize| {
+            let peer = &self.sim.peers[index];
+            peer.on && !peer.leaves && !peer.kicked
+        };
+        (0..self.total).filter(alive).collect()
+    }
+
+    /// Whether all that are alive have their seats in the newest view. Nothing if no quorum of it is alive and
+    /// connected.
+    fn all_seated(&self) -> Option<bool> {
+        let alive = self.alive();
+        let first = *alive.first()?;
+        // A view that only the dead have installed is not known to anybody.
+        let views = alive.iter().map(|&index| self.sim.peers[index].session.view());
+        let view = views.max_by_key(|view| view.number)?;
+        let reach = self.sim.reach(first);
+        if alive.iter().any(|&index| reach >> index & 1 == 0) {
+            return None;
+        }
+        if !view.is_quorum(Sim::voters_among(view, alive.iter().copied())) {
+            return None;
+        }
+        Some(alive.iter().all(|&index| {
+            let peer = &self.sim.peers[index];
+            let current = peer.session.view().number == view.number;
+            current && (peer.spectator || view.voter(id(index)).is_some())
+        }))
+    }
+
+    fn check_healed(&mut self, figures: &mut Figures) {
+        let lost: u32 = self.sim.peers.iter().map(|peer| peer.lost_seats).sum();
+        if self.class == Class::ShortOutages && lost > 0 {
+            self.sim.fail(format!("S5 {lost} seats lost in short outages"));
+        }
+        if self.class.ends_early() {
+            return;
+        }
+        match self.all_seated() {
+            None => figures.no_quorum += 1,
+            Some(true) => {}
+            Some(false) => {
+                let what = self.describe();
+                self.sim.fail(format!("L1 not all are seated: {what}"));
+            }
+        }
+    }
+
+    fn describe(&self) -> String {
+        let line = |index: usize| {
+            let peer = &self.sim.peers[index];
+            let view = peer.session.view();
+            format!(
+                "{index}: on {} {:?} view {} complete {} final {} played {}",
+                peer.on,
+                peer.session.status(),
+                view.number,
+                peer.session.complete_tick(),
+                peer.session.final_tick(),
+                peer.session.played()
+            )
+        };
+        (0..self.total).map(line).collect::<Vec<_>>().join(" | ")
+    }
+
+    /// Somebody who should have played some ticks since then, and has not.
+    fn stands_still(&self, before: &[u32]) -> Option<usize> {
+        if self.class.ends_early() || self.all_seated() != Some(true) {
+            return None;
+        }
+        self.alive().into_iter().find(|&index| self.sim.peers[index].session.confirmed() < before[index] + 2)
+    }
+
+    fn check_finished(&mut self) {
+        let ends: Vec<_> = self.sim.peers.iter().filter_map(|peer| peer.finished).collect();
+        if ends.windows(2).any(|pair| pair[0] != pair[1]) {
+            self.sim.fail(format!("S4 ends differ: {ends:?}"));
+        }
+        let able = |&index: &usize| self.sim.peers[index].on || self.sim.peers[index].finished.is_some();
+        let able = (0..self.total).filter(able);
+        let views = able.clone().map(|index| self.sim.peers[index].session.view());
+        let Some(view) = views.max_by_key(|view| view.number).cloned() else { return };
+        let quorum = view.is_quorum(Sim::voters_among(&view, able));
+        if view.end.is_none() || !quorum {
+            return;
+        }
+        for index in self.alive() {
+            let peer = &self.sim.peers[index];
+            let reached = Sim::voters_among(
+                &view,
+                (0..self.total).filter(|&other| self.sim.reach(index) >> other & 1 == 1),
+            );
+            let should = view.voter(id(index)).is_some() && view.is_quorum(reached);
+            if should && peer.finished.is_none() {
+                let what = self.describe();
+                self.sim.fail(format!("L3 {index} has not finished: {what}"));
+                return;
+            }
+        }
+    }
+}
+
+/// A connected net of links instead of all.
+fn sparse(sim: &mut Sim, total: usize, rng: &mut Rng) {
+    let mut set = |a: usize, b: usize, exists: bool| {
+        sim.ways[a][b].exists = exists;
+        sim.ways[b][a].exists = exists;
+    };
+    for a in 0..total {
+        (0..a).for_each(|b| set(a, b, false));
+    }
+    for a in 1..total {
+        set(a, rng.range(0, a as u64 - 1) as usize, true);
+        for b in 0..a {
+            if rng.percent(30) {
+                set(a, b, true);
+            }
+        }
+    }
+}
