@@ -1,0 +1,329 @@
+//! Matches of a game with physics over a network in memory, in simulated time: equal states, equal replays that verify,
+//! late joins, reports of a desync, refusals.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+#[path = "../net/pushers.rs"]
+#[allow(dead_code, reason = "each test binary uses a part")]
+mod pushers;
+
+use std::cell::RefCell;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::rc::Rc;
+use std::time::Duration;
+
+use lockstep2d::lockstep::Game;
+use lockstep2d::math::Rng;
+use lockstep2d::peer::{Peer, PeerDesync, PeerError, PeerEvent, PeerIdentity, PeerOptions, Transport};
+use lockstep2d::replay::{Limits, Verdict, verify};
+use lockstep2d::report::{Blame, DesyncReport, Evidence, Side, compare};
+use lockstep2d::session::{Address, Event, Key, Status};
+use lockstep2d::world::BodyField;
+use pushers::{FAULT, Fault, Pushers, Setup, bot};
+
+/// A packet on its way: when it arrives in milliseconds, its number, sender, receiver and bytes.
+type Datagram = (u64, u64, u8, u8, Vec<u8>);
+
+/// A network with latency, jitter and loss.
+struct Air {
+    now: u64,
+    latency: u64,
+    loss: u32,
+    sequence: u64,
+    rng: Rng,
+    packets: BinaryHeap<Reverse<Datagram>>,
+}
+
+/// The socket of one peer.
+struct Port {
+    number: u8,
+    air: Rc<RefCell<Air>>,
+}
+
+fn address(number: u8) -> Address {
+    Address::new(&[number]).unwrap()
+}
+
+impl Transport for Port {
+    fn send(&mut self, packet: &[u8], to: &Address) {
+        let air = &mut *self.air.borrow_mut();
+        if air.rng.below(100) < air.loss {
+            return;
+        }
+        air.sequence += 1;
+        let at = air.now + air.latency + u64::from(air.rng.below(5));
+        air.packets.push(Reverse((at, air.sequence, self.number, to.bytes()[0], packet.to_vec())));
+    }
+
+    fn receive(&mut self) -> Option<(Address, Vec<u8>)> {
+        let air = &mut *self.air.borrow_mut();
+        let due = |packet: &Datagram| packet.0 <= air.now && packet.3 == self.number;
+        // The heap gives the earliest packet; others of this receiver may lie behind packets of others.
+        let found =
+            air.packets.iter().filter(|Reverse(packet)| due(packet)).min_by_key(|Reverse(packet)| packet.1);
+        let sequence = found?.0.1;
+        let mut taken = None;
+        air.packets.retain(|Reverse(packet)| {
+            let keep = packet.1 != sequence;
+            if !keep {
+                taken = Some((address(packet.2), packet.4.clone()));
+            }
+            keep
+        });
+        taken
+    }
+}
+
+/// Peers at one table.
+struct Table {
+    air: Rc<RefCell<Air>>,
+    peers: Vec<Option<Peer<Pushers, Port>>>,
+    events: Vec<Vec<PeerEvent>>,
+    replays: Vec<Vec<u8>>,
+}
+
+fn identity(number: u8) -> PeerIdentity {
+    let random = u64::from(number) * 0x9e37_79b9_7f4a_7c15;
+    PeerIdentity::new([random, random ^ 0x5555, 77]).with_key(Key(u64::from(number)))
+}
+
+impl Table {
+    fn new(latency: u64, loss: u32) -> Self {
+        let rng = Rng::new(3);
+        let air = Air { now: 0, latency, loss, sequence: 0, rng, packets: BinaryHeap::new() };
+        let air = Rc::new(RefCell::new(air));
+        Table { air, peers: Vec::new(), events: Vec::new(), replays: Vec::new() }
+    }
+
+    /// The next number and its socket.
+    fn port(&self) -> (u8, Port) {
+        let number = u8::try_from(self.peers.len()).unwrap();
+        (number, Port { number, air: Rc::clone(&self.air) })
+    }
+
+    fn sit(&mut self, peer: Peer<Pushers, Port>) {
+        self.peers.push(Some(peer));
+        self.events.push(Vec::new());
+        self.replays.push(Vec::new());
+    }
+
+    fn host(&mut self, options: PeerOptions) {
+        let (number, port) = self.port();
+        self.sit(Peer::host(&Setup::default(), options, identity(number), port).unwrap());
+    }
+
+    fn join(&mut self, options: PeerOptions, contact: u8) {
+        let (number, port) = self.port();
+        let peer = Peer::join(&Setup::default(), options, identity(number), port, address(contact));
+        self.sit(peer.unwrap());
+    }
+
+    fn watch(&mut self, options: PeerOptions, contact: u8) {
+        let (number, port) = self.port();
+        let peer = Peer::watch(&Setup::default(), options, identity(number), port, address(contact));
+        self.sit(peer.unwrap());
+    }
+
+    /// Plays for some milliseconds. Peers that are closed end their replays.
+    fn play(&mut self, milliseconds: u64) {
+        for _ in 0..milliseconds {
+            self.air.borrow_mut().now += 1;
+            let now = Duration::from_millis(self.air.borrow().now);
+            for at in 0..self.peers.len() {
+                let Some(peer) = &mut self.peers[at] else { continue };
+                peer.update(now).unwrap();
+                while peer.is_due() {
+                    let tick = peer.tick();
+                    let inputs: Vec<u8> = peer.seats().iter().map(|&seat| bot(seat, tick)).collect();
+                    peer.advance(&inputs).unwrap();
+                }
+                while let Some(event) = peer.next_event() {
+                    self.events[at].push(event);
+                }
+                let replay = peer.take_replay();
+                self.replays[at].extend_from_slice(&replay);
+                if peer.status() == Some(Status::Closed) {
+                    let rest = self.peers[at].take().map(Peer::finish).unwrap().unwrap();
+                    self.replays[at].extend_from_slice(&rest);
+                }
+            }
+        }
+    }
+
+    fn peer(&mut self, at: usize) -> &mut Peer<Pushers, Port> {
+        self.peers[at].as_mut().unwrap()
+    }
+
+    /// Ends the match and returns its replays.
+    fn end(&mut self) -> Vec<Vec<u8>> {
+        let tick = u32::try_from(self.peer(0).tick()).unwrap();
+        self.peer(0).session_mut().unwrap().end_at(tick + 20);
+        self.play(6000);
+        assert!(self.peers.iter().all(Option::is_none), "all have finished");
+        std::mem::take(&mut self.replays)
+    }
+}
+
+fn modes() -> [PeerOptions; 2] {
+    [PeerOptions::lockstep(), PeerOptions::rollback()]
+}
+
+#[test]
+fn all_have_the_same_replay_and_it_verifies() {
+    for options in modes() {
+        let options = PeerOptions { start_with: 3, ..options };
+        let mut table = Table::new(30, 5);
+        table.host(options);
+        table.join(options, 0);
+        table.join(options, 0);
+        table.play(5000);
+        assert!(table.peer(0).tick() > 200, "{}", table.peer(0).tick());
+        let replays = table.end();
+        assert_eq!(replays[0], replays[1]);
+        assert_eq!(replays[0], replays[2]);
+        let verdict = verify::<Pushers>(&replays[0], &Limits::default());
+        assert!(matches!(verdict, Verdict::Match { .. }), "{verdict:?}");
+        let desyncs = table.events.iter().flatten().filter(|event| matches!(event, PeerEvent::Desync(_)));
+        assert_eq!(desyncs.count(), 0);
+    }
+}
+
+/// A replay goes on through departures, joins and outages; late joiners and spectators follow the same states.
+#[test]
+fn late_joiners_and_spectators_follow() {
+    for options in modes() {
+        let mut table = Table::new(20, 2);
+        table.host(options);
+        table.join(options, 0);
+        table.play(3000);
+        table.watch(options, 1);
+        table.join(options, 1);
+        table.play(4000);
+        assert_eq!(table.peer(3).seats(), [2]);
+        assert_eq!(table.peer(2).status(), Some(Status::Watching));
+        assert!(
+            table.events[3].iter().any(|event| matches!(event, PeerEvent::Joined { tick } if *tick > 60))
+        );
+        table.peer(1).session_mut().unwrap().leave();
+        table.play(4000);
+        assert!(table.peers[1].is_none());
+        let lead = table.peer(0).tick();
+        for at in [2, 3] {
+            let tick = table.peer(at).confirmed();
+            assert!(tick + 30 > lead, "{at}: {tick} of {lead}");
+            let hash = table
+                .peer(at)
+                .history()
+                .iter()
+                .rev()
+                .find(|past| past.tick <= tick)
+                .map(|past| (past.tick, past.hash));
+            let (tick, hash) = hash.unwrap();
+            let own = table.peer(0).history().get(tick).map(|past| past.hash);
+            assert!(own.is_none() || own == Some(hash));
+        }
+        let replays = table.end();
+        let verdict = verify::<Pushers>(&replays[0], &Limits::default());
+        assert!(matches!(verdict, Verdict::Match { .. }), "{verdict:?}");
+        assert!(replays[3].is_empty(), "the inputs before the join are not known");
+    }
+}
+
+/// Both go on after an outage, the guest with its old seat and its old replay.
+#[test]
+fn an_outage_costs_no_replay() {
+    let options = PeerOptions::lockstep();
+    let mut table = Table::new(20, 0);
+    table.host(options);
+    table.join(options, 0);
+    table.play(2000);
+    table.air.borrow_mut().loss = 100;
+    table.play(6000);
+    assert_eq!(table.peer(1).status(), Some(Status::Paused));
+    table.air.borrow_mut().loss = 0;
+    table.play(3000);
+    assert_eq!(table.peer(1).seats(), [1]);
+    assert!(
+        table.events[0].contains(&PeerEvent::Session(Event::Waiting { peer: identity(1).id, heard: false }))
+    );
+    let replays = table.end();
+    assert_eq!(replays[0], replays[1]);
+    assert!(matches!(verify::<Pushers>(&replays[1], &Limits::default()), Verdict::Match { .. }));
+}
+
+#[test]
+fn a_desync_is_reported_and_the_reports_blame_the_one_with_the_fault() {
+    for options in modes() {
+        let mut table = Table::new(20, 0);
+        table.host(options);
+        FAULT.set(Some(Fault { tick: 70, disc: 1, motion: BodyField::ALL[0], bit: 9 }));
+        table.join(options, 0);
+        table.play(4000);
+        let desync = |events: &[PeerEvent]| -> Option<PeerDesync> {
+            events.iter().find_map(|event| match event {
+                PeerEvent::Desync(desync) => Some(*desync),
+                _ => None,
+            })
+        };
+        let found: Vec<PeerDesync> = table.events.iter().filter_map(|events| desync(events)).collect();
+        assert_eq!(found.len(), 2, "both notice it");
+        let reports: Vec<Evidence> = (0..2)
+            .map(|at| {
+                let bytes = table.peer(at).report(&found[at]).unwrap();
+                assert!(DesyncReport::from_bytes(&bytes, &Limits::default()).is_ok());
+                Evidence::read(bytes, &Limits::default()).unwrap()
+            })
+            .collect();
+        let comparison = compare::<Pushers>(&reports[0], &reports[1], &Limits::default()).unwrap();
+        assert_eq!(comparison.blame, Blame::Side(Side::B), "{comparison:?}");
+    }
+}
+
+#[test]
+fn another_setup_is_refused_with_all_differences() {
+    let mut table = Table::new(10, 0);
+    table.host(PeerOptions::lockstep());
+    let (number, port) = table.port();
+    let setup = Setup { tick_rate: 30, ..Setup::default() };
+    let options = PeerOptions { patience: Duration::from_secs(5), ..PeerOptions::lockstep() };
+    let mut peer = Peer::<Pushers, _>::join(&setup, options, identity(number), port, address(0)).unwrap();
+    let mut error = None;
+    for _ in 0..1000 {
+        table.play(1);
+        let now = Duration::from_millis(table.air.borrow().now);
+        error = error.or(peer.update(now).err());
+    }
+    let Some(PeerError::Parameters(differences)) = error else { panic!("{error:?}") };
+    let what: Vec<&str> = differences.iter().map(|difference| difference.what).collect();
+    assert_eq!(what, ["setup", "tick rate", "patience in microseconds"]);
+}
+
+/// A dedicated server has no seat, and its replay is that of the players.
+#[test]
+fn a_dedicated_server_plays_no_seat() {
+    let options = PeerOptions::lockstep();
+    let mut table = Table::new(15, 1);
+    table.host(PeerOptions { seats: 0, ..options });
+    table.join(options, 0);
+    table.join(options, 0);
+    table.play(4000);
+    assert_eq!((table.peer(0).seats(), table.peer(1).seats().len()), (vec![], 1));
+    assert!(table.peer(0).tick() > 100);
+    let replays = table.end();
+    assert_eq!(replays[0], replays[1]);
+    assert!(matches!(verify::<Pushers>(&replays[0], &Limits::default()), Verdict::Match { .. }));
+}
+
+/// Inputs that are longer than announced are an error, not silence.
+#[test]
+fn an_input_that_is_too_long_is_an_error() {
+    let mut table = Table::new(1, 0);
+    let options = PeerOptions { start_with: 1, ..PeerOptions::lockstep() };
+    table.host(options);
+    table.play(100);
+    assert_eq!(table.peer(0).game().players(), 4);
+    let now = Duration::from_millis(500);
+    table.peer(0).update(now).unwrap();
+    assert!(matches!(table.peer(0).advance(&[1, 2]), Err(PeerError::InputCount { seats: 1, inputs: 2 })));
+}
