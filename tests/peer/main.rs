@@ -1,8 +1,6 @@
 //! Matches of a game with physics over a network in memory, in simulated time: equal states, equal replays that verify,
 //! late joins, reports of a desync, refusals.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
-
 #[path = "../net/pushers.rs"]
 #[allow(dead_code, reason = "each test binary uses a part")]
 mod pushers;
@@ -42,7 +40,7 @@ struct Port {
 }
 
 fn address(number: u8) -> Address {
-    Address::new(&[number]).unwrap()
+    Address::new(&[number]).expect("valid")
 }
 
 impl Transport for Port {
@@ -98,7 +96,7 @@ impl Table {
 
     /// The next number and its socket.
     fn port(&self) -> (u8, Port) {
-        let number = u8::try_from(self.peers.len()).unwrap();
+        let number = u8::try_from(self.peers.len()).expect("valid");
         (number, Port { number, air: Rc::clone(&self.air) })
     }
 
@@ -110,19 +108,19 @@ impl Table {
 
     fn host(&mut self, options: PeerOptions) {
         let (number, port) = self.port();
-        self.sit(Peer::host(&Setup::default(), options, identity(number), port).unwrap());
+        self.sit(Peer::host(&Setup::default(), options, identity(number), port).expect("valid"));
     }
 
     fn join(&mut self, options: PeerOptions, contact: u8) {
         let (number, port) = self.port();
         let peer = Peer::join(&Setup::default(), options, identity(number), port, address(contact));
-        self.sit(peer.unwrap());
+        self.sit(peer.expect("valid"));
     }
 
     fn watch(&mut self, options: PeerOptions, contact: u8) {
         let (number, port) = self.port();
         let peer = Peer::watch(&Setup::default(), options, identity(number), port, address(contact));
-        self.sit(peer.unwrap());
+        self.sit(peer.expect("valid"));
     }
 
     /// Plays for some milliseconds. Peers that are closed end their replays.
@@ -132,11 +130,11 @@ impl Table {
             let now = Duration::from_millis(self.air.borrow().now);
             for at in 0..self.peers.len() {
                 let Some(peer) = &mut self.peers[at] else { continue };
-                peer.update(now).unwrap();
+                peer.update(now).expect("valid");
                 while peer.is_due() {
                     let tick = peer.tick();
                     let inputs: Vec<u8> = peer.seats().iter().map(|&seat| bot(seat, tick)).collect();
-                    peer.advance(&inputs).unwrap();
+                    peer.advance(&inputs).expect("valid");
                 }
                 while let Some(event) = peer.next_event() {
                     self.events[at].push(event);
@@ -144,7 +142,7 @@ impl Table {
                 let replay = peer.take_replay();
                 self.replays[at].extend_from_slice(&replay);
                 if peer.status() == Some(Status::Closed) {
-                    let rest = self.peers[at].take().map(Peer::finish).unwrap().unwrap();
+                    let rest = self.peers[at].take().map(Peer::finish).expect("valid").expect("valid");
                     self.replays[at].extend_from_slice(&rest);
                 }
             }
@@ -152,13 +150,13 @@ impl Table {
     }
 
     fn peer(&mut self, at: usize) -> &mut Peer<Pushers, Port> {
-        self.peers[at].as_mut().unwrap()
+        self.peers[at].as_mut().expect("valid")
     }
 
     /// Ends the match and returns its replays.
     fn end(&mut self) -> Vec<Vec<u8>> {
-        let tick = u32::try_from(self.peer(0).tick()).unwrap();
-        self.peer(0).session_mut().unwrap().end_at(tick + 20);
+        let tick = u32::try_from(self.peer(0).tick()).expect("valid");
+        self.peer(0).session_mut().expect("valid").end_at(tick + 20);
         self.play(6000);
         assert!(self.peers.iter().all(Option::is_none), "all have finished");
         std::mem::take(&mut self.replays)
@@ -205,7 +203,7 @@ fn late_joiners_and_spectators_follow() {
         assert!(
             table.events[3].iter().any(|event| matches!(event, PeerEvent::Joined { tick } if *tick > 60))
         );
-        table.peer(1).session_mut().unwrap().leave();
+        table.peer(1).session_mut().expect("valid").leave();
         table.play(4000);
         assert!(table.peers[1].is_none());
         let lead = table.peer(0).tick();
@@ -219,7 +217,7 @@ fn late_joiners_and_spectators_follow() {
                 .rev()
                 .find(|past| past.tick <= tick)
                 .map(|past| (past.tick, past.hash));
-            let (tick, hash) = hash.unwrap();
+            let (tick, hash) = hash.expect("valid");
             let own = table.peer(0).history().get(tick).map(|past| past.hash);
             assert!(own.is_none() || own == Some(hash));
         }
@@ -270,12 +268,12 @@ fn a_desync_is_reported_and_the_reports_blame_the_one_with_the_fault() {
         assert_eq!(found.len(), 2, "both notice it");
         let reports: Vec<Evidence> = (0..2)
             .map(|at| {
-                let bytes = table.peer(at).report(&found[at]).unwrap();
+                let bytes = table.peer(at).report(&found[at]).expect("valid");
                 assert!(DesyncReport::from_bytes(&bytes, &Limits::default()).is_ok());
-                Evidence::read(bytes, &Limits::default()).unwrap()
+                Evidence::read(bytes, &Limits::default()).expect("valid")
             })
             .collect();
-        let comparison = compare::<Pushers>(&reports[0], &reports[1], &Limits::default()).unwrap();
+        let comparison = compare::<Pushers>(&reports[0], &reports[1], &Limits::default()).expect("valid");
         assert_eq!(comparison.blame, Blame::Side(Side::B), "{comparison:?}");
     }
 }
@@ -287,7 +285,8 @@ fn another_setup_is_refused_with_all_differences() {
     let (number, port) = table.port();
     let setup = Setup { tick_rate: 30, ..Setup::default() };
     let options = PeerOptions { patience: Duration::from_secs(5), ..PeerOptions::lockstep() };
-    let mut peer = Peer::<Pushers, _>::join(&setup, options, identity(number), port, address(0)).unwrap();
+    let mut peer =
+        Peer::<Pushers, _>::join(&setup, options, identity(number), port, address(0)).expect("valid");
     let mut error = None;
     for _ in 0..1000 {
         table.play(1);
@@ -324,6 +323,6 @@ fn an_input_that_is_too_long_is_an_error() {
     table.play(100);
     assert_eq!(table.peer(0).game().players(), 4);
     let now = Duration::from_millis(500);
-    table.peer(0).update(now).unwrap();
+    table.peer(0).update(now).expect("valid");
     assert!(matches!(table.peer(0).advance(&[1, 2]), Err(PeerError::InputCount { seats: 1, inputs: 2 })));
 }

@@ -46,7 +46,7 @@ struct Net {
 }
 
 fn address(number: u8) -> Address {
-    Address::new(&[10, 0, 0, number]).unwrap()
+    Address::new(&[10, 0, 0, number]).expect("valid")
 }
 
 fn identity(index: usize) -> Identity {
@@ -96,18 +96,18 @@ impl Net {
     }
 
     fn host(&mut self) -> usize {
-        self.add(Endpoint::host(config(), identity(self.nodes.len()), 1).unwrap())
+        self.add(Endpoint::host(config(), identity(self.nodes.len()), 1).expect("valid"))
     }
 
     fn join(&mut self, role: Role, contact: u8) -> usize {
-        self.add(Endpoint::join(config(), identity(self.nodes.len()), role, address(contact)).unwrap())
+        self.add(Endpoint::join(config(), identity(self.nodes.len()), role, address(contact)).expect("valid"))
     }
 
     fn run(&mut self, until: Us) {
         while self.now < until {
             self.now += MS;
             while self.heap.peek().is_some_and(|Reverse(packet)| packet.0 <= self.now) {
-                let Reverse((_, _, from, to, bytes)) = self.heap.pop().unwrap();
+                let Reverse((_, _, from, to, bytes)) = self.heap.pop().expect("valid");
                 let node = self.nodes.iter_mut().find(|node| node.address == to && node.on);
                 if let Some(node) = node {
                     self.received_from[from as usize] += bytes.len() as u64;
@@ -131,14 +131,14 @@ impl Net {
         while let Some(event) = node.endpoint.next_event() {
             if let JoinEvent::State { tick, bytes } = &event {
                 node.tick = *tick;
-                node.state = u64::from_le_bytes(bytes[..8].try_into().unwrap());
+                node.state = u64::from_le_bytes(bytes[..8].try_into().expect("valid"));
                 assert!(bytes[8..].iter().all(|&byte| byte == 7), "the bytes that were sent");
                 node.joined_at = Some(now);
             }
             node.events.push(event);
         }
         if node.endpoint.wants_state() {
-            let confirmed = node.endpoint.session().unwrap().confirmed();
+            let confirmed = node.endpoint.session().expect("valid").confirmed();
             if let Some(&(tick, state)) = node.saved.iter().rev().find(|(tick, _)| *tick <= confirmed) {
                 let mut bytes = state.to_le_bytes().to_vec();
                 bytes.resize(8 + state_bytes, 7);
@@ -150,7 +150,7 @@ impl Net {
             let due = session.is_due(now) && turns < 8;
             if due {
                 let input = vec![(now / 100_000 % 7) as u8; session.seats().count_ones() as usize];
-                session.advance(now, &input).unwrap();
+                session.advance(now, &input).expect("valid");
                 turns += 1;
             }
             while let Some(request) = session.next_request() {
@@ -161,7 +161,7 @@ impl Net {
                     }
                     Request::Load { tick } => {
                         (node.tick, node.state) =
-                            *node.saved.iter().find(|(saved, _)| *saved == tick).unwrap();
+                            *node.saved.iter().find(|(saved, _)| *saved == tick).expect("valid");
                     }
                     Request::Advance { tick, inputs } => {
                         assert_eq!(tick, node.tick);
@@ -173,7 +173,7 @@ impl Net {
                         node.last_tick = now;
                     }
                     Request::Checksum { tick } => {
-                        let &(_, state) = node.saved.iter().find(|(saved, _)| *saved == tick).unwrap();
+                        let &(_, state) = node.saved.iter().find(|(saved, _)| *saved == tick).expect("valid");
                         session.report_hash(tick, u128::from(state));
                     }
                     Request::Forget { tick } => node.saved.retain(|(saved, _)| *saved >= tick),
@@ -211,7 +211,7 @@ impl Net {
     }
 
     fn assert_all_play(&self) {
-        let lead = self.nodes.iter().filter(|node| node.on).map(|node| node.tick).max().unwrap();
+        let lead = self.nodes.iter().filter(|node| node.on).map(|node| node.tick).max().expect("valid");
         for (index, node) in self.nodes.iter().enumerate().filter(|(_, node)| node.on) {
             let status = self.status(index);
             assert!(matches!(status, Some(Status::Playing | Status::Watching)), "{index}: {status:?}");
@@ -233,7 +233,7 @@ fn players_join_while_the_others_play_at_full_speed() {
     net.join(Role::Player { seats: 2 }, 2);
     net.run(10 * S);
     net.assert_all_play();
-    assert_eq!(net.nodes[2].endpoint.session().unwrap().seats(), 0b1100);
+    assert_eq!(net.nodes[2].endpoint.session().expect("valid").seats(), 0b1100);
     assert!(
         net.nodes[0].endpoint.address(id(2)).is_some(),
         "the host has found the address of the third one"
@@ -258,7 +258,7 @@ fn a_state_of_4_mb_takes_three_seconds_at_50_ms_and_5_percent_loss() {
     let newcomer = net.join(Role::Player { seats: 1 }, 1);
     net.run(14 * S);
     net.assert_all_play();
-    let took = net.nodes[newcomer].joined_at.unwrap() - start;
+    let took = net.nodes[newcomer].joined_at.expect("valid") - start;
     assert!(took <= 3 * S, "{took} us");
     for node in &net.nodes[..2] {
         assert!(node.stall <= 50 * MS, "a stall of {} us", node.stall);
@@ -271,7 +271,7 @@ fn nothing_is_sent_to_an_address_that_has_not_answered() {
     net.host();
     net.run(S);
     // The hellos of somebody who does not exist, from an address that is somebody else's.
-    let mut forged = Endpoint::join(config(), identity(7), Role::Spectator, address(1)).unwrap();
+    let mut forged = Endpoint::join(config(), identity(7), Role::Spectator, address(1)).expect("valid");
     let mut sent = 0;
     for _ in 0..100 {
         net.run(net.now + 250 * MS);
@@ -283,7 +283,7 @@ fn nothing_is_sent_to_an_address_that_has_not_answered() {
     }
     net.run(net.now + S);
     assert!(sent > 1000 && net.sent_to[200] <= 3 * sent, "{} bytes for {sent}", net.sent_to[200]);
-    let session = net.nodes[0].endpoint.session().unwrap();
+    let session = net.nodes[0].endpoint.session().expect("valid");
     assert_eq!(session.statistics().peers, 1, "nothing is remembered");
 }
 
@@ -292,7 +292,7 @@ fn other_games_are_refused_with_what_is_expected() {
     let mut net = Net::new(10 * MS, 0, 100);
     net.host();
     let other = Identity { offer: vec![9], ..identity(1) };
-    net.add(Endpoint::join(config(), other, Role::Spectator, address(1)).unwrap());
+    net.add(Endpoint::join(config(), other, Role::Spectator, address(1)).expect("valid"));
     net.run(2 * S);
     let expected = JoinEvent::Refused { reason: RefusalReason::Offer, offer: vec![1, 2, 3] };
     assert_eq!(net.nodes[1].events, [expected]);
@@ -311,7 +311,7 @@ fn spectators_feed_spectators() {
     }
     net.run(net.now + 3 * S);
     net.assert_all_play();
-    assert_eq!(net.nodes[0].endpoint.session().unwrap().view().voters.len(), 2);
+    assert_eq!(net.nodes[0].endpoint.session().expect("valid").view().voters.len(), 2);
     // A player still finds a seat.
     net.join(Role::Player { seats: 1 }, 1);
     net.run(net.now + 4 * S);
@@ -329,7 +329,7 @@ fn an_address_may_change() {
     net.run(8 * S);
     net.assert_all_play();
     assert_eq!(net.nodes[0].endpoint.address(id(1)), Some(address(99)));
-    let session = net.nodes[0].endpoint.session().unwrap();
+    let session = net.nodes[0].endpoint.session().expect("valid");
     assert_eq!((session.view().voters.len(), session.view().number), (2, 1), "no seat was lost");
 }
 
@@ -344,7 +344,7 @@ fn somebody_in_between_relays() {
     net.join(Role::Player { seats: 1 }, 1);
     net.run(8 * S);
     net.assert_all_play();
-    assert_eq!(net.nodes[0].endpoint.session().unwrap().view().voters.len(), 3);
+    assert_eq!(net.nodes[0].endpoint.session().expect("valid").view().voters.len(), 3);
 }
 
 /// A process that crashes and starts again has its old seat, as another incarnation with the same key.
@@ -356,14 +356,15 @@ fn a_restarted_process_gets_its_seat_back() {
     net.run(2 * S);
     net.join(Role::Player { seats: 1 }, 1);
     net.run(4 * S);
-    assert_eq!(net.nodes[1].endpoint.session().unwrap().seats(), 0b10);
+    assert_eq!(net.nodes[1].endpoint.session().expect("valid").seats(), 0b10);
     net.nodes[1].on = false;
     net.run(4500 * MS);
     let again = Identity { key: key(1), ..identity(5) };
-    let index = net.add(Endpoint::join(config(), again, Role::Player { seats: 1 }, address(1)).unwrap());
+    let index =
+        net.add(Endpoint::join(config(), again, Role::Player { seats: 1 }, address(1)).expect("valid"));
     net.run(10 * S);
     net.assert_all_play();
-    assert_eq!(net.nodes[index].endpoint.session().unwrap().seats(), 0b10);
+    assert_eq!(net.nodes[index].endpoint.session().expect("valid").seats(), 0b10);
 }
 
 /// The contact dies during the download: the newcomer asks another one.
@@ -393,7 +394,8 @@ fn an_incarnation_of_somebody_else_is_refused() {
     net.join(Role::Player { seats: 1 }, 1);
     net.run(3 * S);
     let copy = Identity { key: Key(999), id: PeerId(id(1).0), ..identity(6) };
-    let index = net.add(Endpoint::join(config(), copy, Role::Player { seats: 1 }, address(1)).unwrap());
+    let index =
+        net.add(Endpoint::join(config(), copy, Role::Player { seats: 1 }, address(1)).expect("valid"));
     net.run(5 * S);
     let refused = JoinEvent::Refused { reason: RefusalReason::Taken, offer: vec![1, 2, 3] };
     assert_eq!(net.nodes[index].events.first(), Some(&refused));

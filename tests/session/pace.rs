@@ -110,7 +110,7 @@ fn rollback_hides_latency_and_corrects_guesses() {
 fn measurements_are_those_of_the_links() {
     let mut sim = players(2, Way { jitter: 10 * MS, loss: 20, ..way(50 * MS) }, |_| ());
     pace(&mut sim, 20);
-    let link = sim.peers[0].session.link(id(1)).unwrap();
+    let link = sim.peers[0].session.link(id(1)).expect("valid");
     assert!((100 * MS..130 * MS).contains(&link.round_trip), "{link:?}");
     assert!((MS..15 * MS).contains(&link.jitter), "{link:?}");
     assert!((50..400).contains(&link.loss_per_mille), "{link:?}");

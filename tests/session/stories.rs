@@ -204,6 +204,6 @@ fn sixty_four_peers_play() {
     let before = played(&sim, 0);
     sim.run(8 * S);
     assert_eq!(sim.failure, None);
-    let ticks = sim.peers.iter().map(|peer| peer.session.confirmed()).min().unwrap() - before;
+    let ticks = sim.peers.iter().map(|peer| peer.session.confirmed()).min().expect("valid") - before;
     assert!(ticks >= 80, "{ticks} of 90 ticks");
 }
