@@ -63,8 +63,9 @@ pub struct MassProperties {
 }
 
 impl MassProperties {
-    /// Properties of a body that nothing moves: fixed, kinematic, or without mass. Its `k` is arbitrary: 4 m allows a rotation of 100 rad/s within a speed
-    /// limit of 400 m/s, and keeps the ratio of the longest lever arm to `k` below 91.
+    /// Properties of a body that nothing moves: fixed, kinematic, or without mass. Its `k` is arbitrary: 4 m allows a
+    /// rotation of 100 rad/s within a speed limit of 400 m/s, and keeps the ratio of the longest lever arm to `k` below
+    /// 91.
     pub(crate) fn immovable() -> Self {
         Self::new(Fx::ZERO, Vec2::ZERO, fx!(4))
     }

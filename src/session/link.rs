@@ -14,7 +14,7 @@ pub struct Link {
     pub round_trip: u64,
     /// Smoothed deviation of the round trip, in microseconds.
     pub jitter: u64,
-    /// Packets of the last [64 or so](self) that did not arrive, in thousandths.
+    /// Packets of the last 64 or so that did not arrive, in thousandths.
     pub loss_per_mille: u32,
     /// Bytes sent, without the headers of the transport.
     pub bytes_sent: u64,

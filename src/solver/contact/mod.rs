@@ -55,8 +55,8 @@ pub(super) use warm_start::WarmStart;
 /// Largest impulse of friction and of rolling resistance. The difference of two such impulses fits the format.
 const TANGENT_MAX: Speed = Speed::lit("511");
 
-/// Number of passes in which elastic contacts that bounce at the same time are solved against each other: a body in a corner.
-/// With one pass a box in a closed room gained half of its energy within a minute.
+/// Number of passes in which elastic contacts that bounce at the same time are solved against each other: a body in a
+/// corner. With one pass a box in a closed room gained half of its energy within a minute.
 const RESTITUTION_PASSES: u32 = 12;
 
 /// All contacts of a tick.
