@@ -349,7 +349,8 @@ impl<G: Game, T: Transport> Peer<G, T> {
     /// joined after the first tick has no replay.
     #[must_use]
     pub fn take_replay(&mut self) -> Vec<u8> {
-        self.simulation.take_replay()
+        // Until the state to begin with is here, nobody knows whether it is that of tick 0.
+        if self.endpoint.session().is_some() { self.simulation.take_replay() } else { Vec::new() }
     }
 
     /// Ends the replay after the last final tick, and returns the bytes that have not been taken yet. Leave or end the

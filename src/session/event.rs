@@ -13,7 +13,7 @@ pub enum Status {
     Waiting,
     /// Plays.
     Playing,
-    /// Has a seat but cannot hear a majority, which alone can go on.
+    /// Cannot hear a majority, which alone can go on. Somebody without a seat may ask another contact.
     Paused,
     /// The others went on without it; it asks for its seat again.
     Dropped,

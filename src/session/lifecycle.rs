@@ -24,7 +24,8 @@ pub(super) struct Lifecycle {
     paused: alloc::vec::Vec<PeerId>,
 }
 
-/// Play stands still for this many ticks before the game is told whom it waits for.
+/// Play stands still for this many ticks, and as long as a peer counts as heard, before the game is told whom it
+/// waits for.
 const WAITING_TICKS: u64 = 6;
 
 impl Lifecycle {
@@ -142,6 +143,8 @@ impl Session {
             (true, _) => Status::Playing,
             (false, _) if self.lifecycle.kicked => Status::Kicked,
             (false, _) if self.lifecycle.dropped => Status::Dropped,
+            // The contact may have gone: another one can be asked.
+            (false, _) if self.view.begun && !self.is_connected() => Status::Paused,
             (false, Role::Player { .. }) => Status::Joining,
             (false, Role::Spectator) => Status::Watching,
         }
@@ -164,7 +167,9 @@ impl Session {
     fn tell_waiting(&mut self) {
         let tick = u64::from(self.config.tick_micros);
         let begun = self.view.begun && self.progress.complete < self.stop();
-        let still = begun && self.clock.active > self.progress.moved_at.saturating_add(WAITING_TICKS * tick);
+        let still = begun
+            && self.clock.active
+                > self.progress.moved_at.saturating_add((WAITING_TICKS * tick).max(self.config.timing.heard));
         let peer = self.waiting_for().filter(|&peer| still && peer != self.me);
         if peer == self.lifecycle.waiting_for {
             return;

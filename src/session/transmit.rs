@@ -123,8 +123,8 @@ impl Session {
         }
     }
 
-    /// Whether packets go to a peer. Somebody who has lost contact, or its seat, tries everybody whom it knows from time to
-    /// time.
+    /// Whether packets go to a peer. Somebody who has lost contact, or its seat, tries everybody whom it knows from
+    /// time to time.
     fn is_served(&self, remote: &Remote) -> bool {
         let tries = self.outbox.version.is_multiple_of(TRY_ROWS)
             && (self.view.voter(self.me).is_none() || !self.is_connected());

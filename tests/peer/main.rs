@@ -82,7 +82,7 @@ struct Table {
 }
 
 fn identity(number: u8) -> PeerIdentity {
-    let random = u64::from(number) * 0x9e37_79b9_7f4a_7c15;
+    let random = u64::from(number).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     PeerIdentity::new([random, random ^ 0x5555, 77]).with_key(Key(u64::from(number)))
 }
 
@@ -206,6 +206,11 @@ fn late_joiners_and_spectators_follow() {
         table.peer(1).session_mut().expect("valid").leave();
         table.play(4000);
         assert!(table.peers[1].is_none());
+        // The spectator has lost its contact, and asks another one.
+        assert_eq!(table.peer(2).status(), Some(Status::Paused));
+        table.peer(2).ask(address(0));
+        table.play(2000);
+        assert_eq!(table.peer(2).status(), Some(Status::Watching));
         let lead = table.peer(0).tick();
         for at in [2, 3] {
             let tick = table.peer(at).confirmed();

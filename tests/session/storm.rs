@@ -221,7 +221,7 @@ impl Match {
         let now = self.sim.now;
         let finals: Vec<u32> = self.sim.peers.iter().map(|peer| peer.session.confirmed()).collect();
         // Somebody may have crashed just before: that takes the time of patience and a change.
-        for wait in [MOVED, 2 * MOVED, 2 * MOVED] {
+        for wait in [MOVED, 3 * MOVED, 5 * MOVED] {
             if !self.run(now + wait) {
                 return;
             }
