@@ -1,6 +1,5 @@
 //! Whole matches of session cores in simulated time, over links that delay, lose, double, reorder and cut.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 #![expect(
     clippy::cast_possible_truncation,
     clippy::cast_lossless,
