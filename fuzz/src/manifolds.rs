@@ -1,6 +1,6 @@
 //! Compares contacts and distances of two shapes with a search over all axes and all pairs of features in big integers.
 
-use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
+use lockstep2d::body::{BodyDef, Geometry, MassSource, Polygon, ShapeDef};
 use lockstep2d::math::{Angle, Fx, Rot, Step, Vec2};
 use lockstep2d::world::{Config, World};
 use num_bigint::BigInt;
@@ -60,7 +60,9 @@ pub fn run(bytes: &[u8]) -> Seen {
     let at_b = at_a + between;
     let (angle_a, angle_b) = (source.angle(), source.angle());
     let a = BodyDef::fixed().position(at_a).angle(angle_a);
-    let b = BodyDef::dynamic().position(at_b).angle(angle_b);
+    // From its shapes a segment would have no mass, and a body without mass has no contacts with fixed ones.
+    let mass = MassSource::Given { mass: Fx::ONE, centre: Vec2::ZERO, gyration: Fx::ONE };
+    let b = BodyDef::dynamic().position(at_b).angle(angle_b).mass(mass);
     let shapes = [(a, def_a), (b, def_b)].map(|(body, geometry)| {
         let body = world.spawn(&body, &[ShapeDef::new(geometry)]).ok()?;
         Some(world.body(body)?.shapes()[0])
