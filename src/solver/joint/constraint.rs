@@ -315,7 +315,7 @@ impl JointSet {
 
     /// Computes arms, gains and gaps at the current poses. Those of hinges are computed by the next operation on them.
     pub(in crate::solver) fn refresh(&mut self, context: &StepContext<'_>) {
-        if self.entries.is_empty() {
+        if self.turning.is_empty() {
             return;
         }
         let &StepContext { machine, bodies, tuning, .. } = context;
@@ -329,7 +329,7 @@ impl JointSet {
 
     /// Predicts the rotations in the next sub-step from the velocities after the last one.
     pub(in crate::solver) fn predict_rotations(&mut self, context: &StepContext<'_>) {
-        if self.entries.is_empty() {
+        if self.turning.is_empty() {
             return;
         }
         let &StepContext { bodies, tuning, .. } = context;
@@ -353,7 +353,7 @@ impl JointSet {
     }
 
     pub(in crate::solver) fn warm_start(&mut self, context: &StepContext<'_>) {
-        if self.entries.is_empty() {
+        if self.turning.is_empty() {
             return;
         }
         self.list.warm_start(context);
@@ -363,7 +363,7 @@ impl JointSet {
 
     /// One iteration over all joints.
     pub(in crate::solver) fn solve(&mut self, pass: Pass, context: &StepContext<'_>) {
-        if self.entries.is_empty() {
+        if self.turning.is_empty() {
             return;
         }
         let JointSet { list, hinges, blocks, quads, body_rotations, .. } = self;
