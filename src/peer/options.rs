@@ -16,7 +16,7 @@ pub struct PeerOptions {
     pub guess: u16,
     /// Bounds of the delay of own inputs in ticks. Within them it follows the latency.
     pub delay: (u16, u16),
-    /// How long all wait for a peer that cannot be heard, before they go on without it. `Duration::MAX`: for ever.
+    /// Time for which all wait for a peer that cannot be heard before they go on without it. `Duration::MAX`: for ever.
     pub patience: Duration,
     /// Number of seats that have to be taken before the first tick.
     pub start_with: u8,
@@ -73,7 +73,7 @@ impl PeerOptions {
     }
 }
 
-/// Who a peer is.
+/// Identity of a peer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PeerIdentity {
     /// A random number, new for each process.

@@ -10,7 +10,7 @@ use crate::hash::StateHash;
 use crate::lockstep::Game;
 use crate::session::Config;
 
-/// What has to be equal for all peers of a match.
+/// Parameters that have to be equal for all peers of a match.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PeerParameters {
     /// Version of the engine's semantics, [`SEMANTICS`](crate::SEMANTICS).

@@ -18,7 +18,7 @@ use super::row::Ballot;
 use super::state::Session;
 use super::view::{Change, View, bit, has_bit};
 
-/// What a voter remembers of the ballots of its view.
+/// State of a voter in the ballots of its view.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Agreement {
     pub(super) promised: Option<Ballot>,

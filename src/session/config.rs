@@ -17,7 +17,7 @@ pub const INPUT_BYTES_MAX: u16 = 512;
 /// Periods of a session, in microseconds. `patience` has to be the same for all peers of a match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
-    /// How long play stands still for somebody before the others go on without it. `u64::MAX`: for ever, until somebody
+    /// Time for which play stands still for a peer before the others go on without it. `u64::MAX`: for ever, until somebody
     /// asks to go on.
     pub patience: u64,
     /// A peer is heard while its last packet is younger than this.

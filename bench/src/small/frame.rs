@@ -31,9 +31,9 @@ pub struct Frame {
     /// CPU time of a save and a hash of lockstep2d, in percent of a restore and
     /// eight steps.
     pub save_and_hash_percent: f64,
-    /// The same of Box2D.
+    /// The same share in Box2D.
     pub box2d_save_and_hash_percent: f64,
-    /// The same of rapier2d.
+    /// The same share in rapier2d.
     pub rapier_save_and_hash_percent: f64,
 }
 
