@@ -94,7 +94,7 @@ impl PeerIdentity {
         PeerIdentity { id: PeerId(u32::from_le_bytes([w, x, y, z])), key: Key(key), secret: [a, b] }
     }
 
-    /// The same with a key that the lobby has given.
+    /// Identity with a key that the lobby has assigned.
     #[must_use]
     pub fn with_key(self, key: Key) -> Self {
         PeerIdentity { key, ..self }

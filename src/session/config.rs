@@ -24,7 +24,7 @@ pub struct Timing {
     pub heard: u64,
     /// A row is fresh while it is younger than this.
     pub fresh: u64,
-    /// How long a proposer waits for promises beyond a quorum.
+    /// Time for which a proposer with a quorum waits for further promises.
     pub promises: u64,
     /// After this time without a decision, another proposer tries.
     pub ballot: u64,
@@ -184,11 +184,11 @@ pub enum Fault {
     NoFreeze,
     /// The cut is what the proposer alone has acknowledged.
     OwnCut,
-    /// What is complete counts as final.
+    /// Complete ticks count as final.
     FinalComplete,
     /// Half of the weight counts as a quorum.
     HalfIsEnough,
-    /// What was complete stays so when a view changes.
+    /// Complete ticks are not computed again when a view is installed.
     KeepComplete,
     /// No rows and inputs of others are passed on.
     NoRelay,
@@ -196,13 +196,13 @@ pub enum Fault {
     LocalEnd,
     /// Ballots start while a promise stands.
     Duel,
-    /// Who has not promised is out at once.
+    /// A proposal drops voters without a promise, without patience.
     Accuse,
     /// A proposer forgets what others have accepted.
     ForgetAccepted,
     /// A change is accepted without the inputs before its cut.
     AcceptBlind,
-    /// Who leaves does not wait for the others.
+    /// A peer that leaves does not linger.
     HastyLeave,
     /// Wrong guesses are not corrected.
     NoRollback,

@@ -28,12 +28,12 @@ pub struct Frame {
     pub vs_box2d: f64,
     /// Median of the rounds' ratios of the frame to rapier2d's.
     pub vs_rapier: f64,
-    /// CPU time of a save and a hash of lockstep2d, in percent of a restore and
+    /// CPU time of saves and hashes in lockstep2d, in percent of a restore and
     /// eight steps.
     pub save_and_hash_percent: f64,
-    /// The same share in Box2D.
+    /// CPU time of saves and hashes in Box2D, in percent of its restore and steps.
     pub box2d_save_and_hash_percent: f64,
-    /// The same share in rapier2d.
+    /// CPU time of saves and hashes in rapier2d, in percent of its restore and steps.
     pub rapier_save_and_hash_percent: f64,
 }
 
