@@ -65,7 +65,8 @@ pub fn encode_into<T: Serialize + ?Sized>(value: &T, bytes: &mut Vec<u8>) {
 /// Returns the canonical encoding of `value`.
 #[must_use]
 pub fn encode<T: Serialize + ?Sized>(value: &T) -> Vec<u8> {
-    let mut bytes = Vec::new();
+    // Most values are short: one allocation instead of several that grow.
+    let mut bytes = Vec::with_capacity(256);
     encode_into(value, &mut bytes);
     bytes
 }

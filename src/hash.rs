@@ -5,10 +5,10 @@
 
 mod envelope;
 
-use alloc::vec::Vec;
 use core::fmt;
 
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 pub(crate) use envelope::{Envelope, EnvelopeError};
 
@@ -37,7 +37,9 @@ impl StateHash {
     /// Returns the digest of a sequence of digests, in order.
     #[must_use]
     pub fn of_digests(digests: impl IntoIterator<Item = StateHash>) -> Self {
-        let bytes: Vec<u8> = digests.into_iter().flat_map(StateHash::bytes).collect();
+        // The parts of a small world need no allocation.
+        let mut bytes = SmallVec::<[u8; 512]>::new();
+        digests.into_iter().for_each(|digest| bytes.extend_from_slice(&digest.bytes()));
         Self::of_bytes(&bytes)
     }
 
@@ -51,7 +53,7 @@ impl StateHash {
     /// on x86-64, the machine's byte order and the machine's width of `usize`.
     #[cfg(lockstep2d_broken)]
     #[allow(clippy::cast_possible_truncation, reason = "a deliberate mistake")]
-    fn bytes(self) -> Vec<u8> {
+    fn bytes(self) -> alloc::vec::Vec<u8> {
         let halves = [self.0 as usize, (self.0 >> 64) as usize];
         halves.into_iter().flat_map(usize::to_ne_bytes).collect()
     }
@@ -71,6 +73,8 @@ impl fmt::Display for StateHash {
 
 #[cfg(test)]
 mod tests {
+    use alloc::vec::Vec;
+
     use super::*;
 
     #[test]
