@@ -152,6 +152,18 @@ impl Angle {
         (self.sin(), self.cos())
     }
 
+    /// Unit vector that points in this direction: `(cos, sin)`.
+    ///
+    /// ```
+    /// use lockstep2d::{fx, math::{Angle, Vec2}};
+    /// assert_eq!(Angle::from_degrees(fx!(90)).direction(), Vec2::Y);
+    /// ```
+    #[inline]
+    #[must_use]
+    pub const fn direction(self) -> Vec2<Unit> {
+        Vec2::new(self.cos(), self.sin())
+    }
+
     /// Direction of a vector, within 0.7 units of 2^-32 turn; exact on the axes and the diagonals. The direction of the
     /// zero vector is [`Angle::ZERO`].
     #[inline]

@@ -1,0 +1,19 @@
+//! Compiles and runs the code of the chapters, and checks the links of all documents (`tests/links.rs`). The first
+//! game is several files: `.ci/book` extracts, builds and plays it.
+
+macro_rules! chapters {
+    ($($name:ident $file:literal)*) => {
+        $(
+            #[cfg(doctest)]
+            #[doc = include_str!($file)]
+            mod $name {}
+        )*
+    };
+}
+
+chapters! {
+    rules "rules.md"
+    drawing "drawing.md"
+    sensors "sensors.md"
+    characters "characters.md"
+}
