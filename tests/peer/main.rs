@@ -2,6 +2,8 @@
 //! late joins, reports of a desync, refusals.
 
 mod pushers;
+#[cfg(feature = "sealed")]
+mod sealed;
 
 use std::time::Duration;
 
