@@ -1,45 +1,48 @@
-//! Two players and a spectator that joins late. Run with `cargo run --features ggrs --example spectator`.
-#![expect(clippy::disallowed_types, reason = "the clock of this process")]
+//! Two players and a spectator that joins late. Run with `cargo run --example spectator`.
 
 mod tug;
 
 use std::error::Error;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use lockstep2d::net::{LinkConditions, NetOptions, Network, Peer};
+use lockstep2d::peer::{LinkConditions, Network, Peer, PeerIdentity, PeerOptions, Port};
 
 use tug::Tug;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let network =
-        Network::new(LinkConditions { latency: Duration::from_millis(30), ..LinkConditions::default() }, 1);
-    let options = NetOptions::rollback();
-    let mut peers = vec![
-        Peer::<Tug, _, _>::host(&(), options, network.port(0))?,
-        Peer::join(&(), options, network.port(1), 0, None)?,
+    let network = Network::new(LinkConditions::latency(Duration::from_millis(30)), 1);
+    let options = PeerOptions::rollback();
+    let (host, guest) = (PeerIdentity::random(), PeerIdentity::random());
+    let mut peers: Vec<Peer<Tug, Port>> = vec![
+        Peer::host(&(), options, host, network.port(0))?,
+        Peer::join(&(), options, guest, network.port(1), Network::address(0))?,
     ];
-    let start = Instant::now();
+    let mut now = Duration::ZERO;
     loop {
-        let now = start.elapsed();
+        // Simulated time. A game passes the time since its start instead, and sleeps.
+        now += Duration::from_millis(1);
         network.set_time(now);
         for peer in &mut peers {
             peer.update(now)?;
-            while peer.is_due() && peer.advance(1)? {}
+            while peer.is_due() {
+                // A spectator has no seats, and passes no input.
+                let inputs = vec![1; peer.seats().len()];
+                peer.advance(&inputs)?;
+            }
         }
         if peers.len() == 2 && peers[0].tick() >= 120 {
             // The spectator receives a state of the match and the inputs since then, and catches up.
-            peers.push(Peer::watch(&(), options, network.port(2), 0)?);
+            let me = PeerIdentity::random();
+            peers.push(Peer::watch(&(), options, me, network.port(2), Network::address(1))?);
         }
         if let [player, _, watcher] = &peers[..]
             && watcher.tick() >= 240
         {
             let tick = watcher.tick();
-            let hash =
-                |peer: &Peer<Tug, _, _>| peer.history().get(tick).map(|moment| moment.hash.to_string());
+            let hash = |peer: &Peer<Tug, Port>| peer.history().get(tick).map(|past| past.hash.to_string());
             println!("after {tick} ticks the player has {:?}", hash(player));
             println!("and the spectator       has {:?}", hash(watcher));
             return Ok(());
         }
-        std::thread::sleep(Duration::from_millis(1));
     }
 }

@@ -45,8 +45,6 @@ pub mod hash;
 pub mod inspect;
 pub mod lockstep;
 pub mod math;
-#[cfg(feature = "ggrs")]
-pub mod net;
 pub mod peer;
 pub mod replay;
 pub mod report;

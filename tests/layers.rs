@@ -6,7 +6,7 @@
 //! re-export as a path to the file that defines the item. It reads only paths: calls of methods are not found.
 //!
 //! ```text
-//!        net   peer
+//!             peer
 //!          report   check
 //! scenes   replay
 //!       \  /
@@ -70,7 +70,6 @@ const LAYERS: Rules = &[
             "report",
         ],
     ),
-    ("net", &["math", "codec", "hash", "lockstep", "replay", "report"]),
     ("scenes", &["math", "codec", "hash", "body", "collision", "solver", "world", "lockstep"]),
 ];
 

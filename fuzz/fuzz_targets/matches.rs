@@ -7,8 +7,8 @@ use lockstep2d_fuzz::{allocations, matches};
 #[global_allocator]
 static ALLOCATOR: allocations::Counting = allocations::Counting;
 
-/// Maximum memory in bytes: the largest state that one joining peer accepts (64 MiB), plus a little.
-const MEMORY_MAX: usize = 80 << 20;
+/// Maximum memory in bytes.
+const MEMORY_MAX: usize = 16 << 20;
 
 fuzz_target!(|bytes: &[u8]| {
     let (_, peak) = allocations::peak_of(|| matches::run(bytes));

@@ -37,7 +37,7 @@ fn plain_bytes() {
     run("replay_bytes", bytes::replay::run);
     run("snapshot_bytes", bytes::snapshot::run);
     run("report_bytes", bytes::report::run);
-    run("packets", bytes::packet::run);
+    run("session", bytes::session::run);
 }
 
 #[test]

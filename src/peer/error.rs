@@ -29,6 +29,18 @@ pub enum PeerError {
         /// Number of inputs.
         inputs: usize,
     },
+    /// The match does not have the seat that was asked for.
+    Seat {
+        /// The seat.
+        seat: u8,
+        /// Number of seats of the match.
+        seats: u8,
+    },
+    /// The seat that was asked for belongs to somebody else.
+    SeatTaken {
+        /// The seat.
+        seat: u8,
+    },
     /// The parameters of the others differ.
     Parameters(Vec<ParameterDifference>),
     /// The contact refuses.
@@ -57,6 +69,10 @@ impl fmt::Display for PeerError {
                 write!(f, "an input of {bytes} bytes, {possible} are possible")
             }
             PeerError::InputCount { seats, inputs } => write!(f, "{inputs} inputs for {seats} own seats"),
+            PeerError::Seat { seat, seats } => {
+                write!(f, "there is no seat {seat}: the match has seats 0 to {}", seats.saturating_sub(1))
+            }
+            PeerError::SeatTaken { seat } => write!(f, "seat {seat} is taken"),
             PeerError::Parameters(differences) => {
                 write!(f, "the peers have different parameters:")?;
                 for (at, ParameterDifference { what, ours, theirs }) in differences.iter().enumerate() {

@@ -10,9 +10,8 @@
 //! # use lockstep2d::peer::{Peer, PeerError, PeerIdentity, PeerOptions, Udp};
 //! # fn read_pad<G: Game>() -> G::Input { G::Input::default() }
 //! # fn draw<G: Game>(_: &G) {}
-//! # fn random() -> [u64; 3] { [1, 2, 3] }
 //! # fn play<MyGame: Game>(setup: &MyGame::Setup) -> Result<(), Box<dyn std::error::Error>> {
-//! let me = PeerIdentity::new(random());
+//! let me = PeerIdentity::random();
 //! let mut peer = Peer::<MyGame, _>::host(setup, PeerOptions::rollback(), me, Udp::bind("0.0.0.0:7000")?)?;
 //! # let start = std::time::Instant::now();
 //! loop {
@@ -27,17 +26,27 @@
 //! ```
 
 mod error;
+mod event;
 mod input_slot;
+#[cfg(feature = "std")]
+mod network;
 mod options;
 mod parameters;
 mod participant;
+#[cfg(feature = "sealed")]
+mod sealed;
 mod simulation;
 mod transport;
 
 pub use error::PeerError;
+pub use event::{PeerDesync, PeerEnd, PeerEvent};
+#[cfg(feature = "std")]
+pub use network::{LinkConditions, Network, Port};
 pub use options::{PeerIdentity, PeerOptions};
 pub use parameters::{ParameterDifference, PeerParameters};
-pub use participant::{Peer, PeerDesync, PeerEvent};
+pub use participant::Peer;
+#[cfg(feature = "sealed")]
+pub use sealed::{SEALED_OVERHEAD, Sealed};
 pub use transport::Transport;
 #[cfg(feature = "std")]
 pub use transport::{Udp, socket_address};

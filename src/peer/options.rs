@@ -22,6 +22,8 @@ pub struct PeerOptions {
     pub start_with: u8,
     /// Number of own seats.
     pub seats: u8,
+    /// First own seat, if it has to be a certain one. `None`: any free seats.
+    pub first_seat: Option<u8>,
     /// Largest encoded input in bytes, for games whose inputs differ in length. `None`: all are as long as the default.
     pub input_bytes: Option<u16>,
     /// Distinguishes matches of the same game.
@@ -40,6 +42,7 @@ impl PeerOptions {
             patience: Duration::from_secs(2),
             start_with: 2,
             seats: 1,
+            first_seat: None,
             input_bytes: None,
             match_tag: 0,
             checkpoint_interval: CHECKPOINT_INTERVAL,
@@ -52,13 +55,24 @@ impl PeerOptions {
         PeerOptions { guess: 8, delay: (1, 20), ..Self::lockstep() }
     }
 
+    /// Bit for each seat that this peer asks for; 0 for any.
+    fn wanted_seats(&self, seats: u8) -> Result<u64, PeerError> {
+        let Some(first) = self.first_seat else { return Ok(0) };
+        let end = first.saturating_add(self.seats);
+        if end > seats {
+            return Err(PeerError::Seat { seat: end - 1, seats });
+        }
+        Ok((first..end).fold(0, |set, seat| set | 1_u64.checked_shl(seat.into()).unwrap_or(0)))
+    }
+
     /// The configuration of the session.
     pub(super) fn config<G: Game>(&self, game: &G, slot: InputSlot) -> Result<Config, PeerError> {
         let seats = u8::try_from(game.players()).unwrap_or(u8::MAX);
         let mut config = Config::new(self.match_tag, seats);
         config.input_bytes = slot.bytes();
         config.tick_micros = 1_000_000 / game.tick_rate().max(1);
-        config.start_with = self.start_with.min(seats);
+        config.start_with = self.start_with;
+        config.seats_wanted = self.wanted_seats(seats)?;
         config.guess = self.guess;
         (config.delay_min, config.delay_max) = self.delay;
         let patience = u64::try_from(self.patience.as_micros()).unwrap_or(u64::MAX);
@@ -76,22 +90,38 @@ impl PeerOptions {
 /// Identity of a peer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PeerIdentity {
-    /// A random number, new for each process.
+    /// A random number, new for each start of a process.
     pub id: PeerId,
     /// The identity that outlives processes. Whoever returns with the same key gets its seat back.
     pub key: Key,
-    /// Random numbers that nobody else knows.
+    /// Random numbers that nobody else knows, for the cookies of the handshake.
     pub secret: [u64; 2],
 }
 
+/// Random numbers of the operating system. The standard library has them as keys of its hash function only.
+#[cfg(all(feature = "std", not(all(target_family = "wasm", target_os = "unknown"))))]
+pub(super) fn random_numbers<const N: usize>() -> [u64; N] {
+    use std::hash::{BuildHasher, RandomState};
+    let keyed = RandomState::new();
+    core::array::from_fn(|number| keyed.hash_one(number))
+}
+
 impl PeerIdentity {
-    /// A new identity from random numbers, which have to differ for every process.
+    /// An identity from random numbers, which have to differ for every process: the id (its low 32 bits count), the key,
+    /// and the secret.
     #[must_use]
-    pub fn new(random: [u64; 3]) -> Self {
-        let [key, a, b] = random;
-        let [id, ..] = [a.rotate_left(17) ^ key, 0];
-        let [w, x, y, z, ..] = id.to_le_bytes();
-        PeerIdentity { id: PeerId(u32::from_le_bytes([w, x, y, z])), key: Key(key), secret: [a, b] }
+    pub fn new(random: [u64; 4]) -> Self {
+        let [id, key, secret @ ..] = random;
+        let [a, b, c, d, ..] = id.to_le_bytes();
+        PeerIdentity { id: PeerId(u32::from_le_bytes([a, b, c, d])), key: Key(key), secret }
+    }
+
+    /// An identity from random numbers of the operating system. The web has none in the standard library; use
+    /// [`PeerIdentity::new`] with those of the browser there.
+    #[cfg(all(feature = "std", not(all(target_family = "wasm", target_os = "unknown"))))]
+    #[must_use]
+    pub fn random() -> Self {
+        PeerIdentity::new(random_numbers())
     }
 
     /// Identity with a key that the lobby has assigned.

@@ -6,6 +6,7 @@ use core::fmt;
 use core::time::Duration;
 
 use super::error::PeerError;
+use super::event::{PeerDesync, PeerEnd, PeerEvent};
 use super::input_slot::InputSlot;
 use super::options::{PeerIdentity, PeerOptions};
 use super::parameters::PeerParameters;
@@ -18,33 +19,6 @@ use crate::session::{
     Address, Endpoint, Event, Identity, JoinEvent, Key, Link, PeerId, RefusalReason, Role, Session, Status,
     Tick,
 };
-
-/// Something that happened in a match.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PeerEvent {
-    /// An event of the session.
-    Session(Event),
-    /// The state to begin with has arrived; the game goes on from it.
-    Joined {
-        /// Number of ticks that lead to it.
-        tick: u64,
-    },
-    /// Another peer has another state. Write [`Peer::report`] to a file.
-    Desync(PeerDesync),
-}
-
-/// Two peers had different states.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PeerDesync {
-    /// The other peer.
-    pub peer: PeerId,
-    /// Number of ticks played.
-    pub tick: u64,
-    /// Hash of this peer.
-    pub ours: StateHash,
-    /// Hash of the other peer.
-    pub theirs: StateHash,
-}
 
 /// Packets that are read in one update, at most.
 const PACKETS_PER_UPDATE: usize = 4096;
@@ -60,6 +34,8 @@ pub struct Peer<G: Game, T> {
     parameters: PeerParameters,
     slot: InputSlot,
     now: u64,
+    /// Number of ticks after which this peer wants the match to end.
+    end: Option<u64>,
     /// Bytes of the inputs of a tick, reused.
     inputs: Vec<u8>,
     events: VecDeque<PeerEvent>,
@@ -144,12 +120,13 @@ impl<G: Game, T: Transport> Peer<G, T> {
         let endpoint = match way {
             Way::Host => {
                 let seats = 1_u64.checked_shl(options.seats.into()).map_or(u64::MAX, |above| above - 1);
-                Endpoint::host(config, identity, seats)?
+                let first = options.first_seat.unwrap_or(0);
+                Endpoint::host(config, identity, seats.checked_shl(first.into()).unwrap_or(0))?
             }
             Way::Join(role, contact) => Endpoint::join(config, identity, role, contact)?,
         };
         let (inputs, events) = (Vec::new(), VecDeque::new());
-        Ok(Peer { transport, endpoint, simulation, parameters, slot, now: 0, inputs, events })
+        Ok(Peer { transport, endpoint, simulation, parameters, slot, now: 0, end: None, inputs, events })
     }
 
     /// Reads all received packets and sends what is due. `now` is the time since a fixed moment in the past.
@@ -162,8 +139,12 @@ impl<G: Game, T: Transport> Peer<G, T> {
             let Some((from, bytes)) = self.transport.receive() else { break };
             self.endpoint.receive(self.now, from, &bytes);
         }
+        self.ask_for_end();
         self.endpoint.update(self.now);
         self.take_join_events()?;
+        if let Some(seat) = self.endpoint.session().and_then(Session::taken_seat) {
+            return Err(PeerError::SeatTaken { seat });
+        }
         if self.endpoint.wants_state() {
             let state = self.simulation.state_for(self.simulation.committed);
             if let Some((tick, bytes)) = state {
@@ -173,6 +154,16 @@ impl<G: Game, T: Transport> Peer<G, T> {
         self.fulfil()?;
         self.send();
         Ok(())
+    }
+
+    /// Asks for the end when it is near: nobody can join a match whose end is decided.
+    fn ask_for_end(&mut self) {
+        let Some(end) = self.end else { return };
+        let lead = 2 * u64::from(self.simulation.game.tick_rate());
+        let near = self.simulation.tick.saturating_add(lead) >= end;
+        if let Some(session) = self.endpoint.session_mut().filter(|session| near && session.view().begun) {
+            session.end_at(Tick::try_from(end).unwrap_or(Tick::MAX));
+        }
     }
 
     fn take_join_events(&mut self) -> Result<(), PeerError> {
@@ -304,8 +295,13 @@ impl<G: Game, T: Transport> Peer<G, T> {
     /// The own seats, in ascending order.
     #[must_use]
     pub fn seats(&self) -> Vec<u32> {
-        let seats = self.endpoint.session().map_or(0, Session::seats);
-        (0..64).filter(|seat| seats >> seat & 1 == 1).collect()
+        self.endpoint.session().map_or_else(Vec::new, |session| self.seats_of(session.id()))
+    }
+
+    /// Received and all bytes of the state to begin with, while it is downloaded.
+    #[must_use]
+    pub fn download(&self) -> Option<(u64, u64)> {
+        self.endpoint.download()
     }
 
     /// Measurements of the way to another peer.
@@ -324,6 +320,27 @@ impl<G: Game, T: Transport> Peer<G, T> {
     /// Asks somebody else to join, or the same one again, for example when no answer comes.
     pub fn ask(&mut self, contact: Address) {
         self.endpoint.ask(contact);
+    }
+
+    /// Leaves the match; the others go on at once. Call [`update`](Peer::update) until the status is
+    /// [`Status::Closed`]; before the state to begin with has arrived, there is nothing to wait for.
+    pub fn leave(&mut self) {
+        if let Some(session) = self.endpoint.session_mut() {
+            session.leave();
+        }
+    }
+
+    /// Wants the match to end after a number of ticks. If others want it, too, the largest such number counts. It is decided
+    /// by a majority two seconds before; until then others can join.
+    pub const fn end_at(&mut self, ticks: u64) {
+        self.end = Some(ticks);
+    }
+
+    /// The seats of a peer, in ascending order.
+    #[must_use]
+    pub fn seats_of(&self, peer: PeerId) -> Vec<u32> {
+        let seats = self.endpoint.session().map_or(0, |session| session.view().seats_of(peer));
+        (0..64).filter(|seat| seats >> seat & 1 == 1).collect()
     }
 
     /// The transport.
@@ -353,12 +370,15 @@ impl<G: Game, T: Transport> Peer<G, T> {
         if self.endpoint.session().is_some() { self.simulation.take_replay() } else { Vec::new() }
     }
 
-    /// Ends the replay after the last final tick, and returns the bytes that have not been taken yet. Leave or end the
-    /// match first, and call [`update`](Peer::update) until the status is [`Status::Closed`].
+    /// Ends the replay after the last final tick, and returns the bytes that have not been taken yet, and the game after
+    /// that tick. Leave or end the match first, and call [`update`](Peer::update) until the status is
+    /// [`Status::Closed`].
     ///
     /// # Errors
     /// [`PeerError`] when the replay cannot be finished.
-    pub fn finish(self) -> Result<Vec<u8>, PeerError> {
-        self.simulation.finish()
+    pub fn finish(self) -> Result<PeerEnd<G>, PeerError> {
+        let ticks = self.simulation.committed;
+        let (game, replay) = self.simulation.finish()?;
+        Ok(PeerEnd { ticks, game, replay })
     }
 }

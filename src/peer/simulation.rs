@@ -178,11 +178,15 @@ impl<G: Game> Simulation<G> {
         bytes
     }
 
-    /// Ends the replay after the last committed tick, and returns the bytes that have not been taken yet.
-    pub(super) fn finish(mut self) -> Result<Vec<u8>, PeerError> {
-        let Some(recorder) = self.recorder.take() else { return Ok(Vec::new()) };
+    /// Ends the replay after the last committed tick. Returns the game after that tick, and the bytes of the replay that
+    /// have not been taken yet.
+    pub(super) fn finish(mut self) -> Result<(G, Vec<u8>), PeerError> {
         self.play_to(self.committed)?;
-        Ok(recorder.finish(&self.game)?)
+        let replay = match self.recorder.take() {
+            Some(recorder) => recorder.finish(&self.game)?,
+            None => Vec::new(),
+        };
+        Ok((self.game, replay))
     }
 
     /// Restores the state after a number of ticks that have been played.

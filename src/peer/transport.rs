@@ -6,7 +6,8 @@ use crate::session::Address;
 
 /// Carries packets between peers. Packets may be lost, doubled, delayed and reordered, and may come from anybody.
 pub trait Transport {
-    /// Sends a packet of at most [`PACKET_BYTES_MAX`](crate::session::PACKET_BYTES_MAX) bytes, or drops it.
+    /// Sends a packet of at most [`PACKET_BYTES_MAX`](crate::session::PACKET_BYTES_MAX) bytes, or drops it. With
+    /// `Sealed` above it, packets are 32 bytes longer.
     fn send(&mut self, packet: &[u8], to: &Address);
 
     /// The next received packet and its sender. Does not block.
@@ -26,7 +27,10 @@ mod udp {
     use std::net::{ToSocketAddrs, UdpSocket};
 
     use super::Transport;
-    use crate::session::{Address, PACKET_BYTES_MAX};
+    use crate::session::Address;
+
+    /// Payload of a packet of 1280 bytes, which every network carries, with the smallest headers of IP and UDP.
+    const PAYLOAD_MAX: usize = 1280 - 28;
 
     /// A UDP socket.
     pub struct Udp {
@@ -72,7 +76,7 @@ mod udp {
             let socket = UdpSocket::bind(address)?;
             socket.set_nonblocking(true)?;
             let is_v6 = socket.local_addr()?.is_ipv6();
-            Ok(Udp { socket, buffer: vec![0; PACKET_BYTES_MAX + 1], is_v6 })
+            Ok(Udp { socket, buffer: vec![0; PAYLOAD_MAX + 1], is_v6 })
         }
 
         /// The local address of the socket.

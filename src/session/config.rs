@@ -63,6 +63,8 @@ pub struct Config {
     pub tick_micros: u32,
     /// Number of seats that have to be taken before the first tick.
     pub start_with: u8,
+    /// Bit for each seat that this peer asks for; 0 for any seats that are free.
+    pub seats_wanted: u64,
     /// Number of ticks that may be played with guessed inputs, at most [`GUESS_MAX`]; 0 is lockstep. Each peer chooses
     /// its own.
     pub guess: u16,
@@ -115,6 +117,7 @@ impl Config {
             input_bytes: 1,
             tick_micros: 16_667,
             start_with: 1,
+            seats_wanted: 0,
             guess: 0,
             delay_min: 0,
             delay_max: 20,
@@ -141,6 +144,7 @@ impl Config {
             ("input_bytes", (1..=INPUT_BYTES_MAX).contains(&self.input_bytes)),
             ("tick_micros", (1000..=1_000_000).contains(&self.tick_micros)),
             ("start_with", self.start_with <= self.seats),
+            ("seats_wanted", self.seats_wanted & !self.seat_set() == 0),
             ("guess", self.guess <= GUESS_MAX),
             ("delay_min", self.delay_min <= self.delay_max),
             ("delay_max", self.delay_max <= DELAY_MAX),

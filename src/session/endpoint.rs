@@ -8,6 +8,8 @@ use alloc::vec::Vec;
 
 use super::address::Address;
 use super::config::{Config, ConfigError};
+use super::contacts::Contacts;
+use super::event::Status;
 use super::guests::Guests;
 use super::id::{Key, PeerId, Tick};
 use super::join_packet::{JoinPacket, OFFER_BYTES_MAX, ROSTER_MAX, RefusalReason};
@@ -80,6 +82,7 @@ pub struct Endpoint {
     pub(super) phase: Phase,
     pub(super) routes: Routes,
     pub(super) guests: Guests,
+    pub(super) contacts: Contacts,
     pub(super) pinned: Option<Arc<Pinned>>,
     pub(super) roster_at: u64,
     pub(super) packets: VecDeque<(Address, Vec<u8>)>,
@@ -114,6 +117,7 @@ impl Endpoint {
             phase,
             routes: Routes::default(),
             guests: Guests::default(),
+            contacts: Contacts::default(),
             pinned: None,
             roster_at: 0,
             packets: VecDeque::new(),
@@ -257,12 +261,26 @@ impl Endpoint {
             }
             Phase::InMatch(session) => {
                 session.update(now);
+                self.search(now);
                 self.serve(now);
             }
             Phase::Refused => {}
         }
         while self.packets.len() > PACKETS_MAX {
             self.packets.pop_front();
+        }
+    }
+
+    /// Asks others to be served by them, if this peer has no vote and hears no majority.
+    fn search(&mut self, now: u64) {
+        let Phase::InMatch(session) = &self.phase else { return };
+        let is_silent = session.status() == Status::Paused && session.view().voter(self.me).is_none();
+        let (secret, me) = (self.secret, self.me);
+        let nonce = |address: &Address| token(secret, me, address).wrapping_add(now);
+        if let Some(asked) = self.contacts.update(now, is_silent, nonce) {
+            let (nonce, cookie) = (asked.nonce, asked.cookie);
+            let hello = JoinPacket::Hello { nonce, key: self.key, cookie, offer: self.offer.clone() };
+            self.send(asked.address, &hello);
         }
     }
 

@@ -36,7 +36,13 @@ impl Endpoint {
                 self.take_hello(now, from, sender, (nonce, key, cookie), &offer);
             }
             JoinPacket::Challenge { nonce, cookie } => {
-                if let Phase::Asking { nonce: own, cookie: known, next_at } = &mut self.phase
+                if let Phase::InMatch(session) = &mut self.phase {
+                    if self.contacts.take_challenge(nonce, cookie) {
+                        // It is going to serve this peer, so it receives what this peer says.
+                        session.attach(sender, None);
+                        self.routes.prove(sender, from, now);
+                    }
+                } else if let Phase::Asking { nonce: own, cookie: known, next_at } = &mut self.phase
                     && *own == nonce
                     && *known != cookie
                 {
@@ -44,6 +50,7 @@ impl Endpoint {
                 }
             }
             JoinPacket::Refused { nonce, reason, offer } => {
+                self.contacts.take_refusal(nonce);
                 if matches!(self.phase, Phase::Asking { nonce: own, .. } if own == nonce) {
                     if reason != RefusalReason::NotReady {
                         self.phase = Phase::Refused;
@@ -79,9 +86,10 @@ impl Endpoint {
             }
             JoinPacket::Roster { addresses } => {
                 if self.routes.address(sender) == Some(from) {
-                    for (id, address) in addresses {
+                    for (id, address) in addresses.into_iter().filter(|(id, _)| *id != self.me) {
+                        self.contacts.note(id, address);
                         let unknown = self.routes.address(id).is_none();
-                        if unknown && id != self.me && self.knows(id) {
+                        if unknown && self.knows(id) {
                             self.routes.suggest(id, address);
                         }
                     }
@@ -170,6 +178,7 @@ impl Endpoint {
         session.look(now);
         self.phase = Phase::InMatch(session);
         for (id, address) in addresses.into_iter().filter(|(id, _)| *id != self.me) {
+            self.contacts.note(id, address);
             self.routes.suggest(id, address);
         }
         self.events.push_back(JoinEvent::State { tick, bytes });

@@ -6,11 +6,12 @@ use alloc::vec::Vec;
 
 use super::address::Address;
 use super::bytes::Write;
+use super::congestion::{BURST, RATE_MAX};
 use super::id::{Key, PeerId};
 use super::join_packet::{JoinPacket, RefusalReason};
 use super::siphash::Secret;
 use super::state::Session;
-use super::transfer::{Pinned, RATE, Upload};
+use super::transfer::{Pinned, Upload};
 
 /// Largest number of peers that follow the match without a vote.
 pub const GUESTS_MAX: usize = 64;
@@ -20,8 +21,6 @@ const COOKIE_LIFE: u64 = 15_000_000;
 const GUEST_PATIENCE: u64 = 5_000_000;
 /// Time between announcements of a state to somebody who has not asked for it yet, in microseconds.
 const WELCOME_INTERVAL: u64 = 200_000;
-/// Bytes that may be sent at once.
-const BURST: u64 = 48_000;
 
 /// A peer that joins or watches.
 #[derive(Debug)]
@@ -123,9 +122,9 @@ impl Guests {
 
     /// Packets to guests. Forgets those who have begun to take part, or have gone.
     pub(super) fn update(&mut self, now: u64, session: &mut Session) -> Vec<(PeerId, JoinPacket)> {
-        let passed = now.saturating_sub(self.budget_at).min(1_000_000);
+        let passed = now.saturating_sub(self.budget_at).min(BURST);
         self.budget_at = now;
-        self.budget = (self.budget + passed * RATE / 1_000_000).min(BURST);
+        self.budget = (self.budget + passed * RATE_MAX / 1_000_000).min(BURST * RATE_MAX / 1_000_000);
         let mut packets = Vec::new();
         for guest in &mut self.list {
             let Some(upload) = &mut guest.upload else { continue };

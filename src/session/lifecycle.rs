@@ -5,7 +5,7 @@ use super::event::{Event, Status};
 use super::id::{PeerId, Tick};
 use super::row::{Removal, SeatWant};
 use super::state::{Role, Session};
-use super::view::View;
+use super::view::{View, has_bit};
 
 /// The status and what it depends on besides the view.
 #[derive(Clone, Debug)]
@@ -96,7 +96,16 @@ impl Session {
             Role::Spectator => 0,
         };
         let wants = seats > 0 && may_have && caught_up && self.is_connected();
-        self.wants.seats = wants.then_some(SeatWant { seats, key: self.key });
+        // Who was dropped takes any seats when somebody else has its own.
+        let which = if self.lifecycle.dropped { 0 } else { self.config.seats_wanted };
+        self.wants.seats = wants.then_some(SeatWant { seats, key: self.key, which });
+    }
+
+    /// A seat that this peer asks for and that belongs to somebody else.
+    pub(crate) fn taken_seat(&self) -> Option<u8> {
+        let want = self.wants.seats?;
+        let others = self.view.spans.iter().filter(|span| span.is_open() && span.key != self.key);
+        others.map(|span| span.seat).find(|&seat| has_bit(want.which, usize::from(seat)))
     }
 
     /// Determines the status, and tells the game if it is another one.

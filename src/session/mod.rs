@@ -15,6 +15,8 @@ mod address;
 mod agreement;
 mod bytes;
 mod config;
+mod congestion;
+mod contacts;
 mod endpoint;
 mod endpoint_receive;
 mod event;

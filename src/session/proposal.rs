@@ -7,7 +7,7 @@ use super::agreement::Agreement;
 use super::config::Fault;
 use super::id::{Key, PeerId, Tick};
 use super::peers::{Remote, within};
-use super::row::{Ballot, Removal, Row};
+use super::row::{Ballot, Removal, Row, SeatWant};
 use super::state::Session;
 use super::view::{Change, JOINS_MAX, Join, SEATS_MAX, SPANS_MAX, bit, bits, has_bit};
 
@@ -109,7 +109,7 @@ impl Session {
     }
 
     /// Peers without a vote that want seats and may have some.
-    fn seat_wants(&self, number: u32) -> impl Iterator<Item = (PeerId, Key, u8)> {
+    fn seat_wants(&self, number: u32) -> impl Iterator<Item = (PeerId, SeatWant)> {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         self.peers.list.iter().filter_map(move |remote| {
             let row = remote.row.as_ref().filter(|row| row.view == number)?;
@@ -123,8 +123,8 @@ impl Session {
                     .peers
                     .voters()
                     .any(|(_, voter)| voter.key == Some(want.key) && within(voter.fresh, fresh, active));
-            let fits = may && self.seats_for(want.key, want.seats, self.free_after(0)).is_some();
-            fits.then_some((remote.id, want.key, want.seats))
+            let fits = may && self.seats_for(want, self.free_after(0)).is_some();
+            fits.then_some((remote.id, want))
         })
     }
 
@@ -170,8 +170,11 @@ impl Session {
         self.is_quorum(set)
     }
 
-    /// Free seats for a newcomer: first those that its key had, then those that nobody had, then others.
-    fn seats_for(&self, key: Key, count: u8, free: u64) -> Option<u64> {
+    /// Free seats for a newcomer: first those that its key had, then those that nobody had, then others. If it asks for
+    /// certain seats, only those.
+    fn seats_for(&self, want: SeatWant, free: u64) -> Option<u64> {
+        let SeatWant { seats: count, key, which } = want;
+        let free = if which == 0 { free } else { free & which };
         let mut own = 0;
         let mut had = 0;
         for span in &self.view.spans {
@@ -300,16 +303,16 @@ impl Session {
         let mut free = self.free_after(leaves);
         let staying =
             self.view.voters.len().saturating_sub(usize::try_from(leaves.count_ones()).unwrap_or(0));
-        for (id, key, count) in self.seat_wants(self.view.number) {
+        for (id, want) in self.seat_wants(self.view.number) {
             let full = joins.len() == JOINS_MAX
                 || staying + joins.len() >= SEATS_MAX
-                || self.view.spans.len() + usize::from(count) + 64 > SPANS_MAX;
+                || self.view.spans.len() + usize::from(want.seats) + 64 > SPANS_MAX;
             if full {
                 break;
             }
-            if let Some(seats) = self.seats_for(key, count, free) {
+            if let Some(seats) = self.seats_for(want, free) {
                 free &= !seats;
-                joins.push(Join { id, key, seats });
+                joins.push(Join { id, key: want.key, seats });
             }
         }
         joins

@@ -34,6 +34,8 @@ pub(super) const REMOVALS_MAX: usize = 8;
 pub(super) struct SeatWant {
     pub(super) seats: u8,
     pub(super) key: Key,
+    /// Bit for each seat that is asked for; 0 for any.
+    pub(super) which: u64,
 }
 
 /// A vote against a peer.

@@ -36,7 +36,7 @@ fn row() -> Row {
     (row.connected, row.paused) = (true, true);
     row.promised = Some(Ballot { round: 9, proposer: PeerId(2) });
     row.accepted = Some((Ballot { round: 8, proposer: PeerId(2) }, Arc::new(change())));
-    row.wants.seats = Some(SeatWant { seats: 2, key: Key(77) });
+    row.wants.seats = Some(SeatWant { seats: 2, key: Key(77), which: 6 });
     (row.wants.leave, row.wants.end) = (true, Some(1000));
     row.wants.removals = [Removal::Without(PeerId(5)), Removal::Kick(Key(6))].into();
     row.hash = Some((496, 0x1234_5678_9abc_def0_1234));

@@ -1,18 +1,17 @@
 //! States in chunks: [`Upload`] and [`Download`]. The receiver says what it has and how much may be under way; the
-//! sender sends what is missing, and what may have been lost again, at a bounded rate.
+//! sender sends what is missing, and what may have been lost again, at a rate that the line bears.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
+use super::congestion::Congestion;
 use super::id::Tick;
 use super::join_packet::{CHUNK_BYTES, JoinPacket, MASKS_MAX};
 use super::view::has_bit;
 
-/// Largest rate of a sender in bytes a second, over all receivers together.
-pub(super) const RATE: u64 = 4_000_000;
 /// Smallest and largest number of chunks under way.
 const WINDOW_MIN: u32 = 56;
-const WINDOW_MAX: u32 = 768;
+const WINDOW_MAX: u32 = 960;
 /// Time between two requests in microseconds, and number of chunks after which one is sent earlier.
 const WANT_INTERVAL: u64 = 20_000;
 const WANT_CHUNKS: u32 = 16;
@@ -63,13 +62,16 @@ pub(super) struct Upload {
     masks: Vec<u64>,
     round_trip: u64,
     cursor: u32,
+    congestion: Congestion,
 }
 
 impl Upload {
     pub(super) fn new(state: Arc<Pinned>) -> Self {
         let count = chunk_count(u64::try_from(state.bytes.len()).unwrap_or(u64::MAX));
         let sent = alloc::vec![(0, 0); usize::try_from(count).unwrap_or(0)];
-        Upload { state, sent, next: 0, window: 0, masks: Vec::new(), round_trip: ROUND_TRIP, cursor: 0 }
+        let congestion = Congestion::new();
+        let round_trip = ROUND_TRIP;
+        Upload { state, sent, next: 0, window: 0, masks: Vec::new(), round_trip, cursor: 0, congestion }
     }
 
     fn has(&self, index: u32) -> bool {
@@ -91,7 +93,9 @@ impl Upload {
             (first..end).rev().find(|&index| self.has(index) && !in_masks(&masks_before, first, index));
         let sent = newest.and_then(|index| self.sent.get(usize::try_from(index).ok()?));
         if let Some(&(at, 1)) = sent {
-            self.round_trip = (3 * self.round_trip + now.saturating_sub(at)) / 4;
+            let sample = now.saturating_sub(at);
+            self.congestion.measure(sample);
+            self.round_trip = (3 * self.round_trip + sample) / 4;
         }
     }
 
@@ -99,7 +103,7 @@ impl Upload {
     pub(super) fn next_chunk(&mut self, now: u64) -> Option<JoinPacket> {
         let again = self.round_trip + self.round_trip / 4 + 2 * WANT_INTERVAL;
         let end = self.next.saturating_add(self.window);
-        while self.cursor < end {
+        while self.cursor < end && self.congestion.may_send(now) {
             let index = self.cursor;
             self.cursor += 1;
             if self.has(index) {
@@ -110,11 +114,13 @@ impl Upload {
             if *count > 0 && now < at.saturating_add(again) {
                 continue;
             }
+            let is_again = *count > 0;
             *at = now;
             *count = count.saturating_add(1);
             let start = place * CHUNK_BYTES;
             let bytes = self.state.bytes.get(start..)?;
             let bytes = bytes.get(..CHUNK_BYTES).unwrap_or(bytes).to_vec();
+            self.congestion.note_sent(u64::try_from(bytes.len()).unwrap_or(u64::MAX), is_again);
             return Some(JoinPacket::Chunk { hash: self.state.hash, index, bytes });
         }
         None
@@ -125,6 +131,8 @@ impl Upload {
 #[derive(Clone, Debug)]
 pub(super) struct Download {
     pub(super) hash: u64,
+    length: u64,
+    /// The bytes up to the last chunk that has arrived: an announced length costs no memory.
     bytes: Vec<u8>,
     have: Vec<bool>,
     next: u32,
@@ -141,11 +149,11 @@ impl Download {
     /// Prepares for a state of `length` bytes.
     pub(super) fn new(now: u64, hash: u64, length: u64) -> Option<Self> {
         let count = chunk_count(length);
-        let bytes = alloc::vec![0; usize::try_from(length).ok()?];
         let have = alloc::vec![false; usize::try_from(count).ok()?];
         Some(Download {
             hash,
-            bytes,
+            length,
+            bytes: Vec::new(),
             have,
             next: 0,
             missing: count,
@@ -161,11 +169,18 @@ impl Download {
     pub(super) fn take(&mut self, now: u64, index: u32, bytes: &[u8]) {
         let Ok(place) = usize::try_from(index) else { return };
         let Some(have) = self.have.get_mut(place).filter(|have| !**have) else { return };
+        let Ok(length) = usize::try_from(self.length) else { return };
         let start = place * CHUNK_BYTES;
-        let end = (start + CHUNK_BYTES).min(self.bytes.len());
-        let Some(target) = self.bytes.get_mut(start..end).filter(|target| target.len() == bytes.len()) else {
+        let end = (start + CHUNK_BYTES).min(length);
+        // Nobody asked for chunks beyond the window.
+        let is_wanted = index < self.next.saturating_add(WINDOW_MAX);
+        if !is_wanted || end - start != bytes.len() {
             return;
-        };
+        }
+        if self.bytes.len() < end {
+            self.bytes.resize(end, 0);
+        }
+        let Some(target) = self.bytes.get_mut(start..end) else { return };
         target.copy_from_slice(bytes);
         *have = true;
         self.missing -= 1;
@@ -216,11 +231,7 @@ impl Download {
     /// Received and all bytes.
     pub(super) fn progress(&self) -> (u64, u64) {
         let here =
-            u64::from(chunk_count(self.length()) - self.missing) * u64::try_from(CHUNK_BYTES).unwrap_or(0);
-        (here.min(self.length()), self.length())
-    }
-
-    fn length(&self) -> u64 {
-        u64::try_from(self.bytes.len()).unwrap_or(u64::MAX)
+            u64::from(chunk_count(self.length) - self.missing) * u64::try_from(CHUNK_BYTES).unwrap_or(0);
+        (here.min(self.length), self.length)
     }
 }

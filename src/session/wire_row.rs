@@ -106,7 +106,8 @@ impl Row {
         }
         row.wants.leave = has(flag::LEAVE);
         if has(flag::SEATS) {
-            row.wants.seats = Some(SeatWant { seats: reader.u8()?, key: Key(reader.u64()?) });
+            let (seats, key) = (reader.u8()?, Key(reader.u64()?));
+            row.wants.seats = Some(SeatWant { seats, key, which: reader.u64()? });
         }
         if has(flag::END) {
             row.wants.end = Some(reader.var()?);
@@ -143,6 +144,7 @@ impl Wants {
         if let Some(want) = self.seats {
             bytes.push(want.seats);
             bytes.put_u64(want.key.0);
+            bytes.put_u64(want.which);
         }
         if let Some(end) = self.end {
             bytes.put_var(end);

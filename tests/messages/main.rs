@@ -3,8 +3,7 @@
 mod check;
 mod files;
 mod game;
-#[cfg(feature = "ggrs")]
-mod net;
+mod peer;
 mod replays;
 mod world;
 

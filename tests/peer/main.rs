@@ -1,103 +1,53 @@
 //! Matches of a game with physics over a network in memory, in simulated time: equal states, equal replays that verify,
 //! late joins, reports of a desync, refusals.
 
-#[path = "../net/pushers.rs"]
-#[allow(dead_code, reason = "each test binary uses a part")]
 mod pushers;
+#[cfg(feature = "sealed")]
+mod sealed;
 
-use std::cell::RefCell;
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-use std::rc::Rc;
 use std::time::Duration;
 
 use lockstep2d::lockstep::Game;
-use lockstep2d::math::Rng;
-use lockstep2d::peer::{Peer, PeerDesync, PeerError, PeerEvent, PeerIdentity, PeerOptions, Transport};
+use lockstep2d::peer::{
+    LinkConditions, Network, Peer, PeerDesync, PeerError, PeerEvent, PeerIdentity, PeerOptions, Port,
+};
 use lockstep2d::replay::{Limits, Verdict, verify};
 use lockstep2d::report::{Blame, DesyncReport, Evidence, Side, compare};
-use lockstep2d::session::{Address, Event, Key, Status};
+use lockstep2d::session::{Event, Status};
 use lockstep2d::world::BodyField;
 use pushers::{FAULT, Fault, Pushers, Setup, bot};
 
-/// A packet on its way: when it arrives in milliseconds, its number, sender, receiver and bytes.
-type Datagram = (u64, u64, u8, u8, Vec<u8>);
-
-/// A network with latency, jitter and loss.
-struct Air {
-    now: u64,
-    latency: u64,
-    loss: u32,
-    sequence: u64,
-    rng: Rng,
-    packets: BinaryHeap<Reverse<Datagram>>,
-}
-
-/// The socket of one peer.
-struct Port {
-    number: u8,
-    air: Rc<RefCell<Air>>,
-}
-
-fn address(number: u8) -> Address {
-    Address::new(&[number]).expect("valid")
-}
-
-impl Transport for Port {
-    fn send(&mut self, packet: &[u8], to: &Address) {
-        let air = &mut *self.air.borrow_mut();
-        if air.rng.below(100) < air.loss {
-            return;
-        }
-        air.sequence += 1;
-        let at = air.now + air.latency + u64::from(air.rng.below(5));
-        air.packets.push(Reverse((at, air.sequence, self.number, to.bytes()[0], packet.to_vec())));
-    }
-
-    fn receive(&mut self) -> Option<(Address, Vec<u8>)> {
-        let air = &mut *self.air.borrow_mut();
-        let due = |packet: &Datagram| packet.0 <= air.now && packet.3 == self.number;
-        // The heap gives the earliest packet; others of this receiver may lie behind packets of others.
-        let found =
-            air.packets.iter().filter(|Reverse(packet)| due(packet)).min_by_key(|Reverse(packet)| packet.1);
-        let sequence = found?.0.1;
-        let mut taken = None;
-        air.packets.retain(|Reverse(packet)| {
-            let keep = packet.1 != sequence;
-            if !keep {
-                taken = Some((address(packet.2), packet.4.clone()));
-            }
-            keep
-        });
-        taken
-    }
-}
-
 /// Peers at one table.
 struct Table {
-    air: Rc<RefCell<Air>>,
+    network: Network,
     peers: Vec<Option<Peer<Pushers, Port>>>,
     events: Vec<Vec<PeerEvent>>,
     replays: Vec<Vec<u8>>,
 }
 
-fn identity(number: u8) -> PeerIdentity {
-    let random = u64::from(number).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    PeerIdentity::new([random, random ^ 0x5555, 77]).with_key(Key(u64::from(number)))
+fn identity(number: u32) -> PeerIdentity {
+    let number = u64::from(number);
+    PeerIdentity::new([number + 1, number, number + 0x5555, 77])
+}
+
+fn conditions(latency: u64, loss: u8) -> LinkConditions {
+    LinkConditions {
+        jitter: Duration::from_millis(4),
+        loss,
+        ..LinkConditions::latency(Duration::from_millis(latency))
+    }
 }
 
 impl Table {
-    fn new(latency: u64, loss: u32) -> Self {
-        let rng = Rng::new(3);
-        let air = Air { now: 0, latency, loss, sequence: 0, rng, packets: BinaryHeap::new() };
-        let air = Rc::new(RefCell::new(air));
-        Table { air, peers: Vec::new(), events: Vec::new(), replays: Vec::new() }
+    fn new(latency: u64, loss: u8) -> Self {
+        let network = Network::new(conditions(latency, loss), 3);
+        Table { network, peers: Vec::new(), events: Vec::new(), replays: Vec::new() }
     }
 
-    /// The next number and its socket.
-    fn port(&self) -> (u8, Port) {
-        let number = u8::try_from(self.peers.len()).expect("valid");
-        (number, Port { number, air: Rc::clone(&self.air) })
+    /// The identity and the socket of the next peer.
+    fn next(&self) -> (PeerIdentity, Port) {
+        let number = u32::try_from(self.peers.len()).expect("valid");
+        (identity(number), self.network.port(number))
     }
 
     fn sit(&mut self, peer: Peer<Pushers, Port>) {
@@ -107,27 +57,27 @@ impl Table {
     }
 
     fn host(&mut self, options: PeerOptions) {
-        let (number, port) = self.port();
-        self.sit(Peer::host(&Setup::default(), options, identity(number), port).expect("valid"));
+        let (me, port) = self.next();
+        self.sit(Peer::host(&Setup::default(), options, me, port).expect("valid"));
     }
 
-    fn join(&mut self, options: PeerOptions, contact: u8) {
-        let (number, port) = self.port();
-        let peer = Peer::join(&Setup::default(), options, identity(number), port, address(contact));
+    fn join(&mut self, options: PeerOptions, contact: u32) {
+        let (me, port) = self.next();
+        let peer = Peer::join(&Setup::default(), options, me, port, Network::address(contact));
         self.sit(peer.expect("valid"));
     }
 
-    fn watch(&mut self, options: PeerOptions, contact: u8) {
-        let (number, port) = self.port();
-        let peer = Peer::watch(&Setup::default(), options, identity(number), port, address(contact));
+    fn watch(&mut self, options: PeerOptions, contact: u32) {
+        let (me, port) = self.next();
+        let peer = Peer::watch(&Setup::default(), options, me, port, Network::address(contact));
         self.sit(peer.expect("valid"));
     }
 
     /// Plays for some milliseconds. Peers that are closed end their replays.
     fn play(&mut self, milliseconds: u64) {
         for _ in 0..milliseconds {
-            self.air.borrow_mut().now += 1;
-            let now = Duration::from_millis(self.air.borrow().now);
+            let now = self.network.time() + Duration::from_millis(1);
+            self.network.set_time(now);
             for at in 0..self.peers.len() {
                 let Some(peer) = &mut self.peers[at] else { continue };
                 peer.update(now).expect("valid");
@@ -143,7 +93,7 @@ impl Table {
                 self.replays[at].extend_from_slice(&replay);
                 if peer.status() == Some(Status::Closed) {
                     let rest = self.peers[at].take().map(Peer::finish).expect("valid").expect("valid");
-                    self.replays[at].extend_from_slice(&rest);
+                    self.replays[at].extend_from_slice(&rest.replay);
                 }
             }
         }
@@ -206,10 +156,7 @@ fn late_joiners_and_spectators_follow() {
         table.peer(1).session_mut().expect("valid").leave();
         table.play(4000);
         assert!(table.peers[1].is_none());
-        // The spectator has lost its contact, and asks another one.
-        assert_eq!(table.peer(2).status(), Some(Status::Paused));
-        table.peer(2).ask(address(0));
-        table.play(2000);
+        // The spectator has lost its contact, and has found another one.
         assert_eq!(table.peer(2).status(), Some(Status::Watching));
         let lead = table.peer(0).tick();
         for at in [2, 3] {
@@ -241,10 +188,10 @@ fn an_outage_costs_no_replay() {
     table.host(options);
     table.join(options, 0);
     table.play(2000);
-    table.air.borrow_mut().loss = 100;
+    table.network.set_conditions(conditions(20, 100));
     table.play(6000);
     assert_eq!(table.peer(1).status(), Some(Status::Paused));
-    table.air.borrow_mut().loss = 0;
+    table.network.set_conditions(conditions(20, 0));
     table.play(3000);
     assert_eq!(table.peer(1).seats(), [1]);
     assert!(
@@ -287,15 +234,14 @@ fn a_desync_is_reported_and_the_reports_blame_the_one_with_the_fault() {
 fn another_setup_is_refused_with_all_differences() {
     let mut table = Table::new(10, 0);
     table.host(PeerOptions::lockstep());
-    let (number, port) = table.port();
+    let (me, port) = table.next();
     let setup = Setup { tick_rate: 30, ..Setup::default() };
     let options = PeerOptions { patience: Duration::from_secs(5), ..PeerOptions::lockstep() };
-    let mut peer =
-        Peer::<Pushers, _>::join(&setup, options, identity(number), port, address(0)).expect("valid");
+    let mut peer = Peer::<Pushers, _>::join(&setup, options, me, port, Network::address(0)).expect("valid");
     let mut error = None;
     for _ in 0..1000 {
         table.play(1);
-        let now = Duration::from_millis(table.air.borrow().now);
+        let now = table.network.time();
         error = error.or(peer.update(now).err());
     }
     let Some(PeerError::Parameters(differences)) = error else { panic!("{error:?}") };

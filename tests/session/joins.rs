@@ -265,6 +265,47 @@ fn a_state_of_4_mb_takes_three_seconds_at_50_ms_and_5_percent_loss() {
     }
 }
 
+/// The players tick on while a state of 40 MB is sent to a newcomer, over a line without loss and one with 1 %.
+#[test]
+fn a_state_of_40_mb_takes_ten_seconds_at_20_ms() {
+    for loss in [0, 1] {
+        let mut net = Net::new(20 * MS, 0, 40 << 20);
+        net.host();
+        net.join(Role::Player { seats: 1 }, 1);
+        net.run(15 * S);
+        net.assert_all_play();
+        net.loss = loss;
+        net.nodes.iter_mut().for_each(|node| node.stall = 0);
+        let start = net.now;
+        let newcomer = net.join(Role::Player { seats: 1 }, 1);
+        net.run(start + 15 * S);
+        net.assert_all_play();
+        let took = net.nodes[newcomer].joined_at.expect("valid") - start;
+        assert!(took <= 10 * S, "{took} us at a loss of {loss} %");
+        for node in &net.nodes[..2] {
+            assert!(node.stall <= 50 * MS, "a stall of {} us", node.stall);
+        }
+    }
+}
+
+/// A spectator whose contact crashes is served by another player, and goes on from the ticks that it has.
+#[test]
+fn a_spectator_whose_contact_goes_finds_another() {
+    let mut net = Net::new(20 * MS, 1, 1000);
+    net.host();
+    net.join(Role::Player { seats: 1 }, 1);
+    net.run(2 * S);
+    net.join(Role::Player { seats: 1 }, 1);
+    net.run(4 * S);
+    let spectator = net.join(Role::Spectator, 2);
+    net.run(6 * S);
+    let states = net.nodes[spectator].events.len();
+    net.nodes[1].on = false;
+    net.run(14 * S);
+    net.assert_all_play();
+    assert_eq!(net.nodes[spectator].events.len(), states, "no other state was needed");
+}
+
 #[test]
 fn nothing_is_sent_to_an_address_that_has_not_answered() {
     let mut net = Net::new(10 * MS, 0, 50_000);
@@ -370,7 +411,7 @@ fn a_restarted_process_gets_its_seat_back() {
 /// The contact dies during the download: the newcomer asks another one.
 #[test]
 fn another_contact_can_be_asked() {
-    let mut net = Net::new(20 * MS, 0, 8 << 20);
+    let mut net = Net::new(20 * MS, 0, 40 << 20);
     net.host();
     net.join(Role::Player { seats: 1 }, 1);
     net.run(6 * S);

@@ -73,8 +73,8 @@ pub(crate) struct Peer {
     pub(crate) finished: Option<(Tick, u64)>,
     /// Whether it was a voter when it asked to leave.
     was_leaving: bool,
-    /// When the newest view was installed.
-    view_at: Us,
+    /// When it had left, as it was told.
+    left_at: Us,
     seen_view: u32,
     seen_final: Tick,
     seen_confirmed: Tick,
@@ -170,7 +170,7 @@ impl Sim {
             bytes: 0,
             finished: None,
             was_leaving: false,
-            view_at: 0,
+            left_at: 0,
             seen_view: first.number,
             seen_final: 0,
             seen_confirmed: 0,
@@ -350,6 +350,7 @@ impl Sim {
                     self.fail(format!("S6 two inputs of {peer} for tick {tick}"));
                 }
                 Event::Status(Status::Leaving) => self.peers[index].was_leaving = true,
+                Event::Status(Status::Left) => self.peers[index].left_at = self.now,
                 Event::Status(Status::Dropped) => self.peers[index].lost_seats += 1,
                 _ => {}
             }
@@ -365,7 +366,8 @@ impl Sim {
         let leaver = &self.peers[index];
         let view = leaver.session.view();
         let left = leaver.was_leaving && view.voter(id(index)).is_none() && leaver.finished.is_none();
-        if !left || self.now > leaver.view_at + 11 * S {
+        // Later changes of the view do not make it wait longer.
+        if !left || self.now > leaver.left_at + 11 * S {
             return;
         }
         let ignorant = (0..self.peers.len()).find(|&other| {
@@ -405,7 +407,6 @@ impl Sim {
                 }
             }
         }
-        self.peers[index].view_at = self.now;
         self.peers[index].seen_view = self.peers[index].session.view().number;
     }
 

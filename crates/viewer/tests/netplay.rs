@@ -2,12 +2,12 @@
 //! match stay equal.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
-#![expect(clippy::disallowed_types, reason = "network matches run in real time, and drawing uses floats")]
+#![expect(clippy::disallowed_types, reason = "drawing uses floats")]
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use lockstep2d::math::{Aabb, Rng, Vec2};
-use lockstep2d::net::{LinkConditions, NetOptions, Network, Port};
+use lockstep2d::peer::{LinkConditions, Network, PeerIdentity, PeerOptions, Port};
 use lockstep2d::replay::{Limits, RawReplay, Step, Verdict, verify};
 use lockstep2d_render::{Camera, DrawList};
 use lockstep2d_shove::online::Participation;
@@ -147,15 +147,13 @@ fn players_and_scores_are_seen() {
     assert!(list.texts().iter().any(|text| text.text.contains("round 1")), "{:?}", list.texts());
 }
 
-type Guest = Online<u32, Port>;
+type Guest = Online<Port>;
 
-/// Plays a match over an in-memory network until every participant has confirmed this number of ticks.
+/// Plays a match over a network in memory, in simulated time, until every participant has confirmed this number of ticks.
 fn play_online(network: &Network, guests: &mut [Guest], ticks: u64, mut act: impl FnMut(&mut [Guest])) {
-    let (mut now, mut last_turn) = (Duration::ZERO, Instant::now());
+    let step = Duration::from_millis(2);
     while guests.iter().any(|guest| guest.peer().confirmed() < ticks) {
-        // On a machine that is too slow, simulated time runs slower than real time.
-        let passed = last_turn.elapsed().min(Duration::from_millis(20));
-        (now, last_turn) = (now + passed, Instant::now());
+        let now = network.time() + step;
         assert!(
             now < Duration::from_secs(40),
             "{ticks} ticks should be confirmed within 40 s; the participants are at {:?}",
@@ -163,21 +161,24 @@ fn play_online(network: &Network, guests: &mut [Guest], ticks: u64, mut act: imp
         );
         network.set_time(now);
         for guest in &mut *guests {
-            assert_eq!(guest.advance(passed), Ok(true));
+            assert_eq!(guest.advance(step), Ok(true));
         }
         act(guests);
-        std::thread::sleep(Duration::from_millis(2));
     }
+}
+
+fn identity(number: u64) -> PeerIdentity {
+    PeerIdentity::new([number; 4])
 }
 
 #[test]
 fn two_keyboards_far_apart_play_the_same_match() {
     let network = Network::new(LinkConditions::default(), 1);
     let setup = Setup { seats: 2, seed: 4, ..Setup::default() };
-    let options = NetOptions::rollback();
-    let host = Participation::Host.enter(&setup, options, network.port(0)).unwrap();
-    let guest =
-        Participation::Join { contact: 0, seat: None }.enter(&setup, options, network.port(1)).unwrap();
+    let options = PeerOptions::rollback();
+    let host = Participation::Host.enter(&setup, options, identity(1), network.port(0)).unwrap();
+    let contact = Network::address(0);
+    let guest = Participation::Join { contact }.enter(&setup, options, identity(2), network.port(1)).unwrap();
     let mut guests = [Online::new(host), Online::new(guest)];
     assert!(guests[0].save_replay().unwrap().is_err(), "saving should fail before the first tick");
     let rng = &mut Rng::new(1);
@@ -188,12 +189,20 @@ fn two_keyboards_far_apart_play_the_same_match() {
         assert!(who.handle(&event));
     });
     for guest in &mut guests {
-        assert!(guest.seek(3).is_err() && guest.diverged().is_none(), "{}", guest.status());
+        assert!(guest.seek(3).is_err() && guest.desync().is_none(), "{}", guest.status());
         let file = guest.save_replay().unwrap().unwrap();
         let verdict = verify::<Shove>(&file, &Limits::default());
         assert!(verdict.is_match(), "{verdict}");
     }
-    let replays = guests.map(|guest| guest.leave().unwrap());
+    guests[1].leave();
+    for _ in 0..2000 {
+        network.set_time(network.time() + Duration::from_millis(10));
+        for guest in &mut guests {
+            assert_eq!(guest.advance(Duration::from_millis(10)), Ok(true));
+        }
+    }
+    assert!(guests[1].has_left() && !guests[0].has_left());
+    let replays = guests.map(|guest| guest.finish().unwrap());
     let verdicts = replays.each_ref().map(|replay| verify::<Shove>(replay, &Limits::default()));
     assert!(verdicts.iter().all(Verdict::is_match), "{verdicts:?}");
     let [ours, theirs] = replays.each_ref().map(|replay| pads(replay));
@@ -210,10 +219,11 @@ fn two_keyboards_far_apart_play_the_same_match() {
 fn somebody_who_cannot_come_in_says_why() {
     let network = Network::new(LinkConditions::default(), 1);
     let (two, four) = (Setup { seats: 2, ..Setup::default() }, Setup::default());
-    let options = NetOptions::rollback();
-    let mut host = Online::new(Participation::Host.enter(&four, options, network.port(0)).unwrap());
-    let participation = Participation::Join { contact: 0, seat: None };
-    let mut guest = Online::new(participation.enter(&two, options, network.port(1)).unwrap());
+    let options = PeerOptions::rollback();
+    let mut host =
+        Online::new(Participation::Host.enter(&four, options, identity(1), network.port(0)).unwrap());
+    let participation = Participation::Join { contact: Network::address(0) };
+    let mut guest = Online::new(participation.enter(&two, options, identity(2), network.port(1)).unwrap());
     let mut refused = None;
     for moment in 1..200 {
         network.set_time(Duration::from_millis(moment * 10));

@@ -87,9 +87,10 @@ fn play(session: &mut lockstep2d::session::Session, now: u64) {
     while session.next_event().is_some() {}
 }
 
-fn repair(bytes: &mut [u8]) {
+/// Corrects the checksum of a packet of a match.
+pub fn repair(tag: u64, bytes: &mut [u8]) {
     if let Some((sum, body)) = bytes.split_first_chunk_mut::<4>() {
-        let digest = twox_hash::XxHash3_128::oneshot_with_seed(TAG, body).to_le_bytes();
+        let digest = twox_hash::XxHash3_128::oneshot_with_seed(tag, body).to_le_bytes();
         sum.copy_from_slice(&digest[..4]);
     }
 }
@@ -111,7 +112,7 @@ pub fn run(bytes: &[u8]) -> bool {
         }
         let how = source.byte();
         if how & 1 == 0 {
-            repair(&mut packet);
+            repair(TAG, &mut packet);
         }
         if how & 2 == 0 {
             (from, to) = (source.below(COUNT + 1), source.below(COUNT));

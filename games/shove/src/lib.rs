@@ -25,7 +25,6 @@
 mod arena;
 mod bot;
 mod game;
-#[cfg(feature = "net")]
 pub mod online;
 mod pad;
 mod rules;

@@ -1,10 +1,13 @@
-//! Network matches: entering a match, and the update loop shared by `shove play` and the viewer.
+//! Network matches: entering a match, and what `shove play` and the viewer share while one runs.
 
 use std::fmt;
 use std::io;
 use std::net::{SocketAddr, ToSocketAddrs};
 
-use lockstep2d::net::{Address, Divergence, Event, NetError, NetOptions, Peer, Transport, Udp};
+use lockstep2d::peer::{
+    Peer, PeerError, PeerEvent, PeerIdentity, PeerOptions, Transport, Udp, socket_address,
+};
+use lockstep2d::session::{Address, Event, PeerId, Status};
 
 use crate::game::Shove;
 use crate::pad::Pad;
@@ -19,8 +22,6 @@ pub enum Participation<A> {
     Join {
         /// Address of any participant.
         contact: A,
-        /// Requested seat; any free seat if `None`.
-        seat: Option<u32>,
     },
     /// Joins a match as a spectator.
     Watch {
@@ -30,7 +31,7 @@ pub enum Participation<A> {
 }
 
 /// Peer of a match over UDP.
-pub type UdpPeer = Peer<Shove, SocketAddr, Udp>;
+pub type UdpPeer = Peer<Shove, Udp>;
 
 /// Reason why a match cannot be entered.
 #[derive(Debug)]
@@ -45,7 +46,7 @@ pub enum OnlineError {
     /// The socket cannot be opened.
     Socket(io::Error),
     /// The match cannot start.
-    Net(NetError),
+    Peer(PeerError),
 }
 
 impl fmt::Display for OnlineError {
@@ -54,31 +55,29 @@ impl fmt::Display for OnlineError {
             OnlineError::Address { address, why: Some(why) } => write!(f, "{address}: {why}"),
             OnlineError::Address { address, why: None } => write!(f, "{address}: no such address"),
             OnlineError::Socket(why) => why.fmt(f),
-            OnlineError::Net(error) => error.fmt(f),
+            OnlineError::Peer(error) => error.fmt(f),
         }
     }
 }
 
 impl std::error::Error for OnlineError {}
 
-impl<A> Participation<A> {
+impl Participation<Address> {
     /// Enters a match in this way.
     ///
     /// # Errors
-    /// [`NetError`] if the setup is invalid.
-    pub fn enter<T: Transport<A>>(
+    /// [`PeerError`] if the setup or an option is invalid.
+    pub fn enter<T: Transport>(
         self,
         setup: &Setup,
-        options: NetOptions,
+        options: PeerOptions,
+        me: PeerIdentity,
         transport: T,
-    ) -> Result<Peer<Shove, A, T>, NetError>
-    where
-        A: Address,
-    {
+    ) -> Result<Peer<Shove, T>, PeerError> {
         match self {
-            Participation::Host => Peer::host(setup, options, transport),
-            Participation::Join { contact, seat } => Peer::join(setup, options, transport, contact, seat),
-            Participation::Watch { contact } => Peer::watch(setup, options, transport, contact),
+            Participation::Host => Peer::host(setup, options, me, transport),
+            Participation::Join { contact } => Peer::join(setup, options, me, transport, contact),
+            Participation::Watch { contact } => Peer::watch(setup, options, me, transport, contact),
         }
     }
 }
@@ -87,26 +86,28 @@ impl Participation<&str> {
     /// Enters a match over UDP. The socket is bound to the address `bind`, or to any free port without it.
     ///
     /// # Errors
-    /// [`OnlineError`] if an address cannot be resolved, the socket cannot be opened, or the setup is invalid.
+    /// [`OnlineError`] if an address cannot be resolved, the socket cannot be opened, or the setup or an option is
+    /// invalid.
     pub fn enter_udp(
         self,
         bind: Option<&str>,
         setup: &Setup,
-        options: NetOptions,
+        options: PeerOptions,
+        me: PeerIdentity,
     ) -> Result<UdpPeer, OnlineError> {
+        let contact = match self {
+            Participation::Host => None,
+            Participation::Join { contact } | Participation::Watch { contact } => Some(resolve(contact)?),
+        };
+        let anywhere = if contact.is_some_and(|contact| contact.is_ipv6()) { "[::]:0" } else { "0.0.0.0:0" };
+        let udp = Udp::bind(resolve(bind.unwrap_or(anywhere))?).map_err(OnlineError::Socket)?;
+        let contact = contact.map_or_else(Address::nowhere, socket_address);
         let participation = match self {
             Participation::Host => Participation::Host,
-            Participation::Join { contact, seat } => Participation::Join { contact: resolve(contact)?, seat },
-            Participation::Watch { contact } => Participation::Watch { contact: resolve(contact)? },
+            Participation::Join { .. } => Participation::Join { contact },
+            Participation::Watch { .. } => Participation::Watch { contact },
         };
-        let anywhere = match participation {
-            Participation::Join { contact, .. } | Participation::Watch { contact } if contact.is_ipv6() => {
-                "[::]:0"
-            }
-            _ => "0.0.0.0:0",
-        };
-        let udp = Udp::bind(resolve(bind.unwrap_or(anywhere))?).map_err(OnlineError::Socket)?;
-        participation.enter(setup, options, udp).map_err(OnlineError::Net)
+        participation.enter(setup, options, me, udp).map_err(OnlineError::Peer)
     }
 }
 
@@ -119,30 +120,69 @@ fn resolve(address: &str) -> Result<SocketAddr, OnlineError> {
 /// Plays all ticks that are due. `pad` returns the local player's pad for a game state and the local seat.
 ///
 /// # Errors
-/// [`NetError`] if the match cannot continue.
-pub fn play_due<A: Address, T: Transport<A>>(
-    peer: &mut Peer<Shove, A, T>,
+/// [`PeerError`] if the match cannot continue.
+pub fn play_due<T: Transport>(
+    peer: &mut Peer<Shove, T>,
     mut pad: impl FnMut(&Shove, u8) -> Pad,
-) -> Result<(), NetError> {
+) -> Result<(), PeerError> {
     while peer.is_due() {
-        let seat = peer.seat().and_then(|seat| u8::try_from(seat).ok()).unwrap_or(0);
-        if !peer.advance(pad(peer.game(), seat))? {
-            break;
-        }
+        let seats = peer.seats();
+        let seats = seats.iter().filter_map(|&seat| u8::try_from(seat).ok());
+        let pads: Vec<Pad> = seats.map(|seat| pad(peer.game(), seat)).collect();
+        peer.advance(&pads)?;
     }
     Ok(())
 }
 
-/// Describes an event in a line for the user.
+/// Describes an event in a line for the user, with seats numbered from 0.
 #[must_use]
-pub fn describe(event: &Event) -> String {
-    match event {
-        Event::Joined { seat, tick } => format!("seat {seat} plays from tick {tick}"),
-        Event::Left { seat, tick } => format!("seat {seat} is empty from tick {tick}"),
-        Event::Interrupted { seat } => format!("no messages from seat {seat}"),
-        Event::Resumed { seat } => format!("seat {seat} is back"),
-        Event::Diverged(Divergence { tick, seat, ours, theirs }) => {
-            format!("after tick {tick} the state is {ours} here and {theirs} at seat {seat}")
+pub fn describe<T: Transport>(peer: &Peer<Shove, T>, event: &PeerEvent) -> String {
+    let name = |id: PeerId| match peer.seats_of(id)[..] {
+        [] => "a peer without a seat".to_owned(),
+        [seat] => format!("seat {seat}"),
+        ref seats => format!("seats {seats:?}"),
+    };
+    match *event {
+        PeerEvent::Joined { tick } => format!("received the state after tick {tick}"),
+        PeerEvent::Desync(found) => {
+            let (ours, theirs) = (found.ours, found.theirs);
+            format!("after tick {} the state is {ours} here and {theirs} at {}", found.tick, name(found.peer))
         }
+        PeerEvent::Session(event) => match event {
+            Event::Status(status) => describe_status(status),
+            Event::View { number } => format!("change {number} of the players"),
+            Event::Seated { seat, from, .. } => format!("seat {seat} plays from tick {from}"),
+            Event::Unseated { seat, from, .. } => format!("seat {seat} is empty from tick {from}"),
+            Event::Waiting { peer, heard: true } => {
+                format!("waiting for {}, which does not advance", name(peer))
+            }
+            Event::Waiting { peer, heard: false } => {
+                format!("waiting for {}, which is not heard", name(peer))
+            }
+            Event::Resumed => "play goes on".to_owned(),
+            Event::Pause { peer, paused: true } => format!("{} asks for a pause", name(peer)),
+            Event::Pause { peer, paused: false } => format!("{} ends its pause", name(peer)),
+            Event::End { ticks } => format!("the match ends after tick {ticks}"),
+            Event::Desync { tick, .. } => format!("the states differ after tick {tick}"),
+            Event::Conflict { peer, tick } => format!("{} has issued two inputs for tick {tick}", name(peer)),
+            Event::TooFarBehind => "too far behind: the others no longer have the inputs".to_owned(),
+        },
     }
+}
+
+fn describe_status(status: Status) -> String {
+    match status {
+        Status::Joining => "joining: follows the match until a seat is free",
+        Status::Watching => "watching",
+        Status::Waiting => "waiting for more players",
+        Status::Playing => "playing",
+        Status::Paused => "paused: no majority of the players is heard",
+        Status::Dropped => "dropped: the others went on; asking for the seat again",
+        Status::Kicked => "removed by the others",
+        Status::Leaving => "leaving",
+        Status::Left => "has left",
+        Status::Finished { .. } => "finished",
+        Status::Closed => "closed",
+    }
+    .to_owned()
 }

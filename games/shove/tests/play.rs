@@ -16,8 +16,8 @@ use std::time::Duration;
 use lockstep2d::replay::{Limits, Part, Reader, Verdict, verify};
 use lockstep2d_shove::{Pad, Shove};
 
-/// Disconnect timeout in seconds, long enough for a process that gets no CPU time on a busy machine.
-const TIMEOUT: &str = "8";
+/// Seconds for which all wait for a silent player, long enough for a process that gets no CPU time on a busy machine.
+const PATIENCE: &str = "8";
 
 /// Temporary folder of a test, removed on drop.
 struct Folder(PathBuf);
@@ -47,7 +47,7 @@ fn free_address() -> String {
 
 fn play(arguments: &[&str], replay: &Path) -> Child {
     Command::new(env!("CARGO_BIN_EXE_shove"))
-        .args(["play", "--json", "--seed", "5", "--timeout", TIMEOUT])
+        .args(["play", "--json", "--seed", "5", "--patience", PATIENCE])
         .args(arguments)
         .arg("--output")
         .arg(replay)
@@ -61,10 +61,16 @@ fn text(output: &Output) -> String {
     format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
 }
 
+/// The events of a process.
+fn events(output: &Output) -> Vec<serde_json::Value> {
+    let lines = output.stdout.split(|byte| *byte == b'\n').filter(|line| !line.is_empty());
+    lines.map(|line| serde_json::from_slice(line).unwrap_or_else(|_| panic!("{}", text(output)))).collect()
+}
+
 fn hash_of(output: &Output) -> String {
-    let line: serde_json::Value =
-        serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{}", text(output)));
-    line["hash"].as_str().unwrap_or_else(|| panic!("{}", text(output))).to_owned()
+    let end = events(output).pop().unwrap_or_else(|| panic!("{}", text(output)));
+    assert_eq!(end["event"], "end", "{}", text(output));
+    end["hash"].as_str().unwrap_or_else(|| panic!("{}", text(output))).to_owned()
 }
 
 /// Starts a host and three joining players of a match.
@@ -166,4 +172,50 @@ fn another_seed_is_another_match() {
     host.wait().unwrap();
     assert_eq!(output.status.code(), Some(2), "{}", text(&output));
     assert!(text(&output).contains("number of seats 2 here and 4 there"), "{}", text(&output));
+}
+
+/// A seat that does not exist or is taken is refused, as is a number of players that no match can have.
+#[test]
+fn wrong_seats_are_refused() {
+    let folder = Folder::new("seats");
+    let address = free_address();
+    let refused = |arguments: &[&str], why: &str| {
+        let output = play(arguments, &folder.file("refused")).wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{}", text(&output));
+        assert!(text(&output).contains(why), "{}", text(&output));
+    };
+    refused(&["--join", &address, "--seat", "4"], "there is no seat 4: the match has seats 0 to 3");
+    refused(&["--host", &address, "--players", "5"], "--players 5: the match has 4 seats");
+    refused(&["--host", &address, "--players", "0"], "--players 0: the match has 4 seats");
+    let mut host = play(&["--host", &address, "--seat", "2"], &folder.file("host"));
+    refused(&["--join", &address, "--seat", "2"], "seat 2 is taken");
+    host.kill().unwrap();
+    host.wait().unwrap();
+}
+
+/// Whoever is interrupted leaves: the others go on without waiting for it, and its replay has an end.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_process_leaves_and_its_replay_verifies() {
+    let folder = Folder::new("interrupt");
+    let mut children = four(&folder, &["--lockstep"], "900");
+    wait_for_ticks(&folder.file("2"), 120);
+    let leaver = children.remove(2);
+    let pid = leaver.id().to_string();
+    assert!(Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
+    let left = leaver.wait_with_output().unwrap();
+    assert!(left.status.success(), "{}", text(&left));
+    assert!(events(&left).iter().any(|event| event["status"] == "left"), "{}", text(&left));
+    let verdict = verify::<Shove>(&fs::read(folder.file("2")).unwrap(), &Limits::default());
+    assert!(verdict.is_match(), "{verdict}");
+    let gone = pads(&fs::read(folder.file("2")).unwrap());
+    for (child, at) in children.into_iter().zip(["0", "1", "3"]) {
+        let output = child.wait_with_output().unwrap();
+        assert!(output.status.success(), "{}", text(&output));
+        let stall = events(&output).pop().and_then(|end| end["stall_max_ms"].as_u64()).unwrap();
+        assert!(stall < 4000, "the others should not wait for the patience: {}", text(&output));
+        let replay = fs::read(folder.file(at)).unwrap();
+        assert!(verify::<Shove>(&replay, &Limits::default()).is_match());
+        assert!(pads(&replay).starts_with(&gone), "one match has one history");
+    }
 }

@@ -258,6 +258,13 @@ impl App {
         self.show_scene(next, 0);
     }
 
+    /// Ends what the source takes part in, before the program ends.
+    pub fn close(&mut self) {
+        if let Some(source) = &mut self.source {
+            source.close();
+        }
+    }
+
     /// Requests that the recording of the source is saved as a replay; shows a message if the source records nothing.
     pub fn save(&mut self) {
         let Some(source) = &mut self.source else { return };

@@ -1,7 +1,7 @@
 //! `shove`: command-line arguments of the shove game.
 
 use clap::Args;
-use lockstep2d::net::NetOptions;
+use lockstep2d::peer::PeerOptions;
 use lockstep2d_shove::Setup;
 use lockstep2d_shove::online::Participation;
 use lockstep2d_viewer::Source;
@@ -28,9 +28,9 @@ pub(super) struct Shove {
     #[arg(long, default_value_t = 1, conflicts_with = "way", value_parser = clap::value_parser!(u8).range(..=2))]
     bots: u8,
     /// Number of players that a network match waits for before its first tick.
-    #[arg(long, default_value_t = 2, requires = "host", value_parser = clap::value_parser!(u32).range(1..=4))]
-    players: u32,
-    /// Waits for late inputs instead of predicting them. All peers must make the same choice.
+    #[arg(long, default_value_t = 2, requires = "host", value_parser = clap::value_parser!(u8).range(1..=4))]
+    players: u8,
+    /// Waits for late inputs instead of guessing them.
     #[arg(long, requires = "way")]
     lockstep: bool,
 }
@@ -39,11 +39,11 @@ impl Shove {
     /// Opens the match, before its first tick.
     pub(super) fn open(&self, seed: u64) -> Result<Box<dyn Source>, Trouble> {
         let setup = Setup { seed, ..Setup::default() };
-        let options = if self.lockstep { NetOptions::lockstep() } else { NetOptions::rollback() };
-        let options = options.start_with(self.players);
+        let options = if self.lockstep { PeerOptions::lockstep() } else { PeerOptions::rollback() };
+        let options = PeerOptions { start_with: self.players, ..options };
         let (participation, bind) = match (&self.host, &self.join, &self.watch) {
             (Some(host), _, _) => (Participation::Host, Some(host.as_str())),
-            (_, Some(join), _) => (Participation::Join { contact: join.as_str(), seat: None }, None),
+            (_, Some(join), _) => (Participation::Join { contact: join.as_str() }, None),
             (_, _, Some(watch)) => (Participation::Watch { contact: watch.as_str() }, None),
             (None, None, None) => {
                 let netplay = Netplay::for_two(seed, self.bots.into());

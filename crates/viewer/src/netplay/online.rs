@@ -1,12 +1,12 @@
 //! [`Online`]: a network match, with the local player at the keyboard.
 
-use std::net::SocketAddr;
 use std::time::Duration;
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::Game;
-use lockstep2d::net::{Address, Divergence, Event as NetEvent, NetError, NetOptions, Peer, Transport, Udp};
+use lockstep2d::peer::{Peer, PeerDesync, PeerError, PeerEvent, PeerIdentity, PeerOptions, Transport, Udp};
 use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, RawReplay, Recording, Step};
+use lockstep2d::session::{Event as SessionEvent, PeerId, Status};
 use lockstep2d::world::World;
 use lockstep2d_render::{Camera, DrawList};
 use lockstep2d_shove::online::{OnlineError, Participation, describe, play_due};
@@ -17,24 +17,30 @@ use super::keys::{Keys, Side};
 use crate::event::Event;
 use crate::source::{Source, SourceError};
 
+/// Longest time for which closing waits until the others know that this peer leaves, and time between two updates.
+const LEAVE_TIME: Duration = Duration::from_secs(1);
+const LEAVE_STEP: Duration = Duration::from_millis(5);
+
 /// Participant of a network match: its host, another player or a spectator.
 ///
 /// The match runs by the clock that all participants share, so it can neither be paused nor sought. The last few
-/// ticks shown may be predicted. The replay contains only ticks with confirmed inputs of all players.
-pub struct Online<A: Address, T: Transport<A>> {
-    peer: Peer<Shove, A, T>,
+/// ticks shown may be played with guessed inputs. The replay contains only final ticks.
+pub struct Online<T: Transport> {
+    peer: Peer<Shove, T>,
     now: Duration,
     keys: Keys,
     /// Part of the replay that has been taken from the peer so far.
     replay: Vec<u8>,
-    diverged: Option<Divergence>,
+    desync: Option<PeerDesync>,
     /// Text of the peer's last event.
     told: Option<String>,
+    /// Whom play waits for, and whether that peer is heard.
+    waiting: Option<(PeerId, bool)>,
     /// Error that ended the match.
-    ended: Option<NetError>,
+    ended: Option<PeerError>,
 }
 
-impl Online<SocketAddr, Udp> {
+impl Online<Udp> {
     /// Enters a match over UDP. The socket is bound to the address `bind`, or to any free port without it.
     ///
     /// # Errors
@@ -43,50 +49,77 @@ impl Online<SocketAddr, Udp> {
         participation: Participation<&str>,
         bind: Option<&str>,
         setup: &Setup,
-        options: NetOptions,
+        options: PeerOptions,
     ) -> Result<Self, OnlineError> {
-        Ok(Self::new(participation.enter_udp(bind, setup, options)?))
+        Ok(Self::new(participation.enter_udp(bind, setup, options, PeerIdentity::random())?))
     }
 }
 
-impl<A: Address, T: Transport<A>> Online<A, T> {
+impl<T: Transport> Online<T> {
     /// Wraps a new peer.
     #[must_use]
-    pub fn new(peer: Peer<Shove, A, T>) -> Self {
+    pub fn new(peer: Peer<Shove, T>) -> Self {
         let (keys, replay) = (Keys::new(Side::Both), Vec::new());
-        Online { peer, now: Duration::ZERO, keys, replay, diverged: None, told: None, ended: None }
+        Online {
+            peer,
+            now: Duration::ZERO,
+            keys,
+            replay,
+            desync: None,
+            told: None,
+            waiting: None,
+            ended: None,
+        }
     }
 
     /// Returns the peer.
     #[must_use]
-    pub const fn peer(&self) -> &Peer<Shove, A, T> {
+    pub const fn peer(&self) -> &Peer<Shove, T> {
         &self.peer
     }
 
-    /// Returns the first divergence, if there was one.
+    /// Returns the first desync, if there was one.
     #[must_use]
-    pub const fn diverged(&self) -> Option<&Divergence> {
-        self.diverged.as_ref()
+    pub const fn desync(&self) -> Option<&PeerDesync> {
+        self.desync.as_ref()
     }
 
-    /// Leaves the match, notifies the other peers, and returns the finished replay. It is empty if this peer was not
-    /// in the match from the first tick.
+    /// Leaves the match: the others go on at once. Call [`advance`](Source::advance) until
+    /// [`has_left`](Online::has_left).
+    pub fn leave(&mut self) {
+        self.peer.leave();
+    }
+
+    /// Whether the match has ended for this peer and nobody needs it any more.
+    #[must_use]
+    pub fn has_left(&self) -> bool {
+        self.ended.is_some() || matches!(self.peer.status(), None | Some(Status::Closed))
+    }
+
+    /// Returns the finished replay. It is empty if this peer was not in the match from the first tick.
     ///
     /// # Errors
-    /// [`NetError`] if the replay cannot be finished.
-    pub fn leave(self) -> Result<Vec<u8>, NetError> {
-        let rest = self.peer.finish(u64::MAX)?;
-        Ok([self.replay, rest].concat())
+    /// [`PeerError`] if the replay cannot be finished.
+    pub fn finish(self) -> Result<Vec<u8>, PeerError> {
+        let end = self.peer.finish()?;
+        Ok([self.replay, end.replay].concat())
     }
 
-    fn go_on(&mut self) -> Result<(), NetError> {
+    fn go_on(&mut self) -> Result<(), PeerError> {
         self.peer.update(self.now)?;
         let pad = self.keys.pad();
         play_due(&mut self.peer, |_, _| pad)?;
         while let Some(event) = self.peer.next_event() {
-            self.told = Some(describe(&event));
-            if let NetEvent::Diverged(found) = event {
-                self.diverged.get_or_insert(found);
+            self.told = Some(describe(&self.peer, &event));
+            match event {
+                PeerEvent::Desync(found) => {
+                    self.desync.get_or_insert(found);
+                }
+                PeerEvent::Session(SessionEvent::Waiting { peer, heard }) => {
+                    self.waiting = Some((peer, heard))
+                }
+                PeerEvent::Session(SessionEvent::Resumed) => self.waiting = None,
+                _ => {}
             }
         }
         self.replay.extend(self.peer.take_replay());
@@ -110,7 +143,7 @@ impl<A: Address, T: Transport<A>> Online<A, T> {
     }
 }
 
-impl<A: Address, T: Transport<A>> Source for Online<A, T> {
+impl<T: Transport> Source for Online<T> {
     fn name(&self) -> &str {
         "shove"
     }
@@ -158,6 +191,17 @@ impl<A: Address, T: Transport<A>> Source for Online<A, T> {
         Ok(true)
     }
 
+    fn close(&mut self) {
+        self.leave();
+        for _ in 0..LEAVE_TIME.as_millis() / LEAVE_STEP.as_millis() {
+            let left = matches!(self.peer.status(), Some(Status::Left | Status::Finished { .. }));
+            if left || self.has_left() || self.advance(LEAVE_STEP).is_err() {
+                break;
+            }
+            std::thread::sleep(LEAVE_STEP);
+        }
+    }
+
     fn decorate(&mut self, list: &mut DrawList, camera: &Camera) {
         decorate(self.peer.game(), list, camera);
     }
@@ -167,15 +211,18 @@ impl<A: Address, T: Transport<A>> Source for Online<A, T> {
     }
 
     fn status(&self) -> String {
-        let seat = match self.peer.seat() {
+        let seat = match self.peer.seats()[..] {
             _ if self.ended.is_some() => "out of the match".into(),
-            Some(seat) => format!("seat {}", seat + 1),
-            None => "no seat".into(),
+            [] => "no seat".into(),
+            [seat, ..] => format!("seat {}", seat + 1),
         };
-        let news = match (&self.ended, &self.diverged, &self.told) {
+        let news = match (&self.ended, &self.desync, self.waiting) {
             (Some(error), ..) => error.to_string(),
-            (None, Some(found), _) => describe(&NetEvent::Diverged(*found)),
-            (None, None, told) => told.clone().unwrap_or_default(),
+            (None, Some(found), _) => describe(&self.peer, &PeerEvent::Desync(*found)),
+            (None, None, Some((peer, heard))) => {
+                describe(&self.peer, &PeerEvent::Session(SessionEvent::Waiting { peer, heard }))
+            }
+            (None, None, None) => self.told.clone().unwrap_or_default(),
         };
         format!("{seat} · {} · {news}", headline(self.peer.game()))
     }

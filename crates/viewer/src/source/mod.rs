@@ -92,6 +92,10 @@ pub trait Source {
         None
     }
 
+    /// Ends what the source takes part in, such as a network match. Called once before the program ends; takes at most
+    /// a second.
+    fn close(&mut self) {}
+
     /// Does a small amount of background work, such as verifying a replay. Returns `true` while work remains.
     fn think(&mut self) -> bool {
         false

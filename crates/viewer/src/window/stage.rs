@@ -181,6 +181,7 @@ impl EventHandler for Stage {
     }
 
     fn quit_requested_event(&mut self) {
+        self.app.close();
         if let Err(error) = self.host.finish(&mut self.app) {
             self.fail(error);
         }

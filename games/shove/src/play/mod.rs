@@ -1,0 +1,156 @@
+//! `shove play`: a match over UDP, in which a bot controls the local player.
+
+mod arguments;
+mod log;
+
+use std::error::Error;
+use std::fs::File;
+use std::io::Write;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use clap::{ArgMatches, Args, Command, FromArgMatches};
+use lockstep2d::peer::{PeerDesync, PeerEvent};
+use lockstep2d::session::Status;
+use lockstep2d_cli::Exit;
+use lockstep2d_shove::Bot;
+use lockstep2d_shove::online::{self, UdpPeer};
+
+use arguments::Arguments;
+use log::Log;
+
+/// Time between two updates. Packets wait at most this long.
+const UPDATE_INTERVAL: Duration = Duration::from_millis(1);
+
+/// Returns the definition of the subcommand.
+pub(crate) fn command() -> Command {
+    Arguments::augment_args(Command::new("play"))
+}
+
+/// Runs the subcommand.
+pub(crate) fn run(matches: &ArgMatches) -> Exit {
+    let arguments = match Arguments::from_arg_matches(matches) {
+        Ok(arguments) => arguments,
+        Err(usage) => usage.exit(),
+    };
+    match play(&arguments) {
+        Ok(None) => Exit::Success,
+        Ok(Some(_)) => Exit::NoMatch,
+        Err(error) => {
+            log::say_error(arguments.json, &*error);
+            Exit::Trouble
+        }
+    }
+}
+
+/// Plays the match and returns the first desync.
+fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
+    let mut peer = arguments.enter()?;
+    let interrupts = interrupts()?;
+    let mut file = arguments.output.as_ref().map(File::create).transpose()?;
+    let mut log = Log::new(arguments.json);
+    log.say_bound(&mut peer)?;
+    if let Some(ticks) = arguments.ticks {
+        peer.end_at(ticks);
+    }
+    let played = take_part(arguments, &mut peer, &interrupts, &mut log, file.as_mut());
+    // Whatever ended the match, the replay gets its end.
+    let summary = log.summary(&peer);
+    let end = peer.finish()?;
+    if let Some(file) = &mut file {
+        file.write_all(&end.replay)?;
+        if file.metadata()?.len() == 0 {
+            eprintln!("no replay: this peer was not in the match from the first tick");
+        }
+    }
+    log.say_end(summary, &end);
+    played
+}
+
+/// Plays until the match has ended or was left.
+fn take_part(
+    arguments: &Arguments,
+    peer: &mut UdpPeer,
+    interrupts: &AtomicUsize,
+    log: &mut Log,
+    mut file: Option<&mut File>,
+) -> Result<Option<PeerDesync>, Box<dyn Error>> {
+    let clock = Clock::start();
+    let mut bots: Vec<(u8, Bot)> = Vec::new();
+    let mut desync = None;
+    let mut heard_at = Duration::ZERO;
+    while peer.status() != Some(Status::Closed) {
+        let now = clock.now();
+        peer.update(now)?;
+        online::play_due(peer, |game, seat| pad_of_bot(&mut bots, arguments.seed, seat, game))?;
+        while let Some(event) = peer.next_event() {
+            log.say(peer, now, &event);
+            if let PeerEvent::Desync(found) = event
+                && desync.is_none()
+            {
+                desync = Some(found);
+                if let Some(path) = &arguments.report {
+                    std::fs::write(path, peer.report(&found)?)?;
+                }
+            }
+        }
+        log.watch(peer, now);
+        if let Some(file) = &mut file {
+            file.write_all(&peer.take_replay())?;
+        }
+        match (interrupts.load(Ordering::Relaxed), peer.status()) {
+            (0, Some(Status::Kicked)) => return Err("removed from the match by the others".into()),
+            (0, None | Some(Status::Paused)) if now >= heard_at + arguments.give_up() => {
+                return Err(format!("nobody was heard for {} s", arguments.give_up).into());
+            }
+            (0, None | Some(Status::Paused)) => {}
+            (0, Some(_)) => heard_at = now,
+            // Nobody knows this peer yet.
+            (_, None) => break,
+            (1, Some(_)) => peer.leave(),
+            // Somebody who interrupts twice is in a hurry.
+            (_, Some(_)) => break,
+        }
+        thread::sleep(UPDATE_INTERVAL);
+    }
+    Ok(desync)
+}
+
+fn pad_of_bot(
+    bots: &mut Vec<(u8, Bot)>,
+    seed: u64,
+    seat: u8,
+    game: &lockstep2d_shove::Shove,
+) -> lockstep2d_shove::Pad {
+    let place = bots.iter().position(|(of, _)| *of == seat).unwrap_or_else(|| {
+        bots.push((seat, Bot::new(seed, seat)));
+        bots.len() - 1
+    });
+    bots[place].1.pad(game)
+}
+
+/// Counts Ctrl-C and requests of the system to end.
+fn interrupts() -> Result<Arc<AtomicUsize>, ctrlc::Error> {
+    let count = Arc::new(AtomicUsize::new(0));
+    let counted = Arc::clone(&count);
+    ctrlc::set_handler(move || {
+        counted.fetch_add(1, Ordering::Relaxed);
+    })?;
+    Ok(count)
+}
+
+/// Time since the match was entered.
+struct Clock(#[expect(clippy::disallowed_types, reason = "the clock of this process")] std::time::Instant);
+
+impl Clock {
+    fn start() -> Self {
+        #[expect(clippy::disallowed_types, reason = "the clock of this process")]
+        Clock(std::time::Instant::now())
+    }
+
+    fn now(&self) -> Duration {
+        self.0.elapsed()
+    }
+}

@@ -1,0 +1,284 @@
+//! [`Network`]: a network in memory with configurable link conditions, for tests and examples.
+
+use alloc::collections::{BTreeMap, BTreeSet, VecDeque};
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+use core::time::Duration;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use super::transport::Transport;
+use crate::math::Rng;
+use crate::session::Address;
+
+/// Additional delay of a packet that later ones overtake.
+const REORDER_DELAY: Duration = Duration::from_millis(20);
+/// Packets that wait for one receiver at most; further ones are lost, as in the buffer of a socket.
+const QUEUE_MAX: usize = 8192;
+
+/// Conditions of a link in one direction. The default is a link without delay or loss.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LinkConditions {
+    /// Smallest time from sending to receiving.
+    pub latency: Duration,
+    /// Largest additional time, which differs from packet to packet. Packets keep their order.
+    pub jitter: Duration,
+    /// Lost packets in percent.
+    pub loss: u8,
+    /// Packets in percent that arrive twice.
+    pub duplication: u8,
+    /// Packets in percent that arrive 20 ms later than they would, so that later ones overtake them.
+    pub reordering: u8,
+}
+
+impl LinkConditions {
+    /// A link with this latency and nothing else.
+    #[must_use]
+    pub const fn latency(latency: Duration) -> Self {
+        LinkConditions { latency, jitter: Duration::ZERO, loss: 0, duplication: 0, reordering: 0 }
+    }
+}
+
+/// A network in memory. The caller sets its time. The same seed and the same calls give the same delays and losses.
+///
+/// ```
+/// use core::time::Duration;
+/// use lockstep2d::peer::{LinkConditions, Network, Transport};
+///
+/// let network = Network::new(LinkConditions::latency(Duration::from_millis(100)), 7);
+/// let (mut alice, mut bob) = (network.port(1), network.port(2));
+/// alice.send(b"hello", &bob.address());
+/// assert_eq!(bob.receive(), None);
+/// network.set_time(Duration::from_millis(100));
+/// assert_eq!(bob.receive(), Some((alice.address(), b"hello".to_vec())));
+/// ```
+#[derive(Clone, Debug)]
+pub struct Network(Arc<Mutex<State>>);
+
+/// The socket of a participant in a [`Network`].
+#[derive(Clone, Debug)]
+pub struct Port {
+    network: Network,
+    number: u32,
+}
+
+#[derive(Debug)]
+struct State {
+    conditions: LinkConditions,
+    /// Conditions of single links, by sender and receiver.
+    links: BTreeMap<(u32, u32), LinkConditions>,
+    /// Links that lose all packets.
+    cut: BTreeSet<(u32, u32)>,
+    rng: Rng,
+    now: Duration,
+    sent: u64,
+    /// Time at which the last packet of a link arrives, as packets keep their order.
+    last: BTreeMap<(u32, u32), Duration>,
+    /// Packets under way, by time of arrival and order of sending.
+    flying: BTreeMap<(Duration, u64), Datagram>,
+    arrived: BTreeMap<u32, VecDeque<(u32, Vec<u8>)>>,
+}
+
+#[derive(Debug)]
+struct Datagram {
+    from: u32,
+    to: u32,
+    bytes: Vec<u8>,
+}
+
+impl Network {
+    /// A network whose links all have these conditions. The seed determines random delays and losses.
+    #[must_use]
+    pub fn new(conditions: LinkConditions, seed: u64) -> Self {
+        Network(Arc::new(Mutex::new(State {
+            conditions,
+            links: BTreeMap::new(),
+            cut: BTreeSet::new(),
+            rng: Rng::new(seed),
+            now: Duration::ZERO,
+            sent: 0,
+            last: BTreeMap::new(),
+            flying: BTreeMap::new(),
+            arrived: BTreeMap::new(),
+        })))
+    }
+
+    /// The socket with this number. Several of the same number share what arrives.
+    #[must_use]
+    pub fn port(&self, number: u32) -> Port {
+        Port { network: self.clone(), number }
+    }
+
+    /// The address of the socket with this number.
+    #[must_use]
+    pub fn address(number: u32) -> Address {
+        Address::new(&number.to_le_bytes()).unwrap_or_else(Address::nowhere)
+    }
+
+    /// Sets the time, which never decreases.
+    pub fn set_time(&self, now: Duration) {
+        let state = &mut *self.state();
+        state.now = state.now.max(now);
+    }
+
+    /// The time that was set last.
+    #[must_use]
+    pub fn time(&self) -> Duration {
+        self.state().now
+    }
+
+    /// Changes the conditions of all links that have none of their own, for packets sent from now on.
+    pub fn set_conditions(&self, conditions: LinkConditions) {
+        self.state().conditions = conditions;
+    }
+
+    /// Changes the conditions of one link in one direction.
+    pub fn set_link(&self, from: u32, to: u32, conditions: LinkConditions) {
+        self.state().links.insert((from, to), conditions);
+    }
+
+    /// Loses all packets from one socket to another, until [`mend`](Network::mend).
+    pub fn cut(&self, from: u32, to: u32) {
+        self.state().cut.insert((from, to));
+    }
+
+    /// Ends all cuts.
+    pub fn mend(&self) {
+        self.state().cut.clear();
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl State {
+    fn chance(&mut self, percent: u8) -> bool {
+        self.rng.below(100) < u32::from(percent)
+    }
+
+    fn send(&mut self, from: u32, to: u32, bytes: &[u8]) {
+        let link = (from, to);
+        if self.cut.contains(&link) {
+            return;
+        }
+        let conditions = self.links.get(&link).copied().unwrap_or(self.conditions);
+        let LinkConditions { latency, jitter, loss, duplication, reordering } = conditions;
+        let copies = if self.chance(duplication) { 2 } else { 1 };
+        for _ in 0..copies {
+            if self.chance(loss) {
+                continue;
+            }
+            let jitter = u32::try_from(jitter.as_micros()).unwrap_or(u32::MAX - 1);
+            let jitter = Duration::from_micros(self.rng.below(jitter.saturating_add(1)).into());
+            let last = self.last.entry(link).or_default();
+            *last = (*last).max(self.now.saturating_add(latency).saturating_add(jitter));
+            let mut arrival = *last;
+            if self.chance(reordering) {
+                arrival = arrival.saturating_add(REORDER_DELAY);
+            }
+            self.flying.insert((arrival, self.sent), Datagram { from, to, bytes: bytes.to_vec() });
+            self.sent += 1;
+        }
+    }
+
+    fn deliver(&mut self) {
+        while let Some(next) = self.flying.first_entry() {
+            if next.key().0 > self.now {
+                return;
+            }
+            let Datagram { from, to, bytes } = next.remove();
+            let queue = self.arrived.entry(to).or_default();
+            if queue.len() < QUEUE_MAX {
+                queue.push_back((from, bytes));
+            }
+        }
+    }
+}
+
+impl Port {
+    /// The address that others reach this socket at.
+    #[must_use]
+    pub fn address(&self) -> Address {
+        Network::address(self.number)
+    }
+}
+
+impl Transport for Port {
+    fn send(&mut self, packet: &[u8], to: &Address) {
+        if let Ok(to) = to.bytes().try_into() {
+            self.network.state().send(self.number, u32::from_le_bytes(to), packet);
+        }
+    }
+
+    fn receive(&mut self) -> Option<(Address, Vec<u8>)> {
+        let mut state = self.network.state();
+        state.deliver();
+        let (from, bytes) = state.arrived.get_mut(&self.number)?.pop_front()?;
+        Some((Network::address(from), bytes))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: Duration = Duration::from_millis(1);
+
+    /// Sends 1000 numbered packets, one in each millisecond, and returns for each that arrives its number and delay.
+    fn run(conditions: LinkConditions, seed: u64) -> Vec<(u32, u32)> {
+        let network = Network::new(conditions, seed);
+        let (mut a, mut b) = (network.port(1), network.port(2));
+        let mut seen = Vec::new();
+        for ms in 0..2000_u32 {
+            network.set_time(MS * ms);
+            if ms < 1000 {
+                a.send(&ms.to_le_bytes(), &b.address());
+            }
+            while let Some((from, bytes)) = b.receive() {
+                assert_eq!(from, a.address());
+                let number = u32::from_le_bytes(bytes.try_into().unwrap());
+                seen.push((number, ms - number));
+            }
+        }
+        seen
+    }
+
+    #[test]
+    fn conditions_do_what_they_say() {
+        let latency = LinkConditions::latency(30 * MS);
+        assert!(run(latency, 1).iter().enumerate().all(|(at, seen)| *seen == (at as u32, 30)));
+        let seen = run(LinkConditions { jitter: 10 * MS, ..latency }, 1);
+        assert!(seen.iter().all(|(_, delay)| (30..=40).contains(delay)) && seen.is_sorted());
+        assert_eq!(seen.len(), 1000);
+        let lost = 1000 - run(LinkConditions { loss: 10, ..latency }, 1).len();
+        assert!((60..140).contains(&lost), "{lost}");
+        let seen = run(LinkConditions { duplication: 10, ..latency }, 1);
+        assert!((1060..1140).contains(&seen.len()), "{}", seen.len());
+        let seen = run(LinkConditions { reordering: 10, ..latency }, 1);
+        let late = seen.iter().filter(|(_, delay)| *delay == 50).count();
+        assert!((60..140).contains(&late) && !seen.is_sorted(), "{late}");
+    }
+
+    #[test]
+    fn a_seed_gives_one_network() {
+        let all = LinkConditions { latency: MS, jitter: 9 * MS, loss: 20, duplication: 20, reordering: 20 };
+        assert_eq!(run(all, 5), run(all, 5));
+        assert_ne!(run(all, 5), run(all, 6));
+    }
+
+    #[test]
+    fn links_are_cut_one_way_and_have_their_own_conditions() {
+        let network = Network::new(LinkConditions::default(), 1);
+        let (mut a, mut b) = (network.port(1), network.port(2));
+        network.cut(1, 2);
+        a.send(b"lost", &b.address());
+        b.send(b"back", &a.address());
+        assert_eq!((b.receive(), a.receive()), (None, Some((b.address(), b"back".to_vec()))));
+        network.mend();
+        network.set_link(1, 2, LinkConditions::latency(5 * MS));
+        a.send(b"late", &b.address());
+        assert_eq!(b.receive(), None);
+        network.set_time(5 * MS);
+        assert_eq!(b.receive(), Some((a.address(), b"late".to_vec())));
+    }
+}

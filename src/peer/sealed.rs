@@ -1,0 +1,296 @@
+//! [`Sealed`]: a transport that encrypts and authenticates packets with a key that only the members of a match have.
+//!
+//! A packet is sender (8 bytes), counter (8 bytes), ciphertext, tag (16 bytes): XChaCha20-Poly1305 with a nonce of
+//! sender, eight zero bytes and counter. Packets of at most 1200 bytes become at most 1232, which fit into the smallest
+//! packets of IPv6 with its headers (1280).
+//!
+//! **A nonce must never be used twice with one key.** Within a process the counter sees to that. Across processes and
+//! restarts the sender does: it is a random number of 64 bits for each start of a process, so that among `n` starts with
+//! the same key two are equal with a probability of `n^2 / 2^65`: for 10 000 starts, 3 in 10^12. Nothing has to be stored.
+
+use alloc::vec::Vec;
+use core::fmt;
+
+use chacha20poly1305::aead::{AeadInPlace, KeyInit};
+use chacha20poly1305::{Key, Tag, XChaCha20Poly1305, XNonce};
+
+use super::transport::Transport;
+use crate::session::Address;
+
+/// Bytes by which a sealed packet is longer.
+pub const SEALED_OVERHEAD: usize = HEADER + TAG;
+const HEADER: usize = 16;
+const TAG: usize = 16;
+/// Words of the replay window: a packet that 2048 later ones of its sender have overtaken is dropped.
+const WINDOW_WORDS: usize = 32;
+const WINDOW: u64 = 2048;
+/// Senders that are remembered. The one that was silent for longest gives way.
+const SENDERS_MAX: usize = 1024;
+
+/// A transport whose packets only those can read and write who have the key of the match.
+///
+/// Dropped are packets that were forged, changed or cut short, that arrive a second time, and that come back to their
+/// sender. Addresses and sizes are visible. All members have the same key: a member can pose as another one, and a
+/// packet that is redirected to another member is accepted there, as what a member said. A process that starts again
+/// does not know which packets arrived before; old ones do no harm to a session, whose rows have versions.
+///
+/// ```
+/// use lockstep2d::peer::{LinkConditions, Network, Sealed, Transport};
+///
+/// let network = Network::new(LinkConditions::default(), 1);
+/// // The lobby gives all members of a match the same random key.
+/// let key = [7; 32];
+/// let mut alice = Sealed::new(network.port(1), key);
+/// let mut bob = Sealed::new(network.port(2), key);
+/// alice.send(b"hello", &Network::address(2));
+/// assert_eq!(bob.receive(), Some((Network::address(1), b"hello".to_vec())));
+/// ```
+pub struct Sealed<T> {
+    inner: T,
+    cipher: XChaCha20Poly1305,
+    sender: u64,
+    /// Number of packets sent.
+    sent: u64,
+    windows: Vec<Window>,
+    /// Number of packets received, as a clock for [`Window::heard`].
+    received: u64,
+}
+
+/// The packets of a sender that have arrived.
+#[derive(Clone, Debug)]
+struct Window {
+    sender: u64,
+    /// Counter after the newest packet.
+    next: u64,
+    /// Bit for each of the last [`WINDOW`] counters, at its remainder.
+    seen: [u64; WINDOW_WORDS],
+    heard: u64,
+}
+
+impl<T: fmt::Debug> fmt::Debug for Sealed<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Sealed").field("inner", &self.inner).finish_non_exhaustive()
+    }
+}
+
+impl Window {
+    const fn new(sender: u64) -> Self {
+        Window { sender, next: 0, seen: [0; WINDOW_WORDS], heard: 0 }
+    }
+
+    fn bit(counter: u64) -> (usize, u64) {
+        let place = counter % WINDOW;
+        (usize::try_from(place / 64).unwrap_or(0), 1 << (place % 64))
+    }
+
+    /// Whether a packet has not arrived yet, as far as that is known.
+    fn is_new(&self, counter: u64) -> bool {
+        if counter >= self.next {
+            // The last counter is never sent: there is none after it.
+            return counter < u64::MAX;
+        }
+        let (word, bit) = Window::bit(counter);
+        self.next - counter <= WINDOW && self.seen.get(word).is_some_and(|seen| seen & bit == 0)
+    }
+
+    /// Notes a genuine packet.
+    fn note(&mut self, counter: u64) {
+        if counter >= self.next {
+            if counter - self.next >= WINDOW {
+                self.seen = [0; WINDOW_WORDS];
+            } else {
+                // The counters that were skipped have not arrived.
+                for skipped in self.next..counter {
+                    let (word, bit) = Window::bit(skipped);
+                    self.seen.get_mut(word).into_iter().for_each(|seen| *seen &= !bit);
+                }
+            }
+            self.next = counter.saturating_add(1);
+        }
+        let (word, bit) = Window::bit(counter);
+        self.seen.get_mut(word).into_iter().for_each(|seen| *seen |= bit);
+    }
+}
+
+fn nonce(sender: u64, counter: u64) -> XNonce {
+    let mut nonce = [0; 24];
+    for (to, from) in nonce.iter_mut().zip(sender.to_le_bytes().into_iter().chain([0; 8])) {
+        *to = from;
+    }
+    for (to, from) in nonce.iter_mut().skip(16).zip(counter.to_le_bytes()) {
+        *to = from;
+    }
+    nonce.into()
+}
+
+impl<T> Sealed<T> {
+    /// Seals the packets of a transport. The key has to be random and the same for all members of the match; a new match
+    /// gets a new one.
+    #[cfg(all(feature = "std", not(all(target_family = "wasm", target_os = "unknown"))))]
+    pub fn new(inner: T, key: [u8; 32]) -> Self {
+        let [sender] = super::options::random_numbers();
+        Sealed::with_sender(inner, key, sender)
+    }
+
+    /// As [`Sealed::new`], with a number that has to be random and new for each call with this key.
+    pub fn with_sender(inner: T, key: [u8; 32], sender: u64) -> Self {
+        let cipher = XChaCha20Poly1305::new(&Key::from(key));
+        Sealed { inner, cipher, sender, sent: 0, windows: Vec::new(), received: 0 }
+    }
+
+    /// The transport below.
+    pub const fn inner_mut(&mut self) -> &mut T {
+        &mut self.inner
+    }
+
+    fn seal(&mut self, packet: &[u8]) -> Option<Vec<u8>> {
+        let counter = self.sent;
+        // After 2^64 packets, which takes longer than a match, nothing is sent any more.
+        self.sent = counter.checked_add(1)?;
+        let mut bytes = Vec::with_capacity(packet.len() + SEALED_OVERHEAD);
+        bytes.extend_from_slice(&self.sender.to_le_bytes());
+        bytes.extend_from_slice(&counter.to_le_bytes());
+        bytes.extend_from_slice(packet);
+        let body = bytes.get_mut(HEADER..)?;
+        let tag = self.cipher.encrypt_in_place_detached(&nonce(self.sender, counter), b"", body).ok()?;
+        bytes.extend_from_slice(&tag);
+        Some(bytes)
+    }
+
+    fn open(&mut self, bytes: &[u8]) -> Option<Vec<u8>> {
+        let (sender, rest) = bytes.split_first_chunk::<8>()?;
+        let (counter, rest) = rest.split_first_chunk::<8>()?;
+        let (body, tag) = rest.split_last_chunk::<TAG>()?;
+        let (sender, counter) = (u64::from_le_bytes(*sender), u64::from_le_bytes(*counter));
+        let known = self.windows.iter().position(|window| window.sender == sender);
+        let is_new = known.and_then(|at| self.windows.get(at)).is_none_or(|window| window.is_new(counter));
+        if sender == self.sender || !is_new {
+            return None;
+        }
+        let mut body = body.to_vec();
+        let tag = Tag::from(*tag);
+        self.cipher.decrypt_in_place_detached(&nonce(sender, counter), b"", &mut body, &tag).ok()?;
+        // Only genuine packets change anything here.
+        self.received += 1;
+        let at = known.unwrap_or_else(|| self.remember(sender));
+        let window = self.windows.get_mut(at)?;
+        window.heard = self.received;
+        window.note(counter);
+        Some(body)
+    }
+
+    /// Adds a window for a sender and returns its place.
+    fn remember(&mut self, sender: u64) -> usize {
+        if self.windows.len() >= SENDERS_MAX {
+            let silent = (0..).zip(&self.windows).min_by_key(|(_, window)| window.heard);
+            if let Some((at, _)) = silent {
+                self.windows.swap_remove(at);
+            }
+        }
+        self.windows.push(Window::new(sender));
+        self.windows.len() - 1
+    }
+}
+
+impl<T: Transport> Transport for Sealed<T> {
+    fn send(&mut self, packet: &[u8], to: &Address) {
+        if let Some(sealed) = self.seal(packet) {
+            self.inner.send(&sealed, to);
+        }
+    }
+
+    fn receive(&mut self) -> Option<(Address, Vec<u8>)> {
+        loop {
+            let (from, bytes) = self.inner.receive()?;
+            if let Some(packet) = self.open(&bytes) {
+                return Some((from, packet));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::peer::{LinkConditions, Network, Port};
+
+    const KEY: [u8; 32] = [3; 32];
+
+    fn sealed(network: &Network, number: u32) -> Sealed<Port> {
+        Sealed::with_sender(network.port(number), KEY, u64::from(number))
+    }
+
+    /// A network, two members, and the bytes of a packet from the first to the second on their way.
+    fn on_the_way() -> (Network, Sealed<Port>, Sealed<Port>, Vec<u8>) {
+        let network = Network::new(LinkConditions::default(), 1);
+        let (mut alice, bob) = (sealed(&network, 1), sealed(&network, 2));
+        alice.send(b"inputs of a tick", &Network::address(2));
+        let bytes = network.port(2).receive().unwrap().1;
+        (network, alice, bob, bytes)
+    }
+
+    #[test]
+    fn a_packet_arrives_once_and_is_not_readable() {
+        let (network, _, mut bob, bytes) = on_the_way();
+        assert_eq!(bytes.len(), 16 + SEALED_OVERHEAD);
+        assert!(!bytes.windows(6).any(|part| part == b"inputs"));
+        for _ in 0..3 {
+            network.port(1).send(&bytes, &Network::address(2));
+        }
+        assert_eq!(bob.receive(), Some((Network::address(1), b"inputs of a tick".to_vec())));
+        assert_eq!(bob.receive(), None, "replayed");
+    }
+
+    #[test]
+    fn changed_truncated_and_forged_packets_are_dropped() {
+        let (network, _, mut bob, bytes) = on_the_way();
+        for at in 0..bytes.len() * 8 {
+            let mut changed = bytes.clone();
+            changed[at / 8] ^= 1 << (at % 8);
+            network.port(1).send(&changed, &Network::address(2));
+            assert_eq!(bob.receive(), None, "bit {at}");
+        }
+        for length in 0..bytes.len() {
+            network.port(1).send(&bytes[..length], &Network::address(2));
+            assert_eq!(bob.receive(), None, "{length} bytes");
+        }
+        let mut stranger = Sealed::with_sender(network.port(3), [4; 32], 3);
+        stranger.send(b"inputs of a tick", &Network::address(2));
+        assert_eq!(bob.receive(), None, "another key");
+        network.port(1).send(&bytes, &Network::address(2));
+        assert!(bob.receive().is_some(), "none of these keeps the genuine packet out");
+    }
+
+    #[test]
+    fn a_reflected_packet_is_dropped() {
+        let (network, mut alice, _, bytes) = on_the_way();
+        network.port(2).send(&bytes, &Network::address(1));
+        assert_eq!(alice.receive(), None);
+    }
+
+    #[test]
+    fn the_window_admits_what_is_late_and_nothing_twice() {
+        let mut window = Window::new(1);
+        for counter in [5, 3, 4, 2000, 0, 2100, 60] {
+            assert!(window.is_new(counter), "{counter}");
+            window.note(counter);
+            assert!(!window.is_new(counter), "{counter}");
+        }
+        assert!(!window.is_new(52), "too old to know");
+        assert!(window.is_new(53) && window.is_new(1999) && !window.is_new(2000));
+        window.note(1 << 40);
+        assert!(!window.is_new(2100) && window.is_new((1 << 40) - 2047));
+        assert!(!window.is_new(u64::MAX));
+    }
+
+    #[test]
+    fn the_silent_sender_gives_way() {
+        let network = Network::new(LinkConditions::default(), 1);
+        let mut bob = sealed(&network, 2);
+        for number in 10..2000 {
+            sealed(&network, number).send(b"x", &Network::address(2));
+            assert!(bob.receive().is_some());
+        }
+        assert_eq!(bob.windows.len(), SENDERS_MAX);
+    }
+}

@@ -1,0 +1,136 @@
+//! [`Congestion`]: how fast a state is sent to one receiver.
+//!
+//! Additive increase, multiplicative decrease (Chiu and Jain 1989), judged once a round trip. A period was too fast if
+//! more than an eighth of its chunks had been lost, or if the round trip has risen by more than 60 ms above the
+//! smallest one: then a queue fills up, through which the inputs of the match have to pass as well. Loss below an eighth is
+//! taken for that of the line. Until the first such period the rate doubles in two of them.
+
+/// Rates in bytes a second: at first, the smallest, and the largest over all receivers together.
+const RATE_START: u64 = 1_000_000;
+const RATE_MIN: u64 = 128_000;
+pub(super) const RATE_MAX: u64 = 16_000_000;
+/// Increase for each period.
+const RATE_STEP: u64 = 100_000;
+/// Rise of the round trip that is taken for a queue, in microseconds.
+const QUEUE: u64 = 60_000;
+/// Bounds of a period in microseconds.
+const PERIOD_MIN: u64 = 40_000;
+const PERIOD_MAX: u64 = 500_000;
+/// Time whose bytes may be sent at once, in microseconds: a game may update once a frame.
+pub(super) const BURST: u64 = 25_000;
+/// Loss is judged by at least this many chunks.
+const CHUNKS_MIN: u32 = 8;
+
+/// The rate of one upload.
+#[derive(Clone, Debug)]
+pub(super) struct Congestion {
+    rate: u64,
+    /// Whether no period has been too fast yet.
+    is_starting: bool,
+    /// Bytes that may be sent now, and when they were last counted.
+    budget: u64,
+    budget_at: u64,
+    /// Smallest round trip, and the last one.
+    round_trip_min: u64,
+    round_trip: u64,
+    /// Start of the period, chunks sent and lost in it, and whether the rate was what kept more from being sent.
+    since: u64,
+    sent: u32,
+    lost: u32,
+    is_limiting: bool,
+}
+
+impl Congestion {
+    pub(super) const fn new() -> Self {
+        Congestion {
+            rate: RATE_START,
+            is_starting: true,
+            budget: 0,
+            budget_at: 0,
+            round_trip_min: u64::MAX,
+            round_trip: 0,
+            since: 0,
+            sent: 0,
+            lost: 0,
+            is_limiting: false,
+        }
+    }
+
+    /// Notes a measured round trip.
+    pub(super) fn measure(&mut self, round_trip: u64) {
+        self.round_trip = round_trip;
+        self.round_trip_min = self.round_trip_min.min(round_trip);
+    }
+
+    /// Whether another chunk may be sent.
+    pub(super) fn may_send(&mut self, now: u64) -> bool {
+        self.judge(now);
+        let passed = now.saturating_sub(self.budget_at).min(BURST);
+        self.budget_at = now;
+        self.budget = (self.budget + passed * self.rate / 1_000_000).min(self.rate * BURST / 1_000_000);
+        self.is_limiting |= self.budget == 0;
+        self.budget > 0
+    }
+
+    /// Notes a chunk that is sent; `again` if it is taken for lost.
+    pub(super) fn note_sent(&mut self, bytes: u64, again: bool) {
+        self.budget = self.budget.saturating_sub(bytes);
+        self.sent += 1;
+        self.lost += u32::from(again);
+    }
+
+    fn judge(&mut self, now: u64) {
+        let period = self.round_trip.clamp(PERIOD_MIN, PERIOD_MAX);
+        if now < self.since.saturating_add(period) || self.sent < CHUNKS_MIN {
+            return;
+        }
+        let queue = self.round_trip > self.round_trip_min.saturating_add(QUEUE);
+        if queue || self.lost * 8 > self.sent {
+            self.rate = (self.rate / 10 * 7).max(RATE_MIN);
+            self.is_starting = false;
+        } else if self.is_limiting {
+            let step = if self.is_starting { self.rate / 2 } else { RATE_STEP };
+            self.rate = (self.rate + step).min(RATE_MAX);
+        }
+        (self.since, self.sent, self.lost, self.is_limiting) = (now, 0, 0, false);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sends over a line of `rate` bytes a second with a queue of 100 ms and a loss in percent; returns the bytes a second
+    /// that arrive after ten seconds.
+    fn run(rate: u64, loss: u64) -> u64 {
+        let (mut control, mut queued, mut arrived, mut random) = (Congestion::new(), 0_u64, 0, 1_u64);
+        let mut lost = 0;
+        for ms in 0..20_000_u64 {
+            let passed = queued.min(rate / 1000);
+            queued -= passed;
+            arrived += if ms >= 10_000 { passed } else { 0 };
+            control.measure(40_000 + queued * 1_000_000 / rate);
+            while control.may_send(ms * 1000) {
+                control.note_sent(1000, lost > 0);
+                lost -= u32::from(lost > 0);
+                random = random.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(1);
+                if (random >> 33) % 100 < loss || queued + 1000 > rate / 10 {
+                    lost += 1;
+                } else {
+                    queued += 1000;
+                }
+            }
+        }
+        arrived / 10
+    }
+
+    #[test]
+    fn the_rate_is_that_of_the_line() {
+        for rate in [500_000, 2_000_000, 10_000_000] {
+            for loss in [0, 5] {
+                let reached = run(rate, loss);
+                assert!(reached > rate * 6 / 10 && reached <= rate, "{reached} of {rate}, {loss} % loss");
+            }
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! [`Contacts`]: other ways into a match, for somebody without a vote whose contact has gone.
+//!
+//! A spectator hears the match through the peer that it has asked. If it hears no majority any more, it asks the other
+//! peers whose addresses it was told, one after the other, with the same handshake as at first. Whoever admits it serves it
+//! from then on; its state and the ticks that it has played remain.
+
+use alloc::vec::Vec;
+
+use super::address::Address;
+use super::id::PeerId;
+
+/// Time without a majority after which others are asked, in microseconds.
+const SILENCE: u64 = 500_000;
+/// Time for which one of them is asked.
+const ASK_TIME: u64 = 1_500_000;
+/// Time between two hellos.
+const HELLO_INTERVAL: u64 = 200_000;
+/// Addresses that are remembered.
+const CONTACTS_MAX: usize = 128;
+
+/// Somebody who is asked.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Asked {
+    pub(super) address: Address,
+    pub(super) nonce: u64,
+    pub(super) cookie: u64,
+    next_at: u64,
+    until: u64,
+}
+
+/// Addresses of those who take part, and who of them is asked.
+#[derive(Debug, Default)]
+pub(super) struct Contacts {
+    list: Vec<(PeerId, Address)>,
+    turn: usize,
+    silent_since: Option<u64>,
+    asked: Option<Asked>,
+}
+
+impl Contacts {
+    /// Notes the address of a peer. A newer one replaces an older one.
+    pub(super) fn note(&mut self, id: PeerId, address: Address) {
+        match self.list.iter_mut().find(|(known, _)| *known == id) {
+            Some(known) => known.1 = address,
+            None => {
+                if self.list.len() == CONTACTS_MAX {
+                    self.list.remove(0);
+                }
+                self.list.push((id, address));
+            }
+        }
+    }
+
+    /// Returns whom to send a hello, if somebody is to be asked now. `is_silent` says whether this peer hears no majority,
+    /// and `nonce` makes a number for a new handshake.
+    pub(super) fn update(
+        &mut self,
+        now: u64,
+        is_silent: bool,
+        nonce: impl Fn(&Address) -> u64,
+    ) -> Option<Asked> {
+        if !is_silent {
+            (self.silent_since, self.asked) = (None, None);
+            return None;
+        }
+        let since = *self.silent_since.get_or_insert(now);
+        if now < since.saturating_add(SILENCE) {
+            return None;
+        }
+        if self.asked.is_none_or(|asked| now >= asked.until) {
+            let (_, address) = *self.list.get(self.turn.checked_rem(self.list.len())?)?;
+            self.turn = self.turn.wrapping_add(1);
+            let until = now.saturating_add(ASK_TIME);
+            self.asked = Some(Asked { address, nonce: nonce(&address), cookie: 0, next_at: now, until });
+        }
+        let asked = self.asked.as_mut().filter(|asked| now >= asked.next_at)?;
+        asked.next_at = now.saturating_add(HELLO_INTERVAL);
+        Some(*asked)
+    }
+
+    /// Takes a challenge. Returns whether it answers a hello of this peer, so that the address is right.
+    pub(super) fn take_challenge(&mut self, nonce: u64, cookie: u64) -> bool {
+        let Some(asked) = self.asked.as_mut().filter(|asked| asked.nonce == nonce) else { return false };
+        if asked.cookie != cookie {
+            (asked.cookie, asked.next_at) = (cookie, 0);
+        }
+        true
+    }
+
+    /// Takes a refusal: the next one is asked.
+    pub(super) fn take_refusal(&mut self, nonce: u64) {
+        if self.asked.is_some_and(|asked| asked.nonce == nonce) {
+            self.asked = None;
+        }
+    }
+}
