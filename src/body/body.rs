@@ -28,6 +28,20 @@ pub(crate) struct Pose {
 }
 
 /// A body in the world.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// let id = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(3))), &[square])?;
+/// world.step();
+/// let body = world.body(id).expect("it was just created");
+/// assert!(body.position().y < fx!(3) && body.velocity().y < fx!(0));
+/// assert_eq!(body.mass(), fx!(1));
+/// // Bodies are changed by methods of the world, which check what they are given.
+/// world.set_velocity(id, Vec2::new(fx!(2), fx!(0)), fx!(0))?;
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[doc(alias = "RigidBody")]
 #[doc(alias = "rigid_body")]

@@ -12,6 +12,16 @@ use crate::math::{Aabb, Fx, Vec2};
 const SIZE_MIN: Fx = fx!(0.002);
 
 /// Geometry of a shape, relative to the shape's centre.
+///
+/// ```
+/// use lockstep2d::{body::{Geometry, Polygon}, fx, math::Vec2};
+/// let ball = Geometry::circle(fx!(0.5))?;
+/// let pill = Geometry::capsule(Vec2::new(fx!(0), fx!(0)), Vec2::new(fx!(0), fx!(1)), fx!(0.3))?;
+/// let plate = Geometry::from(Polygon::rectangle(fx!(2), fx!(0.1))?);
+/// assert!(Geometry::circle(fx!(0)).is_err());
+/// # let _ = (ball, pill, plate);
+/// # Ok::<(), lockstep2d::body::GeometryError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Geometry {
     /// A disc centred on the shape's centre.

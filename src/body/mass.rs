@@ -31,6 +31,19 @@ const MASS: core::ops::RangeInclusive<Fx> = fx!(0.00001)..=fx!(1073741824);
 const GYRATION: core::ops::RangeInclusive<Fx> = fx!(0.002)..=fx!(512);
 
 /// Source of a dynamic body's mass.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// use lockstep2d::body::MassSource;
+/// // A roly-poly: its centre of mass is below its middle.
+/// let mass = MassSource::Given { mass: fx!(2), centre: Vec2::new(fx!(0), fx!(-0.3)), gyration: fx!(0.2) };
+/// let id = world.spawn(&BodyDef::dynamic().mass(mass), &[ShapeDef::new(Geometry::circle(fx!(0.5))?)])?;
+/// assert_eq!(world.body(id).map(|body| body.mass()), Some(fx!(2)));
+/// # let _ = square;
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MassSource {
     /// Computed from the area and density of the shapes. If no shape has both, or there is none, the body is without

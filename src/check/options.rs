@@ -112,6 +112,14 @@ pub enum Phases {
 }
 
 /// The extent and cost of a check.
+///
+/// ```
+/// use lockstep2d::check::{CheckOptions, Variant};
+/// use lockstep2d::collision::BroadPhaseKind;
+/// // For a large world: every tenth tick, without the variant that compares all pairs of shapes.
+/// let options = CheckOptions::default().every(10).without(Variant::BroadPhase(BroadPhaseKind::BruteForce));
+/// assert_eq!(options.every, 10);
+/// ```
 #[derive(Clone, Debug)]
 pub struct CheckOptions {
     /// The variants to play.

@@ -36,6 +36,54 @@ impl core::error::Error for SetupError {}
 /// A deterministic game: the same setup and the same inputs give the same state hash after every tick.
 ///
 /// Recording, verification, rollback and the command-line tools are generic over this trait.
+///
+/// ```
+/// # use lockstep2d::{body::*, fx, hash::StateHash, math::*, world::*};
+/// use lockstep2d::lockstep::{Game, RulesId, SetupError};
+///
+/// /// One player lifts a ball.
+/// struct Lift {
+///     world: World,
+///     ball: BodyId,
+/// }
+///
+/// impl Game for Lift {
+///     type Setup = ();
+///     type Input = bool;
+///     type Save = Snapshot;
+///     const RULES: RulesId = RulesId { name: "lift", version: 1 };
+///
+///     fn new(_: &()) -> Result<Self, SetupError> {
+///         let build = || {
+///             let mut world = World::default();
+///             let ball = ShapeDef::new(Geometry::circle(fx!(0.5))?);
+///             let ball = world.spawn(&BodyDef::dynamic(), &[ball])?;
+///             Ok(Lift { world, ball })
+///         };
+///         build().map_err(|error: WorldError| SetupError { why: error.to_string() })
+///     }
+///     fn players(&self) -> u32 { 1 }
+///     fn tick_rate(&self) -> u32 { 60 }
+///     fn step(&mut self, inputs: &[bool]) {
+///         if inputs.first() == Some(&true) {
+///             let _ = self.world.apply_force_to_centre(self.ball, Vec2::new(fx!(0), fx!(20)));
+///         }
+///         self.world.step();
+///     }
+///     fn state_hash(&self) -> StateHash { self.world.state_hash() }
+///     fn save(&self) -> Snapshot { self.world.save() }
+///     fn load(&mut self, save: &Snapshot) { self.world.restore(save); }
+///     fn work(&self, _: &[bool]) -> u64 { self.world.work(0, 0) }
+///     fn world(&self) -> Option<&World> { Some(&self.world) }
+///     fn world_mut(&mut self) -> Option<&mut World> { Some(&mut self.world) }
+/// }
+///
+/// // In return: recording, verification, tools, matches, and a check of determinism.
+/// use lockstep2d::check::{CheckOptions, check, random_inputs};
+/// let inputs = random_inputs::<Lift>(1, 30, &mut Rng::new(1));
+/// check::<Lift>(&(), &inputs, &CheckOptions::default())?;
+/// # Ok::<(), lockstep2d::check::CheckError>(())
+/// ```
 pub trait Game: Sized {
     /// Everything that the first tick depends on: level, seed, options.
     type Setup: Serialize + DeserializeOwned;

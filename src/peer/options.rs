@@ -10,6 +10,14 @@ use super::error::PeerError;
 use super::input_slot::InputSlot;
 
 /// Options of a peer. `patience` and `input_bytes` have to be the same for all peers of a match.
+///
+/// ```
+/// use core::time::Duration;
+/// use lockstep2d::peer::PeerOptions;
+/// // Three players, of whom one that is gone for five seconds is not waited for any longer.
+/// let options = PeerOptions { start_with: 3, patience: Duration::from_secs(5), ..PeerOptions::rollback() };
+/// assert_eq!(options.guess, 8);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PeerOptions {
     /// Largest number of ticks that are played with guessed inputs; 0 is lockstep. Each peer chooses its own.

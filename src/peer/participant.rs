@@ -27,6 +27,14 @@ const PACKETS_PER_UPDATE: usize = 4096;
 ///
 /// It owns the game and decides when a tick can be played; the caller owns the clock and the transport. Call
 /// [`update`](Peer::update) every few milliseconds, and [`advance`](Peer::advance) while [`is_due`](Peer::is_due).
+///
+/// ```no_run
+/// # use lockstep2d::{lockstep::{Sandbox, SandboxSetup}, peer::{Peer, PeerIdentity, PeerOptions, Udp, socket_address}};
+/// let (options, me) = (PeerOptions { input_bytes: Some(64), ..PeerOptions::lockstep() }, PeerIdentity::random());
+/// let host = socket_address("203.0.113.5:7000".parse()?);
+/// let mut peer = Peer::<Sandbox, _>::join(&SandboxSetup::default(), options, me, Udp::bind("0.0.0.0:0")?, host)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Peer<G: Game, T> {
     transport: T,
     endpoint: Endpoint,

@@ -5,6 +5,24 @@ use alloc::vec::Vec;
 use crate::session::Address;
 
 /// Carries packets between peers. Packets may be lost, doubled, delayed and reordered, and may come from anybody.
+///
+/// ```
+/// use lockstep2d::{peer::Transport, session::Address};
+/// use std::collections::VecDeque;
+///
+/// /// Packets of a socket of one's own: here, those sent come back.
+/// struct Echo(VecDeque<(Address, Vec<u8>)>);
+///
+/// impl Transport for Echo {
+///     fn send(&mut self, packet: &[u8], to: &Address) {
+///         self.0.push_back((to.clone(), packet.to_vec()));
+///     }
+///
+///     fn receive(&mut self) -> Option<(Address, Vec<u8>)> {
+///         self.0.pop_front()
+///     }
+/// }
+/// ```
 pub trait Transport {
     /// Sends a packet of at most [`PACKET_BYTES_MAX`](crate::session::PACKET_BYTES_MAX) bytes, or drops it. With
     /// `Sealed` above it, packets are 32 bytes longer.

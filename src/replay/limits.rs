@@ -9,6 +9,13 @@ use super::reader::ReadError;
 ///
 /// The default accepts anything that an ordinary game records in a day and stops a file after some minutes of
 /// computing. A server for one game should narrow the limits, for example to a race of ten minutes and two players.
+///
+/// ```
+/// use lockstep2d::replay::Limits;
+/// // Races of two players that last up to ten minutes at 60 Hz.
+/// let limits = Limits { players: 2, ticks: 10 * 60 * 60, file_bytes: 1 << 20, ..Limits::default() };
+/// assert!(limits.total_work > limits.tick_work);
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Size of the whole file in bytes.

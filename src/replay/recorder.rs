@@ -104,6 +104,22 @@ impl core::error::Error for RecordError {}
 ///
 /// Finished bytes are fetched with [`Recorder::take_bytes`] and can be appended to a file at any time: after the header
 /// and after every block they are a valid prefix of a replay. In a game with rollback, record confirmed ticks only.
+///
+/// ```
+/// use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
+/// use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, Recorder, Verdict, verify};
+/// let (mut recorder, mut game) = Recorder::<Sandbox>::start(&SandboxSetup::default(), CHECKPOINT_INTERVAL)?;
+/// for _ in 0..90 {
+///     // The recorded inputs are what was encoded: step with these.
+///     game.step(recorder.record(&[vec![]])?);
+///     if recorder.is_checkpoint_due() {
+///         recorder.checkpoint(game.state_hash());
+///     }
+/// }
+/// let file = recorder.finish(&game)?;
+/// assert!(matches!(verify::<Sandbox>(&file, &Limits::default()), Verdict::Match { ticks: 90, .. }));
+/// # Ok::<(), lockstep2d::replay::RecordError>(())
+/// ```
 pub struct Recorder<G: Game> {
     players: u32,
     checkpoint_interval: u32,

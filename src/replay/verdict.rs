@@ -9,6 +9,15 @@ use super::reader::ReadError;
 use crate::hash::StateHash;
 
 /// Result of verifying a file. Only `Match` means that the file is valid.
+///
+/// ```
+/// use lockstep2d::{lockstep::Sandbox, replay::{Limits, Verdict, verify}};
+/// match verify::<Sandbox>(b"not a replay", &Limits::default()) {
+///     Verdict::Match { ticks, hash } => println!("valid: {ticks} ticks, {hash}"),
+///     // `Display` has a line for every case.
+///     verdict => assert!(matches!(verdict, Verdict::Malformed { offset: 0, .. }), "{verdict}"),
+/// }
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// The setup and the inputs lead to every checkpoint, to the end state and to the claims of the file.

@@ -41,6 +41,15 @@ pub(crate) const RATE_MAX: u32 = 4000;
 pub const DISTANCE_MAX: Fx = fx!(15);
 
 /// Settings of the solver.
+///
+/// ```
+/// use lockstep2d::{solver::SolverSettings, world::{Config, World}};
+/// // Twice the sub-steps: chains with heavy loads stretch less, and a tick costs more.
+/// let solver = SolverSettings { sub_steps: 8, ..SolverSettings::default() };
+/// let world = World::new(Config { solver, ..Config::default() })?;
+/// # let _ = world;
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SolverSettings {
     /// Sub-steps in a tick, 1 to 64. Ticks per second times sub-steps is 60 to 4000. Small bodies need more of them:

@@ -77,6 +77,25 @@ pub struct JointEvent {
 }
 
 /// The events of a tick, one list for each kind.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[square])?;
+/// let falling = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(1))), &[square])?;
+/// let mut hits = 0;
+/// for _ in 0..120 {
+///     world.step();
+///     // Right after the step, and in the same tick: a restored world has no events until its next tick.
+///     for hit in &world.events().hits {
+///         assert!(world.shapes_of(falling).contains(&hit.shape_b) && hit.approach_speed > fx!(3));
+///         hits += 1;
+///     }
+/// }
+/// assert_eq!(hits, 1);
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Events {

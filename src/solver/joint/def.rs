@@ -88,6 +88,22 @@ pub enum JointKind {
 ///
 /// It is compared with the load in the last sub-step of a tick. If a joint carries a load from its first tick on, the
 /// solver may overestimate the load in that tick by a third, because the joint has no impulse for the warm start yet.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # let a = world.spawn(&BodyDef::fixed(), &[])?;
+/// # let b = world.spawn(&BodyDef::dynamic().position((fx!(2), fx!(0))), &[square])?;
+/// use lockstep2d::solver::{JointDef, Revolute, Threshold, ThresholdAction};
+/// // A hinge that breaks at 5 N: the square alone weighs 10 N.
+/// let weak = Threshold { force: Some(fx!(5)), torque: None, action: ThresholdAction::Break };
+/// let hinge = JointDef { threshold: weak, ..JointDef::new(a, b, Revolute::new()).anchor_b((fx!(-2), fx!(0))) };
+/// world.add_joint(&hinge)?;
+/// (0..10).for_each(|_| world.step());
+/// assert_eq!(world.joint_count(), 0);
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Threshold {
     /// Largest force in N, 0 or more; `None` for no limit.

@@ -10,6 +10,20 @@ use crate::fx;
 use crate::math::Fx;
 
 /// A distance joint: a rod, a rope, a spring, or a spring with limits.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # let a = world.spawn(&BodyDef::fixed(), &[])?;
+/// # let b = world.spawn(&BodyDef::dynamic().position((fx!(2), fx!(0))), &[square])?;
+/// use lockstep2d::solver::{Distance, JointDef};
+/// // A rope of 2 m; `Distance::rod` also pushes, and `Distance::new().spring(..)` is elastic.
+/// world.add_joint(&JointDef::new(a, b, Distance::rope(fx!(2))))?;
+/// (0..60).for_each(|_| world.step());
+/// assert!(world.body(b).is_some_and(|body| body.position().length() < fx!(2.01)));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[doc(alias = "rope")]
 #[doc(alias = "rod")]

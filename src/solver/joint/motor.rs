@@ -18,6 +18,20 @@ use crate::math::{Fx, Vec2};
 /// A. Momentum and angular momentum of the two bodies are kept. An arm of A that is longer than 88 of its radii of
 /// gyration is shortened, and B's arm reaches to its end. Where neither body reaches the other, forces act along the
 /// line between their centres only.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # let a = world.spawn(&BodyDef::fixed(), &[])?;
+/// # let b = world.spawn(&BodyDef::dynamic().position((fx!(2), fx!(0))), &[square])?;
+/// use lockstep2d::solver::{JointDef, Motor};
+/// // Drags `b` after the point `a` like a mouse: 5 Hz, at most 200 N.
+/// world.add_joint(&JointDef::new(a, b, Motor::new().linear_spring(fx!(5), fx!(1), fx!(200))))?;
+/// (0..120).for_each(|_| world.step());
+/// assert!(world.body(b).is_some_and(|body| body.position().length() < fx!(0.1)));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[doc(alias = "mouse joint")]
 #[doc(alias = "MouseJoint")]

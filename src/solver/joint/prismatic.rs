@@ -16,6 +16,24 @@ use crate::math::Fx;
 ///
 /// The translation of the joint is the position of B's anchor along that axis, in metres. It should stay within a
 /// hundred radii of gyration of either body, because longer lever arms are clamped.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # let a = world.spawn(&BodyDef::fixed(), &[])?;
+/// # let b = world.spawn(&BodyDef::dynamic().position((fx!(2), fx!(0))), &[square])?;
+/// use lockstep2d::{math::Angle, solver::{JointDef, Prismatic}};
+/// // A lift: up and down by 3 m, driven at 1 m/s with at most 100 kN.
+/// let lift = Prismatic::new().limit(fx!(0), fx!(3)).motor(fx!(1), fx!(100000));
+/// let mut def = JointDef::new(a, b, lift).anchor_a((fx!(2), fx!(0)));
+/// def.frame_a.angle = Angle::from_degrees(fx!(90));
+/// def.frame_b.angle = Angle::from_degrees(fx!(90));
+/// world.add_joint(&def)?;
+/// (0..240).for_each(|_| world.step());
+/// assert!(world.body(b).is_some_and(|lift| (lift.position().y - fx!(3)).abs() < fx!(0.02)));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[doc(alias = "slider")]
 #[doc(alias = "SliderJoint")]

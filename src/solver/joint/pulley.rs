@@ -18,6 +18,21 @@ const RATIO_MAX: Fx = fx!(4);
 ///
 /// A rope only pulls. The wheels are points of the world, which bear its force. B's side is pulled with `ratio` times
 /// the force of A's, as by a tackle with as many ropes.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # let light = world.spawn(&BodyDef::dynamic().position((fx!(-1), fx!(0))), &[square])?;
+/// # let heavy = world.spawn(&BodyDef::dynamic().position((fx!(1), fx!(0))), &[square.density(fx!(2))])?;
+/// use lockstep2d::solver::{JointDef, Pulley};
+/// // Two wheels 5 m above the bodies, and a rope that is just taut.
+/// let rope = Pulley::new((fx!(-1), fx!(5)), (fx!(1), fx!(5)), fx!(10));
+/// world.add_joint(&JointDef::new(light, heavy, rope))?;
+/// (0..30).for_each(|_| world.step());
+/// assert!(world.body(light).is_some_and(|body| body.position().y > fx!(0.3)));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[doc(alias = "PulleyJoint")]
 #[doc(alias = "tackle")]

@@ -21,6 +21,21 @@ use crate::math::Fx;
 ///
 /// The angle of the joint is that of B's frame in A's, in radians, counter-clockwise. It counts whole turns, so that a
 /// limit may be wider than one turn.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # let a = world.spawn(&BodyDef::fixed(), &[])?;
+/// # let b = world.spawn(&BodyDef::dynamic().position((fx!(2), fx!(0))), &[square])?;
+/// use lockstep2d::solver::{JointDef, Revolute};
+/// // A door that opens by up to 1.5 rad and is pulled shut.
+/// let door = Revolute::new().limit(fx!(0), fx!(1.5)).spring(fx!(1), fx!(1), fx!(0));
+/// let door = world.add_joint(&JointDef::new(a, b, door).anchor_b((fx!(-2), fx!(0))))?;
+/// world.step();
+/// assert!(world.joint_angle(door).is_some_and(|angle| angle.abs() < fx!(0.01)));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[doc(alias = "hinge")]
 #[doc(alias = "pin joint")]

@@ -13,6 +13,21 @@ use crate::body::WorldError;
 use crate::math::Fx;
 
 /// A weld: B's frame stays on A's.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # let a = world.spawn(&BodyDef::fixed(), &[])?;
+/// # let b = world.spawn(&BodyDef::dynamic().position((fx!(2), fx!(0))), &[square])?;
+/// use lockstep2d::solver::{JointDef, Weld};
+/// // A springboard: its place is rigid, its angle yields at 2 Hz.
+/// let board = Weld::rigid().angular(fx!(2), fx!(0.3));
+/// world.add_joint(&JointDef::new(a, b, board).anchor_b((fx!(-2), fx!(0))))?;
+/// (0..300).for_each(|_| world.step());
+/// assert!(world.body(b).is_some_and(|board| board.angle().to_radians() < fx!(0)));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[doc(alias = "fixed joint")]
 #[doc(alias = "FixedJoint")]

@@ -13,6 +13,16 @@ use crate::solver::JointDef;
 use crate::world::{Config, World};
 
 /// An edit of a world. The method of the same name documents units and errors.
+///
+/// ```
+/// use lockstep2d::{body::BodyDef, codec, fx, math::Vec2, world::{Command, Outcome, World}};
+/// let mut world = World::default();
+/// let spawn = Command::Spawn { body: BodyDef::dynamic().position((fx!(1), fx!(2))), shapes: vec![] };
+/// // Commands are data: bytes for a file, a packet or a replay.
+/// let sent: Command = codec::decode(&codec::encode(&spawn)).expect("just encoded");
+/// assert!(matches!(world.execute(&sent), Ok(Outcome::Body(_))));
+/// # let _ = Vec2::<lockstep2d::math::Fx>::ZERO;
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Command {
     /// Calls [`World::spawn`].

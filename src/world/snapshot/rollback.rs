@@ -19,6 +19,18 @@ use crate::world::state::{Island, Reported, State};
 ///
 /// It shares unchanged data with the world and with other snapshots. Its own memory is about 50 bytes for each body and
 /// 32 bytes for each contact: see [`Snapshot::rollback_bytes`]. It stores its [`Snapshot::state_hash`].
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # world.spawn(&BodyDef::dynamic(), &[square])?;
+/// let saved = world.save();
+/// world.step();
+/// world.restore(&saved);
+/// assert_eq!((world.tick(), world.state_hash()), (0, saved.state_hash()));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Snapshot {
     pub(super) rest: Rest,

@@ -10,6 +10,22 @@ pub use crate::solver::SolverColour;
 use crate::world::World;
 
 /// Two shapes in contact.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-0.5))), &[square])?;
+/// # world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(0.5))), &[square])?;
+/// # (0..60).for_each(|_| world.step());
+/// # world.step();
+/// for contact in world.contacts() {
+///     // Two points carry the weight of 10 N.
+///     let load: Fx = contact.forces().map(|(_, force)| force.normal).sum();
+///     assert!(contact.touching && (load - fx!(10)).abs() < fx!(0.1));
+/// }
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy)]
 pub struct ContactView<'a> {
     /// The shape in the smaller slot.
