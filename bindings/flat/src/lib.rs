@@ -17,6 +17,8 @@ mod numbers;
 mod records;
 mod status;
 mod table;
+#[cfg(test)]
+mod tests;
 
 pub use border::{In, Out, Plain};
 pub use functions::*;
