@@ -156,6 +156,12 @@ export class Match extends Handle {
         return { played: u32(at), final: u32(at + 4), confirmed: u32(at + 8) };
     }
 
+    /** The final inputs of all seats for a tick, while they are kept. */
+    finalInputs(tick) {
+        const at = scratch(16 + this.#inputs);
+        return call("ls2d_match_final_inputs", this.handle, tick, at + 16, this.#inputs, at, at + 8) ? copy(at + 16, u32(at)) : undefined;
+    }
+
     /** Own seats, in ascending order. */
     get seats() {
         const at = scratch(8);

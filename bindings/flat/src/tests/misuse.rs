@@ -36,7 +36,7 @@ fn a_panic_becomes_a_code_and_leaves_the_object_unusable() {
 fn the_last_error_says_why() {
     assert_eq!(ls2d_world_step(77), Status::Handle as i32);
     let (mut text, mut length) = ([0; 64], 0);
-    done(ls2d_last_error(Out::all(&mut text), text.len(), Out::of(&mut length)));
+    done(ls2d_last_error(Out::all(&mut text), 64, Out::of(&mut length)));
     assert_eq!(&text[..length], b"no object has the handle 77");
     done(ls2d_last_error(Out::all(&mut text), 2, Out::of(&mut length)));
     assert_eq!(length, 27, "the length of the whole text");
