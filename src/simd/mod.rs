@@ -193,14 +193,15 @@ impl Machine {
 
     /// Whether eight lanes are faster than one at a time.
     pub(crate) fn has_vectors(self) -> bool {
-        self.0 != Backend::Scalar
+        (Native::IS_SOLE && Native::HAS_VECTORS) || self.0 != Backend::Scalar
     }
 
     /// Runs a kernel with the backend.
     #[inline]
     pub(crate) fn run(self, kernel: impl Kernel<WIDTH>) {
+        // Kernels are large: without a choice between backends they are compiled once.
         match self.0 {
-            Backend::Scalar => kernel.run::<Scalar<WIDTH>>(),
+            Backend::Scalar if !Native::IS_SOLE => kernel.run::<Scalar<WIDTH>>(),
             backend => Native::run(backend, kernel),
         }
     }
@@ -226,7 +227,8 @@ impl Backend {
     /// Every backend that this machine can run, the best one last. Without the feature `std` only backends whose target
     /// features are enabled at compile time are listed.
     pub fn available() -> impl Iterator<Item = Backend> {
-        core::iter::once(Backend::Scalar).chain(Native::backends())
+        let scalar = !(Native::IS_SOLE && Native::HAS_VECTORS);
+        scalar.then_some(Backend::Scalar).into_iter().chain(Native::backends())
     }
 
     /// The best backend of this machine.

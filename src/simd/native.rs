@@ -5,6 +5,9 @@ use super::{Backend, Kernel, Scalar, WIDTH};
 pub(super) struct Native;
 
 impl Native {
+    pub(super) const IS_SOLE: bool = true;
+    pub(super) const HAS_VECTORS: bool = false;
+
     pub(super) fn backends() -> impl Iterator<Item = Backend> {
         core::iter::empty()
     }

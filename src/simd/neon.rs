@@ -16,6 +16,9 @@ pub(super) struct Neon;
 pub(super) use Neon as Native;
 
 impl Neon {
+    pub(super) const IS_SOLE: bool = false;
+    pub(super) const HAS_VECTORS: bool = true;
+
     pub(super) fn backends() -> impl Iterator<Item = Backend> {
         core::iter::once(Backend::Neon)
     }

@@ -16,6 +16,9 @@ pub(super) struct Simd128;
 pub(super) use Simd128 as Native;
 
 impl Simd128 {
+    pub(super) const IS_SOLE: bool = cfg!(feature = "sole_backend");
+    pub(super) const HAS_VECTORS: bool = true;
+
     pub(super) fn backends() -> impl Iterator<Item = Backend> {
         core::iter::once(Backend::Simd128)
     }

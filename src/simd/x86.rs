@@ -26,6 +26,9 @@ macro_rules! has {
 }
 
 impl Native {
+    pub(super) const IS_SOLE: bool = false;
+    pub(super) const HAS_VECTORS: bool = true;
+
     pub(super) fn backends() -> impl Iterator<Item = Backend> {
         let avx2 = has!("avx2").then_some(Backend::Avx2);
         let wide = has!("avx2", "avx512f", "avx512cd", "avx512dq", "bmi2", "popcnt");

@@ -1,0 +1,1493 @@
+/* The flat API of lockstep2d: a deterministic fixed-point 2D physics and lockstep engine.
+ *
+ * Written by the tests of lockstep2d-flat; do not edit it.
+ *
+ * Functions return a status: LS2D_OK, LS2D_NONE if there is nothing to return, or an error, whose text ls2d_last_error
+ * copies. Objects are handles, numbers that are never 0. A wrong or stale handle is an error, never undefined. ls2d_free
+ * frees objects of all kinds.
+ *
+ * Pointers are null or point to as many items as the function reads or writes, and nothing else uses that memory during
+ * the call. Functions with a buffer take its capacity in items and write the number of items; if the buffer is too
+ * short, they write the number that is needed and return LS2D_BUFFER.
+ *
+ * Structs that the caller fills begin with their size; ls2d_*_init functions set it and the defaults.
+ *
+ * Numbers are integers: ls2d_fx has 32 fraction bits (LS2D_FX(1) is a metre), ls2d_angle counts 2^-32 turn. Different
+ * objects may be used on several threads at once. */
+#ifndef LOCKSTEP2D_H
+#define LOCKSTEP2D_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Result of a function: one of the LS2D_ codes below. */
+typedef int32_t ls2d_status;
+/* An object. */
+typedef uint32_t ls2d_handle;
+
+/* A whole number as ls2d_fx, and a fraction of two whole numbers, rounded towards zero. */
+#define LS2D_FX(whole) ((ls2d_fx)((int64_t)(whole) * 4294967296))
+#define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)((int64_t)(numerator) * 4294967296 / (denominator)))
+/* An angle of whole degrees, rounded towards zero. */
+#define LS2D_DEGREES(whole) ((ls2d_angle)(int64_t)((int64_t)(whole) * 4294967296 / 360))
+/* No body, no shape, no joint. */
+#define LS2D_NO_ID UINT64_MAX
+/* Version of this header, to be compared with ls2d_api_version(). */
+#define LS2D_API_VERSION 1
+
+/* Done. */
+#define LS2D_OK 0
+/* There is nothing to return: no hit, no packet, no event, no further item. Not an error. */
+#define LS2D_NONE 1
+/* A pointer that must not be null is null. */
+#define LS2D_NULL 2
+/* A pointer is not aligned for its type. */
+#define LS2D_MISALIGNED 3
+/* The handle is null, was freed, or never existed. */
+#define LS2D_HANDLE 4
+/* The handle belongs to an object of another kind. */
+#define LS2D_HANDLE_KIND 5
+/* The `size` of a struct is not the one of this version of the library. */
+#define LS2D_SIZE 6
+/* A kind, flag, count or index is out of its range. */
+#define LS2D_VALUE 7
+/* The buffer is too short. The number of items that it has to hold was written. */
+#define LS2D_BUFFER 8
+/* A text is not what was expected, for example not UTF-8 or not a number. */
+#define LS2D_TEXT 9
+/* A result has no value: division by zero, root of a negative number. */
+#define LS2D_NUMBER 10
+/* An error in the library itself. The objects that took part are unusable from now on. */
+#define LS2D_INTERNAL 11
+/* The object was unusable after `LS2D_INTERNAL`. Only freeing it is possible. */
+#define LS2D_BROKEN 12
+/* There are too many objects. */
+#define LS2D_EXHAUSTED 13
+/* Bytes are not the encoding of what was expected. */
+#define LS2D_DECODE 14
+/* Geometry is not valid. */
+#define LS2D_GEOMETRY 20
+/* The body is not in the world. */
+#define LS2D_STALE_BODY 21
+/* The shape is not in the world. */
+#define LS2D_STALE_SHAPE 22
+/* The joint is not in the world. */
+#define LS2D_STALE_JOINT 23
+/* A position is out of range. */
+#define LS2D_POSITION 24
+/* A shape or an anchor is too far from the origin of its body. */
+#define LS2D_OFFSET 25
+/* A speed is out of range. */
+#define LS2D_SPEED 26
+/* A density is out of range. */
+#define LS2D_DENSITY 27
+/* A property of a material is out of range. */
+#define LS2D_MATERIAL 28
+/* A mass is out of range. */
+#define LS2D_MASS 29
+/* A radius of gyration is out of range. */
+#define LS2D_GYRATION 30
+/* A damping rate is out of range. */
+#define LS2D_DAMPING 31
+/* A gravity scale is out of range. */
+#define LS2D_GRAVITY_SCALE 32
+/* A property of an area is out of range. */
+#define LS2D_AREA 33
+/* A joint connects a body to itself. */
+#define LS2D_JOINT_TO_ITSELF 34
+/* The bodies of a joint cannot be changed. */
+#define LS2D_JOINT_BODIES 35
+/* The joint has no such part. */
+#define LS2D_JOINT_PART 36
+/* A property of a joint is out of range. */
+#define LS2D_JOINT 37
+/* A setting of the world is out of range. */
+#define LS2D_SETTING 38
+/* A limit of the world cannot be changed. */
+#define LS2D_FIXED_SETTING 39
+/* A name is not 1 to 16 ASCII letters, digits, `-` and `_`. */
+#define LS2D_NAME 40
+/* The world is full. */
+#define LS2D_FULL 41
+/* The kind of the body does not allow the change. */
+#define LS2D_WRONG_KIND 42
+/* The bytes are not a world of this version. */
+#define LS2D_SNAPSHOT 50
+/* A replay cannot hold this. */
+#define LS2D_RECORD 51
+/* A parameter of a match is out of its range. */
+#define LS2D_CONFIG 60
+/* The inputs do not have the expected number of bytes. */
+#define LS2D_INPUTS 61
+/* This peer does not take part in the match yet. */
+#define LS2D_NOT_IN_MATCH 62
+
+/* A number of metres, seconds, kilograms and so on, in units of 2^-32: 1 is 4294967296. */
+typedef int64_t ls2d_fx;
+/* An angle in units of 2^-32 turn, counter-clockwise: a quarter turn is 1073741824. */
+typedef uint32_t ls2d_angle;
+/* A body of a world: its slot in the lowest 21 bits, above them the number of earlier bodies in that slot. Less than
+ * 2^53, so that it fits a number of JavaScript. */
+typedef uint64_t ls2d_body;
+/* A shape of a world, like a body. */
+typedef uint64_t ls2d_shape;
+/* A joint of a world, like a body. */
+typedef uint64_t ls2d_joint;
+
+/* Kind of a body: does not move. */
+#define LS2D_FIXED 0
+/* Kind of a body: moves with its velocity alone. */
+#define LS2D_KINEMATIC 1
+/* Kind of a body: moved by forces, contacts and joints. */
+#define LS2D_DYNAMIC 2
+/* Flag of a body: takes part in the simulation. */
+#define LS2D_BODY_ENABLED 1
+/* Flag of a body: asleep. */
+#define LS2D_BODY_ASLEEP 2
+/* Flag of a body: does not move along the x axis of the world. */
+#define LS2D_BODY_LOCK_X 4
+/* Flag of a body: does not move along the y axis of the world. */
+#define LS2D_BODY_LOCK_Y 8
+/* Flag of a body: does not turn. */
+#define LS2D_BODY_LOCK_ROTATION 16
+/* Flag of a body: may fall asleep. */
+#define LS2D_BODY_MAY_SLEEP 32
+/* Flag of a body: its mass is given and not that of its shapes. */
+#define LS2D_BODY_GIVEN_MASS 64
+/* `ls2d_body_def.continuous`: swept against nothing. */
+#define LS2D_SWEEP_OFF 0
+/* `ls2d_body_def.continuous`: swept against fixed bodies. */
+#define LS2D_SWEEP_FIXED 1
+/* `ls2d_body_def.continuous`: swept against all bodies that are not bullets. */
+#define LS2D_SWEEP_BULLET 2
+/* `ls2d_body_def.continuous`: swept against fixed and kinematic bodies. */
+#define LS2D_SWEEP_KINEMATIC 3
+/* `ls2d_config.flags`: bodies at rest fall asleep. */
+#define LS2D_SLEEPING 1
+/* `ls2d_config.flags`: fast bodies are swept against shapes that they might pass through. */
+#define LS2D_CONTINUOUS 2
+/* `ls2d_config.contact`: contacts are soft springs. */
+#define LS2D_CONTACT_SOFT 0
+/* `ls2d_config.contact`: contacts correct a share of the overlap in each sub-step. */
+#define LS2D_CONTACT_BAUMGARTE 1
+/* Kind of a joint: a hinge. */
+#define LS2D_REVOLUTE 0
+/* Kind of a joint: B slides along the x axis of A's frame and does not turn. */
+#define LS2D_PRISMATIC 1
+/* Kind of a joint: a rod, a rope or a spring between the anchors. */
+#define LS2D_DISTANCE 2
+/* Kind of a joint: glue, rigid or soft. */
+#define LS2D_WELD 3
+/* Kind of a joint: B slides along the x axis of A's frame and turns. */
+#define LS2D_WHEEL 4
+/* Kind of a joint: B is driven relative to A with limited force. */
+#define LS2D_MOTOR 5
+/* Kind of a joint: the bodies do not collide with each other. */
+#define LS2D_FILTER 6
+/* Kind of a joint: two toothed wheels. */
+#define LS2D_GEAR 7
+/* Kind of a joint: the wheel about A's anchor rolls along the x axis of B's frame. */
+#define LS2D_RACK 8
+/* Kind of a joint: a rope over two wheels that are fixed in the world. */
+#define LS2D_PULLEY 9
+/* Flag of a joint: its bodies collide with each other. */
+#define LS2D_JOINT_COLLIDE 1
+/* Flag of a joint: it acts. */
+#define LS2D_JOINT_ENABLED 2
+/* Flag of a joint: has `limit_lower` and `limit_upper` (revolute, prismatic, distance, wheel). */
+#define LS2D_JOINT_LIMIT 4
+/* Flag of a joint: has `motor_speed` and `motor_max` (revolute, prismatic, distance, wheel; the angle of a motor). */
+#define LS2D_JOINT_MOTOR 8
+/* Flag of a joint: has `spring_hertz`, `spring_damping_ratio`, `spring_target` (as for limits). */
+#define LS2D_JOINT_SPRING 16
+/* Flag of a joint: has `spring_force_lower` and `spring_force_upper` (distance). */
+#define LS2D_JOINT_SPRING_FORCE 32
+/* Flag of a joint: holds `length` rigidly (distance). */
+#define LS2D_JOINT_ROD 64
+/* Flag of a joint: has its own `hertz` and `damping_ratio`. */
+#define LS2D_JOINT_SOFTNESS 128
+/* Flag of a joint: has `threshold_force`. */
+#define LS2D_JOINT_THRESHOLD_FORCE 256
+/* Flag of a joint: has `threshold_torque`. */
+#define LS2D_JOINT_THRESHOLD_TORQUE 512
+/* Flag of a joint: breaks beyond a threshold. Without it, it is reported. */
+#define LS2D_JOINT_BREAKS 1024
+/* Flag of a joint: has `linear_velocity` and `linear_motor_max` (motor). */
+#define LS2D_JOINT_LINEAR_MOTOR 2048
+/* Flag of a joint: has `linear_hertz`, `linear_damping_ratio` and, a motor, `linear_max` (weld, motor). */
+#define LS2D_JOINT_LINEAR_SPRING 4096
+/* Flag of a joint: has `angular_hertz`, `angular_damping_ratio` and, a motor, `angular_max` (weld, motor). */
+#define LS2D_JOINT_ANGULAR_SPRING 8192
+/* Verdict: the setup and the inputs lead to every checkpoint and to the end of the file. */
+#define LS2D_MATCH 0
+/* Verdict: the trailer states something else about the end. */
+#define LS2D_CLAIM_MISMATCH 1
+/* Verdict: the simulation diverges from the recorded game. */
+#define LS2D_DIVERGED 2
+/* Verdict: the file ends before its trailer. */
+#define LS2D_INCOMPLETE 3
+/* Verdict: not what a recorder writes. */
+#define LS2D_MALFORMED 4
+/* Verdict: the file costs more than is allowed. */
+#define LS2D_LIMIT_EXCEEDED 5
+/* Verdict: of other versions or other rules. */
+#define LS2D_UNVERIFIABLE 6
+/* Request: keep a copy of the state before `tick`. An older copy for the same tick is replaced. */
+#define LS2D_REQUEST_SAVE 0
+/* Request: restore the copy of the state before `tick`. Later copies are no longer needed. */
+#define LS2D_REQUEST_LOAD 1
+/* Request: simulate `tick` with the inputs. */
+#define LS2D_REQUEST_ADVANCE 2
+/* Request: pass the hash of the copy of the state before `tick` to `ls2d_match_report_hash`. */
+#define LS2D_REQUEST_CHECKSUM 3
+/* Request: copies of states before `tick` are no longer needed. */
+#define LS2D_REQUEST_FORGET 4
+/* Event: the match stands somewhere else; `value` is a `LS2D_MATCH_` status. */
+#define LS2D_EVENT_STATUS 0
+/* Event: who has which seats changes. */
+#define LS2D_EVENT_VIEW 1
+/* Event: `peer` has `seat` from `tick` on. */
+#define LS2D_EVENT_SEATED 2
+/* Event: `peer` no longer has `seat` from `tick` on. */
+#define LS2D_EVENT_UNSEATED 3
+/* Event: play stands still because inputs of `peer` are missing; `value` is 1 if its packets arrive. */
+#define LS2D_EVENT_WAITING 4
+/* Event: play goes on. */
+#define LS2D_EVENT_RESUMED 5
+/* Event: `peer` asks for a pause, or no longer does; `value` is 1 or 0. */
+#define LS2D_EVENT_PAUSE 6
+/* Event: the match ends after `tick` ticks. */
+#define LS2D_EVENT_END 7
+/* Event: `peer` has another state at `tick`, with the hashes `ours` and `theirs`. */
+#define LS2D_EVENT_DESYNC 8
+/* Event: `peer` has issued two inputs for `tick`. */
+#define LS2D_EVENT_CONFLICT 9
+/* Event: the match has gone on for too long; the peer has to join again. */
+#define LS2D_EVENT_TOO_FAR_BEHIND 10
+/* Event: the contact refuses; `value` is a `LS2D_REFUSED_` reason. */
+#define LS2D_EVENT_REFUSED 11
+/* Event: the state after `tick` ticks is here, as bytes with the handle `value`, which the caller frees. The game
+ * has to restore it before it fulfils further requests. */
+#define LS2D_EVENT_STATE 12
+/* Event: what was downloaded is not a state; it is asked for again. */
+#define LS2D_EVENT_BAD_STATE 13
+/* Reason: the offers differ. */
+#define LS2D_REFUSED_OFFER 0
+/* Reason: too many peers follow the match. */
+#define LS2D_REFUSED_FULL 1
+/* Reason: the number of the peer is that of another one. */
+#define LS2D_REFUSED_TAKEN 2
+/* Reason: the contact is not in a match yet. It is asked again. */
+#define LS2D_REFUSED_NOT_READY 3
+/* Status: follows the match and asks for a seat. */
+#define LS2D_MATCH_JOINING 0
+/* Status: follows the match. */
+#define LS2D_MATCH_WATCHING 1
+/* Status: has a seat; too few seats are taken for the first tick. */
+#define LS2D_MATCH_WAITING 2
+/* Status: plays. */
+#define LS2D_MATCH_PLAYING 3
+/* Status: cannot hear a majority. */
+#define LS2D_MATCH_PAUSED 4
+/* Status: the others went on without it; it asks for its seat again. */
+#define LS2D_MATCH_DROPPED 5
+/* Status: removed for good. */
+#define LS2D_MATCH_KICKED 6
+/* Status: tells the others that it leaves. */
+#define LS2D_MATCH_LEAVING 7
+/* Status: has left. */
+#define LS2D_MATCH_LEFT 8
+/* Status: all ticks of the match are final. */
+#define LS2D_MATCH_FINISHED 9
+/* Status: nothing more is sent. */
+#define LS2D_MATCH_CLOSED 10
+/* Status: asks the contact, or downloads the state to begin with. */
+#define LS2D_MATCH_CONNECTING 11
+/* `ls2d_query_filter.flags`: the query sees sensors. */
+#define LS2D_QUERY_SENSORS 1
+/* A ray reports shapes that it starts in, a cast those into which it would go deeper. */
+#define LS2D_OVERLAP_RESIST 0
+/* Rays and casts report shapes that they start in. */
+#define LS2D_OVERLAP_REPORT 1
+/* Rays and casts do not see shapes that they start in. */
+#define LS2D_OVERLAP_IGNORE 2
+/* Kind of a shape: a disc with `radius`. */
+#define LS2D_CIRCLE 0
+/* Kind of a shape: a line from `points[0]` to `points[1]`. */
+#define LS2D_SEGMENT 1
+/* Kind of a shape: a convex polygon of `count` points, counter-clockwise, rounded by `radius`. */
+#define LS2D_POLYGON 2
+/* Kind of a shape: all points within `radius` of the line from `points[0]` to `points[1]`. */
+#define LS2D_CAPSULE 3
+/* Kind of a shape: a link of a chain from `points[0]` to `points[1]`; the neighbours' far ends are `points[2]` and
+ * `points[3]`. `ls2d_chain_links` makes them. */
+#define LS2D_LINK 4
+/* Kind of a shape: the convex hull of `count` points in any order, rounded by `radius`. */
+#define LS2D_HULL 5
+/* Kind of a shape: a rectangle with the half width `points[0].x` and the half height `points[0].y`, rounded by
+ * `radius`. */
+#define LS2D_RECTANGLE 6
+/* Flag of a shape: detects overlaps, and pushes nothing. */
+#define LS2D_SHAPE_SENSOR 1
+/* Flag of a shape: other shapes pass in the direction `one_way`. */
+#define LS2D_SHAPE_ONE_WAY 2
+/* Flag of a shape: has its own `restitution_threshold`. */
+#define LS2D_SHAPE_RESTITUTION_THRESHOLD 4
+/* Flag of a shape: a sensor that acts on the bodies in it. */
+#define LS2D_SHAPE_AREA 8
+/* Flag of a shape: the area attracts bodies to its centre. */
+#define LS2D_SHAPE_ATTRACTION 16
+/* Flag of a shape: reports contacts. */
+#define LS2D_SHAPE_CONTACT_EVENTS 32
+/* Flag of a shape: reports hits. */
+#define LS2D_SHAPE_HIT_EVENTS 64
+/* Flag of a shape: sensors detect it. */
+#define LS2D_SHAPE_SENSOR_EVENTS 128
+/* Flag of a shape: a sensor that detects sensors, too. */
+#define LS2D_SHAPE_DETECT_SENSORS 256
+/* Flag of a link: it has a neighbour before `points[0]`. */
+#define LS2D_SHAPE_LINK_BEFORE 512
+/* Flag of a link: it has a neighbour after `points[1]`. */
+#define LS2D_SHAPE_LINK_AFTER 1024
+/* Flag of a link: solid from the right side only, looking from `points[0]` to `points[1]`. */
+#define LS2D_SHAPE_LINK_ONE_SIDED 2048
+/* Rule of mixing: the mean of both values. Of two different rules the one with the larger number applies. */
+#define LS2D_MIX_AVERAGE 0
+/* Rule of mixing: the square root of the product. */
+#define LS2D_MIX_GEOMETRIC_MEAN 1
+/* Rule of mixing: the smaller value. */
+#define LS2D_MIX_MINIMUM 2
+/* Rule of mixing: the product. */
+#define LS2D_MIX_PRODUCT 3
+/* Rule of mixing: the larger value. */
+#define LS2D_MIX_MAXIMUM 4
+/* Attraction that is the same at all distances. */
+#define LS2D_FALLOFF_CONSTANT 0
+/* Attraction that falls with the distance. */
+#define LS2D_FALLOFF_INVERSE 1
+/* Attraction that falls with the square of the distance. */
+#define LS2D_FALLOFF_INVERSE_SQUARE 2
+
+/* A point or a vector. */
+typedef struct ls2d_vec2 {
+    /* Component to the right. */
+    ls2d_fx x;
+    /* Component upwards. */
+    ls2d_fx y;
+} ls2d_vec2;
+
+/* A state hash of 128 bits. */
+typedef struct ls2d_hash {
+    /* The lower half. */
+    uint64_t low;
+    /* The upper half. */
+    uint64_t high;
+} ls2d_hash;
+
+/* A random number generator, to be kept in the state of a game. */
+typedef struct ls2d_rng {
+    /* Its state. */
+    uint64_t state;
+    /* Its stream, an odd number. */
+    uint64_t increment;
+} ls2d_rng;
+
+/* Settings of a world. `ls2d_config_init` sets the defaults. */
+typedef struct ls2d_config {
+    /* Size of this struct in bytes. */
+    uint32_t size;
+    /* Ticks per second, 10 to 1000. */
+    uint32_t tick_rate;
+    /* Gravity in m/s². */
+    ls2d_vec2 gravity;
+    /* Sub-steps of a tick. */
+    uint32_t sub_steps;
+    /* Iterations of a sub-step. */
+    uint32_t iterations;
+    /* `LS2D_CONTACT_SOFT` or `LS2D_CONTACT_BAUMGARTE`. */
+    uint32_t contact;
+    /* `LS2D_SLEEPING`, `LS2D_CONTINUOUS`. */
+    uint32_t flags;
+    /* Stiffness of soft contacts in Hz; the share of the overlap that Baumgarte contacts correct. */
+    ls2d_fx contact_stiffness;
+    /* Damping ratio of soft contacts; the overlap in metres that Baumgarte contacts leave. */
+    ls2d_fx contact_damping;
+    /* Largest speed in m/s with which contacts push shapes apart. */
+    ls2d_fx contact_push_speed;
+    /* Stiffness of joints in Hz. */
+    ls2d_fx joint_hertz;
+    /* Damping ratio of joints. */
+    ls2d_fx joint_damping_ratio;
+    /* Approach speed in m/s below which shapes do not bounce. */
+    ls2d_fx restitution_threshold;
+    /* Largest speed of a body in m/s. */
+    ls2d_fx speed_max;
+    /* Distance in metres at which shapes get contact points before they touch. */
+    ls2d_fx speculative_distance;
+    /* Largest margin of the boxes of the broad phase in metres. */
+    ls2d_fx fat_margin;
+    /* Lowest approach speed of a hit event in m/s. */
+    ls2d_fx hit_speed;
+    /* Largest number of bodies. */
+    uint32_t body_limit;
+    /* Largest number of shapes. */
+    uint32_t shape_limit;
+    /* Largest number of joints. */
+    uint32_t joint_limit;
+    /* Largest number of pairs of near shapes. */
+    uint32_t pair_limit;
+} ls2d_config;
+
+/* Definition of a body, and its settings. `ls2d_body_def_init` sets the defaults. */
+typedef struct ls2d_body_def {
+    /* Size of this struct in bytes. */
+    uint32_t size;
+    /* `LS2D_FIXED`, `LS2D_KINEMATIC` or `LS2D_DYNAMIC`. */
+    uint32_t kind;
+    /* `LS2D_BODY_` flags. */
+    uint32_t flags;
+    /* `LS2D_SWEEP_OFF` and so on: the bodies that it does not pass through, however fast it is. */
+    uint32_t continuous;
+    /* Origin in the world, in metres. */
+    ls2d_vec2 position;
+    /* Rotation. */
+    ls2d_angle angle;
+    /* 0. */
+    uint32_t reserved;
+    /* Velocity of the centre of mass in m/s. */
+    ls2d_vec2 velocity;
+    /* Angular velocity in rad/s, counter-clockwise. */
+    ls2d_fx angular_velocity;
+    /* Mass in kg, with `LS2D_BODY_GIVEN_MASS`. */
+    ls2d_fx mass;
+    /* Centre of mass in the body's frame in metres, with `LS2D_BODY_GIVEN_MASS`. */
+    ls2d_vec2 mass_centre;
+    /* Radius of gyration in metres, with `LS2D_BODY_GIVEN_MASS`. */
+    ls2d_fx mass_gyration;
+    /* Decay rate of the velocity, per second. */
+    ls2d_fx linear_damping;
+    /* Decay rate of the angular velocity, per second. */
+    ls2d_fx angular_damping;
+    /* Factor on the world's gravity. */
+    ls2d_fx gravity_scale;
+    /* Speed in m/s below which the body becomes ready to sleep. */
+    ls2d_fx sleep_speed;
+    /* A number for the game, part of the state. */
+    uint64_t user_data;
+    /* Name for reports: 1 to 16 ASCII letters, digits, `-` and `_`, then zeros; empty for none. */
+    uint8_t name[16];
+} ls2d_body_def;
+
+/* What is known of a body. */
+typedef struct ls2d_body_info {
+    /* Kind of motion. */
+    uint32_t kind;
+    /* `LS2D_BODY_` flags. */
+    uint32_t flags;
+    /* Origin in the world, in metres. */
+    ls2d_vec2 position;
+    /* Rotation. */
+    ls2d_angle angle;
+    /* Number of shapes. */
+    uint32_t shapes;
+    /* Velocity of the centre of mass in m/s. */
+    ls2d_vec2 velocity;
+    /* Angular velocity in rad/s. */
+    ls2d_fx angular_velocity;
+    /* Centre of mass in the world, in metres. */
+    ls2d_vec2 centre;
+    /* Mass in kg. */
+    ls2d_fx mass;
+    /* Moment of inertia about the centre of mass in kg m². */
+    ls2d_fx inertia;
+    /* The number of the game. */
+    uint64_t user_data;
+} ls2d_body_info;
+
+/* Position and rotation of a body. */
+typedef struct ls2d_pose {
+    /* The body. */
+    ls2d_body body;
+    /* Origin in the world, in metres. */
+    ls2d_vec2 position;
+    /* Rotation. */
+    ls2d_angle angle;
+    /* `LS2D_BODY_ENABLED`, `LS2D_BODY_ASLEEP`. */
+    uint32_t flags;
+} ls2d_pose;
+
+/* An explosion: impulses away from a point. */
+typedef struct ls2d_explosion {
+    /* Size of this struct in bytes. */
+    uint32_t size;
+    /* 0. */
+    uint32_t reserved;
+    /* Centre in the world, in metres. */
+    ls2d_vec2 centre;
+    /* Radius in metres within which the impulse is full. */
+    ls2d_fx radius;
+    /* Distance in metres beyond the radius over which the impulse falls to 0. */
+    ls2d_fx falloff;
+    /* Impulse in N s per metre of width that a shape shows to the centre. */
+    ls2d_fx impulse;
+    /* Categories of shapes that it acts on. */
+    uint64_t mask;
+} ls2d_explosion;
+
+/* Definition of a shape. `ls2d_shape_def_init` sets the defaults. */
+typedef struct ls2d_shape_def {
+    /* Size of this struct in bytes. */
+    uint32_t size;
+    /* `LS2D_CIRCLE` and so on. */
+    uint32_t kind;
+    /* `LS2D_SHAPE_` flags. */
+    uint32_t flags;
+    /* Number of points of a polygon or hull, at most 8. */
+    uint32_t count;
+    /* Points in metres from the shape's centre. */
+    ls2d_vec2 points[8];
+    /* Radius of a circle or capsule, rounding of a polygon, in metres. */
+    ls2d_fx radius;
+    /* Centre of the shape in the body's frame, in metres. */
+    ls2d_vec2 offset;
+    /* Mass per area in kg/m². */
+    ls2d_fx density;
+    /* Friction coefficient. */
+    ls2d_fx friction;
+    /* Fraction of the approach speed that a bounce returns. */
+    ls2d_fx restitution;
+    /* Approach speed in m/s below which the shape does not bounce, with `LS2D_SHAPE_RESTITUTION_THRESHOLD`. */
+    ls2d_fx restitution_threshold;
+    /* Rolling resistance of a round shape. */
+    ls2d_fx rolling_resistance;
+    /* Speed of the surface around the shape, clockwise, in m/s. */
+    ls2d_fx surface_speed;
+    /* Categories that the shape belongs to, one bit each. */
+    uint64_t category;
+    /* Categories that the shape collides with. */
+    uint64_t mask;
+    /* Shapes of one group other than 0 always collide if it is positive, and never if it is negative. */
+    int32_t group;
+    /* `LS2D_MIX_AVERAGE` and so on, for friction. */
+    uint32_t friction_mixing;
+    /* The same for restitution. */
+    uint32_t restitution_mixing;
+    /* Direction in which others pass, in the body's frame, with `LS2D_SHAPE_ONE_WAY`. */
+    ls2d_angle one_way;
+    /* Acceleration in m/s² of bodies in the area. */
+    ls2d_vec2 area_acceleration;
+    /* Force in N per m² of a body in the area. */
+    ls2d_vec2 area_force;
+    /* Velocity of the medium in m/s. */
+    ls2d_vec2 area_flow;
+    /* Rate at which bodies take the velocity of the medium, per second. */
+    ls2d_fx area_linear_drag;
+    /* Rate at which bodies take the rotation of the medium, per second. */
+    ls2d_fx area_angular_drag;
+    /* Density of the medium in kg/m², for buoyancy. */
+    ls2d_fx area_density;
+    /* Acceleration in m/s² towards the centre of the area at the radius below. */
+    ls2d_fx attraction_acceleration;
+    /* Radius in metres. */
+    ls2d_fx attraction_radius;
+    /* `LS2D_FALLOFF_CONSTANT` and so on. */
+    uint32_t attraction_falloff;
+    /* 0. */
+    uint32_t reserved;
+    /* A number for the game, part of the state. */
+    uint64_t user_data;
+} ls2d_shape_def;
+
+/* Definition of a joint. `ls2d_joint_def_init` sets the defaults. Only the fields that the flags name are read. */
+typedef struct ls2d_joint_def {
+    /* Size of this struct in bytes. */
+    uint32_t size;
+    /* `LS2D_REVOLUTE` and so on. */
+    uint32_t kind;
+    /* `LS2D_JOINT_` flags. */
+    uint32_t flags;
+    /* Teeth of A's wheel of a gear. */
+    int32_t teeth_a;
+    /* Teeth of B's wheel of a gear. */
+    int32_t teeth_b;
+    /* Angle of the joint's frame in A's frame. */
+    ls2d_angle angle_a;
+    /* Angle of the joint's frame in B's frame. */
+    ls2d_angle angle_b;
+    /* 0. */
+    uint32_t reserved;
+    /* One body. */
+    ls2d_body body_a;
+    /* The other body. */
+    ls2d_body body_b;
+    /* Anchor in A's frame in metres. */
+    ls2d_vec2 anchor_a;
+    /* Anchor in B's frame in metres. */
+    ls2d_vec2 anchor_b;
+    /* Lower end of the range, in rad or m. */
+    ls2d_fx limit_lower;
+    /* Upper end of the range. */
+    ls2d_fx limit_upper;
+    /* Target speed in rad/s or m/s. */
+    ls2d_fx motor_speed;
+    /* Largest torque in N m or force in N. */
+    ls2d_fx motor_max;
+    /* Frequency of the spring in Hz. */
+    ls2d_fx spring_hertz;
+    /* Damping ratio of the spring. */
+    ls2d_fx spring_damping_ratio;
+    /* Rest position of the spring, in rad or m. */
+    ls2d_fx spring_target;
+    /* Smallest force of the spring in N. */
+    ls2d_fx spring_force_lower;
+    /* Largest force of the spring in N. */
+    ls2d_fx spring_force_upper;
+    /* Length of a rod or of the rope of a pulley in metres. */
+    ls2d_fx length;
+    /* Stiffness in Hz of what the joint holds rigidly. */
+    ls2d_fx hertz;
+    /* Damping ratio of what the joint holds rigidly. */
+    ls2d_fx damping_ratio;
+    /* Force in N beyond which the joint is reported or breaks. */
+    ls2d_fx threshold_force;
+    /* Torque in N m beyond which the joint is reported or breaks. */
+    ls2d_fx threshold_torque;
+    /* Target velocity of a motor joint in m/s. */
+    ls2d_vec2 linear_velocity;
+    /* Largest force in N with which a motor joint drives. */
+    ls2d_fx linear_motor_max;
+    /* Frequency in Hz of the spring between the anchors. */
+    ls2d_fx linear_hertz;
+    /* Its damping ratio. */
+    ls2d_fx linear_damping_ratio;
+    /* Its largest force in N (motor joint). */
+    ls2d_fx linear_max;
+    /* Frequency in Hz of the spring on the angle. */
+    ls2d_fx angular_hertz;
+    /* Its damping ratio. */
+    ls2d_fx angular_damping_ratio;
+    /* Its largest torque in N m (motor joint). */
+    ls2d_fx angular_max;
+    /* Radius of the wheel of a rack in metres. */
+    ls2d_fx radius;
+    /* Wheel of a pulley on A's side, in the world. */
+    ls2d_vec2 wheel_a;
+    /* Wheel of a pulley on B's side, in the world. */
+    ls2d_vec2 wheel_b;
+    /* Number of times that B's side of a pulley counts. */
+    ls2d_fx ratio;
+    /* A number for the game, part of the state. */
+    uint64_t user_data;
+} ls2d_joint_def;
+
+/* Which shapes a query sees. A null pointer stands for the defaults, as `ls2d_query_filter_init` sets them. */
+typedef struct ls2d_query_filter {
+    /* Size of this struct in bytes. */
+    uint32_t size;
+    /* `LS2D_QUERY_SENSORS`. */
+    uint32_t flags;
+    /* `LS2D_OVERLAP_RESIST` and so on: shapes that a ray or a cast starts in. */
+    uint32_t initial_overlap;
+    /* Number of bodies that the query does not see, at most 8. */
+    uint32_t except_count;
+    /* Categories that the query belongs to. */
+    uint64_t category;
+    /* Categories that the query sees. */
+    uint64_t mask;
+    /* Bodies that the query does not see. */
+    ls2d_body except[8];
+} ls2d_query_filter;
+
+/* Hit of a ray. */
+typedef struct ls2d_ray_hit {
+    /* The shape. */
+    ls2d_shape shape;
+    /* Its body. */
+    ls2d_body body;
+    /* Fraction of the ray, 0 to 1. */
+    ls2d_fx fraction;
+    /* Point in the world, in metres. */
+    ls2d_vec2 point;
+    /* Outward normal of the surface; zero if the ray starts inside. */
+    ls2d_vec2 normal;
+    /* 1 if the ray starts inside the shape, otherwise 0. */
+    uint64_t starts_inside;
+} ls2d_ray_hit;
+
+/* Hit of a moving shape. */
+typedef struct ls2d_cast_hit {
+    /* The shape that is met. */
+    ls2d_shape shape;
+    /* Its body. */
+    ls2d_body body;
+    /* Fraction of the translation, 0 to 1. */
+    ls2d_fx fraction;
+    /* Displacement up to the hit, in metres. */
+    ls2d_vec2 travelled;
+    /* Point on the surface that is met, in the world, in metres. */
+    ls2d_vec2 point;
+    /* Outward normal of that surface. */
+    ls2d_vec2 normal;
+    /* 1 if the shapes overlap at the start, otherwise 0. */
+    uint64_t starts_inside;
+} ls2d_cast_hit;
+
+/* The shape nearest to a point. */
+typedef struct ls2d_closest {
+    /* The shape. */
+    ls2d_shape shape;
+    /* Its body. */
+    ls2d_body body;
+    /* Distance in metres; negative inside. */
+    ls2d_fx distance;
+    /* Point on the surface, in the world, in metres. */
+    ls2d_vec2 point;
+    /* Unit vector from the given point to the shape. */
+    ls2d_vec2 normal;
+} ls2d_closest;
+
+/* An axis-aligned box. */
+typedef struct ls2d_aabb {
+    /* Lower left corner in metres. */
+    ls2d_vec2 lower;
+    /* Upper right corner in metres. */
+    ls2d_vec2 upper;
+} ls2d_aabb;
+
+/* A shape that is not in the world, for casts and overlaps. */
+typedef struct ls2d_probe {
+    /* Size of this struct in bytes. */
+    uint32_t size;
+    /* Rotation. */
+    ls2d_angle angle;
+    /* Position of the shape's centre in the world, in metres. */
+    ls2d_vec2 position;
+    /* Its geometry; other fields of the definition do not matter. */
+    ls2d_shape_def shape;
+} ls2d_probe;
+
+/* Two shapes that began or ceased to touch. Their handles may be stale if a shape was removed. */
+typedef struct ls2d_contact_event {
+    /* The shape in the smaller slot. */
+    ls2d_shape shape_a;
+    /* The shape in the larger slot. */
+    ls2d_shape shape_b;
+} ls2d_contact_event;
+
+/* Two shapes that hit each other. */
+typedef struct ls2d_hit_event {
+    /* The shape in the smaller slot. */
+    ls2d_shape shape_a;
+    /* The shape in the larger slot. */
+    ls2d_shape shape_b;
+    /* Contact point in the world, in metres. */
+    ls2d_vec2 point;
+    /* Unit vector from A to B. */
+    ls2d_vec2 normal;
+    /* Approach speed in m/s. */
+    ls2d_fx approach_speed;
+} ls2d_hit_event;
+
+/* A sensor that began or ceased to overlap a shape. Their handles may be stale if one was removed. */
+typedef struct ls2d_sensor_event {
+    /* The sensor. */
+    ls2d_shape sensor;
+    /* The other shape. */
+    ls2d_shape visitor;
+    /* Fraction of the tick, 0 to 1. */
+    ls2d_fx fraction;
+} ls2d_sensor_event;
+
+/* A joint whose force or torque exceeded its threshold. */
+typedef struct ls2d_joint_event {
+    /* The joint. Its handle is stale if it broke. */
+    ls2d_joint joint;
+    /* Force on body B in N. */
+    ls2d_vec2 force;
+    /* Torque on body B about its anchor in N m. */
+    ls2d_fx torque;
+    /* 1 if the joint broke, otherwise 0. */
+    uint64_t broke;
+} ls2d_joint_event;
+
+/* Bounds on the cost of reading and playing a replay. `ls2d_limits_init` sets the defaults. */
+typedef struct ls2d_limits {
+    /* Size of this struct in bytes. */
+    uint32_t size;
+    /* 0. */
+    uint32_t reserved;
+    /* Bytes of the file. */
+    uint64_t file_bytes;
+    /* Bytes of the setup. */
+    uint32_t setup_bytes;
+    /* Number of players. */
+    uint32_t players;
+    /* Bytes of a block. */
+    uint32_t block_bytes;
+    /* Ticks between checkpoints. */
+    uint32_t block_ticks;
+    /* Ticks of the game. */
+    uint64_t ticks;
+    /* Bodies of the world. */
+    uint64_t bodies;
+    /* Work units of a tick. */
+    uint64_t tick_work;
+    /* Work units of the game. */
+    uint64_t total_work;
+} ls2d_limits;
+
+/* Result of verifying a replay. Only `LS2D_MATCH` means that the file is valid. */
+typedef struct ls2d_verdict {
+    /* `LS2D_MATCH` and so on. */
+    uint32_t kind;
+    /* 0. */
+    uint32_t reserved;
+    /* Number of ticks that were played; of the first different checkpoint for `LS2D_DIVERGED`. */
+    uint64_t ticks;
+    /* Hash of the last state, as far as all states agreed. */
+    ls2d_hash hash;
+} ls2d_verdict;
+
+/* Parameters of a match and of a peer. `ls2d_match_config_init` sets the defaults. */
+typedef struct ls2d_match_config {
+    /* Size of this struct in bytes. */
+    uint32_t size;
+    /* Number of seats of the match, 1 to 64. */
+    uint32_t seats;
+    /* Own seats to play: 0 to watch, or to open a match as a dedicated server. */
+    uint32_t own_seats;
+    /* Number of seats that have to be taken before the first tick. */
+    uint32_t start_with;
+    /* Bytes of an input, 1 to 512. */
+    uint32_t input_bytes;
+    /* Duration of a tick in microseconds. */
+    uint32_t tick_micros;
+    /* Number of ticks that may be played with guessed inputs; 0 is lockstep. */
+    uint32_t guess;
+    /* Smallest delay of inputs in ticks. */
+    uint32_t delay_min;
+    /* Largest delay of inputs in ticks. */
+    uint32_t delay_max;
+    /* Interval in ticks at which states are saved. */
+    uint32_t save_interval;
+    /* Interval in ticks at which states are compared: a multiple of `save_interval`. */
+    uint32_t check_interval;
+    /* Number of ticks that may be played beyond the last final one. */
+    uint32_t history;
+    /* Number of final ticks whose inputs are kept for peers that return. */
+    uint32_t log_ticks;
+    /* First tick of those who join, counted from the cut. */
+    uint32_t seat_lead;
+    /* Somebody who lags by at most this many ticks may have a seat. */
+    uint32_t seat_within;
+    /* Number of this peer: random, new for each process. */
+    uint32_t peer;
+    /* Distinguishes matches. */
+    uint64_t match_tag;
+    /* Microseconds for which play stands still for a peer before the others go on without it. */
+    uint64_t patience;
+    /* Identity that outlives processes: whoever returns with the same key gets its seat back. */
+    uint64_t key;
+    /* Random numbers that nobody else knows. */
+    uint64_t secret[2];
+} ls2d_match_config;
+
+/* What a match asks the game to do. */
+typedef struct ls2d_request {
+    /* `LS2D_REQUEST_SAVE` and so on. */
+    uint32_t kind;
+    /* The tick. */
+    uint32_t tick;
+    /* Bit for each seat that nobody plays, for `LS2D_REQUEST_ADVANCE`. */
+    uint64_t absent;
+    /* Bit for each seat whose input is guessed, for `LS2D_REQUEST_ADVANCE`. */
+    uint64_t guessed;
+} ls2d_request;
+
+/* What happened in a match. */
+typedef struct ls2d_match_event {
+    /* `LS2D_EVENT_STATUS` and so on. */
+    uint32_t kind;
+    /* A peer. */
+    uint32_t peer;
+    /* A seat. */
+    uint32_t seat;
+    /* A tick. */
+    uint32_t tick;
+    /* As the kind says. */
+    uint32_t value;
+    /* 0. */
+    uint32_t reserved;
+    /* Hash of this peer, for `LS2D_EVENT_DESYNC`. */
+    ls2d_hash ours;
+    /* Hash of the other peer. */
+    ls2d_hash theirs;
+} ls2d_match_event;
+
+/* ---- The library ---- */
+
+/* Version of this API. It has to be `LS2D_API_VERSION` of the header. */
+uint32_t ls2d_api_version(void);
+
+/* Version of the engine's arithmetic: programs with different ones do not compute the same states. */
+uint32_t ls2d_semantics(void);
+
+/* Copies the text of the last failure on this thread as UTF-8, and writes its length in bytes. It is not terminated
+ * by a zero. The text of a shorter buffer is cut. */
+ls2d_status ls2d_last_error(uint8_t *buffer, size_t capacity, size_t *length);
+
+/* Frees an object of any kind. Its handle is an error from now on, also if it is freed again. */
+ls2d_status ls2d_free(uint32_t handle);
+
+/* Number of objects that are not freed, to find leaks. */
+size_t ls2d_object_count(void);
+
+/* Number of bytes of a bytes object. */
+ls2d_status ls2d_bytes_size(uint32_t bytes, size_t *size);
+
+/* Copies the bytes of a bytes object. */
+ls2d_status ls2d_bytes_copy(uint32_t bytes, uint8_t *buffer, size_t capacity);
+
+/* Makes a bytes object, for functions that take one. */
+ls2d_status ls2d_bytes_new(const uint8_t *data, size_t size, uint32_t *bytes);
+
+/* Memory of this thread with an alignment of 8, for callers that have none of their own, such as JavaScript. Returns
+ * its address, or 0 without enough memory. A call with a larger size moves it and keeps its contents. */
+size_t ls2d_scratch(size_t size);
+
+/* ---- Worlds ---- */
+
+/* Sets the default settings of a world: 60 ticks per second, gravity of 10 m/s² downwards. */
+ls2d_status ls2d_config_init(ls2d_config *config);
+
+/* Raises the sub-steps and the stiffness of contacts to what stacks of bodies of `size` metres need. */
+ls2d_status ls2d_config_for_smallest(ls2d_config *config, const ls2d_config *from, ls2d_fx size);
+
+/* Makes an empty world. A null pointer stands for the default settings. */
+ls2d_status ls2d_world_new(const ls2d_config *config, uint32_t *world);
+
+/* Makes a copy of a world. */
+ls2d_status ls2d_world_clone(uint32_t world, uint32_t *copy);
+
+/* Advances a world by one tick. */
+ls2d_status ls2d_world_step(uint32_t world);
+
+/* Advances a world by some ticks. Only the events of the last one are kept. */
+ls2d_status ls2d_world_steps(uint32_t world, uint32_t ticks);
+
+/* Hash of the state of a world: equal for equal edits in the same order, on every machine. */
+ls2d_status ls2d_world_hash(uint32_t world, ls2d_hash *hash);
+
+/* Hash of a section of the state: 0 settings, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands, 6 random numbers. */
+ls2d_status ls2d_world_digest(uint32_t world, uint32_t section, ls2d_hash *hash);
+
+/* Number of ticks since the world was made. */
+ls2d_status ls2d_world_tick(uint32_t world, uint64_t *tick);
+
+/* Number of results that a clamp has changed since the world was made: 0 while all values stay in their ranges. */
+ls2d_status ls2d_world_faults(uint32_t world, uint64_t *faults);
+
+/* The settings of a world. */
+ls2d_status ls2d_world_config(uint32_t world, ls2d_config *config);
+
+/* Numbers of bodies, shapes, joints, awake bodies, and pairs of near shapes. Null pointers are not written. */
+ls2d_status ls2d_world_counts(uint32_t world, size_t *bodies, size_t *shapes, size_t *joints, size_t *awake, size_t *pairs);
+
+/* Draws a uniform number of 32 bits from the world's generator, which is part of the state. */
+ls2d_status ls2d_world_random(uint32_t world, uint32_t *number);
+
+/* Draws a uniform number from 0 to below `bound` from the world's generator. */
+ls2d_status ls2d_world_random_below(uint32_t world, uint32_t bound, uint32_t *number);
+
+/* Draws a uniform number from `low` to below `high` from the world's generator. */
+ls2d_status ls2d_world_random_range(uint32_t world, ls2d_fx low, ls2d_fx high, ls2d_fx *number);
+
+/* Drops the caches of a world. Does not change any hash; the next tick takes longer. */
+ls2d_status ls2d_world_clear_scratch(uint32_t world);
+
+/* ---- Edits of a world, or of a list of commands ---- */
+
+/* Sets the defaults of a body of a kind: at rest at the origin. */
+ls2d_status ls2d_body_def_init(uint32_t kind, ls2d_body_def *def);
+
+/* Sets the defaults of a shape of a kind. Its geometry has to be set. */
+ls2d_status ls2d_shape_def_init(uint32_t kind, ls2d_shape_def *def);
+
+/* Sets the defaults of a joint of a kind, without its bodies. */
+ls2d_status ls2d_joint_def_init(uint32_t kind, ls2d_joint_def *def);
+
+/* Makes the links of a chain through some points, closed if `closed` is not 0, solid only from the right if
+ * `one_sided` is not 0. The links have the material, filter and so on of `base`. */
+ls2d_status ls2d_chain_links(const ls2d_shape_def *base, const ls2d_vec2 *points, size_t point_count, uint32_t closed, uint32_t one_sided, ls2d_shape_def *links, size_t capacity, size_t *count);
+
+/* Makes an empty list of commands. */
+ls2d_status ls2d_commands_new(uint32_t *commands);
+
+/* Empties a list of commands. */
+ls2d_status ls2d_commands_clear(uint32_t commands);
+
+/* Number of commands in a list. */
+ls2d_status ls2d_commands_count(uint32_t commands, size_t *count);
+
+/* Encodes a list of commands as bytes, for networks and files. */
+ls2d_status ls2d_commands_encode(uint32_t commands, uint32_t *bytes);
+
+/* Replaces a list of commands by an encoded one, from any source. */
+ls2d_status ls2d_commands_decode(uint32_t commands, const uint8_t *data, size_t size);
+
+/* Executes a list of commands in order. Commands that the world refuses are skipped and counted; a null pointer is
+ * not written. */
+ls2d_status ls2d_world_execute(uint32_t world, uint32_t commands, uint32_t *refused);
+
+/* Adds a body with its shapes. Its handle is written, unless the pointer is null or the target is a list. */
+ls2d_status ls2d_spawn(uint32_t target, const ls2d_body_def *body, const ls2d_shape_def *shapes, size_t shape_count, ls2d_body *id);
+
+/* Removes a body with its shapes and joints. */
+ls2d_status ls2d_despawn(uint32_t target, ls2d_body body);
+
+/* Adds a shape to a body. Its handle is written, unless the pointer is null or the target is a list. */
+ls2d_status ls2d_add_shape(uint32_t target, ls2d_body body, const ls2d_shape_def *shape, ls2d_shape *id);
+
+/* Removes a shape. */
+ls2d_status ls2d_remove_shape(uint32_t target, ls2d_shape shape);
+
+/* Changes a shape. */
+ls2d_status ls2d_set_shape(uint32_t target, ls2d_shape shape, const ls2d_shape_def *def);
+
+/* Adds a joint. Its handle is written, unless the pointer is null or the target is a list. */
+ls2d_status ls2d_add_joint(uint32_t target, const ls2d_joint_def *joint, ls2d_joint *id);
+
+/* Removes a joint. */
+ls2d_status ls2d_remove_joint(uint32_t target, ls2d_joint joint);
+
+/* Changes a joint. Its bodies stay. */
+ls2d_status ls2d_set_joint(uint32_t target, ls2d_joint joint, const ls2d_joint_def *def);
+
+/* Makes a joint act. */
+ls2d_status ls2d_enable_joint(uint32_t target, ls2d_joint joint);
+
+/* Stops a joint from acting. */
+ls2d_status ls2d_disable_joint(uint32_t target, ls2d_joint joint);
+
+/* Pushes a body during the next tick: a force in N at a point of the world in metres. */
+ls2d_status ls2d_apply_force(uint32_t target, ls2d_body body, ls2d_fx force_x, ls2d_fx force_y, ls2d_fx x, ls2d_fx y);
+
+/* Turns a body during the next tick: a torque in N m. */
+ls2d_status ls2d_apply_torque(uint32_t target, ls2d_body body, ls2d_fx torque);
+
+/* Changes the velocity of a body: an impulse in N s at a point of the world in metres. */
+ls2d_status ls2d_apply_impulse(uint32_t target, ls2d_body body, ls2d_fx impulse_x, ls2d_fx impulse_y, ls2d_fx x, ls2d_fx y);
+
+/* Changes the angular velocity of a body: an angular impulse in N m s. */
+ls2d_status ls2d_apply_angular_impulse(uint32_t target, ls2d_body body, ls2d_fx impulse);
+
+/* Sets the velocity of a body's centre of mass in m/s, and its angular velocity in rad/s. */
+ls2d_status ls2d_set_velocity(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_fx y, ls2d_fx angular);
+
+/* Places a body. */
+ls2d_status ls2d_set_transform(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_fx y, ls2d_angle angle);
+
+/* Gives a kinematic body the velocity with which it is at a place after the next tick. */
+ls2d_status ls2d_move_to(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_fx y, ls2d_angle angle);
+
+/* Changes the settings of a body: damping, gravity scale, locks, sweeps, sleep. The other fields do not matter. */
+ls2d_status ls2d_set_body(uint32_t target, ls2d_body body, const ls2d_body_def *def);
+
+/* Changes the kind of a body. */
+ls2d_status ls2d_set_kind(uint32_t target, ls2d_body body, uint32_t kind);
+
+/* Changes the mass of a body to the one of a definition, of which only the mass matters. */
+ls2d_status ls2d_set_mass(uint32_t target, ls2d_body body, const ls2d_body_def *def);
+
+/* Sets the number that the game stores with a body. */
+ls2d_status ls2d_set_user_data(uint32_t target, ls2d_body body, uint64_t user_data);
+
+/* Sets the name of a body, of at most 16 bytes; none for a length of 0. */
+ls2d_status ls2d_set_name(uint32_t target, ls2d_body body, const uint8_t *text, size_t length);
+
+/* Lets a body take part in the simulation. */
+ls2d_status ls2d_enable(uint32_t target, ls2d_body body);
+
+/* Takes a body out of the simulation. */
+ls2d_status ls2d_disable(uint32_t target, ls2d_body body);
+
+/* Wakes a body. */
+ls2d_status ls2d_wake(uint32_t target, ls2d_body body);
+
+/* Puts a body and all that touch it or are joined to it to sleep. */
+ls2d_status ls2d_sleep(uint32_t target, ls2d_body body);
+
+/* Sets the gravity in m/s². */
+ls2d_status ls2d_set_gravity(uint32_t target, ls2d_fx x, ls2d_fx y);
+
+/* Changes the settings of the world, except for its limits. */
+ls2d_status ls2d_set_config(uint32_t target, const ls2d_config *config);
+
+/* Applies impulses away from a point. */
+ls2d_status ls2d_explode(uint32_t target, const ls2d_explosion *explosion);
+
+/* Sets the defaults of an explosion at a point: radius and falloff of 1 m, all categories. */
+ls2d_status ls2d_explosion_init(ls2d_fx x, ls2d_fx y, ls2d_fx impulse, ls2d_explosion *explosion);
+
+/* ---- What is in a world ---- */
+
+/* What is known of a body. */
+ls2d_status ls2d_body_get(uint32_t world, ls2d_body id, ls2d_body_info *info);
+
+/* All bodies in slot order. */
+ls2d_status ls2d_world_bodies(uint32_t world, ls2d_body *bodies, size_t capacity, size_t *count);
+
+/* Poses of all bodies in slot order. */
+ls2d_status ls2d_world_poses(uint32_t world, ls2d_pose *poses, size_t capacity, size_t *count);
+
+/* Shapes of a body in order of attachment. */
+ls2d_status ls2d_body_shapes(uint32_t world, ls2d_body id, ls2d_shape *shapes, size_t capacity, size_t *count);
+
+/* Joints of a body in slot order. */
+ls2d_status ls2d_body_joints(uint32_t world, ls2d_body id, ls2d_joint *joints, size_t capacity, size_t *count);
+
+/* Name of a body: 16 bytes, ended by zeros; all zero for none. */
+ls2d_status ls2d_body_name(uint32_t world, ls2d_body id, uint8_t *name);
+
+/* Velocity in m/s of the material point of a body at a point of the world. */
+ls2d_status ls2d_body_velocity_at(uint32_t world, ls2d_body id, ls2d_fx x, ls2d_fx y, ls2d_vec2 *velocity);
+
+/* Definition of a shape and its body. */
+ls2d_status ls2d_shape_get(uint32_t world, ls2d_shape id, ls2d_shape_def *def, ls2d_body *owner);
+
+/* A box that contains a shape and some margin, in the world. */
+ls2d_status ls2d_shape_box(uint32_t world, ls2d_shape id, ls2d_aabb *area);
+
+/* Shapes that a sensor overlaps, in slot order. */
+ls2d_status ls2d_sensor_overlaps(uint32_t world, ls2d_shape id, ls2d_shape *shapes, size_t capacity, size_t *count);
+
+/* All joints in slot order. */
+ls2d_status ls2d_world_joints(uint32_t world, ls2d_joint *joints, size_t capacity, size_t *count);
+
+/* Definition of a joint. */
+ls2d_status ls2d_joint_get(uint32_t world, ls2d_joint id, ls2d_joint_def *def);
+
+/* The anchors of a joint in the world, in metres. */
+ls2d_status ls2d_joint_anchors(uint32_t world, ls2d_joint id, ls2d_vec2 *a, ls2d_vec2 *b);
+
+/* Angle of a joint in rad, with whole turns. */
+ls2d_status ls2d_joint_angle(uint32_t world, ls2d_joint id, ls2d_fx *angle);
+
+/* Force in N and torque in N m of a joint on body B in the last tick. */
+ls2d_status ls2d_joint_force(uint32_t world, ls2d_joint id, ls2d_vec2 *force, ls2d_fx *torque);
+
+/* Sets the anchors and angles of a definition so that the joint holds at the current poses, at a point of the world
+ * and with its axis along a direction in the world. A direction of zero is the x axis. */
+ls2d_status ls2d_joint_at(uint32_t world, const ls2d_joint_def *from, const ls2d_vec2 *anchor, const ls2d_vec2 *axis, ls2d_joint_def *def);
+
+/* ---- Drawing ---- */
+
+/* Poses of all enabled bodies in slot order, for drawing: for each body five numbers, its handle, x, y, the angle in
+ * rad, and 1 if it is awake or 0. `capacity` and `count` are numbers of `double`s. */
+ls2d_status ls2d_draw_poses(uint32_t world, double *rows, size_t capacity, size_t *count);
+
+/* ---- Events of the last tick ---- */
+
+/* Bodies that moved or fell asleep, in slot order, with their poses. */
+ls2d_status ls2d_events_moved(uint32_t world, ls2d_pose *events, size_t capacity, size_t *count);
+
+/* Shapes that began to touch, sorted. */
+ls2d_status ls2d_events_contact_begin(uint32_t world, ls2d_contact_event *events, size_t capacity, size_t *count);
+
+/* Shapes that ceased to touch, sorted. */
+ls2d_status ls2d_events_contact_end(uint32_t world, ls2d_contact_event *events, size_t capacity, size_t *count);
+
+/* Shapes that hit each other, sorted. Only shapes with `LS2D_SHAPE_HIT_EVENTS` report hits. */
+ls2d_status ls2d_events_hits(uint32_t world, ls2d_hit_event *events, size_t capacity, size_t *count);
+
+/* Shapes that began to overlap a sensor, sorted by the fraction of the tick. */
+ls2d_status ls2d_events_sensor_begin(uint32_t world, ls2d_sensor_event *events, size_t capacity, size_t *count);
+
+/* Shapes that ceased to overlap a sensor, sorted by the fraction of the tick. */
+ls2d_status ls2d_events_sensor_end(uint32_t world, ls2d_sensor_event *events, size_t capacity, size_t *count);
+
+/* Joints above their threshold, in slot order. */
+ls2d_status ls2d_events_joints(uint32_t world, ls2d_joint_event *events, size_t capacity, size_t *count);
+
+/* ---- Queries ---- */
+
+/* Sets the defaults of a query: it sees everything except sensors. */
+ls2d_status ls2d_query_filter_init(ls2d_query_filter *filter);
+
+/* Sets the defaults of a probe: a shape of a kind at the origin. */
+ls2d_status ls2d_probe_init(uint32_t kind, ls2d_probe *probe);
+
+/* The first shape that a ray meets, from a point along a translation in metres. `LS2D_NONE` without a hit. */
+ls2d_status ls2d_cast_ray(uint32_t world, ls2d_fx x, ls2d_fx y, ls2d_fx along_x, ls2d_fx along_y, const ls2d_query_filter *filter, ls2d_ray_hit *hit);
+
+/* Every shape that a ray meets, in order along the ray. */
+ls2d_status ls2d_cast_ray_all(uint32_t world, ls2d_fx x, ls2d_fx y, ls2d_fx along_x, ls2d_fx along_y, const ls2d_query_filter *filter, ls2d_ray_hit *hits, size_t capacity, size_t *count);
+
+/* The first shape that a probe meets as it moves along a translation in metres. `LS2D_NONE` without a hit. */
+ls2d_status ls2d_cast_shape(uint32_t world, const ls2d_probe *probe, ls2d_fx along_x, ls2d_fx along_y, const ls2d_query_filter *filter, ls2d_cast_hit *hit);
+
+/* Shapes that overlap a probe, in slot order. */
+ls2d_status ls2d_overlap_shape(uint32_t world, const ls2d_probe *probe, const ls2d_query_filter *filter, ls2d_shape *shapes, size_t capacity, size_t *count);
+
+/* Shapes that overlap a box, in slot order. */
+ls2d_status ls2d_overlap_box(uint32_t world, const ls2d_aabb *area, const ls2d_query_filter *filter, ls2d_shape *shapes, size_t capacity, size_t *count);
+
+/* Shapes that contain a point, in slot order. */
+ls2d_status ls2d_overlap_point(uint32_t world, ls2d_fx x, ls2d_fx y, const ls2d_query_filter *filter, ls2d_shape *shapes, size_t capacity, size_t *count);
+
+/* The shape nearest to a point, within a distance in metres. `LS2D_NONE` without one. */
+ls2d_status ls2d_closest(uint32_t world, ls2d_fx x, ls2d_fx y, ls2d_fx within, const ls2d_query_filter *filter, ls2d_closest *closest);
+
+/* Distance of two shapes in metres, negative if they overlap. `LS2D_NONE` if one is not in the world. */
+ls2d_status ls2d_shape_distance(uint32_t world, ls2d_shape a, ls2d_shape b, ls2d_fx *distance);
+
+/* ---- Snapshots ---- */
+
+/* Saves a world in memory. */
+ls2d_status ls2d_world_save(uint32_t world, uint32_t *snapshot);
+
+/* Saves a world into a snapshot that exists, and reuses its memory: the cheapest way to save every tick. */
+ls2d_status ls2d_world_save_into(uint32_t world, uint32_t snapshot);
+
+/* Restores a saved state. */
+ls2d_status ls2d_world_restore(uint32_t world, uint32_t snapshot);
+
+/* Hash of a saved state. */
+ls2d_status ls2d_snapshot_hash(uint32_t snapshot, ls2d_hash *hash);
+
+/* Encodes a world as bytes. */
+ls2d_status ls2d_world_encode(uint32_t world, uint32_t *bytes);
+
+/* Makes a world from bytes of any source: they are checked. */
+ls2d_status ls2d_world_decode(const uint8_t *data, size_t size, uint32_t *world);
+
+/* ---- Replays of worlds ---- */
+
+/* Sets the default limits of a replay: a day of play, minutes of computing. */
+ls2d_status ls2d_limits_init(ls2d_limits *limits);
+
+/* Starts a recording: a world that the commands of a list set up, with a checkpoint every `interval` ticks. A null
+ * pointer stands for the default settings. */
+ls2d_status ls2d_recording_new(const ls2d_config *config, uint32_t commands, uint32_t interval, uint32_t *recording);
+
+/* Executes a list of commands and advances the recorded world by one tick. The list is empty afterwards. Commands
+ * that the world refuses are skipped. */
+ls2d_status ls2d_recording_step(uint32_t recording, uint32_t commands);
+
+/* Makes a copy of the recorded world, to draw and query it. */
+ls2d_status ls2d_recording_world(uint32_t recording, uint32_t *world);
+
+/* Takes the bytes that are finished, to be appended to the file. */
+ls2d_status ls2d_recording_take(uint32_t recording, uint32_t *bytes);
+
+/* Ends a recording, and returns the bytes that have not been taken yet. */
+ls2d_status ls2d_recording_finish(uint32_t recording, uint32_t *bytes);
+
+/* Verifies a replay of a world from any source. A null pointer stands for the default limits. `ls2d_last_error`
+ * returns the verdict in words. */
+ls2d_status ls2d_replay_verify(const uint8_t *data, size_t size, const ls2d_limits *limits, ls2d_verdict *verdict);
+
+/* ---- Replays of games with rules of their own ---- */
+
+/* Starts a recorder for a game with rules of its own. `rules` is the name of the rules in UTF-8, `setup` what the
+ * first tick depends on, `start` the hash of the state before it. There is a checkpoint every `interval` ticks. */
+ls2d_status ls2d_recorder_new(const uint8_t *rules, size_t rules_length, uint32_t rules_version, uint32_t players, uint32_t tick_rate, uint32_t input_bytes, const uint8_t *setup, size_t setup_size, const ls2d_hash *start, uint32_t interval, uint32_t *recorder);
+
+/* Records the final inputs of the next tick: those of all players, one after another. Writes 1 to `due` if
+ * `ls2d_recorder_checkpoint` has to follow with the hash of the state after this tick. */
+ls2d_status ls2d_recorder_record(uint32_t recorder, const uint8_t *inputs, size_t size, uint32_t *due);
+
+/* Passes the hash of the state after the last recorded tick. Without a checkpoint due, nothing happens. */
+ls2d_status ls2d_recorder_checkpoint(uint32_t recorder, const ls2d_hash *hash);
+
+/* Takes the bytes that are finished, to be appended to the file. */
+ls2d_status ls2d_recorder_take(uint32_t recorder, uint32_t *bytes);
+
+/* Ends a replay with the hash of the last state, and returns the bytes that have not been taken yet. */
+ls2d_status ls2d_recorder_finish(uint32_t recorder, const ls2d_hash *hash, uint32_t *bytes);
+
+/* Opens a replay of a game with rules of its own, from any source. If it cannot be played, its verdict is written,
+ * the handle is 0, and the result is `LS2D_RECORD`. */
+ls2d_status ls2d_replay_open(const uint8_t *data, size_t size, const ls2d_limits *limits, uint32_t *replay, ls2d_verdict *verdict);
+
+/* Name of the rules as bytes. The other figures of the header are written where a pointer is not null. */
+ls2d_status ls2d_replay_rules(uint32_t replay, uint32_t *rules, uint32_t *rules_version, uint32_t *players, uint32_t *tick_rate, uint32_t *input_bytes, uint64_t *ticks);
+
+/* The setup of the game as bytes. */
+ls2d_status ls2d_replay_setup(uint32_t replay, uint32_t *bytes);
+
+/* The inputs of all players for the next tick, as `players` times `input_bytes` bytes. `LS2D_NONE` at the end. */
+ls2d_status ls2d_replay_next(uint32_t replay, uint8_t *inputs, size_t capacity, size_t *size);
+
+/* Passes the hash of the state before the first tick, and after each tick. */
+ls2d_status ls2d_replay_check(uint32_t replay, const ls2d_hash *hash);
+
+/* The verdict after the last tick, with the hash of the last state. */
+ls2d_status ls2d_replay_verdict(uint32_t replay, const ls2d_hash *hash, ls2d_verdict *verdict);
+
+/* ---- Matches ---- */
+
+/* Sets the defaults of a match with a number of seats: lockstep at 60 ticks per second, inputs of one byte. The
+ * caller sets `peer`, `key` and `secret` to random numbers. */
+ls2d_status ls2d_match_config_init(uint32_t seats, ls2d_match_config *config);
+
+/* Opens a match. All peers have to pass the same `offer`: versions, rules, setup, at most 512 bytes. */
+ls2d_status ls2d_match_host(const ls2d_match_config *config, const uint8_t *offer, size_t offer_size, uint32_t *handle);
+
+/* Asks a participant of a match, whose address is known, to join or, without own seats, to watch. */
+ls2d_status ls2d_match_join(const ls2d_match_config *config, const uint8_t *offer, size_t offer_size, const uint8_t *contact, size_t contact_size, uint32_t *handle);
+
+/* Asks another participant to join, or the same one again. */
+ls2d_status ls2d_match_ask(uint32_t handle, const uint8_t *contact, size_t contact_size);
+
+/* Takes a packet that arrived from an address. `now` is a time in microseconds that never decreases. */
+ls2d_status ls2d_match_receive(uint32_t handle, uint64_t now, const uint8_t *from, size_t from_size, const uint8_t *packet, size_t size);
+
+/* Passes the time. Call it every few milliseconds, and after packets have arrived. */
+ls2d_status ls2d_match_update(uint32_t handle, uint64_t now);
+
+/* Writes 1 if it is time for `ls2d_match_advance`, otherwise 0. */
+ls2d_status ls2d_match_is_due(uint32_t handle, uint64_t now, uint32_t *due);
+
+/* Issues the inputs of the own seats, in the order of the seats, and plays a tick if that is possible: the requests
+ * that follow say so. Writes 1 to `issued` if the inputs were issued; otherwise they may be used again. Without
+ * own seats there are no bytes. */
+ls2d_status ls2d_match_advance(uint32_t handle, uint64_t now, const uint8_t *inputs, size_t size, uint32_t *issued);
+
+/* The next request. Requests have to be fulfilled in order, before the next call of `ls2d_match_advance`. For
+ * `LS2D_REQUEST_ADVANCE`, the inputs of all seats are written to the buffer. `LS2D_NONE` if there is none. */
+ls2d_status ls2d_match_next_request(uint32_t handle, ls2d_request *request, uint8_t *inputs, size_t capacity, size_t *size);
+
+/* Answers `LS2D_REQUEST_CHECKSUM`. */
+ls2d_status ls2d_match_report_hash(uint32_t handle, uint32_t tick, const ls2d_hash *hash);
+
+/* The next packet to send, of at most 1472 bytes, and the address to send it to, of at most 32 bytes. `LS2D_NONE`
+ * if there is none. */
+ls2d_status ls2d_match_next_packet(uint32_t handle, uint8_t *to, size_t to_capacity, size_t *to_size, uint8_t *packet, size_t capacity, size_t *size);
+
+/* The next event. `LS2D_NONE` if there is none. */
+ls2d_status ls2d_match_next_event(uint32_t handle, ls2d_match_event *event);
+
+/* Writes 1 if somebody waits for a state to begin with, otherwise 0. */
+ls2d_status ls2d_match_wants_state(uint32_t handle, uint32_t *wants);
+
+/* Offers the state after a number of final ticks to those who join. It is kept until it has been sent. */
+ls2d_status ls2d_match_offer_state(uint32_t handle, uint32_t tick, const uint8_t *state, size_t size);
+
+/* Where the match stands: `LS2D_MATCH_JOINING` and so on. */
+ls2d_status ls2d_match_status(uint32_t handle, uint32_t *status);
+
+/* Numbers of ticks that were played, that are final, and that are final and played. Null pointers are not written. */
+ls2d_status ls2d_match_ticks(uint32_t handle, uint32_t *played, uint32_t *last, uint32_t *confirmed);
+
+/* Bit for each own seat. */
+ls2d_status ls2d_match_seats(uint32_t handle, uint64_t *seats);
+
+/* The final inputs of all seats for a tick, while they are kept. `LS2D_NONE` otherwise. */
+ls2d_status ls2d_match_final_inputs(uint32_t handle, uint32_t tick, uint8_t *inputs, size_t capacity, size_t *size, uint64_t *absent);
+
+/* Delay of own inputs in ticks; to a peer, smoothed round trip in microseconds, and lost packets in thousandths.
+ * Null pointers are not written. */
+ls2d_status ls2d_match_link(uint32_t handle, uint32_t peer, uint32_t *delay, uint64_t *round_trip, uint32_t *loss);
+
+/* Leaves the match. Call `ls2d_match_update` until the status is `LS2D_MATCH_CLOSED`. */
+ls2d_status ls2d_match_leave(uint32_t handle);
+
+/* Asks for an end of the match after a number of ticks. */
+ls2d_status ls2d_match_end_at(uint32_t handle, uint32_t ticks);
+
+/* Asks all others to stop for now, or, with 0, no longer to. */
+ls2d_status ls2d_match_pause(uint32_t handle, uint32_t paused);
+
+/* Votes for going on without a peer that is missing. */
+ls2d_status ls2d_match_go_on_without(uint32_t handle, uint32_t peer);
+
+/* Votes for removing somebody for good. */
+ls2d_status ls2d_match_kick(uint32_t handle, uint64_t key);
+
+/* Sets how many ticks may be played with guessed inputs; 0 is lockstep. */
+ls2d_status ls2d_match_set_guess(uint32_t handle, uint32_t ticks);
+
+/* ---- Mathematics ---- */
+
+/* Reads a decimal number such as `-1.25`, rounded to nearest. */
+ls2d_status ls2d_fx_parse(const uint8_t *text, size_t length, ls2d_fx *number);
+
+/* Writes a number as decimal text with all its digits, and the length of the text. */
+ls2d_status ls2d_fx_format(ls2d_fx number, uint8_t *text, size_t capacity, size_t *length);
+
+/* `numerator / denominator`, rounded to nearest. */
+ls2d_status ls2d_fx_ratio(int64_t numerator, int64_t denominator, ls2d_fx *number);
+
+/* `a + b`, within the range of numbers. */
+ls2d_fx ls2d_fx_add(ls2d_fx a, ls2d_fx b);
+
+/* `a - b`, within the range of numbers. */
+ls2d_fx ls2d_fx_sub(ls2d_fx a, ls2d_fx b);
+
+/* `a b`, rounded to nearest, within the range of numbers. */
+ls2d_fx ls2d_fx_mul(ls2d_fx a, ls2d_fx b);
+
+/* `a / b`, rounded to nearest, within the range of numbers. `LS2D_NUMBER` if `b` is 0. */
+ls2d_status ls2d_fx_div(ls2d_fx a, ls2d_fx b, ls2d_fx *number);
+
+/* Square root, rounded to nearest. `LS2D_NUMBER` for a negative number. */
+ls2d_status ls2d_fx_sqrt(ls2d_fx a, ls2d_fx *number);
+
+/* Length of a vector, rounded to nearest. */
+ls2d_fx ls2d_fx_hypot(ls2d_fx x, ls2d_fx y);
+
+/* `a.x b.x + a.y b.y`, rounded once. */
+ls2d_fx ls2d_vec2_dot(ls2d_fx ax, ls2d_fx ay, ls2d_fx bx, ls2d_fx by);
+
+/* `a.x b.y - a.y b.x`, rounded once. */
+ls2d_fx ls2d_vec2_cross(ls2d_fx ax, ls2d_fx ay, ls2d_fx bx, ls2d_fx by);
+
+/* The direction of a vector as a unit vector. `LS2D_NUMBER` for zero. */
+ls2d_status ls2d_vec2_normalize(ls2d_fx x, ls2d_fx y, ls2d_vec2 *unit);
+
+/* A vector turned by an angle. */
+ls2d_status ls2d_vec2_rotate(ls2d_fx x, ls2d_fx y, ls2d_angle angle, ls2d_vec2 *turned);
+
+/* Sine of an angle. */
+ls2d_fx ls2d_angle_sin(ls2d_angle angle);
+
+/* Cosine of an angle. */
+ls2d_fx ls2d_angle_cos(ls2d_angle angle);
+
+/* Direction of a vector: 0 is along x. 0 for the zero vector. */
+ls2d_angle ls2d_angle_of(ls2d_fx x, ls2d_fx y);
+
+/* An angle of a number of degrees. */
+ls2d_angle ls2d_angle_from_degrees(ls2d_fx degrees);
+
+/* An angle of a number of radians. */
+ls2d_angle ls2d_angle_from_radians(ls2d_fx radians);
+
+/* Degrees of an angle, above -180 and up to 180. */
+ls2d_fx ls2d_angle_to_degrees(ls2d_angle angle);
+
+/* Radians of an angle, above -pi and up to pi. */
+ls2d_fx ls2d_angle_to_radians(ls2d_angle angle);
+
+/* Makes a random number generator, to be kept in the state of the game. */
+ls2d_status ls2d_rng_init(uint64_t seed, ls2d_rng *rng);
+
+/* Draws a uniform number from 0 to below `bound`. `from` and `rng` may be the same. */
+ls2d_status ls2d_rng_below(const ls2d_rng *from, ls2d_rng *rng, uint32_t bound, uint32_t *number);
+
+/* Draws a uniform number from `low` to below `high`. `from` and `rng` may be the same. */
+ls2d_status ls2d_rng_range(const ls2d_rng *from, ls2d_rng *rng, ls2d_fx low, ls2d_fx high, ls2d_fx *number);
+
+/* Hash of bytes, for the state hash of a game with more state than a world. */
+ls2d_status ls2d_hash_bytes(const uint8_t *data, size_t size, ls2d_hash *hash);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,179 @@
+//! Memory of callers: the only place that dereferences their pointers.
+//!
+//! Functions of the API take [`In`] and [`Out`] instead of raw pointers. A value of these types is either made from a
+//! Rust reference, or passed by a foreign caller, who promises what `lockstep2d.h` asks for: the pointer is null, or it
+//! points to as many items as the function reads or writes, and nothing else accesses them during the call. Everything
+//! else is checked: null pointers, alignment, and counts.
+
+use std::marker::PhantomData;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use crate::status::{Failure, Outcome, Status, note};
+
+/// Types of which any bytes are a value and that have no padding, so that foreign memory may be read as them.
+///
+/// # Safety
+/// Both have to hold.
+pub unsafe trait Plain: Copy + 'static {}
+
+// SAFETY: integers have neither padding nor invalid bytes.
+unsafe impl Plain for u8 {}
+// SAFETY: as above.
+unsafe impl Plain for u32 {}
+// SAFETY: as above.
+unsafe impl Plain for i32 {}
+// SAFETY: as above.
+unsafe impl Plain for u64 {}
+// SAFETY: as above.
+unsafe impl Plain for i64 {}
+// SAFETY: as above.
+unsafe impl Plain for usize {}
+// SAFETY: an array of plain items has no padding between them.
+unsafe impl<T: Plain, const N: usize> Plain for [T; N] {}
+
+/// A pointer to items that a function reads.
+#[repr(transparent)]
+#[derive(Clone, Copy, Debug)]
+pub struct In<'a, T>(*const T, PhantomData<&'a [T]>);
+
+/// A pointer to items that a function writes.
+#[repr(transparent)]
+#[derive(Debug)]
+pub struct Out<'a, T>(*mut T, PhantomData<&'a mut [T]>);
+
+fn check<T>(pointer: *const T) -> Outcome {
+    if pointer.is_null() {
+        return Err(Failure::new(Status::Null, "a pointer is null"));
+    }
+    if !pointer.is_aligned() {
+        return Err(Failure::new(Status::Misaligned, "a pointer is not aligned"));
+    }
+    Ok(())
+}
+
+/// Checks that a slice of so many items can exist.
+fn check_count<T>(count: usize) -> Outcome {
+    let bytes = count.checked_mul(size_of::<T>()).and_then(|bytes| isize::try_from(bytes).ok());
+    bytes.map(|_| ()).ok_or_else(|| Failure::new(Status::Value, "a count exceeds the memory"))
+}
+
+impl<'a, T: Plain> In<'a, T> {
+    /// Points to a value.
+    #[must_use]
+    pub const fn of(value: &'a T) -> Self {
+        In(value, PhantomData)
+    }
+
+    /// Points to the first of some items.
+    #[must_use]
+    pub const fn all(items: &'a [T]) -> Self {
+        In(items.as_ptr(), PhantomData)
+    }
+
+    /// A null pointer.
+    #[must_use]
+    pub const fn null() -> Self {
+        In(std::ptr::null(), PhantomData)
+    }
+
+    pub(crate) const fn is_null(&self) -> bool {
+        self.0.is_null()
+    }
+
+    /// Copies the value.
+    pub(crate) fn get(&self) -> Outcome<T> {
+        check(self.0)?;
+        // SAFETY: not null and aligned; the caller promises that it points to an item, and any bytes are one.
+        Ok(unsafe { self.0.read() })
+    }
+
+    /// The items. No items need no pointer.
+    pub(crate) fn slice(&self, count: usize) -> Outcome<&[T]> {
+        if count == 0 {
+            return Ok(&[]);
+        }
+        check(self.0)?;
+        check_count::<T>(count)?;
+        // SAFETY: not null, aligned, and of a possible size; the caller promises that it points to `count` items that
+        // nothing changes during the call, and any bytes are items.
+        Ok(unsafe { std::slice::from_raw_parts(self.0, count) })
+    }
+}
+
+impl In<'_, u8> {
+    /// UTF-8 text of a number of bytes.
+    pub(crate) fn text(&self, bytes: usize) -> Outcome<&str> {
+        std::str::from_utf8(self.slice(bytes)?)
+            .map_err(|error| Failure::new(Status::Text, format!("not UTF-8: {error}")))
+    }
+}
+
+impl<'a, T: Plain> Out<'a, T> {
+    /// Points to a value.
+    #[must_use]
+    pub const fn of(value: &'a mut T) -> Self {
+        Out(value, PhantomData)
+    }
+
+    /// Points to the first of some items.
+    #[must_use]
+    pub const fn all(items: &'a mut [T]) -> Self {
+        Out(items.as_mut_ptr(), PhantomData)
+    }
+
+    /// A null pointer.
+    #[must_use]
+    pub const fn null() -> Self {
+        Out(std::ptr::null_mut(), PhantomData)
+    }
+
+    /// Checks the pointer before something is done whose result would be lost.
+    pub(crate) fn check(&self) -> Outcome {
+        check(self.0)
+    }
+
+    /// Writes the value.
+    pub(crate) fn set(&mut self, value: T) -> Outcome {
+        check(self.0)?;
+        // SAFETY: not null and aligned; the caller promises that it points to memory for an item.
+        unsafe { self.0.write(value) };
+        Ok(())
+    }
+
+    /// Writes the value, unless the pointer is null.
+    pub(crate) fn set_if_wanted(&mut self, value: T) -> Outcome {
+        if self.0.is_null() { Ok(()) } else { self.set(value) }
+    }
+
+    /// Writes the number of items to `count`, and the items if there is room for `capacity`.
+    pub(crate) fn set_all(&mut self, capacity: usize, count: &mut Out<'_, usize>, items: &[T]) -> Outcome {
+        count.set(items.len())?;
+        if items.len() > capacity {
+            let (needed, given) = (items.len(), capacity);
+            return Err(Failure::new(
+                Status::Buffer,
+                format!("a buffer of {given} items, {needed} are needed"),
+            ));
+        }
+        if items.is_empty() {
+            return Ok(());
+        }
+        check(self.0)?;
+        // SAFETY: not null and aligned; the caller promises memory for `capacity` items, which are not fewer than those
+        // written, and that it is no memory of this library.
+        unsafe { std::ptr::copy_nonoverlapping(items.as_ptr(), self.0, items.len()) };
+        Ok(())
+    }
+}
+
+/// Runs the body of a function: failures become codes, and panics do, too.
+pub(crate) fn guard(body: impl FnOnce() -> Outcome) -> i32 {
+    // Objects that a panic has left in an unknown state are behind mutexes, which remember it.
+    let result = catch_unwind(AssertUnwindSafe(body));
+    let status = match result {
+        Ok(Ok(())) => Status::Ok,
+        Ok(Err(failure)) => note(failure),
+        Err(_) => note(Failure::new(Status::Internal, "an error in the library")),
+    };
+    status as i32
+}

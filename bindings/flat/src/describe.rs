@@ -1,0 +1,232 @@
+//! What the API consists of, as data: the header and the layouts for other languages are written from it.
+
+/// A constant of the API.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Constant {
+    /// Name in C.
+    pub(crate) name: &'static str,
+    /// Value.
+    pub(crate) value: i64,
+    /// Lines of documentation.
+    pub(crate) docs: &'static [&'static str],
+}
+
+/// An alias of an integer type.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Alias {
+    /// Name in C.
+    pub(crate) name: &'static str,
+    /// Integer type in C.
+    pub(crate) of: &'static str,
+    /// Lines of documentation.
+    pub(crate) docs: &'static [&'static str],
+}
+
+/// A field of a struct.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Field {
+    /// Name.
+    pub(crate) name: &'static str,
+    /// Type of the field, or of its items.
+    pub(crate) kind: &'static str,
+    /// Number of items, if it is an array.
+    pub(crate) count: Option<usize>,
+    /// Offset in bytes.
+    pub(crate) offset: usize,
+    /// Lines of documentation.
+    pub(crate) docs: &'static [&'static str],
+}
+
+/// A struct.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Struct {
+    /// Name in C.
+    pub(crate) name: &'static str,
+    /// Size in bytes, the same on all machines with 8-byte aligned `int64_t`.
+    pub(crate) bytes: usize,
+    /// Its fields in order, without gaps.
+    pub(crate) fields: &'static [Field],
+    /// Lines of documentation.
+    pub(crate) docs: &'static [&'static str],
+}
+
+/// A parameter of a function.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Parameter {
+    /// Name.
+    pub(crate) name: &'static str,
+    /// Type, in parts that are written before and after its name in C: `const `, `ls2d_vec2`, ` *`.
+    pub(crate) kind: [&'static str; 3],
+}
+
+/// A function.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Function {
+    /// Name in C.
+    pub(crate) name: &'static str,
+    /// Its parameters.
+    pub(crate) parameters: &'static [Parameter],
+    /// Type of the result.
+    pub(crate) returns: &'static str,
+    /// Lines of documentation.
+    pub(crate) docs: &'static [&'static str],
+}
+
+/// A type of parameters, fields and results.
+pub(crate) trait CType {
+    /// Type of the value or of what it points to.
+    const BASE: &'static str;
+    /// What comes before and after it.
+    const AROUND: [&'static str; 2] = ["", ""];
+    /// Number of items of an array.
+    const COUNT: Option<usize> = None;
+}
+
+macro_rules! c_types {
+    ($($type:ty => $name:literal;)+) => {
+        $(impl CType for $type {
+            const BASE: &'static str = $name;
+        })+
+    };
+}
+
+c_types! {
+    u8 => "uint8_t";
+    u32 => "uint32_t";
+    i32 => "int32_t";
+    u64 => "uint64_t";
+    i64 => "int64_t";
+    usize => "size_t";
+}
+
+impl<T: CType> CType for crate::border::In<'_, T> {
+    const BASE: &'static str = T::BASE;
+    const AROUND: [&'static str; 2] = ["const ", " *"];
+}
+
+impl<T: CType> CType for crate::border::Out<'_, T> {
+    const BASE: &'static str = T::BASE;
+    const AROUND: [&'static str; 2] = ["", " *"];
+}
+
+impl<T: CType, const N: usize> CType for [T; N] {
+    const BASE: &'static str = T::BASE;
+    const COUNT: Option<usize> = Some(N);
+}
+
+/// Type of a parameter with what is around it.
+pub(crate) const fn parameter<T: CType>(name: &'static str) -> Parameter {
+    Parameter { name, kind: [T::AROUND[0], T::BASE, T::AROUND[1]] }
+}
+
+/// Defines aliases of integers as Rust types, so that they cannot be mixed up, and their descriptions.
+macro_rules! aliases {
+    ($($(#[doc = $doc:literal])+ $name:ident($of:ty) = $c:literal;)+) => {
+        $(
+            $(#[doc = $doc])+
+            #[repr(transparent)]
+            #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+            pub struct $name(pub $of);
+
+            // SAFETY: a single integer.
+            unsafe impl $crate::border::Plain for $name {}
+
+            impl $crate::describe::CType for $name {
+                const BASE: &'static str = $c;
+            }
+        )+
+
+        /// All aliases of this module.
+        pub(crate) const ALIASES: &[$crate::describe::Alias] = &[$($crate::describe::Alias {
+            name: $c,
+            of: <$of as $crate::describe::CType>::BASE,
+            docs: &[$($doc),+],
+        }),+];
+    };
+}
+
+/// Defines constants and their descriptions.
+macro_rules! constants {
+    ($($(#[doc = $doc:literal])+ $name:ident = $value:literal, $c:literal;)+) => {
+        $(
+            $(#[doc = $doc])+
+            pub const $name: u32 = $value;
+        )+
+
+        /// All constants of this module.
+        pub(crate) const CONSTANTS: &[$crate::describe::Constant] =
+            &[$($crate::describe::Constant { name: $c, value: $value, docs: &[$($doc),+] }),+];
+    };
+}
+
+/// Defines structs that C and Rust share, and their descriptions. A struct with gaps between its fields, whose bytes
+/// would be undefined, does not compile.
+macro_rules! records {
+    ($($(#[doc = $doc:literal])+ struct $name:ident = $c:literal {
+        $($(#[doc = $field_doc:literal])+ $field:ident: $type:ty,)+
+    })+) => {
+        $(
+            $(#[doc = $doc])+
+            #[repr(C)]
+            #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+            pub struct $name {
+                $($(#[doc = $field_doc])+ pub $field: $type,)+
+            }
+
+            const _: () = assert!(size_of::<$name>() == 0 $(+ size_of::<$type>())+, "a struct has gaps");
+
+            // SAFETY: its fields are plain, and there are no gaps.
+            unsafe impl $crate::border::Plain for $name where $($type: $crate::border::Plain),+ {}
+
+            impl $crate::describe::CType for $name {
+                const BASE: &'static str = $c;
+            }
+        )+
+
+        /// All structs of this module.
+        pub(crate) const STRUCTS: &[$crate::describe::Struct] = &[$($crate::describe::Struct {
+            name: $c,
+            bytes: size_of::<$name>(),
+            fields: &[$($crate::describe::Field {
+                name: stringify!($field),
+                kind: <$type as $crate::describe::CType>::BASE,
+                count: <$type as $crate::describe::CType>::COUNT,
+                offset: std::mem::offset_of!($name, $field),
+                docs: &[$($field_doc),+],
+            }),+],
+            docs: &[$($doc),+],
+        }),+];
+    };
+}
+
+/// Defines functions of the API. The body of a function without a result type returns `Outcome`, and the function a
+/// status code; that of others returns the value.
+macro_rules! api {
+    ($($(#[doc = $doc:literal])+ fn $name:ident($($argument:ident: $type:ty),* $(,)?) $(-> $value:ty)? $body:block)+) => {
+        $($crate::describe::api!(@define [$($doc)+] $name [$($argument: $type),*] [$($value)?] $body);)+
+
+        /// All functions of this module.
+        pub(crate) const FUNCTIONS: &[$crate::describe::Function] = &[$($crate::describe::Function {
+            name: stringify!($name),
+            parameters: &[$($crate::describe::parameter::<$type>(stringify!($argument))),*],
+            returns: $crate::describe::api!(@returns [$($value)?]),
+            docs: &[$($doc),+],
+        }),+];
+    };
+    (@define [$($doc:literal)+] $name:ident [$($argument:ident: $type:ty),*] [] $body:block) => {
+        $(#[doc = $doc])+
+        #[unsafe(no_mangle)]
+        pub extern "C" fn $name($($argument: $type),*) -> i32 {
+            $crate::border::guard(move || $body)
+        }
+    };
+    (@define [$($doc:literal)+] $name:ident [$($argument:ident: $type:ty),*] [$value:ty] $body:block) => {
+        $(#[doc = $doc])+
+        #[unsafe(no_mangle)]
+        pub extern "C" fn $name($($argument: $type),*) -> $value $body
+    };
+    (@returns []) => { "ls2d_status" };
+    (@returns [$value:ty]) => { <$value as $crate::describe::CType>::BASE };
+}
+
+pub(crate) use {aliases, api, constants, records};

@@ -1,0 +1,318 @@
+//! Edits: each is a command that is executed by a world at once, or added to a list.
+
+use lockstep2d::body::{BodyDef, Chain, Geometry, ShapeDef};
+use lockstep2d::codec;
+use lockstep2d::math::{Fx, Vec2};
+use lockstep2d::world::{self, Command, World};
+
+use crate::border::{In, Out};
+use crate::describe::api;
+use crate::numbers::{RawAngle, RawBody, RawFx, RawJoint, RawShape, RawVec2};
+use crate::records::{RawBodyDef, RawConfig, RawExplosion, RawJointDef, RawShapeDef, body_kind, name_of};
+use crate::status::{Failure, Outcome, Status};
+use crate::table::{self, Bytes, Commands, Object, with, with_any, with_two};
+
+/// Largest number of shapes of one call.
+const SHAPES_MAX: usize = 4096;
+
+/// Executes a command, if the target is a world, or adds it to a list of commands. Nothing is returned for a list.
+fn edit(target: u32, command: Command) -> Outcome<Option<world::Outcome>> {
+    with_any(target, |object| match object {
+        Object::World(world) => Ok(Some(world.execute(&command)?)),
+        Object::Commands(list) => {
+            list.0.push(command);
+            Ok(None)
+        }
+        _ => Err(Failure::new(Status::HandleKind, "a world or a list of commands is expected")),
+    })
+}
+
+fn shapes_of(shapes: &In<'_, RawShapeDef>, count: usize) -> Outcome<Vec<ShapeDef>> {
+    if count > SHAPES_MAX {
+        return Err(super::library::copied("a body of at most 4096 shapes", count));
+    }
+    shapes.slice(count)?.iter().map(RawShapeDef::def).collect()
+}
+
+/// Commands of a body alone.
+macro_rules! body_commands {
+    ($target:ident, $body:ident, $command:ident) => {
+        edit($target, Command::$command { body: $body.id()? }).map(|_| ())
+    };
+}
+
+api! {
+    /// Sets the defaults of a body of a kind: at rest at the origin.
+    fn ls2d_body_def_init(kind: u32, def: Out<'_, RawBodyDef>) {
+        let mut def = def;
+        def.set(RawBodyDef::of(&BodyDef::new(body_kind(kind)?)))
+    }
+
+    /// Sets the defaults of a shape of a kind. Its geometry has to be set.
+    fn ls2d_shape_def_init(kind: u32, def: Out<'_, RawShapeDef>) {
+        let mut def = def;
+        let mut raw = RawShapeDef::of(&ShapeDef::new(Geometry::Circle { radius: Fx::ZERO }));
+        raw.kind = kind;
+        def.set(raw)
+    }
+
+    /// Sets the defaults of a joint of a kind, without its bodies.
+    fn ls2d_joint_def_init(kind: u32, def: Out<'_, RawJointDef>) {
+        let mut def = def;
+        def.set(RawJointDef::of_kind(kind)?)
+    }
+
+    /// Makes the links of a chain through some points, closed if `closed` is not 0, solid only from the right if
+    /// `one_sided` is not 0. The links have the material, filter and so on of `base`.
+    fn ls2d_chain_links(
+        base: In<'_, RawShapeDef>,
+        points: In<'_, RawVec2>,
+        point_count: usize,
+        closed: u32,
+        one_sided: u32,
+        links: Out<'_, RawShapeDef>,
+        capacity: usize,
+        count: Out<'_, usize>,
+    ) {
+        let (mut links, mut count) = (links, count);
+        let mut base = base.get()?;
+        if point_count > SHAPES_MAX + 1 {
+            return Err(super::library::copied("a chain of at most 4096 links", point_count));
+        }
+        let points: Vec<Vec2<Fx>> = points.slice(point_count)?.iter().map(|point| point.vec()).collect();
+        let mut chain = Chain::new(&points);
+        if closed != 0 {
+            chain = chain.closed();
+        }
+        if one_sided != 0 {
+            chain = chain.one_sided();
+        }
+        let made = chain.links()?;
+        // The geometry of the base does not matter.
+        base = RawShapeDef { kind: crate::records::CIRCLE, radius: RawFx::of(Fx::ONE), ..base };
+        let base = base.def()?;
+        let with_base = |link: &ShapeDef| RawShapeDef::of(&ShapeDef { geometry: link.geometry, ..base });
+        let made: Vec<RawShapeDef> = made.iter().map(with_base).collect();
+        links.set_all(capacity, &mut count, &made)
+    }
+
+    /// Makes an empty list of commands.
+    fn ls2d_commands_new(commands: Out<'_, u32>) {
+        let mut commands = commands;
+        commands.check()?;
+        commands.set(table::add(Commands(Vec::new()))?)
+    }
+
+    /// Empties a list of commands.
+    fn ls2d_commands_clear(commands: u32) {
+        with(commands, |Commands(list)| {
+            list.clear();
+            Ok(())
+        })
+    }
+
+    /// Number of commands in a list.
+    fn ls2d_commands_count(commands: u32, count: Out<'_, usize>) {
+        let mut count = count;
+        with(commands, |Commands(list)| count.set(list.len()))
+    }
+
+    /// Encodes a list of commands as bytes, for networks and files.
+    fn ls2d_commands_encode(commands: u32, bytes: Out<'_, u32>) {
+        let mut bytes = bytes;
+        bytes.check()?;
+        let encoded = with(commands, |Commands(list)| Ok(codec::encode(list)))?;
+        bytes.set(table::add(Bytes(encoded))?)
+    }
+
+    /// Replaces a list of commands by an encoded one, from any source.
+    fn ls2d_commands_decode(commands: u32, data: In<'_, u8>, size: usize) {
+        let decoded: Vec<Command> = codec::decode(data.slice(size)?)?;
+        with(commands, |Commands(list)| {
+            *list = decoded;
+            Ok(())
+        })
+    }
+
+    /// Executes a list of commands in order. Commands that the world refuses are skipped and counted; a null pointer is
+    /// not written.
+    fn ls2d_world_execute(world: u32, commands: u32, refused: Out<'_, u32>) {
+        let mut refused = refused;
+        with_two(world, commands, |world: &mut World, Commands(list)| {
+            let count = list.iter().filter(|command| world.execute(command).is_err()).count();
+            refused.set_if_wanted(u32::try_from(count).unwrap_or(u32::MAX))
+        })
+    }
+
+    /// Adds a body with its shapes. Its handle is written, unless the pointer is null or the target is a list.
+    fn ls2d_spawn(
+        target: u32,
+        body: In<'_, RawBodyDef>,
+        shapes: In<'_, RawShapeDef>,
+        shape_count: usize,
+        id: Out<'_, RawBody>,
+    ) {
+        let mut id = id;
+        let (body, shapes) = (body.get()?.def()?, shapes_of(&shapes, shape_count)?);
+        match edit(target, Command::Spawn { body, shapes })? {
+            Some(world::Outcome::Body(body)) => id.set_if_wanted(RawBody::of(body)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Removes a body with its shapes and joints.
+    fn ls2d_despawn(target: u32, body: RawBody) { body_commands!(target, body, Despawn) }
+
+    /// Adds a shape to a body. Its handle is written, unless the pointer is null or the target is a list.
+    fn ls2d_add_shape(target: u32, body: RawBody, shape: In<'_, RawShapeDef>, id: Out<'_, RawShape>) {
+        let mut id = id;
+        match edit(target, Command::AddShape { body: body.id()?, shape: shape.get()?.def()? })? {
+            Some(world::Outcome::Shape(shape)) => id.set_if_wanted(RawShape::of(shape)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Removes a shape.
+    fn ls2d_remove_shape(target: u32, shape: RawShape) {
+        edit(target, Command::RemoveShape { shape: shape.id()? }).map(|_| ())
+    }
+
+    /// Changes a shape.
+    fn ls2d_set_shape(target: u32, shape: RawShape, def: In<'_, RawShapeDef>) {
+        edit(target, Command::SetShape { shape: shape.id()?, def: def.get()?.def()? }).map(|_| ())
+    }
+
+    /// Adds a joint. Its handle is written, unless the pointer is null or the target is a list.
+    fn ls2d_add_joint(target: u32, joint: In<'_, RawJointDef>, id: Out<'_, RawJoint>) {
+        let mut id = id;
+        match edit(target, Command::AddJoint { joint: joint.get()?.def()? })? {
+            Some(world::Outcome::Joint(joint)) => id.set_if_wanted(RawJoint::of(joint)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Removes a joint.
+    fn ls2d_remove_joint(target: u32, joint: RawJoint) {
+        edit(target, Command::RemoveJoint { joint: joint.id()? }).map(|_| ())
+    }
+
+    /// Changes a joint. Its bodies stay.
+    fn ls2d_set_joint(target: u32, joint: RawJoint, def: In<'_, RawJointDef>) {
+        edit(target, Command::SetJoint { joint: joint.id()?, def: def.get()?.def()? }).map(|_| ())
+    }
+
+    /// Makes a joint act.
+    fn ls2d_enable_joint(target: u32, joint: RawJoint) {
+        edit(target, Command::EnableJoint { joint: joint.id()? }).map(|_| ())
+    }
+
+    /// Stops a joint from acting.
+    fn ls2d_disable_joint(target: u32, joint: RawJoint) {
+        edit(target, Command::DisableJoint { joint: joint.id()? }).map(|_| ())
+    }
+
+    /// Pushes a body during the next tick: a force in N at a point of the world in metres.
+    fn ls2d_apply_force(target: u32, body: RawBody, force_x: RawFx, force_y: RawFx, x: RawFx, y: RawFx) {
+        let (force, point) = (vector(force_x, force_y), vector(x, y));
+        edit(target, Command::ApplyForce { body: body.id()?, force, point }).map(|_| ())
+    }
+
+    /// Turns a body during the next tick: a torque in N m.
+    fn ls2d_apply_torque(target: u32, body: RawBody, torque: RawFx) {
+        edit(target, Command::ApplyTorque { body: body.id()?, torque: torque.fx() }).map(|_| ())
+    }
+
+    /// Changes the velocity of a body: an impulse in N s at a point of the world in metres.
+    fn ls2d_apply_impulse(target: u32, body: RawBody, impulse_x: RawFx, impulse_y: RawFx, x: RawFx, y: RawFx) {
+        let (impulse, point) = (vector(impulse_x, impulse_y), vector(x, y));
+        edit(target, Command::ApplyImpulse { body: body.id()?, impulse, point }).map(|_| ())
+    }
+
+    /// Changes the angular velocity of a body: an angular impulse in N m s.
+    fn ls2d_apply_angular_impulse(target: u32, body: RawBody, impulse: RawFx) {
+        edit(target, Command::ApplyAngularImpulse { body: body.id()?, impulse: impulse.fx() }).map(|_| ())
+    }
+
+    /// Sets the velocity of a body's centre of mass in m/s, and its angular velocity in rad/s.
+    fn ls2d_set_velocity(target: u32, body: RawBody, x: RawFx, y: RawFx, angular: RawFx) {
+        let (velocity, angular_velocity) = (vector(x, y), angular.fx());
+        edit(target, Command::SetVelocity { body: body.id()?, velocity, angular_velocity }).map(|_| ())
+    }
+
+    /// Places a body.
+    fn ls2d_set_transform(target: u32, body: RawBody, x: RawFx, y: RawFx, angle: RawAngle) {
+        let (position, angle) = (vector(x, y), angle.angle());
+        edit(target, Command::SetTransform { body: body.id()?, position, angle }).map(|_| ())
+    }
+
+    /// Gives a kinematic body the velocity with which it is at a place after the next tick.
+    fn ls2d_move_to(target: u32, body: RawBody, x: RawFx, y: RawFx, angle: RawAngle) {
+        let (position, angle) = (vector(x, y), angle.angle());
+        edit(target, Command::MoveTo { body: body.id()?, position, angle }).map(|_| ())
+    }
+
+    /// Changes the settings of a body: damping, gravity scale, locks, sweeps, sleep. The other fields do not matter.
+    fn ls2d_set_body(target: u32, body: RawBody, def: In<'_, RawBodyDef>) {
+        edit(target, Command::SetBody { body: body.id()?, settings: def.get()?.settings()? }).map(|_| ())
+    }
+
+    /// Changes the kind of a body.
+    fn ls2d_set_kind(target: u32, body: RawBody, kind: u32) {
+        edit(target, Command::SetKind { body: body.id()?, kind: body_kind(kind)? }).map(|_| ())
+    }
+
+    /// Changes the mass of a body to the one of a definition, of which only the mass matters.
+    fn ls2d_set_mass(target: u32, body: RawBody, def: In<'_, RawBodyDef>) {
+        let def = def.get()?;
+        def.settings()?;
+        edit(target, Command::SetMass { body: body.id()?, mass: def.mass_source() }).map(|_| ())
+    }
+
+    /// Sets the number that the game stores with a body.
+    fn ls2d_set_user_data(target: u32, body: RawBody, user_data: u64) {
+        edit(target, Command::SetUserData { body: body.id()?, user_data }).map(|_| ())
+    }
+
+    /// Sets the name of a body, of at most 16 bytes; none for a length of 0.
+    fn ls2d_set_name(target: u32, body: RawBody, text: In<'_, u8>, length: usize) {
+        let name = name_of(text.text(length)?.as_bytes())?;
+        edit(target, Command::SetName { body: body.id()?, name }).map(|_| ())
+    }
+
+    /// Lets a body take part in the simulation.
+    fn ls2d_enable(target: u32, body: RawBody) { body_commands!(target, body, Enable) }
+
+    /// Takes a body out of the simulation.
+    fn ls2d_disable(target: u32, body: RawBody) { body_commands!(target, body, Disable) }
+
+    /// Wakes a body.
+    fn ls2d_wake(target: u32, body: RawBody) { body_commands!(target, body, Wake) }
+
+    /// Puts a body and all that touch it or are joined to it to sleep.
+    fn ls2d_sleep(target: u32, body: RawBody) { body_commands!(target, body, Sleep) }
+
+    /// Sets the gravity in m/s².
+    fn ls2d_set_gravity(target: u32, x: RawFx, y: RawFx) {
+        edit(target, Command::SetGravity { gravity: vector(x, y) }).map(|_| ())
+    }
+
+    /// Changes the settings of the world, except for its limits.
+    fn ls2d_set_config(target: u32, config: In<'_, RawConfig>) {
+        edit(target, Command::SetConfig { config: config.get()?.config()? }).map(|_| ())
+    }
+
+    /// Applies impulses away from a point.
+    fn ls2d_explode(target: u32, explosion: In<'_, RawExplosion>) {
+        edit(target, Command::Explode { explosion: explosion.get()?.explosion()? }).map(|_| ())
+    }
+
+    /// Sets the defaults of an explosion at a point: radius and falloff of 1 m, all categories.
+    fn ls2d_explosion_init(x: RawFx, y: RawFx, impulse: RawFx, explosion: Out<'_, RawExplosion>) {
+        let mut explosion = explosion;
+        explosion.set(RawExplosion::new(vector(x, y), impulse.fx()))
+    }
+}
+
+const fn vector(x: RawFx, y: RawFx) -> Vec2<Fx> {
+    Vec2::new(x.fx(), y.fx())
+}

@@ -1,0 +1,94 @@
+//! Replays of worlds that are changed by commands alone: recorded, and verified by this library or by `lockstep2d verify`.
+
+use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+use lockstep2d::replay::{self, Limits, Recording};
+use lockstep2d::world::{Config, World};
+
+use crate::border::{In, Out};
+use crate::describe::api;
+use crate::records::{RawConfig, RawLimits, RawVerdict};
+use crate::status::{Failure, Outcome, Status, note};
+use crate::table::{self, Bytes, Commands, with, with_two};
+
+/// A recording until it is finished.
+pub(crate) struct SandboxRecorder(Option<Recording<Sandbox>>);
+
+impl SandboxRecorder {
+    fn get(&mut self) -> Outcome<&mut Recording<Sandbox>> {
+        self.0.as_mut().ok_or_else(finished)
+    }
+}
+
+pub(super) fn finished() -> Failure {
+    Failure::new(Status::Record, "the recording is finished")
+}
+
+/// Limits that a pointer means.
+pub(super) fn limits_of(limits: &In<'_, RawLimits>) -> Outcome<Limits> {
+    if limits.is_null() { Ok(Limits::default()) } else { limits.get()?.limits() }
+}
+
+api! {
+    /// Sets the default limits of a replay: a day of play, minutes of computing.
+    fn ls2d_limits_init(limits: Out<'_, RawLimits>) {
+        let mut limits = limits;
+        limits.set(RawLimits::of(&Limits::default()))
+    }
+
+    /// Starts a recording: a world that the commands of a list set up, with a checkpoint every `interval` ticks. A null
+    /// pointer stands for the default settings.
+    fn ls2d_recording_new(config: In<'_, RawConfig>, commands: u32, interval: u32, recording: Out<'_, u32>) {
+        let mut recording = recording;
+        recording.check()?;
+        let config = if config.is_null() { Config::default() } else { config.get()?.config()? };
+        let commands = with(commands, |Commands(list)| Ok(list.clone()))?;
+        let started = Recording::start(&SandboxSetup { config, commands }, interval)?;
+        recording.set(table::add(SandboxRecorder(Some(started)))?)
+    }
+
+    /// Executes a list of commands and advances the recorded world by one tick. The list is empty afterwards. Commands
+    /// that the world refuses are skipped.
+    fn ls2d_recording_step(recording: u32, commands: u32) {
+        with_two(recording, commands, |recording: &mut SandboxRecorder, Commands(list)| {
+            recording.get()?.step(&[std::mem::take(list)])?;
+            Ok(())
+        })
+    }
+
+    /// Makes a copy of the recorded world, to draw and query it.
+    fn ls2d_recording_world(recording: u32, world: Out<'_, u32>) {
+        let mut world = world;
+        world.check()?;
+        let copy: World =
+            with(recording, |recording: &mut SandboxRecorder| Ok(recording.get()?.game().world().clone()))?;
+        world.set(table::add(copy)?)
+    }
+
+    /// Takes the bytes that are finished, to be appended to the file.
+    fn ls2d_recording_take(recording: u32, bytes: Out<'_, u32>) {
+        let mut bytes = bytes;
+        bytes.check()?;
+        let taken = with(recording, |recording: &mut SandboxRecorder| Ok(recording.get()?.take_bytes()))?;
+        bytes.set(table::add(Bytes(taken))?)
+    }
+
+    /// Ends a recording, and returns the bytes that have not been taken yet.
+    fn ls2d_recording_finish(recording: u32, bytes: Out<'_, u32>) {
+        let mut bytes = bytes;
+        bytes.check()?;
+        let rest = with(recording, |SandboxRecorder(recording)| {
+            Ok(recording.take().ok_or_else(finished)?.finish()?)
+        })?;
+        bytes.set(table::add(Bytes(rest))?)
+    }
+
+    /// Verifies a replay of a world from any source. A null pointer stands for the default limits. `ls2d_last_error`
+    /// returns the verdict in words.
+    fn ls2d_replay_verify(data: In<'_, u8>, size: usize, limits: In<'_, RawLimits>, verdict: Out<'_, RawVerdict>) {
+        let mut verdict = verdict;
+        verdict.check()?;
+        let found = replay::verify::<Sandbox>(data.slice(size)?, &limits_of(&limits)?);
+        note(Failure::new(Status::Ok, found.to_string()));
+        verdict.set(RawVerdict::of(&found))
+    }
+}

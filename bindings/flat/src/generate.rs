@@ -1,0 +1,170 @@
+//! Writes the C header, and the layout of the structs for other languages.
+
+use std::fmt::Write as _;
+
+use crate::describe::{Alias, Constant, Function, Struct};
+use crate::functions::{API_VERSION, FUNCTIONS};
+use crate::records::{CONSTANTS, STRUCTS};
+use crate::status::STATUSES;
+
+const OPENING: &str = "\
+/* The flat API of lockstep2d: a deterministic fixed-point 2D physics and lockstep engine.
+ *
+ * Written by the tests of lockstep2d-flat; do not edit it.
+ *
+ * Functions return a status: LS2D_OK, LS2D_NONE if there is nothing to return, or an error, whose text ls2d_last_error
+ * copies. Objects are handles, numbers that are never 0. A wrong or stale handle is an error, never undefined. ls2d_free
+ * frees objects of all kinds.
+ *
+ * Pointers are null or point to as many items as the function reads or writes, and nothing else uses that memory during
+ * the call. Functions with a buffer take its capacity in items and write the number of items; if the buffer is too
+ * short, they write the number that is needed and return LS2D_BUFFER.
+ *
+ * Structs that the caller fills begin with their size; ls2d_*_init functions set it and the defaults.
+ *
+ * Numbers are integers: ls2d_fx has 32 fraction bits (LS2D_FX(1) is a metre), ls2d_angle counts 2^-32 turn. Different
+ * objects may be used on several threads at once. */
+#ifndef LOCKSTEP2D_H
+#define LOCKSTEP2D_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern \"C\" {
+#endif
+
+/* Result of a function: one of the LS2D_ codes below. */
+typedef int32_t ls2d_status;
+/* An object. */
+typedef uint32_t ls2d_handle;
+
+/* A whole number as ls2d_fx, and a fraction of two whole numbers, rounded towards zero. */
+#define LS2D_FX(whole) ((ls2d_fx)((int64_t)(whole) * 4294967296))
+#define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)((int64_t)(numerator) * 4294967296 / (denominator)))
+/* An angle of whole degrees, rounded towards zero. */
+#define LS2D_DEGREES(whole) ((ls2d_angle)(int64_t)((int64_t)(whole) * 4294967296 / 360))
+/* No body, no shape, no joint. */
+#define LS2D_NO_ID UINT64_MAX
+";
+
+const CLOSING: &str = "
+#ifdef __cplusplus
+}
+#endif
+
+#endif
+";
+
+fn comment(text: &mut String, indent: &str, docs: &[&str]) {
+    let lines: Vec<_> = docs.iter().map(|line| line.trim()).collect();
+    let between = format!("\n{indent} * ");
+    // Writing to a string does not fail.
+    let _ = writeln!(text, "{indent}/* {} */", lines.join(&between));
+}
+
+fn constant(text: &mut String, name: &str, value: i64, docs: &[&str]) {
+    comment(text, "", docs);
+    let _ = writeln!(text, "#define {name} {value}");
+}
+
+fn record(text: &mut String, record: &Struct) {
+    text.push('\n');
+    comment(text, "", record.docs);
+    let _ = writeln!(text, "typedef struct {} {{", record.name);
+    for field in record.fields {
+        comment(text, "    ", field.docs);
+        let count = field.count.map(|count| format!("[{count}]")).unwrap_or_default();
+        let _ = writeln!(text, "    {} {}{count};", field.kind, field.name);
+    }
+    let _ = writeln!(text, "}} {};", record.name);
+}
+
+fn function(text: &mut String, function: &Function) {
+    text.push('\n');
+    comment(text, "", function.docs);
+    let parameters: Vec<String> = function
+        .parameters
+        .iter()
+        .map(|parameter| {
+            let [before, base, after] = parameter.kind;
+            format!("{before}{base}{}{}", if after.is_empty() { " " } else { after }, parameter.name)
+        })
+        .collect();
+    let parameters = if parameters.is_empty() { "void".into() } else { parameters.join(", ") };
+    let _ = writeln!(text, "{} {}({parameters});", function.returns, function.name);
+}
+
+fn aliases() -> impl Iterator<Item = &'static Alias> {
+    crate::numbers::ALIASES.iter()
+}
+
+fn constants() -> impl Iterator<Item = &'static Constant> {
+    CONSTANTS.iter().copied().flatten()
+}
+
+fn structs() -> impl Iterator<Item = &'static Struct> {
+    STRUCTS.iter().copied().flatten()
+}
+
+/// The text of `include/lockstep2d.h`.
+#[must_use]
+pub fn header() -> String {
+    let mut text = String::from(OPENING);
+    let _ = writeln!(text, "/* Version of this header, to be compared with ls2d_api_version(). */");
+    let _ = writeln!(text, "#define LS2D_API_VERSION {API_VERSION}\n");
+    for &(value, name, docs) in STATUSES {
+        constant(&mut text, name, value.into(), docs);
+    }
+    text.push('\n');
+    for alias in aliases() {
+        comment(&mut text, "", alias.docs);
+        let _ = writeln!(text, "typedef {} {};", alias.of, alias.name);
+    }
+    text.push('\n');
+    for each in constants() {
+        constant(&mut text, each.name, each.value, each.docs);
+    }
+    structs().for_each(|each| record(&mut text, each));
+    for (subject, functions) in FUNCTIONS {
+        let _ = writeln!(text, "\n/* ---- {subject} ---- */");
+        functions.iter().for_each(|each| function(&mut text, each));
+    }
+    text.push_str(CLOSING);
+    text
+}
+
+/// A JavaScript module with constants, and with the size and the fields of every struct: offset, type, and number of
+/// items if it is an array.
+#[must_use]
+pub fn layout() -> String {
+    let mut text = String::from(
+        "// Layout of the structs and constants of the flat API.\n\
+         // Written by the tests of lockstep2d-flat; do not edit it.\n\n",
+    );
+    let _ = writeln!(text, "export const API_VERSION = {API_VERSION};\n\nexport const STATUS = {{");
+    for (value, name, _) in STATUSES {
+        let _ = writeln!(text, "    {}: {value},", name.trim_start_matches("LS2D_"));
+    }
+    text.push_str("};\n\nexport const C = {\n");
+    for each in constants() {
+        let _ = writeln!(text, "    {}: {},", each.name.trim_start_matches("LS2D_"), each.value);
+    }
+    text.push_str("};\n\nexport const STRUCTS = {\n");
+    for each in structs() {
+        let _ = writeln!(
+            text,
+            "    {}: {{ bytes: {}, fields: {{",
+            each.name.trim_start_matches("ls2d_"),
+            each.bytes
+        );
+        for field in each.fields {
+            let count = field.count.map(|count| format!(", {count}")).unwrap_or_default();
+            let kind = field.kind.trim_start_matches("ls2d_");
+            let _ = writeln!(text, "        {}: [{}, \"{kind}\"{count}],", field.name, field.offset);
+        }
+        text.push_str("    } },\n");
+    }
+    text.push_str("};\n");
+    text
+}

@@ -1,0 +1,161 @@
+//! Settings of a world.
+
+use lockstep2d::solver::{ContactTuning, SolverSettings};
+use lockstep2d::world::Config;
+
+use super::{check_flags, check_size, flag, has, size};
+use crate::describe::{constants, records};
+use crate::numbers::{RawFx, RawVec2};
+use crate::status::{Outcome, value};
+
+constants! {
+    /// `ls2d_config.flags`: bodies at rest fall asleep.
+    SLEEPING = 1, "LS2D_SLEEPING";
+    /// `ls2d_config.flags`: fast bodies are swept against shapes that they might pass through.
+    CONTINUOUS = 2, "LS2D_CONTINUOUS";
+    /// `ls2d_config.contact`: contacts are soft springs.
+    CONTACT_SOFT = 0, "LS2D_CONTACT_SOFT";
+    /// `ls2d_config.contact`: contacts correct a share of the overlap in each sub-step.
+    CONTACT_BAUMGARTE = 1, "LS2D_CONTACT_BAUMGARTE";
+}
+
+records! {
+    /// Settings of a world. `ls2d_config_init` sets the defaults.
+    struct RawConfig = "ls2d_config" {
+        /// Size of this struct in bytes.
+        size: u32,
+        /// Ticks per second, 10 to 1000.
+        tick_rate: u32,
+        /// Gravity in m/s².
+        gravity: RawVec2,
+        /// Sub-steps of a tick.
+        sub_steps: u32,
+        /// Iterations of a sub-step.
+        iterations: u32,
+        /// `LS2D_CONTACT_SOFT` or `LS2D_CONTACT_BAUMGARTE`.
+        contact: u32,
+        /// `LS2D_SLEEPING`, `LS2D_CONTINUOUS`.
+        flags: u32,
+        /// Stiffness of soft contacts in Hz; the share of the overlap that Baumgarte contacts correct.
+        contact_stiffness: RawFx,
+        /// Damping ratio of soft contacts; the overlap in metres that Baumgarte contacts leave.
+        contact_damping: RawFx,
+        /// Largest speed in m/s with which contacts push shapes apart.
+        contact_push_speed: RawFx,
+        /// Stiffness of joints in Hz.
+        joint_hertz: RawFx,
+        /// Damping ratio of joints.
+        joint_damping_ratio: RawFx,
+        /// Approach speed in m/s below which shapes do not bounce.
+        restitution_threshold: RawFx,
+        /// Largest speed of a body in m/s.
+        speed_max: RawFx,
+        /// Distance in metres at which shapes get contact points before they touch.
+        speculative_distance: RawFx,
+        /// Largest margin of the boxes of the broad phase in metres.
+        fat_margin: RawFx,
+        /// Lowest approach speed of a hit event in m/s.
+        hit_speed: RawFx,
+        /// Largest number of bodies.
+        body_limit: u32,
+        /// Largest number of shapes.
+        shape_limit: u32,
+        /// Largest number of joints.
+        joint_limit: u32,
+        /// Largest number of pairs of near shapes.
+        pair_limit: u32,
+    }
+}
+
+impl RawConfig {
+    pub(crate) fn of(config: &Config) -> Self {
+        let Config {
+            tick_rate,
+            gravity,
+            solver,
+            speculative_distance,
+            fat_margin,
+            sleeping,
+            continuous,
+            hit_speed,
+            body_limit,
+            shape_limit,
+            joint_limit,
+            pair_limit,
+        } = *config;
+        let SolverSettings {
+            sub_steps,
+            iterations,
+            contact,
+            joint_hertz,
+            joint_damping_ratio,
+            restitution_threshold,
+            speed_max,
+        } = solver;
+        let (contact, stiffness, damping, push_speed) = match contact {
+            ContactTuning::Soft { hertz, damping_ratio, push_speed } => {
+                (CONTACT_SOFT, hertz, damping_ratio, push_speed)
+            }
+            ContactTuning::Baumgarte { share, slop, push_speed } => {
+                (CONTACT_BAUMGARTE, share, slop, push_speed)
+            }
+        };
+        RawConfig {
+            size: size::<Self>(),
+            tick_rate,
+            gravity: RawVec2::of(gravity),
+            sub_steps,
+            iterations,
+            contact,
+            flags: flag(sleeping, SLEEPING) | flag(continuous, CONTINUOUS),
+            contact_stiffness: RawFx::of(stiffness),
+            contact_damping: RawFx::of(damping),
+            contact_push_speed: RawFx::of(push_speed),
+            joint_hertz: RawFx::of(joint_hertz),
+            joint_damping_ratio: RawFx::of(joint_damping_ratio),
+            restitution_threshold: RawFx::of(restitution_threshold),
+            speed_max: RawFx::of(speed_max),
+            speculative_distance: RawFx::of(speculative_distance),
+            fat_margin: RawFx::of(fat_margin),
+            hit_speed: RawFx::of(hit_speed),
+            body_limit,
+            shape_limit,
+            joint_limit,
+            pair_limit,
+        }
+    }
+
+    pub(crate) fn config(&self) -> Outcome<Config> {
+        check_size::<Self>(self.size)?;
+        check_flags("the flags of a world", self.flags, SLEEPING | CONTINUOUS)?;
+        let [stiffness, damping] = [self.contact_stiffness, self.contact_damping].map(RawFx::fx);
+        let push_speed = self.contact_push_speed.fx();
+        let contact = match self.contact {
+            CONTACT_SOFT => ContactTuning::Soft { hertz: stiffness, damping_ratio: damping, push_speed },
+            CONTACT_BAUMGARTE => ContactTuning::Baumgarte { share: stiffness, slop: damping, push_speed },
+            other => return Err(value("the kind of contacts", other)),
+        };
+        Ok(Config {
+            tick_rate: self.tick_rate,
+            gravity: self.gravity.vec(),
+            solver: SolverSettings {
+                sub_steps: self.sub_steps,
+                iterations: self.iterations,
+                contact,
+                joint_hertz: self.joint_hertz.fx(),
+                joint_damping_ratio: self.joint_damping_ratio.fx(),
+                restitution_threshold: self.restitution_threshold.fx(),
+                speed_max: self.speed_max.fx(),
+            },
+            speculative_distance: self.speculative_distance.fx(),
+            fat_margin: self.fat_margin.fx(),
+            sleeping: has(self.flags, SLEEPING),
+            continuous: has(self.flags, CONTINUOUS),
+            hit_speed: self.hit_speed.fx(),
+            body_limit: self.body_limit,
+            shape_limit: self.shape_limit,
+            joint_limit: self.joint_limit,
+            pair_limit: self.pair_limit,
+        })
+    }
+}

@@ -1,0 +1,451 @@
+//! Joints: one struct for all kinds, whose flags say which parts a joint has.
+
+use lockstep2d::math::Fx;
+use lockstep2d::solver::{
+    Distance, Drive, Gear, JointDef, JointFrame, JointKind, JointLimit, LinearDrive, Motor, Prismatic, Pull,
+    Pulley, Rack, Revolute, Soft, Spring, Threshold, ThresholdAction, Weld, Wheel,
+};
+
+use super::{check_flags, check_size, flag, has, size};
+use crate::describe::{constants, records};
+use crate::numbers::{RawAngle, RawBody, RawFx, RawVec2};
+use crate::status::{Outcome, value};
+
+constants! {
+    /// Kind of a joint: a hinge.
+    REVOLUTE = 0, "LS2D_REVOLUTE";
+    /// Kind of a joint: B slides along the x axis of A's frame and does not turn.
+    PRISMATIC = 1, "LS2D_PRISMATIC";
+    /// Kind of a joint: a rod, a rope or a spring between the anchors.
+    DISTANCE = 2, "LS2D_DISTANCE";
+    /// Kind of a joint: glue, rigid or soft.
+    WELD = 3, "LS2D_WELD";
+    /// Kind of a joint: B slides along the x axis of A's frame and turns.
+    WHEEL = 4, "LS2D_WHEEL";
+    /// Kind of a joint: B is driven relative to A with limited force.
+    MOTOR = 5, "LS2D_MOTOR";
+    /// Kind of a joint: the bodies do not collide with each other.
+    FILTER = 6, "LS2D_FILTER";
+    /// Kind of a joint: two toothed wheels.
+    GEAR = 7, "LS2D_GEAR";
+    /// Kind of a joint: the wheel about A's anchor rolls along the x axis of B's frame.
+    RACK = 8, "LS2D_RACK";
+    /// Kind of a joint: a rope over two wheels that are fixed in the world.
+    PULLEY = 9, "LS2D_PULLEY";
+    /// Flag of a joint: its bodies collide with each other.
+    JOINT_COLLIDE = 1, "LS2D_JOINT_COLLIDE";
+    /// Flag of a joint: it acts.
+    JOINT_ENABLED = 2, "LS2D_JOINT_ENABLED";
+    /// Flag of a joint: has `limit_lower` and `limit_upper` (revolute, prismatic, distance, wheel).
+    JOINT_LIMIT = 4, "LS2D_JOINT_LIMIT";
+    /// Flag of a joint: has `motor_speed` and `motor_max` (revolute, prismatic, distance, wheel; the angle of a motor).
+    JOINT_MOTOR = 8, "LS2D_JOINT_MOTOR";
+    /// Flag of a joint: has `spring_hertz`, `spring_damping_ratio`, `spring_target` (as for limits).
+    JOINT_SPRING = 16, "LS2D_JOINT_SPRING";
+    /// Flag of a joint: has `spring_force_lower` and `spring_force_upper` (distance).
+    JOINT_SPRING_FORCE = 32, "LS2D_JOINT_SPRING_FORCE";
+    /// Flag of a joint: holds `length` rigidly (distance).
+    JOINT_ROD = 64, "LS2D_JOINT_ROD";
+    /// Flag of a joint: has its own `hertz` and `damping_ratio`.
+    JOINT_SOFTNESS = 128, "LS2D_JOINT_SOFTNESS";
+    /// Flag of a joint: has `threshold_force`.
+    JOINT_THRESHOLD_FORCE = 256, "LS2D_JOINT_THRESHOLD_FORCE";
+    /// Flag of a joint: has `threshold_torque`.
+    JOINT_THRESHOLD_TORQUE = 512, "LS2D_JOINT_THRESHOLD_TORQUE";
+    /// Flag of a joint: breaks beyond a threshold. Without it, it is reported.
+    JOINT_BREAKS = 1024, "LS2D_JOINT_BREAKS";
+    /// Flag of a joint: has `linear_velocity` and `linear_motor_max` (motor).
+    JOINT_LINEAR_MOTOR = 2048, "LS2D_JOINT_LINEAR_MOTOR";
+    /// Flag of a joint: has `linear_hertz`, `linear_damping_ratio` and, a motor, `linear_max` (weld, motor).
+    JOINT_LINEAR_SPRING = 4096, "LS2D_JOINT_LINEAR_SPRING";
+    /// Flag of a joint: has `angular_hertz`, `angular_damping_ratio` and, a motor, `angular_max` (weld, motor).
+    JOINT_ANGULAR_SPRING = 8192, "LS2D_JOINT_ANGULAR_SPRING";
+}
+
+/// Flags of all kinds.
+const COMMON: u32 = JOINT_COLLIDE
+    | JOINT_ENABLED
+    | JOINT_SOFTNESS
+    | JOINT_THRESHOLD_FORCE
+    | JOINT_THRESHOLD_TORQUE
+    | JOINT_BREAKS;
+/// Flags of hinges, sliders and wheels.
+const DRIVEN: u32 = JOINT_LIMIT | JOINT_MOTOR | JOINT_SPRING;
+
+records! {
+    /// Definition of a joint. `ls2d_joint_def_init` sets the defaults. Only the fields that the flags name are read.
+    struct RawJointDef = "ls2d_joint_def" {
+        /// Size of this struct in bytes.
+        size: u32,
+        /// `LS2D_REVOLUTE` and so on.
+        kind: u32,
+        /// `LS2D_JOINT_` flags.
+        flags: u32,
+        /// Teeth of A's wheel of a gear.
+        teeth_a: i32,
+        /// Teeth of B's wheel of a gear.
+        teeth_b: i32,
+        /// Angle of the joint's frame in A's frame.
+        angle_a: RawAngle,
+        /// Angle of the joint's frame in B's frame.
+        angle_b: RawAngle,
+        /// 0.
+        reserved: u32,
+        /// One body.
+        body_a: RawBody,
+        /// The other body.
+        body_b: RawBody,
+        /// Anchor in A's frame in metres.
+        anchor_a: RawVec2,
+        /// Anchor in B's frame in metres.
+        anchor_b: RawVec2,
+        /// Lower end of the range, in rad or m.
+        limit_lower: RawFx,
+        /// Upper end of the range.
+        limit_upper: RawFx,
+        /// Target speed in rad/s or m/s.
+        motor_speed: RawFx,
+        /// Largest torque in N m or force in N.
+        motor_max: RawFx,
+        /// Frequency of the spring in Hz.
+        spring_hertz: RawFx,
+        /// Damping ratio of the spring.
+        spring_damping_ratio: RawFx,
+        /// Rest position of the spring, in rad or m.
+        spring_target: RawFx,
+        /// Smallest force of the spring in N.
+        spring_force_lower: RawFx,
+        /// Largest force of the spring in N.
+        spring_force_upper: RawFx,
+        /// Length of a rod or of the rope of a pulley in metres.
+        length: RawFx,
+        /// Stiffness in Hz of what the joint holds rigidly.
+        hertz: RawFx,
+        /// Damping ratio of what the joint holds rigidly.
+        damping_ratio: RawFx,
+        /// Force in N beyond which the joint is reported or breaks.
+        threshold_force: RawFx,
+        /// Torque in N m beyond which the joint is reported or breaks.
+        threshold_torque: RawFx,
+        /// Target velocity of a motor joint in m/s.
+        linear_velocity: RawVec2,
+        /// Largest force in N with which a motor joint drives.
+        linear_motor_max: RawFx,
+        /// Frequency in Hz of the spring between the anchors.
+        linear_hertz: RawFx,
+        /// Its damping ratio.
+        linear_damping_ratio: RawFx,
+        /// Its largest force in N (motor joint).
+        linear_max: RawFx,
+        /// Frequency in Hz of the spring on the angle.
+        angular_hertz: RawFx,
+        /// Its damping ratio.
+        angular_damping_ratio: RawFx,
+        /// Its largest torque in N m (motor joint).
+        angular_max: RawFx,
+        /// Radius of the wheel of a rack in metres.
+        radius: RawFx,
+        /// Wheel of a pulley on A's side, in the world.
+        wheel_a: RawVec2,
+        /// Wheel of a pulley on B's side, in the world.
+        wheel_b: RawVec2,
+        /// Number of times that B's side of a pulley counts.
+        ratio: RawFx,
+        /// A number for the game, part of the state.
+        user_data: u64,
+    }
+}
+
+/// Options that most kinds have.
+struct Options {
+    limit: Option<JointLimit>,
+    motor: Option<Drive>,
+    spring: Option<Spring>,
+}
+
+impl RawJointDef {
+    /// A joint without parts.
+    fn empty() -> Self {
+        let (zero, origin) = (RawFx(0), RawVec2::ZERO);
+        RawJointDef {
+            size: size::<Self>(),
+            kind: FILTER,
+            flags: 0,
+            teeth_a: 0,
+            teeth_b: 0,
+            angle_a: RawAngle(0),
+            angle_b: RawAngle(0),
+            reserved: 0,
+            body_a: RawBody(0),
+            body_b: RawBody(0),
+            anchor_a: origin,
+            anchor_b: origin,
+            limit_lower: zero,
+            limit_upper: zero,
+            motor_speed: zero,
+            motor_max: zero,
+            spring_hertz: zero,
+            spring_damping_ratio: zero,
+            spring_target: zero,
+            spring_force_lower: zero,
+            spring_force_upper: zero,
+            length: zero,
+            hertz: zero,
+            damping_ratio: zero,
+            threshold_force: zero,
+            threshold_torque: zero,
+            linear_velocity: origin,
+            linear_motor_max: zero,
+            linear_hertz: zero,
+            linear_damping_ratio: zero,
+            linear_max: zero,
+            angular_hertz: zero,
+            angular_damping_ratio: zero,
+            angular_max: zero,
+            radius: zero,
+            wheel_a: origin,
+            wheel_b: origin,
+            ratio: RawFx::of(Fx::ONE),
+            user_data: 0,
+        }
+    }
+
+    /// The defaults of a kind.
+    pub(crate) fn of_kind(kind: u32) -> Outcome<Self> {
+        if kind > PULLEY {
+            return Err(value("the kind of a joint", kind));
+        }
+        Ok(RawJointDef { kind, flags: JOINT_ENABLED, teeth_a: 1, teeth_b: 1, ..Self::empty() })
+    }
+
+    pub(crate) fn of(def: &JointDef) -> Self {
+        let JointDef {
+            body_a,
+            body_b,
+            frame_a,
+            frame_b,
+            collide_connected,
+            enabled,
+            kind,
+            softness,
+            threshold,
+            user_data,
+        } = *def;
+        let mut raw = Self::empty();
+        (raw.body_a, raw.body_b) = (RawBody::of(body_a), RawBody::of(body_b));
+        (raw.anchor_a, raw.angle_a) = (RawVec2::of(frame_a.anchor), RawAngle::of(frame_a.angle));
+        (raw.anchor_b, raw.angle_b) = (RawVec2::of(frame_b.anchor), RawAngle::of(frame_b.angle));
+        raw.flags = flag(collide_connected, JOINT_COLLIDE)
+            | flag(enabled, JOINT_ENABLED)
+            | flag(softness.is_some(), JOINT_SOFTNESS)
+            | flag(threshold.force.is_some(), JOINT_THRESHOLD_FORCE)
+            | flag(threshold.torque.is_some(), JOINT_THRESHOLD_TORQUE)
+            | flag(threshold.action == ThresholdAction::Break, JOINT_BREAKS);
+        if let Some(soft) = softness {
+            (raw.hertz, raw.damping_ratio) = (RawFx::of(soft.hertz), RawFx::of(soft.damping_ratio));
+        }
+        raw.threshold_force = RawFx::of(threshold.force.unwrap_or_default());
+        raw.threshold_torque = RawFx::of(threshold.torque.unwrap_or_default());
+        raw.user_data = user_data;
+        raw.put_kind(kind);
+        raw
+    }
+
+    fn put_kind(&mut self, kind: JointKind) {
+        self.kind = match kind {
+            JointKind::Revolute(Revolute { limit, motor, spring }) => {
+                self.put_options(limit, motor, spring);
+                REVOLUTE
+            }
+            JointKind::Prismatic(Prismatic { limit, motor, spring }) => {
+                self.put_options(limit, motor, spring);
+                PRISMATIC
+            }
+            JointKind::Wheel(Wheel { limit, motor, spring }) => {
+                self.put_options(limit, motor, spring);
+                WHEEL
+            }
+            JointKind::Distance(Distance { rod, limit, motor, spring, spring_force }) => {
+                self.put_options(limit, motor, spring);
+                self.flags |=
+                    flag(rod.is_some(), JOINT_ROD) | flag(spring_force.is_some(), JOINT_SPRING_FORCE);
+                self.length = RawFx::of(rod.unwrap_or_default());
+                if let Some(JointLimit { lower, upper }) = spring_force {
+                    (self.spring_force_lower, self.spring_force_upper) = (RawFx::of(lower), RawFx::of(upper));
+                }
+                DISTANCE
+            }
+            JointKind::Weld(Weld { linear, angular }) => {
+                let pull = |soft: Soft| Pull { soft, max: Fx::ZERO };
+                self.put_springs(linear.map(pull), angular.map(pull));
+                WELD
+            }
+            JointKind::Motor(Motor { linear, angular, linear_spring, angular_spring }) => {
+                self.put_options(None, angular, None);
+                self.put_springs(linear_spring, angular_spring);
+                if let Some(LinearDrive { velocity, max_force }) = linear {
+                    self.flags |= JOINT_LINEAR_MOTOR;
+                    (self.linear_velocity, self.linear_motor_max) =
+                        (RawVec2::of(velocity), RawFx::of(max_force));
+                }
+                MOTOR
+            }
+            JointKind::Filter => FILTER,
+            JointKind::Gear(Gear { teeth_a, teeth_b }) => {
+                (self.teeth_a, self.teeth_b) = (teeth_a, teeth_b);
+                GEAR
+            }
+            JointKind::Rack(Rack { radius }) => {
+                self.radius = RawFx::of(radius);
+                RACK
+            }
+            JointKind::Pulley(Pulley { wheel_a, wheel_b, length, ratio }) => {
+                (self.wheel_a, self.wheel_b) = (RawVec2::of(wheel_a), RawVec2::of(wheel_b));
+                (self.length, self.ratio) = (RawFx::of(length), RawFx::of(ratio));
+                PULLEY
+            }
+        };
+    }
+
+    fn put_options(&mut self, limit: Option<JointLimit>, motor: Option<Drive>, spring: Option<Spring>) {
+        if let Some(JointLimit { lower, upper }) = limit {
+            self.flags |= JOINT_LIMIT;
+            (self.limit_lower, self.limit_upper) = (RawFx::of(lower), RawFx::of(upper));
+        }
+        if let Some(Drive { speed, max }) = motor {
+            self.flags |= JOINT_MOTOR;
+            (self.motor_speed, self.motor_max) = (RawFx::of(speed), RawFx::of(max));
+        }
+        if let Some(Spring { hertz, damping_ratio, target }) = spring {
+            self.flags |= JOINT_SPRING;
+            (self.spring_hertz, self.spring_damping_ratio) = (RawFx::of(hertz), RawFx::of(damping_ratio));
+            self.spring_target = RawFx::of(target);
+        }
+    }
+
+    fn put_springs(&mut self, linear: Option<Pull>, angular: Option<Pull>) {
+        if let Some(Pull { soft, max }) = linear {
+            self.flags |= JOINT_LINEAR_SPRING;
+            (self.linear_hertz, self.linear_damping_ratio) =
+                (RawFx::of(soft.hertz), RawFx::of(soft.damping_ratio));
+            self.linear_max = RawFx::of(max);
+        }
+        if let Some(Pull { soft, max }) = angular {
+            self.flags |= JOINT_ANGULAR_SPRING;
+            (self.angular_hertz, self.angular_damping_ratio) =
+                (RawFx::of(soft.hertz), RawFx::of(soft.damping_ratio));
+            self.angular_max = RawFx::of(max);
+        }
+    }
+
+    fn if_has<T>(&self, part: u32, of: impl FnOnce() -> T) -> Option<T> {
+        has(self.flags, part).then(of)
+    }
+
+    fn options(&self) -> Options {
+        Options {
+            limit: self.if_has(JOINT_LIMIT, || JointLimit {
+                lower: self.limit_lower.fx(),
+                upper: self.limit_upper.fx(),
+            }),
+            motor: self
+                .if_has(JOINT_MOTOR, || Drive { speed: self.motor_speed.fx(), max: self.motor_max.fx() }),
+            spring: self.if_has(JOINT_SPRING, || Spring {
+                hertz: self.spring_hertz.fx(),
+                damping_ratio: self.spring_damping_ratio.fx(),
+                target: self.spring_target.fx(),
+            }),
+        }
+    }
+
+    fn springs(&self) -> [Option<Pull>; 2] {
+        let pull = |hertz: RawFx, ratio: RawFx, max: RawFx| Pull {
+            soft: Soft { hertz: hertz.fx(), damping_ratio: ratio.fx() },
+            max: max.fx(),
+        };
+        let linear = || pull(self.linear_hertz, self.linear_damping_ratio, self.linear_max);
+        let angular = || pull(self.angular_hertz, self.angular_damping_ratio, self.angular_max);
+        [self.if_has(JOINT_LINEAR_SPRING, linear), self.if_has(JOINT_ANGULAR_SPRING, angular)]
+    }
+
+    /// Flags that the kind allows.
+    fn allowed(&self) -> Outcome<u32> {
+        Ok(COMMON
+            | match self.kind {
+                REVOLUTE | PRISMATIC | WHEEL => DRIVEN,
+                DISTANCE => DRIVEN | JOINT_SPRING_FORCE | JOINT_ROD,
+                WELD => JOINT_LINEAR_SPRING | JOINT_ANGULAR_SPRING,
+                MOTOR => JOINT_MOTOR | JOINT_LINEAR_MOTOR | JOINT_LINEAR_SPRING | JOINT_ANGULAR_SPRING,
+                FILTER | GEAR | RACK | PULLEY => 0,
+                other => return Err(value("the kind of a joint", other)),
+            })
+    }
+
+    fn joint_kind(&self) -> Outcome<JointKind> {
+        check_flags("the flags of a joint of this kind", self.flags, self.allowed()?)?;
+        let Options { limit, motor, spring } = self.options();
+        let [linear_spring, angular_spring] = self.springs();
+        Ok(match self.kind {
+            REVOLUTE => JointKind::Revolute(Revolute { limit, motor, spring }),
+            PRISMATIC => JointKind::Prismatic(Prismatic { limit, motor, spring }),
+            WHEEL => JointKind::Wheel(Wheel { limit, motor, spring }),
+            DISTANCE => JointKind::Distance(Distance {
+                rod: self.if_has(JOINT_ROD, || self.length.fx()),
+                limit,
+                motor,
+                spring,
+                spring_force: self.if_has(JOINT_SPRING_FORCE, || JointLimit {
+                    lower: self.spring_force_lower.fx(),
+                    upper: self.spring_force_upper.fx(),
+                }),
+            }),
+            WELD => {
+                let [linear, angular] =
+                    [linear_spring, angular_spring].map(|pull| pull.map(|pull| pull.soft));
+                JointKind::Weld(Weld { linear, angular })
+            }
+            MOTOR => JointKind::Motor(Motor {
+                linear: self.if_has(JOINT_LINEAR_MOTOR, || LinearDrive {
+                    velocity: self.linear_velocity.vec(),
+                    max_force: self.linear_motor_max.fx(),
+                }),
+                angular: motor,
+                linear_spring,
+                angular_spring,
+            }),
+            GEAR => JointKind::Gear(Gear { teeth_a: self.teeth_a, teeth_b: self.teeth_b }),
+            RACK => JointKind::Rack(Rack { radius: self.radius.fx() }),
+            PULLEY => JointKind::Pulley(Pulley {
+                wheel_a: self.wheel_a.vec(),
+                wheel_b: self.wheel_b.vec(),
+                length: self.length.fx(),
+                ratio: self.ratio.fx(),
+            }),
+            _ => JointKind::Filter,
+        })
+    }
+
+    pub(crate) fn def(&self) -> Outcome<JointDef> {
+        check_size::<Self>(self.size)?;
+        super::check_reserved(self.reserved)?;
+        let softness = Soft { hertz: self.hertz.fx(), damping_ratio: self.damping_ratio.fx() };
+        let action =
+            if has(self.flags, JOINT_BREAKS) { ThresholdAction::Break } else { ThresholdAction::Event };
+        Ok(JointDef {
+            kind: self.joint_kind()?,
+            body_a: self.body_a.id()?,
+            body_b: self.body_b.id()?,
+            frame_a: JointFrame { anchor: self.anchor_a.vec(), angle: self.angle_a.angle() },
+            frame_b: JointFrame { anchor: self.anchor_b.vec(), angle: self.angle_b.angle() },
+            collide_connected: has(self.flags, JOINT_COLLIDE),
+            enabled: has(self.flags, JOINT_ENABLED),
+            softness: self.if_has(JOINT_SOFTNESS, || softness),
+            threshold: Threshold {
+                force: self.if_has(JOINT_THRESHOLD_FORCE, || self.threshold_force.fx()),
+                torque: self.if_has(JOINT_THRESHOLD_TORQUE, || self.threshold_torque.fx()),
+                action,
+            },
+            user_data: self.user_data,
+        })
+    }
+}

@@ -1,0 +1,396 @@
+//! Matches and replays.
+
+use lockstep2d::replay::{Limits, Verdict};
+use lockstep2d::session::{Config, Event, RefusalReason, Status, Timing};
+
+use super::{check_reserved, check_size, size};
+use crate::describe::{constants, records};
+use crate::numbers::RawHash;
+use crate::status::{Outcome, value};
+
+constants! {
+    /// Verdict: the setup and the inputs lead to every checkpoint and to the end of the file.
+    MATCH = 0, "LS2D_MATCH";
+    /// Verdict: the trailer states something else about the end.
+    CLAIM_MISMATCH = 1, "LS2D_CLAIM_MISMATCH";
+    /// Verdict: the simulation diverges from the recorded game.
+    DIVERGED = 2, "LS2D_DIVERGED";
+    /// Verdict: the file ends before its trailer.
+    INCOMPLETE = 3, "LS2D_INCOMPLETE";
+    /// Verdict: not what a recorder writes.
+    MALFORMED = 4, "LS2D_MALFORMED";
+    /// Verdict: the file costs more than is allowed.
+    LIMIT_EXCEEDED = 5, "LS2D_LIMIT_EXCEEDED";
+    /// Verdict: of other versions or other rules.
+    UNVERIFIABLE = 6, "LS2D_UNVERIFIABLE";
+    /// Request: keep a copy of the state before `tick`. An older copy for the same tick is replaced.
+    REQUEST_SAVE = 0, "LS2D_REQUEST_SAVE";
+    /// Request: restore the copy of the state before `tick`. Later copies are no longer needed.
+    REQUEST_LOAD = 1, "LS2D_REQUEST_LOAD";
+    /// Request: simulate `tick` with the inputs.
+    REQUEST_ADVANCE = 2, "LS2D_REQUEST_ADVANCE";
+    /// Request: pass the hash of the copy of the state before `tick` to `ls2d_match_report_hash`.
+    REQUEST_CHECKSUM = 3, "LS2D_REQUEST_CHECKSUM";
+    /// Request: copies of states before `tick` are no longer needed.
+    REQUEST_FORGET = 4, "LS2D_REQUEST_FORGET";
+    /// Event: the match stands somewhere else; `value` is a `LS2D_MATCH_` status.
+    EVENT_STATUS = 0, "LS2D_EVENT_STATUS";
+    /// Event: who has which seats changes.
+    EVENT_VIEW = 1, "LS2D_EVENT_VIEW";
+    /// Event: `peer` has `seat` from `tick` on.
+    EVENT_SEATED = 2, "LS2D_EVENT_SEATED";
+    /// Event: `peer` no longer has `seat` from `tick` on.
+    EVENT_UNSEATED = 3, "LS2D_EVENT_UNSEATED";
+    /// Event: play stands still because inputs of `peer` are missing; `value` is 1 if its packets arrive.
+    EVENT_WAITING = 4, "LS2D_EVENT_WAITING";
+    /// Event: play goes on.
+    EVENT_RESUMED = 5, "LS2D_EVENT_RESUMED";
+    /// Event: `peer` asks for a pause, or no longer does; `value` is 1 or 0.
+    EVENT_PAUSE = 6, "LS2D_EVENT_PAUSE";
+    /// Event: the match ends after `tick` ticks.
+    EVENT_END = 7, "LS2D_EVENT_END";
+    /// Event: `peer` has another state at `tick`, with the hashes `ours` and `theirs`.
+    EVENT_DESYNC = 8, "LS2D_EVENT_DESYNC";
+    /// Event: `peer` has issued two inputs for `tick`.
+    EVENT_CONFLICT = 9, "LS2D_EVENT_CONFLICT";
+    /// Event: the match has gone on for too long; the peer has to join again.
+    EVENT_TOO_FAR_BEHIND = 10, "LS2D_EVENT_TOO_FAR_BEHIND";
+    /// Event: the contact refuses; `value` is a `LS2D_REFUSED_` reason.
+    EVENT_REFUSED = 11, "LS2D_EVENT_REFUSED";
+    /// Event: the state after `tick` ticks is here, as bytes with the handle `value`, which the caller frees. The game
+    /// has to restore it before it fulfils further requests.
+    EVENT_STATE = 12, "LS2D_EVENT_STATE";
+    /// Event: what was downloaded is not a state; it is asked for again.
+    EVENT_BAD_STATE = 13, "LS2D_EVENT_BAD_STATE";
+    /// Reason: the offers differ.
+    REFUSED_OFFER = 0, "LS2D_REFUSED_OFFER";
+    /// Reason: too many peers follow the match.
+    REFUSED_FULL = 1, "LS2D_REFUSED_FULL";
+    /// Reason: the number of the peer is that of another one.
+    REFUSED_TAKEN = 2, "LS2D_REFUSED_TAKEN";
+    /// Reason: the contact is not in a match yet. It is asked again.
+    REFUSED_NOT_READY = 3, "LS2D_REFUSED_NOT_READY";
+    /// Status: follows the match and asks for a seat.
+    MATCH_JOINING = 0, "LS2D_MATCH_JOINING";
+    /// Status: follows the match.
+    MATCH_WATCHING = 1, "LS2D_MATCH_WATCHING";
+    /// Status: has a seat; too few seats are taken for the first tick.
+    MATCH_WAITING = 2, "LS2D_MATCH_WAITING";
+    /// Status: plays.
+    MATCH_PLAYING = 3, "LS2D_MATCH_PLAYING";
+    /// Status: cannot hear a majority.
+    MATCH_PAUSED = 4, "LS2D_MATCH_PAUSED";
+    /// Status: the others went on without it; it asks for its seat again.
+    MATCH_DROPPED = 5, "LS2D_MATCH_DROPPED";
+    /// Status: removed for good.
+    MATCH_KICKED = 6, "LS2D_MATCH_KICKED";
+    /// Status: tells the others that it leaves.
+    MATCH_LEAVING = 7, "LS2D_MATCH_LEAVING";
+    /// Status: has left.
+    MATCH_LEFT = 8, "LS2D_MATCH_LEFT";
+    /// Status: all ticks of the match are final.
+    MATCH_FINISHED = 9, "LS2D_MATCH_FINISHED";
+    /// Status: nothing more is sent.
+    MATCH_CLOSED = 10, "LS2D_MATCH_CLOSED";
+    /// Status: asks the contact, or downloads the state to begin with.
+    MATCH_CONNECTING = 11, "LS2D_MATCH_CONNECTING";
+}
+
+records! {
+    /// Bounds on the cost of reading and playing a replay. `ls2d_limits_init` sets the defaults.
+    struct RawLimits = "ls2d_limits" {
+        /// Size of this struct in bytes.
+        size: u32,
+        /// 0.
+        reserved: u32,
+        /// Bytes of the file.
+        file_bytes: u64,
+        /// Bytes of the setup.
+        setup_bytes: u32,
+        /// Number of players.
+        players: u32,
+        /// Bytes of a block.
+        block_bytes: u32,
+        /// Ticks between checkpoints.
+        block_ticks: u32,
+        /// Ticks of the game.
+        ticks: u64,
+        /// Bodies of the world.
+        bodies: u64,
+        /// Work units of a tick.
+        tick_work: u64,
+        /// Work units of the game.
+        total_work: u64,
+    }
+
+    /// Result of verifying a replay. Only `LS2D_MATCH` means that the file is valid.
+    struct RawVerdict = "ls2d_verdict" {
+        /// `LS2D_MATCH` and so on.
+        kind: u32,
+        /// 0.
+        reserved: u32,
+        /// Number of ticks that were played; of the first different checkpoint for `LS2D_DIVERGED`.
+        ticks: u64,
+        /// Hash of the last state, as far as all states agreed.
+        hash: RawHash,
+    }
+
+    /// Parameters of a match and of a peer. `ls2d_match_config_init` sets the defaults.
+    struct RawMatchConfig = "ls2d_match_config" {
+        /// Size of this struct in bytes.
+        size: u32,
+        /// Number of seats of the match, 1 to 64.
+        seats: u32,
+        /// Own seats to play: 0 to watch, or to open a match as a dedicated server.
+        own_seats: u32,
+        /// Number of seats that have to be taken before the first tick.
+        start_with: u32,
+        /// Bytes of an input, 1 to 512.
+        input_bytes: u32,
+        /// Duration of a tick in microseconds.
+        tick_micros: u32,
+        /// Number of ticks that may be played with guessed inputs; 0 is lockstep.
+        guess: u32,
+        /// Smallest delay of inputs in ticks.
+        delay_min: u32,
+        /// Largest delay of inputs in ticks.
+        delay_max: u32,
+        /// Interval in ticks at which states are saved.
+        save_interval: u32,
+        /// Interval in ticks at which states are compared: a multiple of `save_interval`.
+        check_interval: u32,
+        /// Number of ticks that may be played beyond the last final one.
+        history: u32,
+        /// Number of final ticks whose inputs are kept for peers that return.
+        log_ticks: u32,
+        /// First tick of those who join, counted from the cut.
+        seat_lead: u32,
+        /// Somebody who lags by at most this many ticks may have a seat.
+        seat_within: u32,
+        /// Number of this peer: random, new for each process.
+        peer: u32,
+        /// Distinguishes matches.
+        match_tag: u64,
+        /// Microseconds for which play stands still for a peer before the others go on without it.
+        patience: u64,
+        /// Identity that outlives processes: whoever returns with the same key gets its seat back.
+        key: u64,
+        /// Random numbers that nobody else knows.
+        secret: [u64; 2],
+    }
+
+    /// What a match asks the game to do.
+    struct RawRequest = "ls2d_request" {
+        /// `LS2D_REQUEST_SAVE` and so on.
+        kind: u32,
+        /// The tick.
+        tick: u32,
+        /// Bit for each seat that nobody plays, for `LS2D_REQUEST_ADVANCE`.
+        absent: u64,
+        /// Bit for each seat whose input is guessed, for `LS2D_REQUEST_ADVANCE`.
+        guessed: u64,
+    }
+
+    /// What happened in a match.
+    struct RawMatchEvent = "ls2d_match_event" {
+        /// `LS2D_EVENT_STATUS` and so on.
+        kind: u32,
+        /// A peer.
+        peer: u32,
+        /// A seat.
+        seat: u32,
+        /// A tick.
+        tick: u32,
+        /// As the kind says.
+        value: u32,
+        /// 0.
+        reserved: u32,
+        /// Hash of this peer, for `LS2D_EVENT_DESYNC`.
+        ours: RawHash,
+        /// Hash of the other peer.
+        theirs: RawHash,
+    }
+}
+
+impl RawLimits {
+    pub(crate) fn of(limits: &Limits) -> Self {
+        let Limits {
+            file_bytes,
+            setup_bytes,
+            players,
+            block_bytes,
+            block_ticks,
+            ticks,
+            bodies,
+            tick_work,
+            total_work,
+        } = *limits;
+        RawLimits {
+            size: size::<Self>(),
+            reserved: 0,
+            file_bytes,
+            setup_bytes,
+            players,
+            block_bytes,
+            block_ticks,
+            ticks,
+            bodies,
+            tick_work,
+            total_work,
+        }
+    }
+
+    pub(crate) fn limits(&self) -> Outcome<Limits> {
+        check_size::<Self>(self.size)?;
+        check_reserved(self.reserved)?;
+        let RawLimits { file_bytes, setup_bytes, players, block_bytes, block_ticks, ticks, .. } = *self;
+        let RawLimits { bodies, tick_work, total_work, .. } = *self;
+        Ok(Limits {
+            file_bytes,
+            setup_bytes,
+            players,
+            block_bytes,
+            block_ticks,
+            ticks,
+            bodies,
+            tick_work,
+            total_work,
+        })
+    }
+}
+
+impl RawVerdict {
+    pub(crate) fn of(verdict: &Verdict) -> Self {
+        let kind = match verdict {
+            Verdict::Match { .. } => MATCH,
+            Verdict::ClaimMismatch { .. } => CLAIM_MISMATCH,
+            Verdict::Diverged { .. } => DIVERGED,
+            Verdict::Incomplete { .. } => INCOMPLETE,
+            Verdict::Malformed { .. } => MALFORMED,
+            Verdict::LimitExceeded { .. } => LIMIT_EXCEEDED,
+            Verdict::Unverifiable { .. } => UNVERIFIABLE,
+        };
+        let hash = RawHash::of(verdict.hash().unwrap_or_default());
+        RawVerdict { kind, reserved: 0, ticks: verdict.ticks(), hash }
+    }
+}
+
+/// A field of the struct in the width of the session.
+fn narrow<T: TryFrom<u32>>(name: &str, given: u32) -> Outcome<T> {
+    T::try_from(given).map_err(|_| value(name, given))
+}
+
+impl RawMatchConfig {
+    pub(crate) fn of(config: &Config) -> Self {
+        RawMatchConfig {
+            size: size::<Self>(),
+            seats: config.seats.into(),
+            own_seats: 1,
+            start_with: config.start_with.into(),
+            input_bytes: config.input_bytes.into(),
+            tick_micros: config.tick_micros,
+            guess: config.guess.into(),
+            delay_min: config.delay_min.into(),
+            delay_max: config.delay_max.into(),
+            save_interval: config.save_interval.into(),
+            check_interval: config.check_interval.into(),
+            history: config.history.into(),
+            log_ticks: config.log_ticks,
+            seat_lead: config.seat_lead.into(),
+            seat_within: config.seat_within.into(),
+            peer: 0,
+            match_tag: config.match_tag,
+            patience: config.timing.patience,
+            key: 0,
+            secret: [0; 2],
+        }
+    }
+
+    pub(crate) fn config(&self) -> Outcome<Config> {
+        check_size::<Self>(self.size)?;
+        let mut config = Config::new(self.match_tag, narrow("seats", self.seats)?);
+        config.start_with = narrow("start_with", self.start_with)?;
+        config.input_bytes = narrow("input_bytes", self.input_bytes)?;
+        config.tick_micros = self.tick_micros;
+        config.guess = narrow("guess", self.guess)?;
+        config.delay_min = narrow("delay_min", self.delay_min)?;
+        config.delay_max = narrow("delay_max", self.delay_max)?;
+        config.save_interval = narrow("save_interval", self.save_interval)?;
+        config.check_interval = narrow("check_interval", self.check_interval)?;
+        config.history = narrow("history", self.history)?;
+        config.log_ticks = self.log_ticks;
+        config.seat_lead = narrow("seat_lead", self.seat_lead)?;
+        config.seat_within = narrow("seat_within", self.seat_within)?;
+        config.timing = Timing { patience: self.patience, ..config.timing };
+        config.validate()?;
+        if self.own_seats > self.seats {
+            return Err(value("own_seats", self.own_seats));
+        }
+        Ok(config)
+    }
+}
+
+/// Number of a status.
+pub(crate) const fn match_status(status: Status) -> u32 {
+    match status {
+        Status::Joining => MATCH_JOINING,
+        Status::Watching => MATCH_WATCHING,
+        Status::Waiting => MATCH_WAITING,
+        Status::Playing => MATCH_PLAYING,
+        Status::Paused => MATCH_PAUSED,
+        Status::Dropped => MATCH_DROPPED,
+        Status::Kicked => MATCH_KICKED,
+        Status::Leaving => MATCH_LEAVING,
+        Status::Left => MATCH_LEFT,
+        Status::Finished { .. } => MATCH_FINISHED,
+        Status::Closed => MATCH_CLOSED,
+    }
+}
+
+impl RawMatchEvent {
+    /// An event of which only the kind is known.
+    pub(crate) fn new(kind: u32) -> Self {
+        let none = RawHash { low: 0, high: 0 };
+        RawMatchEvent { kind, peer: 0, seat: 0, tick: 0, value: 0, reserved: 0, ours: none, theirs: none }
+    }
+
+    pub(crate) fn of(event: Event) -> Self {
+        let new = RawMatchEvent::new;
+        let raw = |hash: u128| RawHash::of(lockstep2d::hash::StateHash(hash));
+        match event {
+            Event::Status(status) => {
+                let tick = if let Status::Finished { ticks } = status { ticks } else { 0 };
+                Self { value: match_status(status), tick, ..new(EVENT_STATUS) }
+            }
+            Event::View { number } => Self { value: number, ..new(EVENT_VIEW) },
+            Event::Seated { peer, seat, from } => {
+                Self { peer: peer.0, seat: seat.into(), tick: from, ..new(EVENT_SEATED) }
+            }
+            Event::Unseated { peer, seat, from } => {
+                Self { peer: peer.0, seat: seat.into(), tick: from, ..new(EVENT_UNSEATED) }
+            }
+            Event::Waiting { peer, heard } => {
+                Self { peer: peer.0, value: heard.into(), ..new(EVENT_WAITING) }
+            }
+            Event::Resumed => new(EVENT_RESUMED),
+            Event::Pause { peer, paused } => Self { peer: peer.0, value: paused.into(), ..new(EVENT_PAUSE) },
+            Event::End { ticks } => Self { tick: ticks, ..new(EVENT_END) },
+            Event::Desync { peer, tick, ours, theirs } => {
+                Self { peer: peer.0, tick, ours: raw(ours), theirs: raw(theirs), ..new(EVENT_DESYNC) }
+            }
+            Event::Conflict { peer, tick } => Self { peer: peer.0, tick, ..new(EVENT_CONFLICT) },
+            Event::TooFarBehind => new(EVENT_TOO_FAR_BEHIND),
+        }
+    }
+
+    /// The contact refuses.
+    pub(crate) fn refused(reason: RefusalReason) -> Self {
+        let value = match reason {
+            RefusalReason::Offer => REFUSED_OFFER,
+            RefusalReason::Full => REFUSED_FULL,
+            RefusalReason::Taken => REFUSED_TAKEN,
+            RefusalReason::NotReady => REFUSED_NOT_READY,
+        };
+        Self { value, ..Self::new(EVENT_REFUSED) }
+    }
+}

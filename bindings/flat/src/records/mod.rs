@@ -1,0 +1,88 @@
+//! Structs that callers fill or receive, and their conversions from and to the types of the library.
+//!
+//! Structs that callers fill begin with their size in bytes, so that a program that was compiled with another version
+//! of the header is refused. `ls2d_*_init` functions set the size and the defaults.
+
+mod body;
+mod config;
+mod events;
+mod joint;
+mod matches;
+mod query;
+mod shape;
+
+pub use body::*;
+pub use body::{BodyInfo, RawBodyDef, RawExplosion, RawPose};
+pub use config::*;
+pub use events::*;
+pub use joint::*;
+pub use matches::*;
+pub use query::*;
+pub use shape::*;
+
+use crate::describe::{Constant, Struct};
+use crate::status::{Failure, Outcome, Status, value};
+
+/// All constants of the structs.
+pub(crate) const CONSTANTS: &[&[Constant]] = &[
+    body::CONSTANTS,
+    config::CONSTANTS,
+    joint::CONSTANTS,
+    matches::CONSTANTS,
+    query::CONSTANTS,
+    shape::CONSTANTS,
+];
+
+/// All structs, in an order in which none uses a later one.
+pub(crate) const STRUCTS: &[&[Struct]] = &[
+    crate::numbers::STRUCTS,
+    config::STRUCTS,
+    body::STRUCTS,
+    shape::STRUCTS,
+    joint::STRUCTS,
+    query::STRUCTS,
+    events::STRUCTS,
+    matches::STRUCTS,
+];
+
+/// Size of a struct for its field.
+pub(crate) const fn size<T>() -> u32 {
+    let size = size_of::<T>();
+    assert!(size < 1 << 16, "structs are small");
+    #[expect(clippy::cast_possible_truncation, reason = "checked")]
+    let size = size as u32;
+    size
+}
+
+/// Checks the size field of a struct.
+fn check_size<T>(given: u32) -> Outcome {
+    if given == size::<T>() {
+        return Ok(());
+    }
+    let expected = size::<T>();
+    Err(Failure::new(Status::Size, format!("a struct of {given} bytes, this version expects {expected}")))
+}
+
+/// Checks that only flags of a set are given.
+fn check_flags(what: &str, flags: u32, known: u32) -> Outcome {
+    if flags & !known == 0 {
+        Ok(())
+    } else {
+        Err(value(what, format!("{flags:#x}, the allowed bits are {known:#x}")))
+    }
+}
+
+/// Checks a field that a later version may use.
+fn check_reserved(reserved: u32) -> Outcome {
+    if reserved == 0 { Ok(()) } else { Err(value("a reserved field", reserved)) }
+}
+
+/// Whether a flag is set.
+const fn has(flags: u32, flag: u32) -> bool {
+    flags & flag != 0
+}
+
+/// The flag if a condition holds.
+const fn flag(holds: bool, flag: u32) -> u32 {
+    if holds { flag } else { 0 }
+}

@@ -1,0 +1,226 @@
+//! Queries and their results.
+
+use lockstep2d::body::{BodyId, Geometry, ShapeDef};
+use lockstep2d::math::{Aabb, Fx};
+use lockstep2d::world::{CastHit, ClosestPoints, InitialOverlap, Probe, QueryFilter, RayHit};
+
+use super::shape::RawShapeDef;
+use super::{check_flags, check_reserved, check_size, has, size};
+use crate::border::In;
+use crate::describe::{constants, records};
+use crate::numbers::{RawAngle, RawBody, RawFx, RawShape, RawVec2};
+use crate::status::{Outcome, value};
+
+constants! {
+    /// `ls2d_query_filter.flags`: the query sees sensors.
+    QUERY_SENSORS = 1, "LS2D_QUERY_SENSORS";
+    /// A ray reports shapes that it starts in, a cast those into which it would go deeper.
+    OVERLAP_RESIST = 0, "LS2D_OVERLAP_RESIST";
+    /// Rays and casts report shapes that they start in.
+    OVERLAP_REPORT = 1, "LS2D_OVERLAP_REPORT";
+    /// Rays and casts do not see shapes that they start in.
+    OVERLAP_IGNORE = 2, "LS2D_OVERLAP_IGNORE";
+}
+
+records! {
+    /// Which shapes a query sees. A null pointer stands for the defaults, as `ls2d_query_filter_init` sets them.
+    struct RawQueryFilter = "ls2d_query_filter" {
+        /// Size of this struct in bytes.
+        size: u32,
+        /// `LS2D_QUERY_SENSORS`.
+        flags: u32,
+        /// `LS2D_OVERLAP_RESIST` and so on: shapes that a ray or a cast starts in.
+        initial_overlap: u32,
+        /// Number of bodies that the query does not see, at most 8.
+        except_count: u32,
+        /// Categories that the query belongs to.
+        category: u64,
+        /// Categories that the query sees.
+        mask: u64,
+        /// Bodies that the query does not see.
+        except: [RawBody; 8],
+    }
+
+    /// Hit of a ray.
+    struct RawRayHit = "ls2d_ray_hit" {
+        /// The shape.
+        shape: RawShape,
+        /// Its body.
+        body: RawBody,
+        /// Fraction of the ray, 0 to 1.
+        fraction: RawFx,
+        /// Point in the world, in metres.
+        point: RawVec2,
+        /// Outward normal of the surface; zero if the ray starts inside.
+        normal: RawVec2,
+        /// 1 if the ray starts inside the shape, otherwise 0.
+        starts_inside: u64,
+    }
+
+    /// Hit of a moving shape.
+    struct RawCastHit = "ls2d_cast_hit" {
+        /// The shape that is met.
+        shape: RawShape,
+        /// Its body.
+        body: RawBody,
+        /// Fraction of the translation, 0 to 1.
+        fraction: RawFx,
+        /// Displacement up to the hit, in metres.
+        travelled: RawVec2,
+        /// Point on the surface that is met, in the world, in metres.
+        point: RawVec2,
+        /// Outward normal of that surface.
+        normal: RawVec2,
+        /// 1 if the shapes overlap at the start, otherwise 0.
+        starts_inside: u64,
+    }
+
+    /// The shape nearest to a point.
+    struct RawClosest = "ls2d_closest" {
+        /// The shape.
+        shape: RawShape,
+        /// Its body.
+        body: RawBody,
+        /// Distance in metres; negative inside.
+        distance: RawFx,
+        /// Point on the surface, in the world, in metres.
+        point: RawVec2,
+        /// Unit vector from the given point to the shape.
+        normal: RawVec2,
+    }
+
+    /// An axis-aligned box.
+    struct RawAabb = "ls2d_aabb" {
+        /// Lower left corner in metres.
+        lower: RawVec2,
+        /// Upper right corner in metres.
+        upper: RawVec2,
+    }
+
+    /// A shape that is not in the world, for casts and overlaps.
+    struct RawProbe = "ls2d_probe" {
+        /// Size of this struct in bytes.
+        size: u32,
+        /// Rotation.
+        angle: RawAngle,
+        /// Position of the shape's centre in the world, in metres.
+        position: RawVec2,
+        /// Its geometry; other fields of the definition do not matter.
+        shape: RawShapeDef,
+    }
+}
+
+impl RawQueryFilter {
+    pub(crate) fn default_filter() -> Self {
+        RawQueryFilter {
+            size: size::<Self>(),
+            flags: 0,
+            initial_overlap: OVERLAP_RESIST,
+            except_count: 0,
+            category: u64::MAX,
+            mask: u64::MAX,
+            except: [RawBody(0); 8],
+        }
+    }
+
+    fn filter(&self) -> Outcome<QueryFilter> {
+        check_size::<Self>(self.size)?;
+        check_flags("the flags of a query", self.flags, QUERY_SENSORS)?;
+        let count = usize::try_from(self.except_count).unwrap_or(usize::MAX);
+        let except =
+            self.except.get(..count).ok_or_else(|| value("the number of bodies to leave out", count))?;
+        let mut except_also = [None; QueryFilter::EXCEPT_ALSO_MAX];
+        for (place, body) in except_also.iter_mut().zip(except) {
+            *place = Some(body.id()?);
+        }
+        Ok(QueryFilter {
+            category: self.category,
+            mask: self.mask,
+            sensors: has(self.flags, QUERY_SENSORS),
+            except: None::<BodyId>,
+            except_also,
+            initial_overlap: match self.initial_overlap {
+                OVERLAP_RESIST => InitialOverlap::Resist,
+                OVERLAP_REPORT => InitialOverlap::Report,
+                OVERLAP_IGNORE => InitialOverlap::Ignore,
+                other => return Err(value("`initial_overlap` of a query", other)),
+            },
+        })
+    }
+
+    /// The filter that a pointer means.
+    pub(crate) fn of(pointer: &In<'_, Self>) -> Outcome<QueryFilter> {
+        if pointer.is_null() { Ok(QueryFilter::default()) } else { pointer.get()?.filter() }
+    }
+}
+
+impl RawProbe {
+    /// A shape at the origin, whose geometry has to be set.
+    pub(crate) fn of_kind(kind: u32) -> Self {
+        let shape = ShapeDef::new(Geometry::Circle { radius: Fx::ZERO });
+        let shape = RawShapeDef { kind, ..RawShapeDef::of(&shape) };
+        RawProbe { size: size::<Self>(), angle: RawAngle(0), position: RawVec2::ZERO, shape }
+    }
+
+    pub(crate) fn probe(&self) -> Outcome<Probe> {
+        check_size::<Self>(self.size)?;
+        check_reserved(self.shape.reserved)?;
+        Ok(Probe::new(self.shape.geometry()?, self.position.vec())?.turned(self.angle.angle()))
+    }
+}
+
+impl RawAabb {
+    pub(crate) fn of(aabb: Aabb) -> Self {
+        RawAabb { lower: RawVec2::of(aabb.lower), upper: RawVec2::of(aabb.upper) }
+    }
+
+    pub(crate) fn aabb(&self) -> Aabb {
+        Aabb::new(self.lower.vec(), self.upper.vec())
+    }
+}
+
+impl RawRayHit {
+    /// A place for a hit.
+    #[cfg(test)]
+    pub(crate) fn default_hit() -> Self {
+        let (zero, origin) = (RawFx(0), RawVec2::ZERO);
+        RawRayHit { shape: RawShape(0), body: RawBody(0), fraction: zero, point: origin, normal: origin, starts_inside: 0 }
+    }
+
+    pub(crate) fn of(hit: &RayHit, body: RawBody) -> Self {
+        RawRayHit {
+            shape: RawShape::of(hit.shape),
+            body,
+            fraction: RawFx::of(hit.fraction),
+            point: RawVec2::of(hit.point),
+            normal: RawVec2::of_units(hit.normal),
+            starts_inside: hit.starts_inside.into(),
+        }
+    }
+}
+
+impl RawCastHit {
+    pub(crate) fn of(hit: &CastHit, body: RawBody) -> Self {
+        RawCastHit {
+            shape: RawShape::of(hit.shape),
+            body,
+            fraction: RawFx::of(hit.fraction),
+            travelled: RawVec2::of(hit.travelled),
+            point: RawVec2::of(hit.point),
+            normal: RawVec2::of_units(hit.normal),
+            starts_inside: hit.starts_inside.into(),
+        }
+    }
+}
+
+impl RawClosest {
+    pub(crate) fn of(shape: RawShape, body: RawBody, found: &ClosestPoints) -> Self {
+        RawClosest {
+            shape,
+            body,
+            distance: RawFx::of(found.distance),
+            point: RawVec2::of(found.point_b),
+            normal: RawVec2::of_units(found.normal),
+        }
+    }
+}

@@ -1,0 +1,572 @@
+// lockstep2d: deterministic 2D physics for the web.
+
+/** A number of the simulation as an argument: an integer, decimal text such as `"0.1"`, or an `Fx`. A float is an error. */
+export type Num = number | string | Fx;
+/** A vector as an argument. */
+export type Vec = readonly [Num, Num] | { readonly x: Num; readonly y: Num };
+/** A vector as a result. */
+export interface Vec2 {
+    x: Fx;
+    y: Fx;
+}
+/** Handle of a body: a number, unique in its world for ever. */
+export type BodyId = number;
+/** Handle of a shape. */
+export type ShapeId = number;
+/** Handle of a joint. */
+export type JointId = number;
+/** A rotation as an argument. */
+export type Rotation = Angle | 0;
+
+export interface InitOptions {
+    /** Chooses the module with or without SIMD; by default what the machine has. */
+    simd?: boolean;
+    /** A module to use instead of the inlined one. */
+    wasm?: WebAssembly.Module | Response | BufferSource;
+}
+/** Loads the wasm module. Call it once before anything else except `fx`, `degrees` and so on. */
+export function init(options?: InitOptions): Promise<void>;
+/** The module that was loaded. */
+export function loaded(): "simd" | "plain" | "given" | undefined;
+/** Version of the engine's arithmetic: programs with different ones do not compute the same states. */
+export function semantics(): number;
+/** Number of objects that are not disposed. */
+export function objectCount(): number;
+
+/** An error with a code, such as `FLOAT`, `STALE_BODY`, `GEOMETRY`, `DISPOSED`. */
+export class Lockstep2dError extends Error {
+    readonly code: string;
+    /** Of a replay that cannot be played. */
+    readonly verdict?: Verdict;
+}
+
+/** A number of the simulation: 64 bits, 32 of them behind the point. Immutable. */
+export class Fx {
+    private constructor(raw: bigint);
+    static fromRaw(raw: bigint | number): Fx;
+    /** The number in units of 2^-32. */
+    readonly raw: bigint;
+    add(other: Num): Fx;
+    sub(other: Num): Fx;
+    mul(other: Num): Fx;
+    div(other: Num): Fx;
+    neg(): Fx;
+    abs(): Fx;
+    min(other: Num): Fx;
+    max(other: Num): Fx;
+    compare(other: Num): -1 | 0 | 1;
+    lt(other: Num): boolean;
+    gt(other: Num): boolean;
+    eq(other: Num): boolean;
+    floor(): number;
+    /** A float for drawing. It must not come back into the simulation. */
+    toNumber(): number;
+    toString(): string;
+    toJSON(): string;
+}
+/** A number of the simulation: `fx("1.25")`. */
+export function fx(value: Num): Fx;
+
+/** A rotation in units of 2^-32 turn. Immutable. */
+export class Angle {
+    constructor(bits: number);
+    readonly bits: number;
+    add(other: Rotation): Angle;
+    sub(other: Rotation): Angle;
+    neg(): Angle;
+    /** Radians for drawing. */
+    toNumber(): number;
+    toJSON(): number;
+}
+export function degrees(value: Num): Angle;
+export function radians(value: Num): Angle;
+export function turns(value: Num): Angle;
+
+export function sqrt(value: Num): Fx;
+export function hypot(x: Num, y: Num): Fx;
+export function sin(angle: Rotation): Fx;
+export function cos(angle: Rotation): Fx;
+/** The direction of a vector. */
+export function angleOf(vector: Vec): Angle;
+export function dot(a: Vec, b: Vec): Fx;
+export function cross(a: Vec, b: Vec): Fx;
+export function normalize(vector: Vec): Vec2;
+export function rotate(vector: Vec, angle: Rotation): Vec2;
+/** Hash of bytes: 32 hexadecimal digits. */
+export function hashBytes(bytes: Uint8Array): string;
+/** A random number generator. Keep `state` in the state of the game. */
+export class Random {
+    constructor(seed: number | bigint);
+    state: { state: bigint; increment: bigint };
+    below(bound: number): number;
+    range(low: Num, high: Num): Fx;
+}
+
+export type Mixing = "average" | "geometricMean" | "minimum" | "product" | "maximum";
+export interface AreaOptions {
+    acceleration?: Vec;
+    force?: Vec;
+    flow?: Vec;
+    linearDrag?: Num;
+    angularDrag?: Num;
+    density?: Num;
+    attraction?: { acceleration: Num; radius: Num; falloff?: "constant" | "inverse" | "inverseSquare" };
+}
+export interface ShapeOptions {
+    /** Centre in the body's frame, in metres. */
+    offset?: Vec;
+    /** Mass per area in kg/m². */
+    density?: Num;
+    friction?: Num;
+    frictionMixing?: Mixing;
+    restitution?: Num;
+    restitutionMixing?: Mixing;
+    restitutionThreshold?: Num;
+    rollingResistance?: Num;
+    surfaceSpeed?: Num;
+    /** Bits of the categories that the shape belongs to, and collides with. */
+    category?: bigint | number;
+    mask?: bigint | number;
+    group?: number;
+    /** Direction in which others pass a one-way platform. */
+    oneWay?: Rotation;
+    sensor?: boolean;
+    area?: AreaOptions;
+    contactEvents?: boolean;
+    hitEvents?: boolean;
+    sensorEvents?: boolean;
+    detectSensors?: boolean;
+    /** Rounds a polygon, in metres. */
+    rounding?: Num;
+    userData?: bigint | number;
+}
+declare const shapeBrand: unique symbol;
+/** A shape to be added to a body, made by `circle`, `box` and so on. */
+export interface ShapeDef {
+    readonly [shapeBrand]: true;
+}
+/** A chain of lines, to be added to a body. */
+export interface ChainDef {
+    readonly [shapeBrand]: false;
+}
+export function circle(radius: Num, options?: ShapeOptions): ShapeDef;
+export function box(halfWidth: Num, halfHeight: Num, options?: ShapeOptions): ShapeDef;
+export function polygon(points: readonly Vec[], options?: ShapeOptions): ShapeDef;
+export function hull(points: readonly Vec[], options?: ShapeOptions): ShapeDef;
+export function capsule(a: Vec, b: Vec, radius: Num, options?: ShapeOptions): ShapeDef;
+export function segment(a: Vec, b: Vec, options?: ShapeOptions): ShapeDef;
+export function chain(points: readonly Vec[], options?: ShapeOptions & { closed?: boolean; oneSided?: boolean }): ChainDef;
+
+export type BodyType = "fixed" | "kinematic" | "dynamic";
+export interface BodyOptions {
+    /** `dynamic` by default. */
+    type?: BodyType;
+    position?: Vec;
+    angle?: Rotation;
+    velocity?: Vec;
+    angularVelocity?: Num;
+    /** A mass instead of that of the shapes. */
+    mass?: { mass: Num; centre?: Vec; gyration: Num };
+    linearDamping?: Num;
+    angularDamping?: Num;
+    gravityScale?: Num;
+    sleepSpeed?: Num;
+    /** What the body does not pass through, however fast it is. `fixed` by default. */
+    continuous?: "off" | "fixed" | "bullet" | "kinematic";
+    enabled?: boolean;
+    asleep?: boolean;
+    maySleep?: boolean;
+    lockX?: boolean;
+    lockY?: boolean;
+    lockRotation?: boolean;
+    userData?: bigint | number;
+    /** For reports: at most 16 letters, digits, `-` and `_`. */
+    name?: string;
+    shapes?: readonly (ShapeDef | ChainDef)[];
+}
+
+export interface Spring {
+    hertz: Num;
+    dampingRatio?: Num;
+    target?: Num;
+}
+export interface JointOptions {
+    type: "revolute" | "prismatic" | "distance" | "weld" | "wheel" | "motor" | "filter" | "gear" | "rack" | "pulley";
+    a: BodyId;
+    b: BodyId;
+    /** Anchor in the world at the current poses; for sliders and wheels with an axis. Only for worlds. */
+    anchor?: Vec;
+    axis?: Vec;
+    /** Anchors and angles in the frames of the bodies. */
+    anchorA?: Vec;
+    anchorB?: Vec;
+    angleA?: Rotation;
+    angleB?: Rotation;
+    limit?: readonly [Num, Num];
+    motor?: { speed: Num; max: Num };
+    spring?: Spring;
+    springForce?: readonly [Num, Num];
+    rod?: Num;
+    softness?: { hertz: Num; dampingRatio: Num };
+    collide?: boolean;
+    enabled?: boolean;
+    threshold?: { force?: Num; torque?: Num; breaks?: boolean };
+    linearMotor?: { velocity: Vec; max: Num };
+    linearSpring?: { hertz: Num; dampingRatio: Num; max?: Num };
+    angularSpring?: { hertz: Num; dampingRatio: Num; max?: Num };
+    teeth?: readonly [number, number];
+    radius?: Num;
+    wheels?: readonly [Vec, Vec];
+    length?: Num;
+    ratio?: Num;
+    userData?: bigint | number;
+}
+
+export interface ConfigOptions {
+    tickRate?: number;
+    gravity?: Vec;
+    subSteps?: number;
+    iterations?: number;
+    /** 0 soft, 1 Baumgarte. */
+    contact?: number;
+    contactStiffness?: Num;
+    contactDamping?: Num;
+    contactPushSpeed?: Num;
+    jointHertz?: Num;
+    jointDampingRatio?: Num;
+    restitutionThreshold?: Num;
+    speedMax?: Num;
+    speculativeDistance?: Num;
+    fatMargin?: Num;
+    hitSpeed?: Num;
+    bodyLimit?: number;
+    shapeLimit?: number;
+    jointLimit?: number;
+    pairLimit?: number;
+    sleeping?: boolean;
+    continuous?: boolean;
+}
+
+/** Something that the library keeps. The garbage collector frees it some time, `dispose` at once. */
+declare class Handle {
+    private constructor();
+    dispose(): void;
+}
+
+/** Edits, which a world executes at once and a list of commands collects. */
+declare class Edits extends Handle {
+    despawn(body: BodyId): void;
+    removeShape(shape: ShapeId): void;
+    setShape(shape: ShapeId, definition: ShapeDef): void;
+    removeJoint(joint: JointId): void;
+    setJoint(joint: JointId, options: JointOptions): void;
+    enableJoint(joint: JointId): void;
+    disableJoint(joint: JointId): void;
+    /** A force in N during the next tick, at a point of the world. */
+    applyForce(body: BodyId, force: Vec, point: Vec): void;
+    applyTorque(body: BodyId, torque: Num): void;
+    /** An impulse in N s at a point of the world. */
+    applyImpulse(body: BodyId, impulse: Vec, point: Vec): void;
+    applyAngularImpulse(body: BodyId, impulse: Num): void;
+    setVelocity(body: BodyId, velocity: Vec, angular?: Num): void;
+    setTransform(body: BodyId, position: Vec, angle?: Rotation): void;
+    /** Gives a kinematic body the velocity with which it is there after the next tick. */
+    moveTo(body: BodyId, position: Vec, angle?: Rotation): void;
+    setBody(body: BodyId, options: Omit<BodyOptions, "shapes">): void;
+    setType(body: BodyId, type: BodyType): void;
+    setUserData(body: BodyId, data: bigint | number): void;
+    setName(body: BodyId, name: string): void;
+    enable(body: BodyId): void;
+    disable(body: BodyId): void;
+    wake(body: BodyId): void;
+    sleep(body: BodyId): void;
+    setGravity(gravity: Vec): void;
+    explode(options: { centre: Vec; impulse: Num; radius?: Num; falloff?: Num; mask?: bigint | number }): void;
+}
+
+/** A list of edits, for replays and networks. */
+export class Commands extends Edits {
+    constructor();
+    spawn(options: BodyOptions): undefined;
+    addShape(body: BodyId, shape: ShapeDef): undefined;
+    addJoint(options: JointOptions): undefined;
+    readonly length: number;
+    clear(): void;
+    toBytes(): Uint8Array;
+    /** Replaces the list by an encoded one. */
+    fromBytes(bytes: Uint8Array): this;
+}
+
+/** A saved state in memory. */
+export class Snapshot extends Handle {
+    hash(): string;
+}
+
+export interface BodyInfo {
+    type: BodyType;
+    position: Vec2;
+    angle: Angle;
+    velocity: Vec2;
+    angularVelocity: Fx;
+    centre: Vec2;
+    mass: Fx;
+    inertia: Fx;
+    shapes: number;
+    userData: bigint;
+    enabled: boolean;
+    asleep: boolean;
+}
+export interface Filter {
+    category?: bigint | number;
+    mask?: bigint | number;
+    sensors?: boolean;
+    /** At most 8 bodies. */
+    except?: readonly BodyId[];
+    initialOverlap?: "resist" | "report" | "ignore";
+}
+export interface RayHit {
+    shape: ShapeId;
+    body: BodyId;
+    fraction: Fx;
+    point: Vec2;
+    normal: Vec2;
+    startsInside: boolean;
+}
+export interface CastHit extends RayHit {
+    travelled: Vec2;
+}
+export interface ContactEvent {
+    shapeA: ShapeId;
+    shapeB: ShapeId;
+}
+export interface SensorEvent {
+    sensor: ShapeId;
+    visitor: ShapeId;
+    fraction: Fx;
+}
+export interface Events {
+    moved: { body: BodyId; position: Vec2; angle: Angle; fellAsleep: boolean }[];
+    contactBegin: ContactEvent[];
+    contactEnd: ContactEvent[];
+    hits: (ContactEvent & { point: Vec2; normal: Vec2; approachSpeed: Fx })[];
+    sensorBegin: SensorEvent[];
+    sensorEnd: SensorEvent[];
+    joints: { joint: JointId; force: Vec2; torque: Fx; broke: boolean }[];
+}
+
+/** A physics world. */
+export class World extends Edits {
+    /** `smallest`: the size of the smallest boxes of stacks, for which sub-steps are added. */
+    constructor(options?: ConfigOptions & { smallest?: Num });
+    /** Makes a world from bytes of any source. */
+    static fromBytes(bytes: Uint8Array): World;
+    toBytes(): Uint8Array;
+    clone(): World;
+    spawn(options: BodyOptions): BodyId;
+    addShape(body: BodyId, shape: ShapeDef): ShapeId;
+    addJoint(options: JointOptions): JointId;
+    step(ticks?: number): void;
+    /** Executes a list of commands, and returns how many were refused. */
+    execute(commands: Commands): number;
+    /** Hash of the state: 32 hexadecimal digits, the same on every machine. */
+    hash(): string;
+    /** Hash of a section: 0 settings, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands, 6 random numbers. */
+    digest(section: number): string;
+    readonly tick: number;
+    readonly faults: number;
+    counts(): { bodies: number; shapes: number; joints: number; awake: number; pairs: number };
+    config(): Record<string, unknown>;
+    setConfig(options: ConfigOptions): void;
+    /** From the generator of the world, which is part of its state. */
+    random(bound: number): number;
+    randomRange(low: Num, high: Num): Fx;
+    save(): Snapshot;
+    saveInto(snapshot: Snapshot): void;
+    restore(snapshot: Snapshot): void;
+    body(body: BodyId): BodyInfo | undefined;
+    bodies(): BodyId[];
+    joints(): JointId[];
+    shapesOf(body: BodyId): ShapeId[];
+    jointsOf(body: BodyId): JointId[];
+    sensorOverlaps(shape: ShapeId): ShapeId[];
+    shape(shape: ShapeId): { type: "circle" | "segment" | "polygon" | "capsule" | "link"; body: BodyId; points: Vec2[]; radius: Fx; offset: Vec2 };
+    jointAnchors(joint: JointId): [Vec2, Vec2];
+    jointAngle(joint: JointId): Fx | undefined;
+    jointForce(joint: JointId): { force: Vec2; torque: Fx } | undefined;
+    /** For drawing: five floats for each enabled body, its handle, x, y, angle in radians, and 1 if it is awake. */
+    poses(target?: Float64Array): Float64Array;
+    events(): Events;
+    castRay(origin: Vec, translation: Vec, filter?: Filter): RayHit | undefined;
+    castRayAll(origin: Vec, translation: Vec, filter?: Filter): RayHit[];
+    castShape(shape: ShapeDef, position: Vec, translation: Vec, options?: Filter & { angle?: Rotation }): CastHit | undefined;
+    overlapShape(shape: ShapeDef, position: Vec, options?: Filter & { angle?: Rotation }): ShapeId[];
+    overlapBox(lower: Vec, upper: Vec, filter?: Filter): ShapeId[];
+    overlapPoint(point: Vec, filter?: Filter): ShapeId[];
+    closest(point: Vec, within: Num, filter?: Filter): { shape: ShapeId; body: BodyId; distance: Fx; point: Vec2; normal: Vec2 } | undefined;
+}
+
+export interface Limits {
+    fileBytes?: number;
+    setupBytes?: number;
+    players?: number;
+    blockBytes?: number;
+    blockTicks?: number;
+    ticks?: number;
+    bodies?: number;
+    tickWork?: number;
+    totalWork?: number;
+}
+export interface Verdict {
+    /** Only `match` means that the file is valid. */
+    verdict: "match" | "claim_mismatch" | "diverged" | "incomplete" | "malformed" | "limit_exceeded" | "unverifiable";
+    ticks: number;
+    hash: string;
+    text: string;
+}
+/** Verifies a replay of a world from any source. */
+export function verifyReplay(bytes: Uint8Array, limits?: Limits): Verdict;
+
+/** A world that is recorded while it runs, and changed by lists of commands alone. */
+export class Recording extends Handle {
+    constructor(options: { config?: ConfigOptions; setup: Commands; interval?: number });
+    step(commands: Commands): void;
+    /** A copy of the world. */
+    world(): World;
+    take(): Uint8Array;
+    finish(): Uint8Array;
+}
+/** Records a game with rules of its own. */
+export class Recorder extends Handle {
+    constructor(options: {
+        rules: string;
+        rulesVersion?: number;
+        players: number;
+        tickRate?: number;
+        inputBytes: number;
+        setup?: Uint8Array;
+        /** Hash of the state before the first tick. */
+        start: string;
+        interval?: number;
+    });
+    /** Records the inputs of all players. Returns whether `checkpoint` has to follow. */
+    record(inputs: Uint8Array): boolean;
+    checkpoint(hash: string): void;
+    take(): Uint8Array;
+    finish(hash: string): Uint8Array;
+}
+/** A replay of a game with rules of its own. The game plays it. */
+export class Replay extends Handle {
+    constructor(bytes: Uint8Array, limits?: Limits);
+    readonly rules: string;
+    readonly rulesVersion: number;
+    readonly players: number;
+    readonly tickRate: number;
+    readonly inputBytes: number;
+    readonly ticks: number;
+    readonly setup: Uint8Array;
+    next(): Uint8Array | undefined;
+    check(hash: string): void;
+    verdict(hash: string): Verdict;
+}
+
+export interface MatchOptions {
+    /** Number of seats of the match. */
+    seats: number;
+    /** Seats to play: 1 by default; 0 to watch, or to open a match as a server. */
+    ownSeats?: number;
+    startWith?: number;
+    /** Bytes of an input: 1 by default. */
+    inputBytes?: number;
+    tickRate?: number;
+    /** Ticks that may be played with guessed inputs; 0, the default, is lockstep. */
+    guess?: number;
+    delayMin?: number;
+    delayMax?: number;
+    saveInterval?: number;
+    checkInterval?: number;
+    history?: number;
+    logTicks?: number;
+    seatLead?: number;
+    seatWithin?: number;
+    matchTag?: bigint | number;
+    /** Milliseconds for which play waits for a peer before the others go on. */
+    patience?: number;
+    /** Random by default. Whoever returns with the same key gets its seat back. */
+    peer?: number;
+    key?: bigint;
+    secret?: readonly [bigint, bigint];
+    /** Has to be the same for all: versions, rules, setup. */
+    offer?: Uint8Array;
+    /** Address of somebody who takes part. Without it, a match is opened. */
+    contact?: Uint8Array;
+}
+export type MatchStatus =
+    | "joining" | "watching" | "waiting" | "playing" | "paused" | "dropped" | "kicked" | "leaving" | "left" | "finished" | "closed"
+    | "connecting";
+export interface MatchEvent {
+    kind:
+        | "status" | "view" | "seated" | "unseated" | "waiting" | "resumed" | "pause" | "end" | "desync" | "conflict" | "tooFarBehind"
+        | "refused" | "state" | "badState";
+    peer: number;
+    seat: number;
+    tick: number;
+    value: number;
+    ours: string;
+    theirs: string;
+    status?: MatchStatus;
+    reason?: "offer" | "full" | "taken" | "notReady";
+    state?: Uint8Array;
+}
+export interface MatchRequest {
+    kind: "save" | "load" | "advance" | "checksum" | "forget";
+    tick: number;
+    inputs: Uint8Array;
+    /** Bit for each seat that nobody plays, and whose input is guessed. */
+    absent: bigint;
+    guessed: bigint;
+}
+/** One participant of a match: bytes in, bytes out, time in milliseconds as an argument. */
+export class Match extends Handle {
+    constructor(options: MatchOptions);
+    ask(contact: Uint8Array): void;
+    receive(now: number, from: Uint8Array, packet: Uint8Array): void;
+    update(now: number): void;
+    isDue(now: number): boolean;
+    advance(now: number, inputs: Uint8Array): boolean;
+    nextRequest(): MatchRequest | undefined;
+    reportHash(tick: number, hash: string): void;
+    nextPacket(): { to: Uint8Array; packet: Uint8Array } | undefined;
+    nextEvent(): MatchEvent | undefined;
+    readonly wantsState: boolean;
+    offerState(tick: number, state: Uint8Array): void;
+    readonly status: MatchStatus;
+    ticks(): { played: number; final: number; confirmed: number };
+    /** The final inputs of all seats for a tick, while they are kept. */
+    finalInputs(tick: number): Uint8Array | undefined;
+    readonly seats: number[];
+    leave(): void;
+    endAt(ticks: number): void;
+    pause(paused: boolean): void;
+    goOnWithout(peer: number): void;
+    kick(key: bigint): void;
+    setGuess(ticks: number): void;
+}
+/** A game that a `MatchDriver` plays. Its whole state is in what `save` returns and `hash` covers. */
+export interface MatchGame<Saved = unknown> {
+    step(inputs: Uint8Array, absent: bigint): void;
+    save(): Saved;
+    load(saved: Saved): void;
+    drop?(saved: Saved): void;
+    hash(): string;
+    encode(): Uint8Array;
+    decode(bytes: Uint8Array): void;
+}
+/** Plays a game in a match: saves, restores and advances it when the match asks for that. */
+export class MatchDriver<Saved = unknown> {
+    constructor(match: Match, game: MatchGame<Saved>, send: (to: Uint8Array, packet: Uint8Array) => void);
+    readonly match: Match;
+    readonly tick: number;
+    receive(now: number, from: Uint8Array, packet: Uint8Array): void;
+    /** Call it every few milliseconds. `readInputs` returns the inputs of the own seats, one after another. */
+    update(now: number, readInputs: (seats: number[]) => Uint8Array): MatchEvent[];
+}

@@ -1,0 +1,243 @@
+// Numbers of the simulation: 64-bit integers with 32 fraction bits, so that every browser computes the same bits.
+import { Lockstep2dError } from "./error.js";
+
+const ONE = 1n << 32n;
+const MAX = (1n << 63n) - 1n;
+const MIN = -(1n << 63n);
+const NUMBER = /^([+-]?)(\d+)(?:\.(\d+))?$/;
+// Strings that were read, because the same few occur again and again.
+const CACHE = new Map();
+const CACHE_MAX = 4096;
+
+const saturate = (raw) => (raw > MAX ? MAX : raw < MIN ? MIN : raw);
+
+function divide(numerator, denominator) {
+    // Rounded to nearest, halves away from zero.
+    const negative = numerator < 0n !== denominator < 0n;
+    const [n, d] = [numerator < 0n ? -numerator : numerator, denominator < 0n ? -denominator : denominator];
+    const quotient = (2n * n + d) / (2n * d);
+    return negative ? -quotient : quotient;
+}
+
+function parse(text) {
+    const known = CACHE.get(text);
+    if (known !== undefined) {
+        return known;
+    }
+    const parts = NUMBER.exec(text);
+    if (parts === null) {
+        throw new Lockstep2dError("TEXT", `"${text}" is not a decimal number such as "-1.25"`);
+    }
+    const [, sign, whole, fraction = ""] = parts;
+    const scale = 10n ** BigInt(fraction.length);
+    const digits = BigInt(whole + fraction) * ONE;
+    // To nearest, halves to even.
+    let raw = digits / scale;
+    const rest = 2n * (digits % scale);
+    if (rest > scale || (rest === scale && (raw & 1n) === 1n)) {
+        raw += 1n;
+    }
+    raw = sign === "-" ? -raw : raw;
+    if (raw > MAX || raw < MIN) {
+        throw new Lockstep2dError("TEXT", `${text} is beyond the range of numbers, 2^31`);
+    }
+    if (CACHE.size >= CACHE_MAX) {
+        CACHE.clear();
+    }
+    CACHE.set(text, raw);
+    return raw;
+}
+
+/** The raw integer of an argument that enters the simulation. A float is an error. */
+export function rawOf(value, what = "a number") {
+    if (value instanceof Fx) {
+        return value.raw;
+    }
+    if (typeof value === "string") {
+        return parse(value);
+    }
+    if (typeof value === "number") {
+        if (Number.isInteger(value) && Math.abs(value) < 2 ** 31) {
+            return BigInt(value) * ONE;
+        }
+        throw new Lockstep2dError(
+            "FLOAT",
+            `${what} is the float ${value}. Floats differ between machines once they are computed with, so that they cannot ` +
+                `enter the simulation: write an integer, a text such as "0.1", or fx("0.1").`,
+        );
+    }
+    throw new Lockstep2dError("VALUE", `${what} is ${typeof value}, and not an integer, a decimal text or an Fx`);
+}
+
+/** A number of the simulation. Immutable; arithmetic is exact or rounded to nearest, and saturates. */
+export class Fx {
+    constructor(raw) {
+        this.raw = raw;
+        Object.freeze(this);
+    }
+
+    static fromRaw(raw) {
+        return new Fx(BigInt.asIntN(64, BigInt(raw)));
+    }
+
+    add(other) {
+        return new Fx(saturate(this.raw + rawOf(other)));
+    }
+
+    sub(other) {
+        return new Fx(saturate(this.raw - rawOf(other)));
+    }
+
+    mul(other) {
+        return new Fx(saturate((this.raw * rawOf(other) + (1n << 31n)) >> 32n));
+    }
+
+    div(other) {
+        const by = rawOf(other);
+        if (by === 0n) {
+            throw new Lockstep2dError("NUMBER", "division by zero");
+        }
+        return new Fx(saturate(divide(this.raw << 32n, by)));
+    }
+
+    neg() {
+        return new Fx(saturate(-this.raw));
+    }
+
+    abs() {
+        return this.raw < 0n ? this.neg() : this;
+    }
+
+    min(other) {
+        const raw = rawOf(other);
+        return raw < this.raw ? new Fx(raw) : this;
+    }
+
+    max(other) {
+        const raw = rawOf(other);
+        return raw > this.raw ? new Fx(raw) : this;
+    }
+
+    compare(other) {
+        const raw = rawOf(other);
+        return this.raw < raw ? -1 : this.raw > raw ? 1 : 0;
+    }
+
+    lt(other) {
+        return this.compare(other) < 0;
+    }
+
+    gt(other) {
+        return this.compare(other) > 0;
+    }
+
+    eq(other) {
+        return this.compare(other) === 0;
+    }
+
+    /** The whole number below, as a JavaScript number. */
+    floor() {
+        return Number(this.raw >> 32n);
+    }
+
+    /** A float for drawing. It must not come back into the simulation. */
+    toNumber() {
+        return Number(this.raw) / 4294967296;
+    }
+
+    /** Decimal text that `fx` reads as the same number. */
+    toString() {
+        const magnitude = this.raw < 0n ? -this.raw : this.raw;
+        const digits = divide((magnitude & (ONE - 1n)) * 10n ** 10n, ONE);
+        const whole = (magnitude >> 32n) + digits / 10n ** 10n;
+        const fraction = (digits % 10n ** 10n).toString().padStart(10, "0").replace(/0+$/, "");
+        return `${this.raw < 0n ? "-" : ""}${whole}${fraction === "" ? "" : `.${fraction}`}`;
+    }
+
+    toJSON() {
+        return this.toString();
+    }
+
+    // `a < b` with an Fx would compare floats, and `a + b` join texts.
+    [Symbol.toPrimitive](hint) {
+        if (hint === "string") {
+            return this.toString();
+        }
+        throw new Lockstep2dError("FLOAT", "an Fx has no operators: use add, sub, mul, div, lt, gt, eq, or toNumber for drawing");
+    }
+}
+
+/** A number of the simulation from an integer, or from decimal text: `fx("1.25")`. */
+export function fx(value) {
+    return value instanceof Fx ? value : new Fx(rawOf(value));
+}
+
+/** A rotation in units of 2^-32 turn, counter-clockwise. */
+export class Angle {
+    constructor(bits) {
+        this.bits = bits >>> 0;
+        Object.freeze(this);
+    }
+
+    add(other) {
+        return new Angle(this.bits + bitsOf(other));
+    }
+
+    sub(other) {
+        return new Angle(this.bits - bitsOf(other));
+    }
+
+    neg() {
+        return new Angle(-this.bits);
+    }
+
+    /** Radians above -pi and up to pi, for drawing. */
+    toNumber() {
+        return ((this.bits | 0) / 4294967296) * 2 * Math.PI;
+    }
+
+    toJSON() {
+        return this.bits;
+    }
+}
+
+const angleOf = (raw) => new Angle(Number(BigInt.asUintN(32, raw)));
+
+/** An angle of a number of degrees: an integer or decimal text. */
+export function degrees(value) {
+    const raw = rawOf(value, "an angle");
+    const rest = raw % 360n;
+    return angleOf(raw / 360n + (rest >= 180n ? 1n : rest <= -180n ? -1n : 0n));
+}
+
+/** An angle of a number of radians. */
+export function radians(value) {
+    return angleOf((rawOf(value, "an angle") * 11743562013128004906n + (1n << 65n)) >> 66n);
+}
+
+/** An angle of a number of whole turns: `turns("0.25")` is a right angle. */
+export function turns(value) {
+    return angleOf(rawOf(value, "an angle"));
+}
+
+/** The bits of an argument that is an angle. */
+export function bitsOf(value) {
+    if (value instanceof Angle) {
+        return value.bits;
+    }
+    if (value === 0) {
+        return 0;
+    }
+    throw new Lockstep2dError("VALUE", "an angle is degrees(45), radians(\"0.5\"), turns(\"0.25\") or 0");
+}
+
+/** Components of an argument that is a vector: `[x, y]` or `{ x, y }`. */
+export function vectorOf(value, what = "a vector") {
+    if (Array.isArray(value) && value.length === 2) {
+        return [rawOf(value[0], what), rawOf(value[1], what)];
+    }
+    if (value !== null && typeof value === "object" && "x" in value && "y" in value) {
+        return [rawOf(value.x, what), rawOf(value.y, what)];
+    }
+    throw new Lockstep2dError("VALUE", `${what} has to be [x, y] or { x, y }`);
+}

@@ -1,0 +1,289 @@
+// The wasm module: loading, memory, structs, handles.
+import { Lockstep2dError } from "./error.js";
+import { Angle, Fx, bitsOf, rawOf, vectorOf } from "./fx.js";
+import { API_VERSION, STATUS, STRUCTS } from "./layout.js";
+
+export const NO_ID = 0xffffffffffffffffn;
+const NAMES = Object.fromEntries(Object.entries(STATUS).map(([name, code]) => [code, name]));
+// A module that is valid only with SIMD: i8x16.popcnt of a splat.
+const SIMD = [0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11];
+const DECODER = new TextDecoder();
+const ENCODER = new TextEncoder();
+
+let exports;
+let view;
+let bytes;
+let starting;
+let variant;
+
+async function inlined(simd) {
+    const { default: text } = simd ? await import("../wasm/simd.js") : await import("../wasm/plain.js");
+    const packed = Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
+    if (typeof DecompressionStream === "undefined") {
+        const { gunzipSync } = await import(/* webpackIgnore: true */ /* @vite-ignore */ `node:${"zlib"}`);
+        return gunzipSync(packed);
+    }
+    const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+    return new Response(stream).arrayBuffer();
+}
+
+async function start({ simd, wasm } = {}) {
+    const chosen = simd ?? WebAssembly.validate(new Uint8Array(SIMD));
+    let source = wasm ?? (await inlined(chosen));
+    if (typeof Response !== "undefined" && source instanceof Response) {
+        source = await source.arrayBuffer();
+    }
+    const instance = source instanceof WebAssembly.Module ? await WebAssembly.instantiate(source) : (await WebAssembly.instantiate(source)).instance;
+    if (instance.exports.ls2d_api_version() !== API_VERSION) {
+        throw new Lockstep2dError("INIT", "the wasm module is of another version than the package");
+    }
+    exports = instance.exports;
+    variant = wasm ? "given" : chosen ? "simd" : "plain";
+}
+
+/** Loads the wasm module. Later calls wait for the first one and change nothing. */
+export function init(options) {
+    starting ??= start(options).catch((error) => {
+        starting = undefined;
+        throw error;
+    });
+    return starting;
+}
+
+/** Which module was loaded: `simd`, `plain` or `given`; undefined before `init`. */
+export function loaded() {
+    return variant;
+}
+
+export function library() {
+    if (exports === undefined) {
+        throw new Lockstep2dError("INIT", "call `await init()` before anything else");
+    }
+    return exports;
+}
+
+// The memory of the module moves when it grows.
+function memory() {
+    if (bytes === undefined || bytes.buffer !== exports.memory.buffer) {
+        bytes = new Uint8Array(exports.memory.buffer);
+        view = new DataView(exports.memory.buffer);
+    }
+    return bytes;
+}
+
+/** Address of memory of at least so many bytes, valid until the next call. */
+export function scratch(size) {
+    const address = library().ls2d_scratch(size) >>> 0;
+    if (address === 0) {
+        throw new Lockstep2dError("MEMORY", `there is no memory for ${size} bytes`);
+    }
+    memory();
+    return address;
+}
+
+/** Text of the last failure, or of the last verdict. */
+export function lastText() {
+    const at = scratch(1024);
+    exports.ls2d_last_error(at + 8, 1000, at);
+    return DECODER.decode(memory().slice(at + 8, at + 8 + Math.min(view.getUint32(at, true), 1000)));
+}
+
+export function failure(status) {
+    return new Lockstep2dError(NAMES[status] ?? `STATUS_${status}`, lastText());
+}
+
+/** Calls a function. Returns whether there was something to return; failures are thrown. */
+export function call(name, ...given) {
+    const status = library()[name](...given);
+    if (status > STATUS.NONE) {
+        throw failure(status);
+    }
+    memory();
+    return status === STATUS.OK;
+}
+
+export const struct = (name) => STRUCTS[name];
+export const sizeOf = (name) => STRUCTS[name].bytes;
+export const u32 = (at) => view.getUint32(at, true);
+export const u64 = (at) => view.getBigUint64(at, true);
+export const fxAt = (at) => new Fx(view.getBigInt64(at, true));
+export const idAt = (at) => view.getUint32(at + 4, true) * 4294967296 + view.getUint32(at, true);
+export const hashAt = (at) => u64(at + 8).toString(16).padStart(16, "0") + u64(at).toString(16).padStart(16, "0");
+export const f64s = (at, count) => new Float64Array(exports.memory.buffer, at, count);
+
+export function writeHash(at, text) {
+    if (!/^[0-9a-f]{32}$/.test(text)) {
+        throw new Lockstep2dError("VALUE", "a hash is 32 hexadecimal digits");
+    }
+    view.setBigUint64(at + 8, BigInt(`0x${text.slice(0, 16)}`), true);
+    view.setBigUint64(at, BigInt(`0x${text.slice(16)}`), true);
+}
+
+/** A handle of a body, shape or joint as the library takes it. */
+export function id(value, what = "a body") {
+    if (Number.isSafeInteger(value) && value >= 0) {
+        return BigInt(value);
+    }
+    throw new Lockstep2dError("VALUE", `${what} is a number that the world has returned`);
+}
+
+const integer = (value, what) => {
+    if (!Number.isInteger(value)) {
+        throw new Lockstep2dError("VALUE", `${what} has to be an integer, and not ${value}`);
+    }
+    return value;
+};
+
+const WRITE = {
+    fx: (at, value, what) => view.setBigInt64(at, rawOf(value, what), true),
+    angle: (at, value) => view.setUint32(at, bitsOf(value), true),
+    vec2: (at, value, what) => {
+        const [x, y] = vectorOf(value, what);
+        view.setBigInt64(at, x, true);
+        view.setBigInt64(at + 8, y, true);
+    },
+    uint32_t: (at, value, what) => view.setUint32(at, integer(value, what), true),
+    int32_t: (at, value, what) => view.setInt32(at, integer(value, what), true),
+    uint64_t: (at, value, what) => view.setBigUint64(at, typeof value === "bigint" ? value : BigInt(integer(value, what)), true),
+    body: (at, value) => view.setBigUint64(at, id(value), true),
+    hash: writeHash,
+};
+const READ = {
+    fx: fxAt,
+    angle: (at) => new Angle(u32(at)),
+    vec2: (at) => ({ x: fxAt(at), y: fxAt(at + 8) }),
+    uint32_t: u32,
+    int32_t: (at) => view.getInt32(at, true),
+    uint64_t: u64,
+    body: idAt,
+    shape: idAt,
+    joint: idAt,
+    hash: hashAt,
+};
+const STRIDE = { fx: 8, vec2: 16, uint64_t: 8, body: 8, uint8_t: 1 };
+
+const camel = (name) => name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
+
+/** Writes those fields of a struct that are given. */
+export function write(name, at, values) {
+    for (const [field, [offset, kind, count]] of Object.entries(STRUCTS[name].fields)) {
+        const value = values[camel(field)];
+        if (value === undefined) {
+            continue;
+        }
+        if (kind === "uint8_t") {
+            memory().fill(0, at + offset, at + offset + count);
+            memory().set(ENCODER.encode(value).subarray(0, count), at + offset);
+        } else if (count === undefined) {
+            WRITE[kind](at + offset, value, camel(field));
+        } else {
+            if (value.length > count) {
+                throw new Lockstep2dError("VALUE", `${camel(field)} has ${value.length} items, at most ${count} are possible`);
+            }
+            value.forEach((item, index) => WRITE[kind](at + offset + index * STRIDE[kind], item, camel(field)));
+        }
+    }
+}
+
+/** Reads a struct as an object. */
+export function read(name, at) {
+    const result = {};
+    for (const [field, [offset, kind, count]] of Object.entries(STRUCTS[name].fields)) {
+        if (count === undefined && READ[kind] !== undefined) {
+            result[camel(field)] = READ[kind](at + offset);
+        }
+    }
+    return result;
+}
+
+/** Number of a field of a struct, to be combined with others. */
+export function fieldAt(name, at, field) {
+    return at + STRUCTS[name].fields[field][0];
+}
+
+/** Copies bytes into memory after `reserved` bytes. Returns the address of the reserved ones. */
+export function give(data, reserved = 64) {
+    if (!(data instanceof Uint8Array)) {
+        throw new Lockstep2dError("VALUE", "bytes have to be a Uint8Array");
+    }
+    const at = scratch(reserved + data.length);
+    memory().set(data, at + reserved);
+    return at;
+}
+
+export const giveText = (text, reserved = 64) => {
+    const data = ENCODER.encode(text);
+    return [give(data, reserved), data.length];
+};
+
+/** Writes bytes, or a raw number, into memory. */
+export const putBytes = (at, data) => memory().set(data, at);
+export const putRaw = (at, raw) => view.setBigInt64(at, raw, true);
+
+/** A copy of memory. */
+export const copy = (at, size) => memory().slice(at, at + size);
+
+/** Reads and frees a bytes object. */
+export function takeBytes(handle) {
+    const at = scratch(16);
+    call("ls2d_bytes_size", handle, at);
+    const size = u32(at);
+    const to = scratch(16 + size);
+    call("ls2d_bytes_copy", handle, to + 16, size);
+    const taken = copy(to + 16, size);
+    call("ls2d_free", handle);
+    return taken;
+}
+
+export const text = (data) => DECODER.decode(data);
+
+let capacity = 64;
+
+/** Calls a function that writes a list of items of a size, with a buffer that is large enough, and returns its address and
+ * the number of items. `before` bytes in front of the list are for other arguments, which `prepare` writes. */
+export function list(size, before, ask, prepare = () => {}) {
+    for (;;) {
+        const at = scratch(8 + before + capacity * size);
+        prepare(at + 8);
+        const status = ask(at + 8 + before, capacity, at, at + 8);
+        memory();
+        if (status !== STATUS.BUFFER) {
+            if (status > STATUS.NONE) {
+                throw failure(status);
+            }
+            return { at: at + 8 + before, count: status === STATUS.NONE ? 0 : u32(at) };
+        }
+        capacity = Math.max(u32(at), 2 * capacity);
+    }
+}
+
+const registry =
+    typeof FinalizationRegistry === "undefined" ? undefined : new FinalizationRegistry((handle) => exports.ls2d_free(handle));
+
+/** Something that the library keeps. `dispose` frees it at once; otherwise the garbage collector does, some time. */
+export class Handle {
+    #handle;
+
+    constructor(handle) {
+        this.#handle = handle;
+        registry?.register(this, handle, this);
+    }
+
+    get handle() {
+        if (this.#handle === 0) {
+            throw new Lockstep2dError("DISPOSED", `this ${this.constructor.name} was disposed`);
+        }
+        return this.#handle;
+    }
+
+    dispose() {
+        if (this.#handle !== 0) {
+            registry?.unregister(this);
+            exports.ls2d_free(this.#handle);
+            this.#handle = 0;
+        }
+    }
+}
+if (Symbol.dispose) {
+    Handle.prototype[Symbol.dispose] = Handle.prototype.dispose;
+}

@@ -1,0 +1,346 @@
+// Matches: the lockstep session over bytes, and a driver that plays a game with it.
+import { Lockstep2dError } from "./error.js";
+import { C } from "./layout.js";
+import { Handle, call, copy, give, putBytes, read, scratch, sizeOf, takeBytes, u32, u64, write, writeHash } from "./library.js";
+
+const STATUS = ["joining", "watching", "waiting", "playing", "paused", "dropped", "kicked", "leaving", "left", "finished", "closed",
+    "connecting"];
+const EVENTS = ["status", "view", "seated", "unseated", "waiting", "resumed", "pause", "end", "desync", "conflict", "tooFarBehind",
+    "refused", "state", "badState"];
+const REASONS = ["offer", "full", "taken", "notReady"];
+const REQUESTS = ["save", "load", "advance", "checksum", "forget"];
+const ADDRESS_MAX = 32;
+const PACKET_MAX = 2048;
+
+// Milliseconds, as performance.now() has them, in microseconds.
+const micros = (now) => BigInt(Math.max(0, Math.floor(now * 1000)));
+
+function random(count) {
+    return crypto.getRandomValues(new BigUint64Array(count));
+}
+
+function identity({ peer, key, secret }) {
+    const [a, b, c, d] = random(4);
+    return { peer: peer ?? Number(a & 0xffffffffn), key: key ?? b, secret: secret ?? [c, d] };
+}
+
+/** One participant of a match. `MatchDriver` does what this class asks for. */
+export class Match extends Handle {
+    #inputs;
+
+    /** Opens a match, or joins one if there is a `contact`: the address of somebody who takes part, as bytes. */
+    constructor({ contact, offer = new Uint8Array(), seats, peer, key, secret, ...config }) {
+        const data = new Uint8Array(offer.length + (contact?.length ?? 0));
+        data.set(offer);
+        data.set(contact ?? [], offer.length);
+        const before = 8 + sizeOf("match_config");
+        const at = give(data, before);
+        call("ls2d_match_config_init", seats, at + 8);
+        const { patience, tickRate, ...plain } = config;
+        write("match_config", at + 8, {
+            startWith: Math.min(2, seats),
+            ...plain,
+            tickMicros: tickRate === undefined ? undefined : Math.floor(1_000_000 / tickRate),
+            patience: patience === undefined ? undefined : micros(patience),
+            ...identity({ peer, key, secret }),
+        });
+        const to = at + before;
+        if (contact === undefined) {
+            call("ls2d_match_host", at + 8, to, offer.length, at);
+        } else {
+            call("ls2d_match_join", at + 8, to, offer.length, to + offer.length, contact.length, at);
+        }
+        super(u32(at));
+        this.#inputs = seats * (config.inputBytes ?? 1);
+        this.inputBytes = config.inputBytes ?? 1;
+    }
+
+    /** Asks another participant, or the same one again. */
+    ask(contact) {
+        const at = give(contact);
+        call("ls2d_match_ask", this.handle, at + 64, contact.length);
+    }
+
+    /** Takes a packet from an address. `now` is in milliseconds. */
+    receive(now, from, packet) {
+        const at = give(packet);
+        putAddress(at, from);
+        call("ls2d_match_receive", this.handle, micros(now), at, from.length, at + 64, packet.length);
+    }
+
+    update(now) {
+        call("ls2d_match_update", this.handle, micros(now));
+    }
+
+    isDue(now) {
+        const at = scratch(8);
+        call("ls2d_match_is_due", this.handle, micros(now), at);
+        return u32(at) === 1;
+    }
+
+    /** Issues the inputs of the own seats. Returns whether they were issued; otherwise they may be used again. */
+    advance(now, inputs) {
+        const at = give(inputs);
+        call("ls2d_match_advance", this.handle, micros(now), at + 64, inputs.length, at);
+        return u32(at) === 1;
+    }
+
+    /** The next request, to be fulfilled before `advance` is called again. */
+    nextRequest() {
+        const size = sizeOf("request");
+        const at = scratch(8 + size + this.#inputs);
+        if (!call("ls2d_match_next_request", this.handle, at + 8, at + 8 + size, this.#inputs, at)) {
+            return undefined;
+        }
+        const { kind, ...rest } = read("request", at + 8);
+        return { ...rest, kind: REQUESTS[kind], inputs: copy(at + 8 + size, u32(at)) };
+    }
+
+    reportHash(tick, hash) {
+        const at = scratch(16);
+        writeHash(at, hash);
+        call("ls2d_match_report_hash", this.handle, tick, at);
+    }
+
+    /** The next packet to send: `{ to, packet }`. */
+    nextPacket() {
+        const at = scratch(16 + ADDRESS_MAX + PACKET_MAX);
+        const [to, packet] = [at + 16, at + 16 + ADDRESS_MAX];
+        if (!call("ls2d_match_next_packet", this.handle, to, ADDRESS_MAX, at, packet, PACKET_MAX, at + 8)) {
+            return undefined;
+        }
+        return { to: copy(to, u32(at)), packet: copy(packet, u32(at + 8)) };
+    }
+
+    nextEvent() {
+        const at = scratch(sizeOf("match_event"));
+        if (!call("ls2d_match_next_event", this.handle, at)) {
+            return undefined;
+        }
+        const { kind, value, reserved: _, ...rest } = read("match_event", at);
+        const event = { ...rest, value, kind: EVENTS[kind] };
+        switch (kind) {
+            case C.EVENT_STATUS:
+                return { ...event, status: STATUS[value] };
+            case C.EVENT_REFUSED:
+                return { ...event, reason: REASONS[value] };
+            case C.EVENT_STATE:
+                return { ...event, state: takeBytes(value) };
+            default:
+                return event;
+        }
+    }
+
+    get wantsState() {
+        const at = scratch(8);
+        call("ls2d_match_wants_state", this.handle, at);
+        return u32(at) === 1;
+    }
+
+    /** Offers the state after a number of final ticks to those who join. */
+    offerState(tick, state) {
+        const at = give(state);
+        call("ls2d_match_offer_state", this.handle, tick, at + 64, state.length);
+    }
+
+    get status() {
+        const at = scratch(8);
+        call("ls2d_match_status", this.handle, at);
+        return STATUS[u32(at)];
+    }
+
+    /** Numbers of ticks: played, final, and both. */
+    ticks() {
+        const at = scratch(16);
+        call("ls2d_match_ticks", this.handle, at, at + 4, at + 8);
+        return { played: u32(at), final: u32(at + 4), confirmed: u32(at + 8) };
+    }
+
+    /** The final inputs of all seats for a tick, while they are kept. */
+    finalInputs(tick) {
+        const at = scratch(16 + this.#inputs);
+        return call("ls2d_match_final_inputs", this.handle, tick, at + 16, this.#inputs, at, at + 8) ? copy(at + 16, u32(at)) : undefined;
+    }
+
+    /** Own seats, in ascending order. */
+    get seats() {
+        const at = scratch(8);
+        call("ls2d_match_seats", this.handle, at);
+        const bits = u64(at);
+        return Array.from({ length: 64 }, (_, seat) => seat).filter((seat) => ((bits >> BigInt(seat)) & 1n) === 1n);
+    }
+
+    leave() {
+        call("ls2d_match_leave", this.handle);
+    }
+
+    endAt(ticks) {
+        call("ls2d_match_end_at", this.handle, ticks);
+    }
+
+    pause(paused) {
+        call("ls2d_match_pause", this.handle, paused ? 1 : 0);
+    }
+
+    goOnWithout(peer) {
+        call("ls2d_match_go_on_without", this.handle, peer);
+    }
+
+    kick(key) {
+        call("ls2d_match_kick", this.handle, key);
+    }
+
+    setGuess(ticks) {
+        call("ls2d_match_set_guess", this.handle, ticks);
+    }
+}
+
+const putAddress = (at, data) => {
+    if (!(data instanceof Uint8Array) || data.length > ADDRESS_MAX) {
+        throw new Lockstep2dError("VALUE", `an address is a Uint8Array of at most ${ADDRESS_MAX} bytes`);
+    }
+    putBytes(at, data);
+};
+
+/** Plays a game in a match. The game has
+ *
+ * - `step(inputs, absent)`: advances by a tick with the inputs of all seats;
+ * - `save()`, `load(saved)`: a copy of the whole state, and back; `drop(saved)`, if there is something to free;
+ * - `hash()`: 32 hexadecimal digits of the whole state;
+ * - `encode()`, `decode(bytes)`: the state as bytes, for those who join.
+ *
+ * `send(to, packet)` carries packets. Call `update` every few milliseconds. */
+export class MatchDriver {
+    #match;
+    #game;
+    #send;
+    #saves = new Map();
+    #tick = 0;
+
+    constructor(match, game, send) {
+        this.#match = match;
+        this.#game = game;
+        this.#send = send;
+        this.#keep(0);
+    }
+
+    get match() {
+        return this.#match;
+    }
+
+    /** Number of ticks that the game has played. */
+    get tick() {
+        return this.#tick;
+    }
+
+    receive(now, from, packet) {
+        this.#match.receive(now, from, packet);
+    }
+
+    /** Passes the time, plays what is due with the inputs that `read(seats)` returns, and returns what happened. */
+    update(now, readInputs) {
+        this.#match.update(now);
+        const events = [];
+        for (let event = this.#match.nextEvent(); event !== undefined; event = this.#match.nextEvent()) {
+            if (event.kind === "state") {
+                this.#resume(event.tick, event.state);
+            }
+            events.push(event);
+        }
+        this.#fulfil();
+        while (this.#match.isDue(now)) {
+            const seats = this.#match.seats;
+            const issued = this.#match.advance(now, seats.length === 0 ? new Uint8Array() : readInputs(seats));
+            const before = this.#tick;
+            this.#fulfil();
+            if (!issued && this.#tick === before) {
+                break;
+            }
+        }
+        if (this.#match.wantsState) {
+            this.#offer();
+        }
+        for (let sent = this.#match.nextPacket(); sent !== undefined; sent = this.#match.nextPacket()) {
+            this.#send(sent.to, sent.packet);
+        }
+        return events;
+    }
+
+    #keep(tick) {
+        this.#forget((kept) => kept === tick);
+        this.#saves.set(tick, { saved: this.#game.save(), hash: this.#game.hash() });
+    }
+
+    #forget(condition) {
+        for (const [tick, { saved }] of this.#saves) {
+            if (condition(tick)) {
+                this.#game.drop?.(saved);
+                this.#saves.delete(tick);
+            }
+        }
+    }
+
+    #resume(tick, state) {
+        this.#game.decode(state);
+        this.#tick = tick;
+        this.#forget(() => true);
+        this.#keep(tick);
+    }
+
+    #fulfil() {
+        for (let request = this.#match.nextRequest(); request !== undefined; request = this.#match.nextRequest()) {
+            this.#answer(request);
+        }
+    }
+
+    #answer({ kind, tick, inputs, absent }) {
+        switch (kind) {
+            case "save":
+                this.#keep(tick);
+                break;
+            case "load":
+                this.#game.load(this.#saved(tick).saved);
+                this.#forget((kept) => kept > tick);
+                this.#tick = tick;
+                break;
+            case "advance":
+                this.#game.step(inputs, absent);
+                this.#tick = tick + 1;
+                break;
+            case "checksum":
+                this.#match.reportHash(tick, this.#saved(tick).hash);
+                break;
+            default:
+                // The newest state before the forgotten ones is kept for those who join.
+                this.#forgetBefore(tick);
+        }
+    }
+
+    #forgetBefore(tick) {
+        const newest = Math.max(-1, ...[...this.#saves.keys()].filter((kept) => kept <= tick));
+        this.#forget((kept) => kept < Math.min(newest, tick));
+    }
+
+    #saved(tick) {
+        const found = this.#saves.get(tick);
+        if (found === undefined) {
+            throw new Lockstep2dError("VALUE", `there is no state of tick ${tick}`);
+        }
+        return found;
+    }
+
+    // The newest state that is final, as bytes. The game is back where it was afterwards.
+    #offer() {
+        const { confirmed } = this.#match.ticks();
+        const tick = Math.max(-1, ...[...this.#saves.keys()].filter((kept) => kept <= confirmed));
+        if (tick < 0) {
+            return;
+        }
+        const now = this.#game.save();
+        this.#game.load(this.#saves.get(tick).saved);
+        const state = this.#game.encode();
+        this.#game.load(now);
+        this.#game.drop?.(now);
+        this.#match.offerState(tick, state);
+    }
+}

@@ -1,0 +1,68 @@
+// Mathematics for the rules of a game. `fx` has the arithmetic.
+import { Angle, bitsOf, rawOf, vectorOf, Fx } from "./fx.js";
+import { call, fxAt, give, hashAt, library, scratch, u32, read } from "./library.js";
+
+const vector = (at) => ({ x: fxAt(at), y: fxAt(at + 8) });
+
+export const sqrt = (value) => {
+    const at = scratch(8);
+    call("ls2d_fx_sqrt", rawOf(value), at);
+    return fxAt(at);
+};
+export const hypot = (x, y) => new Fx(library().ls2d_fx_hypot(rawOf(x), rawOf(y)));
+export const sin = (angle) => new Fx(library().ls2d_angle_sin(bitsOf(angle)));
+export const cos = (angle) => new Fx(library().ls2d_angle_cos(bitsOf(angle)));
+/** The direction of a vector. */
+export const angleOf = (value) => new Angle(library().ls2d_angle_of(...vectorOf(value)));
+export const dot = (a, b) => new Fx(library().ls2d_vec2_dot(...vectorOf(a), ...vectorOf(b)));
+export const cross = (a, b) => new Fx(library().ls2d_vec2_cross(...vectorOf(a), ...vectorOf(b)));
+export const normalize = (value) => {
+    const at = scratch(16);
+    call("ls2d_vec2_normalize", ...vectorOf(value), at);
+    return vector(at);
+};
+export const rotate = (value, angle) => {
+    const at = scratch(16);
+    call("ls2d_vec2_rotate", ...vectorOf(value), bitsOf(angle), at);
+    return vector(at);
+};
+
+/** A random number generator. Keep `state` in the state of the game. */
+export class Random {
+    constructor(seed) {
+        const at = scratch(16);
+        call("ls2d_rng_init", BigInt.asUintN(64, BigInt(seed)), at);
+        this.state = read("rng", at);
+    }
+
+    #at() {
+        const at = scratch(32);
+        const view = new DataView(library().memory.buffer);
+        view.setBigUint64(at, this.state.state, true);
+        view.setBigUint64(at + 8, this.state.increment, true);
+        return at;
+    }
+
+    /** A uniform integer from 0 to below `bound`. */
+    below(bound) {
+        const at = this.#at();
+        call("ls2d_rng_below", at, at, bound, at + 16);
+        this.state = read("rng", at);
+        return u32(at + 16);
+    }
+
+    /** A uniform number from `low` to below `high`. */
+    range(low, high) {
+        const at = this.#at();
+        call("ls2d_rng_range", at, at, rawOf(low), rawOf(high), at + 16);
+        this.state = read("rng", at);
+        return fxAt(at + 16);
+    }
+}
+
+/** Hash of bytes: 32 hexadecimal digits. */
+export function hashBytes(bytes) {
+    const at = give(bytes);
+    call("ls2d_hash_bytes", at + 64, bytes.length, at);
+    return hashAt(at);
+}

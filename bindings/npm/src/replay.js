@@ -1,0 +1,171 @@
+// Replays: of worlds that commands change, and of games with rules of their own.
+import { writeConfig } from "./definitions.js";
+import { Handle, call, copy, fieldAt, give, lastText, scratch, sizeOf, takeBytes, text, u32, u64, hashAt, write, writeHash, library } from "./library.js";
+import { Lockstep2dError } from "./error.js";
+import { STATUS } from "./layout.js";
+import { Adopted, World } from "./world.js";
+
+const VERDICTS = ["match", "claim_mismatch", "diverged", "incomplete", "malformed", "limit_exceeded", "unverifiable"];
+const ENCODER = new TextEncoder();
+
+function verdictAt(at) {
+    const field = (name) => fieldAt("verdict", at, name);
+    const verdict = { verdict: VERDICTS[u32(field("kind"))], ticks: Number(u64(field("ticks"))), hash: hashAt(field("hash")) };
+    return { ...verdict, text: lastText() };
+}
+
+/** Writes limits at an address. */
+function limitsAt(at, limits) {
+    if (limits === undefined) {
+        return 0;
+    }
+    call("ls2d_limits_init", at);
+    write("limits", at, limits);
+    return at;
+}
+
+/** Verifies a replay of a world from any source. */
+export function verifyReplay(bytes, limits) {
+    const before = sizeOf("verdict") + sizeOf("limits");
+    const at = give(bytes, before);
+    call("ls2d_replay_verify", at + before, bytes.length, limitsAt(at + sizeOf("verdict"), limits), at);
+    return verdictAt(at);
+}
+
+/** A world that is recorded while it runs. It is changed by lists of commands alone. */
+export class Recording extends Handle {
+    /** Starts from settings and the commands that set up the world. */
+    constructor({ config = {}, setup, interval = 60 }) {
+        const at = scratch(8 + sizeOf("config"));
+        call("ls2d_config_init", at + 8);
+        writeConfig(at + 8, config);
+        call("ls2d_recording_new", at + 8, setup.handle, interval, at);
+        super(u32(at));
+    }
+
+    /** Executes the commands and advances by one tick. The list is empty afterwards. */
+    step(commands) {
+        call("ls2d_recording_step", this.handle, commands.handle);
+    }
+
+    /** A copy of the world. */
+    world() {
+        const at = scratch(8);
+        call("ls2d_recording_world", this.handle, at);
+        return new World(new Adopted(u32(at)));
+    }
+
+    /** Bytes that are finished, to be appended to a file. */
+    take() {
+        const at = scratch(8);
+        call("ls2d_recording_take", this.handle, at);
+        return takeBytes(u32(at));
+    }
+
+    /** Ends the replay and returns the rest of its bytes. */
+    finish() {
+        const at = scratch(8);
+        call("ls2d_recording_finish", this.handle, at);
+        return takeBytes(u32(at));
+    }
+}
+
+/** Records a game with rules of its own: the final inputs of every tick, and hashes of its states. */
+export class Recorder extends Handle {
+    /** `start` is the hash of the state before the first tick. */
+    constructor({ rules, rulesVersion = 1, players, tickRate = 60, inputBytes, setup = new Uint8Array(), start, interval = 60 }) {
+        const name = ENCODER.encode(rules);
+        const all = new Uint8Array(name.length + setup.length);
+        all.set(name);
+        all.set(setup, name.length);
+        const at = give(all);
+        writeHash(at, start);
+        call("ls2d_recorder_new", at + 64, name.length, rulesVersion, players, tickRate, inputBytes, at + 64 + name.length,
+            setup.length, at, interval, at + 16);
+        super(u32(at + 16));
+    }
+
+    /** Records the inputs of all players for the next tick. Returns whether `checkpoint` has to follow. */
+    record(inputs) {
+        const at = give(inputs);
+        call("ls2d_recorder_record", this.handle, at + 64, inputs.length, at);
+        return u32(at) === 1;
+    }
+
+    #hash(hash) {
+        const at = scratch(24);
+        writeHash(at, hash);
+        return at;
+    }
+
+    checkpoint(hash) {
+        call("ls2d_recorder_checkpoint", this.handle, this.#hash(hash));
+    }
+
+    take() {
+        const at = scratch(8);
+        call("ls2d_recorder_take", this.handle, at);
+        return takeBytes(u32(at));
+    }
+
+    /** Ends the replay with the hash of the last state, and returns the rest of its bytes. */
+    finish(hash) {
+        const at = this.#hash(hash);
+        call("ls2d_recorder_finish", this.handle, at, at + 16);
+        return takeBytes(u32(at + 16));
+    }
+}
+
+/** A replay of a game with rules of its own, from any source. The game plays it. */
+export class Replay extends Handle {
+    #inputs;
+
+    /** Throws an error with the code RECORD, and the `verdict`, if it cannot be played. */
+    constructor(bytes, limits) {
+        const verdict = 16;
+        const limit = verdict + sizeOf("verdict");
+        const before = limit + sizeOf("limits");
+        const at = give(bytes, before);
+        const status = library().ls2d_replay_open(at + before, bytes.length, limitsAt(at + limit, limits), at, at + verdict);
+        if (status !== STATUS.OK) {
+            const found = verdictAt(at + verdict);
+            throw Object.assign(new Lockstep2dError("RECORD", found.text), { verdict: found });
+        }
+        super(u32(at));
+        this.#describe();
+    }
+
+    #describe() {
+        const at = scratch(40);
+        call("ls2d_replay_rules", this.handle, at, at + 4, at + 8, at + 12, at + 16, at + 24);
+        const name = u32(at);
+        [this.rulesVersion, this.players, this.tickRate, this.inputBytes] = [4, 8, 12, 16].map((offset) => u32(at + offset));
+        this.ticks = Number(u64(at + 24));
+        this.#inputs = this.players * this.inputBytes;
+        this.rules = text(takeBytes(name));
+        const to = scratch(8);
+        call("ls2d_replay_setup", this.handle, to);
+        this.setup = takeBytes(u32(to));
+    }
+
+    /** The inputs of all players for the next tick, or undefined at the end. */
+    next() {
+        const at = scratch(8 + this.#inputs);
+        return call("ls2d_replay_next", this.handle, at + 8, this.#inputs, at) ? copy(at + 8, this.#inputs) : undefined;
+    }
+
+    /** Passes the hash of the state before the first tick, and after every tick. */
+    check(hash) {
+        const at = scratch(16);
+        writeHash(at, hash);
+        call("ls2d_replay_check", this.handle, at);
+    }
+
+    /** The verdict after the last tick, with the hash of the last state. */
+    verdict(hash) {
+        const at = scratch(16 + sizeOf("verdict"));
+        writeHash(at, hash);
+        call("ls2d_replay_verdict", this.handle, at, at + 16);
+        return verdictAt(at + 16);
+    }
+}

@@ -1,0 +1,533 @@
+// Worlds, lists of commands, snapshots.
+import { bitsOf, rawOf, vectorOf } from "./fx.js";
+import { bodyKind, writeBody, writeBodyAndShapes, writeConfig, writeFilter, writeJoint, writeShape } from "./definitions.js";
+import { Lockstep2dError } from "./error.js";
+import { C } from "./layout.js";
+import {
+    Handle, call, f64s, fieldAt, fxAt, give, giveText, hashAt, id, idAt, library, list, putRaw, read, scratch, sizeOf, takeBytes, u32,
+    u64, write,
+} from "./library.js";
+
+const raws = (vector, what) => vectorOf(vector, what);
+const KINDS = ["fixed", "kinematic", "dynamic"];
+
+/** Edits: executed by a world at once, or collected by a list of commands. */
+class Edits extends Handle {
+    /** Adds a body with its shapes, and returns its handle; a list of commands returns undefined. */
+    spawn(options) {
+        const { id: at, body, shapes, count } = writeBodyAndShapes(options);
+        putRaw(at, -1n);
+        call("ls2d_spawn", this.handle, body, shapes, count, at);
+        return this.added(at);
+    }
+
+    added(at) {
+        return u64(at) === 0xffffffffffffffffn ? undefined : idAt(at);
+    }
+
+    despawn(body) {
+        call("ls2d_despawn", this.handle, id(body));
+    }
+
+    addShape(body, shape) {
+        const at = scratch(8 + sizeOf("shape_def"));
+        writeShape(at + 8, shape);
+        putRaw(at, -1n);
+        call("ls2d_add_shape", this.handle, id(body), at + 8, at);
+        return this.added(at);
+    }
+
+    removeShape(shape) {
+        call("ls2d_remove_shape", this.handle, id(shape, "a shape"));
+    }
+
+    setShape(shape, definition) {
+        const at = scratch(sizeOf("shape_def"));
+        writeShape(at, definition);
+        call("ls2d_set_shape", this.handle, id(shape, "a shape"), at);
+    }
+
+    /** Adds a joint, and returns its handle. `anchor` and `axis` are in the world, and need a world. */
+    addJoint(options) {
+        const size = sizeOf("joint_def");
+        const at = scratch(48 + size);
+        writeJoint(at + 48, options);
+        if (options.anchor !== undefined) {
+            this.place(at, options);
+        }
+        putRaw(at, -1n);
+        call("ls2d_add_joint", this.handle, at + 48, at);
+        return this.added(at);
+    }
+
+    place(at, { anchor, axis = [0, 0] }) {
+        const numbers = [...raws(anchor, "anchor"), ...raws(axis, "axis")];
+        numbers.forEach((raw, index) => putRaw(at + 8 + 8 * index, raw));
+        call("ls2d_joint_at", this.handle, at + 48, at + 8, at + 24, at + 48);
+    }
+
+    removeJoint(joint) {
+        call("ls2d_remove_joint", this.handle, id(joint, "a joint"));
+    }
+
+    setJoint(joint, options) {
+        const at = scratch(sizeOf("joint_def"));
+        writeJoint(at, options);
+        call("ls2d_set_joint", this.handle, id(joint, "a joint"), at);
+    }
+
+    enableJoint(joint) {
+        call("ls2d_enable_joint", this.handle, id(joint, "a joint"));
+    }
+
+    disableJoint(joint) {
+        call("ls2d_disable_joint", this.handle, id(joint, "a joint"));
+    }
+
+    applyForce(body, force, point) {
+        call("ls2d_apply_force", this.handle, id(body), ...raws(force, "force"), ...raws(point, "point"));
+    }
+
+    applyTorque(body, torque) {
+        call("ls2d_apply_torque", this.handle, id(body), rawOf(torque, "torque"));
+    }
+
+    applyImpulse(body, impulse, point) {
+        call("ls2d_apply_impulse", this.handle, id(body), ...raws(impulse, "impulse"), ...raws(point, "point"));
+    }
+
+    applyAngularImpulse(body, impulse) {
+        call("ls2d_apply_angular_impulse", this.handle, id(body), rawOf(impulse, "impulse"));
+    }
+
+    setVelocity(body, velocity, angular = 0) {
+        call("ls2d_set_velocity", this.handle, id(body), ...raws(velocity, "velocity"), rawOf(angular, "angular velocity"));
+    }
+
+    setTransform(body, position, angle = 0) {
+        call("ls2d_set_transform", this.handle, id(body), ...raws(position, "position"), bitsOf(angle));
+    }
+
+    moveTo(body, position, angle = 0) {
+        call("ls2d_move_to", this.handle, id(body), ...raws(position, "position"), bitsOf(angle));
+    }
+
+    /** Changes damping, gravity scale, locks, sweeps and sleep settings. */
+    setBody(body, options) {
+        const at = scratch(sizeOf("body_def"));
+        writeBody(at, options);
+        call("ls2d_set_body", this.handle, id(body), at);
+    }
+
+    setType(body, type) {
+        call("ls2d_set_kind", this.handle, id(body), bodyKind(type));
+    }
+
+    setUserData(body, data) {
+        call("ls2d_set_user_data", this.handle, id(body), BigInt(data));
+    }
+
+    setName(body, name) {
+        const [at, length] = giveText(name);
+        call("ls2d_set_name", this.handle, id(body), at + 64, length);
+    }
+
+    enable(body) {
+        call("ls2d_enable", this.handle, id(body));
+    }
+
+    disable(body) {
+        call("ls2d_disable", this.handle, id(body));
+    }
+
+    wake(body) {
+        call("ls2d_wake", this.handle, id(body));
+    }
+
+    sleep(body) {
+        call("ls2d_sleep", this.handle, id(body));
+    }
+
+    setGravity(gravity) {
+        call("ls2d_set_gravity", this.handle, ...raws(gravity, "gravity"));
+    }
+
+    explode({ centre, impulse, radius, falloff, mask }) {
+        const at = scratch(sizeOf("explosion"));
+        call("ls2d_explosion_init", ...raws(centre, "centre"), rawOf(impulse, "impulse"), at);
+        write("explosion", at, { radius, falloff, mask });
+        call("ls2d_explode", this.handle, at);
+    }
+}
+
+/** A list of edits, for replays and networks. */
+export class Commands extends Edits {
+    constructor() {
+        const at = scratch(8);
+        call("ls2d_commands_new", at);
+        super(u32(at));
+    }
+
+    get length() {
+        const at = scratch(8);
+        call("ls2d_commands_count", this.handle, at);
+        return u32(at);
+    }
+
+    clear() {
+        call("ls2d_commands_clear", this.handle);
+    }
+
+    toBytes() {
+        const at = scratch(8);
+        call("ls2d_commands_encode", this.handle, at);
+        return takeBytes(u32(at));
+    }
+
+    /** Replaces the list by an encoded one. */
+    fromBytes(bytes) {
+        const at = give(bytes);
+        call("ls2d_commands_decode", this.handle, at + 64, bytes.length);
+        return this;
+    }
+}
+
+/** A saved state in memory. */
+export class Snapshot extends Handle {
+    hash() {
+        const at = scratch(16);
+        call("ls2d_snapshot_hash", this.handle, at);
+        return hashAt(at);
+    }
+}
+
+/** A filter in front of other arguments: 0 stands for the defaults. */
+function filterAt(at, filter) {
+    if (filter === undefined) {
+        return 0;
+    }
+    writeFilter(at, filter);
+    return at;
+}
+
+const FILTER = () => sizeOf("query_filter");
+
+/** A physics world. */
+export class World extends Edits {
+    constructor(options = {}) {
+        super(options instanceof Adopted ? options.handle : World.#make(options));
+    }
+
+    static #make(options) {
+        const at = scratch(8 + sizeOf("config"));
+        call("ls2d_config_init", at + 8);
+        const { smallest, ...settings } = options;
+        writeConfig(at + 8, settings);
+        if (smallest !== undefined) {
+            call("ls2d_config_for_smallest", at + 8, at + 8, rawOf(smallest, "smallest"));
+        }
+        call("ls2d_world_new", at + 8, at);
+        return u32(at);
+    }
+
+    /** Makes a world from bytes of any source. */
+    static fromBytes(bytes) {
+        const at = give(bytes);
+        call("ls2d_world_decode", at + 64, bytes.length, at);
+        return new World(new Adopted(u32(at)));
+    }
+
+    toBytes() {
+        const at = scratch(8);
+        call("ls2d_world_encode", this.handle, at);
+        return takeBytes(u32(at));
+    }
+
+    clone() {
+        const at = scratch(8);
+        call("ls2d_world_clone", this.handle, at);
+        return new World(new Adopted(u32(at)));
+    }
+
+    /** Advances the world by one tick, or by some. */
+    step(ticks = 1) {
+        call("ls2d_world_steps", this.handle, ticks);
+    }
+
+    /** Executes a list of commands, and returns how many of them were refused. */
+    execute(commands) {
+        const at = scratch(8);
+        call("ls2d_world_execute", this.handle, commands.handle, at);
+        return u32(at);
+    }
+
+    /** Hash of the state: 32 hexadecimal digits, the same on every machine. */
+    hash() {
+        const at = scratch(16);
+        call("ls2d_world_hash", this.handle, at);
+        return hashAt(at);
+    }
+
+    /** Hash of a section of the state: 0 settings, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands, 6 random numbers. */
+    digest(section) {
+        const at = scratch(16);
+        call("ls2d_world_digest", this.handle, section, at);
+        return hashAt(at);
+    }
+
+    get tick() {
+        const at = scratch(8);
+        call("ls2d_world_tick", this.handle, at);
+        return Number(u64(at));
+    }
+
+    get faults() {
+        const at = scratch(8);
+        call("ls2d_world_faults", this.handle, at);
+        return Number(u64(at));
+    }
+
+    counts() {
+        const at = scratch(24);
+        call("ls2d_world_counts", this.handle, at, at + 4, at + 8, at + 12, at + 16);
+        const [bodies, shapes, joints, awake, pairs] = [0, 4, 8, 12, 16].map((offset) => u32(at + offset));
+        return { bodies, shapes, joints, awake, pairs };
+    }
+
+    config() {
+        const at = scratch(sizeOf("config"));
+        call("ls2d_world_config", this.handle, at);
+        const { size: _, flags, ...rest } = read("config", at);
+        return { ...rest, sleeping: (flags & C.SLEEPING) !== 0, continuous: (flags & C.CONTINUOUS) !== 0 };
+    }
+
+    /** Changes settings; those that are not given stay. */
+    setConfig(options) {
+        const at = scratch(sizeOf("config"));
+        call("ls2d_world_config", this.handle, at);
+        writeConfig(at, options);
+        call("ls2d_set_config", this.handle, at);
+    }
+
+    /** A uniform integer from 0 to below `bound`, from the generator of the world, which is part of its state. */
+    random(bound) {
+        const at = scratch(8);
+        call("ls2d_world_random_below", this.handle, bound, at);
+        return u32(at);
+    }
+
+    /** A uniform number from `low` to below `high`. */
+    randomRange(low, high) {
+        const at = scratch(8);
+        call("ls2d_world_random_range", this.handle, rawOf(low), rawOf(high), at);
+        return fxAt(at);
+    }
+
+    save() {
+        const at = scratch(8);
+        call("ls2d_world_save", this.handle, at);
+        return new Snapshot(u32(at));
+    }
+
+    /** Saves into a snapshot that exists: the cheapest way to save every tick. */
+    saveInto(snapshot) {
+        call("ls2d_world_save_into", this.handle, snapshot.handle);
+    }
+
+    restore(snapshot) {
+        call("ls2d_world_restore", this.handle, snapshot.handle);
+    }
+
+    /** What is known of a body, or undefined if it is not in the world. */
+    body(body) {
+        const at = scratch(sizeOf("body_info"));
+        try {
+            call("ls2d_body_get", this.handle, id(body), at);
+        } catch (error) {
+            if (error.code === "STALE_BODY") {
+                return undefined;
+            }
+            throw error;
+        }
+        const { kind, flags, ...rest } = read("body_info", at);
+        return {
+            ...rest,
+            type: KINDS[kind],
+            enabled: (flags & C.BODY_ENABLED) !== 0,
+            asleep: (flags & C.BODY_ASLEEP) !== 0,
+        };
+    }
+
+    #ids(name, before = []) {
+        const { at, count } = list(8, 0, (items, capacity, length) => library()[name](this.handle, ...before, items, capacity, length));
+        return Array.from({ length: count }, (_, index) => idAt(at + 8 * index));
+    }
+
+    /** Handles of all bodies in slot order. */
+    bodies() {
+        return this.#ids("ls2d_world_bodies");
+    }
+
+    joints() {
+        return this.#ids("ls2d_world_joints");
+    }
+
+    shapesOf(body) {
+        return this.#ids("ls2d_body_shapes", [id(body)]);
+    }
+
+    jointsOf(body) {
+        return this.#ids("ls2d_body_joints", [id(body)]);
+    }
+
+    sensorOverlaps(shape) {
+        return this.#ids("ls2d_sensor_overlaps", [id(shape, "a shape")]);
+    }
+
+    /** Body and definition of a shape as the library keeps it. */
+    shape(shape) {
+        const at = scratch(8 + sizeOf("shape_def"));
+        call("ls2d_shape_get", this.handle, id(shape, "a shape"), at + 8, at);
+        const points = fieldAt("shape_def", at + 8, "points");
+        const { size: _, count, ...rest } = read("shape_def", at + 8);
+        const used = [0, 2, count, 2, 4][rest.kind] ?? 0;
+        const all = Array.from({ length: used }, (_, index) => ({ x: fxAt(points + 16 * index), y: fxAt(points + 16 * index + 8) }));
+        return { ...rest, type: ["circle", "segment", "polygon", "capsule", "link"][rest.kind], body: idAt(at), points: all };
+    }
+
+    jointAnchors(joint) {
+        const at = scratch(32);
+        call("ls2d_joint_anchors", this.handle, id(joint, "a joint"), at, at + 16);
+        return [{ x: fxAt(at), y: fxAt(at + 8) }, { x: fxAt(at + 16), y: fxAt(at + 24) }];
+    }
+
+    jointAngle(joint) {
+        const at = scratch(8);
+        return call("ls2d_joint_angle", this.handle, id(joint, "a joint"), at) ? fxAt(at) : undefined;
+    }
+
+    jointForce(joint) {
+        const at = scratch(24);
+        const found = call("ls2d_joint_force", this.handle, id(joint, "a joint"), at, at + 16);
+        return found ? { force: { x: fxAt(at), y: fxAt(at + 8) }, torque: fxAt(at + 16) } : undefined;
+    }
+
+    /** For drawing: five floats for each enabled body, its handle, x, y, angle in radians, and 1 if it is awake. */
+    poses(target) {
+        const ask = (rows, capacity, count) => library().ls2d_draw_poses(this.handle, rows, capacity, count);
+        const { at, count } = list(8, 0, ask);
+        const found = f64s(at, count);
+        if (target === undefined || target.length < count) {
+            return found.slice();
+        }
+        target.set(found);
+        return target.subarray(0, count);
+    }
+
+    #events(name, struct) {
+        const ask = (items, capacity, count) => library()[name](this.handle, items, capacity, count);
+        const size = sizeOf(struct);
+        const { at, count } = list(size, 0, ask);
+        return Array.from({ length: count }, (_, index) => read(struct, at + size * index));
+    }
+
+    /** The events of the last tick. */
+    events() {
+        const moved = this.#events("ls2d_events_moved", "pose");
+        return {
+            moved: moved.map(({ flags, ...rest }) => ({ ...rest, fellAsleep: (flags & C.BODY_ASLEEP) !== 0 })),
+            contactBegin: this.#events("ls2d_events_contact_begin", "contact_event"),
+            contactEnd: this.#events("ls2d_events_contact_end", "contact_event"),
+            hits: this.#events("ls2d_events_hits", "hit_event"),
+            sensorBegin: this.#events("ls2d_events_sensor_begin", "sensor_event"),
+            sensorEnd: this.#events("ls2d_events_sensor_end", "sensor_event"),
+            joints: this.#events("ls2d_events_joints", "joint_event").map(({ broke, ...rest }) => ({ ...rest, broke: broke === 1n })),
+        };
+    }
+
+    #hit(struct, at) {
+        const { startsInside, ...rest } = read(struct, at);
+        return { ...rest, startsInside: startsInside === 1n };
+    }
+
+    /** The first shape that a ray meets, from a point along a translation. */
+    castRay(origin, translation, filter) {
+        const at = scratch(sizeOf("ray_hit") + FILTER());
+        const seen = filterAt(at + sizeOf("ray_hit"), filter);
+        const ray = [...raws(origin, "origin"), ...raws(translation, "translation")];
+        return call("ls2d_cast_ray", this.handle, ...ray, seen, at) ? this.#hit("ray_hit", at) : undefined;
+    }
+
+    /** Every shape that a ray meets, in order along the ray. */
+    castRayAll(origin, translation, filter) {
+        const ray = [...raws(origin, "origin"), ...raws(translation, "translation")];
+        const size = sizeOf("ray_hit");
+        const ask = (hits, capacity, count, before) =>
+            library().ls2d_cast_ray_all(this.handle, ...ray, filterAt(before, filter), hits, capacity, count);
+        const { at, count } = list(size, FILTER(), ask);
+        return Array.from({ length: count }, (_, index) => this.#hit("ray_hit", at + size * index));
+    }
+
+    #probe(at, shape, position, angle = 0) {
+        call("ls2d_probe_init", C.CIRCLE, at);
+        write("probe", at, { position, angle });
+        writeShape(fieldAt("probe", at, "shape"), shape);
+    }
+
+    /** The first shape that a shape meets as it moves along a translation. */
+    castShape(shape, position, translation, { angle, ...filter } = {}) {
+        const [hit, probe] = [sizeOf("cast_hit"), sizeOf("probe")];
+        const at = scratch(hit + probe + FILTER());
+        this.#probe(at + hit, shape, position, angle);
+        const seen = filterAt(at + hit + probe, filter);
+        const found = call("ls2d_cast_shape", this.handle, at + hit, ...raws(translation, "translation"), seen, at);
+        return found ? this.#hit("cast_hit", at) : undefined;
+    }
+
+    #overlaps(before, ask) {
+        const { at, count } = list(8, before, ask);
+        return Array.from({ length: count }, (_, index) => idAt(at + 8 * index));
+    }
+
+    /** Shapes that overlap a shape, in slot order. */
+    overlapShape(shape, position, { angle, ...filter } = {}) {
+        const probe = sizeOf("probe");
+        return this.#overlaps(probe + FILTER(), (shapes, capacity, count, before) => {
+            this.#probe(before, shape, position, angle);
+            return library().ls2d_overlap_shape(this.handle, before, filterAt(before + probe, filter), shapes, capacity, count);
+        });
+    }
+
+    /** Shapes that overlap a box from its lower left to its upper right corner. */
+    overlapBox(lower, upper, filter) {
+        return this.#overlaps(32 + FILTER(), (shapes, capacity, count, before) => {
+            write("aabb", before, { lower, upper });
+            return library().ls2d_overlap_box(this.handle, before, filterAt(before + 32, filter), shapes, capacity, count);
+        });
+    }
+
+    /** Shapes that contain a point. */
+    overlapPoint(point, filter) {
+        const at = raws(point, "point");
+        return this.#overlaps(FILTER(), (shapes, capacity, count, before) =>
+            library().ls2d_overlap_point(this.handle, ...at, filterAt(before, filter), shapes, capacity, count));
+    }
+
+    /** The shape nearest to a point, within a distance. */
+    closest(point, within, filter) {
+        const size = sizeOf("closest");
+        const at = scratch(size + FILTER());
+        const seen = filterAt(at + size, filter);
+        const found = call("ls2d_closest", this.handle, ...raws(point, "point"), rawOf(within, "within"), seen, at);
+        return found ? read("closest", at) : undefined;
+    }
+}
+
+/** A handle that the library has made. */
+export class Adopted {
+    constructor(handle) {
+        this.handle = handle;
+    }
+}
+
+export { Lockstep2dError };

@@ -1,0 +1,120 @@
+// Matches: peers in one process, on a network that loses and delays packets, have equal states; late joiners, too.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { L } from "./common.mjs";
+
+const address = (index) => Uint8Array.of(index);
+
+/** Boxes that the players push: the state is the world alone. */
+class Push {
+    constructor() {
+        this.world = new L.World();
+        this.world.spawn({ type: "fixed", position: [0, -1], shapes: [L.box(20, 1)] });
+        this.boxes = [-2, 0, 2].map((x) => this.world.spawn({ position: [x, 1], shapes: [L.box("0.5", "0.5")] }));
+        this.played = 0;
+    }
+    step(inputs) {
+        inputs.forEach((input, seat) => {
+            const { position } = this.world.body(this.boxes[seat]);
+            this.world.applyImpulse(this.boxes[seat], [(input & 1) - ((input >> 1) & 1), (input >> 2) & 1], position);
+        });
+        this.world.step();
+        this.played++;
+    }
+    save() {
+        return this.world.save();
+    }
+    load(saved) {
+        this.world.restore(saved);
+    }
+    drop(saved) {
+        saved.dispose();
+    }
+    hash() {
+        return this.world.hash();
+    }
+    encode() {
+        return this.world.toBytes();
+    }
+    decode(bytes) {
+        this.world.dispose();
+        this.world = L.World.fromBytes(bytes);
+    }
+}
+
+/** Peers and a network between them. */
+class Net {
+    now = 0;
+    peers = [];
+    flying = [];
+    random = new L.Random(3);
+
+    add(options) {
+        const index = this.peers.length;
+        const match = new L.Match({ seats: 3, tickRate: 60, guess: 8, peer: index + 1, key: BigInt(index + 1), ...options });
+        const send = (to, packet) => {
+            if (this.random.below(100) >= 5) {
+                this.flying.push({ at: this.now + 20 + this.random.below(40), from: index, to: to[0], packet });
+            }
+        };
+        const game = new Push();
+        const peer = { driver: new L.MatchDriver(match, game, send), game, events: [], match, index };
+        this.peers.push(peer);
+        return peer;
+    }
+
+    run(milliseconds) {
+        for (const end = this.now + milliseconds; this.now < end; this.now += 4) {
+            const arrived = this.flying.filter(({ at }) => at <= this.now);
+            this.flying = this.flying.filter(({ at }) => at > this.now);
+            for (const { from, to, packet } of arrived) {
+                this.peers[to].driver.receive(this.now, address(from), packet);
+            }
+            for (const peer of this.peers) {
+                const input = () => Uint8Array.of(((this.now >> 7) + peer.index * 3) % 8);
+                peer.events.push(...peer.driver.update(this.now, input));
+            }
+        }
+    }
+}
+
+test("two peers and one who joins late have equal states", () => {
+    const net = new Net();
+    const offer = new TextEncoder().encode(`push 1, semantics ${L.semantics()}`);
+    const host = net.add({ offer, ownSeats: 1, startWith: 2 });
+    const guest = net.add({ offer, ownSeats: 1, contact: address(0) });
+    net.run(3000);
+    assert.deepEqual([host.match.status, guest.match.status], ["playing", "playing"]);
+    assert.ok(host.driver.tick > 100, `${host.driver.tick} ticks`);
+    const late = net.add({ offer, ownSeats: 1, contact: address(1) });
+    net.run(3000);
+    assert.equal(late.match.status, "playing");
+    assert.ok(late.events.some(({ kind, tick }) => kind === "state" && tick > 0), "it began in the middle");
+    host.match.endAt(400);
+    net.run(4000);
+    const peers = [host, guest, late];
+    assert.deepEqual(peers.map(({ driver }) => driver.tick), [400, 400, 400]);
+    const [hash] = peers.map(({ game }) => game.hash());
+    assert.deepEqual(peers.map(({ game }) => game.hash()), [hash, hash, hash]);
+    assert.ok(peers.every(({ events }) => events.every(({ kind }) => kind !== "desync")));
+    assert.ok(host.game.played > 400, "some ticks were guessed wrongly and played again");
+});
+
+test("a peer with another offer is refused", () => {
+    const net = new Net();
+    net.add({ offer: Uint8Array.of(1), startWith: 2 });
+    const other = net.add({ offer: Uint8Array.of(2), contact: address(0) });
+    net.run(2000);
+    assert.ok(other.events.some(({ kind, reason }) => kind === "refused" && reason === "offer"));
+    assert.equal(other.match.status, "connecting");
+});
+
+test("a state that differs is noticed", () => {
+    const net = new Net();
+    const host = net.add({ startWith: 2 });
+    const guest = net.add({ contact: address(0) });
+    net.run(2000);
+    guest.game.world.setGravity([0, -9]);
+    net.run(2000);
+    assert.ok([...host.events, ...guest.events].some(({ kind }) => kind === "desync"));
+});

@@ -1,0 +1,81 @@
+// Replays: recorded, verified, limited; and those of games whose rules are in JavaScript.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { L, file } from "./common.mjs";
+
+const join = (...parts) => Uint8Array.from(parts.flatMap((part) => [...part]));
+
+test("a recorded world verifies, and a changed file does not", () => {
+    const setup = new L.Commands();
+    setup.spawn({ type: "fixed", shapes: [L.box(20, 1)] });
+    setup.spawn({ position: [0, 3], shapes: [L.box("0.25", "0.25")] });
+    const recording = new L.Recording({ setup, config: { tickRate: 50 } });
+    const commands = new L.Commands();
+    const parts = [];
+    for (let tick = 0; tick < 150; tick++) {
+        if (tick % 50 === 10) {
+            commands.spawn({ position: [0, 5], shapes: [L.circle("0.5")] });
+        }
+        recording.step(commands);
+        parts.push(recording.take());
+    }
+    assert.equal(recording.world().tick, 150);
+    const replay = join(...parts, recording.finish());
+    assert.deepEqual([L.verifyReplay(replay).verdict, L.verifyReplay(replay).ticks], ["match", 150]);
+    assert.equal(L.verifyReplay(replay.slice(0, -20)).verdict, "incomplete");
+    const damaged = replay.slice();
+    damaged[damaged.length >> 1] ^= 1;
+    assert.equal(L.verifyReplay(damaged).verdict, "malformed");
+    const limited = L.verifyReplay(replay, { ticks: 100 });
+    assert.equal(limited.verdict, "limit_exceeded");
+    assert.match(limited.text, /at most 100 are allowed/);
+    assert.throws(() => recording.step(commands), { code: "RECORD" });
+});
+
+// A game: each player counts, and the sum is hashed.
+class Sums {
+    sums = [0, 0];
+    step(inputs) {
+        inputs.forEach((input, player) => (this.sums[player] += input));
+    }
+    hash() {
+        return L.hashBytes(new Uint8Array(Uint32Array.from(this.sums).buffer));
+    }
+}
+
+function record(ticks) {
+    const game = new Sums();
+    const recorder = new L.Recorder({ rules: "sums", players: 2, inputBytes: 1, setup: Uint8Array.of(1, 2), start: game.hash() });
+    for (let tick = 0; tick < ticks; tick++) {
+        const inputs = Uint8Array.of(tick % 7, tick % 11);
+        const due = recorder.record(inputs);
+        game.step(inputs);
+        if (due) {
+            recorder.checkpoint(game.hash());
+        }
+    }
+    return recorder.finish(game.hash());
+}
+
+function play(bytes, cheat = () => {}) {
+    const replay = new L.Replay(bytes);
+    const game = new Sums();
+    replay.check(game.hash());
+    for (let inputs = replay.next(), tick = 0; inputs !== undefined; inputs = replay.next(), tick++) {
+        cheat(game, tick);
+        game.step(inputs);
+        replay.check(game.hash());
+    }
+    return { replay, verdict: replay.verdict(game.hash()) };
+}
+
+test("a game with rules in JavaScript records, and its replay verifies", () => {
+    const bytes = record(150);
+    const { replay, verdict } = play(bytes);
+    assert.deepEqual([replay.rules, replay.players, replay.ticks, [...replay.setup]], ["sums", 2, 150, [1, 2]]);
+    assert.deepEqual([verdict.verdict, verdict.ticks], ["match", 150]);
+    const other = play(bytes, (game, tick) => tick === 100 && (game.sums[0] += 1)).verdict;
+    assert.deepEqual([other.verdict, other.ticks], ["diverged", 120]);
+    assert.throws(() => new L.Replay(bytes.slice(0, 30)), { code: "RECORD" });
+    assert.throws(() => new L.Replay(file("replays/ragdoll.replay")), (error) => error.verdict.verdict === "unverifiable");
+});

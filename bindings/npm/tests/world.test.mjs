@@ -1,0 +1,133 @@
+// Worlds: definitions, queries, events, snapshots, errors, memory.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { L, fallingBox } from "./common.mjs";
+
+test("a world that is restored goes on with the same bits", () => {
+    const { world } = fallingBox();
+    const saved = world.save();
+    world.step(50);
+    const hash = world.hash();
+    world.restore(saved);
+    world.step(50);
+    assert.equal(world.hash(), hash);
+    const copy = L.World.fromBytes(world.toBytes());
+    const clone = world.clone();
+    [world, copy, clone].forEach((each) => each.step(30));
+    assert.equal(copy.hash(), world.hash());
+    assert.equal(clone.hash(), world.hash());
+    world.saveInto(saved);
+    assert.equal(saved.hash(), world.hash());
+    [world, copy, clone, saved].forEach((each) => each.dispose());
+});
+
+test("poses are rows of floats for drawing", () => {
+    const { world, box } = fallingBox();
+    world.step();
+    const poses = world.poses();
+    assert.deepEqual([poses.length, poses[5], poses[9]], [10, box, 1]);
+    assert.ok(Math.abs(poses[7] - world.body(box).position.y.toNumber()) < 1e-9);
+    const target = new Float64Array(100);
+    assert.equal(world.poses(target).buffer, target.buffer);
+    assert.deepEqual([...target.subarray(0, 10)], [...poses]);
+});
+
+test("queries find the shapes", () => {
+    const { world, box } = fallingBox();
+    const [shape] = world.shapesOf(box);
+    const hit = world.castRay([0, 10], [0, -20]);
+    assert.deepEqual([hit.body, hit.shape, hit.point.y.toString(), hit.normal.y.toString()], [box, shape, "3.25", "1"]);
+    assert.equal(world.castRay([50, 10], [0, -20]), undefined);
+    assert.equal(world.castRayAll([0, 10], [0, -20]).length, 2);
+    assert.equal(world.castRay([0, 10], [0, -20], { except: [box] }).point.y.toString(), "0");
+    assert.deepEqual(world.overlapPoint([0, 3]), [shape]);
+    assert.deepEqual(world.overlapBox([-1, 2], [1, 4]), [shape]);
+    assert.deepEqual(world.overlapShape(L.circle(1), [0, 4]), [shape]);
+    const cast = world.castShape(L.circle("0.5"), [0, 10], [0, -20]);
+    assert.equal(cast.body, box);
+    assert.equal(world.closest([0, 4], 5).shape, shape);
+    assert.deepEqual(world.shape(shape).points.map(({ x }) => x.toNumber()), [-0.25, 0.25, 0.25, -0.25]);
+});
+
+test("events tell what happened in the tick", () => {
+    const { world, box } = fallingBox();
+    world.spawn({ type: "fixed", position: [0, 2], shapes: [L.box(1, "0.1", { sensor: true })] });
+    const seen = { contactBegin: 0, sensorBegin: 0, sensorEnd: 0, moved: 0 };
+    for (let tick = 0; tick < 120; tick++) {
+        world.step();
+        const events = world.events();
+        Object.keys(seen).forEach((kind) => (seen[kind] += events[kind].length));
+        events.moved.forEach(({ body }) => assert.equal(body, box));
+    }
+    assert.deepEqual({ ...seen, moved: seen.moved > 40 }, { contactBegin: 1, sensorBegin: 1, sensorEnd: 1, moved: true });
+});
+
+test("all joints and shapes can be defined", () => {
+    const world = new L.World({ tickRate: 120, gravity: [0, "-9.81"], smallest: "0.1" });
+    assert.equal(world.config().tickRate, 120);
+    const ground = world.spawn({ type: "fixed", shapes: [L.chain([[-20, 0], [0, "-0.5"], [20, 0]], { friction: "0.9" })] });
+    const shapes = [L.circle("0.5"), L.capsule([0, 0], [1, 0], "0.2"), L.polygon([[0, 0], [1, 0], [0, 1]], { rounding: "0.05" }),
+        L.hull([[0, 0], [0, 1], [1, 0], ["0.1", "0.1"]]), L.box(1, "0.1", { density: 3 })];
+    const bodies = shapes.map((shape, index) => world.spawn({ position: [3 * index, 5], name: `b${index}`, shapes: [shape] }));
+    const kinds = [
+        { type: "revolute", anchor: [1, 5], limit: ["-0.5", "0.5"], motor: { speed: 1, max: 10 } },
+        { type: "prismatic", anchor: [1, 5], axis: [0, 1], spring: { hertz: 2, dampingRatio: "0.5", target: 0 } },
+        { type: "distance", rod: 3 },
+        { type: "weld", linearSpring: { hertz: 5, dampingRatio: 1 } },
+        { type: "wheel", anchor: [4, 4], axis: [0, 1] },
+        { type: "motor", linearMotor: { velocity: [1, 0], max: 5 } },
+        { type: "filter" },
+        { type: "gear", teeth: [10, 20] },
+        { type: "rack", radius: "0.5" },
+        { type: "pulley", wheels: [[0, 9], [3, 9]], length: 9, ratio: 2 },
+    ];
+    const joints = kinds.map((kind, index) => world.addJoint({ a: index % 2 ? ground : bodies[0], b: bodies[1 + (index % 4)], ...kind }));
+    assert.deepEqual(world.joints(), joints);
+    world.step(100);
+    assert.deepEqual([world.counts().bodies, world.counts().joints, world.faults], [6, 10, 0]);
+    world.dispose();
+});
+
+test("mistakes are errors with codes", () => {
+    const { world, box } = fallingBox();
+    world.despawn(box);
+    assert.equal(world.body(box), undefined);
+    assert.throws(() => world.wake(box), { code: "STALE_BODY" });
+    assert.throws(() => world.spawn({ shapes: [L.circle(0)] }), { code: "GEOMETRY" });
+    assert.throws(() => world.spawn({ positon: [0, 1] }), /no option positon/);
+    assert.throws(() => world.spawn({ shapes: [L.circle(1, { bouncy: true })] }), { code: "VALUE" });
+    assert.throws(() => new L.World({ gravity: [0, 1000000] }), { code: "SETTING" });
+    assert.throws(() => L.World.fromBytes(new Uint8Array(100)), { code: "SNAPSHOT" });
+    world.dispose();
+    world.dispose();
+    assert.throws(() => world.step(), { code: "DISPOSED" });
+});
+
+test("commands are edits as bytes", () => {
+    const [direct, remote] = [fallingBox(), fallingBox()];
+    const commands = new L.Commands();
+    for (const target of [direct.world, commands]) {
+        target.applyImpulse(direct.box, ["0.5", 0], [0, 3]);
+        target.spawn({ position: [1, 5], shapes: [L.circle("0.3")] });
+        target.setGravity([0, -20]);
+    }
+    assert.equal(remote.world.execute(new L.Commands().fromBytes(commands.toBytes())), 0);
+    [direct, remote].forEach(({ world }) => world.step(60));
+    assert.equal(remote.world.hash(), direct.world.hash());
+});
+
+test("10 000 worlds that are disposed leak nothing", () => {
+    const before = L.objectCount();
+    const memory = () => process.memoryUsage().arrayBuffers + process.memoryUsage().external;
+    let after;
+    for (let count = 0; count < 10_000; count++) {
+        const { world } = fallingBox();
+        world.save().dispose();
+        world.dispose();
+        if (count === 1000) {
+            after = memory();
+        }
+    }
+    assert.equal(L.objectCount(), before);
+    assert.ok(memory() < after + 2_000_000, "the memory of the module does not grow");
+});
