@@ -114,7 +114,7 @@ fn draw_other(
     let first = comparison.first.as_ref().and_then(|first| first.body);
     let other = comparison.other.world();
     let tinted = Brush { tint: Some(theme::OTHER), ..Brush::suiting(other, camera) };
-    let moving = |primitive: &Primitive| primitive.style != Style::Fixed;
+    let moving = |primitive: &Primitive| !matches!(primitive.style, Style::Fixed | Style::Sensor);
     let outlines = Layers { outlines: layers.outlines, ..Layers::NONE };
     for primitive in primitives(other, outlines).iter().filter(|primitive| moving(primitive)) {
         paint(list, primitive, camera, &tinted);
