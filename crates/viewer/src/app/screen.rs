@@ -33,10 +33,10 @@ pub(super) fn draw(app: &mut App) {
             outline(list, shown, id, &camera, theme::SELECTED);
         }
         comparison.iter_mut().for_each(|comparison| draw_other(list, shown, comparison, *layers, &camera));
-        inspector.draw(list, shown, *size);
         let bodies = (shown.body_count(), shown.awake_body_count());
         let (contacts, joints, faults) = (shown.contacts().count(), shown.joint_count(), shown.faults());
         source.decorate(list, &camera);
+        inspector.draw(list, source.as_mut(), *size);
         hand.draw(list, source.as_mut(), &camera, pointer.at);
         let marked =
             comparison.as_ref().and_then(|comparison| comparison.first.as_ref()).map(|first| first.tick);
