@@ -1,12 +1,12 @@
 //! Pictures show the state of the world, are reproducible, and do not change the world.
 
-use lockstep2d::body::{BodyDef, BodyKind, Geometry, Polygon, ShapeDef, WorldError};
+use lockstep2d::body::{BodyDef, BodyKind, Geometry, Name, Polygon, ShapeDef, WorldError};
 use lockstep2d::draw::{
-    ContactProximity, Form, Frame, Layers, Primitive, Style, Subject, View, fit, primitives, svg,
+    ContactProximity, Form, Frame, Layers, Legend, Primitive, Style, Subject, View, fit, primitives, svg,
 };
 use lockstep2d::fx;
 use lockstep2d::math::{Aabb, Angle, Fx, Vec2};
-use lockstep2d::solver::{JointDef, Revolute};
+use lockstep2d::solver::{Distance, JointDef, JointKind, Motor, Prismatic, Revolute, Weld, Wheel};
 use lockstep2d::world::{Config, World};
 
 const GROUND_TOP: Fx = fx!(0);
@@ -143,6 +143,113 @@ fn after_a_restore_contacts_are_missing_until_the_next_tick() {
     world.step();
     let found = primitives(&world, Layers::ALL);
     assert_eq!(count(&found, Style::ContactPoint(ContactProximity::Touching)), 2);
+}
+
+#[test]
+fn after_a_removal_the_contacts_of_all_other_bodies_stay() {
+    let mut world = World::new(Config { sleeping: false, ..Config::default() }).unwrap();
+    let slab = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(1)).unwrap());
+    world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[slab]).unwrap();
+    let square = ShapeDef::new(Polygon::square(fx!(0.5)).unwrap());
+    let mut boxes = Vec::new();
+    for x in 0..6 {
+        let place = BodyDef::dynamic().position((Fx::from_num(x), fx!(0.5)));
+        boxes.push(world.spawn(&place, std::slice::from_ref(&square)).unwrap());
+    }
+    (0..30).for_each(|_| world.step());
+    let layers = Layers { contact_points: true, contact_forces: true, solver_colours: true, ..Layers::NONE };
+    let before = primitives(&world, layers);
+    let is_own = |subject: Subject, own: &[_]| matches!(subject, Subject::Contact(a, b) if own.contains(&a) || own.contains(&b));
+    let own = world.shapes_of(boxes[2]);
+    let expected: Vec<_> = before.iter().filter(|found| !is_own(found.subject, &own)).cloned().collect();
+    assert!(expected.len() > 20 && expected.len() < before.len(), "{} of {}", expected.len(), before.len());
+    world.despawn(boxes[2]).unwrap();
+    assert_eq!(primitives(&world, layers), expected, "the same points, forces and colours");
+
+    // The tick after it is the one of a world without cached contacts.
+    let mut restored = world.clone();
+    restored.restore(&world.save());
+    (0..30).for_each(|_| {
+        world.step();
+        restored.step();
+        assert_eq!(world.state_hash(), restored.state_hash());
+    });
+}
+
+/// Two balls, each with its joint to a fixed body 3 m away, and both in a sensor of 10 m.
+fn figures_of(kind: impl Into<JointKind>) -> (World, String) {
+    let mut world = World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).unwrap();
+    let zone = ShapeDef::new(Geometry::circle(fx!(10)).unwrap()).sensor();
+    let post = world.spawn(&BodyDef::fixed(), &[zone]).unwrap();
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
+    let ball = world.spawn(&BodyDef::dynamic().position((fx!(3), fx!(0))), &[ball]).unwrap();
+    world.add_joint(&JointDef::new(post, ball, kind)).unwrap();
+    world.step();
+    let styles = primitives(&world, Layers::ALL).into_iter().map(|found| found.style);
+    let figures = Legend::of(&world, styles).figures;
+    (world, figures)
+}
+
+#[test]
+fn sensors_are_no_overlap_and_what_a_joint_allows_is_no_gap() {
+    let allowed: [JointKind; 8] = [
+        Distance::rod(fx!(3)).into(),
+        Distance::rope(fx!(5)).into(),
+        Distance::new().spring(fx!(1), fx!(0.5), fx!(1)).into(),
+        Prismatic::new().into(),
+        Wheel::new().into(),
+        Weld::rigid().linear(fx!(1), fx!(0.5)).into(),
+        Motor::new().into(),
+        JointKind::Filter,
+    ];
+    for kind in allowed {
+        let (world, figures) = figures_of(kind);
+        assert!(figures.contains("deepest overlap 0.0 mm"), "{kind:?}: {figures}");
+        assert!(figures.contains("widest joint gap 0.0 mm"), "{kind:?}: {figures}");
+        let found = primitives(&world, Layers { joints: true, ..Layers::NONE });
+        assert_eq!(count(&found, Style::JointGap), 0, "{kind:?}");
+        assert_eq!(
+            count(&found, Style::JointArm),
+            1 + 1,
+            "{kind:?}: to the centre, and from anchor to anchor"
+        );
+    }
+    let (mut world, figures) = figures_of(Distance::rope(fx!(2)));
+    assert!(!figures.contains("widest joint gap 0.0 mm"), "{figures}");
+    let (id, _) = world.joints().next().unwrap();
+    let error = world.joint_error(id).unwrap();
+    let drawn = primitives(&world, Layers { joints: true, ..Layers::NONE });
+    let gaps: Vec<Fx> = drawn.iter().filter(|found| found.style == Style::JointGap).map(length_of).collect();
+    assert!(gaps.len() == 1 && (gaps[0] - error).abs() < fx!(0.0001), "{gaps:?}, not {error}");
+    world.disable_joint(id).unwrap();
+    assert_eq!(world.widest_joint_gap(), Fx::ZERO, "a disabled joint holds nothing together");
+}
+
+fn length_of(primitive: &Primitive) -> Fx {
+    let Form::Line { from, to } = primitive.form else { panic!("expected a line: {primitive:?}") };
+    from.distance(to)
+}
+
+#[test]
+fn a_legend_names_every_style_once_and_labels_name_bodies() {
+    let mut world = scene();
+    let (id, _) = world.bodies().nth(1).unwrap();
+    world.set_name(id, Some(Name::new("crate").unwrap())).unwrap();
+    let zone = ShapeDef::new(Geometry::circle(fx!(2)).unwrap()).sensor();
+    world.spawn(&BodyDef::dynamic(), &[zone]).unwrap();
+    let found = primitives(&world, Layers::ALL);
+    assert_eq!(count(&found, Style::Sensor), 2, "a circle and its radius");
+    let names = Legend::of(&world, found.iter().map(|found| found.style)).names;
+    for (at, (name, _)) in names.iter().enumerate() {
+        assert!(!name.is_empty() && names[..at].iter().all(|(other, _)| other != name), "{names:?}");
+    }
+    let only = |layers| primitives(&world, layers).into_iter().map(|found| found.style);
+    let normals = Legend::of(&world, only(Layers { contact_normals: true, ..Layers::NONE }));
+    assert_eq!(normals.names, [("touching", 0xc62828)]);
+    let labels = primitives(&world, Layers { ids: true, ..Layers::NONE });
+    let is_named =
+        |found: &Primitive| matches!(&found.form, Form::Label { text, .. } if text.ends_with(" crate"));
+    assert_eq!(labels.iter().filter(|found| is_named(found)).count(), 1);
 }
 
 #[test]

@@ -5,8 +5,8 @@
 //! world and cannot change it.
 //!
 //! The contacts are those solved in the last tick. They were found before the bodies moved, so the contacts of a fast
-//! body lag behind its outline by the motion of one tick. Directly after [`World::restore`], [`World::from_bytes`] or
-//! the removal of a shape there are no contacts until the next tick.
+//! body lag behind its outline by the motion of one tick. Directly after [`World::restore`] or [`World::from_bytes`]
+//! there are no contacts until the next tick.
 //!
 //! Drawing uses no floating-point numbers, either: the same world gives the same text on every machine, so that two
 //! pictures can be compared with `diff`.
@@ -34,6 +34,7 @@
 mod bar;
 mod convert;
 mod fit;
+mod joint;
 mod legend;
 mod paint;
 mod path;

@@ -31,15 +31,15 @@ pub struct Layers {
     pub contact_forces: bool,
     /// Contact points in the colours of the groups in which the solver processes them.
     pub solver_colours: bool,
-    /// Anchors of enabled joints, the gaps between them, and lines to the bodies that they connect.
+    /// Anchors of enabled joints, their errors, and lines to the bodies that they connect.
     pub joints: bool,
-    /// Sizes of the joint gaps, as text.
+    /// Sizes of the joint errors, as text.
     pub joint_errors: bool,
     /// Centres of mass of bodies that can move.
     pub centres_of_mass: bool,
     /// Velocities of the centres of mass.
     pub velocities: bool,
-    /// Ids of bodies, as text.
+    /// Ids and names of bodies, as text.
     pub ids: bool,
 }
 
@@ -133,6 +133,8 @@ pub struct Primitive {
 /// Meaning of a primitive. Styles are in painting order: small, explanatory marks are on top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Style {
+    /// The outline of a sensor, on a body of any kind. It overlaps other shapes and stops none.
+    Sensor,
     /// The outline of a shape of a fixed body, or the radius that shows the rotation of a circle.
     Fixed,
     /// Same as [`Style::Fixed`] for a kinematic body.
@@ -147,7 +149,8 @@ pub enum Style {
     BroadPhase,
     /// The fat box of a shape in the broad phase.
     FatBox,
-    /// A line from a joint's anchor to the centre of mass of the body.
+    /// A line from a joint's anchor to the centre of mass of the body, or between the anchors where the joint allows
+    /// them to be apart: a rod, a spring, the way of a slider, a rope.
     JointArm,
     /// A line from the centre of mass to its predicted position in a tenth of a second.
     Velocity,
@@ -155,9 +158,10 @@ pub enum Style {
     CentreOfMass,
     /// An anchor of a joint.
     JointAnchor,
-    /// A line between the two anchors of a joint that should coincide.
+    /// The part of the distance between the two anchors of a joint that violates it:
+    /// [`World::joint_error`](crate::world::World::joint_error).
     JointGap,
-    /// The distance between the anchors of a joint, as text.
+    /// The size of that error, as text.
     JointError,
     /// The direction in which a contact pushes its shape B.
     ContactNormal(ContactProximity),
@@ -172,7 +176,7 @@ pub enum Style {
     SolverGroup(Hue),
     /// A contact point that is solved outside of all groups, because its bodies have too many contacts.
     SolverOverflow,
-    /// The id of a body.
+    /// The id of a body and its name, if it has one.
     Id,
 }
 

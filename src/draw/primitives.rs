@@ -1,14 +1,13 @@
 //! Collects the primitives of a world, as plain data.
 
-use alloc::format;
 use alloc::vec::Vec;
 
+use super::joint;
 use super::primitive::{ContactProximity, Form, Hue, Layers, Primitive, Style, Subject};
-use crate::body::{Body, BodyId, BodyKind, JointId};
+use crate::body::{Body, BodyId, BodyKind};
 use crate::collision::{Link, ManifoldPoint, Outline, PosedShape};
 use crate::fx;
 use crate::math::{Fx, Unit, Vec2, fx_mul, widen};
-use crate::solver::{JointKind, Pulley};
 use crate::world::{ContactView, SolverColour, World};
 
 /// A velocity is drawn as the displacement in this time, in seconds: one metre at 10 m/s, the size of a typical body.
@@ -52,15 +51,15 @@ pub fn each_primitive(world: &World, layers: Layers, found: Sink<'_>) {
     }
     if layers.joints || layers.joint_errors {
         for (id, _) in world.joints().filter(|(_, joint)| joint.def().enabled) {
-            add_joint(world, id, layers, found);
+            joint::add(world, id, layers, found);
         }
     }
 }
 
 /// Callback for each primitive.
-type Sink<'a> = &'a mut dyn FnMut(Primitive);
+pub(super) type Sink<'a> = &'a mut dyn FnMut(Primitive);
 
-fn primitive(style: Style, subject: Subject, form: Form) -> Primitive {
+pub(super) fn primitive(style: Style, subject: Subject, form: Form) -> Primitive {
     Primitive { style, subject, form }
 }
 
@@ -77,7 +76,7 @@ fn add_body(world: &World, (id, body): (BodyId, &Body), layers: Layers, found: S
     }
     let centre = body.centre_of_mass();
     if layers.ids {
-        found(primitive(Style::Id, subject, Form::Label { at: centre, text: format!("{id}") }));
+        found(primitive(Style::Id, subject, Form::Label { at: centre, text: world.body_label(id) }));
     }
     if body.kind() == BodyKind::Fixed {
         return;
@@ -104,8 +103,13 @@ fn style_of(body: &Body) -> Style {
 fn add_outlines(world: &World, (id, body): (BodyId, &Body), style: Style, found: Sink<'_>) {
     let subject = Subject::Body(id);
     let rotation = body.rotation();
-    let mut add = |form| found(primitive(style, subject, form));
     for shape in body.shapes().iter().filter_map(|&id| world.shape(id)) {
+        let style = match style {
+            Style::Island(_) => style,
+            _ if shape.is_sensor() => Style::Sensor,
+            _ => style,
+        };
+        let mut add = |form| found(primitive(style, subject, form));
         // The outline is the one used by collision detection, so that a picture cannot hide an error of the pose.
         let PosedShape { centre, outline, .. } = PosedShape::new(&shape.def, body, rotation);
         match outline {
@@ -190,40 +194,7 @@ fn force_length(acceleration: Fx) -> Fx {
     fx_mul(root, if acceleration < Fx::ZERO { -FORCE_LENGTH } else { FORCE_LENGTH })
 }
 
-fn stretched(vector: Vec2<Fx>, factor: Fx) -> Vec2<Fx> {
+/// A vector times a factor.
+pub(super) fn stretched(vector: Vec2<Fx>, factor: Fx) -> Vec2<Fx> {
     Vec2::new(fx_mul(vector.x, factor), fx_mul(vector.y, factor))
-}
-
-fn add_joint(world: &World, id: JointId, layers: Layers, found: Sink<'_>) {
-    let (Some(joint), Some((anchor_a, anchor_b))) = (world.joint(id), world.joint_anchors(id)) else {
-        return;
-    };
-    let mut add = |style, form| found(primitive(style, Subject::Joint(id), form));
-    if let Some(error) = world.joint_error(id).filter(|_| layers.joint_errors) {
-        let millimetres = error.saturating_mul_int(1000);
-        add(Style::JointError, Form::Label { at: anchor_b, text: format!("{millimetres:.2} mm") });
-    }
-    if !layers.joints {
-        return;
-    }
-    let (body_a, body_b) = joint.def().bodies();
-    for (body, anchor) in [(body_a, anchor_a), (body_b, anchor_b)] {
-        // The centre of a fixed body has no meaning: often all joints share one fixed body, and their lines would meet
-        // in a point far outside of the scene.
-        if let Some(body) = world.body(body).filter(|body| body.kind() != BodyKind::Fixed) {
-            add(Style::JointArm, Form::Line { from: anchor, to: body.centre_of_mass() });
-        }
-        add(Style::JointAnchor, Form::Point(anchor));
-    }
-    match &joint.def().kind {
-        // A rope leads over its wheels.
-        JointKind::Pulley(Pulley { wheel_a, wheel_b, .. }) => {
-            for (from, to) in [(anchor_a, *wheel_a), (*wheel_a, *wheel_b), (*wheel_b, anchor_b)] {
-                add(Style::JointArm, Form::Line { from, to });
-            }
-        }
-        // The anchors of gears and racks are meant to be apart.
-        JointKind::Gear(_) | JointKind::Rack(_) => {}
-        _ => add(Style::JointGap, Form::Line { from: anchor_a, to: anchor_b }),
-    }
 }

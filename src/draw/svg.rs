@@ -125,7 +125,10 @@ fn sorted_by_style(world: &World, view: &View, screen: &Screen, marks: &Marks) -
 
 /// Whether each body has its own path.
 fn has_tooltip(style: Style) -> bool {
-    matches!(style, Style::Fixed | Style::Kinematic | Style::Dynamic | Style::Asleep | Style::Island(_))
+    matches!(
+        style,
+        Style::Sensor | Style::Fixed | Style::Kinematic | Style::Dynamic | Style::Asleep | Style::Island(_)
+    )
 }
 
 fn is_text(style: Style) -> bool {

@@ -8,7 +8,7 @@
     reason = "nothing drawn flows back into a simulation"
 )]
 
-use lockstep2d::math::{Fx, widen};
+use lockstep2d::math::Fx;
 use lockstep2d::world::World;
 
 /// Quantities of a world that should be conserved or stay small.
@@ -18,9 +18,9 @@ pub(crate) struct Measures {
     pub(crate) kinetic: f64,
     /// Potential energy of all enabled dynamic bodies, in J; 0 at the origin.
     pub(crate) potential: f64,
-    /// Depth of the deepest contact, in metres; 0 if no shapes overlap.
+    /// [`World::deepest_overlap`], in metres.
     pub(crate) overlap: f64,
-    /// Largest distance between the two anchors of a joint, in metres.
+    /// [`World::widest_joint_gap`], in metres.
     pub(crate) gap: f64,
 }
 
@@ -34,10 +34,7 @@ impl Measures {
             let fall = number(gravity.x) * number(place.x) + number(gravity.y) * number(place.y);
             potential -= number(body.mass()) * number(body.settings().gravity_scale) * fall;
         }
-        let overlaps = world.contacts().flat_map(|contact| contact.manifold.points());
-        let overlap = overlaps.map(|point| -number(widen(point.separation))).fold(0.0, f64::max);
-        let anchors = world.joints().filter_map(|(id, _)| world.joint_anchors(id));
-        let gap = anchors.map(|(a, b)| number(a.distance(b))).fold(0.0, f64::max);
+        let (overlap, gap) = (number(world.deepest_overlap()), number(world.widest_joint_gap()));
         Measures { kinetic, potential, overlap, gap }
     }
 }

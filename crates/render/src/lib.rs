@@ -26,7 +26,7 @@ pub use files::{Animation, Pace};
 pub use glyphs::{GLYPH_HEIGHT, GLYPH_WIDTH, Glyph, glyph};
 pub use list::{DrawList, Item, Points, Text};
 pub use page::page;
-pub use paint::{Brush, paint, world};
+pub use paint::{Brush, filled, paint, world};
 #[cfg(feature = "raster")]
 pub use raster::{Image, SIDE_MAX, raster};
 pub use text::{CELL_HEIGHT, CELL_WIDTH, width_of};

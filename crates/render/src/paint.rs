@@ -78,7 +78,19 @@ pub fn world(list: &mut DrawList, world: &World, layers: Layers, camera: &Camera
 
 /// Draws one primitive, if it is visible.
 pub fn paint(list: &mut DrawList, primitive: &Primitive, camera: &Camera, brush: &Brush) {
-    let Look { stroke, fill, width } = Look::of(primitive.style, brush);
+    painted(list, primitive, camera, brush, Look::of(primitive.style, brush));
+}
+
+/// Draws one primitive in colours of one's own, if it is visible: its inside, if its style has one, and its lines.
+pub fn filled(list: &mut DrawList, primitive: &Primitive, camera: &Camera, inside: Colour, lines: Colour) {
+    let brush = Brush::default();
+    let look = Look::of(primitive.style, &brush);
+    let fill = if look.fill.is_none() { Colour::NONE } else { inside };
+    painted(list, primitive, camera, &brush, Look { stroke: lines, fill, ..look });
+}
+
+fn painted(list: &mut DrawList, primitive: &Primitive, camera: &Camera, brush: &Brush, look: Look) {
+    let Look { stroke, fill, width } = look;
     match &primitive.form {
         Form::Point(place) => {
             let [x, y] = camera.place(*place);

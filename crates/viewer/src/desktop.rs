@@ -1,54 +1,49 @@
 //! The command line.
 
+use std::ffi::OsString;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
-use lockstep2d_viewer::App;
-use lockstep2d_viewer::script::Script;
+use clap::{CommandFactory, FromArgMatches, Parser};
+use lockstep2d::lockstep::Game;
 
+use crate::script::Script;
+use crate::viewer::Viewer;
 use crate::window::{self, Options};
 
 #[cfg(target_os = "linux")]
 mod display;
-mod shove;
+mod online;
 
-/// Shows replays, snapshots and live scenes of lockstep2d in a window.
 #[derive(Debug, Parser)]
-#[command(name = "lockstep2d-viewer", version)]
+#[command(version)]
 struct Args {
-    /// Replay or snapshot to show. Without a file, a live sandbox is shown.
+    /// Replay, divergence report or snapshot to show. Without a file, a live scene is shown.
     file: Option<PathBuf>,
     /// Second replay or snapshot, compared with the first.
     #[arg(requires = "file")]
     other: Option<PathBuf>,
-    /// Scene of the live sandbox; `--list` shows the names.
-    #[arg(long, value_name = "NAME", conflicts_with = "file", default_value = window::FIRST_SCENE)]
-    scene: String,
+    /// Live scene; `--list` shows the names.
+    #[arg(long, value_name = "NAME", conflicts_with = "file")]
+    scene: Option<String>,
     /// Random seed of the scene or match [default: 0].
-    #[arg(long, value_name = "NUMBER", global = true)]
+    #[arg(long, value_name = "NUMBER")]
     seed: Option<u64>,
     /// Lists the scenes.
     #[arg(long)]
     list: bool,
     /// File that the replay of a live scene or match is saved to: at the end, and with the key `s`.
-    #[arg(short, long, value_name = "FILE", global = true)]
+    #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Runs a script instead of taking user input: see the docs of `lockstep2d_viewer::script`.
-    #[arg(long, value_name = "FILE", global = true)]
+    #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
     /// Width and height of the window.
-    #[arg(long, value_name = "WxH", default_value = "1120x720", value_parser = size, global = true)]
+    #[arg(long, value_name = "WxH", default_value = "1120x720", value_parser = size)]
     size: [u16; 2],
-    #[command(subcommand)]
-    game: Option<Game>,
-}
-
-/// Subcommands that show neither a file nor a scene.
-#[derive(Debug, Subcommand)]
-enum Game {
-    Shove(shove::Shove),
+    #[command(flatten)]
+    online: online::OnlineArgs,
 }
 
 fn size(text: &str) -> Result<[u16; 2], String> {
@@ -59,15 +54,32 @@ fn size(text: &str) -> Result<[u16; 2], String> {
         .ok_or_else(|| "should be a width and a height from 64 to 8192, such as 1120x720".to_owned())
 }
 
-/// Runs the program. Exit codes are those of the command `lockstep2d`: 0 for success, 2 for an error.
-pub(crate) fn main() -> ExitCode {
-    match run(Args::parse()) {
+/// Runs the program of a game. Exit codes: 0 for success, 2 for an error.
+pub(crate) fn run<G: Game + 'static>(viewer: Viewer<G>, arguments: Vec<OsString>) -> ExitCode {
+    let matches = match command(&viewer).try_get_matches_from(arguments) {
+        Ok(matches) => matches,
+        Err(usage) => {
+            // Printing fails if nobody reads the output, and then nobody reads an error, either.
+            let _printed = usage.print();
+            return if usage.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
+        }
+    };
+    let name = viewer.name.clone();
+    let args = Args::from_arg_matches(&matches).map_err(|error| Trouble(error.to_string()));
+    match args.and_then(|args| show(viewer, args)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(trouble) => {
-            eprintln!("lockstep2d-viewer: {trouble}");
+            eprintln!("{name}: {trouble}");
             ExitCode::from(2)
         }
     }
+}
+
+fn command<G: Game>(viewer: &Viewer<G>) -> clap::Command {
+    let (rules, engine, semantics) = (G::RULES, lockstep2d::VERSION, lockstep2d::SEMANTICS);
+    let version = format!("{} version {}, engine {engine}, semantics {semantics}", rules.name, rules.version);
+    let command = Args::command().name(viewer.name.clone()).about(viewer.about.clone()).version(version);
+    if viewer.online.is_some() { command } else { online::without(command) }
 }
 
 /// Error message for the user.
@@ -79,10 +91,11 @@ impl fmt::Display for Trouble {
     }
 }
 
-fn run(args: Args) -> Result<(), Trouble> {
+fn show<G: Game + 'static>(viewer: Viewer<G>, args: Args) -> Result<(), Trouble> {
+    let mut app = viewer.app();
     if args.list {
-        for scene in lockstep2d::scenes::ALL {
-            println!("{:18} {}", scene.name, scene.about);
+        for (name, about) in app.scenes() {
+            println!("{name:18} {about}");
         }
         return Ok(());
     }
@@ -93,28 +106,30 @@ fn run(args: Args) -> Result<(), Trouble> {
             Some(Script::parse(&text).map_err(|error| trouble(path, &error))?)
         }
     };
-    // clap cannot declare a conflict between a global argument and one that is not global.
     if args.seed.is_some() && args.file.is_some() {
         return Err(Trouble("--seed is for scenes and matches: a file contains its own seed".to_owned()));
     }
     let seed = args.seed.unwrap_or_default();
-    let mut app = App::default();
-    match (&args.game, &args.file) {
-        (Some(Game::Shove(shove)), _) => app.show(shove.open(seed)?),
-        (None, Some(path)) => {
+    let scene = args.scene.clone().or_else(|| app.first_scene());
+    match (&args.file, args.online.entry()) {
+        (Some(path), _) => {
             app.show_file(&name(path), read(path)?).map_err(|error| trouble(path, &error))?;
             if let Some(other) = &args.other {
                 app.compare_with(&name(other), read(other)?).map_err(|error| trouble(other, &error))?;
             }
         }
-        (None, None) if app.show_scene(&args.scene, seed) => {}
-        (None, None) => {
-            return Err(Trouble(format!("there is no scene {:?}: --list shows the names", args.scene)));
-        }
+        (None, Some(entry)) => app.show(args.online.open(&viewer, &entry, args.scene.as_deref(), seed)?),
+        (None, None) => match scene {
+            Some(scene) if app.show_scene(&scene, seed) => {}
+            Some(scene) => {
+                return Err(Trouble(format!("there is no scene {scene:?}: --list shows the names")));
+            }
+            None => return Err(Trouble("there is no scene: name a replay to show".to_owned())),
+        },
     }
     #[cfg(target_os = "linux")]
     display::check().map_err(Trouble)?;
-    let options = Options { size: args.size, script, output: args.output };
+    let options = Options { title: viewer.name, size: args.size, script, output: args.output };
     window::show(app, options).map_err(|error| Trouble(error.to_string()))
 }
 
@@ -132,11 +147,9 @@ fn trouble(path: &Path, error: &dyn fmt::Display) -> Trouble {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     /// clap checks the arguments with debug assertions, so this tests nothing in a build without them.
     #[test]
     fn the_arguments_go_together() {
-        super::Args::command().debug_assert();
+        super::command(&crate::sandbox()).debug_assert();
     }
 }

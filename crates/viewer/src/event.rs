@@ -63,6 +63,16 @@ pub enum Key {
     Control,
 }
 
+impl From<char> for Key {
+    /// The key of a character: the space bar for a space, and letters without regard to case.
+    fn from(character: char) -> Self {
+        match character {
+            ' ' => Key::Space,
+            other => Key::Character(other.to_ascii_lowercase()),
+        }
+    }
+}
+
 /// Button of the pointer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Button {

@@ -77,6 +77,15 @@ impl Distance {
         spring_force(lower, upper) => JointLimit { lower, upper };
     }
 
+    /// The length nearest to `length`, in metres, that the rod or the limits allow.
+    pub(crate) fn nearest_allowed(&self, length: Fx) -> Fx {
+        match (self.rod, self.limit) {
+            (Some(rod), _) => rod,
+            (None, Some(limit)) => length.max(limit.lower).min(limit.upper),
+            (None, None) => length,
+        }
+    }
+
     pub(super) fn validate(&self) -> Result<(), WorldError> {
         check(self.rod.is_none_or(|length| length >= ROD_MIN && is_sane(length)), "length")?;
         check(self.limit.is_none_or(|limit| limit.lower >= Fx::ZERO), "limit")?;

@@ -79,18 +79,19 @@ impl World {
         slots.sort_unstable();
         let ends = |(a, b): Pair| slots.binary_search(&a).is_ok() || slots.binary_search(&b).is_ok();
         let State { contacts, sleeping_contacts, .. } = &*self.state;
-        let before = contacts.len();
         self.scratch.contacts.remove_surfaces(|pair| ends(pair.shapes));
+        let is_listed = contacts.iter().any(|contact| ends(contact.shapes));
         let touching = contacts
             .iter()
             .chain(sleeping_contacts.iter())
             .filter(|contact| contact.touching && ends(contact.shapes));
         let removed: Vec<_> = touching.filter_map(|contact| self.state.reported(contact)).collect();
         self.state.removed_contacts.extend(removed);
-        self.state.contacts.retain(|contact| !ends(contact.shapes));
         self.state.sleeping_contacts.retain(|contact| !ends(contact.shapes));
-        if self.state.contacts.len() < before {
-            self.scratch.contacts.invalidate();
+        if is_listed {
+            // The manifolds of all other contacts stay: a picture of the tick still shows them.
+            let contacts = &mut self.state.contacts;
+            self.scratch.contacts.split_off(contacts, &mut Vec::new(), |contact| !ends(contact.shapes));
         }
     }
 }

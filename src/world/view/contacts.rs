@@ -64,8 +64,8 @@ pub struct ContactForce {
 
 impl World {
     /// Returns the contacts of the last tick that had points, sorted by pair, as the narrow phase found them at the
-    /// start of the tick. Manifolds are not part of the state: after a restore, or after the removal of a shape with
-    /// contacts, the result is empty until the next tick.
+    /// start of the tick. Sensors have no manifolds. Nor are manifolds part of the state: after a restore the result is
+    /// empty until the next tick. Contacts of a shape that is removed or replaced leave it at once.
     #[doc(alias = "manifold")]
     pub fn contacts(&self) -> impl Iterator<Item = ContactView<'_>> {
         let found = self.scratch.contacts.output();
@@ -75,6 +75,15 @@ impl World {
             let (shape_a, shape_b) = (event.shape_a, event.shape_b);
             ContactView { shape_a, shape_b, touching: contact.touching, manifold, world: self, contact }
         })
+    }
+
+    /// Returns the depth in metres of the deepest point of all [contacts](World::contacts): 0 if nothing overlaps.
+    /// Sensors are meant to overlap and do not count.
+    #[doc(alias = "penetration")]
+    #[must_use]
+    pub fn deepest_overlap(&self) -> Fx {
+        let points = self.contacts().flat_map(|contact| contact.manifold.points());
+        points.map(|point| -widen(point.separation)).fold(Fx::ZERO, Fx::max)
     }
 }
 
@@ -106,7 +115,9 @@ impl ContactView<'_> {
     pub fn solver_colour(&self) -> Option<SolverColour> {
         let touching = &self.world.scratch.contacts.output().touching;
         let place = touching.binary_search_by_key(&self.contact.shapes, |pair| pair.shapes).ok()?;
-        self.world.scratch.solver.contact_colour(place)
+        // Every manifold of the tick belonged to a touching pair, so its index there is that of the pair in the
+        // solver's list, from which pairs may have been removed since.
+        self.world.scratch.solver.contact_colour(touching.get(place)?.manifold as usize)
     }
 
     /// The mass that a force between the two bodies accelerates: `mA mB / (mA + mB)` in kg. A body that is not

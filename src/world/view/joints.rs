@@ -2,7 +2,7 @@
 
 use crate::body::{Body, JointId};
 use crate::math::{Fx, Vec2};
-use crate::solver::{Joint, JointKind, JointPart, Tuning};
+use crate::solver::{Joint, JointKind, JointPart, Tuning, Weld};
 use crate::world::World;
 
 impl World {
@@ -54,26 +54,22 @@ impl World {
     }
 
     /// Returns the distance in metres by which the anchors violate the joint: the distance of the anchors of a revolute
-    /// or weld joint, the offset across the axis of a prismatic or wheel joint, the deviation from the rod or the
+    /// joint or of a weld with rigid anchors, the offset across the axis of a prismatic or wheel joint, the deviation from the rod or the
     /// limits of a distance joint, the distance of the teeth of a gear or rack along the pitch line, the length by which the
-    /// rope of a pulley is too long. Limits, springs and motors of other kinds do not count. `None` for motor and filter
-    /// joints.
+    /// rope of a pulley is too long. Springs are meant to give way: they, the limits of other kinds and motors do not
+    /// count. `None` for motor and filter joints.
     #[doc(alias = "separation")]
     #[must_use]
     pub fn joint_error(&self, id: JointId) -> Option<Fx> {
         match &self.joint(id)?.def().kind {
-            JointKind::Revolute(_) | JointKind::Weld(_) => self.joint_length(id),
+            JointKind::Revolute(_) | JointKind::Weld(Weld { linear: None, .. }) => self.joint_length(id),
+            JointKind::Weld(_) => Some(Fx::ZERO),
             JointKind::Prismatic(_) | JointKind::Wheel(_) => {
                 self.joint_translation(id).map(|translation| translation.y.saturating_abs())
             }
             JointKind::Distance(distance) => {
                 let length = self.joint_length(id)?;
-                let nearest = match (distance.rod, distance.limit) {
-                    (Some(rod), _) => rod,
-                    (None, Some(limit)) => length.max(limit.lower).min(limit.upper),
-                    (None, None) => length,
-                };
-                Some(length.saturating_sub(nearest).saturating_abs())
+                Some(length.saturating_sub(distance.nearest_allowed(length)).saturating_abs())
             }
             JointKind::Gear(_) | JointKind::Rack(_) | JointKind::Pulley(_) => {
                 let (joint, a, b) = self.joint_and_bodies(id)?;
@@ -81,6 +77,13 @@ impl World {
             }
             JointKind::Motor(_) | JointKind::Filter => None,
         }
+    }
+
+    /// Returns the largest [error](World::joint_error) of all enabled joints, in metres; 0 without joints.
+    #[must_use]
+    pub fn widest_joint_gap(&self) -> Fx {
+        let enabled = self.joints().filter(|(_, joint)| joint.def().enabled);
+        enabled.filter_map(|(id, _)| self.joint_error(id)).fold(Fx::ZERO, Fx::max)
     }
 
     /// Returns the force in N that the joint exerted on B in the last sub-step, and the torque in N m about B's anchor.

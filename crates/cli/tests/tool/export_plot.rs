@@ -97,8 +97,8 @@ fn curves_have_the_extremes_of_what_they_show() {
         let depths = world.contacts().flat_map(|contact| contact.manifold.points());
         overlap.push(depths.map(|point| -point.separation.to_num::<f64>() * 1000.0).fold(0.0, f64::max));
         points.push(world.stats().points.into());
-        let anchors = world.joints().filter_map(|(id, _)| world.joint_anchors(id));
-        gap.push(anchors.map(|(a, b)| a.distance(b).to_num::<f64>() * 1000.0).fold(0.0, f64::max));
+        let errors = world.joints().filter_map(|(id, _)| world.joint_error(id));
+        gap.push(errors.map(|error| error.to_num::<f64>() * 1000.0).fold(0.0, f64::max));
     }
     let svg = plot("ragdoll", &[]);
     let points: Vec<f64> = points.iter().map(|&points| points as f64).collect();

@@ -71,10 +71,11 @@ impl Comparison {
 impl First {
     fn between(a: &mut dyn Source, b: &mut dyn Source) -> Self {
         let tick = a.tick();
+        let own = first_of_own(&a.state(), &b.state());
         let (a, b) = (a.world(), b.world());
         let body = differing(a, b).next();
         let field = match body {
-            None => "all bodies are equal, other state differs".into(),
+            None => own.unwrap_or_else(|| "all bodies are equal, other state differs".into()),
             Some(id) => format!("body {}: {}", a.body_label(id), first_field(a.body(id), b.body(id))),
         };
         First { tick, body, field }
@@ -88,6 +89,12 @@ pub(super) fn differing<'a>(a: &'a World, b: &'a World) -> impl Iterator<Item = 
     let mut ids: Vec<BodyId> = not_in_b.chain(only_in_b).collect();
     ids.sort_unstable();
     ids.into_iter()
+}
+
+/// The first field of the game's own state that differs, with both values.
+fn first_of_own(a: &[(String, String)], b: &[(String, String)]) -> Option<String> {
+    let (ours, theirs) = a.iter().zip(b).find(|(ours, theirs)| ours != theirs)?;
+    Some(format!("{}: {} | {}", ours.0, ours.1, theirs.1))
 }
 
 fn first_field(a: Option<&Body>, b: Option<&Body>) -> String {

@@ -5,7 +5,7 @@ use lockstep2d_render::{CELL_HEIGHT, DrawList, width_of};
 use super::theme;
 
 const LINES: &[(&str, &str)] = &[
-    ("space", "play, pause"),
+    ("space, p", "play, pause"),
     ("left, right", "one tick back, forward; ten with shift"),
     ("page up, down", "one second back, forward"),
     ("home, end", "go to the start, to the end"),
@@ -14,9 +14,12 @@ const LINES: &[(&str, &str)] = &[
     ("wheel, + -", "zoom"),
     ("drag", "pan"),
     ("click", "select a body and show all its fields"),
+    ("t", "show the state of the game's own rules"),
     ("f", "follow the selected body"),
     ("r", "show the whole scene"),
     ("j", "go to the first difference of two replays"),
+    ("[ ]", "previous scene, next scene"),
+    ("s", "save the recording as a replay"),
     ("h", "this list"),
     ("", ""),
     ("", "in a live world:"),
@@ -26,8 +29,6 @@ const LINES: &[(&str, &str)] = &[
     ("x, delete", "remove the body under the pointer"),
     ("e", "explosion at the pointer"),
     ("g", "gravity: down, none, up, left, right"),
-    ("[ ]", "previous scene, next scene"),
-    ("s", "save the recording as a replay"),
 ];
 
 pub(super) fn draw(list: &mut DrawList, [width, height]: [f32; 2]) {

@@ -5,7 +5,7 @@ use crate::live::Act;
 
 use super::App;
 use super::hand::Hand;
-use super::inspector::body_at;
+use super::inspector::{Inspector, body_at};
 use super::layers;
 use super::timeline::Bar;
 
@@ -82,9 +82,10 @@ impl App {
             Key::Character('s') => self.save(),
             Key::Character(']') => self.show_neighbour(1),
             Key::Character('[') => self.show_neighbour(lockstep2d::scenes::ALL.len() - 1),
+            Key::Character('t') => self.inspector.toggle_state(),
             Key::Escape => {
                 self.help = false;
-                self.inspector.select(None);
+                self.inspector = Inspector::default();
             }
             _ if self.act(key) => {}
             _ => self.travel(key),
@@ -104,7 +105,7 @@ impl App {
         let second = i64::from(source.tick_rate());
         let one = if pointer.shift { 10 } else { 1 };
         match key {
-            Key::Space => {
+            Key::Space | Key::Character('p') => {
                 let at_end = source.ticks() == Some(source.tick());
                 player.toggle(if at_end { Some(source.first()) } else { None });
             }

@@ -7,16 +7,18 @@ use lockstep2d::world::{QueryFilter, World};
 use lockstep2d_render::{CELL_HEIGHT, Camera, DrawList, width_of};
 
 use super::theme;
+use crate::source::Source;
 
 /// Width of the panel, in characters.
 const COLUMNS: usize = 58;
 /// Largest distance from a click to the body that it selects, in pixels.
 const REACH: f32 = 6.0;
 
-/// Selected body and scroll position.
+/// Selected body, whether the game's own state is shown, and scroll position.
 #[derive(Debug, Default)]
 pub(super) struct Inspector {
     pub(super) body: Option<BodyId>,
+    pub(super) shows_state: bool,
     /// Number of lines scrolled off the top of the panel.
     scrolled: usize,
 }
@@ -40,14 +42,20 @@ pub(super) fn body_at(world: &World, camera: &Camera, at: [f32; 2]) -> Option<Bo
 impl Inspector {
     pub(super) fn select(&mut self, body: Option<BodyId>) {
         if self.body != body {
-            *self = Inspector { body, scrolled: 0 };
+            *self = Inspector { body, scrolled: 0, ..*self };
         }
     }
 
-    /// Upper left corner and size of the panel, in pixels; `None` if no body is selected.
+    /// Shows the game's own state, or hides it.
+    pub(super) fn toggle_state(&mut self) {
+        (self.shows_state, self.scrolled) = (!self.shows_state, 0);
+    }
+
+    /// Upper left corner and size of the panel, in pixels; `None` if there is nothing to show.
     pub(super) fn area(&self, [width, height]: [f32; 2]) -> Option<([f32; 2], [f32; 2])> {
         let wide = width_of("x", 1.0) * COLUMNS as f32;
-        self.body.map(|_| ([(width - wide - 12.0).max(0.0), 12.0], [wide, (height - 90.0).max(CELL_HEIGHT)]))
+        let is_open = self.body.is_some() || self.shows_state;
+        is_open.then(|| ([(width - wide - 12.0).max(0.0), 12.0], [wide, (height - 90.0).max(CELL_HEIGHT)]))
     }
 
     /// Returns whether a screen position is on the panel.
@@ -65,9 +73,16 @@ impl Inspector {
         };
     }
 
-    pub(super) fn draw(&mut self, list: &mut DrawList, world: &World, size: [f32; 2]) {
-        let (Some(id), Some((corner, [width, height]))) = (self.body, self.area(size)) else { return };
-        let lines = describe(world, id);
+    pub(super) fn draw(&mut self, list: &mut DrawList, source: &mut dyn Source, size: [f32; 2]) {
+        let Some((corner, [width, height])) = self.area(size) else { return };
+        let mut lines = self.body.map(|id| describe(source.world(), id)).unwrap_or_default();
+        if self.shows_state {
+            let state = source.state();
+            let heading =
+                if state.is_empty() { "the game has no state of its own" } else { "state of the game" };
+            lines.push((heading.into(), String::new()));
+            lines.extend(state);
+        }
         let rows = (height / CELL_HEIGHT) as usize;
         self.scrolled = self.scrolled.min(lines.len().saturating_sub(rows));
         let shown = lines.iter().skip(self.scrolled).take(rows);

@@ -17,13 +17,13 @@ use std::time::Duration;
 
 use lockstep2d::draw::Layers;
 use lockstep2d::hash::StateHash;
-use lockstep2d::scenes::{self, Scene};
 use lockstep2d_render::DrawList;
 
 pub use layers::LAYER_KEYS;
+pub(crate) use layers::layers_at_first;
 
-use crate::live::Live;
-use crate::source::{OpenError, Source, open};
+use crate::content::Content;
+use crate::source::{OpenError, Source};
 use compare::Comparison;
 use hand::Hand;
 use input::Pointer;
@@ -47,6 +47,7 @@ use view::View;
 /// assert!(app.report().to_string().starts_with("pyramid"));
 /// ```
 pub struct App {
+    content: Content,
     source: Option<Box<dyn Source>>,
     comparison: Option<Comparison>,
     /// Name and contents of the shown file, kept to open the file again for a comparison.
@@ -104,16 +105,24 @@ impl fmt::Display for Report {
 }
 
 impl Default for App {
-    /// App without a source.
+    /// The app of the [sandbox](crate::sandbox), without a source.
     fn default() -> Self {
+        crate::sandbox().app()
+    }
+}
+
+impl App {
+    pub(crate) fn new(content: Content) -> Self {
+        let layers = content.layers;
         App {
+            content,
             source: None,
             comparison: None,
             file: None,
             message: None,
             player: Player::default(),
             view: View::default(),
-            layers: layers::AT_FIRST,
+            layers,
             layer_list: None,
             inspector: Inspector::default(),
             hand: Hand::default(),
@@ -124,9 +133,7 @@ impl Default for App {
             requests: Vec::new(),
         }
     }
-}
 
-impl App {
     /// Shows a source from its start, and resets the view, the selection and the player.
     pub fn show(&mut self, source: Box<dyn Source>) {
         self.source = Some(source);
@@ -142,7 +149,7 @@ impl App {
     pub fn show_file(&mut self, name: &str, bytes: Vec<u8>) -> Result<(), OpenError> {
         // A source borrows its file for `'static`: the bytes stay allocated until the program ends.
         let bytes: &'static [u8] = bytes.leak();
-        let source = self.noted(name, open(name, bytes))?;
+        let source = self.noted(name, self.content.open(name, bytes))?;
         self.show(source);
         self.file = Some((name.into(), bytes));
         Ok(())
@@ -156,8 +163,8 @@ impl App {
     pub fn compare_with(&mut self, name: &str, bytes: Vec<u8>) -> Result<(), OpenError> {
         let Some((first, first_bytes)) = self.file.clone() else { return self.show_file(name, bytes) };
         let bytes: &'static [u8] = bytes.leak();
-        let other = self.noted(name, open(name, bytes))?;
-        let mut scouts = [open(&first, first_bytes)?, open(name, bytes)?];
+        let other = self.noted(name, self.content.open(name, bytes))?;
+        let mut scouts = [self.content.open(&first, first_bytes)?, self.content.open(name, bytes)?];
         self.message = None;
         // A snapshot may start at a later tick than a replay.
         let start = scouts.iter().map(|scout| scout.first()).max().unwrap_or(0);
@@ -171,14 +178,25 @@ impl App {
         Ok(())
     }
 
-    /// Shows a live scene, in which the user can act. Returns `false` if there is no scene of this name.
+    /// Shows a live scene. Returns `false` if there is no scene of this name.
     pub fn show_scene(&mut self, name: &str, seed: u64) -> bool {
-        let Some(scene) = Scene::find(name) else { return false };
-        match Live::scene(scene, seed) {
-            Ok(live) => self.show(Box::new(live)),
+        let Some(scene) = self.content.scene(name) else { return false };
+        match (scene.open)(seed) {
+            Ok(source) => self.show(source),
             Err(error) => self.message = Some(format!("{name}: {error}")),
         }
         true
+    }
+
+    /// Names and descriptions of all scenes.
+    pub fn scenes(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.content.scenes.iter().map(|scene| (scene.name.as_str(), scene.about.as_str()))
+    }
+
+    /// Name of the scene that is shown at first, if there is one.
+    #[must_use]
+    pub fn first_scene(&self) -> Option<String> {
+        self.content.first_scene().map(str::to_owned)
     }
 
     /// Advances by elapsed real time: plays the source and continues background work.
@@ -253,9 +271,12 @@ impl App {
     /// Shows the scene `by` places further in the list, which wraps around.
     fn show_neighbour(&mut self, by: usize) {
         let name = self.source.as_ref().map_or("", |source| source.name());
-        let here = scenes::ALL.iter().position(|scene| scene.name == name).unwrap_or(0);
-        let next = scenes::ALL[(here + by) % scenes::ALL.len()].name;
-        self.show_scene(next, 0);
+        let scenes = &self.content.scenes;
+        let here = scenes.iter().position(|scene| scene.name == name).unwrap_or(0);
+        let next = scenes.iter().cycle().nth(here + by).map(|scene| scene.name.clone());
+        if let Some(next) = next {
+            self.show_scene(&next, 0);
+        }
     }
 
     /// Ends what the source takes part in, before the program ends.

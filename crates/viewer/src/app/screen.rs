@@ -33,10 +33,10 @@ pub(super) fn draw(app: &mut App) {
             outline(list, shown, id, &camera, theme::SELECTED);
         }
         comparison.iter_mut().for_each(|comparison| draw_other(list, shown, comparison, *layers, &camera));
-        inspector.draw(list, shown, *size);
         let bodies = (shown.body_count(), shown.awake_body_count());
         let (contacts, joints, faults) = (shown.contacts().count(), shown.joint_count(), shown.faults());
         source.decorate(list, &camera);
+        inspector.draw(list, source.as_mut(), *size);
         hand.draw(list, source.as_mut(), &camera, pointer.at);
         let marked =
             comparison.as_ref().and_then(|comparison| comparison.first.as_ref()).map(|first| first.tick);
@@ -114,7 +114,7 @@ fn draw_other(
     let first = comparison.first.as_ref().and_then(|first| first.body);
     let other = comparison.other.world();
     let tinted = Brush { tint: Some(theme::OTHER), ..Brush::suiting(other, camera) };
-    let moving = |primitive: &Primitive| primitive.style != Style::Fixed;
+    let moving = |primitive: &Primitive| !matches!(primitive.style, Style::Fixed | Style::Sensor);
     let outlines = Layers { outlines: layers.outlines, ..Layers::NONE };
     for primitive in primitives(other, outlines).iter().filter(|primitive| moving(primitive)) {
         paint(list, primitive, camera, &tinted);

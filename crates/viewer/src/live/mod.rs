@@ -63,7 +63,7 @@ impl Live {
     /// # Errors
     /// [`RecordError`] if the setup is invalid or a replay cannot hold it.
     pub fn new(name: impl Into<String>, setup: &SandboxSetup) -> Result<Self, RecordError> {
-        let recording = Recording::start(setup, |save: &SandboxSave| save.world.rollback_bytes())?;
+        let recording = Recording::start(setup, |_, save: &SandboxSave| save.world.rollback_bytes())?;
         Ok(Live {
             name: name.into(),
             scene: None,

@@ -32,8 +32,8 @@ pub(crate) struct Recording<G: Game> {
     /// Cumulative work units up to each tick.
     work: Vec<u64>,
     history: History<G::Save>,
-    /// Returns the unshared memory of a save, in bytes.
-    weigh: fn(&G::Save) -> usize,
+    /// Returns the unshared memory of a save of a game in its current state, in bytes.
+    weigh: fn(&G, &G::Save) -> usize,
     /// State after the last recorded tick, while the game is at an earlier tick.
     end: Option<G::Save>,
 }
@@ -55,7 +55,7 @@ pub(crate) enum RecordingError {
 
 impl<G: Game> Recording<G> {
     /// Starts a game. `weigh` returns the memory that a save does not share with other saves, in bytes.
-    pub(crate) fn start(setup: &G::Setup, weigh: fn(&G::Save) -> usize) -> Result<Self, RecordError> {
+    pub(crate) fn start(setup: &G::Setup, weigh: fn(&G, &G::Save) -> usize) -> Result<Self, RecordError> {
         let (recorder, game) = Recorder::<G>::start(setup, CHECKPOINT_INTERVAL)?;
         Ok(Recording {
             tick: 0,
@@ -149,15 +149,17 @@ impl<G: Game> Recording<G> {
     }
 
     /// Returns a replay file of all recorded ticks, whatever the current tick is.
-    pub(crate) fn to_replay(&self) -> Result<Vec<u8>, RecordError>
-    where
-        G: Clone,
-    {
+    pub(crate) fn to_replay(&mut self) -> Result<Vec<u8>, RecordingError> {
         let recorder = self.recorder.clone();
-        let Some(end) = &self.end else { return recorder.finish(&self.game) };
-        let mut game = self.game.clone();
-        game.load(end);
-        recorder.finish(&game)
+        let Some(end) = &self.end else {
+            return recorder.finish(&self.game).map_err(RecordingError::Record);
+        };
+        let here = self.tick;
+        self.game.load(end);
+        self.tick = self.ticks();
+        let file = recorder.finish(&self.game).map_err(RecordingError::Record)?;
+        self.seek(here)?;
+        Ok(file)
     }
 
     fn replay_towards(&mut self, target: u64) -> Result<(), RecordingError> {
@@ -181,7 +183,7 @@ impl<G: Game> Recording<G> {
     fn keep_save(&mut self, here: u64) {
         if self.tick.is_multiple_of(SAVE_INTERVAL) && !self.history.has(self.tick) {
             let save = self.game.save();
-            let bytes = (self.weigh)(&save);
+            let bytes = (self.weigh)(&self.game, &save);
             self.history.keep(self.tick, save, bytes, here);
         }
     }

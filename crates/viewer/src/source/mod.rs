@@ -4,7 +4,7 @@ mod open;
 mod replay;
 mod snapshot;
 
-pub use open::{OpenError, open};
+pub use open::OpenError;
 pub use replay::Replay;
 pub use snapshot::Snapshot;
 
@@ -95,6 +95,11 @@ pub trait Source {
     /// Ends what the source takes part in, such as a network match. Called once before the program ends; takes at most
     /// a second.
     fn close(&mut self) {}
+
+    /// Returns names and values of the state that is not the world: that of the game's own rules.
+    fn state(&self) -> Vec<(String, String)> {
+        Vec::new()
+    }
 
     /// Does a small amount of background work, such as verifying a replay. Returns `true` while work remains.
     fn think(&mut self) -> bool {

@@ -7,6 +7,7 @@ use lockstep2d::world::World;
 use lockstep2d_render::{Camera, DrawList};
 
 use super::{Source, SourceError};
+use crate::play::Presentation;
 
 /// Interval between keyframes, in ticks. Seeking backwards replays fewer ticks than this: half a second in large
 /// scenes.
@@ -24,13 +25,10 @@ pub struct Replay<G: Game> {
     verdict: Option<Verdict>,
     /// Empty world, shown for a game without a world.
     nothing: World,
-    decorate: Decorate<G>,
+    presentation: Presentation<G>,
 }
 
-/// Draws a game's own graphics on top of the world.
-type Decorate<G> = fn(&G, &mut DrawList, &Camera);
-
-impl<G: Game> Replay<G> {
+impl<G: Game + 'static> Replay<G> {
     /// Opens a replay.
     ///
     /// # Errors
@@ -45,14 +43,12 @@ impl<G: Game> Replay<G> {
             check,
             verdict: None,
             nothing: World::default(),
-            decorate: |_, _, _| {},
+            presentation: Presentation::default(),
         })
     }
 
-    /// Sets the function that draws on top of the world: scores, colours of players.
-    #[must_use]
-    pub fn decorated(self, decorate: Decorate<G>) -> Self {
-        Replay { decorate, ..self }
+    pub(crate) fn presented(self, presentation: Presentation<G>) -> Self {
+        Replay { presentation, ..self }
     }
 
     /// Returns the game at the current tick.
@@ -74,7 +70,7 @@ impl<G: Game> Replay<G> {
     }
 }
 
-impl<G: Game> Source for Replay<G> {
+impl<G: Game + 'static> Source for Replay<G> {
     fn name(&self) -> &str {
         &self.name
     }
@@ -104,7 +100,11 @@ impl<G: Game> Source for Replay<G> {
     }
 
     fn decorate(&mut self, list: &mut DrawList, camera: &Camera) {
-        (self.decorate)(self.timeline.game(), list, camera);
+        self.presentation.draw(self.timeline.game(), list, camera);
+    }
+
+    fn state(&self) -> Vec<(String, String)> {
+        (self.presentation.state)(self.timeline.game())
     }
 
     fn status(&self) -> String {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use lockstep2d_viewer::{App, Event, Request};
+use crate::{App, Event, Request};
 
 use super::WindowError;
 

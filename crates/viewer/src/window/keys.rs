@@ -1,6 +1,6 @@
 //! Translates miniquad's keys, buttons and wheel to those of the viewer.
 
-use lockstep2d_viewer::{Button, Key};
+use crate::{Button, Key};
 use miniquad::{KeyCode, MouseButton};
 
 /// Keys that are down.

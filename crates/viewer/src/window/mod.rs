@@ -13,18 +13,17 @@ use std::fmt;
 use std::path::PathBuf;
 use std::rc::Rc;
 
-use lockstep2d_viewer::App;
-use lockstep2d_viewer::script::Script;
 use miniquad::conf::{Conf, LinuxBackend, Platform};
 
+use crate::app::App;
+use crate::script::Script;
 use host::Host;
 use stage::Stage;
 
-/// Default scene.
-pub(crate) const FIRST_SCENE: &str = "ragdoll";
-
 /// Options of the window.
 pub(crate) struct Options {
+    /// Title.
+    pub(crate) title: String,
     /// Width and height.
     pub(crate) size: [u16; 2],
     /// Script that replaces user input.
@@ -62,7 +61,7 @@ type Outcome = Rc<RefCell<Result<(), WindowError>>>;
 pub(crate) fn show(app: App, options: Options) -> Result<(), WindowError> {
     let [width, height] = options.size.map(i32::from);
     let conf = Conf {
-        window_title: "lockstep2d".to_owned(),
+        window_title: options.title,
         window_width: width,
         window_height: height,
         high_dpi: true,

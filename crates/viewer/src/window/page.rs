@@ -10,7 +10,7 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use lockstep2d_viewer::{App, Event, Report, Request};
+use crate::{App, Event, Report, Request};
 
 use super::WindowError;
 

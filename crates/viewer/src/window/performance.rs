@@ -3,8 +3,8 @@
 use std::io;
 use std::path::Path;
 
-use lockstep2d_viewer::Event;
-use lockstep2d_viewer::script::{FRAME, Script, Step};
+use crate::Event;
+use crate::script::{FRAME, Script, Step};
 use miniquad::window;
 
 use super::WindowError;

@@ -1,6 +1,6 @@
 //! [`Renderer`]: draws meshes on the screen and into pictures.
 
-use lockstep2d_viewer::mesh::{Atlas, Chunk, Mesh, Screen, Vertex};
+use crate::mesh::{Atlas, Chunk, Mesh, Screen, Vertex};
 use miniquad::{
     BlendFactor, BlendState, BlendValue, BufferId, BufferLayout, BufferSource, BufferType, BufferUsage,
     Equation, PassAction, Pipeline, PipelineParams, RenderingBackend, ShaderError, ShaderMeta, ShaderSource,

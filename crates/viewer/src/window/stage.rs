@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use lockstep2d_viewer::mesh::{Mesh, Screen};
-use lockstep2d_viewer::script::Script;
-use lockstep2d_viewer::{App, Event};
+use crate::mesh::{Mesh, Screen};
+use crate::script::Script;
+use crate::{App, Event};
 use miniquad::{EventHandler, KeyCode, KeyMods, MouseButton, date, window};
 
 use super::host::Host;

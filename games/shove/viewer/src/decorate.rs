@@ -36,7 +36,7 @@ pub fn decorate(game: &Shove, list: &mut DrawList, camera: &Camera) {
 }
 
 /// Returns a line with the round and its phase.
-pub(super) fn headline(game: &Shove) -> String {
+pub(crate) fn headline(game: &Shove) -> String {
     let seconds = u32::from(game.ticks_left()).div_ceil(game.tick_rate());
     let present = game.players_in_order().filter(|player| player.present).count();
     let phase = match game.phase() {

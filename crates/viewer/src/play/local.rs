@@ -1,0 +1,152 @@
+//! [`LocalMatch`]: a game that is played at one computer.
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::{Limits, RecordError};
+use lockstep2d::world::World;
+use lockstep2d_render::{Camera, DrawList};
+
+use super::player::{Player, Seated};
+use super::presentation::Presentation;
+use crate::event::Event;
+use crate::recording::{Recording, RecordingError};
+use crate::source::{Source, SourceError};
+
+/// Game of people at one keyboard and bots.
+///
+/// As in a live sandbox, every tick is recorded and any tick can be sought. Recorded ticks are played again until a
+/// person presses one of the players' keys: the game then continues live from there, and the later recorded ticks are
+/// dropped.
+pub struct LocalMatch<G: Game> {
+    name: String,
+    recording: Recording<G>,
+    players: Vec<Seated<G>>,
+    presentation: Presentation<G>,
+    /// Empty world, shown for a game without a world.
+    nothing: World,
+}
+
+/// Memory of a save in bytes, as far as it is not shared with other saves. That of a game's own rules is not known and
+/// counted as a kilobyte.
+fn bytes_of<G: Game>(game: &G, _: &G::Save) -> usize {
+    1024 + game.world().map_or(0, |world| world.save().rollback_bytes())
+}
+
+impl<G: Game + 'static> LocalMatch<G> {
+    /// Starts a game. The players take its seats in order; further seats are absent, and further players are left out.
+    /// Bots are created from `seed`.
+    ///
+    /// # Errors
+    /// [`RecordError`] if the game refuses the setup or a replay cannot hold it.
+    pub fn new(
+        name: impl Into<String>,
+        setup: &G::Setup,
+        players: &[Player<G>],
+        seed: u64,
+    ) -> Result<Self, RecordError> {
+        let recording = Recording::<G>::start(setup, bytes_of)?;
+        let seats = usize::try_from(recording.game().players()).unwrap_or(usize::MAX);
+        let seated = players.iter().chain(std::iter::repeat(&Player::Absent)).take(seats).enumerate();
+        let players = seated.map(|(seat, player)| Seated::new(player, seed, seat)).collect();
+        let (presentation, nothing) = (Presentation::default(), World::default());
+        Ok(LocalMatch { name: name.into(), recording, players, presentation, nothing })
+    }
+
+    pub(crate) fn presented(self, presentation: Presentation<G>) -> Self {
+        LocalMatch { presentation, ..self }
+    }
+
+    /// Returns the game at the current tick.
+    #[must_use]
+    pub fn game(&self) -> &G {
+        self.recording.game()
+    }
+
+    fn step(&mut self) -> Result<(), RecordingError> {
+        if !self.recording.is_at_end() && !self.somebody_presses() {
+            return self.recording.replay_tick();
+        }
+        let game = self.recording.game();
+        let inputs: Vec<_> = self.players.iter_mut().map(|player| player.input(game)).collect();
+        self.recording.play(&inputs)
+    }
+
+    fn somebody_presses(&self) -> bool {
+        self.players.iter().any(Seated::presses)
+    }
+}
+
+impl<G: Game + 'static> Source for LocalMatch<G> {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn world(&mut self) -> &World {
+        self.recording.game().world().unwrap_or(&self.nothing)
+    }
+
+    fn hash(&self) -> StateHash {
+        self.recording.game().state_hash()
+    }
+
+    fn tick(&self) -> u64 {
+        self.recording.tick()
+    }
+
+    /// Always `None`: a live game has no last tick.
+    fn ticks(&self) -> Option<u64> {
+        None
+    }
+
+    fn recorded(&self) -> u64 {
+        self.recording.ticks()
+    }
+
+    fn tick_rate(&self) -> u32 {
+        self.recording.game().tick_rate()
+    }
+
+    /// Seeking forwards plays; seeking backwards keeps the recording.
+    fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
+        if tick < self.tick() {
+            return self.recording.seek(tick).map_err(SourceError::of);
+        }
+        while self.tick() < tick {
+            if self.recording.is_at_end() || self.somebody_presses() {
+                self.step().map_err(SourceError::of)?;
+            } else {
+                self.recording.seek(tick.min(self.recorded())).map_err(SourceError::of)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn handle(&mut self, event: &Event) -> bool {
+        // All players get the event, so that none misses the release of a key.
+        let taken = self.players.iter_mut().map(|player| player.handle(event));
+        taken.fold(false, |any, taken| any | taken)
+    }
+
+    fn decorate(&mut self, list: &mut DrawList, camera: &Camera) {
+        self.presentation.draw(self.recording.game(), list, camera);
+    }
+
+    fn state(&self) -> Vec<(String, String)> {
+        (self.presentation.state)(self.recording.game())
+    }
+
+    fn save_replay(&mut self) -> Option<Result<Vec<u8>, SourceError>> {
+        Some(self.recording.to_replay().map_err(SourceError::of))
+    }
+
+    fn status(&self) -> String {
+        let course = if self.recording.is_at_end() { "live" } else { "recorded" };
+        let own = (self.presentation.status)(self.recording.game());
+        let mut status = if own.is_empty() { course.to_owned() } else { format!("{course} · {own}") };
+        let work = self.recording.work();
+        if work > Limits::default().total_work {
+            status += &format!(" · verify it with --max-work {work}");
+        }
+        status
+    }
+}

@@ -1,0 +1,241 @@
+//! [`Online`]: a network match, with the local player at the keyboard.
+
+use std::time::Duration;
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::Game;
+use lockstep2d::peer::{Peer, PeerDesync, PeerError, PeerEvent, Transport};
+use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, RawReplay, Recording, Step};
+use lockstep2d::session::{Event as SessionEvent, Status};
+use lockstep2d::world::World;
+use lockstep2d_render::{Camera, DrawList};
+
+use super::controls::Controls;
+use super::presentation::Presentation;
+use crate::event::Event;
+use crate::source::{Source, SourceError};
+
+/// Longest time for which closing waits until the others know that this peer leaves, and time between two updates.
+const LEAVE_TIME: Duration = Duration::from_millis(500);
+const LEAVE_STEP: Duration = Duration::from_millis(5);
+
+/// Participant of a network match: its host, another player or a spectator.
+///
+/// The match runs by the clock that all participants share, so it can neither be paused nor sought. The last few ticks
+/// shown may be played with guessed inputs. The replay contains only final ticks.
+pub struct Online<G: Game, T: Transport> {
+    name: String,
+    setup: G::Setup,
+    peer: Peer<G, T>,
+    now: Duration,
+    controls: Controls<G::Input>,
+    presentation: Presentation<G>,
+    /// Part of the replay that has been taken from the peer so far.
+    replay: Vec<u8>,
+    desync: Option<PeerDesync>,
+    /// Text of the peer's last event.
+    told: Option<&'static str>,
+    /// Whether play waits for another peer.
+    waiting: bool,
+    /// Error that ended the match.
+    ended: Option<PeerError>,
+    /// Empty world, shown for a game without a world.
+    nothing: World,
+}
+
+impl<G: Game + 'static, T: Transport> Online<G, T> {
+    /// Shows the match of a new peer, which was made from this setup. All of its own seats are controlled by the same
+    /// keys.
+    #[must_use]
+    pub fn new(
+        name: impl Into<String>,
+        setup: G::Setup,
+        peer: Peer<G, T>,
+        controls: Controls<G::Input>,
+    ) -> Self {
+        Online {
+            name: name.into(),
+            setup,
+            peer,
+            now: Duration::ZERO,
+            controls,
+            presentation: Presentation::default(),
+            replay: Vec::new(),
+            desync: None,
+            told: None,
+            waiting: false,
+            ended: None,
+            nothing: World::default(),
+        }
+    }
+
+    pub(crate) fn presented(self, presentation: Presentation<G>) -> Self {
+        Online { presentation, ..self }
+    }
+
+    /// Returns the peer.
+    #[must_use]
+    pub const fn peer(&self) -> &Peer<G, T> {
+        &self.peer
+    }
+
+    /// Returns the first desync, if there was one.
+    #[must_use]
+    pub const fn desync(&self) -> Option<&PeerDesync> {
+        self.desync.as_ref()
+    }
+
+    fn go_on(&mut self) -> Result<(), PeerError> {
+        self.peer.update(self.now)?;
+        while self.peer.is_due() {
+            let seats = self.peer.seats().len();
+            let inputs: Vec<_> = (0..seats).map(|_| self.controls.input()).collect();
+            if self.peer.advance(&inputs)? {
+                // A short tap counts for one tick.
+                let _played = self.controls.take();
+            }
+        }
+        while let Some(event) = self.peer.next_event() {
+            self.note(&event);
+        }
+        self.replay.extend(self.peer.take_replay());
+        Ok(())
+    }
+
+    fn note(&mut self, event: &PeerEvent) {
+        match event {
+            PeerEvent::Desync(found) => {
+                self.desync.get_or_insert(*found);
+            }
+            PeerEvent::Session(SessionEvent::Waiting { .. }) => self.waiting = true,
+            PeerEvent::Session(SessionEvent::Resumed) => self.waiting = false,
+            PeerEvent::Session(SessionEvent::Seated { .. }) => self.told = Some("somebody has joined"),
+            PeerEvent::Session(SessionEvent::Unseated { .. }) => self.told = Some("somebody has left"),
+            PeerEvent::Session(SessionEvent::TooFarBehind) => self.told = Some("too far behind the others"),
+            _ => {}
+        }
+    }
+
+    /// Returns a complete replay of the final ticks so far. The match is still being recorded, so the ticks are played
+    /// again into a second recording.
+    fn replay_so_far(&self) -> Result<Vec<u8>, SourceError> {
+        if self.replay.is_empty() {
+            return Err(SourceError("this peer has no replay of the match, or not yet".into()));
+        }
+        let limits = Limits::default();
+        let mut raw = RawReplay::<G>::open(&self.replay, &limits).map_err(SourceError::of)?;
+        let mut recording =
+            Recording::<G>::start(&self.setup, CHECKPOINT_INTERVAL).map_err(SourceError::of)?;
+        while raw.step().map_err(SourceError::of)? == Step::Ticked {
+            recording.step(raw.inputs()).map_err(SourceError::of)?;
+        }
+        recording.finish().map_err(SourceError::of)
+    }
+
+    /// What the player has to know about the match.
+    fn news(&self) -> String {
+        match (&self.ended, &self.desync, self.peer.status()) {
+            (Some(error), ..) => return error.to_string(),
+            (None, Some(PeerDesync { tick, ours, theirs, .. }), _) => {
+                return format!("after tick {tick} the state is {ours} here and {theirs} elsewhere");
+            }
+            (None, None, Some(Status::Playing)) if self.waiting => "waiting for somebody",
+            (None, None, Some(Status::Playing)) => self.told.unwrap_or("playing"),
+            (None, None, Some(Status::Waiting)) => "waiting for more players",
+            (None, None, None | Some(Status::Joining)) => "joining",
+            (None, None, Some(Status::Watching)) => "watching",
+            (None, None, Some(Status::Paused)) => "paused: no majority of the players is heard",
+            (None, None, Some(Status::Dropped)) => "dropped: the others went on; asking for the seat again",
+            (None, None, Some(Status::Kicked)) => "removed by the others",
+            (None, None, Some(Status::Finished { .. })) => "finished",
+            (None, None, Some(_)) => "out of the match",
+        }
+        .to_owned()
+    }
+}
+
+impl<G: Game + 'static, T: Transport> Source for Online<G, T> {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn world(&mut self) -> &World {
+        self.peer.game().world().unwrap_or(&self.nothing)
+    }
+
+    fn hash(&self) -> StateHash {
+        self.peer.game().state_hash()
+    }
+
+    fn tick(&self) -> u64 {
+        self.peer.tick()
+    }
+
+    fn ticks(&self) -> Option<u64> {
+        None
+    }
+
+    fn tick_rate(&self) -> u32 {
+        self.peer.game().tick_rate()
+    }
+
+    fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
+        let is_here = tick == self.tick();
+        is_here
+            .then_some(())
+            .ok_or_else(|| SourceError("a network match runs by its own clock and cannot be sought".into()))
+    }
+
+    fn handle(&mut self, event: &Event) -> bool {
+        self.controls.handle(event)
+    }
+
+    fn advance(&mut self, time: Duration) -> Result<bool, SourceError> {
+        self.now += time;
+        if self.ended.is_none()
+            && let Err(error) = self.go_on()
+        {
+            let why = SourceError::of(&error);
+            self.ended = Some(error);
+            return Err(why);
+        }
+        Ok(true)
+    }
+
+    /// Leaves the match: the others go on at once.
+    fn close(&mut self) {
+        self.peer.leave();
+        for _ in 0..LEAVE_TIME.as_millis() / LEAVE_STEP.as_millis() {
+            let status = self.peer.status();
+            let has_left =
+                matches!(status, None | Some(Status::Left | Status::Finished { .. } | Status::Closed));
+            if has_left || self.ended.is_some() || self.advance(LEAVE_STEP).is_err() {
+                break;
+            }
+            std::thread::sleep(LEAVE_STEP);
+        }
+    }
+
+    fn decorate(&mut self, list: &mut DrawList, camera: &Camera) {
+        self.presentation.draw(self.peer.game(), list, camera);
+    }
+
+    fn state(&self) -> Vec<(String, String)> {
+        (self.presentation.state)(self.peer.game())
+    }
+
+    fn save_replay(&mut self) -> Option<Result<Vec<u8>, SourceError>> {
+        Some(self.replay_so_far())
+    }
+
+    fn status(&self) -> String {
+        let seat = match self.peer.seats()[..] {
+            _ if self.ended.is_some() => "out of the match".into(),
+            [] => "no seat".into(),
+            [seat, ..] => format!("seat {}", seat + 1),
+        };
+        let own = (self.presentation.status)(self.peer.game());
+        let parts = [seat, own, self.news()];
+        parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" · ")
+    }
+}

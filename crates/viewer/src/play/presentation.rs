@@ -1,0 +1,68 @@
+//! [`Presentation`]: how a game is shown, apart from its world.
+
+use std::collections::BTreeSet;
+use std::rc::Rc;
+
+use lockstep2d::inspect::{Field, fields};
+use lockstep2d::lockstep::Game;
+use lockstep2d_render::{Camera, DrawList};
+
+use crate::canvas::Canvas;
+
+/// Names and values of the fields of a state.
+pub(crate) type Fields = Vec<(String, String)>;
+
+/// How a game is shown, apart from its world.
+pub(crate) struct Presentation<G: Game> {
+    /// Draws over the world.
+    pub(crate) draw: Rc<dyn Fn(&G, &mut Canvas<'_>)>,
+    /// One line of text, such as the score; may be empty.
+    pub(crate) status: Rc<dyn Fn(&G) -> String>,
+    /// The state of the game's own rules.
+    pub(crate) state: Rc<dyn Fn(&G) -> Fields>,
+}
+
+impl<G: Game> Clone for Presentation<G> {
+    fn clone(&self) -> Self {
+        let Presentation { draw, status, state } = self;
+        Presentation { draw: Rc::clone(draw), status: Rc::clone(status), state: Rc::clone(state) }
+    }
+}
+
+impl<G: Game + 'static> Default for Presentation<G> {
+    /// Nothing but the world, and as state all fields of a save that are not the world.
+    fn default() -> Self {
+        Presentation {
+            draw: Rc::new(|_, _| {}),
+            status: Rc::new(|_| String::new()),
+            state: Rc::new(own_state::<G>),
+        }
+    }
+}
+
+impl<G: Game> Presentation<G> {
+    pub(crate) fn draw(&self, game: &G, list: &mut DrawList, camera: &Camera) {
+        (self.draw)(game, &mut Canvas::new(list, camera));
+    }
+}
+
+/// Lists fields by path and value.
+pub(crate) fn listed(fields: &[Field]) -> Fields {
+    fields.iter().map(|field| (field.path().to_owned(), field.value.to_string())).collect()
+}
+
+/// All fields of a save, except those of the world in it.
+fn own_state<G: Game>(game: &G) -> Fields {
+    let all = fields(&game.save()).unwrap_or_default();
+    let world = game.world().and_then(|world| fields(&world.save()).ok()).unwrap_or_default();
+    let Some(first) = world.first().map(Field::path) else { return listed(&all) };
+    // The world is where the path of its first field occurs.
+    let inside = all.iter().find_map(|field| field.path().strip_suffix(first)).map(str::to_owned);
+    let of_world: BTreeSet<&str> = world.iter().map(Field::path).collect();
+    let is_own = |field: &&Field| match inside.as_deref() {
+        None => true,
+        Some("") => !of_world.contains(field.path()),
+        Some(prefix) => !field.path().starts_with(prefix),
+    };
+    listed(&all.iter().filter(is_own).cloned().collect::<Vec<_>>())
+}

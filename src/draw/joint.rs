@@ -1,0 +1,77 @@
+//! Primitives of a joint. A distance between the anchors that the joint allows is drawn as the joint itself.
+
+use alloc::format;
+
+use super::primitive::{Form, Layers, Style, Subject};
+use super::primitives::{Sink, primitive, stretched};
+use crate::body::{BodyKind, JointId};
+use crate::math::{Fx, Vec2, fx_div};
+use crate::solver::{Joint, JointKind, Pulley, Weld};
+use crate::world::World;
+
+/// Adds a joint: its anchors, the lines to its bodies, the part of the distance between the anchors that it allows and
+/// the part that violates it, and the size of the latter.
+pub(super) fn add(world: &World, id: JointId, layers: Layers, found: Sink<'_>) {
+    let (Some(joint), Some((anchor_a, anchor_b))) = (world.joint(id), world.joint_anchors(id)) else {
+        return;
+    };
+    let mut add = |style, form| found(primitive(style, Subject::Joint(id), form));
+    if let Some(error) = world.joint_error(id).filter(|_| layers.joint_errors) {
+        let millimetres = error.saturating_mul_int(1000);
+        add(Style::JointError, Form::Label { at: anchor_b, text: format!("{millimetres:.2} mm") });
+    }
+    if !layers.joints {
+        return;
+    }
+    let (body_a, body_b) = joint.def().bodies();
+    for (body, anchor) in [(body_a, anchor_a), (body_b, anchor_b)] {
+        // The centre of a fixed body has no meaning: often all joints share one fixed body, and their lines would meet
+        // in a point far outside of the scene.
+        if let Some(body) = world.body(body).filter(|body| body.kind() != BodyKind::Fixed) {
+            add(Style::JointArm, Form::Line { from: anchor, to: body.centre_of_mass() });
+        }
+        add(Style::JointAnchor, Form::Point(anchor));
+    }
+    match &joint.def().kind {
+        // A rope leads over its wheels.
+        JointKind::Pulley(Pulley { wheel_a, wheel_b, .. }) => {
+            for (from, to) in [(anchor_a, *wheel_a), (*wheel_a, *wheel_b), (*wheel_b, anchor_b)] {
+                add(Style::JointArm, Form::Line { from, to });
+            }
+        }
+        // The anchors of gears and racks are meant to be apart.
+        JointKind::Gear(_) | JointKind::Rack(_) => {}
+        _ => {
+            let meant = nearest_allowed(joint, world, (anchor_a, anchor_b));
+            for (style, from, to) in [(Style::JointArm, anchor_a, meant), (Style::JointGap, meant, anchor_b)]
+            {
+                if from != to {
+                    add(style, Form::Line { from, to });
+                }
+            }
+        }
+    }
+}
+
+/// The place for B's anchor, nearest to where it is, at which the joint would hold without error.
+fn nearest_allowed(joint: &Joint, world: &World, (anchor_a, anchor_b): (Vec2<Fx>, Vec2<Fx>)) -> Vec2<Fx> {
+    let def = joint.def();
+    match &def.kind {
+        JointKind::Revolute(_) | JointKind::Weld(Weld { linear: None, .. }) => anchor_a,
+        JointKind::Prismatic(_) | JointKind::Wheel(_) => {
+            let Some(body) = world.body(def.body_a) else { return anchor_b };
+            let axes = joint.axes(body);
+            let along = axes.apply_inverse_wide(anchor_b - anchor_a).x;
+            anchor_a + axes.apply_wide(Vec2::new(along, Fx::ZERO))
+        }
+        JointKind::Distance(distance) => {
+            let length = anchor_a.distance(anchor_b);
+            let nearest = distance.nearest_allowed(length);
+            match fx_div(nearest, length) {
+                Some(factor) if nearest != length => anchor_a + stretched(anchor_b - anchor_a, factor),
+                _ => anchor_b,
+            }
+        }
+        _ => anchor_b,
+    }
+}
