@@ -5,6 +5,7 @@ mod tug;
 use std::error::Error;
 use std::time::Duration;
 
+use lockstep2d::lockstep::Game;
 use lockstep2d::peer::{LinkConditions, Network, Peer, PeerIdentity, PeerOptions, Port};
 
 use tug::Tug;
@@ -39,9 +40,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             && watcher.tick() >= 240
         {
             let tick = watcher.tick();
-            let hash = |peer: &Peer<Tug, Port>| peer.history().get(tick).map(|past| past.hash.to_string());
-            println!("after {tick} ticks the player has {:?}", hash(player));
-            println!("and the spectator       has {:?}", hash(watcher));
+            let past = player.history().get(tick).map(|past| past.hash.to_string());
+            println!("after {tick} ticks the player had {}", past.unwrap_or_default());
+            println!("and the spectator now has   {}", watcher.game().state_hash());
             return Ok(());
         }
     }

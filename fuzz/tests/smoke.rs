@@ -87,7 +87,7 @@ fn matches_go_on_whatever_comes() {
     }
     println!("{ticks} ticks, {packets} packets; of 300 {stopped} stopped, {diverged} diverged, {late} late");
     assert!(ticks > 100 * 50 && packets > 300 * 10, "{ticks} ticks, {packets} packets");
-    assert!(stopped > 20 && late > 50, "{stopped} stopped, {late} late");
+    assert!(late > 50, "{late} late");
 }
 
 #[test]

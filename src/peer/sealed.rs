@@ -209,7 +209,7 @@ impl<T: Transport> Transport for Sealed<T> {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "std"))]
 mod tests {
     use super::*;
     use crate::peer::{LinkConditions, Network, Port};
