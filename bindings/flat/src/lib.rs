@@ -1,10 +1,12 @@
-//! The flat API of lockstep2d, for C and for WebAssembly: functions with integers, pointers to plain structs, and handles.
+//! The flat API of lockstep2d, for C and for WebAssembly: functions with integers, pointers to plain structs, and
+//! handles.
 //!
 //! - Objects are numbers that are looked up. A handle that is wrong, stale, freed twice or of another kind is an error.
 //! - Functions return a status code; `ls2d_last_error` has the reason in words. No function panics or calls back.
 //! - Numbers of the simulation are integers: [`RawFx`] counts 2^-32 m and so on, [`RawAngle`] 2^-32 turn.
 //! - Structs are the same on all machines, have no gaps, and begin with their size if the caller fills them.
-//! - Different objects may be used on different threads at the same time. Calls with the same object wait for each other.
+//! - Different objects may be used on different threads at the same time. Calls with the same object wait for each
+//!   other.
 //!
 //! `include/lockstep2d.h` and `layout.json`, from which other languages take offsets, are written by [`header`] and
 //! [`layout`]; a test compares them.

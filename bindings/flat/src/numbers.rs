@@ -13,8 +13,8 @@ aliases! {
     RawFx(i64) = "ls2d_fx";
     /// An angle in units of 2^-32 turn, counter-clockwise: a quarter turn is 1073741824.
     RawAngle(u32) = "ls2d_angle";
-    /// A body of a world: its slot in the lowest 21 bits, above them the number of earlier bodies in that slot. Less than
-    /// 2^53, so that it fits a number of JavaScript.
+    /// A body of a world: its slot in the lowest 21 bits, above them the number of earlier bodies in that slot. Less
+    /// than 2^53, so that it fits a number of JavaScript.
     RawBody(u64) = "ls2d_body";
     /// A shape of a world, like a body.
     RawShape(u64) = "ls2d_shape";

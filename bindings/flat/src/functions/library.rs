@@ -21,8 +21,8 @@ api! {
     /// Version of the engine's arithmetic: programs with different ones do not compute the same states.
     fn ls2d_semantics() -> u32 { lockstep2d::SEMANTICS }
 
-    /// Copies the text of the last failure on this thread as UTF-8, and writes its length in bytes. It is not terminated
-    /// by a zero. The text of a shorter buffer is cut.
+    /// Copies the text of the last failure on this thread as UTF-8, and writes its length in bytes. It is not
+    /// terminated by a zero. The text of a shorter buffer is cut.
     fn ls2d_last_error(buffer: Out<'_, u8>, capacity: usize, length: Out<'_, usize>) {
         let (mut buffer, mut length) = (buffer, length);
         let text = last_text();
@@ -57,8 +57,8 @@ api! {
         bytes.set(table::add(Bytes(data.slice(size)?.to_vec()))?)
     }
 
-    /// Memory of this thread with an alignment of 8, for callers that have none of their own, such as JavaScript. Returns
-    /// its address, or 0 without enough memory. A call with a larger size moves it and keeps its contents.
+    /// Memory of this thread with an alignment of 8, for callers that have none of their own, such as JavaScript.
+    /// Returns its address, or 0 without enough memory. A call with a larger size moves it and keeps its contents.
     fn ls2d_scratch(size: usize) -> usize {
         SCRATCH.with_borrow_mut(|scratch| {
             let words = size.div_ceil(size_of::<u64>()).max(1);

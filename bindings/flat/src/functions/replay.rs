@@ -1,4 +1,5 @@
-//! Replays of worlds that are changed by commands alone: recorded, and verified by this library or by `lockstep2d verify`.
+//! Replays of worlds that are changed by commands alone: recorded, and verified by this library or by `lockstep2d
+//! verify`.
 
 use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 use lockstep2d::replay::{self, Limits, Recording};

@@ -180,8 +180,8 @@ api! {
         })
     }
 
-    /// Sets the anchors and angles of a definition so that the joint holds at the current poses, at a point of the world
-    /// and with its axis along a direction in the world. A direction of zero is the x axis.
+    /// Sets the anchors and angles of a definition so that the joint holds at the current poses, at a point of the
+    /// world and with its axis along a direction in the world. A direction of zero is the x axis.
     fn ls2d_joint_at(
         world: u32,
         from: In<'_, RawJointDef>,

@@ -62,7 +62,8 @@ api! {
         with(world, |world: &mut World| hash.set(RawHash::of(world.state_hash())))
     }
 
-    /// Hash of a section of the state: 0 settings, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands, 6 random numbers.
+    /// Hash of a section of the state: 0 settings, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands, 6 random
+    /// numbers.
     fn ls2d_world_digest(world: u32, section: u32, hash: Out<'_, RawHash>) {
         let mut hash = hash;
         let sections = [

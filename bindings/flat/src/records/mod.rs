@@ -7,6 +7,7 @@ mod body;
 mod config;
 mod events;
 mod joint;
+mod joint_parts;
 mod matches;
 mod query;
 mod shape;

@@ -1,5 +1,5 @@
-//! Random sequences of calls with random, often wrong arguments: every call returns a code, no handle leaks, and the same
-//! sequence gives the same codes and the same hashes.
+//! Random sequences of calls with random, often wrong arguments: every call returns a code, no handle leaks, and the
+//! same sequence gives the same codes and the same hashes.
 
 use lockstep2d::math::Rng;
 
@@ -51,9 +51,10 @@ impl Caller {
     }
 
     fn shape(&mut self) -> RawShapeDef {
-        let mut shape = RawShapeDef::of(&lockstep2d::body::ShapeDef::new(lockstep2d::body::Geometry::Circle {
-            radius: lockstep2d::math::Fx::ONE,
-        }));
+        let mut shape =
+            RawShapeDef::of(&lockstep2d::body::ShapeDef::new(lockstep2d::body::Geometry::Circle {
+                radius: lockstep2d::math::Fx::ONE,
+            }));
         shape.kind = self.rng.below(9);
         shape.count = self.rng.below(10);
         for index in 0..8 {

@@ -1,5 +1,5 @@
-//! The scenes of the library, built and played through the flat API, have the hashes that they have without it: with the
-//! structs of definitions, with encoded commands, in recordings, and through snapshots.
+//! The scenes of the library, built and played through the flat API, have the hashes that they have without it: with
+//! the structs of definitions, with encoded commands, in recordings, and through snapshots.
 
 use lockstep2d::codec;
 use lockstep2d::lockstep::{Game, Sandbox};
