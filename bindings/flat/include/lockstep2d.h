@@ -737,7 +737,7 @@ typedef struct ls2d_cast_hit {
 } ls2d_cast_hit;
 
 /* The shape nearest to a point. */
-typedef struct ls2d_closest {
+typedef struct ls2d_closest_point {
     /* The shape. */
     ls2d_shape shape;
     /* Its body. */
@@ -748,7 +748,7 @@ typedef struct ls2d_closest {
     ls2d_vec2 point;
     /* Unit vector from the given point to the shape. */
     ls2d_vec2 normal;
-} ls2d_closest;
+} ls2d_closest_point;
 
 /* An axis-aligned box. */
 typedef struct ls2d_aabb {
@@ -1241,7 +1241,7 @@ ls2d_status ls2d_overlap_box(uint32_t world, const ls2d_aabb *area, const ls2d_q
 ls2d_status ls2d_overlap_point(uint32_t world, ls2d_fx x, ls2d_fx y, const ls2d_query_filter *filter, ls2d_shape *shapes, size_t capacity, size_t *count);
 
 /* The shape nearest to a point, within a distance in metres. `LS2D_NONE` without one. */
-ls2d_status ls2d_closest(uint32_t world, ls2d_fx x, ls2d_fx y, ls2d_fx within, const ls2d_query_filter *filter, ls2d_closest *closest);
+ls2d_status ls2d_closest(uint32_t world, ls2d_fx x, ls2d_fx y, ls2d_fx within, const ls2d_query_filter *filter, ls2d_closest_point *closest);
 
 /* Distance of two shapes in metres, negative if they overlap. `LS2D_NONE` if one is not in the world. */
 ls2d_status ls2d_shape_distance(uint32_t world, ls2d_shape a, ls2d_shape b, ls2d_fx *distance);

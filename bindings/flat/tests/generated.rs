@@ -33,3 +33,17 @@ fn every_function_is_in_the_header() {
         assert!(header.contains(&format!(" {name}(")), "{name}");
     }
 }
+
+/// In C, types and functions share their names.
+#[test]
+fn no_function_has_the_name_of_a_type() {
+    let header = lockstep2d_flat::header();
+    let types: Vec<&str> = header
+        .lines()
+        .filter_map(|line| line.strip_prefix("} "))
+        .filter_map(|line| line.strip_suffix(';'))
+        .collect();
+    assert!(types.contains(&"ls2d_vec2"), "{types:?}");
+    let taken = types.iter().find(|name| header.contains(&format!(" {name}(")));
+    assert_eq!(taken, None);
+}
