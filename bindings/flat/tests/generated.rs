@@ -5,7 +5,7 @@ use std::path::Path;
 fn check(path: &str, text: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
     if std::env::var_os("LOCKSTEP2D_WRITE").is_some() {
-        std::fs::write(&path, text).expect("the file can be written");
+        assert!(std::fs::write(&path, text).is_ok(), "{} cannot be written", path.display());
     }
     let found = std::fs::read_to_string(&path).unwrap_or_default();
     let name = path.display();
