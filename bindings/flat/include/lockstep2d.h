@@ -130,8 +130,8 @@ typedef uint32_t ls2d_handle;
 typedef int64_t ls2d_fx;
 /* An angle in units of 2^-32 turn, counter-clockwise: a quarter turn is 1073741824. */
 typedef uint32_t ls2d_angle;
-/* A body of a world: its slot in the lowest 21 bits, above them the number of earlier bodies in that slot. Less than
- * 2^53, so that it fits a number of JavaScript. */
+/* A body of a world: its slot in the lowest 21 bits, above them the number of earlier bodies in that slot. Less
+ * than 2^53, so that it fits a number of JavaScript. */
 typedef uint64_t ls2d_body;
 /* A shape of a world, like a body. */
 typedef uint64_t ls2d_shape;
@@ -737,7 +737,7 @@ typedef struct ls2d_cast_hit {
 } ls2d_cast_hit;
 
 /* The shape nearest to a point. */
-typedef struct ls2d_closest {
+typedef struct ls2d_closest_point {
     /* The shape. */
     ls2d_shape shape;
     /* Its body. */
@@ -748,7 +748,7 @@ typedef struct ls2d_closest {
     ls2d_vec2 point;
     /* Unit vector from the given point to the shape. */
     ls2d_vec2 normal;
-} ls2d_closest;
+} ls2d_closest_point;
 
 /* An axis-aligned box. */
 typedef struct ls2d_aabb {
@@ -936,8 +936,8 @@ uint32_t ls2d_api_version(void);
 /* Version of the engine's arithmetic: programs with different ones do not compute the same states. */
 uint32_t ls2d_semantics(void);
 
-/* Copies the text of the last failure on this thread as UTF-8, and writes its length in bytes. It is not terminated
- * by a zero. The text of a shorter buffer is cut. */
+/* Copies the text of the last failure on this thread as UTF-8, and writes its length in bytes. It is not
+ * terminated by a zero. The text of a shorter buffer is cut. */
 ls2d_status ls2d_last_error(uint8_t *buffer, size_t capacity, size_t *length);
 
 /* Frees an object of any kind. Its handle is an error from now on, also if it is freed again. */
@@ -955,8 +955,8 @@ ls2d_status ls2d_bytes_copy(uint32_t bytes, uint8_t *buffer, size_t capacity);
 /* Makes a bytes object, for functions that take one. */
 ls2d_status ls2d_bytes_new(const uint8_t *data, size_t size, uint32_t *bytes);
 
-/* Memory of this thread with an alignment of 8, for callers that have none of their own, such as JavaScript. Returns
- * its address, or 0 without enough memory. A call with a larger size moves it and keeps its contents. */
+/* Memory of this thread with an alignment of 8, for callers that have none of their own, such as JavaScript.
+ * Returns its address, or 0 without enough memory. A call with a larger size moves it and keeps its contents. */
 size_t ls2d_scratch(size_t size);
 
 /* ---- Worlds ---- */
@@ -982,7 +982,8 @@ ls2d_status ls2d_world_steps(uint32_t world, uint32_t ticks);
 /* Hash of the state of a world: equal for equal edits in the same order, on every machine. */
 ls2d_status ls2d_world_hash(uint32_t world, ls2d_hash *hash);
 
-/* Hash of a section of the state: 0 settings, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands, 6 random numbers. */
+/* Hash of a section of the state: 0 settings, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands, 6 random
+ * numbers. */
 ls2d_status ls2d_world_digest(uint32_t world, uint32_t section, ls2d_hash *hash);
 
 /* Number of ticks since the world was made. */
@@ -1180,14 +1181,14 @@ ls2d_status ls2d_joint_angle(uint32_t world, ls2d_joint id, ls2d_fx *angle);
 /* Force in N and torque in N m of a joint on body B in the last tick. */
 ls2d_status ls2d_joint_force(uint32_t world, ls2d_joint id, ls2d_vec2 *force, ls2d_fx *torque);
 
-/* Sets the anchors and angles of a definition so that the joint holds at the current poses, at a point of the world
- * and with its axis along a direction in the world. A direction of zero is the x axis. */
+/* Sets the anchors and angles of a definition so that the joint holds at the current poses, at a point of the
+ * world and with its axis along a direction in the world. A direction of zero is the x axis. */
 ls2d_status ls2d_joint_at(uint32_t world, const ls2d_joint_def *from, const ls2d_vec2 *anchor, const ls2d_vec2 *axis, ls2d_joint_def *def);
 
 /* ---- Drawing ---- */
 
-/* Poses of all enabled bodies in slot order, for drawing: for each body five numbers, its handle, x, y, the angle in
- * rad, and 1 if it is awake or 0. `capacity` and `count` are numbers of `double`s. */
+/* Poses of all enabled bodies in slot order, for drawing: for each body five numbers, its handle, x, y, the angle
+ * in rad, and 1 if it is awake or 0. `capacity` and `count` are numbers of `double`s. */
 ls2d_status ls2d_draw_poses(uint32_t world, double *rows, size_t capacity, size_t *count);
 
 /* ---- Events of the last tick ---- */
@@ -1240,7 +1241,7 @@ ls2d_status ls2d_overlap_box(uint32_t world, const ls2d_aabb *area, const ls2d_q
 ls2d_status ls2d_overlap_point(uint32_t world, ls2d_fx x, ls2d_fx y, const ls2d_query_filter *filter, ls2d_shape *shapes, size_t capacity, size_t *count);
 
 /* The shape nearest to a point, within a distance in metres. `LS2D_NONE` without one. */
-ls2d_status ls2d_closest(uint32_t world, ls2d_fx x, ls2d_fx y, ls2d_fx within, const ls2d_query_filter *filter, ls2d_closest *closest);
+ls2d_status ls2d_closest(uint32_t world, ls2d_fx x, ls2d_fx y, ls2d_fx within, const ls2d_query_filter *filter, ls2d_closest_point *closest);
 
 /* Distance of two shapes in metres, negative if they overlap. `LS2D_NONE` if one is not in the world. */
 ls2d_status ls2d_shape_distance(uint32_t world, ls2d_shape a, ls2d_shape b, ls2d_fx *distance);
@@ -1353,9 +1354,9 @@ ls2d_status ls2d_match_update(uint32_t handle, uint64_t now);
 /* Writes 1 if it is time for `ls2d_match_advance`, otherwise 0. */
 ls2d_status ls2d_match_is_due(uint32_t handle, uint64_t now, uint32_t *due);
 
-/* Issues the inputs of the own seats, in the order of the seats, and plays a tick if that is possible: the requests
- * that follow say so. Writes 1 to `issued` if the inputs were issued; otherwise they may be used again. Without
- * own seats there are no bytes. */
+/* Issues the inputs of the own seats, in the order of the seats, and plays a tick if that is possible: the
+ * requests that follow say so. Writes 1 to `issued` if the inputs were issued; otherwise they may be used again.
+ * Without own seats there are no bytes. */
 ls2d_status ls2d_match_advance(uint32_t handle, uint64_t now, const uint8_t *inputs, size_t size, uint32_t *issued);
 
 /* The next request. Requests have to be fulfilled in order, before the next call of `ls2d_match_advance`. For

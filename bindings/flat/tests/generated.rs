@@ -5,7 +5,7 @@ use std::path::Path;
 fn check(path: &str, text: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
     if std::env::var_os("LOCKSTEP2D_WRITE").is_some() {
-        std::fs::write(&path, text).expect("the file can be written");
+        assert!(std::fs::write(&path, text).is_ok(), "{} cannot be written", path.display());
     }
     let found = std::fs::read_to_string(&path).unwrap_or_default();
     let name = path.display();
@@ -32,4 +32,18 @@ fn every_function_is_in_the_header() {
     for name in ["ls2d_world_step", "ls2d_spawn", "ls2d_cast_ray", "ls2d_match_host", "ls2d_rng_below"] {
         assert!(header.contains(&format!(" {name}(")), "{name}");
     }
+}
+
+/// In C, types and functions share their names.
+#[test]
+fn no_function_has_the_name_of_a_type() {
+    let header = lockstep2d_flat::header();
+    let types: Vec<&str> = header
+        .lines()
+        .filter_map(|line| line.strip_prefix("} "))
+        .filter_map(|line| line.strip_suffix(';'))
+        .collect();
+    assert!(types.contains(&"ls2d_vec2"), "{types:?}");
+    let taken = types.iter().find(|name| header.contains(&format!(" {name}(")));
+    assert_eq!(taken, None);
 }

@@ -350,7 +350,7 @@ export const STRUCTS = {
         normal: [56, "vec2"],
         starts_inside: [72, "uint64_t"],
     } },
-    closest: { bytes: 56, fields: {
+    closest_point: { bytes: 56, fields: {
         shape: [0, "shape"],
         body: [8, "body"],
         distance: [16, "fx"],

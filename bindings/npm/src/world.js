@@ -515,11 +515,11 @@ export class World extends Edits {
 
     /** The shape nearest to a point, within a distance. */
     closest(point, within, filter) {
-        const size = sizeOf("closest");
+        const size = sizeOf("closest_point");
         const at = scratch(size + FILTER());
         const seen = filterAt(at + size, filter);
         const found = call("ls2d_closest", this.handle, ...raws(point, "point"), rawOf(within, "within"), seen, at);
-        return found ? read("closest", at) : undefined;
+        return found ? read("closest_point", at) : undefined;
     }
 }
 

@@ -76,7 +76,7 @@ records! {
     }
 
     /// The shape nearest to a point.
-    struct RawClosest = "ls2d_closest" {
+    struct RawClosest = "ls2d_closest_point" {
         /// The shape.
         shape: RawShape,
         /// Its body.

@@ -1,5 +1,5 @@
 //! Tests with the conversions that foreign callers do not see.
-#![expect(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test fails by a panic")]
+#![expect(clippy::indexing_slicing, reason = "a test fails by a panic")]
 
 mod misuse;
 mod random_calls;
