@@ -56,6 +56,10 @@ pub(crate) fn write_views<G: LockstepGame>(
     fresh: Query<(Entity, &BodyView), Added<BodyView>>,
     mut shown: Query<(&BodyView, Entity, &mut Transform)>,
 ) {
+    // Entities that the game has prepared, not those that the plugin has spawned in the last frame.
+    let is_foreign = |(entity, view): &(Entity, &BodyView)| views.entity(view.body()) != Some(*entity);
+    let prepared: HashMap<BodyId, Entity> =
+        fresh.iter().filter(is_foreign).map(|(entity, view)| (view.body(), entity)).collect();
     if lockstep.is_added() {
         // Another game. Views that were prepared for it are not in the table.
         views.take_all().into_iter().for_each(|view| commands.entity(view).try_despawn());
@@ -72,7 +76,7 @@ pub(crate) fn write_views<G: LockstepGame>(
         }
         replace_strangers(&mut commands, &mut views, &log, world);
         log.show(world);
-        follow(&mut commands, &mut views, &log, world, settings.pixels_per_metre, fresh);
+        follow(&mut commands, &mut views, &log, world, settings.pixels_per_metre, &prepared);
     }
     let (fraction, redraw) = (lockstep.fraction(), settings.is_changed());
     let draw = |view: &View| {
@@ -115,9 +119,8 @@ fn follow(
     log: &StepLog,
     world: Option<&World>,
     scale: f32,
-    fresh: Query<(Entity, &BodyView), Added<BodyView>>,
+    prepared: &HashMap<BodyId, Entity>,
 ) {
-    let prepared: HashMap<BodyId, Entity> = fresh.iter().map(|(entity, view)| (view.body(), entity)).collect();
     views.begin_frame();
     for (body, current) in log.after.iter() {
         let previous = log.before.get(body).unwrap_or(current);
