@@ -38,7 +38,9 @@ impl WorldEvent {
                 Some([contact.shape_a, contact.shape_b])
             }
             WorldEvent::Hit(hit) => Some([hit.shape_a, hit.shape_b]),
-            WorldEvent::SensorBegin(event) | WorldEvent::SensorEnd(event) => Some([event.sensor, event.visitor]),
+            WorldEvent::SensorBegin(event) | WorldEvent::SensorEnd(event) => {
+                Some([event.sensor, event.visitor])
+            }
             WorldEvent::Joint(_) | WorldEvent::FellAsleep(_) => None,
         }
     }

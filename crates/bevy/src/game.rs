@@ -10,6 +10,9 @@ pub trait LockstepGame:
 }
 
 impl<G> LockstepGame for G where
-    G: Game<Setup: Send + Sync, Input: Send + Sync + 'static, Save: Send + Sync + 'static> + Send + Sync + 'static
+    G: Game<Setup: Send + Sync, Input: Send + Sync + 'static, Save: Send + Sync + 'static>
+        + Send
+        + Sync
+        + 'static
 {
 }

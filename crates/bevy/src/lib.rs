@@ -31,11 +31,21 @@
 //! Systems of the plugin run in the schedule `RunFixedMainLoop`, after `PreUpdate` and before `Update`, in the sets of
 //! [`LockstepSystems`]. Systems that read input and fill [`Inputs`] belong into [`LockstepSystems::Inputs`].
 
+// The library's ban on floats does not apply here: views are floats, and nothing of them gets back into a game except as
+// an input.
+#![deny(missing_docs, clippy::iter_over_hash_type, clippy::unwrap_used)]
+#![warn(unreachable_pub)]
+
+mod diagnostics;
+mod drag;
 mod drivers;
 mod error;
 mod events;
 mod game;
+#[cfg(feature = "gizmos")]
+mod gizmos;
 mod inputs;
+mod level;
 mod lockstep;
 mod observed;
 mod plugin;
@@ -45,16 +55,21 @@ mod step_log;
 mod systems;
 mod views;
 
+pub use diagnostics::LockstepDiagnosticsPlugin;
+pub use drag::{DragHand, DragPlugin, to_metres};
 pub use drivers::AnyTransport;
 pub use error::{LockstepError, LockstepFailed};
 pub use events::{BodyEvent, ConfirmedEvent, MatchEvent, PredictedEvent, RetractedEvent, WorldEvent};
 pub use game::LockstepGame;
+#[cfg(feature = "gizmos")]
+pub use gizmos::{LockstepGizmos, LockstepGizmosPlugin};
 pub use inputs::Inputs;
+pub use level::{LevelError, SpawnBody, SpawnJoint, build_level};
 pub use lockstep::{DriverKind, Lockstep};
 pub use observed::{Observed, ObservedSave};
 pub use plugin::{
-    LockstepPlugin, LockstepSettings, LockstepStatus, LockstepSystems, has_lockstep, has_rolled_back, has_stepped,
-    is_running,
+    LockstepPlugin, LockstepSettings, LockstepStatus, LockstepSystems, has_lockstep, has_rolled_back,
+    has_stepped, is_running,
 };
 pub use poses::Pose;
 pub use views::{BodyView, BodyViews};
@@ -66,3 +81,7 @@ pub mod prelude {
         LockstepStatus, LockstepSystems, MatchEvent, PredictedEvent, WorldEvent,
     };
 }
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}

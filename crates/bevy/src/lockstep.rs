@@ -7,7 +7,9 @@ use lockstep2d::replay::Limits;
 use lockstep2d::session::Address;
 use lockstep2d::world::World;
 
-use crate::drivers::{AnyTransport, Driver, FrameTime, LocalDriver, MatchDriver, ReplayDriver, SyncTestDriver};
+use crate::drivers::{
+    AnyTransport, Driver, FrameTime, LocalDriver, MatchDriver, ReplayDriver, SyncTestDriver,
+};
 use crate::error::LockstepError;
 use crate::game::LockstepGame;
 use crate::inputs::Inputs;

@@ -5,7 +5,8 @@ use core::time::Duration;
 
 use bevy::app::{App, Plugin, RunFixedMainLoop, RunFixedMainLoopSystems};
 use bevy::prelude::{
-    IntoScheduleConfigs, Reflect, ReflectResource, Res, Resource, SystemSet, resource_exists, resource_removed,
+    IntoScheduleConfigs, Reflect, ReflectResource, Res, Resource, SystemSet, resource_exists,
+    resource_removed,
 };
 
 use crate::error::LockstepFailed;

@@ -26,7 +26,10 @@ impl DrawnPose {
     pub(crate) fn between(previous: Pose, current: Pose, fraction: f32) -> Self {
         let start = Self::at(previous);
         let way = Offset::between(previous, current);
-        DrawnPose { position: start.position + way.position * fraction, angle: start.angle + way.angle * fraction }
+        DrawnPose {
+            position: start.position + way.position * fraction,
+            angle: start.angle + way.angle * fraction,
+        }
     }
 
     pub(crate) fn shifted(self, offset: Offset) -> Self {

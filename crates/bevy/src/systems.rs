@@ -127,7 +127,8 @@ fn follow(
         if views.see(body, previous, current) {
             continue;
         }
-        let entity = prepared.get(&body).copied().unwrap_or_else(|| spawn_view(commands, body, current, scale));
+        let entity =
+            prepared.get(&body).copied().unwrap_or_else(|| spawn_view(commands, body, current, scale));
         if let Some(old) = views.insert(body, entity, current, identity_of(world, body)) {
             commands.entity(old).try_despawn();
         }

@@ -111,7 +111,13 @@ impl BodyViews {
     }
 
     /// Adds a view. Returns the one that had the slot before.
-    pub(crate) fn insert(&mut self, body: BodyId, entity: Entity, pose: Pose, identity: StateHash) -> Option<Entity> {
+    pub(crate) fn insert(
+        &mut self,
+        body: BodyId,
+        entity: Entity,
+        pose: Pose,
+        identity: StateHash,
+    ) -> Option<Entity> {
         let slot = body.index() as usize;
         if self.slots.len() <= slot {
             self.slots.resize(slot + 1, None);

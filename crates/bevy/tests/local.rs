@@ -62,7 +62,8 @@ fn a_rollback_after_every_tick_changes_nothing() {
     let (game, events) = reference(ticks, |tick| [pad_at(7, tick), pad_at(8, tick)]);
     assert_eq!(lockstep.game().state_hash(), game.state_hash());
     let heard = app.world().resource::<Heard>();
-    let all: Vec<_> = events.iter().flat_map(|(tick, events)| events.iter().map(|event| (*tick, *event))).collect();
+    let all: Vec<_> =
+        events.iter().flat_map(|(tick, events)| events.iter().map(|event| (*tick, *event))).collect();
     assert_eq!(heard.predicted, all, "predicted once, although every tick is played nine times");
     assert!(heard.retracted.is_empty());
     let is_final = |(tick, _): &(&u64, _)| **tick <= confirmed;
@@ -70,11 +71,22 @@ fn a_rollback_after_every_tick_changes_nothing() {
 }
 
 #[test]
+fn a_rollback_without_a_difference_moves_no_view() {
+    let mut app = app(Lockstep::sync_test(&Setup::default(), 6).unwrap(), 5, TICK);
+    app.insert_resource(LockstepSettings { interpolate: false, ..LockstepSettings::default() });
+    for _ in 0..300 {
+        app.update();
+        check_views(&mut app);
+    }
+}
+
+#[test]
 fn the_views_of_bodies_are_kept_through_rollbacks() {
     // Bodies that a rollback removes for a moment within a frame keep their entities.
     let run = |game: Lockstep<Arena>| {
         let mut app = app(game, 3, TICK);
-        app.init_resource::<Births>().add_observer(|_: On<Add, BodyView>, mut births: ResMut<Births>| births.0 += 1);
+        app.init_resource::<Births>()
+            .add_observer(|_: On<Add, BodyView>, mut births: ResMut<Births>| births.0 += 1);
         while tick(&app) < 600 {
             app.update();
         }
@@ -153,7 +165,9 @@ fn views_are_drawn_between_two_ticks() {
         let body = lockstep.world().unwrap().body(player.0).unwrap();
         let [x, _] = lockstep2d::draw::to_f32(body.position());
         places.insert(lockstep.tick(), x);
-        let Some(before) = lockstep.tick().checked_sub(1).and_then(|before| places.get(&before)) else { continue };
+        let Some(before) = lockstep.tick().checked_sub(1).and_then(|before| places.get(&before)) else {
+            continue;
+        };
         let drawn = app.world().get::<Transform>(player.1).unwrap().translation.x;
         let expected = before + (x - before) * fraction;
         assert!((drawn - expected).abs() < 1e-4, "{drawn} {expected}");
@@ -198,8 +212,9 @@ fn observers_of_a_view_hear_of_its_body() {
         shapes.any(|shape| physics.shape(shape).is_some_and(|shape| shape.body() == body))
     };
     let all = world.resource::<Heard>().confirmed.iter();
-    let own: Vec<_> =
-        all.flat_map(|(tick, events)| events.iter().filter(|e| is_own(e)).map(|event| (*tick, *event))).collect();
+    let own: Vec<_> = all
+        .flat_map(|(tick, events)| events.iter().filter(|e| is_own(e)).map(|event| (*tick, *event)))
+        .collect();
     assert!(own.len() > 5, "{own:?}");
     assert_eq!(*touched, own);
 }

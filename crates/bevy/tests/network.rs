@@ -93,7 +93,8 @@ fn two_apps_and_a_late_spectator_have_the_same_match() {
     let end = players.iter().map(Player::confirmed).min().unwrap();
     for player in &players {
         assert_eq!(player.desyncs, 0);
-        let common = player.hashes.range(..=end).filter(|(tick, hash)| players[0].hashes.get(tick) == Some(hash));
+        let common =
+            player.hashes.range(..=end).filter(|(tick, hash)| players[0].hashes.get(tick) == Some(hash));
         let count = common.count();
         assert_eq!(count, player.hashes.range(..=end).count());
     }
@@ -142,4 +143,37 @@ fn check_replay(mut players: Vec<Player>, end: u64) {
         }
     }
     assert_eq!(played, events);
+}
+
+/// Plays a match and returns the largest way of a player's view in one frame, in metres, once the match runs.
+fn largest_jump(settings: LockstepSettings) -> f32 {
+    let network = Network::default();
+    let setup = Setup::default();
+    let options = PeerOptions { delay: (1, 1), ..PeerOptions::rollback() };
+    let host = Lockstep::host(&setup, options, identity(1), network.socket(1)).unwrap();
+    let guest = Lockstep::join(&setup, options, identity(2), network.socket(2), address(1)).unwrap();
+    let mut apps = [app(host, 11, TICK), app(guest, 29, TICK)];
+    for app in &mut apps {
+        app.insert_resource(settings);
+    }
+    let (mut largest, mut last) = (0.0_f32, None);
+    for _ in 0..1200 {
+        network.pass(TICK);
+        apps.iter_mut().for_each(App::update);
+        let world = apps[0].world();
+        // The guest, whose inputs are guessed: the sixth body of the arena.
+        let Some((_, view)) = world.resource::<BodyViews>().iter().nth(5) else { continue };
+        let place = world.get::<Transform>(view).unwrap().translation.truncate() / settings.pixels_per_metre;
+        if let Some(last) = last.replace(place).filter(|_| world.resource::<LockstepStatus>().tick > 60) {
+            largest = largest.max(place.distance(last));
+        }
+    }
+    largest
+}
+
+#[test]
+fn views_do_not_jump_when_a_guess_was_wrong() {
+    let exact = largest_jump(LockstepSettings::default().exact());
+    let smooth = largest_jump(LockstepSettings::default());
+    assert!(smooth < 0.8 * exact, "{smooth} m instead of {exact} m");
 }

@@ -7,8 +7,8 @@ mod sync_test;
 
 use core::time::Duration;
 
-pub use network::AnyTransport;
 pub(crate) use local::LocalDriver;
+pub use network::AnyTransport;
 pub(crate) use network::MatchDriver;
 pub(crate) use replay::ReplayDriver;
 pub(crate) use sync_test::SyncTestDriver;

@@ -114,7 +114,10 @@ pub fn events_of(world: &Physics) -> Vec<WorldEvent> {
 }
 
 /// The events of a game that is stepped without Bevy, by tick; ticks without events are missing.
-pub fn reference(ticks: u64, mut inputs: impl FnMut(u64) -> [u8; 2]) -> (Arena, BTreeMap<u64, Vec<WorldEvent>>) {
+pub fn reference(
+    ticks: u64,
+    mut inputs: impl FnMut(u64) -> [u8; 2],
+) -> (Arena, BTreeMap<u64, Vec<WorldEvent>>) {
     let mut game = Arena::new(&arena::Setup::default()).expect("a setup");
     let mut events = BTreeMap::new();
     for tick in 0..ticks {
