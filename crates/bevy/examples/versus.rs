@@ -3,18 +3,16 @@
 //! `versus` plays against a bot over a simulated bad line; `versus host 0.0.0.0:7000` and `versus join ADDRESS` over UDP.
 
 use std::net::ToSocketAddrs;
-use std::sync::{Arc, Mutex};
-use std::time::Duration;
 
 use bevy::prelude::*;
 use bevy_lockstep2d::prelude::*;
-use bevy_lockstep2d_examples::app;
+use bevy_lockstep2d_examples::{Line, LineEnd, app};
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef, WorldError};
 use lockstep2d::fx;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use lockstep2d::math::{Fx, Vec2 as FixedVec2, fx_mul};
-use lockstep2d::peer::{Peer, PeerIdentity, PeerOptions, Transport, Udp, socket_address};
+use lockstep2d::peer::{Peer, PeerIdentity, PeerOptions, Udp, socket_address};
 use lockstep2d::session::Address;
 use lockstep2d::world::{Snapshot, World as Physics};
 
@@ -84,35 +82,12 @@ impl Game for Versus {
     }
 }
 
-/// Packets on a line that loses one of ten and takes a tenth of a second: when they arrive, to whom, and their bytes.
-#[derive(Resource, Clone, Default)]
-struct Line(Arc<Mutex<(Duration, u32, Vec<(Duration, u8, Vec<u8>)>)>>);
-
-struct End(Line, u8);
-
-impl Transport for End {
-    fn send(&mut self, packet: &[u8], _: &Address) {
-        let Ok(mut line) = self.0.0.lock() else { return };
-        line.1 += 1;
-        if !line.1.is_multiple_of(10) {
-            let arrival = line.0 + Duration::from_millis(100);
-            line.2.push((arrival, 1 - self.1, packet.to_vec()));
-        }
-    }
-    fn receive(&mut self) -> Option<(Address, Vec<u8>)> {
-        let mut line = self.0.0.lock().ok()?;
-        let now = line.0;
-        let place = line.2.iter().position(|(at, to, _)| *to == self.1 && *at <= now)?;
-        Some((Address::new(&[1 - self.1])?, line.2.remove(place).2))
-    }
-}
-
 /// The bot is an ordinary peer without Bevy.
 #[derive(Resource)]
-struct Bot(Peer<Versus, End>);
+struct Bot(Peer<Versus, LineEnd>);
 
 fn play_bot(mut bot: ResMut<Bot>, line: Res<Line>, time: Res<Time<Real>>) -> Result {
-    line.0.lock().map_err(|_| "a thread has panicked")?.0 = time.elapsed();
+    line.set_time(time.elapsed());
     bot.0.update(time.elapsed())?;
     while bot.0.is_due() {
         let pad = if bot.0.tick() % 90 < 50 { -1 } else { 1 };
@@ -139,9 +114,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         _ => {
             let (line, contact) = (Line::default(), Address::new(&[0]).ok_or("a byte is an address")?);
-            let bot = Peer::join(&(), options, PeerIdentity::new([8, 9, 10]), End(line.clone(), 1), contact)?;
+            let bot = Peer::join(&(), options, PeerIdentity::new([8, 9, 10]), line.end(1), contact)?;
             app.insert_resource(Bot(bot)).insert_resource(line.clone()).add_systems(PreUpdate, play_bot);
-            Lockstep::host(&(), options, me, End(line, 0))?
+            Lockstep::host(&(), options, me, line.end(0))?
         }
     };
     app.insert_resource(lockstep)

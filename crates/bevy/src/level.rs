@@ -130,7 +130,7 @@ pub fn build_level(app: &mut BevyWorld, config: Config) -> Result<Vec<Command>, 
         let body_of =
             |body: Entity| bodies.get(&body).copied().ok_or(LevelError::NoBody { joint: *entity, body });
         let (body_a, body_b) = (body_of(joint.body_a)?, body_of(joint.body_b)?);
-        let def = scratch.joint_along(body_a, body_b, joint.kind.clone(), joint.anchor, joint.axis);
+        let def = scratch.joint_along(body_a, body_b, joint.kind, joint.anchor, joint.axis);
         let command = Command::AddJoint { joint: def.map_err(refused(*entity))? };
         scratch.execute(&command).map_err(refused(*entity))?;
         commands.push(command);

@@ -82,7 +82,7 @@ impl<G: LockstepGame> ReplayDriver<G> {
 }
 
 fn open_timeline<'a, G: LockstepGame>(
-    file: &'a Vec<u8>,
+    file: &'a [u8],
     limits: &Limits,
 ) -> Result<Timeline<'a, Observed<G>>, LockstepError> {
     Timeline::open(file, &TimelineOptions::default(), limits)
