@@ -69,9 +69,8 @@ fn listen(
     }
     heard.predicted.extend(predicted.read().map(|event| (event.tick, event.event)));
     heard.retracted.extend(retracted.read().map(|event| (event.tick, event.event)));
-    for LockstepFailed(error) in failed.read() {
-        panic!("{error}");
-    }
+    let failure = failed.read().next().map(|LockstepFailed(error)| error.to_string());
+    assert_eq!(failure, None, "the driver has stopped");
 }
 
 /// Checks that the views are exactly the bodies, and stand where they stand.
