@@ -1,4 +1,4 @@
-//! Deterministic 2D physics, rollback multiplayer and replays for Bevy, on [lockstep2d](lockstep2d).
+//! Deterministic 2D physics, rollback multiplayer and replays for Bevy, on [`lockstep2d`].
 //!
 //! The simulation is one resource, [`Lockstep<G>`](Lockstep), for any [`Game`](lockstep2d::lockstep::Game). A driver
 //! plays it: [local](Lockstep::local), a [replay](Lockstep::replay), or a [match](Lockstep::host) over a network.
