@@ -1,6 +1,7 @@
 //! Two players push each other off a platform, with rollback. Arrow keys.
 //!
-//! `versus` plays against a bot over a simulated bad line; `versus host 0.0.0.0:7000` and `versus join ADDRESS` over UDP.
+//! `versus` plays against a bot over a simulated bad line; `versus host 0.0.0.0:7000` and `versus join ADDRESS` play
+//! over UDP.
 
 use std::net::ToSocketAddrs;
 

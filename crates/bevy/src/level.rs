@@ -107,7 +107,8 @@ impl core::error::Error for LevelError {}
 ///
 /// The components are removed, and the entities of bodies get their [`BodyView`]. Bodies and joints are created in the
 /// order in which their entities were spawned, so that the same program builds the same level everywhere. In a match
-/// one peer builds the level and the others receive the commands: entities may differ between machines, commands do not.
+/// one peer builds the level and the others receive the commands: entities may differ between machines, commands do
+/// not.
 ///
 /// # Errors
 /// [`LevelError`]. The entities are unchanged then.

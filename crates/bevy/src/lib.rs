@@ -9,7 +9,7 @@
 //! ```
 //! use bevy::prelude::*;
 //! use bevy_lockstep2d::prelude::*;
-//! use lockstep2d::{body::*, fx, lockstep::{Sandbox, SandboxSetup}, world::Command};
+//! use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, lockstep::{Sandbox, SandboxSetup}, world::Command};
 //!
 //! let spawn = |body, shape| Command::Spawn { body, shapes: vec![ShapeDef::new(shape)] };
 //! let ground = Polygon::rectangle(fx!(20), fx!(1))?;
@@ -31,8 +31,8 @@
 //! Systems of the plugin run in the schedule `RunFixedMainLoop`, after `PreUpdate` and before `Update`, in the sets of
 //! [`LockstepSystems`]. Systems that read input and fill [`Inputs`] belong into [`LockstepSystems::Inputs`].
 
-// The library's ban on floats does not apply here: views are floats, and nothing of them gets back into a game except as
-// an input.
+// The library's ban on floats does not apply here: views are floats, and nothing of them gets back into a game except
+// as an input.
 #![deny(missing_docs, clippy::iter_over_hash_type, clippy::unwrap_used)]
 #![warn(unreachable_pub)]
 

@@ -53,7 +53,7 @@ impl<G> LockstepPlugin<G> {
 pub struct LockstepSettings {
     /// Units of `Transform` per metre. A ball of half a metre has to be more than a pixel large.
     pub pixels_per_metre: f32,
-    /// Whether views are drawn between the last two ticks, which is smooth at every frame rate and late by up to a tick.
+    /// Whether views are drawn between the last two ticks: smooth at every frame rate, and late by up to a tick.
     /// Otherwise they are drawn where the bodies are.
     pub interpolate: bool,
     /// When a rollback moves a body, its view follows within a few of these times, in each of which half of the way is
