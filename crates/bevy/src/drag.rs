@@ -1,0 +1,118 @@
+//! [`DragPlugin`]: bodies of a [`Sandbox`] follow the pointer.
+
+use bevy::app::{App, Plugin, RunFixedMainLoop};
+use bevy::math::Vec2 as FloatVec2;
+use bevy::prelude::{IntoScheduleConfigs, Res, ResMut, Resource, resource_exists};
+use lockstep2d::body::BodyId;
+use lockstep2d::fx;
+use lockstep2d::lockstep::Sandbox;
+use lockstep2d::math::{Fx, Vec2, fx_mul};
+use lockstep2d::world::{Command, World};
+
+use crate::inputs::Inputs;
+use crate::lockstep::Lockstep;
+use crate::plugin::{LockstepSettings, LockstepSystems};
+
+/// Drags the bodies of a [`Sandbox`] with a [`DragHand`]. The pull is a command, that is an input: it is recorded.
+///
+/// It needs no window: a system of the game tells the hand where the pointer is, and when it presses.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DragPlugin;
+
+/// The hand. Positions are those of the views, in units of `Transform`, as from `Camera::viewport_to_world_2d`.
+#[derive(Resource, Clone, Copy, Debug, Default)]
+pub struct DragHand {
+    at: Option<FloatVec2>,
+    held: Option<Held>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    body: BodyId,
+    /// The grabbed point in the body's frame, in metres.
+    grip: Vec2<Fx>,
+}
+
+impl DragHand {
+    /// The pointer is down at this position. What it meets first is held until [`DragHand::release`].
+    pub fn hold(&mut self, at: FloatVec2) {
+        self.at = Some(at);
+    }
+
+    /// The pointer is up.
+    pub fn release(&mut self) {
+        (self.at, self.held) = (None, None);
+    }
+
+    /// The body that is held.
+    #[must_use]
+    pub fn body(&self) -> Option<BodyId> {
+        self.held.map(|held| held.body)
+    }
+}
+
+impl Plugin for DragPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<DragHand>().add_systems(
+            RunFixedMainLoop,
+            pull.in_set(LockstepSystems::Inputs).run_if(resource_exists::<Lockstep<Sandbox>>),
+        );
+    }
+}
+
+/// A position of the views, in metres. Outside of the world's coordinates it is at their edge.
+pub fn to_metres(at: FloatVec2, settings: &LockstepSettings) -> Vec2<Fx> {
+    let metres = |value: f32| Fx::saturating_from_num(if value.is_finite() { value } else { 0.0 });
+    let at = at / settings.pixels_per_metre;
+    Vec2::new(metres(at.x), metres(at.y))
+}
+
+fn pull(
+    mut hand: ResMut<DragHand>,
+    lockstep: Res<Lockstep<Sandbox>>,
+    settings: Res<LockstepSettings>,
+    mut inputs: ResMut<Inputs<Sandbox>>,
+) {
+    let (Some(at), Some(world)) = (hand.at, lockstep.world()) else { return };
+    let at = to_metres(at, &settings);
+    if hand.held.is_none_or(|held| world.body(held.body).is_none()) {
+        hand.held = grab(world, at);
+    }
+    let Some(command) = hand.held.and_then(|held| pull_command(world, held, at)) else { return };
+    // The force of a frame without a tick is replaced. In a frame with two ticks only the first one has it.
+    let once = inputs.once(0);
+    once.retain(|other| !is_same_pull(other, &command));
+    once.push(command);
+}
+
+fn is_same_pull(a: &Command, b: &Command) -> bool {
+    matches!((a, b), (Command::ApplyForce { body: a, .. }, Command::ApplyForce { body: b, .. }) if a == b)
+}
+
+/// The first dynamic body at a point.
+fn grab(world: &World, at: Vec2<Fx>) -> Option<Held> {
+    let bodies = world.overlap_point(at, Default::default());
+    let bodies = bodies.into_iter().filter_map(|shape| world.shape(shape)).map(|shape| shape.body());
+    let mut dynamic =
+        bodies.filter_map(|id| world.body(id).filter(|body| body.is_dynamic()).map(|body| (id, body)));
+    dynamic.next().map(|(id, body)| Held { body: id, grip: body.transform().apply_inverse(at) })
+}
+
+/// Stiffness per mass in 1/s2, and damping per mass in 1/s: a critically damped spring of 2 Hz.
+const STIFFNESS: Fx = fx!(158);
+const DAMPING: Fx = fx!(25);
+/// Largest acceleration in m/s2.
+const ACCELERATION_MAX: Fx = fx!(500);
+
+/// The force of a damped spring from the grip to the pointer.
+fn pull_command(world: &World, held: Held, at: Vec2<Fx>) -> Option<Command> {
+    let body = world.body(held.body)?;
+    let grip = body.transform().apply(held.grip);
+    let (way, velocity) = (at - grip, body.velocity_at(grip));
+    let pull = |way: Fx, velocity: Fx| {
+        let acceleration = fx_mul(way.clamp(fx!(-10), fx!(10)), STIFFNESS) - fx_mul(velocity, DAMPING);
+        fx_mul(acceleration.clamp(-ACCELERATION_MAX, ACCELERATION_MAX), body.mass())
+    };
+    let force = Vec2::new(pull(way.x, velocity.x), pull(way.y, velocity.y));
+    Some(Command::ApplyForce { body: held.body, force, point: grip })
+}

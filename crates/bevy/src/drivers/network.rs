@@ -1,0 +1,112 @@
+//! [`MatchDriver`]: a participant of a match.
+
+use core::fmt;
+
+use lockstep2d::lockstep::Game;
+use lockstep2d::peer::{Peer, PeerDesync, Transport};
+use lockstep2d::session::Address;
+
+use super::FrameTime;
+use crate::error::LockstepError;
+use crate::game::LockstepGame;
+use crate::inputs::Inputs;
+use crate::observed::Observed;
+
+/// A [`Transport`] of any type: [`Udp`](lockstep2d::peer::Udp), or your own.
+pub struct AnyTransport(Box<dyn Transport + Send + Sync>);
+
+impl AnyTransport {
+    /// Hides the type of a transport.
+    pub fn new(transport: impl Transport + Send + Sync + 'static) -> Self {
+        AnyTransport(Box::new(transport))
+    }
+}
+
+impl fmt::Debug for AnyTransport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("AnyTransport").finish_non_exhaustive()
+    }
+}
+
+impl Transport for AnyTransport {
+    fn send(&mut self, packet: &[u8], to: &Address) {
+        self.0.send(packet, to);
+    }
+
+    fn receive(&mut self) -> Option<(Address, Vec<u8>)> {
+        self.0.receive()
+    }
+}
+
+/// Ticks that one frame plays at most, while a peer catches up after it has joined.
+const TICKS_PER_FRAME: u32 = 64;
+
+pub(crate) struct MatchDriver<G: LockstepGame> {
+    peer: Peer<Observed<G>, AnyTransport>,
+    /// Time since the last tick, in ticks. The session stretches its ticks, so this is an estimate.
+    phase: f32,
+}
+
+impl<G: LockstepGame> MatchDriver<G> {
+    pub(crate) fn new(peer: Peer<Observed<G>, AnyTransport>) -> Self {
+        MatchDriver { peer, phase: 0.0 }
+    }
+
+    pub(crate) fn run(
+        &mut self,
+        time: FrameTime,
+        is_paused: bool,
+        inputs: &mut Inputs<G>,
+    ) -> Result<(), LockstepError> {
+        let first = self.peer.tick();
+        self.peer.update(time.real_elapsed)?;
+        self.synchronise();
+        for _ in 0..TICKS_PER_FRAME {
+            if is_paused || !self.peer.is_due() {
+                break;
+            }
+            let own = self.peer.session().map_or(0, |session| session.seats().count_ones());
+            // Inputs that were not issued are used again.
+            if !self.peer.advance(&inputs.next(own as usize))? {
+                break;
+            }
+            inputs.used();
+            self.synchronise();
+        }
+        let played = self.peer.tick().saturating_sub(first);
+        let rate = self.peer.game().tick_rate() as f32;
+        let passed = self.phase + time.real_delta.as_secs_f32() * rate - played as f32;
+        self.phase = passed.clamp(0.0, 1.0);
+        Ok(())
+    }
+
+    /// Tells the log the tick: a state that was received does not contain it.
+    fn synchronise(&self) {
+        self.peer.game().log().set_tick(self.peer.tick());
+    }
+
+    pub(crate) fn peer(&self) -> &Peer<Observed<G>, AnyTransport> {
+        &self.peer
+    }
+
+    pub(crate) fn peer_mut(&mut self) -> &mut Peer<Observed<G>, AnyTransport> {
+        &mut self.peer
+    }
+
+    /// This peer's report of a desync.
+    pub(crate) fn report(&mut self, desync: &PeerDesync) -> Result<Vec<u8>, LockstepError> {
+        // It plays the last ticks again, which are not new ones.
+        self.peer.game().log().suspend();
+        let report = self.peer.report(desync);
+        self.peer.game().log().resume();
+        Ok(report?)
+    }
+
+    pub(crate) fn finish(self) -> Result<Vec<u8>, LockstepError> {
+        Ok(self.peer.finish()?)
+    }
+
+    pub(crate) fn fraction(&self) -> f32 {
+        self.phase
+    }
+}

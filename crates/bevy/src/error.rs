@@ -1,0 +1,94 @@
+//! [`LockstepError`]: reasons why a driver cannot go on.
+
+use core::fmt;
+
+use bevy::prelude::Message;
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{InputError, SetupError};
+use lockstep2d::peer::PeerError;
+use lockstep2d::replay::{RecordError, SeekError, Verdict};
+
+/// Reason why a driver cannot start or go on.
+#[derive(Clone, Debug)]
+pub enum LockstepError {
+    /// The game cannot start from its setup.
+    Setup(SetupError),
+    /// The inputs cannot be encoded.
+    Inputs(InputError),
+    /// The replay of a local game cannot be written.
+    Record(RecordError),
+    /// The match cannot go on.
+    Match(PeerError),
+    /// The file is not a replay of this game.
+    Replay(Box<Verdict>),
+    /// The replay cannot be played to a tick.
+    Seek(SeekError),
+    /// A sync test found a state that depends on more than the inputs: saving and loading the game loses state, or a
+    /// step reads something that is not part of the game.
+    SyncTest {
+        /// Number of ticks played.
+        tick: u64,
+        /// Hash when the tick was played first.
+        first: StateHash,
+        /// Hash when it was played again.
+        again: StateHash,
+    },
+    /// The driver cannot do this: only replays can seek, for example.
+    Unsupported(&'static str),
+}
+
+impl fmt::Display for LockstepError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            LockstepError::Setup(error) => error.fmt(f),
+            LockstepError::Inputs(error) => error.fmt(f),
+            LockstepError::Record(error) => error.fmt(f),
+            LockstepError::Match(error) => error.fmt(f),
+            LockstepError::Replay(verdict) => write!(f, "the replay cannot be played: {verdict}"),
+            LockstepError::Seek(error) => write!(f, "the replay cannot be played: {error}"),
+            LockstepError::SyncTest { tick, first, again } => {
+                write!(f, "after {tick} ticks the state was {first} first and is {again} after a rollback")
+            }
+            LockstepError::Unsupported(what) => write!(f, "the driver cannot {what}"),
+        }
+    }
+}
+
+impl core::error::Error for LockstepError {}
+
+impl From<RecordError> for LockstepError {
+    fn from(error: RecordError) -> Self {
+        LockstepError::Record(error)
+    }
+}
+
+impl From<PeerError> for LockstepError {
+    fn from(error: PeerError) -> Self {
+        LockstepError::Match(error)
+    }
+}
+
+impl From<SeekError> for LockstepError {
+    fn from(error: SeekError) -> Self {
+        LockstepError::Seek(error)
+    }
+}
+
+impl From<InputError> for LockstepError {
+    fn from(error: InputError) -> Self {
+        LockstepError::Inputs(error)
+    }
+}
+
+impl From<SetupError> for LockstepError {
+    fn from(error: SetupError) -> Self {
+        LockstepError::Setup(error)
+    }
+}
+
+/// The driver stopped for good. The game stays at the last tick that it has played.
+#[derive(Message, Clone, Debug)]
+pub struct LockstepFailed(
+    /// Reason.
+    pub LockstepError,
+);

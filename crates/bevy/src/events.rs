@@ -1,0 +1,163 @@
+//! Events of the simulation as Bevy messages, and for observers.
+//!
+//! With rollback a tick may be played several times. [`ConfirmedEvent`]s are those of ticks that no rollback changes
+//! any more: every peer has the same ones, in the same order, each once. They come as late as the slowest input.
+//! [`PredictedEvent`]s come with the first time that a tick shows them, for sounds and particles; a
+//! [`RetractedEvent`] follows if they never happened. In a local game and in a replay both come at once.
+
+use bevy::prelude::{Entity, EntityEvent, Message};
+use lockstep2d::body::{BodyId, ShapeId};
+use lockstep2d::peer::PeerEvent;
+use lockstep2d::world::{ContactEvent, HitEvent, JointEvent, SensorChange, SensorEvent, World};
+
+/// An event of a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WorldEvent {
+    /// Two shapes began to touch.
+    ContactBegin(ContactEvent),
+    /// Two shapes ceased to touch.
+    ContactEnd(ContactEvent),
+    /// Two shapes hit each other at [`Config::hit_speed`](lockstep2d::world::Config::hit_speed) or faster.
+    Hit(HitEvent),
+    /// A shape entered a sensor.
+    SensorBegin(SensorEvent),
+    /// A shape left a sensor.
+    SensorEnd(SensorEvent),
+    /// A joint exceeded its threshold, or broke.
+    Joint(JointEvent),
+    /// A body fell asleep.
+    FellAsleep(BodyId),
+}
+
+impl WorldEvent {
+    /// The two shapes of a contact, a hit or a sensor: A and B, or the sensor and the visitor.
+    #[must_use]
+    pub const fn shapes(&self) -> Option<[ShapeId; 2]> {
+        match self {
+            WorldEvent::ContactBegin(contact) | WorldEvent::ContactEnd(contact) => {
+                Some([contact.shape_a, contact.shape_b])
+            }
+            WorldEvent::Hit(hit) => Some([hit.shape_a, hit.shape_b]),
+            WorldEvent::SensorBegin(event) | WorldEvent::SensorEnd(event) => {
+                Some([event.sensor, event.visitor])
+            }
+            WorldEvent::Joint(_) | WorldEvent::FellAsleep(_) => None,
+        }
+    }
+
+    /// Whether both are the same kind of event between the same things, whatever the speed, place and fraction.
+    fn is_alike(&self, other: &Self) -> bool {
+        match (self, other) {
+            (WorldEvent::ContactBegin(a), WorldEvent::ContactBegin(b))
+            | (WorldEvent::ContactEnd(a), WorldEvent::ContactEnd(b)) => a == b,
+            (WorldEvent::Hit(_), WorldEvent::Hit(_))
+            | (WorldEvent::SensorBegin(_), WorldEvent::SensorBegin(_))
+            | (WorldEvent::SensorEnd(_), WorldEvent::SensorEnd(_)) => self.shapes() == other.shapes(),
+            (WorldEvent::Joint(a), WorldEvent::Joint(b)) => a.joint == b.joint && a.broke == b.broke,
+            (WorldEvent::FellAsleep(a), WorldEvent::FellAsleep(b)) => a == b,
+            _ => false,
+        }
+    }
+}
+
+/// An event with its tick and the bodies that take part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct LoggedEvent {
+    /// Number of ticks played, with the one of the event.
+    pub(crate) tick: u64,
+    pub(crate) event: WorldEvent,
+    /// Bodies of the shapes, as far as they exist after the tick.
+    pub(crate) bodies: [Option<BodyId>; 2],
+}
+
+impl LoggedEvent {
+    pub(crate) fn is_alike(&self, other: &Self) -> bool {
+        self.event.is_alike(&other.event)
+    }
+}
+
+/// Passes the events of the last tick of a world to `found`, in their order: contacts, hits, sensors, joints, sleep.
+pub(crate) fn each_event(world: &World, tick: u64, found: &mut impl FnMut(LoggedEvent)) {
+    let events = world.events();
+    let body_of = |shape: ShapeId| world.shape(shape).map(|shape| shape.body());
+    let mut add = |event: WorldEvent| {
+        let bodies = match event {
+            WorldEvent::Joint(joint) => {
+                let joint = world.joint(joint.joint);
+                joint.map_or([None; 2], |joint| {
+                    let (body_a, body_b) = joint.def().bodies();
+                    [Some(body_a), Some(body_b)]
+                })
+            }
+            WorldEvent::FellAsleep(body) => [Some(body), None],
+            _ => event.shapes().map_or([None; 2], |shapes| shapes.map(body_of)),
+        };
+        found(LoggedEvent { tick, event, bodies });
+    };
+    events.contact_begin.iter().for_each(|event| add(WorldEvent::ContactBegin(*event)));
+    events.contact_end.iter().for_each(|event| add(WorldEvent::ContactEnd(*event)));
+    events.hits.iter().for_each(|event| add(WorldEvent::Hit(*event)));
+    for change in events.sensor_changes() {
+        add(match change {
+            SensorChange::Begin(event) => WorldEvent::SensorBegin(event),
+            SensorChange::End(event) => WorldEvent::SensorEnd(event),
+        });
+    }
+    events.joints.iter().for_each(|event| add(WorldEvent::Joint(*event)));
+    let asleep = events.moved.iter().filter(|moved| moved.fell_asleep);
+    asleep.for_each(|moved| add(WorldEvent::FellAsleep(moved.body)));
+}
+
+/// An event of a tick that is final. Each comes once.
+#[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ConfirmedEvent {
+    /// Number of ticks played, with the one of the event.
+    pub tick: u64,
+    /// What happened.
+    pub event: WorldEvent,
+    /// Views of the bodies: of shapes A and B, of the sensor and the visitor, of the joint, or of the sleeper. `None`
+    /// for a body that is gone.
+    pub views: [Option<Entity>; 2],
+}
+
+/// An event that may still turn out not to have happened. Each comes once, when a tick shows it for the first time; a
+/// rollback that moves it by a few ticks does not repeat it.
+#[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PredictedEvent {
+    /// Number of ticks played, with the one of the event.
+    pub tick: u64,
+    /// What happened.
+    pub event: WorldEvent,
+    /// As in [`ConfirmedEvent`].
+    pub views: [Option<Entity>; 2],
+}
+
+/// A [`PredictedEvent`] that did not happen after all, to stop its sound, for example.
+#[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RetractedEvent {
+    /// Tick that had been predicted.
+    pub tick: u64,
+    /// What did not happen.
+    pub event: WorldEvent,
+}
+
+/// A [`ConfirmedEvent`] for the observers of a view, once for each of its bodies:
+/// `commands.entity(view).observe(|on: On<BodyEvent>| ...)`.
+#[derive(EntityEvent, Clone, Copy, Debug)]
+pub struct BodyEvent {
+    /// The view.
+    pub entity: Entity,
+    /// View of the other body, if there is one.
+    pub other: Option<Entity>,
+    /// Number of ticks played, with the one of the event.
+    pub tick: u64,
+    /// What happened.
+    pub event: WorldEvent,
+}
+
+/// An event of a match: peers that join, leave or are waited for, and desyncs.
+#[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MatchEvent(
+    /// What happened.
+    pub PeerEvent,
+);

@@ -1,0 +1,18 @@
+//! [`LockstepGame`]: the games that can be a resource.
+
+use lockstep2d::lockstep::Game;
+
+/// A [`Game`] that can live in a Bevy resource: it and its inputs and saves are shared between threads. Implemented for
+/// every such game.
+pub trait LockstepGame:
+    Game<Setup: Send + Sync, Input: Send + Sync + 'static, Save: Send + Sync + 'static> + Send + Sync + 'static
+{
+}
+
+impl<G> LockstepGame for G where
+    G: Game<Setup: Send + Sync, Input: Send + Sync + 'static, Save: Send + Sync + 'static>
+        + Send
+        + Sync
+        + 'static
+{
+}

@@ -1,0 +1,87 @@
+//! [`Inputs`]: the inputs of the local players, written by a system of the game.
+
+use bevy::prelude::Resource;
+
+use crate::game::LockstepGame;
+
+/// Inputs of the local players for the coming ticks. Write them in [`LockstepSystems::Inputs`](crate::LockstepSystems).
+///
+/// A frame plays no tick, one, or several. What is *held* is the input of every tick until it changes: directions,
+/// buttons that are down. What is given *once* replaces it for exactly one tick, the next one that is played, whenever
+/// that is: a jump, a list of commands. So no press is lost in a frame without a tick, and none counts twice in a frame
+/// with two.
+///
+/// ```
+/// # use bevy_lockstep2d::Inputs;
+/// # use lockstep2d::{lockstep::Sandbox, math::Vec2, fx, world::Command};
+/// let mut inputs = Inputs::<Sandbox>::default();
+/// inputs.once(0).push(Command::SetGravity { gravity: Vec2::new(fx!(0), fx!(-5)) });
+/// ```
+#[derive(Resource)]
+pub struct Inputs<G: LockstepGame> {
+    seats: Vec<Seat<G::Input>>,
+}
+
+struct Seat<I> {
+    held: I,
+    once: Option<I>,
+}
+
+impl<I: Default> Default for Seat<I> {
+    fn default() -> Self {
+        Seat { held: I::default(), once: None }
+    }
+}
+
+impl<G: LockstepGame> Default for Inputs<G> {
+    fn default() -> Self {
+        Inputs { seats: Vec::new() }
+    }
+}
+
+/// Largest number of players, as in a replay.
+const SEATS_MAX: u32 = 64;
+
+impl<G: LockstepGame> Inputs<G> {
+    /// The input that a local player holds. Local players are counted from 0: in a local game they are the players, in
+    /// a match the own seats in ascending order. Players above 63 share an input that is never used.
+    pub fn held(&mut self, player: u32) -> &mut G::Input {
+        &mut self.seat(player).held
+    }
+
+    /// The input of a local player for the next tick alone. It begins as a copy of the held input.
+    pub fn once(&mut self, player: u32) -> &mut G::Input {
+        let Seat { held, once } = self.seat(player);
+        once.get_or_insert_with(|| held.clone())
+    }
+
+    /// Removes all inputs.
+    pub fn clear(&mut self) {
+        self.seats.clear();
+    }
+
+    fn seat(&mut self, player: u32) -> &mut Seat<G::Input> {
+        let index = player.min(SEATS_MAX) as usize;
+        if self.seats.len() <= index {
+            self.seats.resize_with(index + 1, Seat::default);
+        }
+        &mut self.seats[index]
+    }
+
+    /// The inputs of the next tick for a number of players.
+    pub(crate) fn next(&self, players: usize) -> Vec<G::Input> {
+        let of = |player: usize| match self.seats.get(player) {
+            Some(Seat { once: Some(once), .. }) => once.clone(),
+            Some(Seat { held, .. }) => held.clone(),
+            None => G::Input::default(),
+        };
+        (0..players).map(of).collect()
+    }
+
+    /// Notes that the inputs of [`Inputs::next`] have been used.
+    pub(crate) fn used(&mut self) {
+        for seat in &mut self.seats {
+            seat.once = None;
+        }
+    }
+}

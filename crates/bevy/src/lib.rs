@@ -1,0 +1,87 @@
+//! Deterministic 2D physics, rollback multiplayer and replays for Bevy, on [`lockstep2d`].
+//!
+//! The simulation is one resource, [`Lockstep<G>`](Lockstep), for any [`Game`](lockstep2d::lockstep::Game). A driver
+//! plays it: [local](Lockstep::local), a [replay](Lockstep::replay), or a [match](Lockstep::host) over a network.
+//! Entities are *views* of its bodies: they appear and disappear with the bodies, also through rollbacks, late joins
+//! and seeks, and their `Transform` is written every frame, interpolated, and never read. So nothing that Bevy does can
+//! change the simulation, and no component needs to be registered for rollback.
+//!
+//! ```
+//! use bevy::prelude::*;
+//! use bevy_lockstep2d::prelude::*;
+//! use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, lockstep::{Sandbox, SandboxSetup}, world::Command};
+//!
+//! let spawn = |body, shape| Command::Spawn { body, shapes: vec![ShapeDef::new(shape)] };
+//! let ground = Polygon::rectangle(fx!(20), fx!(1))?;
+//! let ball = Geometry::circle(fx!(0.5))?;
+//! let commands = vec![
+//!     spawn(BodyDef::fixed(), Geometry::from(ground)),
+//!     spawn(BodyDef::dynamic().position((fx!(0), fx!(4))), ball),
+//! ];
+//! let game = Lockstep::<Sandbox>::local(&SandboxSetup { commands, ..SandboxSetup::default() })?;
+//!
+//! let mut app = App::new();
+//! app.add_plugins((MinimalPlugins, LockstepPlugin::<Sandbox>::default())).insert_resource(game);
+//! app.update();
+//! let mut views = app.world_mut().query::<(&BodyView, &Transform)>();
+//! assert_eq!(views.iter(app.world()).count(), 2);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Systems of the plugin run in the schedule `RunFixedMainLoop`, after `PreUpdate` and before `Update`, in the sets of
+//! [`LockstepSystems`]. Systems that read input and fill [`Inputs`] belong into [`LockstepSystems::Inputs`].
+
+// The library's ban on floats does not apply here: views are floats, and nothing of them gets back into a game except
+// as an input.
+#![deny(missing_docs, clippy::iter_over_hash_type, clippy::unwrap_used)]
+#![warn(unreachable_pub)]
+
+mod diagnostics;
+mod drag;
+mod drivers;
+mod error;
+mod events;
+mod game;
+#[cfg(feature = "gizmos")]
+mod gizmos;
+mod inputs;
+mod level;
+mod lockstep;
+mod observed;
+mod plugin;
+mod poses;
+mod smoothing;
+mod step_log;
+mod systems;
+mod views;
+
+pub use diagnostics::LockstepDiagnosticsPlugin;
+pub use drag::{DragHand, DragPlugin, to_metres};
+pub use drivers::AnyTransport;
+pub use error::{LockstepError, LockstepFailed};
+pub use events::{BodyEvent, ConfirmedEvent, MatchEvent, PredictedEvent, RetractedEvent, WorldEvent};
+pub use game::LockstepGame;
+#[cfg(feature = "gizmos")]
+pub use gizmos::{LockstepGizmos, LockstepGizmosPlugin};
+pub use inputs::Inputs;
+pub use level::{LevelError, SpawnBody, SpawnJoint, build_level};
+pub use lockstep::{DriverKind, Lockstep};
+pub use observed::{Observed, ObservedSave};
+pub use plugin::{
+    LockstepPlugin, LockstepSettings, LockstepStatus, LockstepSystems, has_lockstep, has_rolled_back,
+    has_stepped, is_running,
+};
+pub use poses::Pose;
+pub use views::{BodyView, BodyViews};
+
+/// The types that most programs need.
+pub mod prelude {
+    pub use crate::{
+        BodyEvent, BodyView, BodyViews, ConfirmedEvent, Inputs, Lockstep, LockstepPlugin, LockstepSettings,
+        LockstepStatus, LockstepSystems, MatchEvent, PredictedEvent, WorldEvent,
+    };
+}
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}

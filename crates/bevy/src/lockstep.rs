@@ -1,0 +1,310 @@
+//! [`Lockstep`]: the game and its driver, in one resource.
+
+use bevy::prelude::Resource;
+use lockstep2d::lockstep::Game;
+use lockstep2d::peer::{Peer, PeerDesync, PeerEvent, PeerIdentity, PeerOptions, Transport};
+use lockstep2d::replay::Limits;
+use lockstep2d::session::Address;
+use lockstep2d::world::World;
+
+use crate::drivers::{
+    AnyTransport, Driver, FrameTime, LocalDriver, MatchDriver, ReplayDriver, SyncTestDriver,
+};
+use crate::error::LockstepError;
+use crate::game::LockstepGame;
+use crate::inputs::Inputs;
+use crate::observed::Observed;
+
+/// What plays the ticks of a [`Lockstep`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DriverKind {
+    /// [`Lockstep::local`].
+    Local,
+    /// [`Lockstep::sync_test`].
+    SyncTest,
+    /// [`Lockstep::replay`].
+    Replay,
+    /// [`Lockstep::host`], [`Lockstep::join`], [`Lockstep::watch`].
+    Match,
+}
+
+/// A game and what plays it. Insert it as a resource to start, replace it to restart, and remove it to stop: the views
+/// of its bodies follow.
+///
+/// Nothing of it can be changed from outside except through [`Inputs`]: a change that is not an input would be missing
+/// on other machines and in the replay.
+#[derive(Resource)]
+pub struct Lockstep<G: LockstepGame> {
+    driver: Driver<G>,
+    is_paused: bool,
+    /// Ticks to be played although the game is paused.
+    single_steps: u32,
+    has_failed: bool,
+}
+
+type AnyPeer<G> = Peer<Observed<G>, AnyTransport>;
+
+impl<G: LockstepGame> Lockstep<G> {
+    fn new(driver: Driver<G>) -> Self {
+        Lockstep { driver, is_paused: false, single_steps: 0, has_failed: false }
+    }
+
+    /// A game whose players are all at this machine. It is recorded: see [`Lockstep::take_replay`].
+    ///
+    /// # Errors
+    /// [`LockstepError::Record`] when the setup cannot start a game.
+    pub fn local(setup: &G::Setup) -> Result<Self, LockstepError> {
+        Ok(Self::new(Driver::Local(Box::new(LocalDriver::new(setup)?))))
+    }
+
+    /// A local game for tests: after every tick the state of `depth` ticks ago is loaded and played up to it again, and
+    /// all state hashes are compared. It fails with [`LockstepError::SyncTest`] if they differ.
+    ///
+    /// # Errors
+    /// [`LockstepError::Setup`] when the setup cannot start a game.
+    pub fn sync_test(setup: &G::Setup, depth: u32) -> Result<Self, LockstepError> {
+        Ok(Self::new(Driver::SyncTest(Box::new(SyncTestDriver::new(setup, depth)?))))
+    }
+
+    /// A replay, from its first tick.
+    ///
+    /// # Errors
+    /// [`LockstepError::Replay`] with the verdict when nothing of the file can be played.
+    pub fn replay(file: Vec<u8>, limits: &Limits) -> Result<Self, LockstepError> {
+        Ok(Self::new(Driver::Replay(Box::new(ReplayDriver::new(file, limits)?))))
+    }
+
+    /// Opens a match; see [`Peer::host`].
+    ///
+    /// # Errors
+    /// [`LockstepError::Match`] when the setup or the options cannot start a game.
+    pub fn host(
+        setup: &G::Setup,
+        options: PeerOptions,
+        me: PeerIdentity,
+        transport: impl Transport + Send + Sync + 'static,
+    ) -> Result<Self, LockstepError> {
+        Ok(Self::of_peer(Peer::host(setup, options, me, AnyTransport::new(transport))?))
+    }
+
+    /// Joins a match, also late; see [`Peer::join`].
+    ///
+    /// # Errors
+    /// As [`Lockstep::host`].
+    pub fn join(
+        setup: &G::Setup,
+        options: PeerOptions,
+        me: PeerIdentity,
+        transport: impl Transport + Send + Sync + 'static,
+        contact: Address,
+    ) -> Result<Self, LockstepError> {
+        Ok(Self::of_peer(Peer::join(setup, options, me, AnyTransport::new(transport), contact)?))
+    }
+
+    /// Watches a match; see [`Peer::watch`].
+    ///
+    /// # Errors
+    /// As [`Lockstep::host`].
+    pub fn watch(
+        setup: &G::Setup,
+        options: PeerOptions,
+        me: PeerIdentity,
+        transport: impl Transport + Send + Sync + 'static,
+        contact: Address,
+    ) -> Result<Self, LockstepError> {
+        Ok(Self::of_peer(Peer::watch(setup, options, me, AnyTransport::new(transport), contact)?))
+    }
+
+    fn of_peer(peer: AnyPeer<G>) -> Self {
+        Self::new(Driver::Match(Box::new(MatchDriver::new(peer))))
+    }
+
+    /// The game. In a match it may depend on guessed inputs.
+    #[must_use]
+    pub fn game(&self) -> &G {
+        self.driver.game().game()
+    }
+
+    /// The physics world of the game, if it has one.
+    #[must_use]
+    pub fn world(&self) -> Option<&World> {
+        self.driver.game().world()
+    }
+
+    /// Number of ticks played.
+    #[must_use]
+    pub fn tick(&self) -> u64 {
+        self.driver.tick()
+    }
+
+    /// Number of ticks that no rollback changes any more.
+    #[must_use]
+    pub fn confirmed(&self) -> u64 {
+        self.driver.confirmed()
+    }
+
+    /// What plays the game.
+    #[must_use]
+    pub const fn kind(&self) -> DriverKind {
+        match &self.driver {
+            Driver::Local(_) => DriverKind::Local,
+            Driver::SyncTest(_) => DriverKind::SyncTest,
+            Driver::Replay(_) => DriverKind::Replay,
+            Driver::Match(_) => DriverKind::Match,
+        }
+    }
+
+    /// Stops the ticks. In a match the others are asked to stop, too ([`MatchEvent`](crate::MatchEvent)); whether they
+    /// do is the decision of their game. Those who do not wait, and after [`PeerOptions::patience`] go on without this
+    /// peer, which returns when it goes on.
+    pub fn pause(&mut self) {
+        self.set_paused(true);
+    }
+
+    /// Goes on after [`Lockstep::pause`].
+    pub fn resume(&mut self) {
+        self.set_paused(false);
+    }
+
+    fn set_paused(&mut self, is_paused: bool) {
+        self.is_paused = is_paused;
+        if let Some(session) = self.peer_mut().and_then(Peer::session_mut) {
+            session.pause(is_paused);
+        }
+    }
+
+    /// Whether [`Lockstep::pause`] stopped the ticks.
+    #[must_use]
+    pub const fn is_paused(&self) -> bool {
+        self.is_paused
+    }
+
+    /// Plays one tick in the next frame although the game is paused. Not in a match.
+    pub fn step_once(&mut self) {
+        self.single_steps = self.single_steps.saturating_add(1);
+    }
+
+    /// Whether the driver has stopped for good, with a [`LockstepFailed`](crate::LockstepFailed).
+    #[must_use]
+    pub const fn has_failed(&self) -> bool {
+        self.has_failed
+    }
+
+    /// Goes to a tick of a replay, forwards or backwards. There are no events of the ticks between. A replay that has
+    /// failed can go back.
+    ///
+    /// # Errors
+    /// [`LockstepError::Seek`] when there is no such tick or the replay cannot be played so far.
+    /// [`LockstepError::Unsupported`] for other drivers.
+    pub fn seek(&mut self, tick: u64) -> Result<(), LockstepError> {
+        let Driver::Replay(replay) = &mut self.driver else { return Err(LockstepError::Unsupported("seek")) };
+        replay.seek(tick)?;
+        self.has_failed = false;
+        Ok(())
+    }
+
+    /// Goes back by a number of ticks of a replay, at most to its start.
+    ///
+    /// # Errors
+    /// As [`Lockstep::seek`].
+    pub fn back(&mut self, ticks: u64) -> Result<(), LockstepError> {
+        self.seek(self.tick().saturating_sub(ticks))
+    }
+
+    /// Length of a replay in ticks.
+    #[must_use]
+    pub fn replay_ticks(&self) -> Option<u64> {
+        match &self.driver {
+            Driver::Replay(replay) => Some(replay.ticks()),
+            _ => None,
+        }
+    }
+
+    /// Takes the finished bytes of the game's own replay, to be appended to its file. Every byte comes once. Empty for
+    /// drivers that do not record, and for a peer that joined after the first tick.
+    pub fn take_replay(&mut self) -> Vec<u8> {
+        match &mut self.driver {
+            Driver::Local(local) => local.take_replay(),
+            Driver::Match(network) => network.peer_mut().take_replay(),
+            Driver::SyncTest(_) | Driver::Replay(_) => Vec::new(),
+        }
+    }
+
+    /// Ends the game and returns the bytes of its replay that have not been taken yet; see [`Lockstep::take_replay`].
+    /// In a match, leave or end it first: [`Peer::finish`].
+    ///
+    /// # Errors
+    /// [`LockstepError`] when the replay cannot be finished.
+    pub fn finish(self) -> Result<Vec<u8>, LockstepError> {
+        match self.driver {
+            Driver::Local(local) => local.finish(),
+            Driver::Match(network) => network.finish(),
+            Driver::SyncTest(_) | Driver::Replay(_) => Ok(Vec::new()),
+        }
+    }
+
+    /// The participant of a match: its seats, links, status and session.
+    #[must_use]
+    pub fn peer(&self) -> Option<&AnyPeer<G>> {
+        match &self.driver {
+            Driver::Match(network) => Some(network.peer()),
+            _ => None,
+        }
+    }
+
+    /// The participant of a match, to leave, end or kick. Do not call `update` and `advance`: the plugin does. Reports
+    /// are made by [`Lockstep::report`].
+    pub fn peer_mut(&mut self) -> Option<&mut AnyPeer<G>> {
+        match &mut self.driver {
+            Driver::Match(network) => Some(network.peer_mut()),
+            _ => None,
+        }
+    }
+
+    /// This peer's report of a desync, as bytes for a file; see [`Peer::report`].
+    ///
+    /// # Errors
+    /// [`LockstepError::Match`] when the states that it needs are not kept, [`LockstepError::Unsupported`] for other
+    /// drivers.
+    pub fn report(&mut self, desync: &PeerDesync) -> Result<Vec<u8>, LockstepError> {
+        match &mut self.driver {
+            Driver::Match(network) => network.report(desync),
+            _ => Err(LockstepError::Unsupported("report a desync")),
+        }
+    }
+
+    /// Plays the ticks of a frame.
+    pub(crate) fn run(&mut self, time: FrameTime, inputs: &mut Inputs<G>) -> Result<(), LockstepError> {
+        if self.has_failed {
+            return Ok(());
+        }
+        let result = self.run_singly(inputs).and_then(|()| self.driver.run(time, self.is_paused, inputs));
+        self.has_failed = result.is_err();
+        result
+    }
+
+    fn run_singly(&mut self, inputs: &mut Inputs<G>) -> Result<(), LockstepError> {
+        for _ in 0..core::mem::take(&mut self.single_steps) {
+            match &mut self.driver {
+                Driver::Local(local) => local.step(inputs)?,
+                Driver::SyncTest(test) => test.step(inputs)?,
+                Driver::Replay(replay) => drop(replay.step()?),
+                Driver::Match(_) => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// The next event of a match.
+    pub(crate) fn next_event(&mut self) -> Option<PeerEvent> {
+        self.peer_mut().and_then(Peer::next_event)
+    }
+
+    pub(crate) fn observed(&self) -> &Observed<G> {
+        self.driver.game()
+    }
+
+    pub(crate) fn fraction(&self) -> f32 {
+        self.driver.fraction()
+    }
+}

@@ -1,0 +1,106 @@
+//! [`Observed`]: a game that keeps a log of its steps.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{Game, RulesId, SetupError};
+use lockstep2d::world::World;
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+
+use crate::step_log::{Stamp, StepLog};
+
+/// A game, and a log of what its steps have done. It is the same game for everybody else: its rules, inputs, saves and
+/// hashes are those of `G`, byte for byte, so that it plays with peers and replays that do not use Bevy.
+pub struct Observed<G> {
+    game: G,
+    log: Mutex<StepLog>,
+}
+
+/// A save of an [`Observed`] game. Encoded, it is a save of `G`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(transparent, bound = "S: Serialize + DeserializeOwned")]
+pub struct ObservedSave<S> {
+    save: S,
+    #[serde(skip)]
+    stamp: Option<Stamp>,
+}
+
+impl<G: Game> Observed<G> {
+    /// The game.
+    pub const fn game(&self) -> &G {
+        &self.game
+    }
+
+    /// The log. Only one thread ever uses it.
+    pub(crate) fn log(&self) -> MutexGuard<'_, StepLog> {
+        self.log.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn log_mut(&mut self) -> (&G, &mut StepLog) {
+        (&self.game, self.log.get_mut().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+impl<G: Game> Game for Observed<G> {
+    type Setup = G::Setup;
+    type Input = G::Input;
+    type Save = ObservedSave<G::Save>;
+
+    const RULES: RulesId = G::RULES;
+
+    fn new(setup: &G::Setup) -> Result<Self, SetupError> {
+        let game = G::new(setup)?;
+        let log = Mutex::new(StepLog::new(game.world()));
+        Ok(Observed { game, log })
+    }
+
+    fn players(&self) -> u32 {
+        self.game.players()
+    }
+
+    fn tick_rate(&self) -> u32 {
+        self.game.tick_rate()
+    }
+
+    fn step(&mut self, inputs: &[G::Input]) {
+        let (game, log) = self.log_mut();
+        log.before_step(game.world());
+        self.game.step(inputs);
+        let (game, log) = self.log_mut();
+        log.after_step(game.world());
+    }
+
+    fn state_hash(&self) -> StateHash {
+        self.game.state_hash()
+    }
+
+    fn save(&self) -> Self::Save {
+        ObservedSave { save: self.game.save(), stamp: Some(self.log().stamp()) }
+    }
+
+    fn load(&mut self, save: &Self::Save) {
+        self.game.load(&save.save);
+        let (game, log) = self.log_mut();
+        log.loaded(save.stamp, game.world());
+    }
+
+    fn work(&self, inputs: &[G::Input]) -> u64 {
+        self.game.work(inputs)
+    }
+
+    fn absent() -> G::Input {
+        G::absent()
+    }
+
+    fn world(&self) -> Option<&World> {
+        self.game.world()
+    }
+
+    fn world_mut(&mut self) -> Option<&mut World> {
+        self.game.world_mut()
+    }
+
+    fn claims(&self) -> Vec<(String, i64)> {
+        self.game.claims()
+    }
+}

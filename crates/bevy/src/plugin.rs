@@ -1,0 +1,171 @@
+//! [`LockstepPlugin`], its settings and its system sets.
+
+use core::marker::PhantomData;
+use core::time::Duration;
+
+use bevy::app::{App, Plugin, RunFixedMainLoop, RunFixedMainLoopSystems};
+use bevy::prelude::{
+    IntoScheduleConfigs, Reflect, ReflectResource, Res, Resource, SystemSet, resource_exists,
+    resource_removed,
+};
+
+use crate::error::LockstepFailed;
+use crate::events::{ConfirmedEvent, MatchEvent, PredictedEvent, RetractedEvent};
+use crate::game::LockstepGame;
+use crate::inputs::Inputs;
+use crate::lockstep::Lockstep;
+use crate::systems::{remove_views, send_events, step, write_views};
+use crate::views::{BodyView, BodyViews};
+
+/// Plays the games of one type: whenever there is a resource [`Lockstep<G>`], its ticks are played, its bodies have
+/// views, and its events are sent. One app has one such plugin.
+#[derive(Clone, Copy, Debug)]
+pub struct LockstepPlugin<G> {
+    settings: LockstepSettings,
+    game: PhantomData<fn() -> G>,
+}
+
+impl<G> Default for LockstepPlugin<G> {
+    fn default() -> Self {
+        LockstepPlugin { settings: LockstepSettings::default(), game: PhantomData }
+    }
+}
+
+impl<G> LockstepPlugin<G> {
+    /// Sets the scale of the views.
+    #[must_use]
+    pub const fn pixels_per_metre(mut self, pixels: f32) -> Self {
+        self.settings.pixels_per_metre = pixels;
+        self
+    }
+
+    /// Sets all settings.
+    #[must_use]
+    pub const fn settings(mut self, settings: LockstepSettings) -> Self {
+        self.settings = settings;
+        self
+    }
+}
+
+/// How views are drawn. It can be changed at any time.
+#[derive(Resource, Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Resource)]
+pub struct LockstepSettings {
+    /// Units of `Transform` per metre. A ball of half a metre has to be more than a pixel large.
+    pub pixels_per_metre: f32,
+    /// Whether views are drawn between the last two ticks: smooth at every frame rate, and late by up to a tick.
+    /// Otherwise they are drawn where the bodies are.
+    pub interpolate: bool,
+    /// When a rollback moves a body, its view follows within a few of these times, in each of which half of the way is
+    /// left. Zero: at once.
+    pub smoothing_half_life: Duration,
+    /// Ways longer than this are jumps, in metres.
+    pub smoothing_limit: f32,
+}
+
+impl Default for LockstepSettings {
+    /// 100 pixels per metre, interpolation, a half-life of 40 ms for up to 2 m.
+    fn default() -> Self {
+        LockstepSettings {
+            pixels_per_metre: 100.0,
+            interpolate: true,
+            smoothing_half_life: Duration::from_millis(40),
+            smoothing_limit: 2.0,
+        }
+    }
+}
+
+impl LockstepSettings {
+    /// Views are drawn exactly where the bodies are, for tests and screenshots.
+    #[must_use]
+    pub const fn exact(mut self) -> Self {
+        self.interpolate = false;
+        self.smoothing_half_life = Duration::ZERO;
+        self
+    }
+}
+
+/// Where the game stands, renewed every frame: for run conditions, diagnostics and inspectors.
+#[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Resource)]
+pub struct LockstepStatus {
+    /// Number of ticks played.
+    pub tick: u64,
+    /// Number of ticks that no rollback changes any more.
+    pub confirmed: u64,
+    /// Ticks played in this frame, including repeated ones.
+    pub stepped: u32,
+    /// Ticks that a rollback of this frame went back.
+    pub rolled_back: u32,
+    /// Whether the game is paused.
+    pub paused: bool,
+    /// Time that the ticks of this frame took, with everything that the driver does.
+    pub step_time: Duration,
+}
+
+/// The sets of the plugin, in the order in which they run, in `RunFixedMainLoop` beside `FixedUpdate`.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum LockstepSystems {
+    /// Systems of the game that fill [`Inputs`]. Runs once a frame.
+    Inputs,
+    /// Ticks are played: none, one, or several.
+    Step,
+    /// Views are spawned, moved and despawned.
+    Views,
+    /// Events are sent.
+    Events,
+}
+
+impl<G: LockstepGame> Plugin for LockstepPlugin<G> {
+    fn build(&self, app: &mut App) {
+        use LockstepSystems::{Events, Inputs as InputSystems, Step, Views};
+        app.insert_resource(self.settings)
+            .init_resource::<LockstepStatus>()
+            .init_resource::<BodyViews>()
+            .init_resource::<Inputs<G>>()
+            .add_message::<ConfirmedEvent>()
+            .add_message::<PredictedEvent>()
+            .add_message::<RetractedEvent>()
+            .add_message::<MatchEvent>()
+            .add_message::<LockstepFailed>()
+            .register_type::<BodyView>()
+            .register_type::<LockstepSettings>()
+            .register_type::<LockstepStatus>()
+            .configure_sets(
+                RunFixedMainLoop,
+                (InputSystems, Step, Views, Events).chain().in_set(RunFixedMainLoopSystems::FixedMainLoop),
+            )
+            .add_systems(
+                RunFixedMainLoop,
+                (
+                    step::<G>.in_set(Step).run_if(resource_exists::<Lockstep<G>>),
+                    (
+                        write_views::<G>.run_if(resource_exists::<Lockstep<G>>),
+                        remove_views.run_if(resource_removed::<Lockstep<G>>),
+                    )
+                        .in_set(Views),
+                    send_events::<G>.in_set(Events).run_if(resource_exists::<Lockstep<G>>),
+                ),
+            );
+    }
+}
+
+/// Run condition: there is a game.
+pub fn has_lockstep<G: LockstepGame>(lockstep: Option<Res<Lockstep<G>>>) -> bool {
+    lockstep.is_some()
+}
+
+/// Run condition: there is a game, and it is neither paused nor stopped by an error.
+pub fn is_running<G: LockstepGame>(lockstep: Option<Res<Lockstep<G>>>) -> bool {
+    lockstep.is_some_and(|lockstep| !lockstep.is_paused() && !lockstep.has_failed())
+}
+
+/// Run condition: ticks were played in this frame.
+pub fn has_stepped(status: Res<LockstepStatus>) -> bool {
+    status.stepped > 0
+}
+
+/// Run condition: a rollback changed the past in this frame.
+pub fn has_rolled_back(status: Res<LockstepStatus>) -> bool {
+    status.rolled_back > 0
+}

@@ -1,0 +1,134 @@
+//! Where a view is drawn: between two ticks, and beside the body for a moment after a rollback has moved it.
+
+use core::f32::consts::TAU;
+use core::time::Duration;
+
+use bevy::math::Vec2;
+use lockstep2d::draw::to_f32;
+use lockstep2d::math::Angle;
+
+use crate::poses::Pose;
+
+/// Position in metres and rotation in radians, as floats.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct DrawnPose {
+    pub(crate) position: Vec2,
+    pub(crate) angle: f32,
+}
+
+impl DrawnPose {
+    /// A pose as it is.
+    pub(crate) fn at(pose: Pose) -> Self {
+        DrawnPose { position: to_f32(pose.position).into(), angle: radians(pose.angle) }
+    }
+
+    /// The pose at a fraction of the way from one to the other, with the rotation on the shorter way.
+    pub(crate) fn between(previous: Pose, current: Pose, fraction: f32) -> Self {
+        let start = Self::at(previous);
+        let way = Offset::between(previous, current);
+        DrawnPose {
+            position: start.position + way.position * fraction,
+            angle: start.angle + way.angle * fraction,
+        }
+    }
+
+    pub(crate) fn shifted(self, offset: Offset) -> Self {
+        DrawnPose { position: self.position + offset.position, angle: self.angle + offset.angle }
+    }
+}
+
+/// A signed angle in radians, -pi to pi.
+fn radians(angle: Angle) -> f32 {
+    let signed = angle.to_bits().cast_signed();
+    signed as f32 * (TAU / 4_294_967_296.0)
+}
+
+/// A displacement of a view.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Offset {
+    position: Vec2,
+    angle: f32,
+}
+
+/// Offsets below these are dropped, in metres and radians: they are less than a pixel.
+const POSITION_MIN: f32 = 1e-3;
+const ANGLE_MIN: f32 = 1e-3;
+
+impl Offset {
+    pub(crate) const ZERO: Self = Offset { position: Vec2::ZERO, angle: 0.0 };
+
+    /// The way from one pose to another, with the rotation on the shorter way. The difference is computed in fixed
+    /// point: far from the origin floats have no digits left for it.
+    pub(crate) fn between(from: Pose, to: Pose) -> Self {
+        Offset { position: to_f32(to.position - from.position).into(), angle: radians(to.angle - from.angle) }
+    }
+
+    /// Adds a displacement. Beyond `limit` metres the view jumps instead.
+    pub(crate) fn add(&mut self, other: Self, limit: f32) {
+        self.position += other.position;
+        self.angle += other.angle;
+        if self.position.length() > limit {
+            *self = Self::ZERO;
+        }
+    }
+
+    /// Halves the offset in every `half_life`.
+    pub(crate) fn decay(&mut self, time: Duration, half_life: Duration) {
+        if *self == Self::ZERO {
+            return;
+        }
+        let half_lives = time.as_secs_f32() / half_life.as_secs_f32();
+        // Without a half-life the quotient is infinite, or not a number in a frame without time.
+        let factor = if half_life.is_zero() { 0.0 } else { (-half_lives).exp2() };
+        self.position *= factor;
+        self.angle *= factor;
+        if self.position.length() < POSITION_MIN && self.angle.abs() < ANGLE_MIN {
+            *self = Self::ZERO;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lockstep2d::fx;
+    use lockstep2d::math::Vec2 as FixedVec2;
+
+    use super::*;
+
+    fn pose(x: i32, degrees: i32) -> Pose {
+        Pose {
+            position: FixedVec2::new(lockstep2d::math::Fx::from_num(x), fx!(0)),
+            angle: Angle::from_degrees(lockstep2d::math::Fx::from_num(degrees)),
+        }
+    }
+
+    #[test]
+    fn a_rotation_takes_the_shorter_way() {
+        let half = DrawnPose::between(pose(0, 170), pose(2, -170), 0.5);
+        assert!((half.angle.abs() - TAU / 2.0).abs() < 1e-5, "{half:?}");
+        assert_eq!(half.position, Vec2::new(1.0, 0.0));
+        let back = DrawnPose::between(pose(0, -170), pose(0, 170), 0.25);
+        assert!((back.angle.to_degrees() + 175.0).abs() < 1e-3, "{back:?}");
+    }
+
+    #[test]
+    fn an_offset_is_halved_in_a_half_life_and_ends() {
+        let mut offset = Offset::between(pose(0, 0), pose(2, 40));
+        offset.decay(Duration::from_millis(50), Duration::from_millis(50));
+        assert!((offset.position.x - 1.0).abs() < 1e-5 && (offset.angle.to_degrees() - 20.0).abs() < 1e-3);
+        offset.decay(Duration::from_secs(1), Duration::from_millis(50));
+        assert_eq!(offset, Offset::ZERO);
+        let mut none = Offset::between(pose(0, 0), pose(2, 40));
+        none.decay(Duration::ZERO, Duration::ZERO);
+        assert_eq!(none, Offset::ZERO);
+    }
+
+    #[test]
+    fn a_long_way_is_a_jump() {
+        let mut offset = Offset::ZERO;
+        offset.add(Offset::between(pose(0, 0), pose(2, 40)), 3.0);
+        assert_ne!(offset, Offset::ZERO);
+        offset.add(Offset::between(pose(0, 0), pose(2, 40)), 3.0);
+        assert_eq!(offset, Offset::ZERO);
+    }
+}

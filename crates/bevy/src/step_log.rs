@@ -1,0 +1,235 @@
+//! [`StepLog`]: what the steps of a game have done, for its views and events.
+//!
+//! A driver may load states and play ticks again in any order. The log follows it from inside the game, so that all
+//! drivers have the same views and events.
+
+use std::collections::VecDeque;
+
+use lockstep2d::body::BodyId;
+use lockstep2d::world::World;
+
+use crate::events::{LoggedEvent, each_event};
+use crate::poses::Poses;
+
+/// A tick, as a number of ticks since the start of an epoch. An epoch begins with a state of which only the driver
+/// knows the tick: one that another peer has sent, or one that was read from bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Stamp {
+    epoch: u32,
+    ticks: u64,
+}
+
+/// An event, and whether it was passed on as predicted.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    event: LoggedEvent,
+    announced: bool,
+}
+
+/// A rollback may move an event by so many ticks without it being another one.
+const SAME_EVENT_TICKS: u64 = 16;
+
+#[derive(Debug, Default)]
+pub(crate) struct StepLog {
+    epoch: u32,
+    /// Ticks since the start of the epoch.
+    ticks: u64,
+    /// Tick at which each epoch begins, once it is known.
+    bases: Vec<Option<u64>>,
+    /// Events of the ticks that are not confirmed, in order. Their ticks are those since the start of the epoch.
+    pending: VecDeque<Entry>,
+    /// Announced events whose ticks were rolled back, and that have not happened again.
+    withdrawn: Vec<LoggedEvent>,
+    /// Poses before and after the last step.
+    pub(crate) before: Poses,
+    pub(crate) after: Poses,
+    is_after_stale: bool,
+    /// Tick that the views show, and the poses of the same tick after it was played again.
+    shown: Option<Stamp>,
+    pub(crate) shown_again: Option<Poses>,
+    /// Bodies that were missing in a loaded state: a body with the same id may be another one now.
+    pub(crate) missing: Vec<BodyId>,
+    /// Ticks played since the last frame, and how many of them again.
+    pub(crate) stepped: u32,
+    pub(crate) replayed: u32,
+    /// While the driver simulates something that is not part of the game's course: the tick to return to.
+    suspended_at: Option<Stamp>,
+    /// Tick of the world before the step.
+    world_tick: Option<u64>,
+}
+
+impl StepLog {
+    /// A log of a game that begins with tick 0.
+    pub(crate) fn new(world: Option<&World>) -> Self {
+        let mut log = StepLog { bases: vec![Some(0)], ..StepLog::default() };
+        log.refresh(world);
+        log
+    }
+
+    /// The current tick, for a save.
+    pub(crate) const fn stamp(&self) -> Stamp {
+        Stamp { epoch: self.epoch, ticks: self.ticks }
+    }
+
+    /// To be called before a step.
+    pub(crate) fn before_step(&mut self, world: Option<&World>) {
+        self.world_tick = world.map(World::tick);
+        if self.suspended_at.is_none() {
+            if self.is_after_stale {
+                self.after.capture(world);
+            }
+            core::mem::swap(&mut self.before, &mut self.after);
+            self.is_after_stale = false;
+        }
+    }
+
+    /// To be called after a step.
+    pub(crate) fn after_step(&mut self, world: Option<&World>) {
+        self.ticks += 1;
+        if self.suspended_at.is_some() {
+            return;
+        }
+        self.stepped += 1;
+        self.after.capture(world);
+        if self.shown == Some(self.stamp()) {
+            self.shown_again = Some(self.after.clone());
+        }
+        // A tick in which the game does not step its world, as in a pause between rounds, has no events.
+        let Some(world) = world.filter(|world| Some(world.tick()) != self.world_tick) else { return };
+        let (pending, withdrawn) = (&mut self.pending, &mut self.withdrawn);
+        each_event(world, self.ticks, &mut |event| {
+            let same = withdrawn.iter().position(|other| {
+                other.is_alike(&event) && other.tick.abs_diff(event.tick) <= SAME_EVENT_TICKS
+            });
+            let announced = same.map(|place| withdrawn.remove(place)).is_some();
+            pending.push_back(Entry { event, announced });
+        });
+    }
+
+    /// To be called after a state was loaded.
+    pub(crate) fn loaded(&mut self, stamp: Option<Stamp>, world: Option<&World>) {
+        let known = stamp.filter(|stamp| stamp.epoch == self.epoch);
+        let back = match known {
+            Some(stamp) => self.ticks.saturating_sub(stamp.ticks),
+            None => self.begin_epoch(stamp),
+        };
+        self.ticks = known.map_or(0, |stamp| stamp.ticks);
+        if self.suspended_at.is_some() {
+            return;
+        }
+        self.replayed = self.replayed.max(u32::try_from(back).unwrap_or(u32::MAX));
+        while self.pending.back().is_some_and(|entry| entry.event.tick > self.ticks) {
+            let last = self.pending.pop_back();
+            self.withdrawn.extend(last.filter(|entry| entry.announced).map(|entry| entry.event));
+        }
+        if !self.is_after_stale {
+            let exists = |body| world.is_some_and(|world| world.body(body).is_some());
+            self.missing.extend(self.after.iter().map(|(body, _)| body).filter(|body| !exists(*body)));
+        }
+        self.is_after_stale = true;
+    }
+
+    /// Begins an epoch. Nothing is known of what came before it.
+    fn begin_epoch(&mut self, stamp: Option<Stamp>) -> u64 {
+        let base = stamp.and_then(|stamp| Some(self.base_of(stamp.epoch)? + stamp.ticks));
+        self.bases.push(base);
+        self.epoch = u32::try_from(self.bases.len() - 1).unwrap_or(u32::MAX);
+        if self.suspended_at.is_some() {
+            return 0;
+        }
+        for entry in self.pending.drain(..).filter(|entry| entry.announced) {
+            self.withdrawn.push(entry.event);
+        }
+        // Their ticks belong to another epoch: they count as those of its first tick.
+        self.withdrawn.iter_mut().for_each(|event| event.tick = 0);
+        (self.shown, self.shown_again) = (None, None);
+        0
+    }
+
+    fn base_of(&self, epoch: u32) -> Option<u64> {
+        self.bases.get(epoch as usize).copied().flatten()
+    }
+
+    /// Tells the log how many ticks have been played.
+    pub(crate) fn set_tick(&mut self, tick: u64) {
+        let base = self.bases.get_mut(self.epoch as usize);
+        base.map(|base| base.get_or_insert(tick.saturating_sub(self.ticks)));
+    }
+
+    /// Number of ticks at the start of the epoch.
+    fn base(&self) -> u64 {
+        self.base_of(self.epoch).unwrap_or(0)
+    }
+
+    /// Ignores what follows, until [`StepLog::resume`] or [`StepLog::relocate`].
+    pub(crate) fn suspend(&mut self) {
+        self.suspended_at = Some(self.stamp());
+    }
+
+    /// Goes on where the log was suspended: the driver has restored the state of that tick.
+    pub(crate) fn resume(&mut self) {
+        if let Some(Stamp { epoch, ticks }) = self.suspended_at.take() {
+            (self.epoch, self.ticks) = (epoch, ticks);
+        }
+    }
+
+    /// Goes on at another tick, as after a seek: without events, and with views that go there without a transition.
+    pub(crate) fn relocate(&mut self, tick: u64, world: Option<&World>) {
+        self.suspended_at = None;
+        self.bases.push(Some(tick));
+        (self.epoch, self.ticks) = (u32::try_from(self.bases.len() - 1).unwrap_or(u32::MAX), 0);
+        self.pending.clear();
+        self.withdrawn.clear();
+        self.missing.extend(self.after.iter().map(|(body, _)| body));
+        self.refresh(world);
+    }
+
+    /// Takes the poses of a state that was not stepped to.
+    fn refresh(&mut self, world: Option<&World>) {
+        self.after.capture(world);
+        self.before = self.after.clone();
+        self.is_after_stale = false;
+        (self.shown, self.shown_again) = (None, None);
+    }
+
+    /// Notes that the views show the current tick. If the game was loaded and not stepped since, its poses are taken.
+    pub(crate) fn show(&mut self, world: Option<&World>) {
+        if self.is_after_stale {
+            self.refresh(world);
+        }
+        self.shown = Some(self.stamp());
+        self.missing.clear();
+    }
+
+    /// Takes the events that were not announced yet.
+    pub(crate) fn announce(&mut self) -> Vec<LoggedEvent> {
+        let base = self.base();
+        let fresh = self.pending.iter_mut().filter(|entry| !entry.announced);
+        fresh
+            .map(|entry| {
+                entry.announced = true;
+                LoggedEvent { tick: base + entry.event.tick, ..entry.event }
+            })
+            .collect()
+    }
+
+    /// Takes the announced events that did not happen after all: their ticks have been played without them.
+    pub(crate) fn retract(&mut self) -> Vec<LoggedEvent> {
+        let (base, played) = (self.base(), self.ticks);
+        let is_over = |event: &LoggedEvent| event.tick + SAME_EVENT_TICKS < played;
+        let (over, open) = self.withdrawn.iter().partition(|event| is_over(event));
+        self.withdrawn = open;
+        let mut over: Vec<LoggedEvent> = over;
+        over.iter_mut().for_each(|event| event.tick += base);
+        over
+    }
+
+    /// Takes the events of the ticks that are final.
+    pub(crate) fn confirm(&mut self, ticks: u64) -> Vec<LoggedEvent> {
+        let base = self.base();
+        let is_final = |entry: &Entry| base + entry.event.tick <= ticks;
+        let count = self.pending.iter().take_while(|entry| is_final(entry)).count();
+        let taken = self.pending.drain(..count);
+        taken.map(|entry| LoggedEvent { tick: base + entry.event.tick, ..entry.event }).collect()
+    }
+}

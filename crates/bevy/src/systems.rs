@@ -1,0 +1,183 @@
+//! The systems of the plugin.
+
+use bevy::math::Quat;
+use bevy::platform::collections::HashMap;
+use bevy::platform::time::Instant;
+use bevy::prelude::{
+    Added, Commands, DetectChanges, Entity, MessageWriter, Query, Real, Res, ResMut, Time, Transform,
+};
+use lockstep2d::body::BodyId;
+use lockstep2d::world::World;
+
+use crate::drivers::FrameTime;
+use crate::error::LockstepFailed;
+use crate::events::{BodyEvent, ConfirmedEvent, LoggedEvent, MatchEvent, PredictedEvent, RetractedEvent};
+use crate::game::LockstepGame;
+use crate::inputs::Inputs;
+use crate::lockstep::Lockstep;
+use crate::plugin::{LockstepSettings, LockstepStatus};
+use crate::poses::Pose;
+use crate::smoothing::{DrawnPose, Offset};
+use crate::step_log::StepLog;
+use crate::views::{BodyView, BodyViews, View, identity_of};
+
+/// Plays the ticks of the frame.
+pub(crate) fn step<G: LockstepGame>(
+    mut lockstep: ResMut<Lockstep<G>>,
+    mut inputs: ResMut<Inputs<G>>,
+    mut status: ResMut<LockstepStatus>,
+    (time, real): (Res<Time>, Res<Time<Real>>),
+    mut matches: MessageWriter<MatchEvent>,
+    mut failures: MessageWriter<LockstepFailed>,
+) {
+    let time = FrameTime { delta: time.delta(), real_delta: real.delta(), real_elapsed: real.elapsed() };
+    let start = Instant::now();
+    let result = lockstep.run(time, &mut inputs);
+    let step_time = start.elapsed();
+    if let Err(error) = result {
+        failures.write(LockstepFailed(error));
+    }
+    while let Some(event) = lockstep.next_event() {
+        matches.write(MatchEvent(event));
+    }
+    let (tick, confirmed, paused) = (lockstep.tick(), lockstep.confirmed(), lockstep.is_paused());
+    let mut log = lockstep.observed().log();
+    log.set_tick(tick);
+    let (stepped, rolled_back) = (core::mem::take(&mut log.stepped), core::mem::take(&mut log.replayed));
+    *status = LockstepStatus { tick, confirmed, stepped, rolled_back, paused, step_time };
+}
+
+/// Lets the views follow the bodies.
+pub(crate) fn write_views<G: LockstepGame>(
+    mut commands: Commands,
+    lockstep: Res<Lockstep<G>>,
+    mut views: ResMut<BodyViews>,
+    (settings, time): (Res<LockstepSettings>, Res<Time<Real>>),
+    fresh: Query<(Entity, &BodyView), Added<BodyView>>,
+    mut shown: Query<(&BodyView, Entity, &mut Transform)>,
+) {
+    // Entities that the game has prepared, not those that the plugin has spawned in the last frame.
+    let is_foreign = |(entity, view): &(Entity, &BodyView)| views.entity(view.body()) != Some(*entity);
+    let prepared: HashMap<BodyId, Entity> =
+        fresh.iter().filter(is_foreign).map(|(entity, view)| (view.body(), entity)).collect();
+    if lockstep.is_added() {
+        // Another game. Views that were prepared for it are not in the table.
+        views.take_all().into_iter().for_each(|view| commands.entity(view).try_despawn());
+    }
+    let world = lockstep.world();
+    {
+        let mut log = lockstep.observed().log();
+        if let Some(again) = log.shown_again.take() {
+            for view in views.views_mut() {
+                if let Some(pose) = again.get(view.body) {
+                    view.offset.add(Offset::between(pose, view.current), settings.smoothing_limit);
+                }
+            }
+        }
+        replace_strangers(&mut commands, &mut views, &log, world);
+        log.show(world);
+        follow(&mut commands, &mut views, &log, world, settings.pixels_per_metre, &prepared);
+    }
+    let (fraction, redraw) = (lockstep.fraction(), settings.is_changed());
+    let draw = |view: &View| {
+        let pose = match settings.interpolate {
+            true => DrawnPose::between(view.previous, view.current, fraction),
+            false => DrawnPose::at(view.current),
+        };
+        pose.shifted(view.offset)
+    };
+    for view in views.views_mut() {
+        view.offset.decay(time.delta(), settings.smoothing_half_life);
+    }
+    for (view, entity, mut transform) in &mut shown {
+        let Some(view) = views.view_mut(view.body()).filter(|view| view.entity == entity) else { continue };
+        if view.is_settled && !redraw {
+            continue;
+        }
+        let at_rest = view.offset == Offset::ZERO && (!settings.interpolate || view.previous == view.current);
+        view.is_settled = at_rest;
+        write_transform(&mut transform, draw(view), settings.pixels_per_metre);
+    }
+}
+
+/// Despawns the views of bodies that a rollback has replaced by others with the same ids.
+fn replace_strangers(commands: &mut Commands, views: &mut BodyViews, log: &StepLog, world: Option<&World>) {
+    for &body in &log.missing {
+        let is_same = |view: &View| view.identity == identity_of(world, body);
+        if views.view(body).is_some_and(|view| !is_same(view))
+            && let Some(entity) = views.take(body)
+        {
+            commands.entity(entity).try_despawn();
+        }
+    }
+}
+
+/// Spawns the views of new bodies, moves those of known ones, and despawns the others.
+fn follow(
+    commands: &mut Commands,
+    views: &mut BodyViews,
+    log: &StepLog,
+    world: Option<&World>,
+    scale: f32,
+    prepared: &HashMap<BodyId, Entity>,
+) {
+    views.begin_frame();
+    for (body, current) in log.after.iter() {
+        let previous = log.before.get(body).unwrap_or(current);
+        if views.see(body, previous, current) {
+            continue;
+        }
+        let entity =
+            prepared.get(&body).copied().unwrap_or_else(|| spawn_view(commands, body, current, scale));
+        if let Some(old) = views.insert(body, entity, current, identity_of(world, body)) {
+            commands.entity(old).try_despawn();
+        }
+    }
+    views.take_unseen().into_iter().for_each(|view| commands.entity(view).try_despawn());
+}
+
+fn spawn_view(commands: &mut Commands, body: BodyId, pose: Pose, scale: f32) -> Entity {
+    let mut transform = Transform::default();
+    write_transform(&mut transform, DrawnPose::at(pose), scale);
+    commands.spawn((BodyView::new(body), transform)).id()
+}
+
+/// Writes what belongs to the body. Z and scale belong to the game.
+fn write_transform(transform: &mut Transform, pose: DrawnPose, scale: f32) {
+    (transform.translation.x, transform.translation.y) = (pose.position * scale).into();
+    transform.rotation = Quat::from_rotation_z(pose.angle);
+}
+
+/// Despawns all views of a game that was removed.
+pub(crate) fn remove_views(mut commands: Commands, mut views: ResMut<BodyViews>) {
+    views.take_all().into_iter().for_each(|view| commands.entity(view).try_despawn());
+}
+
+/// Sends the events of the frame: what was predicted, what did not happen, and what is final.
+pub(crate) fn send_events<G: LockstepGame>(
+    mut commands: Commands,
+    lockstep: Res<Lockstep<G>>,
+    views: Res<BodyViews>,
+    mut predicted: MessageWriter<PredictedEvent>,
+    mut retracted: MessageWriter<RetractedEvent>,
+    mut confirmed: MessageWriter<ConfirmedEvent>,
+) {
+    let mut log = lockstep.observed().log();
+    let views_of = |event: &LoggedEvent| event.bodies.map(|body| views.entity(body?));
+    for logged in log.announce() {
+        predicted.write(PredictedEvent { tick: logged.tick, event: logged.event, views: views_of(&logged) });
+    }
+    for LoggedEvent { tick, event, .. } in log.retract() {
+        retracted.write(RetractedEvent { tick, event });
+    }
+    for logged in log.confirm(lockstep.confirmed()) {
+        let LoggedEvent { tick, event, .. } = logged;
+        let views = views_of(&logged);
+        confirmed.write(ConfirmedEvent { tick, event, views });
+        for (entity, other) in [(views[0], views[1]), (views[1], views[0])] {
+            if let Some(entity) = entity {
+                commands.trigger(BodyEvent { entity, other, tick, event });
+            }
+        }
+    }
+}

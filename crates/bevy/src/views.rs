@@ -1,0 +1,167 @@
+//! [`BodyView`] and [`BodyViews`]: the entities that show bodies.
+
+use bevy::prelude::{Component, Entity, Reflect, ReflectComponent, Resource, Transform};
+use lockstep2d::body::{BodyId, ShapeId};
+use lockstep2d::hash::StateHash;
+use lockstep2d::world::World;
+
+use crate::poses::Pose;
+use crate::smoothing::Offset;
+
+/// An entity that shows a body. The plugin spawns one for every body, with a [`Transform`], and despawns it with the
+/// body. Add what is to be seen to it, for example in an observer of `On<Add, BodyView>`, or as a child.
+///
+/// An entity that has the component already when its body appears becomes its view, instead of a new one.
+///
+/// X, y and rotation of the `Transform` are written; z and scale are yours. Two bodies that exist one after the other
+/// have two views, even if a rollback gives them the same id.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
+#[component(immutable)]
+#[require(Transform)]
+#[reflect(Component, from_reflect = false)]
+pub struct BodyView {
+    #[reflect(ignore)]
+    body: BodyId,
+    slot: u32,
+    generation: u32,
+}
+
+impl BodyView {
+    /// The view of a body.
+    #[must_use]
+    pub const fn new(body: BodyId) -> Self {
+        BodyView { body, slot: body.index(), generation: body.generation() }
+    }
+
+    /// The body.
+    #[must_use]
+    pub const fn body(&self) -> BodyId {
+        self.body
+    }
+}
+
+/// The views by body.
+#[derive(Resource, Debug, Default)]
+pub struct BodyViews {
+    /// By the body's slot.
+    slots: Vec<Option<View>>,
+    frame: u32,
+}
+
+/// A view and what it is drawn from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View {
+    pub(crate) body: BodyId,
+    pub(crate) entity: Entity,
+    /// Poses before and after the last tick.
+    pub(crate) previous: Pose,
+    pub(crate) current: Pose,
+    pub(crate) offset: Offset,
+    /// Whether the `Transform` is that of `current`, so that nothing has to be written.
+    pub(crate) is_settled: bool,
+    /// Hash of what distinguishes the body from another one with the same id.
+    pub(crate) identity: StateHash,
+    /// Frame in which the body was seen last.
+    frame: u32,
+}
+
+impl BodyViews {
+    /// The view of a body.
+    #[must_use]
+    pub fn entity(&self, body: BodyId) -> Option<Entity> {
+        self.view(body).map(|view| view.entity)
+    }
+
+    /// The view of the body of a shape.
+    #[must_use]
+    pub fn of_shape(&self, world: &World, shape: ShapeId) -> Option<Entity> {
+        self.entity(world.shape(shape)?.body())
+    }
+
+    /// All bodies and their views, in the order of the bodies.
+    pub fn iter(&self) -> impl Iterator<Item = (BodyId, Entity)> {
+        self.slots.iter().flatten().map(|view| (view.body, view.entity))
+    }
+
+    pub(crate) fn view(&self, body: BodyId) -> Option<&View> {
+        self.slots.get(body.index() as usize)?.as_ref().filter(|view| view.body == body)
+    }
+
+    pub(crate) fn view_mut(&mut self, body: BodyId) -> Option<&mut View> {
+        self.slots.get_mut(body.index() as usize)?.as_mut().filter(|view| view.body == body)
+    }
+
+    pub(crate) fn views_mut(&mut self) -> impl Iterator<Item = &mut View> {
+        self.slots.iter_mut().flatten()
+    }
+
+    /// Begins a frame: views that are not [seen](BodyViews::see) in it are taken by [`BodyViews::take_unseen`].
+    pub(crate) fn begin_frame(&mut self) {
+        self.frame = self.frame.wrapping_add(1);
+    }
+
+    /// Moves the view of a body that exists. Returns whether there is one.
+    pub(crate) fn see(&mut self, body: BodyId, previous: Pose, current: Pose) -> bool {
+        let frame = self.frame;
+        let Some(view) = self.view_mut(body) else { return false };
+        view.frame = frame;
+        view.is_settled &= view.current == current;
+        (view.previous, view.current) = (previous, current);
+        true
+    }
+
+    /// Adds a view. Returns the one that had the slot before.
+    pub(crate) fn insert(
+        &mut self,
+        body: BodyId,
+        entity: Entity,
+        pose: Pose,
+        identity: StateHash,
+    ) -> Option<Entity> {
+        let slot = body.index() as usize;
+        if self.slots.len() <= slot {
+            self.slots.resize(slot + 1, None);
+        }
+        let view = View {
+            body,
+            entity,
+            previous: pose,
+            current: pose,
+            offset: Offset::ZERO,
+            is_settled: false,
+            identity,
+            frame: self.frame,
+        };
+        self.slots.get_mut(slot)?.replace(view).map(|old| old.entity)
+    }
+
+    /// Removes the views whose bodies are gone.
+    pub(crate) fn take_unseen(&mut self) -> Vec<Entity> {
+        let frame = self.frame;
+        let unseen = |slot: &mut Option<View>| {
+            let view = slot.take_if(|view| view.frame != frame)?;
+            Some(view.entity)
+        };
+        self.slots.iter_mut().filter_map(unseen).collect()
+    }
+
+    /// Removes a view.
+    pub(crate) fn take(&mut self, body: BodyId) -> Option<Entity> {
+        let slot = self.slots.get_mut(body.index() as usize)?;
+        slot.take_if(|view| view.body == body).map(|view| view.entity)
+    }
+
+    /// Removes all views.
+    pub(crate) fn take_all(&mut self) -> Vec<Entity> {
+        self.slots.drain(..).flatten().map(|view| view.entity).collect()
+    }
+}
+
+/// Hash of what distinguishes a body from another one that has the same id after a rollback: kind, user data, shapes.
+pub(crate) fn identity_of(world: Option<&World>, body: BodyId) -> StateHash {
+    let Some((world, state)) = world.and_then(|world| Some((world, world.body(body)?))) else {
+        return StateHash(0);
+    };
+    let shapes = state.shapes().iter().filter_map(|shape| world.shape(*shape)).map(|shape| shape.def());
+    StateHash::of(&(state.kind(), state.user_data(), shapes.collect::<Vec<_>>()))
+}

@@ -1,0 +1,128 @@
+//! Levels built from entities, dragging, and diagnostics.
+
+mod common;
+
+use std::time::Duration;
+
+use bevy::diagnostic::{DiagnosticPath, DiagnosticsPlugin, DiagnosticsStore};
+use bevy::prelude::*;
+use bevy::time::TimeUpdateStrategy;
+use bevy_lockstep2d::*;
+use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef, WorldError};
+use lockstep2d::fx;
+use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
+use lockstep2d::math::Fx;
+use lockstep2d::solver::Revolute;
+use lockstep2d::world::Config;
+
+fn sandbox_app() -> App {
+    let mut app = App::new();
+    app.add_plugins((
+        MinimalPlugins,
+        DiagnosticsPlugin,
+        LockstepPlugin::<Sandbox>::default(),
+        LockstepDiagnosticsPlugin::<Sandbox>::default(),
+        DragPlugin,
+    ));
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_nanos(16_666_667)));
+    app
+}
+
+#[derive(Component, PartialEq, Debug)]
+struct Label(&'static str);
+
+/// A bar that hangs from a post, and the ground.
+fn spawn_level(world: &mut World) -> Result<[Entity; 3], WorldError> {
+    let solid = |x, y| Polygon::rectangle(x, y).map(ShapeDef::new);
+    let ground = BodyDef::fixed().position((fx!(0), fx!(-5)));
+    let ground = world.spawn((Label("ground"), SpawnBody::new(ground, solid(fx!(9), fx!(1))?))).id();
+    let bar = BodyDef::dynamic().position((fx!(1), fx!(0)));
+    let bar = world.spawn((Label("bar"), SpawnBody::new(bar, solid(fx!(1), fx!(0.1))?))).id();
+    let ball = BodyDef::dynamic().position((fx!(6), fx!(-3)));
+    let ball = SpawnBody::new(ball, ShapeDef::new(Geometry::circle(fx!(0.5))?));
+    let ball = world
+        .spawn((Label("ball"), ball, SpawnJoint::new([ground, bar], Revolute::new(), (fx!(0), fx!(0)))))
+        .id();
+    Ok([ground, bar, ball])
+}
+
+fn start(app: &mut App) -> [Entity; 3] {
+    let entities = spawn_level(app.world_mut()).unwrap();
+    let commands = build_level(app.world_mut(), Config::default()).unwrap();
+    assert_eq!(commands.len(), 4);
+    let setup = SandboxSetup { commands, ..SandboxSetup::default() };
+    app.insert_resource(Lockstep::<Sandbox>::local(&setup).unwrap());
+    entities
+}
+
+#[test]
+fn entities_become_the_views_of_the_bodies_that_they_describe() {
+    let mut app = sandbox_app();
+    let [_, bar, ball] = start(&mut app);
+    (0..60).for_each(|_| app.update());
+    let mut views = app.world_mut().query::<(Entity, &BodyView, &Label, &Transform)>();
+    let world = app.world();
+    assert_eq!(views.iter(world).count(), 3, "no other views");
+    let physics = world.resource::<Lockstep<Sandbox>>().world().unwrap();
+    assert_eq!(physics.joint_count(), 1);
+    let (_, view, label, transform) = views.get(world, ball).unwrap();
+    assert_eq!(label, &Label("ball"));
+    let place = physics.body(view.body()).unwrap().position();
+    assert_eq!(place.x, 6);
+    assert!((transform.translation.x - 600.0).abs() < 1.0);
+    // The bar hangs from its end.
+    let bar = physics.body(world.get::<BodyView>(bar).unwrap().body()).unwrap();
+    let distance = bar.position().length();
+    assert!((distance - Fx::ONE).abs() < fx!(0.01), "{distance}");
+    assert!(bar.position().y < fx!(-0.3));
+}
+
+#[test]
+fn a_joint_without_a_body_is_refused_and_nothing_is_taken() {
+    let mut world = World::new();
+    let [ground, ..] = spawn_level(&mut world).unwrap();
+    let stranger = world.spawn_empty().id();
+    let joint = world.spawn(SpawnJoint::new([ground, stranger], Revolute::new(), (fx!(0), fx!(0)))).id();
+    let result = build_level(&mut world, Config::default());
+    assert_eq!(result, Err(LevelError::NoBody { joint, body: stranger }));
+    assert_eq!(world.query::<&SpawnBody>().iter(&world).count(), 3);
+    assert_eq!(world.query::<&BodyView>().iter(&world).count(), 0);
+}
+
+#[test]
+fn a_hand_drags_what_it_grabs() {
+    let mut app = sandbox_app();
+    let [_, _, ball] = start(&mut app);
+    (0..60).for_each(|_| app.update());
+    let at = app.world().get::<Transform>(ball).unwrap().translation.truncate();
+    app.world_mut().resource_mut::<DragHand>().hold(at);
+    app.update();
+    let body = app.world().get::<BodyView>(ball).unwrap().body();
+    assert_eq!(app.world().resource::<DragHand>().body(), Some(body));
+    let goal = at + Vec2::new(100.0, 250.0);
+    app.world_mut().resource_mut::<DragHand>().hold(goal);
+    (0..120).for_each(|_| app.update());
+    let held = app.world().get::<Transform>(ball).unwrap().translation.truncate();
+    assert!(held.distance(goal) < 20.0, "{held} {goal}");
+    app.world_mut().resource_mut::<DragHand>().release();
+    (0..120).for_each(|_| app.update());
+    let fallen = app.world().get::<Transform>(ball).unwrap().translation.truncate();
+    assert!(fallen.y < goal.y - 200.0);
+    assert_eq!(app.world().resource::<Lockstep<Sandbox>>().game().refused(), 0);
+}
+
+#[test]
+fn diagnostics_are_measured() {
+    let mut app = sandbox_app();
+    start(&mut app);
+    (0..3).for_each(|_| app.update());
+    let store = app.world().resource::<DiagnosticsStore>();
+    let value = |path: DiagnosticPath| store.get(&path).and_then(|diagnostic| diagnostic.value());
+    type Paths = LockstepDiagnosticsPlugin<Sandbox>;
+    assert!(value(Paths::STEP).unwrap() > 0.0);
+    assert_eq!(value(Paths::ROLLBACK), Some(0.0));
+    assert_eq!(value(Paths::PREDICTED), Some(0.0));
+    let save = app.world().resource::<Lockstep<Sandbox>>().game().save();
+    let bytes = lockstep2d::codec::encode(&save).len() as f64;
+    assert!((value(Paths::SAVE).unwrap() - bytes).abs() < 200.0);
+}

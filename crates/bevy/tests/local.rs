@@ -1,0 +1,220 @@
+//! A local game: its ticks come at its rate, its views follow the bodies, and its events are those of a game that is
+//! stepped without Bevy. A sync test is a local game that is rolled back after every tick.
+
+mod common;
+
+use std::time::Duration;
+
+use bevy::prelude::*;
+use bevy_lockstep2d::*;
+use common::arena::{self, Arena, Setup, pad_at};
+use common::{Heard, TICK, app, check_views, reference};
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::{Limits, verify};
+use lockstep2d::world::FixedTimestep;
+
+fn local() -> Lockstep<Arena> {
+    Lockstep::local(&Setup::default()).unwrap()
+}
+
+fn tick(app: &App) -> u64 {
+    app.world().resource::<Lockstep<Arena>>().tick()
+}
+
+#[test]
+fn ticks_come_at_the_rate_of_the_game() {
+    // 1000 frames of 7 ms are 420 ticks. The first frame has no time.
+    let mut app = app(local(), 1, Duration::from_millis(7));
+    let first = tick(&app);
+    (0..1001).for_each(|_| app.update());
+    assert_eq!((first, tick(&app)), (0, 420));
+}
+
+#[test]
+fn views_and_events_are_those_of_the_game() {
+    let mut app = app(local(), 7, TICK);
+    for _ in 0..1000 {
+        app.update();
+        check_views(&mut app);
+    }
+    let ticks = tick(&app);
+    let (game, events) = reference(ticks, |tick| [pad_at(7, tick), pad_at(8, tick)]);
+    let lockstep = app.world().resource::<Lockstep<Arena>>();
+    assert_eq!(lockstep.game().state_hash(), game.state_hash());
+    let heard = app.world().resource::<Heard>();
+    assert_eq!(heard.confirmed, events);
+    let predicted: usize = events.values().map(Vec::len).sum();
+    assert!(predicted > 500, "only {predicted} events");
+    assert_eq!((heard.predicted.len(), heard.retracted.len()), (predicted, 0));
+}
+
+#[test]
+fn a_rollback_after_every_tick_changes_nothing() {
+    let test = Lockstep::sync_test(&Setup::default(), 8).unwrap();
+    let mut app = app(test, 7, TICK);
+    while tick(&app) < 2000 {
+        app.update();
+        check_views(&mut app);
+    }
+    let lockstep = app.world().resource::<Lockstep<Arena>>();
+    let (ticks, confirmed) = (lockstep.tick(), lockstep.confirmed());
+    assert!(confirmed + 8 >= ticks && confirmed < ticks);
+    let (game, events) = reference(ticks, |tick| [pad_at(7, tick), pad_at(8, tick)]);
+    assert_eq!(lockstep.game().state_hash(), game.state_hash());
+    let heard = app.world().resource::<Heard>();
+    let all: Vec<_> =
+        events.iter().flat_map(|(tick, events)| events.iter().map(|event| (*tick, *event))).collect();
+    assert_eq!(heard.predicted, all, "predicted once, although every tick is played nine times");
+    assert!(heard.retracted.is_empty());
+    let is_final = |(tick, _): &(&u64, _)| **tick <= confirmed;
+    assert!(heard.confirmed.iter().eq(events.iter().take_while(is_final)));
+}
+
+#[test]
+fn a_rollback_without_a_difference_moves_no_view() {
+    let mut app = app(Lockstep::sync_test(&Setup::default(), 6).unwrap(), 5, TICK);
+    app.insert_resource(LockstepSettings { interpolate: false, ..LockstepSettings::default() });
+    for _ in 0..300 {
+        app.update();
+        check_views(&mut app);
+    }
+}
+
+#[test]
+fn the_views_of_bodies_are_kept_through_rollbacks() {
+    // Bodies that a rollback removes for a moment within a frame keep their entities.
+    let run = |game: Lockstep<Arena>| {
+        let mut app = app(game, 3, TICK);
+        app.init_resource::<Births>()
+            .add_observer(|_: On<Add, BodyView>, mut births: ResMut<Births>| births.0 += 1);
+        while tick(&app) < 600 {
+            app.update();
+        }
+        app.world().resource::<Births>().0
+    };
+    let births = run(local());
+    assert!(births > 30, "{births}");
+    assert_eq!(run(Lockstep::sync_test(&Setup::default(), 12).unwrap()), births);
+}
+
+#[derive(Resource, Default)]
+struct Births(u32);
+
+#[test]
+fn a_pause_stops_time_and_single_steps_pass_through_it() {
+    let mut app = app(local(), 1, TICK);
+    (0..10).for_each(|_| app.update());
+    let before = tick(&app);
+    app.world_mut().resource_mut::<Lockstep<Arena>>().pause();
+    (0..10).for_each(|_| app.update());
+    assert_eq!(tick(&app), before);
+    app.world_mut().resource_mut::<Lockstep<Arena>>().step_once();
+    (0..3).for_each(|_| app.update());
+    assert_eq!(tick(&app), before + 1);
+    app.world_mut().resource_mut::<Lockstep<Arena>>().resume();
+    (0..10).for_each(|_| app.update());
+    assert_eq!(tick(&app), before + 11);
+}
+
+#[test]
+fn views_leave_with_their_game() {
+    let mut app = app(local(), 1, TICK);
+    (0..100).for_each(|_| app.update());
+    check_views(&mut app);
+    app.insert_resource(local());
+    app.update();
+    check_views(&mut app);
+    app.world_mut().remove_resource::<Lockstep<Arena>>();
+    app.update();
+    assert_eq!(app.world_mut().query::<&BodyView>().iter(app.world()).count(), 0);
+    assert_eq!(app.world().resource::<BodyViews>().iter().count(), 0);
+}
+
+#[test]
+fn an_input_given_once_counts_once() {
+    for frame in [Duration::from_millis(3), Duration::from_millis(60)] {
+        let mut app = app(local(), 1, frame);
+        (0..40).for_each(|_| app.update());
+        let bodies = |app: &App| app.world().resource::<Lockstep<Arena>>().world().unwrap().body_count();
+        let mut quiet = common::app(local(), 1, frame);
+        (0..40).for_each(|_| quiet.update());
+        assert_eq!(bodies(&app), bodies(&quiet));
+        *app.world_mut().resource_mut::<Inputs<Arena>>().once(0) = arena::SHOOT;
+        *quiet.world_mut().resource_mut::<Inputs<Arena>>().once(0) = 0;
+        (0..6).for_each(|_| [&mut app, &mut quiet].into_iter().for_each(App::update));
+        assert_eq!(bodies(&app), bodies(&quiet) + 1, "frames of {frame:?}");
+    }
+}
+
+#[test]
+fn views_are_drawn_between_two_ticks() {
+    let mut app = app(local(), 1, TICK / 2);
+    app.insert_resource(LockstepSettings { pixels_per_metre: 1.0, ..LockstepSettings::default() });
+    // The player's positions by tick.
+    let mut places = std::collections::BTreeMap::new();
+    let mut moved = 0.0_f32;
+    // The first frame has no time.
+    let mut clock = FixedTimestep::new(60);
+    app.update();
+    for _ in 0..200 {
+        app.update();
+        clock.advance((TICK / 2).as_nanos() as u64);
+        let fraction = clock.interpolation_billionths() as f32 * 1e-9;
+        let player = app.world().resource::<BodyViews>().iter().nth(4).unwrap();
+        let lockstep = app.world().resource::<Lockstep<Arena>>();
+        let body = lockstep.world().unwrap().body(player.0).unwrap();
+        let [x, _] = lockstep2d::draw::to_f32(body.position());
+        places.insert(lockstep.tick(), x);
+        let Some(before) = lockstep.tick().checked_sub(1).and_then(|before| places.get(&before)) else {
+            continue;
+        };
+        let drawn = app.world().get::<Transform>(player.1).unwrap().translation.x;
+        let expected = before + (x - before) * fraction;
+        assert!((drawn - expected).abs() < 1e-4, "{drawn} {expected}");
+        moved = moved.max((x - before).abs());
+    }
+    assert!(moved > 0.01, "{moved}");
+}
+
+#[test]
+fn a_local_game_is_recorded() {
+    let mut app = app(local(), 5, TICK);
+    (0..300).for_each(|_| app.update());
+    let ticks = tick(&app);
+    let game = app.world_mut().remove_resource::<Lockstep<Arena>>().unwrap();
+    let file = game.finish().unwrap();
+    let verdict = verify::<Arena>(&file, &Limits::default());
+    assert!(verdict.is_match(), "{verdict}");
+    let mut replay = common::app(Lockstep::replay(file, &Limits::default()).unwrap(), 0, TICK);
+    (0..400).for_each(|_| replay.update());
+    assert_eq!(tick(&replay), ticks, "it stops at its end");
+    assert_eq!(replay.world().resource::<Heard>().confirmed, app.world().resource::<Heard>().confirmed);
+}
+
+#[test]
+fn observers_of_a_view_hear_of_its_body() {
+    #[derive(Resource, Default)]
+    struct Touched(Vec<(u64, WorldEvent)>);
+    let mut app = app(local(), 7, TICK);
+    app.init_resource::<Touched>();
+    app.update();
+    let body = BodyView::clone(app.world_mut().query::<&BodyView>().iter(app.world()).nth(4).unwrap()).body();
+    let view = app.world().resource::<BodyViews>().entity(body).unwrap();
+    app.world_mut().entity_mut(view).observe(|on: On<BodyEvent>, mut touched: ResMut<Touched>| {
+        touched.0.push((on.tick, on.event));
+    });
+    (0..300).for_each(|_| app.update());
+    let world = app.world();
+    let touched = &world.resource::<Touched>().0;
+    let physics = world.resource::<Lockstep<Arena>>().world().unwrap();
+    let is_own = |event: &WorldEvent| {
+        let mut shapes = event.shapes().into_iter().flatten();
+        shapes.any(|shape| physics.shape(shape).is_some_and(|shape| shape.body() == body))
+    };
+    let all = world.resource::<Heard>().confirmed.iter();
+    let own: Vec<_> = all
+        .flat_map(|(tick, events)| events.iter().filter(|e| is_own(e)).map(|event| (*tick, *event)))
+        .collect();
+    assert!(own.len() > 5, "{own:?}");
+    assert_eq!(*touched, own);
+}

@@ -1,0 +1,179 @@
+//! Two apps that play over a network which loses, doubles, delays and reorders packets, and a third that watches from
+//! the middle on: they have the same states and the same confirmed events, and their views are the bodies.
+
+mod common;
+
+use std::collections::BTreeMap;
+
+use bevy::prelude::*;
+use bevy_lockstep2d::*;
+use common::arena::{Arena, Setup};
+use common::network::{Network, address};
+use common::{Heard, TICK, app, check_views};
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::Game;
+use lockstep2d::peer::{PeerEvent, PeerIdentity, PeerOptions};
+use lockstep2d::replay::{Limits, Step, VerifiedReplay, verify};
+
+fn identity(number: u64) -> PeerIdentity {
+    PeerIdentity::new([number, number * 77 + 1, number * 91 + 5])
+}
+
+/// An app and the hashes of its confirmed ticks.
+struct Player {
+    app: App,
+    hashes: BTreeMap<u64, StateHash>,
+    depth: u32,
+    desyncs: u32,
+}
+
+impl Player {
+    fn new(game: Lockstep<Arena>, seed: u64) -> Self {
+        let mut app = app(game, seed, TICK);
+        app.init_resource::<Desyncs>().add_systems(Update, count_desyncs);
+        Player { app, hashes: BTreeMap::new(), depth: 0, desyncs: 0 }
+    }
+
+    fn update(&mut self) {
+        self.app.update();
+        check_views(&mut self.app);
+        let world = self.app.world();
+        let lockstep = world.resource::<Lockstep<Arena>>();
+        let confirmed = lockstep.confirmed();
+        let history = lockstep.peer().unwrap().history();
+        let fresh = history.iter().filter(|past| past.tick <= confirmed && past.tick > 0);
+        for past in fresh {
+            let known = *self.hashes.entry(past.tick).or_insert(past.hash);
+            assert_eq!(known, past.hash, "a confirmed tick changed");
+        }
+        self.depth = self.depth.max(world.resource::<LockstepStatus>().rolled_back);
+        self.desyncs = world.resource::<Desyncs>().0;
+    }
+
+    fn confirmed(&self) -> u64 {
+        self.app.world().resource::<Lockstep<Arena>>().confirmed()
+    }
+
+    fn heard(&self) -> &Heard {
+        self.app.world().resource::<Heard>()
+    }
+
+    /// The confirmed events of some ticks.
+    fn events(&self, from: u64, to: u64) -> BTreeMap<u64, Vec<WorldEvent>> {
+        self.heard().confirmed.range(from..=to).map(|(tick, events)| (*tick, events.clone())).collect()
+    }
+}
+
+#[derive(Resource, Default)]
+struct Desyncs(u32);
+
+fn count_desyncs(mut events: MessageReader<MatchEvent>, mut desyncs: ResMut<Desyncs>) {
+    desyncs.0 += events.read().filter(|event| matches!(event.0, PeerEvent::Desync(_))).count() as u32;
+}
+
+#[test]
+fn two_apps_and_a_late_spectator_have_the_same_match() {
+    let network = Network::default();
+    let setup = Setup::default();
+    let options = PeerOptions { delay: (1, 3), ..PeerOptions::rollback() };
+    let host = Lockstep::host(&setup, options, identity(1), network.socket(1)).unwrap();
+    let guest = Lockstep::join(&setup, options, identity(2), network.socket(2), address(1)).unwrap();
+    let mut players = vec![Player::new(host, 11), Player::new(guest, 29)];
+    let mut frames = 0;
+    while players.iter().any(|player| player.confirmed() < 2000) {
+        network.pass(TICK);
+        players.iter_mut().for_each(Player::update);
+        frames += 1;
+        if frames == 600 {
+            let watch = Lockstep::watch(&setup, options, identity(3), network.socket(3), address(1)).unwrap();
+            players.push(Player::new(watch, 0));
+        }
+        assert!(frames < 5000, "the match stands still");
+    }
+    let end = players.iter().map(Player::confirmed).min().unwrap();
+    for player in &players {
+        assert_eq!(player.desyncs, 0);
+        let common =
+            player.hashes.range(..=end).filter(|(tick, hash)| players[0].hashes.get(tick) == Some(hash));
+        let count = common.count();
+        assert_eq!(count, player.hashes.range(..=end).count());
+    }
+    assert!(players[0].hashes.len() > 1900 && players[2].hashes.len() > 1000);
+    assert!(players[0].depth > 1 || players[1].depth > 1, "there was no rollback");
+    check_events(&players, end);
+    check_replay(players, end);
+}
+
+/// The confirmed events of all are the same, and predicted ones come once.
+fn check_events(players: &[Player], end: u64) {
+    let all = players[0].events(1, end);
+    assert!(all.values().map(Vec::len).sum::<usize>() > 500);
+    assert_eq!(players[1].events(1, end), all);
+    // The spectator has joined in the middle.
+    let from = players[2].heard().confirmed.keys().next().copied().unwrap() + 1;
+    assert!(from > 300, "{from}");
+    assert_eq!(players[2].events(from, end), players[0].events(from, end));
+    let retracted: usize = players.iter().map(|player| player.heard().retracted.len()).sum();
+    assert!(retracted > 0, "no prediction was wrong");
+    for player in &players[..2] {
+        // What was predicted and not retracted is what was confirmed, but for the last ticks, and for events that a
+        // rollback moves from one side of the end to the other.
+        let heard = player.heard();
+        let confirmed: usize = heard.confirmed.values().map(Vec::len).sum();
+        let predicted = heard.predicted.len() - heard.retracted.len();
+        assert!(predicted >= confirmed && predicted - confirmed < 40, "{predicted} {confirmed}");
+    }
+}
+
+/// The replay of the host verifies for the game itself, and has the same events when it is played without Bevy.
+fn check_replay(mut players: Vec<Player>, end: u64) {
+    let events = players[0].events(1, end);
+    let world = players[0].app.world_mut();
+    let mut game = world.remove_resource::<Lockstep<Arena>>().unwrap();
+    let mut file = game.take_replay();
+    file.extend(game.finish().unwrap());
+    let verdict = verify::<Arena>(&file, &Limits::default());
+    assert!(verdict.is_match(), "{verdict}");
+    let mut replay = VerifiedReplay::<Arena>::open(&file, &Limits::default()).unwrap();
+    let mut played = BTreeMap::new();
+    while replay.tick() < end && matches!(replay.step().unwrap(), Step::Ticked) {
+        let found = common::events_of(replay.game().world().unwrap());
+        if !found.is_empty() {
+            played.insert(replay.tick(), found);
+        }
+    }
+    assert_eq!(played, events);
+}
+
+/// Plays a match and returns the largest way of a player's view in one frame, in metres, once the match runs.
+fn largest_jump(settings: LockstepSettings) -> f32 {
+    let network = Network::default();
+    let setup = Setup::default();
+    let options = PeerOptions { delay: (1, 1), ..PeerOptions::rollback() };
+    let host = Lockstep::host(&setup, options, identity(1), network.socket(1)).unwrap();
+    let guest = Lockstep::join(&setup, options, identity(2), network.socket(2), address(1)).unwrap();
+    let mut apps = [app(host, 11, TICK), app(guest, 29, TICK)];
+    for app in &mut apps {
+        app.insert_resource(settings);
+    }
+    let (mut largest, mut last) = (0.0_f32, None);
+    for _ in 0..1200 {
+        network.pass(TICK);
+        apps.iter_mut().for_each(App::update);
+        let world = apps[0].world();
+        // The guest, whose inputs are guessed: the sixth body of the arena.
+        let Some((_, view)) = world.resource::<BodyViews>().iter().nth(5) else { continue };
+        let place = world.get::<Transform>(view).unwrap().translation.truncate() / settings.pixels_per_metre;
+        if let Some(last) = last.replace(place).filter(|_| world.resource::<LockstepStatus>().tick > 60) {
+            largest = largest.max(place.distance(last));
+        }
+    }
+    largest
+}
+
+#[test]
+fn views_do_not_jump_when_a_guess_was_wrong() {
+    let exact = largest_jump(LockstepSettings::default().exact());
+    let smooth = largest_jump(LockstepSettings::default());
+    assert!(smooth < 0.8 * exact, "{smooth} m instead of {exact} m");
+}

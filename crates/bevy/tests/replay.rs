@@ -1,0 +1,56 @@
+//! The replay driver: it plays, seeks in both directions, and its views follow.
+
+mod common;
+
+use bevy::prelude::*;
+use bevy_lockstep2d::*;
+use common::arena::{Arena, Setup, pad_at};
+use common::{Heard, TICK, app, check_views, reference};
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::{Limits, Recording};
+
+fn recorded(ticks: u64) -> Vec<u8> {
+    let mut recording = Recording::<Arena>::start(&Setup::default(), 60).unwrap();
+    for tick in 0..ticks {
+        recording.step(&[pad_at(7, tick), pad_at(8, tick)]).unwrap();
+    }
+    recording.finish().unwrap()
+}
+
+#[test]
+fn a_replay_seeks_and_its_views_follow() {
+    let game = Lockstep::<Arena>::replay(recorded(900), &Limits::default()).unwrap();
+    let mut app = app(game, 0, TICK);
+    (0..100).for_each(|_| app.update());
+    for tick in [700, 20, 900, 0, 333, 332, 331, 500] {
+        app.world_mut().resource_mut::<Lockstep<Arena>>().seek(tick).unwrap();
+        app.world_mut().resource_mut::<Lockstep<Arena>>().pause();
+        app.world_mut().resource_mut::<Heard>().confirmed.clear();
+        app.update();
+        check_views(&mut app);
+        let (expected, events) = reference(900.min(tick + 30), |tick| [pad_at(7, tick), pad_at(8, tick)]);
+        assert!(app.world().resource::<Heard>().confirmed.is_empty(), "a seek has no events");
+        app.world_mut().resource_mut::<Lockstep<Arena>>().resume();
+        for _ in 0..30 {
+            app.update();
+            check_views(&mut app);
+        }
+        let lockstep = app.world().resource::<Lockstep<Arena>>();
+        assert_eq!(lockstep.game().state_hash(), expected.state_hash(), "30 ticks after {tick}");
+        let heard = &app.world().resource::<Heard>().confirmed;
+        assert!(heard.iter().eq(events.range(tick + 1..)), "events after {tick}");
+    }
+    app.world_mut().resource_mut::<Lockstep<Arena>>().back(10_000).unwrap();
+    app.update();
+    assert!(app.world_mut().resource_mut::<Lockstep<Arena>>().seek(901).is_err());
+}
+
+#[test]
+fn other_bytes_are_refused() {
+    assert!(matches!(
+        Lockstep::<Arena>::replay(vec![0; 100], &Limits::default()),
+        Err(LockstepError::Replay(_))
+    ));
+    let mut local = Lockstep::<Arena>::local(&Setup::default()).unwrap();
+    assert!(matches!(local.seek(1), Err(LockstepError::Unsupported(_))));
+}
