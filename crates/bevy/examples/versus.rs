@@ -104,8 +104,7 @@ fn press(keys: Res<ButtonInput<KeyCode>>, mut inputs: ResMut<Inputs<Versus>>) {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let (options, random) = (PeerOptions::rollback(), u64::from(std::process::id()));
-    let me = PeerIdentity::new([random, random * 7 + 1, random * 31 + 2]);
+    let (options, me) = (PeerOptions::rollback(), PeerIdentity::random());
     let mut app = app::<Versus>("versus", 18.0, Vec2::ZERO);
     let lockstep: Lockstep<Versus> = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["host", address] => Lockstep::host(&(), options, me, Udp::bind(address)?)?,
@@ -115,7 +114,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         _ => {
             let (line, contact) = (Line::default(), Address::new(&[0]).ok_or("a byte is an address")?);
-            let bot = Peer::join(&(), options, PeerIdentity::new([8, 9, 10]), line.end(1), contact)?;
+            let bot = Peer::join(&(), options, PeerIdentity::random(), line.end(1), contact)?;
             app.insert_resource(Bot(bot)).insert_resource(line.clone()).add_systems(PreUpdate, play_bot);
             Lockstep::host(&(), options, me, line.end(0))?
         }

@@ -16,7 +16,7 @@ use lockstep2d::peer::{PeerEvent, PeerIdentity, PeerOptions};
 use lockstep2d::replay::{Limits, Step, VerifiedReplay, verify};
 
 fn identity(number: u64) -> PeerIdentity {
-    PeerIdentity::new([number, number * 77 + 1, number * 91 + 5])
+    PeerIdentity::new([number, number * 77 + 1, number * 91 + 5, number * 13 + 7])
 }
 
 /// An app and the hashes of its confirmed ticks.
