@@ -225,7 +225,7 @@ mod tests {
         let network = Network::new(LinkConditions::default(), 1);
         let (mut alice, bob) = (sealed(&network, 1), sealed(&network, 2));
         alice.send(b"inputs of a tick", &Network::address(2));
-        let bytes = network.port(2).receive().unwrap().1;
+        let bytes = network.port(2).receive().expect("it was sent").1;
         (network, alice, bob, bytes)
     }
 
