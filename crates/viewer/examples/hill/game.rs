@@ -85,7 +85,8 @@ impl Hill {
             self.world.set_joint_motor_speed(joint, speed)?;
         }
         self.reload = self.reload.saturating_sub(1);
-        if let Some(car) = self.named("car").next().filter(|_| input.fire && self.reload == 0) {
+        let car = self.named("car").next();
+        if let Some(car) = car.filter(|_| input.fire && self.reload == 0) {
             let place = self.world.body(car).map_or(Vec2::ZERO, |body| body.position());
             let shell = ShapeDef::new(Geometry::circle(fx!(0.12))?).density(fx!(8));
             let def = BodyDef::dynamic().position(place + Vec2::new(fx!(0.6), fx!(0.9))).bullet();
