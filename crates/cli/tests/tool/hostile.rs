@@ -99,7 +99,7 @@ fn a_panic_is_said_and_hides_no_other() {
     assert!(place.as_str().unwrap().contains("batch.rs:"), "{place}");
     let expected = json!({
         "file": file, "verdict": "panicked", "ticks": 12, "hash": null, "cached": false,
-        "bytes": fuse(12).len(), "why": "somebody\nadded 13", "location": null,
+        "blake3": blake3::hash(&fuse(12)).to_string(), "bytes": fuse(12).len(), "why": "somebody\nadded 13", "location": null,
     });
     assert_eq!(line, expected);
 

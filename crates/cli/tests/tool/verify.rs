@@ -72,6 +72,7 @@ fn every_verdict_has_its_json() {
         assert_eq!(fields.remove("file"), Some(json!(file)));
         assert_eq!(fields.remove("bytes"), Some(json!(bytes.len())));
         assert_eq!(fields.remove("cached"), Some(json!(false)));
+        assert_eq!(fields.remove("blake3"), Some(json!(blake3::hash(bytes).to_string())));
         line
     };
     let sum = 5
@@ -124,6 +125,7 @@ fn a_file_that_diverges_says_where() {
     let expected = json!({
         "file": file, "verdict": "diverged", "ticks": 4, "hash": null, "cached": false,
         "bytes": fs::metadata(&file).unwrap().len(),
+        "blake3": blake3::hash(&fs::read(&file).unwrap()).to_string(),
         "last_equal": 2, "first_different": 4,
     });
     assert_eq!((lines, exit), (vec![expected], Exit::NoMatch));
@@ -167,6 +169,7 @@ fn a_wrong_claim_says_which() {
         "claim": "sum", "claimed": 1_000_000, "actual": 5,
         "claims": {"half": 2, "sum": 1_000_000}, "cached": false,
         "bytes": fs::metadata(&file).unwrap().len(),
+        "blake3": blake3::hash(&fs::read(&file).unwrap()).to_string(),
     });
     assert_eq!(verify_json(&[&file]), (vec![expected], Exit::NoMatch));
 }

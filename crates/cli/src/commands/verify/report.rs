@@ -77,8 +77,8 @@ impl Report {
         self.verdict != PANICKED
     }
 
-    /// The report as one line of JSON.
-    pub(super) fn json(&self, file: &Path, cached: bool) -> String {
+    /// The report as one line of JSON. `blake3` is the digest of the bytes that were judged.
+    pub(super) fn json(&self, file: &Path, blake3: &str, cached: bool) -> String {
         #[derive(Serialize)]
         struct Whole<'a> {
             file: String,
@@ -86,6 +86,7 @@ impl Report {
             ticks: u64,
             hash: Option<&'a str>,
             bytes: u64,
+            blake3: &'a str,
             cached: bool,
             #[serde(flatten)]
             details: &'a Map<String, Value>,
@@ -93,7 +94,7 @@ impl Report {
         let Report { text: _, verdict, ticks, hash, bytes, details } = self;
         let (ticks, hash, bytes) = (*ticks, hash.as_deref(), *bytes);
         let file = file.display().to_string();
-        let line = Whole { file, verdict, ticks, hash, bytes, cached, details };
+        let line = Whole { file, verdict, ticks, hash, bytes, blake3, cached, details };
         json_text(&line)
     }
 }
@@ -101,6 +102,21 @@ impl Report {
 /// The line of a file that cannot be read, which has no verdict.
 pub(super) fn unread(file: &Path, error: &io::Error) -> String {
     json!({ "file": file.display().to_string(), "error": error.to_string() }).to_string()
+}
+
+/// The line of a file that has used up its time, which has no verdict.
+pub(super) fn out_of_time(file: &Path, blake3: &str, seconds: u64, ticks: u64) -> String {
+    #[derive(Serialize)]
+    struct OutOfTime<'a> {
+        file: String,
+        stopped: &'static str,
+        seconds: u64,
+        ticks: u64,
+        blake3: &'a str,
+        cached: bool,
+    }
+    let file = file.display().to_string();
+    json_text(&OutOfTime { file, stopped: "max_seconds", seconds, ticks, blake3, cached: false })
 }
 
 fn details(verdict: &Verdict, claims: &[(String, i64)], needs: Option<Needs>) -> Map<String, Value> {
