@@ -38,6 +38,7 @@ mod error;
 mod exit;
 mod figures;
 mod files;
+mod identity;
 mod output_file;
 mod rewriting;
 mod sandbox;

@@ -17,6 +17,7 @@ use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, OneLine, Shown};
+use crate::identity::game_digest;
 
 mod cache;
 mod interrupt;
@@ -35,7 +36,7 @@ use interrupt::Interrupt;
 use judge::{Outcome, Shared};
 use pool::{Order, Pause, Sink};
 use progress::Progress;
-use report::Report;
+use report::{Digests, Report};
 use shard::Shard;
 use tasks::Tasks;
 use totals::Totals;
@@ -154,8 +155,7 @@ struct Verifier {
 struct Verified {
     path: PathBuf,
     outcome: Outcome,
-    /// Digest of the bytes that were judged.
-    blake3: blake3::Hash,
+    digests: Digests,
     cached: bool,
     /// Why the report could not be cached.
     unkept: Option<io::Error>,
@@ -165,17 +165,17 @@ impl Verifier {
     fn verify(&self, path: PathBuf) -> Result<Verified, CommandError> {
         let at_work = self.shared.watch.begin(path.clone(), self.time_max);
         let bytes = self.read(&path).map_err(CommandError::read(&path))?;
-        let blake3 = blake3::hash(&bytes);
+        let digests = Digests { blake3: blake3::hash(&bytes), game: game_digest(&bytes, &self.limits) };
         let judge = || (self.judge)(&bytes, &self.limits, &self.shared, at_work.work());
         let Some(cache) = &self.cache else {
-            return Ok(Verified { path, outcome: judge(), blake3, cached: false, unkept: None });
+            return Ok(Verified { path, outcome: judge(), digests, cached: false, unkept: None });
         };
-        let key = cache.key(&blake3);
+        let key = cache.key(&digests.blake3);
         if let Some(report) = cache.get(&key) {
             return Ok(Verified {
                 path,
                 outcome: Outcome::Report(report),
-                blake3,
+                digests,
                 cached: true,
                 unkept: None,
             });
@@ -185,7 +185,7 @@ impl Verifier {
             Outcome::Report(report) if report.is_final() => cache.put(&key, report.clone()).err(),
             _ => None,
         };
-        Ok(Verified { path, outcome, blake3, cached: false, unkept })
+        Ok(Verified { path, outcome, digests, cached: false, unkept })
     }
 
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
@@ -277,10 +277,10 @@ impl<'a, 'c> Display<'a, 'c> {
     }
 
     fn line(&mut self, verified: &Verified) -> Result<(), CommandError> {
-        let Verified { path, outcome, blake3, cached, unkept } = verified;
+        let Verified { path, outcome, digests, cached, unkept } = verified;
         let report = match outcome {
             Outcome::Report(report) => report,
-            Outcome::OutOfTime { ticks } => return self.out_of_time(path, &blake3.to_hex(), *ticks),
+            Outcome::OutOfTime { ticks } => return self.out_of_time(path, digests, *ticks),
             Outcome::Stopped => return Ok(()),
         };
         self.totals.add(report, *cached);
@@ -294,18 +294,18 @@ impl<'a, 'c> Display<'a, 'c> {
             self.progress.aside(|| self.console.warning(warning));
         }
         self.progress.aside(|| match self.json {
-            true => self.console.line(report.json(path, &blake3.to_hex(), *cached)),
+            true => self.console.line(report.json(path, digests, *cached)),
             false => self.console.line(Line { path, report }),
         })
     }
 
     /// Prints the line of a file that has used up its time. It counts like a file that cannot be read.
-    fn out_of_time(&mut self, path: &Path, blake3: &str, ticks: u64) -> Result<(), CommandError> {
+    fn out_of_time(&mut self, path: &Path, digests: &Digests, ticks: u64) -> Result<(), CommandError> {
         self.exit = Exit::Trouble;
         self.totals.add_undecided(ticks);
         let seconds = self.max_seconds;
         self.progress.aside(|| match self.json {
-            true => self.console.line(report::out_of_time(path, blake3, seconds, ticks)),
+            true => self.console.line(report::out_of_time(path, digests, seconds, ticks)),
             false => self.console.line(format_args!(
                 "{}: {DOUBTFUL}out of time{DOUBTFUL:#}: no verdict after {seconds} s and {ticks} ticks",
                 Shown(path)

@@ -24,6 +24,21 @@ pub(super) struct Report {
     details: Map<String, Value>,
 }
 
+/// The digests of a file, which identify it and its game.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Digests {
+    /// Digest of the bytes that were judged.
+    pub(super) blake3: blake3::Hash,
+    /// Digest of the game: see [`crate::identity::game_digest`].
+    pub(super) game: Option<blake3::Hash>,
+}
+
+impl Digests {
+    fn texts(&self) -> (String, Option<String>) {
+        (self.blake3.to_string(), self.game.map(|game| game.to_string()))
+    }
+}
+
 /// The versions that a file needs. All but the format are unknown if the format is another version.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(super) struct Needs {
@@ -77,8 +92,8 @@ impl Report {
         self.verdict != PANICKED
     }
 
-    /// The report as one line of JSON. `blake3` is the digest of the bytes that were judged.
-    pub(super) fn json(&self, file: &Path, blake3: &str, cached: bool) -> String {
+    /// The report as one line of JSON.
+    pub(super) fn json(&self, file: &Path, digests: &Digests, cached: bool) -> String {
         #[derive(Serialize)]
         struct Whole<'a> {
             file: String,
@@ -86,7 +101,8 @@ impl Report {
             ticks: u64,
             hash: Option<&'a str>,
             bytes: u64,
-            blake3: &'a str,
+            blake3: String,
+            game: Option<String>,
             cached: bool,
             #[serde(flatten)]
             details: &'a Map<String, Value>,
@@ -94,7 +110,8 @@ impl Report {
         let Report { text: _, verdict, ticks, hash, bytes, details } = self;
         let (ticks, hash, bytes) = (*ticks, hash.as_deref(), *bytes);
         let file = file.display().to_string();
-        let line = Whole { file, verdict, ticks, hash, bytes, blake3, cached, details };
+        let (blake3, game) = digests.texts();
+        let line = Whole { file, verdict, ticks, hash, bytes, blake3, game, cached, details };
         json_text(&line)
     }
 }
@@ -105,18 +122,20 @@ pub(super) fn unread(file: &Path, error: &io::Error) -> String {
 }
 
 /// The line of a file that has used up its time, which has no verdict.
-pub(super) fn out_of_time(file: &Path, blake3: &str, seconds: u64, ticks: u64) -> String {
+pub(super) fn out_of_time(file: &Path, digests: &Digests, seconds: u64, ticks: u64) -> String {
     #[derive(Serialize)]
-    struct OutOfTime<'a> {
+    struct OutOfTime {
         file: String,
         stopped: &'static str,
         seconds: u64,
         ticks: u64,
-        blake3: &'a str,
+        blake3: String,
+        game: Option<String>,
         cached: bool,
     }
     let file = file.display().to_string();
-    json_text(&OutOfTime { file, stopped: "max_seconds", seconds, ticks, blake3, cached: false })
+    let (blake3, game) = digests.texts();
+    json_text(&OutOfTime { file, stopped: "max_seconds", seconds, ticks, blake3, game, cached: false })
 }
 
 fn details(verdict: &Verdict, claims: &[(String, i64)], needs: Option<Needs>) -> Map<String, Value> {
