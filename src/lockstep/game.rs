@@ -18,6 +18,33 @@ pub struct RulesId {
     pub version: u32,
 }
 
+/// Reason why a game does not start within a budget.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum StartError {
+    /// The setup is not playable.
+    Refused(SetupError),
+    /// The setup takes more work than the budget.
+    TooMuchWork {
+        /// Work units of the setup, or a lower bound of them.
+        work: u64,
+        /// The budget.
+        max: u64,
+    },
+}
+
+impl fmt::Display for StartError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            StartError::Refused(error) => error.fmt(f),
+            StartError::TooMuchWork { work, max } => {
+                write!(f, "the setup takes {work} work units, at most {max} are allowed")
+            }
+        }
+    }
+}
+
+impl core::error::Error for StartError {}
+
 /// A setup that cannot start a game.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SetupError {
@@ -102,6 +129,17 @@ pub trait Game: Sized {
     /// # Errors
     /// [`SetupError`] when the setup is not playable. It may come from an untrusted file.
     fn new(setup: &Self::Setup) -> Result<Self, SetupError>;
+
+    /// Creates the game before its first tick if that takes at most `work_max` work units, and returns it with the units
+    /// that it took. The default calls [`Game::new`] and counts nothing. Override it if a setup from an untrusted file
+    /// can make the start expensive: it must stop before the cost is paid.
+    ///
+    /// # Errors
+    /// [`StartError`] when the setup is not playable or takes more work.
+    fn new_within(setup: &Self::Setup, work_max: u64) -> Result<(Self, u64), StartError> {
+        let _ = work_max;
+        Self::new(setup).map(|game| (game, 0)).map_err(StartError::Refused)
+    }
 
     /// Number of players; constant during a game, at most 64.
     fn players(&self) -> u32;

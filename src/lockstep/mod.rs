@@ -6,7 +6,7 @@ mod history;
 mod input_log;
 mod sandbox;
 
-pub use game::{Game, RulesId, SetupError};
+pub use game::{Game, RulesId, SetupError, StartError};
 pub use history::{History, Past};
 pub(crate) use input_log::decode_inputs;
 pub use input_log::{EncodedInputs, InputError, InputLog};

@@ -5,11 +5,13 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Game, RulesId, SetupError};
-use crate::body::{BodyId, BodyKind};
+use super::{Game, RulesId, SetupError, StartError};
 use crate::hash::StateHash;
-use crate::solver::SolverSettings;
 use crate::world::{Command, Config, Snapshot, World};
+
+mod work;
+
+use work::Costs;
 
 /// A physics world that one player modifies by commands.
 ///
@@ -28,7 +30,7 @@ pub struct Sandbox {
     refused: u64,
 }
 
-/// Maximum work units of a setup's commands: about two seconds. A million bodies of one shape take 12 million.
+/// Maximum work units of a setup's commands: a few seconds. A million bodies of one shape take 12 million.
 const SETUP_WORK_MAX: u64 = 100_000_000;
 
 /// Initial state of a sandbox.
@@ -79,19 +81,33 @@ impl Game for Sandbox {
     /// Refuses a setup if its settings or any of its commands are refused: unlike a player's commands, the commands of
     /// a setup are not predictions that may fail.
     fn new(setup: &SandboxSetup) -> Result<Self, SetupError> {
-        let mut world = World::new(setup.config).map_err(|error| SetupError { why: format!("{error}") })?;
+        match Self::new_within(setup, SETUP_WORK_MAX) {
+            Ok((game, _)) => Ok(game),
+            Err(StartError::Refused(error)) => Err(error),
+            Err(error @ StartError::TooMuchWork { .. }) => Err(SetupError { why: format!("{error}") }),
+        }
+    }
+
+    /// Every command counts as in a tick. What a setup may take is also limited to 100 million units.
+    fn new_within(setup: &SandboxSetup, work_max: u64) -> Result<(Self, u64), StartError> {
+        let max = work_max.min(SETUP_WORK_MAX);
+        let refused = |why| StartError::Refused(SetupError { why });
+        let mut world = World::new(setup.config).map_err(|error| refused(format!("{error}")))?;
         let mut work = 0u64;
         for (index, command) in setup.commands.iter().enumerate() {
-            work = work.saturating_add(command_work(&world, command));
-            if work > SETUP_WORK_MAX {
-                return Err(SetupError {
-                    why: format!("command {index}: too much work before the first tick"),
-                });
+            work = work.saturating_add(Costs::of(&world).command(command));
+            if work > max {
+                return Err(StartError::TooMuchWork { work, max });
             }
-            let refused = |error| SetupError { why: format!("command {index}: {error}") };
-            world.execute(command).map_err(refused)?;
+            world.start_work_meter(max - work);
+            world.execute(command).map_err(|error| refused(format!("command {index}: {error}")))?;
+            work = work.saturating_add(world.metered_work());
         }
-        Ok(Sandbox { world, refused: 0 })
+        if work > max {
+            return Err(StartError::TooMuchWork { work, max });
+        }
+        world.start_work_meter(u64::MAX);
+        Ok((Sandbox { world, refused: 0 }, work))
     }
 
     fn players(&self) -> u32 {
@@ -140,84 +156,12 @@ impl Game for Sandbox {
 
     /// Bodies, shapes, pairs and joints, times the solver's sub-steps and iterations. Shapes that were just placed on
     /// top of each other make pairs that do not exist yet: in the worst case as many as the world allows, for which the
-    /// broad phase compares every shape with every other.
+    /// broad phase compares every shape with every other. The world itself counts what depends on the course of the tick.
     fn work(&self, inputs: &[Vec<Command>]) -> u64 {
-        let world = &self.world;
-        let commands = inputs.iter().flatten();
-        let added: u64 = commands.clone().map(shapes_added).sum();
-        let changes: u64 = commands.clone().map(|command| command_work(world, command)).sum();
-        // The cost of adding a shape grows with the number of shapes that the body already has.
-        let grown =
-            count(commands.clone().filter(|command| matches!(command, Command::AddShape { .. })).count());
-        let changes = changes.saturating_add(grown.saturating_mul(grown) * 4);
-        let spawned: u64 = commands.clone().map(bodies_added).sum();
-        // Settings that are out of range are refused, and cost nothing.
-        let new_settings = commands.filter_map(|command| match command {
-            Command::SetConfig { config } => config.validate().is_ok().then_some(&config.solver),
-            _ => None,
-        });
-        let rounds = |solver: &SolverSettings| u64::from(solver.sub_steps) * u64::from(solver.iterations);
-        let rounds = new_settings.map(rounds).fold(rounds(&world.config().solver), u64::max);
-        world.work_in_rounds(spawned, added, rounds).saturating_add(changes)
-    }
-}
-
-fn count(n: usize) -> u64 {
-    u64::try_from(n).unwrap_or(u64::MAX)
-}
-
-fn shapes_added(command: &Command) -> u64 {
-    match command {
-        Command::Spawn { shapes, .. } => count(shapes.len()),
-        Command::SpawnEach { shapes, places, .. } => count(shapes.len()).saturating_mul(count(places.len())),
-        Command::AddShape { .. } => 1,
-        _ => 0,
-    }
-}
-
-fn bodies_added(command: &Command) -> u64 {
-    match command {
-        Command::Spawn { .. } => 1,
-        Command::SpawnEach { places, .. } => count(places.len()),
-        _ => 0,
-    }
-}
-
-fn is_kinematic(world: &World, body: BodyId) -> bool {
-    world.body(body).is_some_and(|body| body.kind() == BodyKind::Kinematic)
-}
-
-/// Work of a command: it visits the shapes of its body, and a removal visits all contacts and joints.
-fn command_work(world: &World, command: &Command) -> u64 {
-    let shapes_of = |body: BodyId| 4 * count(world.body(body).map_or(0, |body| body.shapes().len()));
-    let removal = || count(world.pair_count()).saturating_add(count(world.joint_count()));
-    let shapes_beside = |shape| world.shape(shape).map_or(0, |shape| shapes_of(shape.body()));
-    let everything = || count(world.body_count()).saturating_add(removal());
-    match command {
-        Command::Spawn { .. } | Command::SpawnEach { .. } => {
-            (4 * bodies_added(command)).saturating_add(shapes_added(command).saturating_mul(8))
-        }
-        Command::AddJointEach { ends, .. } => 1 + 4 * count(ends.len()),
-        Command::Despawn { body } | Command::Disable { body } | Command::Enable { body } => {
-            1 + shapes_of(*body) + removal()
-        }
-        Command::AddShape { body, .. } => 8 + shapes_of(*body),
-        Command::RemoveShape { shape } => 1 + removal() + shapes_beside(*shape),
-        Command::SetShape { shape, .. } => 8 + removal() + shapes_beside(*shape),
-        Command::SetKind { body, .. } => 4 + shapes_of(*body) + removal(),
-        Command::SetBody { body, .. } | Command::SetMass { body, .. } => 4 + shapes_of(*body),
-        // Bodies joined to this one may have to be woken.
-        Command::SetTransform { body, .. } => 4 + shapes_of(*body) + count(world.joint_count()),
-        Command::SetVelocity { body, .. } | Command::MoveTo { body, .. } if is_kinematic(world, *body) => {
-            1 + count(world.joint_count())
-        }
-        Command::Sleep { .. }
-        | Command::SetGravity { .. }
-        | Command::SetConfig { .. }
-        | Command::Explode { .. } => 1 + everything(),
-        Command::Wake { body } if world.body(*body).is_some_and(|body| !body.is_dynamic()) => {
-            1 + everything()
-        }
-        _ => 1,
+        let mut costs = Costs::of(&self.world);
+        inputs.iter().flatten().for_each(|command| costs.add(command));
+        let changes = inputs.iter().flatten().map(|command| costs.command(command));
+        let changes = changes.fold(0, u64::saturating_add);
+        self.world.work_in_rounds(costs.added, costs.rounds).saturating_add(changes)
     }
 }

@@ -28,7 +28,7 @@ pub struct RawReplay<'a, G: Game> {
 pub(super) struct ReplayPosition<'a> {
     pub(super) inputs: TickInputs<'a>,
     pub(super) tick: u64,
-    /// Work units of all ticks up to here.
+    /// Work units of the setup and of all ticks up to here.
     pub(super) work: u64,
 }
 
@@ -46,9 +46,9 @@ impl<'a, G: Game> RawReplay<'a, G> {
         let inputs = TickInputs::open(file, limits)?;
         let ending = scan(inputs.reader().clone())?;
         check_rules::<G>(inputs.reader().header())?;
-        let mut game = start::<G>(inputs.reader().header())?;
+        let (mut game, work) = start::<G>(inputs.reader().header(), limits)?;
         check_bodies(&mut game, limits)?;
-        let (limits, place) = (limits.clone(), ReplayPosition { inputs, tick: 0, work: 0 });
+        let (limits, place) = (limits.clone(), ReplayPosition { inputs, tick: 0, work });
         let length = ending.ticks;
         Ok((RawReplay { game, limits, place, encoded: None, inputs: Vec::new(), length }, ending))
     }
@@ -76,7 +76,8 @@ impl<'a, G: Game> RawReplay<'a, G> {
         self.place.tick
     }
 
-    /// Work units of all ticks played, as counted by [`Game::work`].
+    /// Work units of the setup and of all ticks played, as counted by [`Game::new_within`] and [`Game::work`], and by
+    /// the world while it plays.
     #[must_use]
     pub fn work(&self) -> u64 {
         self.place.work
@@ -129,9 +130,19 @@ impl<'a, G: Game> RawReplay<'a, G> {
     pub(crate) fn play_with<T>(&mut self, step: impl FnOnce(&mut G, &[G::Input]) -> T) -> Result<T, Verdict> {
         let work = self.game.work(&self.inputs);
         LimitKind::TickWork.check(work, self.limits.tick_work)?;
-        self.place.work = self.place.work.saturating_add(work);
-        LimitKind::TotalWork.check(self.place.work, self.limits.total_work)?;
+        let before = self.place.work;
+        LimitKind::TotalWork.check(before.saturating_add(work), self.limits.total_work)?;
+        let room = (self.limits.tick_work - work).min(self.limits.total_work - before - work);
+        if let Some(world) = self.game.world_mut() {
+            world.start_work_meter(room);
+        }
         let done = step(&mut self.game, &self.inputs);
+        // An exhausted world has a wrong state: this must be checked before anything looks at it.
+        let metered = self.game.world_mut().map_or(0, |world| world.metered_work());
+        let work = work.saturating_add(metered);
+        self.place.work = before.saturating_add(work);
+        LimitKind::TickWork.check(work, self.limits.tick_work)?;
+        LimitKind::TotalWork.check(self.place.work, self.limits.total_work)?;
         self.place.tick += 1;
         check_bodies(&mut self.game, &self.limits)?;
         Ok(done)

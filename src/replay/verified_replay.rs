@@ -12,7 +12,7 @@ use super::raw_replay::{RawReplay, ReplayPosition};
 use super::reader::{Part, ReadError, Reader, Trailer};
 use super::verdict::{ClaimDifference, Mismatch, Verdict};
 use crate::codec;
-use crate::lockstep::Game;
+use crate::lockstep::{Game, StartError};
 use crate::world::World;
 
 /// Simulates a replay and returns the verdict on it.
@@ -98,7 +98,7 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
         self.raw.inputs()
     }
 
-    /// Work units of all ticks played, as counted by [`Game::work`].
+    /// Work units of the setup and of all ticks played: see [`RawReplay::work`].
     #[must_use]
     pub fn work(&self) -> u64 {
         self.raw.work()
@@ -231,11 +231,17 @@ pub(super) fn decode_setup<G: Game>(header: &Header<'_>) -> Result<G::Setup, Ver
 }
 
 /// Creates the game before its first tick and checks that it matches the header.
-pub(super) fn start<G: Game>(header: &Header<'_>) -> Result<G, Verdict> {
+///
+/// Returns it with the work units of its setup, which count like those of the ticks.
+pub(super) fn start<G: Game>(header: &Header<'_>, limits: &Limits) -> Result<(G, u64), Verdict> {
     let malformed = |offset, flaw| Verdict::Malformed { offset, flaw };
     let setup = decode_setup::<G>(header)?;
-    let game = G::new(&setup)
-        .map_err(|error| malformed(header.setup_offset(), Flaw::SetupRefused { why: error.why }))?;
+    let (game, work) = G::new_within(&setup, limits.total_work).map_err(|error| match error {
+        StartError::Refused(error) => malformed(header.setup_offset(), Flaw::SetupRefused { why: error.why }),
+        StartError::TooMuchWork { work, max } => {
+            Verdict::LimitExceeded { limit: LimitKind::TotalWork, value: work, max }
+        }
+    })?;
     if game.players() != header.players {
         let flaw = Flaw::PlayersDisagree { header: header.players, game: game.players() };
         return Err(malformed(offset::PLAYERS, flaw));
@@ -244,7 +250,7 @@ pub(super) fn start<G: Game>(header: &Header<'_>) -> Result<G, Verdict> {
         let flaw = Flaw::TickRateDisagrees { header: header.tick_rate, game: game.tick_rate() };
         return Err(malformed(offset::TICK_RATE, flaw));
     }
-    Ok(game)
+    Ok((game, work))
 }
 
 /// The first name, in ascending order, whose value differs between the two sides.

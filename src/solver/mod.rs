@@ -124,6 +124,11 @@ impl Solver {
         set.refresh(&StepContext::new(*machine, threads, tuning, &mut list.bodies, faults));
     }
 
+    /// Number of joints that are solved in blocks in this tick.
+    pub(crate) fn blocked_joint_count(&self) -> usize {
+        self.joints.blocked_count()
+    }
+
     /// [`Joint::reaction`] without allocations, after the joints of the tick have been solved.
     pub(crate) fn reaction(
         &mut self,

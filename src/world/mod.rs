@@ -37,6 +37,7 @@ pub use query::{
 pub use snapshot::{PhaseDigest, Section, Snapshot, SnapshotError, Violation, WorldDigest};
 pub use stats::{Phase, StepStats};
 pub use timestep::FixedTimestep;
+pub(crate) use view::AddedWork;
 pub use view::{ContactForce, ContactView, SolverColour};
 
 use alloc::vec::Vec;

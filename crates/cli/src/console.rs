@@ -19,6 +19,8 @@ pub(crate) struct Console<'a> {
     pub(crate) err: &'a mut dyn Write,
     /// Whether messages go to a terminal, so that progress can be shown there.
     pub(crate) is_terminal: bool,
+    /// Whether the command is all that this process does, so that signals to the process are for the command.
+    pub(crate) owns_process: bool,
 }
 
 impl Console<'_> {

@@ -24,6 +24,10 @@ pub(crate) enum CommandError {
     InputTwice,
     /// A file cannot be written.
     Write { path: PathBuf, error: io::Error },
+    /// The output file exists, and the user did not say that it is to be replaced.
+    Exists { path: PathBuf },
+    /// Another process is writing the output file.
+    Busy { path: PathBuf },
     /// There is no scene of this name.
     UnknownScene { name: String, known: Vec<&'static str> },
     /// The scene cannot be recorded.
@@ -100,6 +104,12 @@ impl fmt::Display for CommandError {
             }
             CommandError::InputTwice => write!(f, "the standard input can be read only once"),
             CommandError::Write { path, error } => write!(f, "cannot write {}: {error}", Shown(path)),
+            CommandError::Exists { path } => {
+                write!(f, "cannot write {}: it exists; --force replaces it", Shown(path))
+            }
+            CommandError::Busy { path } => {
+                write!(f, "cannot write {}: another process is writing it", Shown(path))
+            }
             CommandError::UnknownScene { name, known } => {
                 write!(f, "there is no scene {name:?}; there are {}", known.join(", "))
             }

@@ -1,11 +1,9 @@
-//! Reading files of untrusted size, writing files, and printing untrusted names.
+//! Reading files of untrusted size, and printing untrusted names.
 
 use std::fmt;
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
-
-use crate::error::CommandError;
 
 /// The extension of replay files in folders.
 pub(crate) const EXTENSION: &str = "replay";
@@ -30,12 +28,7 @@ pub(crate) fn read_from(stream: impl Read, expected: u64, bytes_max: u64) -> io:
     Ok(bytes)
 }
 
-/// Writes a file.
-pub(crate) fn save(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
-    fs::write(path, bytes).map_err(CommandError::write(path))
-}
-
-/// Shows a path on one line: control characters, such as line breaks, are escaped.
+/// Shows a path on one line: see [`OneLine`].
 pub(crate) struct Shown<'a>(pub(crate) &'a Path);
 
 impl fmt::Display for Shown<'_> {
@@ -44,13 +37,14 @@ impl fmt::Display for Shown<'_> {
     }
 }
 
-/// Shows untrusted text on one line: control characters are escaped.
+/// Shows untrusted text on one line: line breaks and other control characters are escaped, and so are those that change
+/// the direction of text or are invisible, which could make one name look like another.
 pub(crate) struct OneLine<'a>(pub(crate) &'a str);
 
 impl fmt::Display for OneLine<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for character in self.0.chars() {
-            if character.is_control() {
+            if character.is_control() || is_invisible(character) {
                 write!(f, "{}", character.escape_default())?;
             } else {
                 write!(f, "{character}")?;
@@ -58,6 +52,15 @@ impl fmt::Display for OneLine<'_> {
         }
         Ok(())
     }
+}
+
+/// Whether a character is a line or paragraph separator, or changes how its neighbours are shown without being visible.
+fn is_invisible(character: char) -> bool {
+    matches!(
+        character,
+        '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
+            | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}'
+    )
 }
 
 #[cfg(test)]
@@ -68,6 +71,7 @@ mod tests {
     fn a_line_break_in_a_name_is_shown_escaped() {
         let name = Path::new("a\n9 of 9 files match\u{1b}[2J ü.replay");
         assert_eq!(Shown(name).to_string(), "a\\n9 of 9 files match\\u{1b}[2J ü.replay");
+        assert_eq!(OneLine("a\u{202e}hctam\u{2028}b").to_string(), "a\\u{202e}hctam\\u{2028}b");
     }
 
     #[test]

@@ -28,16 +28,18 @@
 //! This gives `verify`, `diff`, `bisect`, `trace`, `stress-saves`, `inspect`, `seek`, `fork`, `trim`, `stats` and
 //! `export`. [`Tool::with_scenes`] adds `scenes` and `record`; [`Tool::with_view`] sets how pictures show the game.
 
+mod clock;
 mod commands;
 mod console;
 mod context;
 mod counts;
-mod draft;
 mod energy;
 mod error;
 mod exit;
 mod figures;
 mod files;
+mod identity;
+mod output_file;
 mod rewriting;
 mod sandbox;
 mod scenes;

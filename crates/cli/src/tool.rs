@@ -77,7 +77,7 @@ impl<G: Game> Tool<G> {
         // The streams stay unlocked: a game that prints or panics on another thread would deadlock.
         let (mut out, mut err) = (anstream::stdout(), anstream::stderr());
         let is_terminal = std::io::stderr().is_terminal();
-        let console = Console { out: &mut out, err: &mut err, is_terminal };
+        let console = Console { out: &mut out, err: &mut err, is_terminal, owns_process: true };
         self.run_on(std::env::args_os(), console).into()
     }
 
@@ -92,7 +92,7 @@ impl<G: Game> Tool<G> {
     where
         A: Into<OsString> + Clone,
     {
-        self.run_on(arguments, Console { out, err, is_terminal: false })
+        self.run_on(arguments, Console { out, err, is_terminal: false, owns_process: false })
     }
 
     fn run_on<'a, A>(&'a self, arguments: impl IntoIterator<Item = A>, mut console: Console<'a>) -> Exit

@@ -292,6 +292,11 @@ impl JointSet {
         }
     }
 
+    /// Number of joints that are solved in blocks in this tick.
+    pub(crate) fn blocked_count(&self) -> usize {
+        self.blocks.chosen().len()
+    }
+
     /// Arranges the joints in blocks.
     fn arrange_blocks(&mut self) {
         let JointSet { blocks, hinges, list, parts, entries, candidates, .. } = self;

@@ -1,4 +1,5 @@
-//! The joints of each body, as linked lists in two arrays, so that adding or removing a joint allocates nothing.
+//! The joints of each body, as doubly linked lists in two arrays: adding or removing a joint takes constant time and
+//! allocates nothing.
 //!
 //! A cache of the state. The order within a list depends on the history of the world and is not visible outside.
 
@@ -7,7 +8,7 @@ use alloc::vec::Vec;
 use crate::body::{BodyId, Handle, JointId};
 use crate::world::state::State;
 
-/// Marks the end of a list.
+/// Marks the ends of a list.
 const NONE: u32 = u32::MAX;
 
 /// The joints of each body.
@@ -15,8 +16,23 @@ const NONE: u32 = u32::MAX;
 pub(crate) struct JointLinks {
     /// For each body slot, the slot of the body's first joint.
     first: Vec<u32>,
-    /// For each joint slot and each of the joint's two bodies: the slots of the body and of the next joint in its list.
-    next: Vec<[(u32, u32); 2]>,
+    /// For each joint slot, its places in the lists of its two bodies.
+    links: Vec<[Link; 2]>,
+}
+
+/// The place of a joint in the list of one of its bodies.
+#[derive(Clone, Copy, Debug)]
+struct Link {
+    /// Slot of the body.
+    body: u32,
+    /// Slot of the next joint, or [`NONE`].
+    next: u32,
+    /// Slot of the previous joint, or [`NONE`].
+    previous: u32,
+}
+
+impl Link {
+    const EMPTY: Link = Link { body: NONE, next: NONE, previous: NONE };
 }
 
 impl JointLinks {
@@ -28,30 +44,33 @@ impl JointLinks {
         links
     }
 
-    /// Adds a joint of two bodies.
+    /// Adds a joint of two different bodies.
     pub(crate) fn add(&mut self, joint: JointId, (a, b): (BodyId, BodyId)) {
         let (joint, a, b) = (joint.slot(), a.slot(), b.slot());
-        grow(&mut self.next, joint, [(NONE, NONE); 2]);
+        debug_assert_ne!(a, b, "a joint is in two lists");
+        grow(&mut self.links, joint, [Link::EMPTY; 2]);
         grow(&mut self.first, a.max(b), NONE);
         for (end, body) in [a, b].into_iter().enumerate() {
-            let first = core::mem::replace(&mut self.first[body as usize], joint);
-            self.next[joint as usize][end] = (body, first);
+            let next = core::mem::replace(&mut self.first[body as usize], joint);
+            self.links[joint as usize][end] = Link { body, next, previous: NONE };
+            if next != NONE {
+                self.link_mut(next, body).previous = joint;
+            }
         }
     }
 
-    /// Removes a joint of two bodies.
+    /// Removes a joint of two bodies, in constant time.
     pub(crate) fn remove(&mut self, joint: JointId, (a, b): (BodyId, BodyId)) {
         for body in [a.slot(), b.slot()] {
-            let after = self.after(joint.slot(), body);
-            let mut at = self.first[body as usize];
-            if at == joint.slot() {
-                self.first[body as usize] = after;
-                continue;
+            let Link { next, previous, .. } = *self.link_mut(joint.slot(), body);
+            if previous == NONE {
+                self.first[body as usize] = next;
+            } else {
+                self.link_mut(previous, body).next = next;
             }
-            while self.after(at, body) != joint.slot() {
-                at = self.after(at, body);
+            if next != NONE {
+                self.link_mut(next, body).previous = previous;
             }
-            *self.after_mut(at, body) = after;
         }
     }
 
@@ -66,13 +85,14 @@ impl JointLinks {
 
     /// The slot of the joint that follows `joint` in the list of a body.
     fn after(&self, joint: u32, body: u32) -> u32 {
-        let [a, b] = self.next[joint as usize];
-        if a.0 == body { a.1 } else { b.1 }
+        let [a, b] = self.links[joint as usize];
+        if a.body == body { a.next } else { b.next }
     }
 
-    fn after_mut(&mut self, joint: u32, body: u32) -> &mut u32 {
-        let [a, b] = &mut self.next[joint as usize];
-        if a.0 == body { &mut a.1 } else { &mut b.1 }
+    /// The place of a joint in the list of a body.
+    fn link_mut(&mut self, joint: u32, body: u32) -> &mut Link {
+        let [a, b] = &mut self.links[joint as usize];
+        if a.body == body { a } else { b }
     }
 }
 

@@ -17,6 +17,7 @@ mod awake;
 mod changes;
 mod contacts;
 mod joint_links;
+mod meter;
 mod motion;
 mod pairs;
 mod poses;
@@ -28,6 +29,7 @@ pub(crate) use awake::{AwakeSet, is_awake};
 pub(crate) use changes::Changes;
 pub(crate) use contacts::{ContactCache, NarrowPhaseBuffers, NarrowPhaseOutput, PendingHit};
 pub(crate) use joint_links::JointLinks;
+pub(crate) use meter::WorkMeter;
 pub(crate) use motion::{
     ClosingBound, GHOST_TRAVEL_MIN, Margins, MotionCache, PredictedMotion, ShapeMotion, Travel,
 };
@@ -59,6 +61,8 @@ pub(crate) struct Scratch {
     pub(crate) sweeps: Sweeps,
     pub(crate) solver: Solver,
     pub(crate) results: TickResults,
+    /// Work that is counted while it is done.
+    pub(crate) meter: WorkMeter,
 }
 
 impl Scratch {
@@ -75,13 +79,14 @@ impl Scratch {
             sweeps: Sweeps::default(),
             solver: Solver::default(),
             results: TickResults::default(),
+            meter: WorkMeter::default(),
         }
     }
 
-    /// Builds all caches anew. Keeps the solver's backend and threads.
+    /// Builds all caches anew. Keeps the solver's backend and threads, and the meter.
     pub(crate) fn rebuild(&mut self, kind: BroadPhaseKind, state: &State) {
         let solver = self.solver.emptied();
-        *self = Scratch { solver, ..Scratch::new(kind, state) };
+        *self = Scratch { solver, meter: self.meter, ..Scratch::new(kind, state) };
     }
 
     /// Drops the results of the last tick, after the state was replaced by that of another tick.

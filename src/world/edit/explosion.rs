@@ -20,6 +20,9 @@ use crate::world::World;
 /// Margin in metres on the search radius, larger than the rounding of distances, so that no shape in reach is missed.
 const SLACK: Fx = fx!(0.000001);
 
+/// Work units of an explosion for each shape in reach.
+const SHAPE_WORK: u64 = 2;
+
 impl World {
     /// Applies an impulse away from the explosion's centre to every dynamic body near it, shape by shape in slot order,
     /// and wakes it. Sensors and disabled bodies are left out. Speeds are clamped to their range.
@@ -38,6 +41,9 @@ impl World {
         });
         slots.sort_unstable();
         for slot in slots {
+            if !self.scratch.meter.spend(SHAPE_WORK) {
+                break;
+            }
             self.push_shape(slot, explosion)?;
         }
         Ok(())

@@ -8,6 +8,9 @@ use crate::collision::Contact;
 use crate::world::cache::Scratch;
 use crate::world::state::State;
 
+/// Number of visited boxes that cost one work unit.
+const VISITS_PER_WORK: u64 = 4;
+
 /// Wakes an island. Its sleeping contacts become active at the next pair update.
 pub(crate) fn wake_island(state: &mut State, scratch: &mut Scratch, island: IslandId) {
     let Some(island) = state.islands.remove(island) else { return };
@@ -53,8 +56,9 @@ pub(crate) fn wake_overlapping_shape(state: &mut State, scratch: &mut Scratch, s
     if state.islands.len() == 0 && !scratch.awake.may_have_kinematic() {
         return;
     }
-    let mut neighbours = Vec::new();
+    let (mut neighbours, mut visited) = (Vec::new(), 0u64);
     scratch.shapes.broad_phase().each_overlap(state.shapes.at(shape).fat, |other| {
+        visited += 1;
         let slot = state.shapes.at(other).body().slot();
         let body = state.bodies.at(slot);
         if body.kind() != BodyKind::Fixed && !body.is_active() {
@@ -62,6 +66,7 @@ pub(crate) fn wake_overlapping_shape(state: &mut State, scratch: &mut Scratch, s
         }
         ControlFlow::Continue(())
     });
+    scratch.meter.spend(visited / VISITS_PER_WORK);
     // The broad phase visits boxes in no defined order.
     neighbours.sort_unstable();
     for body in neighbours {

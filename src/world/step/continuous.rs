@@ -9,16 +9,24 @@
 //! such a body is fast is judged relative to each of them, by the displacement from where its material would have taken
 //! it: what lies on a platform or in a drum is not held back. A body that is stopped is carried for the rest of the tick.
 
+use core::ops::ControlFlow;
+
 use crate::body::{Body, BodyKind, Continuous, Handle, Pose, WORLD_EXTENT_MAX};
 use crate::collision::{SupportShape, Sweep, TimeOfImpact, time_of_impact};
 use crate::fx;
 use crate::math::{Aabb, Angle, Fx, Rot, Vec2, fx_mul};
-use crate::world::cache::{Scratch, SweptBody};
+use crate::world::cache::{Scratch, SweptBody, WorkMeter};
 use crate::world::movement::move_body;
 use crate::world::state::State;
 
 /// A body that moves less than this in a tick, in metres, is not swept, however thin it is.
 const SWEPT_MIN: Fx = fx!(0.0005);
+
+/// Work units of a time of impact: it takes some 2 us, and up to ten for long thin shapes that rotate.
+const IMPACT_WORK: u64 = 16;
+
+/// Number of shapes beside a sweep that cost one work unit.
+const VISITS_PER_WORK: u64 = 8;
 
 /// Returns the sweep of a body if it moves so far that it may pass through a shape: if any of its points moves further
 /// than half of the inner radius of its thinnest shape. `turn` is its rotation in units of 2^-32 turns.
@@ -70,7 +78,9 @@ fn carried(sweep: &Sweep, point: Vec2<Fx>, fraction: Fx) -> Vec2<Fx> {
 
 /// Moves a fast body along its sweep to the end or to the first impact.
 pub(super) fn sweep(state: &mut State, scratch: &mut Scratch, swept: &SweptBody) {
-    let impact = first_impact(state, scratch, swept);
+    let mut meter = scratch.meter;
+    let impact = first_impact(state, scratch, swept, &mut meter);
+    scratch.meter = meter;
     let pose = impact.map_or(swept.end, |impact| pose_after(state, scratch, swept, impact));
     scratch.results.stats.impacts += u32::from(impact.is_some());
     move_body(state, scratch, swept.slot, pose);
@@ -106,8 +116,13 @@ fn pose_after(state: &State, scratch: &Scratch, swept: &SweptBody, impact: Impac
     Pose { centre: centre.max(-edge).min(edge), angle }
 }
 
-/// The first obstacle that stops a body on its sweep.
-fn first_impact(state: &State, scratch: &Scratch, swept: &SweptBody) -> Option<Impact> {
+/// The first obstacle that stops a body on its sweep. `None` if the meter is exhausted.
+fn first_impact(
+    state: &State,
+    scratch: &Scratch,
+    swept: &SweptBody,
+    meter: &mut WorkMeter,
+) -> Option<Impact> {
     let shapes = &scratch.shapes;
     let body = state.bodies.at(swept.slot);
     let sees_moving = is_bullet(body) || sees_kinematic(body);
@@ -115,6 +130,10 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &SweptBody) -> Option<I
     let disc = Aabb::new(body.centre, body.centre).expanded(shapes.poses().extents(swept.slot).radius);
     let mut first: Option<Impact> = None;
     for id in body.shapes() {
+        if meter.is_exhausted() {
+            return None;
+        }
+        let mut visited = 0u64;
         let motion = shapes.motion();
         if motion.shape(id.slot()).sensor {
             continue;
@@ -125,6 +144,7 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &SweptBody) -> Option<I
         let start = if swept.sweep.turn == 0 { posed.bounds } else { disc };
         let area = start.swept(swept.sweep.end - swept.sweep.start);
         let visit = |other| {
+            visited += 1;
             let other_shape = motion.shape(other);
             let obstacle = state.bodies.at(other_shape.body);
             // A moving obstacle was somewhere else during the tick: its current bounds do not rule it out.
@@ -138,13 +158,16 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &SweptBody) -> Option<I
                     _ => swept.is_fast,
                 };
                 if !is_fast {
-                    return core::ops::ControlFlow::Continue(());
+                    return ControlFlow::Continue(());
                 }
                 let &mut (core, target) = core_and_target.get_or_insert_with(|| {
                     let core = SupportShape::of(posed, body.centre);
                     // A quarter of the depth at which its centre would be on the surface, and at most 5 mm.
                     (core, -(core.inner_radius() / 4).min(fx!(0.005)))
                 });
+                if !meter.spend(IMPACT_WORK) {
+                    return ControlFlow::Break(());
+                }
                 let fraction = match time_of_impact(&there, &movement, &core, &swept.sweep, target) {
                     TimeOfImpact::Hit { fraction } => Some(fraction),
                     // The fraction reached is safe. At 0 it is ignored, so that the body does not get stuck.
@@ -154,7 +177,7 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &SweptBody) -> Option<I
                 let impact = fraction.map(|fraction| Impact { fraction, obstacle: other });
                 first = first.into_iter().chain(impact).min();
             }
-            core::ops::ControlFlow::Continue(())
+            ControlFlow::Continue(())
         };
         // Bodies that see no moving obstacle are swept against fixed ones only.
         if sees_moving {
@@ -162,6 +185,8 @@ fn first_impact(state: &State, scratch: &Scratch, swept: &SweptBody) -> Option<I
         } else {
             shapes.broad_phase().each_fixed_overlap(area, visit);
         }
+        // Counting cannot end the search, but the budget of a world with so many shapes has paid for comparing them all.
+        meter.spend(1 + visited / VISITS_PER_WORK);
     }
     first
 }

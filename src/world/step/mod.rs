@@ -13,6 +13,7 @@ mod refit;
 mod report;
 mod sensor_events;
 mod sleep;
+mod solver_work;
 mod speculative;
 mod wake;
 
@@ -53,6 +54,7 @@ impl World {
         let World { state, scratch, phases: _ } = self;
         let state = &mut **state;
         let settings = state.config.solver;
+        let pairs_before = solver_work::pairs(state);
         let tuning = Tuning::new(&settings, state.config.gravity, state.config.tick_rate);
 
         begin(Phase::BroadPhase, PhaseView::of(state, scratch));
@@ -75,12 +77,14 @@ impl World {
         solver.prepare_joints(&state.joints, awake.joints(), &state.bodies, &tuning);
         solver.prepare_contacts(&found.touching, &found.manifolds, &found.impacts, &state.contacts);
         areas::apply_areas(state, scratch, &tuning);
+        let can_solve = solver_work::spend(state, scratch, pairs_before);
 
         begin(Phase::Solve, PhaseView::of(state, scratch));
         let Scratch { solver, .. } = scratch;
         let first_sub_step = state.tick.wrapping_mul(settings.sub_steps.into());
         solver.threads.clone().install(|| {
-            for index in 0..settings.sub_steps {
+            // Without the budget for it nobody looks at the result.
+            for index in 0..if can_solve { settings.sub_steps } else { 0 } {
                 solver.sub_step(first_sub_step.wrapping_add(index.into()), &tuning);
             }
         });

@@ -16,6 +16,12 @@ use crate::world::cache::Scratch;
 use crate::world::events::{Events, SensorEvent};
 use crate::world::state::{Side, State};
 
+/// Work units of following a pair that was not foreseen.
+const UNFORESEEN_WORK: u64 = 16;
+
+/// Number of pairs of shapes outside their fat boxes that cost one work unit to consider.
+const COMPARED_PER_WORK: u64 = 16;
+
 /// Reports the beginnings and ends of overlaps with sensors, once all bodies have been moved.
 pub(super) fn report_sensors(state: &mut State, scratch: &mut Scratch) {
     if !scratch.shapes.motion().may_have_sensors() {
@@ -181,9 +187,17 @@ fn report_unforeseen(state: &mut State, scratch: &mut Scratch) {
     if scratch.sweeps.left_boxes.is_empty() {
         return;
     }
+    let left = u64::try_from(scratch.sweeps.left_boxes.len()).unwrap_or(u64::MAX);
+    // Each is searched for, and in the worst case compared with each.
+    if !scratch.meter.spend(left.saturating_mul(1 + left / COMPARED_PER_WORK)) {
+        return;
+    }
     let mut pairs = core::mem::take(&mut scratch.pairs.buffers.pairs);
     list_unforeseen(state, scratch, &mut pairs);
     for &pair in &pairs {
+        if !scratch.meter.spend(UNFORESEEN_WORK) {
+            break;
+        }
         let visit = Visit::of(state, scratch, pair, false);
         let is_full = state.contacts.len() >= state.config.pair_limit as usize;
         if visit.is_inside && is_full {

@@ -7,3 +7,4 @@ mod neighbours;
 mod work;
 
 pub use contacts::{ContactForce, ContactView, SolverColour};
+pub(crate) use work::{AddedWork, pair_work};

@@ -2,6 +2,7 @@
 
 use crate::solver::SolverSettings;
 use crate::world::World;
+use crate::world::cache::WorkMeter;
 
 /// Pairs per body that are assumed to be solved in SIMD batches of eight. A heap that is not forced together has up to
 /// six pairs per body.
@@ -9,6 +10,21 @@ const PAIRS_PER_BODY: u64 = 32;
 
 /// Cost of a pair beyond [`PAIRS_PER_BODY`], in ordinary pairs: measured on a thousand squares at the same position.
 const CROWDED_WORK: u64 = 64;
+
+/// What the commands of a tick add to a world.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct AddedWork {
+    pub(crate) bodies: u64,
+    pub(crate) shapes: u64,
+    pub(crate) joints: u64,
+}
+
+/// Work units of one pass of the solver over pairs of so many bodies.
+pub(crate) fn pair_work(pairs: u64, bodies: u64) -> u64 {
+    // In a heap of overlapping bodies, many contacts find no free place in a SIMD batch.
+    let crowded = pairs.saturating_sub(bodies.saturating_mul(PAIRS_PER_BODY));
+    pairs.saturating_add(crowded.saturating_mul(CROWDED_WORK))
+}
 
 impl World {
     /// Returns an upper bound of the cost of the next tick in work units, if at most `bodies` bodies with `shapes` shapes
@@ -25,21 +41,33 @@ impl World {
     #[must_use]
     pub fn work(&self, bodies: u64, shapes: u64) -> u64 {
         let SolverSettings { sub_steps, iterations, .. } = self.config().solver;
-        self.work_in_rounds(bodies, shapes, u64::from(sub_steps) * u64::from(iterations))
+        let added = AddedWork { bodies, shapes, joints: 0 };
+        self.work_in_rounds(added, u64::from(sub_steps) * u64::from(iterations))
     }
 
     /// [`World::work`] with a number of passes of the solver in a tick: sub-steps times iterations.
-    pub(crate) fn work_in_rounds(&self, bodies: u64, shapes: u64, rounds: u64) -> u64 {
+    pub(crate) fn work_in_rounds(&self, added: AddedWork, rounds: u64) -> u64 {
+        let AddedWork { bodies, shapes, joints } = added;
         let count = |n: usize| u64::try_from(n).unwrap_or(u64::MAX);
         let shapes = count(self.shape_count()).saturating_add(shapes);
         let bodies = count(self.body_count()).saturating_add(bodies);
-        let constraints = count(self.pair_count()).saturating_add(count(self.joint_count()));
-        // In a heap of overlapping bodies, many contacts find no free place in a SIMD batch.
-        let crowded = count(self.pair_count()).saturating_sub(bodies.saturating_mul(PAIRS_PER_BODY));
-        let constraints = constraints.saturating_add(crowded.saturating_mul(CROWDED_WORK));
+        let joints = count(self.joint_count()).saturating_add(joints);
+        let constraints = joints.saturating_add(pair_work(count(self.pair_count()), bodies));
         let solved = bodies.saturating_add(shapes).saturating_add(constraints).saturating_mul(rounds);
         let compared = shapes.saturating_mul(shapes);
         let possible_pairs = (compared / 2).min(self.config().pair_limit.into());
         solved.saturating_add(possible_pairs).saturating_add(compared / 64)
+    }
+
+    /// Starts to count work whose amount is known only when it is done: sweeps of fast bodies, shapes in reach of an
+    /// explosion, shapes that meet a sensor unforeseen. Beyond `max` units it is not done, and the state is wrong from
+    /// then on. Changes no result otherwise; without a call there is no bound.
+    pub(crate) fn start_work_meter(&mut self, max: u64) {
+        self.scratch.meter = WorkMeter::start(max);
+    }
+
+    /// The work units that were counted since the last call of [`World::start_work_meter`].
+    pub(crate) fn metered_work(&self) -> u64 {
+        self.scratch.meter.spent()
     }
 }

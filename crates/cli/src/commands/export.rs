@@ -13,6 +13,7 @@ use lockstep2d::world::World;
 use crate::console::Console;
 use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
+use crate::output_file::{self, Overwrite};
 
 mod animation;
 mod format;
@@ -44,6 +45,8 @@ pub(crate) struct Arguments {
     /// The file to write [default for JSON, SVG and plots: the standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    overwrite: Overwrite,
     /// The tick to write [default: the last for a picture, all for JSON]
     #[arg(long, value_name = "N")]
     tick: Option<u64>,
@@ -74,6 +77,9 @@ pub(crate) struct Arguments {
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let format = arguments.formats.chosen(arguments.output.as_deref())?;
     arguments.check(format)?;
+    if let Some(path) = &arguments.output {
+        output_file::check(path, arguments.overwrite)?;
+    }
     let (bytes, limits) = (context.load(&arguments.file)?, context.limits());
     if let Ok(Evidence::World(world)) = Evidence::read(bytes.clone(), limits) {
         return export_world(&world, format, arguments, &mut context.console);
@@ -91,7 +97,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
         Format::Json => {
             let (first, last) = replay.range(arguments)?;
             let every = arguments.every.unwrap_or(1);
-            Output::write(arguments.output.as_deref(), &mut context.console, |output| {
+            Output::write(arguments, &mut context.console, |output| {
                 json::write(replay, (first..=last).step_by(every as usize), output)
             })
         }
@@ -114,7 +120,7 @@ fn export_world(
         }
         Format::Json => {
             let line = json::line(world.tick(), world.state_hash(), &world.save())?;
-            Output::write(arguments.output.as_deref(), console, |output| output.line(&line))
+            Output::write(arguments, console, |output| output.line(&line))
         }
         Format::Gif | Format::Apng | Format::Plot => {
             Err(CommandError::OneState { path: arguments.file.clone(), format: format.option() })

@@ -12,7 +12,8 @@ use serde::Serialize;
 use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
-use crate::files::{self, Shown};
+use crate::files::Shown;
+use crate::output_file::{OutputFile, Overwrite};
 use crate::rewriting::{Copy, CopyError};
 
 /// Write a replay with the beginning of another one and a different end
@@ -39,6 +40,8 @@ pub(crate) struct Arguments {
     /// The file to write
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
+    #[command(flatten)]
+    overwrite: Overwrite,
     /// Print one JSON document
     #[arg(long)]
     json: bool,
@@ -46,6 +49,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let (bytes, limits) = (context.load(&arguments.file)?, context.limits());
+    let mut output = OutputFile::create(&arguments.output, arguments.overwrite)?;
     let of_file = |error: CopyError| error.of_file(&arguments.file);
     let mut copy = Copy::<G>::new(&bytes, arguments.tick, limits).map_err(of_file)?;
     let kept = copy.ticks();
@@ -64,7 +68,8 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     }
     let ticks = copy.ticks();
     let (replay, hash) = copy.finish(&arguments.output, limits)?;
-    files::save(&arguments.output, &replay)?;
+    output.append(&replay)?;
+    output.publish()?;
 
     let added = ticks - kept;
     if arguments.json {

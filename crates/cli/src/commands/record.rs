@@ -1,8 +1,6 @@
 //! `record`: plays a scene and writes its replay.
 
-use std::fs::File;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use lockstep2d::hash::StateHash;
@@ -13,6 +11,7 @@ use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::Shown;
+use crate::output_file::{OutputFile, Overwrite};
 use crate::scenes::Scene;
 
 /// Play a scene and write its replay
@@ -29,6 +28,8 @@ pub(crate) struct Arguments {
     /// The file to write
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
+    #[command(flatten)]
+    overwrite: Overwrite,
 }
 
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
@@ -38,23 +39,29 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
         return Err(CommandError::UnknownScene { name: arguments.scene.clone(), known });
     };
     let ticks = arguments.ticks.unwrap_or(scene.ticks);
-    let hash = write(scene, ticks, &arguments.output)?;
+    let recording = Recording::<G>::start(&scene.setup, CHECKPOINT_INTERVAL)?;
+    let mut output = OutputFile::create(&arguments.output, arguments.overwrite)?;
+    let hash = write(recording, scene, ticks, &mut output)?;
+    output.publish()?;
     let file = Shown(&arguments.output);
     context.console.line(format_args!("{file}: recorded {ticks} ticks, final hash {hash}"))?;
     Ok(Exit::Success)
 }
 
-/// Appends to the file as the game runs, so that an interrupted run leaves a valid incomplete replay.
-fn write<G: Game>(mut scene: Scene<G>, ticks: u64, path: &Path) -> Result<StateHash, CommandError> {
-    let write_error = CommandError::write(path);
-    let mut recording = Recording::<G>::start(&scene.setup, CHECKPOINT_INTERVAL)?;
-    let mut file = File::create(path).map_err(&write_error)?;
+/// Appends to the file as the game runs, so that a process that is killed leaves a valid incomplete replay in the
+/// temporary file.
+fn write<G: Game>(
+    mut recording: Recording<G>,
+    mut scene: Scene<G>,
+    ticks: u64,
+    output: &mut OutputFile,
+) -> Result<StateHash, CommandError> {
     for tick in 0..ticks {
         let inputs = (scene.script)(tick, recording.game());
         recording.step(&inputs)?;
-        file.write_all(&recording.take_bytes()).map_err(&write_error)?;
+        output.append(&recording.take_bytes())?;
     }
     let hash = recording.game().state_hash();
-    file.write_all(&recording.finish()?).map_err(write_error)?;
+    output.append(&recording.finish()?)?;
     Ok(hash)
 }

@@ -12,10 +12,10 @@ use serde::Serialize;
 use crate::console::Console;
 use crate::context::{CommandResult, Context};
 use crate::counts::Counts;
-use crate::draft;
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, Shown};
+use crate::output_file::{self, OutputFile, Overwrite};
 
 /// Go to a tick of a replay and describe its state
 #[derive(Args, Debug)]
@@ -46,6 +46,8 @@ pub(crate) struct Arguments {
     /// Write the game's save to this file, in its canonical encoding
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    overwrite: Overwrite,
     /// Print one JSON document
     #[arg(long)]
     json: bool,
@@ -59,15 +61,18 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     if let Some(path) = &arguments.keyframes {
         use_keyframes(&mut timeline, path)?;
     }
+    let create = |path: &PathBuf| OutputFile::create(path, arguments.overwrite);
+    let output = arguments.output.as_ref().map(create).transpose()?;
     let known = timeline.keyframes().count();
     let result = go(&mut timeline, arguments);
     if let Some(path) = arguments.keyframes.as_ref().filter(|_| timeline.keyframes().count() != known) {
-        draft::replace(path, &timeline.keyframes_to_bytes())?;
+        output_file::save(path, &timeline.keyframes_to_bytes(), Overwrite::ALWAYS)?;
     }
     let (there, back) = result?;
 
-    if let Some(path) = &arguments.output {
-        files::save(path, &codec::encode(&timeline.game().save()))?;
+    if let Some(mut output) = output {
+        output.append(&codec::encode(&timeline.game().save()))?;
+        output.publish()?;
     }
     let found = SeekResult {
         file: arguments.file.display().to_string(),

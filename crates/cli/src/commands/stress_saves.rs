@@ -17,7 +17,8 @@ use crate::console::{BAD, GOOD};
 use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
-use crate::files::{self, Shown};
+use crate::files::Shown;
+use crate::output_file::{OutputFile, Overwrite};
 
 /// Play a replay, and at every tick save the game to bytes, restore it into a new game, and compare
 ///
@@ -46,6 +47,8 @@ pub(crate) struct Arguments {
     /// On failure, write the shortest failing replay that could be found
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    overwrite: Overwrite,
     /// Print one JSON document
     #[arg(long)]
     json: bool,
@@ -54,6 +57,8 @@ pub(crate) struct Arguments {
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let path = || arguments.file.clone();
     let (bytes, limits) = (context.load(&arguments.file)?, context.limits());
+    let create = |path: &PathBuf| OutputFile::create(path, arguments.overwrite);
+    let output = arguments.output.as_ref().map(create).transpose()?;
     let result = match check_replay::<G>(&bytes, &options(arguments, limits)) {
         Ok(checked) if checked.ticks < arguments.from.max(arguments.to.unwrap_or(0)) => {
             let tick = arguments.from.max(arguments.to.unwrap_or(0));
@@ -64,8 +69,9 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
         Err(CheckError::Replay(verdict)) => return Err(CommandError::Replay { path: path(), verdict }),
         Err(CheckError::Record(error)) => return Err(CommandError::Record(error)),
     };
-    if let (Err(failure), Some(output)) = (&result, &arguments.output) {
-        files::save(output, &failure.replay)?;
+    if let (Err(failure), Some(mut output)) = (&result, output) {
+        output.append(&failure.replay)?;
+        output.publish()?;
     }
     let outcome = Outcome { arguments, result: result.as_ref().map_err(AsRef::as_ref) };
     if arguments.json {

@@ -9,7 +9,8 @@ use lockstep2d::report::Trace;
 use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
-use crate::files::{self, Shown};
+use crate::files::Shown;
+use crate::output_file::{OutputFile, Overwrite};
 
 /// Play a replay and write the states and phases of some ticks, for bisect
 #[derive(Args, Debug)]
@@ -30,14 +31,18 @@ pub(crate) struct Arguments {
     /// The file to write
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
+    #[command(flatten)]
+    overwrite: Overwrite,
 }
 
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
-    let Arguments { file, to, ticks, output } = arguments;
+    let Arguments { file, to, ticks, output, overwrite } = arguments;
     let bytes = context.load(file)?;
+    let mut written = OutputFile::create(output, *overwrite)?;
     let traced = Trace::<G>::of_replay(&bytes, context.limits(), to.unwrap_or(u64::MAX), *ticks);
     let report = traced.map_err(|error| CommandError::Trace { path: file.clone(), error })?;
-    files::save(output, &report.to_bytes())?;
+    written.append(&report.to_bytes())?;
+    written.publish()?;
     let (known, left_out) = (report.history().len(), report.saves_left_out());
     let first = report.history().first().map_or(0, |(tick, _)| *tick);
     context.console.line(format_args!(

@@ -11,7 +11,8 @@ use crate::console::DOUBTFUL;
 use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
-use crate::files::{self, Shown};
+use crate::files::Shown;
+use crate::output_file::{OutputFile, Overwrite};
 use crate::rewriting::{Copy, CopyError};
 
 /// Make a complete replay of the intact part of a cut or damaged one
@@ -31,6 +32,8 @@ pub(crate) struct Arguments {
     /// The file to write
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
+    #[command(flatten)]
+    overwrite: Overwrite,
     /// Print one JSON document
     #[arg(long)]
     json: bool,
@@ -38,6 +41,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let (bytes, limits) = (context.load(&arguments.file)?, context.limits());
+    let mut output = OutputFile::create(&arguments.output, arguments.overwrite)?;
     let (whole, damage) = whole_part(&bytes, limits).map_err(CommandError::replay(&arguments.file))?;
     let most = arguments.ticks.unwrap_or(u64::MAX);
     let of_file = |error: CopyError| error.of_file(&arguments.file);
@@ -49,7 +53,8 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     };
     let ticks = copy.ticks();
     let (replay, hash) = copy.finish(&arguments.output, limits)?;
-    files::save(&arguments.output, &replay)?;
+    output.append(&replay)?;
+    output.publish()?;
 
     // Damage after the last requested tick does not matter.
     let damage = damage.filter(|_| ticks < most);

@@ -11,13 +11,16 @@ use clap::{Args, Command};
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 
+use crate::clock::Clock;
 use crate::console::{BAD, Console, DOUBTFUL, GOOD};
 use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{self, OneLine, Shown};
+use crate::identity::game_digest;
 
 mod cache;
+mod interrupt;
 mod judge;
 mod panics;
 mod pool;
@@ -26,14 +29,18 @@ mod report;
 mod shard;
 mod tasks;
 mod totals;
+mod watch;
 
 use cache::Cache;
-use judge::Shared;
+use interrupt::Interrupt;
+use judge::{Outcome, Shared};
+use pool::{Order, Pause, Sink};
 use progress::Progress;
-use report::Report;
+use report::{Digests, Report};
 use shard::Shard;
 use tasks::Tasks;
 use totals::Totals;
+use watch::Work;
 
 /// Play replays again and print a verdict for each file
 #[derive(Args, Debug)]
@@ -55,6 +62,12 @@ pub(crate) struct Arguments {
     /// Cache verdicts in this folder, and do not play files again whose verdict is cached
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
+    /// Print each result as soon as it is known, in any order: a long file holds up no other
+    #[arg(long)]
+    unordered: bool,
+    /// Stop a file after this many seconds, without a verdict; checked between ticks
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    max_seconds: Option<u64>,
     #[command(flatten)]
     limits: LimitArguments,
 }
@@ -114,17 +127,14 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     let limits = arguments.limits.over(context.limits());
     let open = |folder: &PathBuf| Cache::open(folder, G::RULES, &limits).map_err(CommandError::write(folder));
     let cache = arguments.cache.as_ref().map(open).transpose()?;
-    let verifier = Verifier { judge: judge::judge::<G>, cache, limits, shared: Shared::default() };
+    let time_max = arguments.max_seconds.map(Duration::from_secs);
+    let verifier = Verifier { judge: judge::judge::<G>, cache, limits, time_max, shared: Shared::default() };
     let jobs = arguments.jobs.map_or_else(processors, usize::from);
     let tasks = Tasks::new(&arguments.paths, arguments.shard);
-    let mut display = Display::new(arguments.json, &mut context.console, &verifier.shared);
-    pool::in_order(
-        jobs,
-        tasks,
-        |task| task.and_then(|path| verifier.verify(path)),
-        &verifier.shared.stop,
-        |result| display.show(result),
-    )?;
+    let order = if arguments.unordered { Order::Completion } else { Order::Tasks };
+    let mut display = Display::new(arguments, &mut context.console, &verifier.shared);
+    let work = |task: Result<PathBuf, CommandError>| task.and_then(|path| verifier.verify(path));
+    pool::run(jobs, order, tasks, work, &verifier.shared.stop, &mut display)?;
     display.finish()
 }
 
@@ -134,17 +144,18 @@ fn processors() -> usize {
 
 /// Verifies one file, on any thread.
 struct Verifier {
-    judge: fn(&[u8], &Limits, &Shared) -> Option<Report>,
+    judge: fn(&[u8], &Limits, &Shared, &Work) -> Outcome,
     limits: Limits,
+    time_max: Option<Duration>,
     cache: Option<Cache>,
     shared: Shared,
 }
 
-/// A file and its report.
+/// A file and its outcome.
 struct Verified {
     path: PathBuf,
-    /// `None` if verification was stopped.
-    report: Option<Report>,
+    outcome: Outcome,
+    digests: Digests,
     cached: bool,
     /// Why the report could not be cached.
     unkept: Option<io::Error>,
@@ -152,19 +163,29 @@ struct Verified {
 
 impl Verifier {
     fn verify(&self, path: PathBuf) -> Result<Verified, CommandError> {
+        let at_work = self.shared.watch.begin(path.clone(), self.time_max);
         let bytes = self.read(&path).map_err(CommandError::read(&path))?;
+        let digests = Digests { blake3: blake3::hash(&bytes), game: game_digest(&bytes, &self.limits) };
+        let judge = || (self.judge)(&bytes, &self.limits, &self.shared, at_work.work());
         let Some(cache) = &self.cache else {
-            let report = (self.judge)(&bytes, &self.limits, &self.shared);
-            return Ok(Verified { path, report, cached: false, unkept: None });
+            return Ok(Verified { path, outcome: judge(), digests, cached: false, unkept: None });
         };
-        let key = cache.key(&bytes);
+        let key = cache.key(&digests.blake3);
         if let Some(report) = cache.get(&key) {
-            return Ok(Verified { path, report: Some(report), cached: true, unkept: None });
+            return Ok(Verified {
+                path,
+                outcome: Outcome::Report(report),
+                digests,
+                cached: true,
+                unkept: None,
+            });
         }
-        let report = (self.judge)(&bytes, &self.limits, &self.shared);
-        let to_keep = report.clone().filter(Report::is_final);
-        let unkept = to_keep.and_then(|report| cache.put(&key, report).err());
-        Ok(Verified { path, report, cached: false, unkept })
+        let outcome = judge();
+        let unkept = match &outcome {
+            Outcome::Report(report) if report.is_final() => cache.put(&key, report.clone()).err(),
+            _ => None,
+        };
+        Ok(Verified { path, outcome, digests, cached: false, unkept })
     }
 
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
@@ -179,8 +200,11 @@ impl Verifier {
 /// Prints the results line by line, and the summary.
 struct Display<'a, 'c> {
     json: bool,
+    /// Seconds after which files are stopped.
+    max_seconds: u64,
     console: &'a mut Console<'c>,
     shared: &'a Shared,
+    interrupt: Interrupt,
     progress: Progress,
     clock: Clock,
     totals: Totals,
@@ -188,11 +212,51 @@ struct Display<'a, 'c> {
     is_cache_failing: bool,
 }
 
+impl Sink<Result<Verified, CommandError>> for Display<'_, '_> {
+    type Error = CommandError;
+
+    fn result(&mut self, result: Result<Verified, CommandError>) -> Result<(), CommandError> {
+        match result {
+            Err(error) => self.trouble(&error)?,
+            Ok(verified) => self.line(&verified)?,
+        }
+        self.progress.update(&self.totals, self.shared, self.clock.elapsed());
+        Ok(())
+    }
+
+    /// Names the files that take long, and updates the progress line.
+    fn pause(&mut self) -> Result<Pause, CommandError> {
+        for work in self.shared.watch.overdue() {
+            self.progress.aside(|| self.console.note(work));
+        }
+        self.progress.update(&self.totals, self.shared, self.clock.elapsed());
+        Ok(if self.interrupt.caught().is_some() { Pause::End } else { Pause::Continue })
+    }
+
+    /// Names the files at work and the signal, and ends the process without waiting for them.
+    fn end(&mut self) {
+        let Some((name, signal)) = self.interrupt.caught() else { return };
+        self.totals.elapsed = self.clock.elapsed();
+        let at_work = self.shared.watch.at_work();
+        self.progress.aside(|| {
+            for work in &at_work {
+                self.console.note(work);
+            }
+            let count = at_work.len();
+            self.console.note(format_args!("{}; stopped by {name} with {count} files at work", self.totals));
+        });
+        let _ = self.console.out.flush();
+        interrupt::end_process(signal);
+    }
+}
+
 impl<'a, 'c> Display<'a, 'c> {
-    fn new(json: bool, console: &'a mut Console<'c>, shared: &'a Shared) -> Self {
+    fn new(arguments: &Arguments, console: &'a mut Console<'c>, shared: &'a Shared) -> Self {
         Display {
-            json,
-            progress: Progress::new(console.is_terminal && !json),
+            json: arguments.json,
+            max_seconds: arguments.max_seconds.unwrap_or(0),
+            progress: Progress::new(console.is_terminal && !arguments.json),
+            interrupt: Interrupt::listen(console.owns_process),
             console,
             shared,
             clock: Clock::start(),
@@ -200,17 +264,6 @@ impl<'a, 'c> Display<'a, 'c> {
             exit: Exit::Success,
             is_cache_failing: false,
         }
-    }
-
-    /// Prints a result, or without one only updates the progress line.
-    fn show(&mut self, result: Option<Result<Verified, CommandError>>) -> Result<(), CommandError> {
-        match result {
-            None => {}
-            Some(Err(error)) => self.trouble(&error)?,
-            Some(Ok(verified)) => self.line(&verified)?,
-        }
-        self.progress.update(&self.totals, self.shared, self.clock.elapsed());
-        Ok(())
     }
 
     /// Prints an error. With `--json`, a file that cannot be read also gets a line among the results.
@@ -224,8 +277,11 @@ impl<'a, 'c> Display<'a, 'c> {
     }
 
     fn line(&mut self, verified: &Verified) -> Result<(), CommandError> {
-        let Verified { path, report: Some(report), cached, unkept } = verified else {
-            return Ok(());
+        let Verified { path, outcome, digests, cached, unkept } = verified;
+        let report = match outcome {
+            Outcome::Report(report) => report,
+            Outcome::OutOfTime { ticks } => return self.out_of_time(path, digests, *ticks),
+            Outcome::Stopped => return Ok(()),
         };
         self.totals.add(report, *cached);
         if !report.is_match() {
@@ -238,8 +294,22 @@ impl<'a, 'c> Display<'a, 'c> {
             self.progress.aside(|| self.console.warning(warning));
         }
         self.progress.aside(|| match self.json {
-            true => self.console.line(report.json(path, *cached)),
+            true => self.console.line(report.json(path, digests, *cached)),
             false => self.console.line(Line { path, report }),
+        })
+    }
+
+    /// Prints the line of a file that has used up its time. It counts like a file that cannot be read.
+    fn out_of_time(&mut self, path: &Path, digests: &Digests, ticks: u64) -> Result<(), CommandError> {
+        self.exit = Exit::Trouble;
+        self.totals.add_undecided(ticks);
+        let seconds = self.max_seconds;
+        self.progress.aside(|| match self.json {
+            true => self.console.line(report::out_of_time(path, digests, seconds, ticks)),
+            false => self.console.line(format_args!(
+                "{}: {DOUBTFUL}out of time{DOUBTFUL:#}: no verdict after {seconds} s and {ticks} ticks",
+                Shown(path)
+            )),
         })
     }
 
@@ -252,21 +322,6 @@ impl<'a, 'c> Display<'a, 'c> {
             self.console.line(&self.totals)?;
         }
         Ok(self.exit)
-    }
-}
-
-/// Measures the elapsed time. The time is shown and never reaches a simulation.
-#[expect(clippy::disallowed_types, reason = "the time is shown to the user and never reaches a simulation")]
-struct Clock(std::time::Instant);
-
-#[expect(clippy::disallowed_types, reason = "the time is shown to the user and never reaches a simulation")]
-impl Clock {
-    fn start() -> Self {
-        Clock(std::time::Instant::now())
-    }
-
-    fn elapsed(&self) -> Duration {
-        self.0.elapsed()
     }
 }
 

@@ -176,7 +176,7 @@ fn a_damaged_replay_leaves_no_file() {
         assert!(outcome.err.contains("malformed") || outcome.err.contains("differ"), "{}", outcome.err);
         assert!(!fs::exists(&to).unwrap(), "{format}");
         fs::write(&to, "what was there before").unwrap();
-        assert_eq!(run_sandbox(&["export", &bad, "-o", &to]).exit, Exit::NoMatch);
+        assert_eq!(run_sandbox(&["export", &bad, "-o", &to, "--force"]).exit, Exit::NoMatch);
         assert_eq!(fs::read_to_string(&to).unwrap(), "what was there before", "{format}");
         fs::remove_file(&to).unwrap();
     }
@@ -228,8 +228,17 @@ fn layers_choose_what_is_drawn() {
         ("contact_points,velocities", Layers { contact_points: true, velocities: true, ..Layers::NONE }),
     ] {
         let to = folder.path("a.png");
-        let outcome =
-            run_sandbox(&["export", &golden("ragdoll"), "--tick", "40", "--layers", names, "-o", &to]);
+        let outcome = run_sandbox(&[
+            "export",
+            &golden("ragdoll"),
+            "--tick",
+            "40",
+            "--layers",
+            names,
+            "-o",
+            &to,
+            "--force",
+        ]);
         assert_eq!(outcome.exit, Exit::Success, "{}", outcome.err);
         let expected = &pictures(&bytes, &[40], &View { layers, ..View::default() })[0];
         let (_, _, pixels) = decoded(&fs::read(&to).unwrap());

@@ -25,7 +25,9 @@ fn a_fork_is_what_would_have_been_recorded() {
         recording.step(&add(1, 0)).unwrap();
         (0..4).for_each(|_| recording.step(&add(0, 0)).unwrap());
         let (ticks, hash) = (recording.ticks(), recording.game().state_hash());
-        let outcome = run(&["fork", &file, "--tick", &tick, "--then", &then, "--idle", "4", "-o", &new]);
+        let new_inputs = ["--then", &then, "--idle", "4"];
+        let outcome =
+            run(&[&["fork", &file, "--tick", &tick, "-o", &new, "--force"], &new_inputs[..]].concat());
         let expected = format!("{new}: {tick} ticks of {file} and 6 more, final hash {hash}\n");
         assert_eq!((outcome.exit, outcome.out, outcome.err), (Exit::Success, expected, String::new()));
         let bytes = fs::read(&new).unwrap();

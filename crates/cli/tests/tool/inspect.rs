@@ -37,9 +37,11 @@ fn a_complete_replay_is_described() {
          states the final hash {hash}\n\
          claims \"half\" = {}\n\
          claims \"sum\" = {sum}\n\
+         game {}\n\
          setup: 2 fields\n  start: 5\n  label: \"a\"\n",
         lockstep2d::SEMANTICS,
         sum / 2,
+        json_of(&[&file]).0["game"].as_str().unwrap(),
     );
     assert_eq!((outcome.out, outcome.err, outcome.exit), (expected, String::new(), Exit::Success));
 

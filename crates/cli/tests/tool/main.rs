@@ -19,6 +19,8 @@ mod export_plot;
 mod fork;
 mod hostile;
 mod inspect;
+mod long;
+mod outputs;
 mod record;
 mod seek;
 mod stats;

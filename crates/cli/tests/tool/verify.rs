@@ -14,7 +14,8 @@ use crate::{Folder, replay, run, run_tool};
 fn verify_json(paths: &[&str]) -> (Vec<Value>, Exit) {
     let arguments: Vec<&str> = [&["verify", "--json"], paths].concat();
     let outcome = run(&arguments);
-    (outcome.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect(), outcome.exit)
+    let lines = outcome.out.lines().map(|line| serde_json::from_str(line).unwrap());
+    (lines.collect(), outcome.exit)
 }
 
 #[test]
@@ -72,6 +73,8 @@ fn every_verdict_has_its_json() {
         assert_eq!(fields.remove("file"), Some(json!(file)));
         assert_eq!(fields.remove("bytes"), Some(json!(bytes.len())));
         assert_eq!(fields.remove("cached"), Some(json!(false)));
+        assert!(fields.remove("game").is_some());
+        assert_eq!(fields.remove("blake3"), Some(json!(blake3::hash(bytes).to_string())));
         line
     };
     let sum = 5
@@ -122,8 +125,9 @@ fn a_file_that_diverges_says_where() {
     let file = folder.write("diverged", &recorder.finish(&game).unwrap());
     let (lines, exit) = verify_json(&[&file]);
     let expected = json!({
-        "file": file, "verdict": "diverged", "ticks": 4, "hash": null, "cached": false,
+        "game": lines[0]["game"], "file": file, "verdict": "diverged", "ticks": 4, "hash": null, "cached": false,
         "bytes": fs::metadata(&file).unwrap().len(),
+        "blake3": blake3::hash(&fs::read(&file).unwrap()).to_string(),
         "last_equal": 2, "first_different": 4,
     });
     assert_eq!((lines, exit), (vec![expected], Exit::NoMatch));
@@ -162,13 +166,15 @@ fn a_wrong_claim_says_which() {
     let recording = Recording::<Liar>::start(&setup(), 60).unwrap();
     let hash = recording.game().state_hash();
     let file = folder.write("boast", &recording.finish().unwrap());
+    let (lines, exit) = verify_json(&[&file]);
     let expected = json!({
-        "file": file, "verdict": "claim_mismatch", "ticks": 0, "hash": hash.to_string(),
+        "game": lines[0]["game"], "file": file, "verdict": "claim_mismatch", "ticks": 0, "hash": hash.to_string(),
         "claim": "sum", "claimed": 1_000_000, "actual": 5,
         "claims": {"half": 2, "sum": 1_000_000}, "cached": false,
         "bytes": fs::metadata(&file).unwrap().len(),
+        "blake3": blake3::hash(&fs::read(&file).unwrap()).to_string(),
     });
-    assert_eq!(verify_json(&[&file]), (vec![expected], Exit::NoMatch));
+    assert_eq!((lines, exit), (vec![expected], Exit::NoMatch));
 }
 
 #[test]
@@ -233,4 +239,51 @@ fn links_that_lead_in_circles_are_not_followed() {
     let files: Vec<&str> = lines.iter().map(|line| line["file"].as_str().unwrap()).collect();
     assert_eq!(files, [file, folder.path("linked.replay")]);
     assert_eq!(exit, Exit::Success);
+}
+
+/// The digest of a game, or null, as `verify --json` and `inspect --json` print it.
+fn game_of(folder: &Folder, bytes: &[u8]) -> Value {
+    let file = folder.write("game", bytes);
+    let (mut lines, _) = verify_json(&[&file]);
+    let inspected: Value =
+        serde_json::from_str(&run(&["inspect", "--json", &file]).out).unwrap_or(Value::Null);
+    let game = lines.remove(0)["game"].take();
+    assert_eq!(inspected["game"], game, "inspect and verify");
+    game
+}
+
+#[test]
+fn the_digest_of_a_game_depends_on_rules_setup_and_inputs_only() {
+    let folder = Folder::new("game-digest");
+    let recorded = |setup: &Setup, interval: u32, changed: Option<u64>| {
+        let mut recording = Recording::<Counter>::start(setup, interval).unwrap();
+        for tick in 0..95 {
+            let mut inputs = inputs_at(tick);
+            inputs[0].wink |= changed == Some(tick);
+            recording.step(&inputs).unwrap();
+        }
+        recording.finish().unwrap()
+    };
+    let game = game_of(&folder, &recorded(&setup(), 10, None));
+    assert_eq!(game.as_str().unwrap().len(), 64);
+    for interval in [1, 2, 7, 60, 1000] {
+        assert_eq!(game_of(&folder, &recorded(&setup(), interval, None)), game, "{interval}");
+    }
+    // Claims do not count.
+    let mut boast = Recording::<Liar>::start(&setup(), 10).unwrap();
+    (0..95).for_each(|tick| boast.step(&inputs_at(tick)).unwrap());
+    assert_eq!(game_of(&folder, &boast.finish().unwrap()), game);
+    let mut others = vec![game];
+    for changed in [0, 50, 94] {
+        others.push(game_of(&folder, &recorded(&setup(), 10, Some(changed))));
+    }
+    others.push(game_of(&folder, &recorded(&Setup { start: 6, ..setup() }, 10, None)));
+    others.push(game_of(&folder, &replay(94)));
+    for (at, one) in others.iter().enumerate() {
+        assert!(!others[..at].contains(one), "{at} is the same as another game");
+    }
+    let mut damaged = replay(94);
+    let middle = damaged.len() / 2;
+    damaged[middle] ^= 1;
+    assert_eq!(game_of(&folder, &damaged), Value::Null);
 }

@@ -42,7 +42,7 @@ pub(super) fn write<G: Game>(
     let mut camera = Camera::new(&mut replay, context.tool.view, arguments)?;
     let samples = camera.look_at(&mut replay, &frames)?;
     let mut replay = Replay::<G>::open(bytes, arguments, context.limits())?;
-    Output::write(arguments.output.as_deref(), &mut context.console, |output| {
+    Output::write(arguments, &mut context.console, |output| {
         let (to, failed) = output.parts();
         let mut animation = match format {
             Format::Apng => Animation::apng(to, frames.pace, frames.count),

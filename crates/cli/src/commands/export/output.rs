@@ -1,14 +1,14 @@
 //! [`Output`]: the destination of an export. A file appears only when all of it is written.
 
-use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
+use super::Arguments;
 use crate::console::Console;
 use crate::context::CommandResult;
-use crate::draft::Draft;
 use crate::error::CommandError;
 use crate::exit::Exit;
+use crate::output_file::OutputFile;
 
 /// The destination of an export: a file or the standard output.
 pub(super) struct Output<'a> {
@@ -17,24 +17,21 @@ pub(super) struct Output<'a> {
 }
 
 impl Output<'_> {
-    /// Calls `write` with a file as destination, or without `path` with the standard output. The file appears when all
-    /// of it is written: a run that fails or is interrupted leaves the old file.
+    /// Calls `write` with the output file of the arguments as destination, or without one with the standard output. The
+    /// file appears when all of it is written: a run that fails or is interrupted leaves the old file.
     pub(super) fn write(
-        path: Option<&Path>,
+        arguments: &Arguments,
         console: &mut Console<'_>,
         write: impl FnOnce(&mut Output<'_>) -> Result<(), CommandError>,
     ) -> CommandResult {
-        let Some(path) = path else {
+        let Some(path) = arguments.output.as_deref() else {
             write(&mut Output { to: console.out, path: None })?;
             return Ok(Exit::Success);
         };
-        let draft = Draft::of(path);
-        let failed = CommandError::write(path);
-        let mut buffer = BufWriter::new(File::create(&draft.at).map_err(&failed)?);
+        let mut buffer = BufWriter::new(OutputFile::create(path, arguments.overwrite)?);
         write(&mut Output { to: &mut buffer, path: Some(path) })?;
-        let file = buffer.into_inner().map_err(|error| failed(error.into_error()))?;
-        drop(file);
-        draft.publish(path).map_err(failed)?;
+        let file = buffer.into_inner().map_err(|error| CommandError::write(path)(error.into_error()))?;
+        file.publish()?;
         Ok(Exit::Success)
     }
 

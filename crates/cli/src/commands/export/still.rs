@@ -17,7 +17,7 @@ pub(super) fn write(
     arguments: &Arguments,
     console: &mut Console<'_>,
 ) -> CommandResult {
-    Output::write(arguments.output.as_deref(), console, |output| match format {
+    Output::write(arguments, console, |output| match format {
         Format::Svg => output.line(draw::svg(world, view).trim_end()),
         _ => {
             let (to, failed) = output.parts();

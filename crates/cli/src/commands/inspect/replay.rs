@@ -13,6 +13,7 @@ use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::Shown;
+use crate::identity::game_digest;
 
 pub(super) fn print<G: Game>(
     bytes: &[u8],
@@ -45,6 +46,7 @@ pub(super) struct Summary {
     blocks: u64,
     runs: u64,
     bytes: Bytes,
+    game: Option<String>,
     end: Ending,
 }
 
@@ -110,6 +112,7 @@ impl Summary {
             blocks,
             runs,
             bytes,
+            game: game_digest(file, limits).map(|game| game.to_string()),
             end,
         })
     }
@@ -163,6 +166,9 @@ impl Summary {
                 console.line(format_args!("claims {} = {value}", shown(&format!("{claim:?}"))))?;
             }
         }
+        if let Some(game) = &self.game {
+            console.line(format_args!("game {game}"))?;
+        }
         self.print_setup(arguments, console)
     }
 
@@ -214,6 +220,7 @@ impl Summary {
             "blocks": self.blocks,
             "runs": self.runs,
             "bytes": {"header": header, "setup": setup, "inputs": inputs, "trailer": trailer, "not_whole": rest},
+            "game": self.game,
             "final_hash": stated.map(|trailer| trailer.final_hash.to_string()),
             "claims": stated.map(claims),
             "setup": setup_fields,

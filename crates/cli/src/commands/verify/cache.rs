@@ -48,17 +48,21 @@ impl Cache {
         Ok(Cache { folder: folder.to_path_buf(), context: context(rules, limits) })
     }
 
-    /// The key of the report on a file of these bytes.
-    pub(super) fn key(&self, bytes: &[u8]) -> Hash {
+    /// The key of the report on a file whose bytes have this digest.
+    pub(super) fn key(&self, bytes: &Hash) -> Hash {
         let mut hasher = blake3::Hasher::new();
-        hasher.update(self.context.as_bytes()).update(blake3::hash(bytes).as_bytes());
+        hasher.update(self.context.as_bytes()).update(bytes.as_bytes());
         hasher.finalize()
     }
 
     /// The cached report of a key, if there is an undamaged entry.
     pub(super) fn get(&self, key: &Hash) -> Option<Report> {
-        let mut text = String::new();
-        File::open(self.path(key)).ok()?.take(ENTRY_BYTES_MAX).read_to_string(&mut text).ok()?;
+        let (mut text, path) = (String::new(), self.path(key));
+        // A pipe of this name would block for ever.
+        if !fs::metadata(&path).ok()?.is_file() {
+            return None;
+        }
+        File::open(path).ok()?.take(ENTRY_BYTES_MAX).read_to_string(&mut text).ok()?;
         let entry: Entry = serde_json::from_str(&text).ok()?;
         // The checksum does not cover damage that decodes to the same report, such as a changed name of an optional
         // field.

@@ -1,6 +1,5 @@
 //! [`judge`]: plays one file and reports on it; panics of the game are caught.
 
-use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use lockstep2d::lockstep::Game;
@@ -8,54 +7,71 @@ use lockstep2d::replay::{FORMAT_VERSION, Limits, Mismatch, Reader, Step, Verdict
 
 use super::panics;
 use super::report::{Needs, Report};
-
-/// Number of ticks between checks of the stop flag and updates of the tick counter.
-const TICKS_BETWEEN: u64 = 64;
+use super::watch::{Watch, Work};
 
 /// State that all threads share.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
     /// Set when no more results are needed.
     pub(super) stop: AtomicBool,
-    /// Ticks that were played, without the last few of the files being played.
+    /// Ticks that were played.
     pub(super) ticks: AtomicU64,
+    /// The files at work.
+    pub(super) watch: Watch,
 }
 
-/// Plays a file and returns its report, or `None` if it was stopped.
-pub(super) fn judge<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared) -> Option<Report> {
-    let tick = Cell::new(0);
+/// The outcome of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Outcome {
+    /// A verdict.
+    Report(Report),
+    /// No verdict: the file has used up its time.
+    OutOfTime {
+        /// Number of ticks that were played.
+        ticks: u64,
+    },
+    /// No verdict: no more results are needed.
+    Stopped,
+}
+
+/// Plays a file.
+pub(super) fn judge<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared, work: &Work) -> Outcome {
     let length = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
-    let result = panics::catch(|| play::<G>(bytes, limits, shared, &tick));
-    shared.ticks.fetch_add(tick.get() % TICKS_BETWEEN, Ordering::Relaxed);
+    let result = panics::catch(|| play::<G>(bytes, limits, shared, work));
     match result {
-        Ok(report) => report,
-        Err(panic) => Some(Report::of_panic(length, tick.get(), &panic)),
+        Ok(outcome) => outcome,
+        Err(panic) => Outcome::Report(Report::of_panic(length, work.tick(), &panic)),
     }
 }
 
-fn play<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared, tick: &Cell<u64>) -> Option<Report> {
+fn play<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared, work: &Work) -> Outcome {
     let length = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
     let mut playback = match VerifiedReplay::<G>::open(bytes, limits) {
         Ok(playback) => playback,
         Err(verdict) => {
             let needs = needs(bytes, limits, &verdict);
-            return Some(Report::new(length, &verdict, &[], needs));
+            return Outcome::Report(Report::new(length, &verdict, &[], needs));
         }
     };
     let claims = playback.trailer().map(|trailer| trailer.claims.clone()).unwrap_or_default();
+    work.set_ticks(playback.ticks());
+    let report =
+        |verdict: &Verdict, claims: &[_]| Outcome::Report(Report::new(length, verdict, claims, None));
     loop {
+        // One tick may take long, so this is checked before each.
+        if shared.stop.load(Ordering::Relaxed) {
+            return Outcome::Stopped;
+        }
+        if work.is_out_of_time() {
+            return Outcome::OutOfTime { ticks: playback.tick() };
+        }
         match playback.step() {
             Ok(Step::Ticked) => {}
-            Ok(Step::Ended) => return Some(Report::new(length, &playback.conclude(), &claims, None)),
-            Err(verdict) => return Some(Report::new(length, &verdict, &[], None)),
+            Ok(Step::Ended) => return report(&playback.conclude(), &claims),
+            Err(verdict) => return report(&verdict, &[]),
         }
-        tick.set(playback.tick());
-        if tick.get().is_multiple_of(TICKS_BETWEEN) {
-            shared.ticks.fetch_add(TICKS_BETWEEN, Ordering::Relaxed);
-            if shared.stop.load(Ordering::Relaxed) {
-                return None;
-            }
-        }
+        work.set_tick(playback.tick());
+        shared.ticks.fetch_add(1, Ordering::Relaxed);
     }
 }
 

@@ -1,4 +1,4 @@
-//! [`in_order`]: runs tasks on several threads and shows the results in the order of the tasks, with bounded memory.
+//! [`run`]: runs tasks on several threads and shows the results, with bounded memory.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,29 +7,61 @@ use std::thread;
 use std::time::Duration;
 
 /// Most tasks that are started before the result of the first of them is shown. Their results are held in memory while
-/// a long task runs.
+/// a long task runs, unless results are shown as they come.
 const AHEAD_MAX: u64 = 1024;
 
-/// Interval of `show(None)` calls while there is no result.
+/// Longest time between two calls of [`Sink::pause`].
 const MOMENT: Duration = Duration::from_millis(100);
 
 /// Stack size of a thread in bytes: that of a main thread, which a game may rely on. Untouched pages take no memory.
 const STACK_BYTES: usize = 8 << 20;
 
-/// Calls `work` with each of `tasks` on `jobs` threads, and `show` with the results in the order of the tasks. While
-/// there is no result, calls `show` with `None` from time to time.
+/// The order in which results are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Order {
+    /// That of the tasks: a long task holds up the results of those after it.
+    Tasks,
+    /// As they come.
+    Completion,
+}
+
+/// Shows results.
+pub(super) trait Sink<R> {
+    /// An error that ends the run.
+    type Error;
+
+    /// Shows one result.
+    fn result(&mut self, result: R) -> Result<(), Self::Error>;
+
+    /// Called again and again, at least every [`MOMENT`]. [`Pause::End`] ends the run.
+    fn pause(&mut self) -> Result<Pause, Self::Error>;
+
+    /// Called after [`Pause::End`], when all results that were held are shown. Tasks may still be running.
+    fn end(&mut self);
+}
+
+/// Whether a run goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Pause {
+    Continue,
+    End,
+}
+
+/// Calls `work` with each of `tasks` on `jobs` threads, and `sink` with the results.
 ///
-/// After an error of `show`, `stop` is set and no more tasks are started. Long-running work should check `stop`.
+/// After an error of `sink` or a [`Pause::End`], `stop` is set and no more tasks are started. Long-running work should
+/// check `stop`.
 ///
 /// # Errors
-/// The error of `show`.
-pub(super) fn in_order<T: Send, R: Send, E>(
+/// The error of `sink`.
+pub(super) fn run<T: Send, R: Send, S: Sink<R>>(
     jobs: usize,
+    order: Order,
     tasks: impl Iterator<Item = T>,
     work: impl Fn(T) -> R + Sync,
     stop: &AtomicBool,
-    mut show: impl FnMut(Option<R>) -> Result<(), E>,
-) -> Result<(), E> {
+    sink: &mut S,
+) -> Result<(), S::Error> {
     let (task_sender, task_receiver) = mpsc::channel::<(u64, T)>();
     let (result_sender, result_receiver) = mpsc::channel::<(u64, R)>();
     let task_receiver = Mutex::new(task_receiver);
@@ -52,16 +84,19 @@ pub(super) fn in_order<T: Send, R: Send, E>(
             }
         }
         if workers.is_empty() {
-            return tasks.map(&work).try_for_each(|result| show(Some(result)));
+            return tasks.map(&work).try_for_each(|result| sink.result(result));
         }
         let is_any_gone = || workers.iter().any(thread::ScopedJoinHandle::is_finished);
-        let mut order = Order { tasks: tasks.fuse(), begun: 0, shown: 0, waiting: BTreeMap::new() };
-        let result = order.run(&task_sender, &result_receiver, is_any_gone, &mut show);
-        if result.is_err() {
+        let mut run = Run { tasks: tasks.fuse(), order, begun: 0, shown: 0, waiting: BTreeMap::new() };
+        let result = run.run(&task_sender, &result_receiver, is_any_gone, sink);
+        if !matches!(result, Ok(Pause::Continue)) {
             stop.store(true, Ordering::Relaxed);
         }
+        if matches!(result, Ok(Pause::End)) {
+            sink.end();
+        }
         drop(task_sender);
-        result
+        result.map(|_| ())
     })
 }
 
@@ -72,42 +107,52 @@ fn next<T>(tasks: &Mutex<mpsc::Receiver<T>>, stop: &AtomicBool) -> Option<T> {
 }
 
 /// The progress of the work, and results that are not yet shown.
-struct Order<I, R> {
+struct Run<I, R> {
     tasks: I,
+    order: Order,
     begun: u64,
     shown: u64,
     /// Results that wait for earlier results.
     waiting: BTreeMap<u64, R>,
 }
 
-impl<T, R, I: Iterator<Item = T>> Order<I, R> {
-    fn run<E>(
+impl<T, R, I: Iterator<Item = T>> Run<I, R> {
+    fn run<S: Sink<R>>(
         &mut self,
         tasks: &mpsc::Sender<(u64, T)>,
         results: &mpsc::Receiver<(u64, R)>,
         is_any_gone: impl Fn() -> bool,
-        show: &mut impl FnMut(Option<R>) -> Result<(), E>,
-    ) -> Result<(), E> {
+        sink: &mut S,
+    ) -> Result<Pause, S::Error> {
         loop {
             // Start one task per iteration, so that listing a large folder does not delay results.
             let room = self.begun - self.shown < AHEAD_MAX;
             let is_begun = room && self.begin(tasks);
             if !is_begun && self.begun == self.shown {
-                return Ok(());
+                return Ok(Pause::Continue);
             }
             let wait = if is_begun { Duration::ZERO } else { MOMENT };
             match results.recv_timeout(wait) {
+                Ok((_, result)) if self.order == Order::Completion => {
+                    sink.result(result)?;
+                    self.shown += 1;
+                }
                 Ok((number, result)) => {
                     self.waiting.insert(number, result);
                 }
                 // A worker ends early only because of a bug. Its result would never arrive.
-                Err(_) if !is_begun && is_any_gone() => return Ok(()),
-                Err(_) if !is_begun => show(None)?,
+                Err(_) if !is_begun && is_any_gone() => return Ok(Pause::Continue),
                 Err(_) => {}
             }
             while let Some(result) = self.waiting.remove(&self.shown) {
-                show(Some(result))?;
+                sink.result(result)?;
                 self.shown += 1;
+            }
+            if sink.pause()? == Pause::End {
+                let held = std::mem::take(&mut self.waiting).into_values();
+                held.chain(results.try_iter().map(|(_, result)| result))
+                    .try_for_each(|result| sink.result(result))?;
+                return Ok(Pause::End);
             }
         }
     }
@@ -125,7 +170,6 @@ impl<T, R, I: Iterator<Item = T>> Order<I, R> {
 
 #[cfg(test)]
 mod tests {
-    use std::io;
     use std::sync::atomic::AtomicU64;
 
     use super::*;
@@ -139,23 +183,55 @@ mod tests {
         number * number
     }
 
+    /// Collects numbers.
+    #[derive(Default)]
+    struct Shown {
+        numbers: Vec<u64>,
+        /// Number of results after which the next one fails.
+        most: Option<usize>,
+        /// Number of results after which the run is to end.
+        end_at: Option<usize>,
+        is_ended: bool,
+    }
+
+    impl Sink<u64> for Shown {
+        type Error = &'static str;
+
+        fn result(&mut self, result: u64) -> Result<(), Self::Error> {
+            if self.most == Some(self.numbers.len()) {
+                return Err("full");
+            }
+            self.numbers.push(result);
+            Ok(())
+        }
+
+        fn pause(&mut self) -> Result<Pause, Self::Error> {
+            let is_end = self.end_at.is_some_and(|end| self.numbers.len() >= end);
+            Ok(if is_end { Pause::End } else { Pause::Continue })
+        }
+
+        fn end(&mut self) {
+            self.is_ended = true;
+        }
+    }
+
     #[test]
-    fn results_come_in_the_order_of_the_tasks() {
+    fn every_task_is_done_once_and_shown_in_order() {
         for jobs in [1, 2, 3, 8] {
             for count in [0, 1, 5, 3000] {
-                let (begun, mut shown) = (AtomicU64::new(0), Vec::new());
-                let task = |number| {
-                    begun.fetch_add(1, Ordering::Relaxed);
-                    work(number)
-                };
-                let stop = AtomicBool::new(false);
-                let show = |result: Option<u64>| -> io::Result<()> {
-                    shown.extend(result);
-                    Ok(())
-                };
-                in_order(jobs, 0..count, task, &stop, show).unwrap();
-                assert_eq!(shown, (0..count).map(|number| number * number).collect::<Vec<_>>());
-                assert_eq!(begun.into_inner(), count);
+                for order in [Order::Tasks, Order::Completion] {
+                    let (begun, mut shown) = (AtomicU64::new(0), Shown::default());
+                    let task = |number| {
+                        begun.fetch_add(1, Ordering::Relaxed);
+                        work(number)
+                    };
+                    run(jobs, order, 0..count, task, &AtomicBool::new(false), &mut shown).unwrap();
+                    if order == Order::Completion {
+                        shown.numbers.sort_unstable();
+                    }
+                    assert_eq!(shown.numbers, (0..count).map(|number| number * number).collect::<Vec<_>>());
+                    assert_eq!(begun.into_inner(), count);
+                }
             }
         }
     }
@@ -174,21 +250,69 @@ mod tests {
                 thread::sleep(Duration::from_millis(50));
                 assert_eq!(begun.load(Ordering::Relaxed), limit);
             }
+            number
         };
-        let stop = AtomicBool::new(false);
-        in_order(2, 0..all, task, &stop, |_| -> io::Result<()> { Ok(()) }).unwrap();
+        run(2, Order::Tasks, 0..all, task, &AtomicBool::new(false), &mut Shown::default()).unwrap();
         assert_eq!(begun.load(Ordering::Relaxed), all);
     }
 
     #[test]
-    fn what_cannot_be_shown_ends_it() {
-        let (stop, mut shown) = (AtomicBool::new(false), 0);
-        let show = |result: Option<u64>| {
-            shown += u64::from(result.is_some());
-            if shown == 10 { Err(io::Error::from(io::ErrorKind::BrokenPipe)) } else { Ok(()) }
+    fn a_long_task_holds_up_nothing_that_is_shown_as_it_comes() {
+        // The first task ends after all others.
+        let (done, all) = (AtomicU64::new(0), 3 * AHEAD_MAX);
+        let task = |number: u64| {
+            while number == 0 && done.load(Ordering::Relaxed) < all - 1 {
+                thread::yield_now();
+            }
+            done.fetch_add(1, Ordering::Relaxed);
+            number
         };
-        let error = in_order(2, 0.., work, &stop, show).unwrap_err();
-        assert_eq!((error.kind(), shown), (io::ErrorKind::BrokenPipe, 10));
-        assert!(stop.into_inner());
+        let mut shown = Shown::default();
+        run(2, Order::Completion, 0..all, task, &AtomicBool::new(false), &mut shown).unwrap();
+        assert_eq!((shown.numbers.len() as u64, shown.numbers.last()), (all, Some(&0)));
+    }
+
+    #[test]
+    fn what_cannot_be_shown_ends_it() {
+        let (stop, mut shown) = (AtomicBool::new(false), Shown { most: Some(9), ..Shown::default() });
+        assert_eq!(run(2, Order::Tasks, 0.., work, &stop, &mut shown), Err("full"));
+        assert_eq!(shown.numbers.len(), 9);
+        assert!(stop.into_inner() && !shown.is_ended);
+    }
+
+    #[test]
+    fn results_that_were_held_are_shown_at_the_end() {
+        // The first task runs until it is stopped: all results after it are held.
+        let stop = AtomicBool::new(false);
+        let done = AtomicU64::new(0);
+        struct EndWhenHeld<'a>(Shown, &'a AtomicU64);
+        impl Sink<u64> for EndWhenHeld<'_> {
+            type Error = &'static str;
+            fn result(&mut self, result: u64) -> Result<(), Self::Error> {
+                self.0.result(result)
+            }
+            fn pause(&mut self) -> Result<Pause, Self::Error> {
+                let is_end = self.1.load(Ordering::Relaxed) == AHEAD_MAX - 1;
+                Ok(if is_end { Pause::End } else { Pause::Continue })
+            }
+            fn end(&mut self) {
+                self.0.end();
+            }
+        }
+        let task = |number: u64| {
+            while number == 0 && !stop.load(Ordering::Relaxed) {
+                thread::yield_now();
+            }
+            done.fetch_add(1, Ordering::Relaxed);
+            number
+        };
+        let mut shown = EndWhenHeld(Shown::default(), &done);
+        run(2, Order::Tasks, 0.., task, &stop, &mut shown).unwrap();
+        // A result whose task has ended may still be on its way.
+        assert!(
+            shown.0.is_ended && shown.0.numbers.len() as u64 >= AHEAD_MAX - 2,
+            "{}",
+            shown.0.numbers.len()
+        );
     }
 }

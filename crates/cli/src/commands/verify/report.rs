@@ -24,6 +24,21 @@ pub(super) struct Report {
     details: Map<String, Value>,
 }
 
+/// The digests of a file, which identify it and its game.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Digests {
+    /// Digest of the bytes that were judged.
+    pub(super) blake3: blake3::Hash,
+    /// Digest of the game: see [`crate::identity::game_digest`].
+    pub(super) game: Option<blake3::Hash>,
+}
+
+impl Digests {
+    fn texts(&self) -> (String, Option<String>) {
+        (self.blake3.to_string(), self.game.map(|game| game.to_string()))
+    }
+}
+
 /// The versions that a file needs. All but the format are unknown if the format is another version.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(super) struct Needs {
@@ -78,7 +93,7 @@ impl Report {
     }
 
     /// The report as one line of JSON.
-    pub(super) fn json(&self, file: &Path, cached: bool) -> String {
+    pub(super) fn json(&self, file: &Path, digests: &Digests, cached: bool) -> String {
         #[derive(Serialize)]
         struct Whole<'a> {
             file: String,
@@ -86,6 +101,8 @@ impl Report {
             ticks: u64,
             hash: Option<&'a str>,
             bytes: u64,
+            blake3: String,
+            game: Option<String>,
             cached: bool,
             #[serde(flatten)]
             details: &'a Map<String, Value>,
@@ -93,7 +110,8 @@ impl Report {
         let Report { text: _, verdict, ticks, hash, bytes, details } = self;
         let (ticks, hash, bytes) = (*ticks, hash.as_deref(), *bytes);
         let file = file.display().to_string();
-        let line = Whole { file, verdict, ticks, hash, bytes, cached, details };
+        let (blake3, game) = digests.texts();
+        let line = Whole { file, verdict, ticks, hash, bytes, blake3, game, cached, details };
         json_text(&line)
     }
 }
@@ -101,6 +119,23 @@ impl Report {
 /// The line of a file that cannot be read, which has no verdict.
 pub(super) fn unread(file: &Path, error: &io::Error) -> String {
     json!({ "file": file.display().to_string(), "error": error.to_string() }).to_string()
+}
+
+/// The line of a file that has used up its time, which has no verdict.
+pub(super) fn out_of_time(file: &Path, digests: &Digests, seconds: u64, ticks: u64) -> String {
+    #[derive(Serialize)]
+    struct OutOfTime {
+        file: String,
+        stopped: &'static str,
+        seconds: u64,
+        ticks: u64,
+        blake3: String,
+        game: Option<String>,
+        cached: bool,
+    }
+    let file = file.display().to_string();
+    let (blake3, game) = digests.texts();
+    json_text(&OutOfTime { file, stopped: "max_seconds", seconds, ticks, blake3, game, cached: false })
 }
 
 fn details(verdict: &Verdict, claims: &[(String, i64)], needs: Option<Needs>) -> Map<String, Value> {

@@ -13,6 +13,8 @@ pub(super) struct Totals {
     pub(super) matches: u64,
     /// Numbers of files that do not match, by verdict.
     others: BTreeMap<String, u64>,
+    /// Files without a verdict because of `--max-seconds`.
+    undecided: u64,
     /// Files whose report came from the cache.
     cached: u64,
     /// Ticks that were played in this run.
@@ -21,6 +23,13 @@ pub(super) struct Totals {
 }
 
 impl Totals {
+    /// Counts a file that has used up its time.
+    pub(super) fn add_undecided(&mut self, ticks: u64) {
+        self.files += 1;
+        self.undecided += 1;
+        self.ticks = self.ticks.saturating_add(ticks);
+    }
+
     pub(super) fn add(&mut self, report: &Report, cached: bool) {
         self.files += 1;
         if report.is_match() {
@@ -43,11 +52,14 @@ pub(super) fn rate(ticks: u64, elapsed: Duration) -> u128 {
 
 impl fmt::Display for Totals {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Totals { files, matches, others, cached, ticks, elapsed } = self;
+        let Totals { files, matches, others, undecided, cached, ticks, elapsed } = self;
         write!(f, "{matches} of {files} files match")?;
         if !others.is_empty() {
             let others = others.iter().map(|(verdict, count)| format!("{count} {verdict}"));
             write!(f, " ({})", others.collect::<Vec<_>>().join(", "))?;
+        }
+        if *undecided > 0 {
+            write!(f, "; {undecided} out of time")?;
         }
         if *cached > 0 {
             write!(f, "; {cached} known from the cache")?;

@@ -62,7 +62,7 @@ pub(super) fn write<G: Game>(
     let title = format!("{name} · ticks {first} to {last} at {rate} a second · {hash}");
     let (width, height) = (arguments.width.unwrap_or(chart::WIDTH), arguments.height);
     let document = Chart { title, panels, first, last, rate, width, height }.svg();
-    Output::write(arguments.output.as_deref(), console, |output| output.line(document.trim_end()))
+    Output::write(arguments, console, |output| output.line(document.trim_end()))
 }
 
 /// The panel of joints comes last: it is removed for worlds without joints.

@@ -1,0 +1,19 @@
+//! [`Clock`]: elapsed time, for reports and for `--max-seconds`.
+
+use std::time::Duration;
+
+/// Measures the elapsed time. The time never reaches a simulation.
+#[derive(Clone, Copy, Debug)]
+#[expect(clippy::disallowed_types, reason = "the time never reaches a simulation")]
+pub(crate) struct Clock(std::time::Instant);
+
+#[expect(clippy::disallowed_types, reason = "the time never reaches a simulation")]
+impl Clock {
+    pub(crate) fn start() -> Self {
+        Clock(std::time::Instant::now())
+    }
+
+    pub(crate) fn elapsed(&self) -> Duration {
+        self.0.elapsed()
+    }
+}

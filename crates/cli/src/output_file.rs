@@ -1,0 +1,198 @@
+//! [`OutputFile`]: a file that is written beside its target and renamed when it is complete.
+//!
+//! Invariants, for a target that is a regular file or does not exist:
+//! - The target has either its old contents or all of the new ones, also after a full disk, a panic or a kill.
+//! - An existing file is replaced only if the user said so.
+//! - At most one process writes a target at a time. The others fail before they change anything.
+//!
+//! A process that is killed leaves its temporary file behind. The lock on it ends with the process, so the next writer
+//! of the same target reuses the file.
+
+use std::fs::{self, File, TryLockError};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use crate::error::CommandError;
+
+/// Appended to the name of the target while it is written.
+const SUFFIX: &str = ".unfinished";
+
+/// Attempts to lock a temporary file that other processes keep renaming.
+const ATTEMPTS_MAX: u32 = 100;
+
+/// What happens to a file that exists already.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct Overwrite {
+    /// Replace the output file if it exists; it may be the input file
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+impl Overwrite {
+    /// Replaces an existing file: for files that only the tool writes, such as keyframes.
+    pub(crate) const ALWAYS: Overwrite = Overwrite { force: true };
+}
+
+/// A file that is being written. Unless it is published, its temporary file is deleted when the value is dropped.
+pub(crate) struct OutputFile {
+    /// The path that the user gave, for messages.
+    name: PathBuf,
+    /// The path to replace: `name` without links.
+    target: PathBuf,
+    /// The temporary file, or `None` if the target is written directly.
+    temporary: Option<PathBuf>,
+    /// Locked while it is open, unless the target is written directly.
+    file: File,
+    overwrite: Overwrite,
+}
+
+impl OutputFile {
+    /// Creates the temporary file of the target at `path`. Call it before long work, so that the errors come first.
+    ///
+    /// A target that is not a regular file, such as `/dev/stdout` or a pipe, is written directly.
+    ///
+    /// # Errors
+    /// [`CommandError::Exists`] for an existing file without `--force`, [`CommandError::Busy`] if another process
+    /// writes the same target, and [`CommandError::Write`].
+    pub(crate) fn create(path: &Path, overwrite: Overwrite) -> Result<Self, CommandError> {
+        let failed = CommandError::write(path);
+        check(path, overwrite)?;
+        let name = path.to_path_buf();
+        // A link stays a link: the file behind it is replaced.
+        let target = fs::canonicalize(path).unwrap_or_else(|_| name.clone());
+        match fs::metadata(&target) {
+            Ok(metadata) if !metadata.is_file() => {
+                let file = File::options().write(true).open(&target).map_err(failed)?;
+                return Ok(OutputFile { name, target, temporary: None, file, overwrite });
+            }
+            Ok(_) => {}
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+            Err(error) => return Err(failed(error)),
+        }
+        let mut temporary = target.clone().into_os_string();
+        temporary.push(SUFFIX);
+        let temporary = PathBuf::from(temporary);
+        let file = lock(&temporary, &name)?;
+        let output = OutputFile { name, target, temporary: Some(temporary), file, overwrite };
+        // A writer that had the lock until now may have published the target.
+        check(path, overwrite)?;
+        output.file.set_len(0).map_err(failed)?;
+        Ok(output)
+    }
+
+    /// Appends bytes.
+    ///
+    /// # Errors
+    /// [`CommandError::Write`], for example on a full disk.
+    pub(crate) fn append(&mut self, bytes: &[u8]) -> Result<(), CommandError> {
+        self.file.write_all(bytes).map_err(CommandError::write(&self.name))
+    }
+
+    /// Makes the file appear under the name of the target, after its bytes have reached the disk.
+    ///
+    /// # Errors
+    /// [`CommandError::Write`], or [`CommandError::Exists`] if another program has created the target meanwhile. The
+    /// target is unchanged.
+    pub(crate) fn publish(mut self) -> Result<(), CommandError> {
+        let failed = CommandError::write(&self.name);
+        let Some(temporary) = &self.temporary else {
+            return self.file.flush().map_err(failed);
+        };
+        self.file.sync_all().map_err(&failed)?;
+        if !self.overwrite.force {
+            // Unlike a rename, a link never replaces a file. Dropping `self` deletes the other name.
+            match fs::hard_link(temporary, &self.target) {
+                Ok(()) => return Ok(()),
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+                    return Err(CommandError::Exists { path: self.name.clone() });
+                }
+                // A file system without hard links.
+                Err(_) => {}
+            }
+        }
+        fs::rename(temporary, &self.target).map_err(failed)?;
+        self.temporary = None;
+        Ok(())
+    }
+}
+
+impl Write for OutputFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Drop for OutputFile {
+    fn drop(&mut self) {
+        // Deleted while it is still locked: no other process can have begun to write it.
+        if let Some(temporary) = &self.temporary {
+            let _ = fs::remove_file(temporary);
+        }
+    }
+}
+
+/// Checks that the target may be written, without creating anything.
+///
+/// # Errors
+/// [`CommandError::Exists`] for an existing regular file without `--force`.
+pub(crate) fn check(path: &Path, overwrite: Overwrite) -> Result<(), CommandError> {
+    if !overwrite.force && fs::metadata(path).is_ok_and(|metadata| metadata.is_file()) {
+        return Err(CommandError::Exists { path: path.to_path_buf() });
+    }
+    Ok(())
+}
+
+/// Opens and locks the temporary file. `name` is the target's name for messages.
+fn lock(temporary: &Path, name: &Path) -> Result<File, CommandError> {
+    let failed = CommandError::write(name);
+    for _ in 0..ATTEMPTS_MAX {
+        // Opening a link or a pipe of this name could change another file, or block.
+        if fs::symlink_metadata(temporary).is_ok_and(|metadata| !metadata.is_file()) {
+            return Err(failed(io::ErrorKind::AlreadyExists.into()));
+        }
+        let file = File::options().write(true).create(true).truncate(false).open(temporary);
+        let file = file.map_err(&failed)?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(CommandError::Busy { path: name.to_path_buf() }),
+            // A file system without locks: two writers are not told there.
+            Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {}
+            Err(TryLockError::Error(error)) => return Err(failed(error)),
+        }
+        // Its last writer may have renamed or deleted it between the opening and the lock.
+        if is_at(&file, temporary) {
+            return Ok(file);
+        }
+    }
+    Err(CommandError::Busy { path: name.to_path_buf() })
+}
+
+/// Whether `path` still names the open file.
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let (Ok(open), Ok(named)) = (file.metadata(), fs::metadata(path)) else { return false };
+    (open.dev(), open.ino()) == (named.dev(), named.ino())
+}
+
+/// Elsewhere an open file cannot be renamed or deleted.
+#[cfg(not(unix))]
+fn is_at(_: &File, _: &Path) -> bool {
+    true
+}
+
+/// Writes a whole file.
+///
+/// # Errors
+/// Those of [`OutputFile::create`], [`OutputFile::append`] and [`OutputFile::publish`].
+pub(crate) fn save(path: &Path, bytes: &[u8], overwrite: Overwrite) -> Result<(), CommandError> {
+    let mut output = OutputFile::create(path, overwrite)?;
+    output.append(bytes)?;
+    output.publish()
+}

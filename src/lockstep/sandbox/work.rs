@@ -1,0 +1,172 @@
+//! [`Costs`]: work units of the commands of a tick or of a setup.
+//!
+//! All commands of a tick are charged before the first is executed, and each may refer to what an earlier one adds. So
+//! what the tick adds counts as if it were there from the start.
+
+use crate::body::{BodyId, BodyKind};
+use crate::solver::SolverSettings;
+use crate::world::{AddedWork, Command, World};
+
+/// Work units of a shape that is created, or replaced.
+const SHAPE_WORK: u64 = 8;
+/// Work units of a body, of a joint, or of a shape that is only visited.
+const VISIT_WORK: u64 = 4;
+
+/// The world that commands act on, with everything that the commands of the tick add.
+pub(super) struct Costs<'a> {
+    world: &'a World,
+    pub(super) added: AddedWork,
+    /// Shapes that the tick adds to bodies that exist.
+    grown: u64,
+    /// Largest number of passes of the solver in a tick.
+    pub(super) rounds: u64,
+}
+
+impl<'a> Costs<'a> {
+    /// The costs in a world to which nothing is added.
+    pub(super) fn of(world: &'a World) -> Self {
+        let rounds = rounds(&world.config().solver);
+        Costs { world, added: AddedWork::default(), grown: 0, rounds }
+    }
+
+    /// Counts what a command of the tick adds.
+    pub(super) fn add(&mut self, command: &Command) {
+        self.added.bodies = self.added.bodies.saturating_add(bodies_added(command));
+        self.added.shapes = self.added.shapes.saturating_add(shapes_added(command));
+        self.added.joints = self.added.joints.saturating_add(joints_added(command));
+        match command {
+            Command::AddShape { .. } => self.grown = self.grown.saturating_add(1),
+            // Settings that are out of range are refused, and cost nothing.
+            Command::SetConfig { config } if config.validate().is_ok() => {
+                self.rounds = self.rounds.max(rounds(&config.solver));
+            }
+            _ => {}
+        }
+    }
+
+    /// Work units of a command: it visits the shapes of its body, and a removal visits all contacts.
+    pub(super) fn command(&self, command: &Command) -> u64 {
+        match command {
+            Command::Spawn { .. } | Command::SpawnEach { .. } => {
+                let bodies = bodies_added(command).saturating_mul(VISIT_WORK);
+                bodies.saturating_add(shapes_added(command).saturating_mul(SHAPE_WORK))
+            }
+            Command::AddJoint { joint } => {
+                VISIT_WORK.saturating_add(self.joined(&[joint.body_a, joint.body_b]))
+            }
+            Command::AddJointEach { ends, .. } => ends
+                .iter()
+                .map(|(a, b)| VISIT_WORK.saturating_add(self.joined(&[*a, *b])))
+                .fold(1, u64::saturating_add),
+            Command::RemoveJoint { joint }
+            | Command::SetJoint { joint, .. }
+            | Command::EnableJoint { joint }
+            | Command::DisableJoint { joint } => {
+                let bodies = self.world.joint(*joint).map(|joint| joint.def().bodies());
+                // A joint that is added in this tick may be between any bodies.
+                let joined = bodies.map_or(self.shapes(), |(a, b)| self.joined(&[a, b]));
+                VISIT_WORK.saturating_add(joined)
+            }
+            Command::Despawn { body } | Command::Disable { body } | Command::Enable { body } => {
+                1 + self.shapes_of(*body) + self.removal()
+            }
+            Command::AddShape { body, .. } => SHAPE_WORK + self.shapes_of(*body),
+            Command::RemoveShape { shape } => 1 + self.removal() + self.shapes_beside(shape),
+            Command::SetShape { shape, .. } => SHAPE_WORK + self.removal() + self.shapes_beside(shape),
+            Command::SetKind { body, .. } => VISIT_WORK + self.shapes_of(*body) + self.removal(),
+            Command::SetBody { body, .. } | Command::SetMass { body, .. } => {
+                VISIT_WORK + self.shapes_of(*body)
+            }
+            // Bodies joined to this one, and its neighbours, may have to be woken.
+            Command::SetTransform { body, .. } => VISIT_WORK + self.shapes_of(*body) + self.joints(),
+            Command::SetVelocity { body, .. } | Command::MoveTo { body, .. } if self.is_kinematic(*body) => {
+                1 + self.joints()
+            }
+            Command::Sleep { .. } | Command::SetGravity { .. } | Command::SetConfig { .. } => {
+                1 + self.everything()
+            }
+            // The world counts the shapes in reach.
+            Command::Explode { .. } => VISIT_WORK,
+            Command::Wake { body } if self.world.body(*body).is_none_or(|body| !body.is_dynamic()) => {
+                1 + self.everything()
+            }
+            _ => VISIT_WORK,
+        }
+    }
+
+    fn joints(&self) -> u64 {
+        count(self.world.joint_count()).saturating_add(self.added.joints)
+    }
+
+    fn shapes(&self) -> u64 {
+        count(self.world.shape_count()).saturating_add(self.added.shapes)
+    }
+
+    /// A removal visits all contacts and joints.
+    fn removal(&self) -> u64 {
+        count(self.world.pair_count()).saturating_add(self.joints())
+    }
+
+    fn everything(&self) -> u64 {
+        let bodies = count(self.world.body_count()).saturating_add(self.added.bodies);
+        bodies.saturating_add(self.shapes()).saturating_add(self.removal())
+    }
+
+    /// Work units of visiting the shapes of a body. A body that is added in this tick may have all that are added.
+    fn shapes_of(&self, body: BodyId) -> u64 {
+        let shapes = match self.world.body(body) {
+            Some(body) => count(body.shapes().len()).saturating_add(self.grown),
+            None => self.added.shapes,
+        };
+        shapes.saturating_mul(VISIT_WORK)
+    }
+
+    fn shapes_beside(&self, shape: &crate::body::ShapeId) -> u64 {
+        match self.world.shape(*shape) {
+            Some(shape) => self.shapes_of(shape.body()),
+            None => self.shapes().saturating_mul(VISIT_WORK),
+        }
+    }
+
+    /// Work units of a change of a joint: the shapes of its bodies are compared anew.
+    fn joined(&self, bodies: &[BodyId; 2]) -> u64 {
+        bodies.iter().map(|body| self.shapes_of(*body) / VISIT_WORK).fold(0, u64::saturating_add)
+    }
+
+    fn is_kinematic(&self, body: BodyId) -> bool {
+        self.world.body(body).is_none_or(|body| body.kind() == BodyKind::Kinematic)
+    }
+}
+
+fn rounds(solver: &SolverSettings) -> u64 {
+    u64::from(solver.sub_steps) * u64::from(solver.iterations)
+}
+
+fn count(n: usize) -> u64 {
+    u64::try_from(n).unwrap_or(u64::MAX)
+}
+
+fn shapes_added(command: &Command) -> u64 {
+    match command {
+        Command::Spawn { shapes, .. } => count(shapes.len()),
+        Command::SpawnEach { shapes, places, .. } => count(shapes.len()).saturating_mul(count(places.len())),
+        Command::AddShape { .. } => 1,
+        _ => 0,
+    }
+}
+
+fn bodies_added(command: &Command) -> u64 {
+    match command {
+        Command::Spawn { .. } => 1,
+        Command::SpawnEach { places, .. } => count(places.len()),
+        _ => 0,
+    }
+}
+
+fn joints_added(command: &Command) -> u64 {
+    match command {
+        Command::AddJoint { .. } => 1,
+        Command::AddJointEach { ends, .. } => count(ends.len()),
+        _ => 0,
+    }
+}

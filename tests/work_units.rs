@@ -1,0 +1,386 @@
+//! Work units are honest: no tick and no setup takes more than a microsecond for each unit that it is charged, whatever
+//! the commands do. Otherwise the limits of a verifier would not protect it.
+//!
+//! Every case is recorded, then played by the verifier's player, which charges the units. The time is that of the thread
+//! on its processor where the system tells it, and the shortest of several runs, so that a busy machine counts little.
+#![expect(clippy::disallowed_types, reason = "the test measures time")]
+
+use std::time::{Duration, Instant};
+
+use lockstep2d::body::{
+    BodyDef, BodyId, BodyKind, BodySettings, Chain, Continuous, Geometry, JointId, MassSource, Polygon,
+    ShapeDef, ShapeId,
+};
+use lockstep2d::codec;
+use lockstep2d::fx;
+use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+use lockstep2d::math::{Angle, Fx, Vec2};
+use lockstep2d::replay::{Limits, Recording, Step, VerifiedReplay, verify};
+use lockstep2d::solver::{JointDef, Revolute, Threshold, ThresholdAction, Weld};
+use lockstep2d::world::{BodyPose, Command, Config, Explosion};
+
+/// Nanoseconds for each unit that are allowed. Without optimisation for release and with its checks, three times as many.
+const MAX: u128 = if cfg!(debug_assertions) { 3000 } else { 1000 };
+
+/// Shortest time that is judged: below it, the overhead of a tick counts more than its work.
+const JUDGED: Duration = Duration::from_millis(10);
+
+/// Time that this thread has computed, or elsewhere than on Linux the time of the clock.
+fn computed() -> Duration {
+    let known = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let nanoseconds = known.as_deref().and_then(|text| text.split(' ').next()?.parse().ok());
+    static START: std::sync::LazyLock<Instant> = std::sync::LazyLock::new(Instant::now);
+    nanoseconds.map_or_else(|| START.elapsed(), Duration::from_nanos)
+}
+
+/// The commands of a tick, by its number.
+type Script<'a> = Box<dyn Fn(u64) -> Vec<Command> + 'a>;
+
+/// The work units and the time of a part of a game.
+#[derive(Clone, Copy, Debug)]
+struct Cost {
+    units: u64,
+    time: Duration,
+}
+
+impl Cost {
+    fn per_unit(&self) -> u128 {
+        self.time.as_nanos() / u128::from(self.units.max(1))
+    }
+}
+
+fn setup(commands: Vec<Command>, config: Config) -> SandboxSetup {
+    SandboxSetup { config, commands }
+}
+
+/// The costs of the setup and of the most expensive tick.
+fn costs(setup: &SandboxSetup, ticks: u64, script: &Script<'_>) -> [Cost; 2] {
+    let mut recording = Recording::<Sandbox>::start(setup, 60).expect("a setup that can start");
+    for tick in 0..ticks {
+        recording.step(&[script(tick)]).expect("commands that can be recorded");
+    }
+    let file = recording.finish().expect("a replay");
+    let limits = Limits { tick_work: u64::MAX, total_work: u64::MAX, ..Limits::default() };
+    let mut best: Option<[Cost; 2]> = None;
+    for _ in 0..3 {
+        let start = computed();
+        let mut play = VerifiedReplay::<Sandbox>::open(&file, &limits).expect("a replay that can start");
+        let begun = Cost { units: play.work(), time: computed() - start };
+        let mut worst = Cost { units: 1, time: Duration::ZERO };
+        loop {
+            let (before, start) = (play.work(), computed());
+            if play.step().expect("a replay that can be played") == Step::Ended {
+                break;
+            }
+            let cost = Cost { units: play.work() - before, time: computed() - start };
+            if cost.time >= JUDGED && cost.per_unit() > worst.per_unit() {
+                worst = cost;
+            }
+        }
+        best = Some(best.map_or([begun, worst], |[setup, tick]| {
+            [
+                if begun.time < setup.time { begun } else { setup },
+                if worst.per_unit() < tick.per_unit() { worst } else { tick },
+            ]
+        }));
+    }
+    best.expect("three runs")
+}
+
+/// Measures a case, prints its costs, and returns its name if it is too expensive.
+fn too_expensive(name: &str, setup: &SandboxSetup, ticks: u64, script: Script<'_>) -> Option<String> {
+    let parts = costs(setup, ticks, &script);
+    let mut wrong = None;
+    for (part, cost) in ["setup", "tick"].into_iter().zip(parts) {
+        println!("{name}, {part}: {} units, {:?}, {} ns per unit", cost.units, cost.time, cost.per_unit());
+        if cost.time >= JUDGED && cost.per_unit() > MAX {
+            wrong = Some(format!("{name}, {part}: {cost:?}, {} ns per unit", cost.per_unit()));
+        }
+    }
+    wrong
+}
+
+/// The handle of the first occupant of a slot, in its canonical bytes.
+fn identifier<H: serde::de::DeserializeOwned>(slot: u32) -> H {
+    codec::decode(&u64::from(slot).to_le_bytes()).expect("a handle")
+}
+
+fn body(slot: u32) -> BodyId {
+    identifier::<BodyId>(slot)
+}
+
+fn square(side: Fx) -> ShapeDef {
+    ShapeDef::new(Polygon::square(side).expect("a square"))
+}
+
+fn octagon() -> ShapeDef {
+    let one = fx!(0.5);
+    let some = fx!(0.25);
+    let points = [
+        (one, some),
+        (some, one),
+        (-some, one),
+        (-one, some),
+        (-one, -some),
+        (-some, -one),
+        (some, -one),
+        (one, -some),
+    ];
+    ShapeDef::new(Polygon::new(&points.map(|(x, y)| Vec2::new(x, y))).expect("an octagon"))
+}
+
+fn spawn(body: BodyDef, shapes: Vec<ShapeDef>) -> Command {
+    Command::Spawn { body, shapes }
+}
+
+fn each(body: BodyDef, shape: ShapeDef, places: impl Iterator<Item = (Fx, Fx)>) -> Command {
+    let pose = |(x, y)| BodyPose { position: Vec2::new(x, y), angle: Angle::ZERO };
+    Command::SpawnEach { body, shapes: vec![shape], places: places.map(pose).collect() }
+}
+
+/// Places in a square of `side` times `side`, `gap` apart.
+fn grid(side: i64, gap: Fx) -> impl Iterator<Item = (Fx, Fx)> {
+    (0..side * side).map(move |number| (gap * (number % side), gap * (number / side)))
+}
+
+/// Two bodies with `count` joints between them.
+fn joined(count: usize, joint: JointDef) -> Vec<Command> {
+    let ball = || spawn(BodyDef::dynamic(), vec![square(fx!(0.5))]);
+    vec![ball(), ball(), Command::AddJointEach { joint, ends: vec![(body(0), body(1)); count] }]
+}
+
+fn still() -> Config {
+    Config { gravity: Vec2::ZERO, ..Config::default() }
+}
+
+#[test]
+fn removed_and_broken_joints() {
+    let weld = JointDef::new(body(0), body(1), Weld::rigid());
+    let count = 20_000;
+    let oldest = |tick| match tick {
+        0 => (0..count).map(|slot| Command::RemoveJoint { joint: identifier::<JointId>(slot) }).collect(),
+        _ => Vec::new(),
+    };
+    let newest = |tick| match tick {
+        0 => {
+            (0..count).rev().map(|slot| Command::RemoveJoint { joint: identifier::<JointId>(slot) }).collect()
+        }
+        _ => Vec::new(),
+    };
+    let setup_of = |joint| setup(joined(count as usize, joint), still());
+    let breaking = JointDef {
+        threshold: Threshold { force: Some(Fx::ZERO), torque: None, action: ThresholdAction::Break },
+        ..weld
+    };
+    let pull = |_| {
+        vec![Command::ApplyForce { body: body(0), force: Vec2::new(fx!(900), Fx::ZERO), point: Vec2::ZERO }]
+    };
+    let hinge = JointDef::new(body(0), body(1), Revolute::new());
+    let wrong = [
+        too_expensive("joints removed, oldest first", &setup_of(weld), 2, Box::new(oldest)),
+        too_expensive("joints removed, newest first", &setup_of(hinge), 2, Box::new(newest)),
+        too_expensive("joints that break", &setup(joined(300, breaking), still()), 2, Box::new(pull)),
+    ];
+    assert!(wrong.iter().all(Option::is_none), "{wrong:#?}");
+}
+
+#[test]
+fn bullets_over_obstacles() {
+    let mut wrong = Vec::new();
+    for (bullets, obstacles, pair_limit) in [(300i64, 300i64, 0), (300, 300, 1 << 18), (30, 3000, 0)] {
+        let bullet = BodyDef {
+            settings: BodySettings { continuous: Continuous::Bullet, ..BodySettings::default() },
+            ..BodyDef::dynamic()
+        };
+        let commands = vec![
+            each(bullet, square(fx!(0.05)), (0..bullets).map(|number| (fx!(-8), fx!(0.001) * number))),
+            each(BodyDef::fixed(), octagon(), (0..obstacles).map(|number| (fx!(0.0001) * number, Fx::ZERO))),
+        ];
+        let back = move |_| {
+            let number = |slot: i64| body(u32::try_from(slot).expect("a slot"));
+            (0..bullets)
+                .flat_map(|slot| {
+                    let position = Vec2::new(fx!(-8), fx!(0.001) * slot);
+                    let velocity = Vec2::new(fx!(390), Fx::ZERO);
+                    [
+                        Command::SetTransform { body: number(slot), position, angle: Angle::ZERO },
+                        Command::SetVelocity { body: number(slot), velocity, angular_velocity: fx!(30) },
+                    ]
+                })
+                .collect()
+        };
+        let name = format!("{bullets} bullets, {obstacles} octagons, pair limit {pair_limit}");
+        let config = Config { pair_limit, ..still() };
+        wrong.extend(too_expensive(&name, &setup(commands, config), 3, Box::new(back)));
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn explosions_beside_many_shapes() {
+    let shapes: Vec<ShapeDef> = (0..1024).map(|_| square(fx!(0.5))).collect();
+    let body = BodyDef::dynamic().position((fx!(1), fx!(0)));
+    let explode = |_| vec![Command::Explode { explosion: Explosion::new(Vec2::ZERO, fx!(0.001)) }; 300];
+    // The second case adds the body in the tick of its explosions.
+    let late = |tick| match tick {
+        0 => [vec![spawn(body, vec![square(fx!(0.5)); 1024])], explode(0)].concat(),
+        _ => Vec::new(),
+    };
+    let wrong = [
+        too_expensive("explosions", &setup(vec![spawn(body, shapes)], still()), 2, Box::new(explode)),
+        too_expensive("explosions of an added body", &setup(Vec::new(), still()), 1, Box::new(late)),
+    ];
+    assert!(wrong.iter().all(Option::is_none), "{wrong:#?}");
+}
+
+#[test]
+fn crowds_with_and_without_pairs() {
+    let mut wrong = Vec::new();
+    for pair_limit in [0, 1000, 1 << 18] {
+        for (name, body, shape) in [
+            ("squares", BodyDef::dynamic(), square(fx!(0.5))),
+            ("sensors", BodyDef::dynamic(), ShapeDef { sensor: true, ..square(fx!(0.5)) }),
+        ] {
+            let crowd = each(body, shape, (0..200).map(|number| (fx!(0.0001) * number, Fx::ZERO)));
+            let config = Config { pair_limit, ..still() };
+            let name = format!("200 {name} on one spot, pair limit {pair_limit}");
+            wrong.extend(too_expensive(&name, &setup(vec![crowd], config), 3, Box::new(|_| Vec::new())));
+        }
+    }
+    let apart = each(BodyDef::dynamic(), square(fx!(0.5)), grid(150, fx!(1.2)));
+    let gravity = too_expensive(
+        "separate squares",
+        &setup(vec![apart], Config::default()),
+        3,
+        Box::new(|_| Vec::new()),
+    );
+    wrong.extend(gravity);
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn chains_of_many_links() {
+    let points: Vec<Vec2<Fx>> = (0..2000).map(|x| Vec2::new(fx!(0.01) * x, fx!(0.001) * (x % 3))).collect();
+    let links = Chain::new(&points).links().expect("a chain");
+    let ball = ShapeDef::new(Geometry::circle(fx!(3)).expect("a circle"));
+    let balls = each(BodyDef::dynamic(), ball, (0..40).map(|x| (fx!(0.4) * x, fx!(2.99))));
+    let commands = vec![spawn(BodyDef::fixed(), links), balls];
+    let wrong = too_expensive(
+        "large balls on a fine chain",
+        &setup(commands, Config::default()),
+        3,
+        Box::new(|_| Vec::new()),
+    );
+    assert!(wrong.is_none(), "{wrong:#?}");
+}
+
+/// Every command that names one body or shape, many times in a tick, on a body with many shapes and on one with many
+/// joints and neighbours.
+#[test]
+fn every_command_of_a_body() {
+    let many = body(0);
+    let commands = |settled: bool| {
+        let mut commands = vec![spawn(BodyDef::dynamic(), vec![square(fx!(0.5)); 200])];
+        commands.push(each(BodyDef::dynamic(), square(fx!(0.5)), grid(20, fx!(0.9))));
+        let joint = JointDef::new(many, body(1), Weld::rigid());
+        commands
+            .push(Command::AddJointEach { joint, ends: (1..400).map(|slot| (many, body(slot))).collect() });
+        if settled {
+            commands.extend((0..401).map(|slot| Command::Sleep { body: body(slot) }));
+        }
+        commands
+    };
+    let shape = identifier::<ShapeId>(0);
+    let place = |tick: u64| Vec2::new(fx!(0.001) * i64::try_from(tick % 7).unwrap_or(0), Fx::ZERO);
+    let cases: Vec<(&str, Vec<Command>)> = vec![
+        (
+            "SetTransform",
+            vec![
+                Command::SetTransform { body: many, position: place(3), angle: Angle::ZERO },
+                Command::SetTransform { body: many, position: place(4), angle: Angle::ZERO },
+            ],
+        ),
+        (
+            "SetVelocity",
+            vec![Command::SetVelocity { body: many, velocity: place(2), angular_velocity: Fx::ONE }],
+        ),
+        ("ApplyImpulse", vec![Command::ApplyImpulse { body: many, impulse: place(1), point: Vec2::ZERO }]),
+        ("SetMass", vec![Command::SetMass { body: many, mass: MassSource::Shapes }]),
+        (
+            "SetKind",
+            vec![
+                Command::SetKind { body: many, kind: BodyKind::Kinematic },
+                Command::SetKind { body: many, kind: BodyKind::Dynamic },
+            ],
+        ),
+        ("Disable, Enable", vec![Command::Disable { body: many }, Command::Enable { body: many }]),
+        ("Sleep, Wake", vec![Command::Sleep { body: many }, Command::Wake { body: many }]),
+        (
+            "SetShape",
+            vec![
+                Command::SetShape { shape, def: square(fx!(0.4)) },
+                Command::SetShape { shape, def: square(fx!(0.5)) },
+            ],
+        ),
+        ("AddShape", vec![Command::AddShape { body: many, shape: square(fx!(0.4)) }]),
+        (
+            "DisableJoint, EnableJoint",
+            vec![
+                Command::DisableJoint { joint: identifier::<JointId>(7) },
+                Command::EnableJoint { joint: identifier::<JointId>(7) },
+            ],
+        ),
+        (
+            "SetGravity",
+            vec![Command::SetGravity { gravity: place(5) }, Command::SetGravity { gravity: place(6) }],
+        ),
+        ("Spawn, Despawn", vec![spawn(BodyDef::dynamic(), vec![square(fx!(0.5)); 4])]),
+    ];
+    let mut wrong = Vec::new();
+    for (name, once) in cases {
+        for settled in [false, true] {
+            let script = |_| once.iter().cycle().take(100).cloned().collect();
+            let name = format!("{name}{}", if settled { ", asleep" } else { "" });
+            wrong.extend(too_expensive(&name, &setup(commands(settled), still()), 1, Box::new(script)));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// The files that once took minutes within a limit of a tenth of a second.
+#[test]
+fn a_limit_ends_a_file_before_its_cost_is_paid() {
+    let crowd = |count: i64, settings| {
+        let def = BodyDef { settings, ..BodyDef::dynamic() };
+        each(def, square(fx!(0.05)), (0..count).map(|number| (fx!(-8), fx!(0.001) * number)))
+    };
+    let bullet = BodySettings { continuous: Continuous::Bullet, ..BodySettings::default() };
+    let obstacles =
+        each(BodyDef::fixed(), octagon(), (0..600).map(|number| (fx!(0.0001) * number, Fx::ZERO)));
+    let push = |_| {
+        (0..600)
+            .map(|slot| Command::SetVelocity {
+                body: body(slot),
+                velocity: Vec2::new(fx!(390), Fx::ZERO),
+                angular_velocity: Fx::ZERO,
+            })
+            .collect::<Vec<_>>()
+    };
+    let setup = setup(vec![crowd(600, bullet), obstacles], Config { pair_limit: 0, ..still() });
+    let mut recording = Recording::<Sandbox>::start(&setup, 60).expect("a setup that can start");
+    for tick in 0..3 {
+        recording.step(&[push(tick)]).expect("commands that can be recorded");
+    }
+    let file = recording.finish().expect("a replay");
+    assert!(verify::<Sandbox>(&file, &Limits::default()).is_match());
+    for limits in [
+        Limits { tick_work: 100_000, ..Limits::default() },
+        Limits { total_work: 100_000, ..Limits::default() },
+        Limits { total_work: 5_000, ..Limits::default() },
+    ] {
+        let start = computed();
+        let verdict = verify::<Sandbox>(&file, &limits);
+        assert_eq!(verdict.name(), "limit_exceeded", "{limits:?}: {verdict}");
+        assert!(computed() - start < Duration::from_millis(500), "{limits:?}: {:?}", computed() - start);
+    }
+}
