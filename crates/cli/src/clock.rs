@@ -4,8 +4,9 @@ use std::time::Duration;
 
 /// Measures the elapsed time. The time never reaches a simulation.
 #[derive(Clone, Copy, Debug)]
-#[expect(clippy::disallowed_types, reason = "the time never reaches a simulation")]
-pub(crate) struct Clock(std::time::Instant);
+pub(crate) struct Clock(
+    #[expect(clippy::disallowed_types, reason = "the time never reaches a simulation")] std::time::Instant,
+);
 
 #[expect(clippy::disallowed_types, reason = "the time never reaches a simulation")]
 impl Clock {
