@@ -1,14 +1,13 @@
 //! [`Clock`]: elapsed time, for reports and for `--max-seconds`.
 
+#![expect(clippy::disallowed_types, reason = "the time never reaches a simulation")]
+
 use std::time::Duration;
 
 /// Measures the elapsed time. The time never reaches a simulation.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Clock(
-    #[expect(clippy::disallowed_types, reason = "the time never reaches a simulation")] std::time::Instant,
-);
+pub(crate) struct Clock(std::time::Instant);
 
-#[expect(clippy::disallowed_types, reason = "the time never reaches a simulation")]
 impl Clock {
     pub(crate) fn start() -> Self {
         Clock(std::time::Instant::now())

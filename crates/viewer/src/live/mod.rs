@@ -191,7 +191,7 @@ impl Source for Live {
     }
 
     fn save_replay(&mut self) -> Option<Result<Vec<u8>, SourceError>> {
-        Some(self.recording.to_replay().map_err(SourceError::of))
+        Some(self.recording.replay_file().map_err(SourceError::of))
     }
 
     fn status(&self) -> String {

@@ -5,6 +5,9 @@ use std::rc::Rc;
 
 use crate::event::{Event, Key};
 
+/// Changes the input of a tick while a key is down.
+type Change<I> = Rc<dyn Fn(&mut I)>;
+
 /// Keys of a player, and what each of them does to the player's input for a tick.
 ///
 /// The input of a tick starts as the default, and every key that is down changes it, in the order in which the keys were
@@ -22,7 +25,7 @@ use crate::event::{Event, Key};
 /// assert_eq!(controls.input(), 2);
 /// ```
 pub struct Controls<I> {
-    bindings: Vec<(Key, Rc<dyn Fn(&mut I)>)>,
+    bindings: Vec<(Key, Change<I>)>,
     /// Keys that are down.
     down: Vec<Key>,
     /// Keys that went down since the last tick.

@@ -136,7 +136,7 @@ impl<G: Game + 'static> Source for LocalMatch<G> {
     }
 
     fn save_replay(&mut self) -> Option<Result<Vec<u8>, SourceError>> {
-        Some(self.recording.to_replay().map_err(SourceError::of))
+        Some(self.recording.replay_file().map_err(SourceError::of))
     }
 
     fn status(&self) -> String {

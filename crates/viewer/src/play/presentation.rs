@@ -12,10 +12,13 @@ use crate::canvas::Canvas;
 /// Names and values of the fields of a state.
 pub(crate) type Fields = Vec<(String, String)>;
 
+/// Draws over the world of a game.
+pub(crate) type Draw<G> = dyn Fn(&G, &mut Canvas<'_>);
+
 /// How a game is shown, apart from its world.
 pub(crate) struct Presentation<G: Game> {
     /// Draws over the world.
-    pub(crate) draw: Rc<dyn Fn(&G, &mut Canvas<'_>)>,
+    pub(crate) draw: Rc<Draw<G>>,
     /// One line of text, such as the score; may be empty.
     pub(crate) status: Rc<dyn Fn(&G) -> String>,
     /// The state of the game's own rules.

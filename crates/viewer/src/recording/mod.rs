@@ -149,7 +149,7 @@ impl<G: Game> Recording<G> {
     }
 
     /// Returns a replay file of all recorded ticks, whatever the current tick is.
-    pub(crate) fn to_replay(&mut self) -> Result<Vec<u8>, RecordingError> {
+    pub(crate) fn replay_file(&mut self) -> Result<Vec<u8>, RecordingError> {
         let recorder = self.recorder.clone();
         let Some(end) = &self.end else {
             return recorder.finish(&self.game).map_err(RecordingError::Record);
