@@ -29,7 +29,7 @@ pub(crate) use awake::{AwakeSet, is_awake};
 pub(crate) use changes::Changes;
 pub(crate) use contacts::{ContactCache, NarrowPhaseBuffers, NarrowPhaseOutput, PendingHit};
 pub(crate) use joint_links::JointLinks;
-pub(crate) use meter::WorkMeter;
+pub(crate) use meter::{WorkMeter, pair_work};
 pub(crate) use motion::{
     ClosingBound, GHOST_TRAVEL_MIN, Margins, MotionCache, PredictedMotion, ShapeMotion, Travel,
 };

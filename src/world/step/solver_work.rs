@@ -1,8 +1,7 @@
 //! Work of the solver that is known only within the tick: pairs that begin in it, and joints that are solved in blocks.
 
-use crate::world::cache::Scratch;
+use crate::world::cache::{Scratch, pair_work};
 use crate::world::state::State;
-use crate::world::view::pair_work;
 
 /// Work units of a joint in a block in each sub-step: a full block of 96 rows factors its matrix for both passes.
 const BLOCKED_JOINT_WORK: u64 = 48;

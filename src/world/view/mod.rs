@@ -7,4 +7,4 @@ mod neighbours;
 mod work;
 
 pub use contacts::{ContactForce, ContactView, SolverColour};
-pub(crate) use work::{AddedWork, pair_work};
+pub(crate) use work::AddedWork;

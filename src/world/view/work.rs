@@ -2,14 +2,7 @@
 
 use crate::solver::SolverSettings;
 use crate::world::World;
-use crate::world::cache::WorkMeter;
-
-/// Pairs per body that are assumed to be solved in SIMD batches of eight. A heap that is not forced together has up to
-/// six pairs per body.
-const PAIRS_PER_BODY: u64 = 32;
-
-/// Cost of a pair beyond [`PAIRS_PER_BODY`], in ordinary pairs: measured on a thousand squares at the same position.
-const CROWDED_WORK: u64 = 64;
+use crate::world::cache::{WorkMeter, pair_work};
 
 /// What the commands of a tick add to a world.
 #[derive(Clone, Copy, Debug, Default)]
@@ -17,13 +10,6 @@ pub(crate) struct AddedWork {
     pub(crate) bodies: u64,
     pub(crate) shapes: u64,
     pub(crate) joints: u64,
-}
-
-/// Work units of one pass of the solver over pairs of so many bodies.
-pub(crate) fn pair_work(pairs: u64, bodies: u64) -> u64 {
-    // In a heap of overlapping bodies, many contacts find no free place in a SIMD batch.
-    let crowded = pairs.saturating_sub(bodies.saturating_mul(PAIRS_PER_BODY));
-    pairs.saturating_add(crowded.saturating_mul(CROWDED_WORK))
 }
 
 impl World {
