@@ -23,16 +23,6 @@ use super::formats::Fx;
 /// assert!(fx!(1) <= height && height < fx!(2.5));
 /// assert_eq!(again.range(fx!(1), fx!(2.5)), height);
 /// ```
-///
-/// ```
-/// use lockstep2d::math::Rng;
-/// let mut rng = Rng::new(7);
-/// let mut deck = [1, 2, 3, 4];
-/// rng.shuffle(&mut deck);
-/// let again = Rng::new(7).below(100);
-/// assert_eq!(again, Rng::new(7).below(100));
-/// assert!(again < 100);
-/// ```
 // Not `Copy`: an accidental copy would repeat numbers.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Rng {

@@ -86,7 +86,8 @@ fn types_of(text: &str, found: &mut BTreeMap<String, bool>) {
             let name = rest.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
             *found.entry(name.into()).or_default() |= has_example;
         }
-        let is_attribute = line.starts_with("#[");
+        // Attributes and ordinary comments may stand between the documentation and the type.
+        let is_attribute = line.starts_with("#[") || line.starts_with("// ");
         has_example =
             is_attribute && has_example || line.starts_with("///") && (has_example || line.contains("```"));
     }
