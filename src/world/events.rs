@@ -83,7 +83,10 @@ pub struct JointEvent {
 /// # let mut world = World::default();
 /// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
 /// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[square])?;
-/// let falling = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(1))), &[square])?;
+/// use lockstep2d::body::EventSwitches;
+/// // Hits are reported for shapes that ask for them.
+/// let heard = square.events(EventSwitches { hit: true, ..EventSwitches::default() });
+/// let falling = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(1))), &[heard])?;
 /// let mut hits = 0;
 /// for _ in 0..120 {
 ///     world.step();

@@ -96,9 +96,9 @@ pub enum JointKind {
 /// # let a = world.spawn(&BodyDef::fixed(), &[])?;
 /// # let b = world.spawn(&BodyDef::dynamic().position((fx!(2), fx!(0))), &[square])?;
 /// use lockstep2d::solver::{JointDef, Revolute, Threshold, ThresholdAction};
-/// // A hinge that breaks at 5 N: the square alone weighs 10 N.
+/// // A hinge that breaks at 5 N: the square that hangs on it weighs 10 N.
 /// let weak = Threshold { force: Some(fx!(5)), torque: None, action: ThresholdAction::Break };
-/// let hinge = JointDef { threshold: weak, ..JointDef::new(a, b, Revolute::new()).anchor_b((fx!(-2), fx!(0))) };
+/// let hinge = JointDef { threshold: weak, ..JointDef::new(a, b, Revolute::new()).anchor_a((fx!(2), fx!(0))) };
 /// world.add_joint(&hinge)?;
 /// (0..10).for_each(|_| world.step());
 /// assert_eq!(world.joint_count(), 0);
