@@ -37,9 +37,10 @@ impl StateHash {
     /// Returns the digest of a sequence of digests, in order.
     #[must_use]
     pub fn of_digests(digests: impl IntoIterator<Item = StateHash>) -> Self {
-        // The parts of a small world need no allocation.
-        let mut bytes = SmallVec::<[u8; 512]>::new();
-        digests.into_iter().for_each(|digest| bytes.extend_from_slice(&digest.bytes()));
+        let digests = digests.into_iter();
+        // The digests of a small world need no allocation.
+        let mut bytes = SmallVec::<[u8; 512]>::with_capacity(digests.size_hint().0 * size_of::<Self>());
+        digests.for_each(|digest| bytes.extend_from_slice(&digest.bytes()));
         Self::of_bytes(&bytes)
     }
 
