@@ -103,7 +103,7 @@ impl<G: LockstepGame> MatchDriver<G> {
     }
 
     pub(crate) fn finish(self) -> Result<Vec<u8>, LockstepError> {
-        Ok(self.peer.finish()?)
+        Ok(self.peer.finish()?.replay)
     }
 
     pub(crate) fn fraction(&self) -> f32 {
