@@ -1,4 +1,4 @@
-//! What the API consists of, as data: the header and the layouts for other languages are written from it.
+//! Description of the API as data, from which the header and the layouts for other languages are written.
 
 /// A constant of the API.
 #[derive(Clone, Copy, Debug)]
@@ -76,7 +76,7 @@ pub(crate) struct Function {
 pub(crate) trait CType {
     /// Type of the value or of what it points to.
     const BASE: &'static str;
-    /// What comes before and after it.
+    /// Text before and after the type in C.
     const AROUND: [&'static str; 2] = ["", ""];
     /// Number of items of an array.
     const COUNT: Option<usize> = None;

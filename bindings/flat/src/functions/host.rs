@@ -23,7 +23,7 @@ use crate::table::{self, Bytes, with};
 /// Setup of a host's game: rules, players, tick rate, bytes of an input, hash of the first state, the game's own setup.
 type HostSetup = (Vec<u8>, u32, u32, u32, u32, StateHash, Vec<u8>);
 
-/// What the recorder has to know of a game that the host plays.
+/// Players, tick rate and state hash of a game that the host plays, for its recorder.
 struct HostGame {
     players: u32,
     tick_rate: u32,

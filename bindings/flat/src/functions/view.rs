@@ -1,4 +1,4 @@
-//! What is in a world: bodies, shapes, joints.
+//! Views of a world: bodies, shapes, joints.
 
 use lockstep2d::body::{Body, Shape};
 use lockstep2d::solver::Joint;
