@@ -21,7 +21,7 @@ struct Platformer {
     state: State,
 }
 
-/// What is not in the world.
+/// State of the rules beside the world.
 #[derive(Clone, Serialize, Deserialize)]
 struct State {
     hero: BodyId,

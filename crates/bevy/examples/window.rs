@@ -1,4 +1,4 @@
-//! What the examples share: a window with a camera that draws the world as gizmos, and a simulated line.
+//! Shared by the examples: a window with a camera that draws the world as gizmos, and a simulated line.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;

@@ -28,7 +28,7 @@ pub(crate) struct FrameTime {
     pub(crate) real_elapsed: Duration,
 }
 
-/// What plays a game.
+/// Driver of a game: local, sync test, replay or match.
 pub(crate) enum Driver<G: LockstepGame> {
     Local(Box<LocalDriver<G>>),
     SyncTest(Box<SyncTestDriver<G>>),
