@@ -325,6 +325,22 @@ impl Assembly {
         bodies + self.joints.iter().map(|&id| self.spring_energy(id)).sum::<f64>()
     }
 
+    /// Momentum, and angular momentum about the origin.
+    pub(crate) fn momentum(&self) -> Momentum {
+        let mut sum = Momentum::default();
+        for &id in &self.bodies {
+            let body = self.world.body(id).expect("there");
+            let (m, k) = (float(body.mass()), float(body.radius_of_gyration()));
+            let (v, at) = (body.velocity(), body.centre_of_mass());
+            let (v, w) = ([float(v.x), float(v.y)], float(body.angular_velocity()));
+            let own = [m * v[0], m * v[1]];
+            sum.linear = [sum.linear[0] + own[0], sum.linear[1] + own[1]];
+            sum.size += own[0].hypot(own[1]);
+            sum.angular += m * k * k * w + float(at.x) * own[1] - float(at.y) * own[0];
+        }
+        sum
+    }
+
     /// Sum of masses times the largest height that gravity could have given or taken: the scale of potential energy.
     pub(crate) fn scale(&self) -> f64 {
         let gravity = float(self.world.config().gravity.y).abs();
@@ -368,6 +384,23 @@ impl Assembly {
     pub(crate) fn gap(&self) -> f64 {
         let error = |&id: &JointId| self.world.joint_error(id).map_or(0.0, float);
         self.joints.iter().map(error).fold(0.0, f64::max)
+    }
+}
+
+/// Momentum in kg m/s, and angular momentum in kg m^2/s.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Momentum {
+    linear: [f64; 2],
+    /// Sum of the magnitudes of the momenta of all bodies.
+    size: f64,
+    angular: f64,
+}
+
+impl Momentum {
+    /// Changes of momentum and angular momentum, as shares of the sizes at the start.
+    pub(crate) fn change(&self, end: &Self) -> [f64; 2] {
+        let apart = (end.linear[0] - self.linear[0]).hypot(end.linear[1] - self.linear[1]);
+        [apart / self.size, ((end.angular - self.angular) / self.angular).abs()]
     }
 }
 

@@ -12,7 +12,7 @@ use super::super::settings::Tuning;
 use super::block::{Blocks, Candidate};
 use super::cache_key::{CacheKey, Definitions, Validity};
 use super::def::{JointFrame, JointKind};
-use super::hinge::{AngleParts, Dirty, HingeBody, HingeSet, Poses, Turning, node, shares};
+use super::hinge::{AngleParts, HingeBody, HingeSet, Poses, Turning, node, shares};
 use super::list::{BlockedPart, JointList};
 use super::options::JointLimit;
 use super::pose::BodyRotation;
@@ -324,11 +324,10 @@ impl JointSet {
             return;
         }
         let &StepContext { machine, bodies, tuning, .. } = context;
-        let mut any_turned = false;
         let JointSet { turning, body_rotations, quads, .. } = self;
-        machine.run(Rotations { turning, bodies, body_rotations, quads, any: &mut any_turned });
+        machine.run(Rotations { turning, bodies, body_rotations, quads });
         self.blocks.expire();
-        self.hinges.expire(if any_turned { Dirty::Everything } else { Dirty::Gaps });
+        self.hinges.expire();
         self.list.refresh(bodies, &self.body_rotations, tuning);
     }
 

@@ -18,14 +18,12 @@ pub(super) struct Rotations<'a> {
     pub(super) bodies: &'a [Cell<SolverBody>],
     pub(super) body_rotations: &'a mut [BodyRotation],
     pub(super) quads: &'a mut [Quad],
-    /// Set if the angle of any body has changed.
-    pub(super) any: &'a mut bool,
 }
 
 impl<const N: usize> Kernel<N> for Rotations<'_> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
-        let Rotations { turning, bodies, body_rotations, quads, any } = self;
+        let Rotations { turning, bodies, body_rotations, quads } = self;
         for block in turning.chunks(BLOCK) {
             let mut angles = [Angle::ZERO; BLOCK];
             for (angle, body) in angles.iter_mut().zip(block) {
@@ -33,7 +31,6 @@ impl<const N: usize> Kernel<N> for Rotations<'_> {
                 let turns = body.turns_of(bodies[at].get().turn);
                 body_rotations[at].turns = turns;
                 *angle = body.angle + Angle::from_turns(Fx::from_bits(turns));
-                *any |= body_rotations[at].angle != *angle;
             }
             let rotations = Rot::from_angles(&angles);
             for ((body, angle), rotation) in block.iter().zip(angles).zip(rotations) {

@@ -9,6 +9,7 @@ use super::super::super::softness::Softness;
 use super::super::def::JointFrame;
 use super::super::parts::slot;
 use super::super::state::Joint;
+use super::refresh::gap_factor;
 use crate::body::{Body, Pose};
 use crate::math::{Angle, Fx, Length, Ratio, Reciprocal, Shift, Speed, Unit, Vec2, round_shift, saturate};
 
@@ -126,6 +127,8 @@ pub(in super::super) struct Input {
     /// Anchors from the centres of mass, in the frames of the bodies.
     pub(super) arms: [Vec2<Length>; 2],
     pub(super) ratios: [Vec2<Ratio>; 2],
+    /// `1 / k` of A ([`gap_factor`]).
+    pub(super) gap_factor_a: i32,
     pub(super) fractions: MassFractions,
     /// Vector from the centre of mass of A to that of B.
     pub(super) between: Vec2<Fx>,
@@ -157,6 +160,7 @@ impl Input {
             angle,
             arms,
             ratios: [ratios(arms[0], a.inverse_gyration), ratios(arms[1], b.inverse_gyration)],
+            gap_factor_a: gap_factor(a.inverse_gyration),
             fractions: MassFractions::of_masses(a.mass, b.mass),
             between: b.centre - a.centre,
             turns: joint.turns(a.turning.angle, b.turning.angle),
@@ -186,7 +190,7 @@ fn arm(arm: Vec2<Fx>) -> Vec2<Length> {
 }
 
 /// Largest length of a lever ratio. Its average over a predicted rotation then still fits the format.
-const LENGTH_MAX: Ratio = Ratio::lit("124");
+pub(super) const LENGTH_MAX: Ratio = Ratio::lit("124");
 
 /// `(-r_y, r_x) / k`, no longer than [`LENGTH_MAX`].
 pub(super) fn ratios(arm: Vec2<Length>, inverse_gyration: Reciprocal) -> Vec2<Ratio> {

@@ -81,25 +81,15 @@ pub(super) struct HingeSet {
     blocked: BatchList<Hinges>,
     /// For each hinge in a block, the index of its rows on the angle.
     blocked_extras: Vec<Option<usize>>,
-    /// The parts of the batches that do not match the current poses of the bodies.
-    dirty: Dirty,
-}
-
-/// The parts of a batch that moved bodies invalidate.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Dirty {
-    #[default]
-    Nothing,
-    /// The gaps only: no body has rotated, so that lever ratios and gains are still valid.
-    Gaps,
-    Everything,
+    /// Whether bodies have moved since the batches were refreshed.
+    is_stale: bool,
 }
 
 impl HingeSet {
-    /// Invalidates parts of the batches, because bodies have moved. The next operation refreshes each batch before it
-    /// solves it, so that the batch is fetched from memory only once.
-    pub(super) fn expire(&mut self, what: Dirty) {
-        self.dirty = self.dirty.max(what);
+    /// Invalidates the batches, because bodies have moved. The next operation refreshes each batch before it solves it,
+    /// so that the batch is fetched from memory only once.
+    pub(super) fn expire(&mut self) {
+        self.is_stale = true;
     }
 
     pub(super) fn warm_start(&mut self, poses: Poses<'_>, context: &StepContext<'_>) {
@@ -139,10 +129,10 @@ impl HingeSet {
 
     /// Returns the refresh that the next operation has to perform, for ordinary and for anchored hinges.
     fn refreshes<'a>(&mut self, poses: Poses<'a>, context: &StepContext<'_>) -> [Refresh<'a>; 2] {
-        let (dirty, tuning) = (mem::take(&mut self.dirty), context.tuning);
+        let (is_stale, tuning) = (mem::take(&mut self.is_stale), context.tuning);
         [tuning.joint, tuning.anchored].map(|points| {
             let stiffness = Stiffness { points, limits: tuning.joint };
-            Refresh { dirty, stiffness, poses }
+            Refresh { is_stale, stiffness, poses }
         })
     }
 }

@@ -8,15 +8,24 @@ use super::super::pose::BodyRotation;
 use super::super::state::{Joint, JointImpulses, nearest_turns};
 use super::angle::AngleRows;
 use super::batch::{Batch, Records, Shape};
-use super::{AngleInput, AngleParts, Dirty, HingeBody, HingeSet, Hinges, Input};
+use super::{AngleInput, AngleParts, HingeBody, HingeSet, Hinges, Input};
 use crate::body::{Arena, JointId, Pose};
 use crate::math::{Fx, Length, Speed, Unit, Vec2};
 
 impl HingeSet {
     pub(in super::super) fn clear(&mut self) {
-        let HingeSet { inputs, angles, memo: _, tuned: _, hinges, anchored, blocked, blocked_extras, dirty } =
-            self;
-        *dirty = Dirty::Everything;
+        let HingeSet {
+            inputs,
+            angles,
+            memo: _,
+            tuned: _,
+            hinges,
+            anchored,
+            blocked,
+            blocked_extras,
+            is_stale,
+        } = self;
+        *is_stale = true;
         inputs.clear();
         angles.clear();
         hinges.overflow.clear();
@@ -230,6 +239,7 @@ impl<const N: usize> Shape<N> {
             self.ratios[side][0].0[lane] = input.ratios[side].x.to_bits();
             self.ratios[side][1].0[lane] = input.ratios[side].y.to_bits();
         }
+        self.inverse_gyration_a.0[lane] = input.gap_factor_a;
         self.fractions[0].0[lane] = input.fractions.a.to_bits();
         self.fractions[1].0[lane] = input.fractions.b.to_bits();
         self.put_between(lane, input.between);

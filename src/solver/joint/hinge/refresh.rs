@@ -1,7 +1,10 @@
 //! Refresh: computes lever ratios, gains and gaps of hinges at the current pose.
 //!
 //! Lever ratios are rotated from their body's frame, `e = R e0`, instead of computed again from the arms, because their
-//! length does not change. The products of `K` are computed exactly, in two parts of 32 bits, and then rounded:
+//! length does not change. The lever of A then reaches across the gap to B's anchor, `eA + perp(gap) / kA`: an impulse
+//! that acts on both bodies at one point keeps angular momentum.
+//!
+//! The products of `K` are computed exactly, in two parts of 32 bits, and then rounded:
 //!
 //! ```text
 //! a e = hi 2^32 + lo,    a e e' = hi e' + round(lo e' / 2^32)       (46 fraction bits)
@@ -13,12 +16,12 @@
 use core::cell::Cell;
 
 use super::super::super::body::SolverBody;
-use super::super::super::pair::{RATIO, UNIT, shift};
+use super::super::super::pair::{RATIO, UNIT, beyond, shift};
 use super::super::super::softness::Softness;
+use super::Poses;
 use super::angle::AngleRows;
 use super::batch::{Batch, Records, Shape};
-use super::{Dirty, Poses};
-use crate::math::{Length, Rate, Shift, Speed, Step, Unit};
+use crate::math::{Fx, Length, Rate, Ratio, Reciprocal, Shift, Speed, Step, Unit, saturate};
 use crate::simd::{Ints, Lanes};
 
 /// The softness of the rows of a batch.
@@ -28,10 +31,10 @@ pub(super) struct Stiffness {
     pub(super) limits: Softness,
 }
 
-/// Updates the outdated parts of batches to the current pose.
+/// Updates outdated batches to the current pose.
 #[derive(Clone, Copy)]
 pub(super) struct Refresh<'a> {
-    pub(super) dirty: Dirty,
+    pub(super) is_stale: bool,
     pub(super) stiffness: Stiffness,
     pub(super) poses: Poses<'a>,
 }
@@ -54,13 +57,14 @@ impl Refresh<'_> {
         angle: Option<&mut AngleRows<N>>,
         bodies: &[Cell<SolverBody>],
     ) {
-        if self.dirty >= Dirty::Gaps {
+        if self.is_stale {
             let (stiffness, poses) = (self.stiffness_of(batch, records), self.poses);
             let quads = [L::quads(poses.quads, &batch.bodies[0]), L::quads(poses.quads, &batch.bodies[1])];
-            refresh_gaps::<L, N>(batch, &records.shape, &quads, bodies, &stiffness.points);
-            if self.dirty == Dirty::Everything {
-                refresh_gains::<L, N>(batch, &records.shape, &quads);
+            let gap = gaps::<L, N>(batch, &records.shape, &quads, bodies);
+            for axis in 0..2 {
+                L::store(closing::<L, N>(gap[axis], &stiffness.points), &mut batch.bias[axis]);
             }
+            refresh_gains::<L, N>(batch, &records.shape, &quads, gap);
             if let Some(rows) = angle {
                 rows.refresh(&records.turns[..records.len], &batch.bodies, poses.body_rotations);
             }
@@ -68,23 +72,22 @@ impl Refresh<'_> {
     }
 }
 
-/// Computes gaps at the current pose.
+/// Vectors from A's anchor to B's at the current pose.
 #[inline(always)]
-fn refresh_gaps<L: Lanes<N>, const N: usize>(
-    batch: &mut Batch<N>,
+fn gaps<L: Lanes<N>, const N: usize>(
+    batch: &Batch<N>,
     shape: &Shape<N>,
     quads: &[[L::Int; 4]; 2],
     bodies: &[Cell<SolverBody>],
-    softness: &Softness,
-) {
+) -> [L::Int; 2] {
     let arms = [rotated::<L, N>(&quads[0], &shape.arms[0]), rotated::<L, N>(&quads[1], &shape.arms[1])];
     let (a, b) = (L::shifts(bodies, &batch.bodies[0]), L::shifts(bodies, &batch.bodies[1]));
     let moved = [L::sub(b.x, a.x), L::sub(b.y, a.y)];
-    for axis in 0..2 {
+    [0, 1].map(|axis: usize| {
         let between = L::load_wide(&shape.between[axis]);
         let gap = L::add_wide(L::sub_wide(arms[1][axis], arms[0][axis]), between);
-        L::store(closing::<L, N>(gap, moved[axis], softness), &mut batch.bias[axis]);
-    }
+        moved_gap::<L, N>(gap, moved[axis])
+    })
 }
 
 /// Computes lever ratios and gains at the current pose.
@@ -93,11 +96,16 @@ fn refresh_gains<L: Lanes<N>, const N: usize>(
     batch: &mut Batch<N>,
     shape: &Shape<N>,
     quads: &[[L::Int; 4]; 2],
+    gap: [L::Int; 2],
 ) {
     let e = [
-        rotated_ratios::<L, N>(&mut batch.e[0], &quads[0], &shape.ratios[0]),
-        rotated_ratios::<L, N>(&mut batch.e[1], &quads[1], &shape.ratios[1]),
+        reaching::<L, N>(rotated_ratios::<L, N>(&quads[0], &shape.ratios[0]), gap, &shape.inverse_gyration_a),
+        rotated_ratios::<L, N>(&quads[1], &shape.ratios[1]),
     ];
+    for (e, batch) in e.iter().zip(&mut batch.e) {
+        L::store(e[0], &mut batch[0]);
+        L::store(e[1], &mut batch[1]);
+    }
     let fractions = [L::load(&shape.fractions[0]), L::load(&shape.fractions[1])];
     let g = inverse::<L, N>(e, fractions);
     for side in 0..2 {
@@ -115,26 +123,50 @@ fn rotated<L: Lanes<N>, const N: usize>(quads: &[L::Int; 4], v: &[Ints<N>; 2]) -
 
 /// Lever ratios in world axes.
 #[inline(always)]
-fn rotated_ratios<L: Lanes<N>, const N: usize>(
-    e: &mut [Ints<N>; 2],
-    quads: &[L::Int; 4],
-    ratios: &[Ints<N>; 2],
-) -> [L::Int; 2] {
-    let [x, y] = rotated::<L, N>(quads, ratios);
-    let rotated = [L::narrow::<UNIT>(x), L::narrow::<UNIT>(y)];
-    L::store(rotated[0], &mut e[0]);
-    L::store(rotated[1], &mut e[1]);
-    rotated
+fn rotated_ratios<L: Lanes<N>, const N: usize>(quads: &[L::Int; 4], ratios: &[Ints<N>; 2]) -> [L::Int; 2] {
+    rotated::<L, N>(quads, ratios).map(L::narrow::<UNIT>)
 }
 
-/// The velocity that closes a gap, reversed. `gap` is the exact gap at the start of the tick, with 52 fraction bits.
-/// `moved` is the displacement since then. Their sum is rounded once.
+/// Fraction bits of [`gap_factor`].
+const FACTOR: u32 = 14;
+
+/// `1 / k` in 1/m, by which gaps become lever ratios. Saturates for bodies of less than a hundredth of a millimetre.
+pub(super) fn gap_factor(inverse_gyration: Reciprocal) -> i32 {
+    saturate(inverse_gyration.times_wide(Fx::ONE).to_bits() >> (Fx::FRAC_NBITS - FACTOR))
+}
+
+/// The lever ratios of A with an arm that is longer by the gap, `e + (-gap_y, gap_x) / k`. Levers that would be too long
+/// for the products of `K` stay as they are.
 #[inline(always)]
-fn closing<L: Lanes<N>, const N: usize>(gap: L::Wide, moved: L::Int, softness: &Softness) -> L::Int {
+fn reaching<L: Lanes<N>, const N: usize>(
+    e: [L::Int; 2],
+    [gap_x, gap_y]: [L::Int; 2],
+    factors: &Ints<N>,
+) -> [L::Int; 2] {
+    /// Largest component. The length of a lever ratio is then below [`super::input::LENGTH_MAX`].
+    const REACH_MAX: Ratio = Ratio::lit("87");
+    const SHIFT: i32 = shift(Step::FRAC_NBITS + FACTOR - Ratio::FRAC_NBITS);
+    let factor = L::load(factors);
+    let ratio = |gap: L::Int| L::narrow_saturating::<SHIFT>(L::mul(gap, factor)).0;
+    let (x, y) = (L::sub_saturating(e[0], ratio(gap_y)), L::add_saturating(e[1], ratio(gap_x)));
+    let most = L::splat(REACH_MAX.to_bits());
+    let beyond = L::either(beyond::<L, N>(x, most), beyond::<L, N>(y, most));
+    [L::select(beyond, e[0], x), L::select(beyond, e[1], y)]
+}
+
+/// The gap in the format of [`Step`]. `gap` is the exact gap at the start of the tick, with 52 fraction bits. `moved` is
+/// the displacement since then. Their sum is rounded once.
+#[inline(always)]
+fn moved_gap<L: Lanes<N>, const N: usize>(gap: L::Wide, moved: L::Int) -> L::Int {
     const ARM: u32 = Length::FRAC_NBITS + Unit::FRAC_NBITS;
-    const RATE: i32 = shift(Step::FRAC_NBITS + Rate::FRAC_NBITS - Speed::FRAC_NBITS);
     let moved = L::mul(moved, L::splat(1 << (ARM - Shift::FRAC_NBITS)));
-    let (gap, _) = L::narrow_saturating::<{ shift(ARM - Step::FRAC_NBITS) }>(L::add_wide(gap, moved));
+    L::narrow_saturating::<{ shift(ARM - Step::FRAC_NBITS) }>(L::add_wide(gap, moved)).0
+}
+
+/// The velocity that closes a gap, reversed.
+#[inline(always)]
+fn closing<L: Lanes<N>, const N: usize>(gap: L::Int, softness: &Softness) -> L::Int {
+    const RATE: i32 = shift(Step::FRAC_NBITS + Rate::FRAC_NBITS - Speed::FRAC_NBITS);
     L::narrow_saturating::<RATE>(L::mul(gap, L::splat(softness.bias_rate.to_bits()))).0
 }
 

@@ -14,6 +14,7 @@ use super::super::super::settings::{SolverSettings, Tuning};
 use super::super::super::softness::Softness;
 use super::angle_input::{DriveInput, LimitInput, SpringInput};
 use super::input::ratios;
+use super::refresh::gap_factor;
 use super::*;
 use crate::fx;
 use crate::math::{Angle, Fx, Length, Reciprocal, Rng, Rot, Shift, Speed, Unit, Vec2, narrow};
@@ -121,6 +122,7 @@ impl Setting {
             angle,
             arms: [locals[0], locals[1]],
             ratios: [0, 1].map(|side| ratios(locals[side], ends[side].inverse_gyration)),
+            gap_factor_a: gap_factor(ends[0].inverse_gyration),
             fractions,
             between: ends[0].arm.widen() - ends[1].arm.widen() + gap,
             turns: i64::from(rng.next_u32()) - (1 << 31),
@@ -129,6 +131,8 @@ impl Setting {
             softness: Softness::RIGID,
             is_tuned: false,
         });
+        // The lever of A reaches to B's anchor.
+        ends[0].arm += gap.narrow();
         self.ends.push([ends[0], ends[1]]);
         self.fractions.push(fractions);
     }
@@ -142,7 +146,7 @@ impl Setting {
             StepContext::new(machine, &threads, &tuning, bodies, &mut faults),
         );
         for _ in 0..2 {
-            hinges.expire(Dirty::Everything);
+            hinges.expire();
             hinges.warm_start(poses, &context);
             hinges.solve(Pass::Bias, poses, &context, |_| ());
             hinges.solve(Pass::Relax, poses, &context, |_| ());
@@ -258,7 +262,7 @@ fn a_point_is_solved_as_by_the_scalar_block() {
         }
         let before = setting.bodies.clone();
         setting.hinges.push_colour(0..8, |_| false);
-        setting.hinges.expire(Dirty::Everything);
+        setting.hinges.expire();
         let mut faults = setting.relax();
         let Setting { bodies, ends, fractions, .. } = &setting;
         for (i, (&[a, b], &fractions)) in ends.iter().zip(fractions.iter()).enumerate() {
