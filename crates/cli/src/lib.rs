@@ -25,8 +25,8 @@
 //! }
 //! ```
 //!
-//! This gives `verify`, `diff`, `bisect`, `trace`, `stress-saves`, `inspect`, `seek`, `fork`, `trim`, `stats` and
-//! `export`. [`Tool::with_scenes`] adds `scenes` and `record`; [`Tool::with_view`] sets how pictures show the game.
+//! This gives `verify`, `diff`, `bisect`, `trace`, `stress-saves`, `inspect`, `seek`, `fork`, `trim`, `stats`,
+//! `export`, `keygen` and `sign`. [`Tool::with_scenes`] adds `scenes` and `record`; [`Tool::with_view`] sets how pictures show the game.
 
 mod clock;
 mod commands;
@@ -43,6 +43,7 @@ mod output_file;
 mod rewriting;
 mod sandbox;
 mod scenes;
+pub mod signature;
 mod tool;
 mod walk;
 
