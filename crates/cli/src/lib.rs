@@ -51,10 +51,12 @@ use std::process::ExitCode;
 
 use lockstep2d::lockstep::Game;
 
+pub use commands::verify::{Judge, Judged, LimitArguments, with_defaults};
 pub use exit::Exit;
 pub use sandbox::SandboxScenes;
 pub use scenes::{Catalogue, Scene, SceneInfo, Script};
 pub use tool::Tool;
+pub use walk::{Walk, WalkError};
 
 /// Runs the tools of a game without scenes and with the default view, with the arguments of this process.
 #[must_use]

@@ -16,6 +16,7 @@ mod cache;
 mod display;
 mod interrupt;
 mod judge;
+mod judge_api;
 mod panics;
 mod pool;
 mod progress;
@@ -30,6 +31,7 @@ mod watch;
 use cache::Cache;
 use display::Display;
 use judge::Shared;
+pub use judge_api::{Judge, Judged};
 use pool::Order;
 use shard::Shard;
 use signers::Signers;
@@ -82,10 +84,10 @@ struct SignerArguments {
     require: u16,
 }
 
-/// Limits of one file that override the limits of the tool.
-#[derive(Args, Debug)]
+/// Arguments that override limits of one file, as `verify` has them.
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Limits of one file")]
-struct LimitArguments {
+pub struct LimitArguments {
     /// Most bytes of the file
     #[arg(long, value_name = "N")]
     max_bytes: Option<u64>,
@@ -104,7 +106,9 @@ struct LimitArguments {
 }
 
 impl LimitArguments {
-    fn over(&self, limits: &Limits) -> Limits {
+    /// These limits, where an argument is given, and otherwise those of `limits`.
+    #[must_use]
+    pub fn over(&self, limits: &Limits) -> Limits {
         Limits {
             file_bytes: self.max_bytes.unwrap_or(limits.file_bytes),
             ticks: self.max_ticks.unwrap_or(limits.ticks),
@@ -117,7 +121,7 @@ impl LimitArguments {
 }
 
 /// Adds the limits of the tool to the help of the arguments that override them.
-pub(crate) fn with_defaults(command: Command, limits: &Limits) -> Command {
+pub fn with_defaults(command: Command, limits: &Limits) -> Command {
     let defaults = [
         ("max_bytes", limits.file_bytes),
         ("max_ticks", limits.ticks),
