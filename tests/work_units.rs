@@ -36,6 +36,9 @@ fn computed() -> Duration {
 /// The commands of a tick, by its number.
 type Script<'a> = Box<dyn Fn(u64) -> Vec<Command> + 'a>;
 
+/// Most times that the commands of a case are repeated until something takes long enough to be judged.
+const REPEATS_MAX: usize = 4096;
+
 /// The work units and the time of a part of a game.
 #[derive(Clone, Copy, Debug)]
 struct Cost {
@@ -60,7 +63,13 @@ fn costs(setup: &SandboxSetup, ticks: u64, script: &Script<'_>) -> [Cost; 2] {
         recording.step(&[script(tick)]).expect("commands that can be recorded");
     }
     let file = recording.finish().expect("a replay");
-    let limits = Limits { tick_work: u64::MAX, total_work: u64::MAX, ..Limits::default() };
+    let limits = Limits {
+        tick_work: u64::MAX,
+        total_work: u64::MAX,
+        file_bytes: u64::MAX,
+        block_bytes: u32::MAX,
+        ..Limits::default()
+    };
     let mut best: Option<[Cost; 2]> = None;
     for _ in 0..3 {
         let start = computed();
@@ -87,9 +96,32 @@ fn costs(setup: &SandboxSetup, ticks: u64, script: &Script<'_>) -> [Cost; 2] {
     best.expect("three runs")
 }
 
-/// Measures a case, prints its costs, and returns its name if it is too expensive.
+/// Measures a case, prints its costs, and returns its name if it is too expensive, or too short to be judged.
 fn too_expensive(name: &str, setup: &SandboxSetup, ticks: u64, script: Script<'_>) -> Option<String> {
     let parts = costs(setup, ticks, &script);
+    if parts.iter().all(|cost| cost.time < JUDGED) {
+        return Some(format!("{name}: nothing of it takes {JUDGED:?}, so that nothing is judged"));
+    }
+    judge(name, parts)
+}
+
+/// Measures one tick with commands that are repeated until it takes long enough to be judged.
+fn too_expensive_repeated(name: &str, setup: &SandboxSetup, once: &[Command]) -> Option<String> {
+    let mut repeats = 16;
+    while repeats <= REPEATS_MAX {
+        let script = |_| once.iter().cycle().take(repeats * once.len()).cloned().collect();
+        let parts = costs(setup, 1, &(Box::new(script) as Script<'_>));
+        // The setup is the same for all commands.
+        if parts[1].time >= JUDGED {
+            return judge(&format!("{name}, {repeats} times"), parts);
+        }
+        repeats *= 4;
+    }
+    Some(format!("{name}: no tick takes {JUDGED:?}, so that nothing is judged"))
+}
+
+/// Prints the costs of a case, and returns its name if it is too expensive.
+fn judge(name: &str, parts: [Cost; 2]) -> Option<String> {
     let mut wrong = None;
     for (part, cost) in ["setup", "tick"].into_iter().zip(parts) {
         println!("{name}, {part}: {} units, {:?}, {} ns per unit", cost.units, cost.time, cost.per_unit());
@@ -339,9 +371,8 @@ fn every_command_of_a_body() {
     let mut wrong = Vec::new();
     for (name, once) in cases {
         for settled in [false, true] {
-            let script = |_| once.iter().cycle().take(100).cloned().collect();
             let name = format!("{name}{}", if settled { ", asleep" } else { "" });
-            wrong.extend(too_expensive(&name, &setup(commands(settled), still()), 1, Box::new(script)));
+            wrong.extend(too_expensive_repeated(&name, &setup(commands(settled), still()), &once));
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
