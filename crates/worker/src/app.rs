@@ -73,9 +73,13 @@ impl<G: Game + 'static> Worker<G> {
         let (engine, semantics) = (lockstep2d::VERSION, lockstep2d::SEMANTICS);
         let command = Arguments::command()
             .version(format!("rules version {}, engine {engine}, semantics {semantics}", rules.version))
-            .about(format!("Verify replays of {} on many machines, with a queue in NATS JetStream", rules.name))
+            .about(format!(
+                "Verify replays of {} on many machines, with a queue in NATS JetStream",
+                rules.name
+            ))
             .mut_subcommand("work", |work| with_defaults(work, &self.limits));
-        let arguments = Arguments::from_arg_matches(&command.get_matches()).unwrap_or_else(|usage| usage.exit());
+        let arguments =
+            Arguments::from_arg_matches(&command.get_matches()).unwrap_or_else(|usage| usage.exit());
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(2)
             .thread_stack_size(STACK_BYTES)
@@ -99,8 +103,10 @@ impl<G: Game + 'static> Worker<G> {
 }
 
 #[derive(Parser, Debug)]
-#[command(after_help = "Exit code: 0 for success and after a signal, 2 for wrong usage, or when NATS or a file cannot \
-                        be reached for a minute. See docs/WORKERS.md.")]
+#[command(
+    after_help = "Exit code: 0 for success and after a signal, 2 for wrong usage, or when NATS or a file cannot \
+                        be reached for a minute. See docs/WORKERS.md."
+)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

@@ -44,10 +44,8 @@ impl Metrics {
             ("busy", "gauge", self.is_busy.load(Ordering::Relaxed).into()),
         ];
         for (name, kind, value) in counters {
-            let _ = writeln!(
-                text,
-                "# TYPE lockstep2d_worker_{name} {kind}\nlockstep2d_worker_{name} {value}"
-            );
+            let _ =
+                writeln!(text, "# TYPE lockstep2d_worker_{name} {kind}\nlockstep2d_worker_{name} {value}");
         }
         text
     }

@@ -196,7 +196,10 @@ pub(crate) fn json(value: &impl serde::Serialize) -> String {
 ///
 /// # Errors
 /// The last error.
-pub(crate) async fn retry<T, E, F>(what: &'static str, mut attempt: impl FnMut() -> F) -> Result<T, WorkerError>
+pub(crate) async fn retry<T, E, F>(
+    what: &'static str,
+    mut attempt: impl FnMut() -> F,
+) -> Result<T, WorkerError>
 where
     E: std::error::Error,
     F: Future<Output = Result<T, E>>,

@@ -55,14 +55,11 @@ fn replays(path: &Path) -> Box<dyn Iterator<Item = Result<PathBuf, WorkerError>>
     if !path.is_dir() {
         return Box::new(std::iter::once(Ok(path.to_path_buf())));
     }
-    let mut walk = Walk::new(path).map(|found| {
-        found.map_err(|error| WorkerError::Read { path: error.path, error: error.error })
-    });
+    let mut walk = Walk::new(path)
+        .map(|found| found.map_err(|error| WorkerError::Read { path: error.path, error: error.error }));
     match walk.next() {
         Some(first) => Box::new(std::iter::once(first).chain(walk)),
-        None => {
-            Box::new(std::iter::once(Err(WorkerError::NothingToSubmit { path: path.to_path_buf() })))
-        }
+        None => Box::new(std::iter::once(Err(WorkerError::NothingToSubmit { path: path.to_path_buf() }))),
     }
 }
 

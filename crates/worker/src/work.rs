@@ -59,7 +59,10 @@ enum Done {
 }
 
 /// Takes jobs until a signal.
-pub(crate) async fn run<G: Game + 'static>(arguments: &WorkArguments, limits: &Limits) -> Result<(), WorkerError> {
+pub(crate) async fn run<G: Game + 'static>(
+    arguments: &WorkArguments,
+    limits: &Limits,
+) -> Result<(), WorkerError> {
     let mut shutdown = Shutdown::listen(arguments.grace_seconds)?;
     let judge = Arc::new(Judge::<G>::new(arguments.limits.over(limits)));
     let metrics = Arc::new(Metrics::default());
