@@ -35,7 +35,7 @@ pub struct Signature {
 
 /// The signatures of a replay: at most one of each key, in the order of the file.
 ///
-/// The text has one way to be written: a file with any other byte than [`Signatures::to_string`] gives cannot be parsed
+/// The text has one way to be written: a file with any other byte than `to_string` gives cannot be parsed
 /// or has other signatures. The module [`signature`](crate::signature) has an example.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Signatures(Vec<Signature>);
