@@ -10,6 +10,7 @@ use lockstep2d::report::{CompareError, EvidenceError, TraceError};
 
 use crate::exit::Exit;
 use crate::files::{EXTENSION, Shown};
+use crate::signature::{LineError, RandomError};
 
 /// An error that stops a command.
 #[derive(Debug)]
@@ -60,6 +61,18 @@ pub(crate) enum CommandError {
     Evidence { path: PathBuf, error: EvidenceError },
     /// A replay cannot be traced.
     Trace { path: PathBuf, error: TraceError },
+    /// A file of keys or signatures is damaged.
+    Line { path: PathBuf, error: LineError },
+    /// A file of keys or signatures is too large, or is not text.
+    NoText { path: PathBuf },
+    /// The system has no random numbers for a key.
+    Random(RandomError),
+    /// A name that is not allowed for a key.
+    KeyName { name: String },
+    /// More signatures are required than there are names.
+    Require { required: usize, names: usize },
+    /// The standard input has no signature file beside it.
+    InputSignatures,
     /// Two files cannot be compared with each other.
     Compare(CompareError),
 }
@@ -73,6 +86,11 @@ impl CommandError {
     /// Returns a function that wraps an error of writing the file at `path`.
     pub(crate) fn write(path: &Path) -> impl Fn(io::Error) -> Self {
         move |error| CommandError::Write { path: path.to_path_buf(), error }
+    }
+
+    /// Returns a function that wraps an error in the keys or signatures at `path`.
+    pub(crate) fn line(path: &Path) -> impl Fn(LineError) -> Self {
+        move |error| CommandError::Line { path: path.to_path_buf(), error }
     }
 
     /// Returns a function that wraps a verdict on the replay at `path`.
@@ -138,6 +156,18 @@ impl fmt::Display for CommandError {
             }
             CommandError::Evidence { path, error } => write!(f, "{}: {error}", Shown(path)),
             CommandError::Trace { path, error } => write!(f, "{}: {error}", Shown(path)),
+            CommandError::Line { path, error } => write!(f, "{}: {error}", Shown(path)),
+            CommandError::NoText { path } => write!(f, "{}: too large, or not text", Shown(path)),
+            CommandError::Random(error) => write!(f, "cannot make a key: {error}"),
+            CommandError::KeyName { name } => {
+                write!(f, "{name:?} cannot be the name of a key: 1 to 64 bytes without control characters")
+            }
+            CommandError::Require { required, names } => {
+                write!(f, "{required} signatures are required, but the keys have {names} names")
+            }
+            CommandError::InputSignatures => {
+                write!(f, "the standard input has no signature file beside it: name the replay")
+            }
             CommandError::Compare(error) => write!(f, "cannot compare: {error}"),
         }
     }

@@ -2,11 +2,13 @@
 
 use std::process::ExitCode;
 
-/// The outcome of a command, as scripts see it.
+/// The outcome of a command, as scripts see it. Of several, the last in this order counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Exit {
     /// The command succeeded; all files match, or nothing differs. Exit code 0.
     Success,
+    /// All files match, but a required signature is missing or not valid. Exit code 3.
+    Unsigned,
     /// A file does not match, or something differs. Exit code 1.
     NoMatch,
     /// Wrong usage, a path that cannot be read or written, files that cannot be compared, or nothing to do. Exit code
@@ -22,6 +24,7 @@ impl Exit {
             Exit::Success => 0,
             Exit::NoMatch => 1,
             Exit::Trouble => 2,
+            Exit::Unsigned => 3,
         }
     }
 }

@@ -1,42 +1,92 @@
-//! [`game_digest`]: the identity of a game, which does not depend on how its replay was written.
+//! [`GameDigest`]: the identity of a game, which does not depend on how its replay was written.
 
-use blake3::{Hash, Hasher};
-use lockstep2d::replay::{Limits, Part, Reader};
+use std::fmt;
+
+use blake3::Hasher;
+use lockstep2d::SEMANTICS;
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::{Limits, Mismatch, Part, ReadError, Reader, Verdict};
 
 /// Precedes everything that is hashed, so that no other use of BLAKE3 gives the same digest.
 const DOMAIN: &[u8] = b"lockstep2d game 1";
 
-/// The BLAKE3 of rules, setup and inputs, as FORMAT.md defines it. `None` for a file that is damaged.
+/// The BLAKE3 of the rules, setup and inputs of a game, as FORMAT.md defines it: what `verify --json` prints as `game`.
 ///
 /// Blocks, checkpoints and the trailer do not count. The inputs are those of the complete blocks, so a file that ends
-/// before its trailer has the digest of the game up to there.
-pub(crate) fn game_digest(file: &[u8], limits: &Limits) -> Option<Hash> {
-    let mut reader = Reader::open(file, limits).ok()?;
-    let mut hasher = Hasher::new();
-    let header = reader.header();
-    hasher.update(DOMAIN);
-    hasher.update(&header.semantics.to_le_bytes());
-    hasher.update(&header.rules_version.to_le_bytes());
-    add_bytes(&mut hasher, header.rules_name.as_bytes());
-    add_bytes(&mut hasher, header.setup);
-    // Runs that a block has split are joined again.
-    let mut run: Option<(u64, &[u8])> = None;
-    while let Some(part) = reader.next_part().ok()? {
-        let Part::Inputs(block) = part else { break };
-        let mut runs = block.runs();
-        while let Some(next) = runs.next_run().ok()? {
-            let ticks = u64::from(next.ticks);
-            run = match run {
-                Some((before, encoded)) if encoded == next.encoded => Some((before + ticks, encoded)),
-                _ => {
-                    add_run(&mut hasher, run);
-                    Some((ticks, next.encoded))
-                }
-            };
+/// before its trailer has the digest of the game up to there. [`Signatures`](crate::signature::Signatures) has an
+/// example.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GameDigest(blake3::Hash);
+
+impl GameDigest {
+    /// Computes the digest of a replay of the game `G`, without simulating it.
+    ///
+    /// # Errors
+    /// [`Verdict::Malformed`] and [`Verdict::LimitExceeded`] for a file that is damaged or too large, and
+    /// [`Verdict::Unverifiable`] for one of another game, other rules or other semantics.
+    pub fn of_replay<G: Game>(replay: &[u8], limits: &Limits) -> Result<Self, Verdict> {
+        let reader = Reader::open(replay, limits)?;
+        let header = reader.header();
+        match mismatch::<G>(header.semantics, header.rules_name, header.rules_version) {
+            Some(why) => Err(Verdict::Unverifiable { why }),
+            None => Ok(Self::of_any(replay, limits)?),
         }
     }
-    add_run(&mut hasher, run);
-    Some(hasher.finalize())
+
+    /// Computes the digest of a replay of any game.
+    ///
+    /// # Errors
+    /// [`ReadError`] for a file that is damaged or too large.
+    pub(crate) fn of_any(replay: &[u8], limits: &Limits) -> Result<Self, ReadError> {
+        let mut reader = Reader::open(replay, limits)?;
+        let mut hasher = Hasher::new();
+        let header = reader.header();
+        hasher.update(DOMAIN);
+        hasher.update(&header.semantics.to_le_bytes());
+        hasher.update(&header.rules_version.to_le_bytes());
+        add_bytes(&mut hasher, header.rules_name.as_bytes());
+        add_bytes(&mut hasher, header.setup);
+        // Runs that a block has split are joined again.
+        let mut run: Option<(u64, &[u8])> = None;
+        while let Some(part) = reader.next_part()? {
+            let Part::Inputs(block) = part else { break };
+            let mut runs = block.runs();
+            while let Some(next) = runs.next_run()? {
+                let ticks = u64::from(next.ticks);
+                run = match run {
+                    Some((before, encoded)) if encoded == next.encoded => Some((before + ticks, encoded)),
+                    _ => {
+                        add_run(&mut hasher, run);
+                        Some((ticks, next.encoded))
+                    }
+                };
+            }
+        }
+        add_run(&mut hasher, run);
+        Ok(GameDigest(hasher.finalize()))
+    }
+
+    /// The 32 bytes of the digest.
+    #[must_use]
+    pub fn as_bytes(&self) -> &[u8; 32] {
+        self.0.as_bytes()
+    }
+}
+
+/// 64 hexadecimal digits in lower case.
+impl fmt::Display for GameDigest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+/// Why a program for the game `G` cannot verify a file with this semantics id and these rules.
+pub(crate) fn mismatch<G: Game>(semantics: u32, name: &str, version: u32) -> Option<Mismatch> {
+    if semantics != SEMANTICS {
+        return Some(Mismatch::Semantics { file: semantics, here: SEMANTICS });
+    }
+    let (file, here) = ((name.into(), version), (G::RULES.name.into(), G::RULES.version));
+    (file != here).then_some(Mismatch::Rules { file, here })
 }
 
 fn add_run(hasher: &mut Hasher, run: Option<(u64, &[u8])>) {

@@ -25,8 +25,8 @@
 //! }
 //! ```
 //!
-//! This gives `verify`, `diff`, `bisect`, `trace`, `stress-saves`, `inspect`, `seek`, `fork`, `trim`, `stats` and
-//! `export`. [`Tool::with_scenes`] adds `scenes` and `record`; [`Tool::with_view`] sets how pictures show the game.
+//! This gives `verify`, `diff`, `bisect`, `trace`, `stress-saves`, `inspect`, `seek`, `fork`, `trim`, `stats`,
+//! `export`, `keygen` and `sign`. [`Tool::with_scenes`] adds `scenes` and `record`; [`Tool::with_view`] sets how pictures show the game.
 
 mod clock;
 mod commands;
@@ -43,6 +43,7 @@ mod output_file;
 mod rewriting;
 mod sandbox;
 mod scenes;
+pub mod signature;
 mod tool;
 mod walk;
 
@@ -50,10 +51,12 @@ use std::process::ExitCode;
 
 use lockstep2d::lockstep::Game;
 
+pub use commands::verify::{Judge, Judged, LimitArguments, with_defaults};
 pub use exit::Exit;
 pub use sandbox::SandboxScenes;
 pub use scenes::{Catalogue, Scene, SceneInfo, Script};
 pub use tool::Tool;
+pub use walk::{Walk, WalkError};
 
 /// Runs the tools of a game without scenes and with the default view, with the arguments of this process.
 #[must_use]

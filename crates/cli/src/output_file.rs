@@ -5,6 +5,8 @@
 //! - An existing file is replaced only if the user said so.
 //! - At most one process writes a target at a time. The others fail before they change anything.
 //!
+//! - A private file can be read only by its owner, from its first byte on.
+//!
 //! A process that is killed leaves its temporary file behind. The lock on it ends with the process, so the next writer
 //! of the same target reuses the file.
 
@@ -18,6 +20,10 @@ use crate::error::CommandError;
 
 /// Appended to the name of the target while it is written.
 const SUFFIX: &str = ".unfinished";
+
+/// Permissions of a private file.
+#[cfg(unix)]
+const OWNER_ONLY: u32 = 0o600;
 
 /// Attempts to lock a temporary file that other processes keep renaming.
 const ATTEMPTS_MAX: u32 = 100;
@@ -33,6 +39,15 @@ pub(crate) struct Overwrite {
 impl Overwrite {
     /// Replaces an existing file: for files that only the tool writes, such as keyframes.
     pub(crate) const ALWAYS: Overwrite = Overwrite { force: true };
+}
+
+/// Who may read a new file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Readers {
+    /// Those that the system gives new files.
+    Default,
+    /// Its owner only.
+    Owner,
 }
 
 /// A file that is being written. Unless it is published, its temporary file is deleted when the value is dropped.
@@ -57,6 +72,18 @@ impl OutputFile {
     /// [`CommandError::Exists`] for an existing file without `--force`, [`CommandError::Busy`] if another process
     /// writes the same target, and [`CommandError::Write`].
     pub(crate) fn create(path: &Path, overwrite: Overwrite) -> Result<Self, CommandError> {
+        Self::create_for(path, overwrite, Readers::Default)
+    }
+
+    /// As [`OutputFile::create`], with a file that only its owner can read, where the system has such files.
+    ///
+    /// # Errors
+    /// Those of [`OutputFile::create`].
+    pub(crate) fn create_private(path: &Path, overwrite: Overwrite) -> Result<Self, CommandError> {
+        Self::create_for(path, overwrite, Readers::Owner)
+    }
+
+    fn create_for(path: &Path, overwrite: Overwrite, readers: Readers) -> Result<Self, CommandError> {
         let failed = CommandError::write(path);
         check(path, overwrite)?;
         let name = path.to_path_buf();
@@ -74,7 +101,7 @@ impl OutputFile {
         let mut temporary = target.clone().into_os_string();
         temporary.push(SUFFIX);
         let temporary = PathBuf::from(temporary);
-        let file = lock(&temporary, &name)?;
+        let file = lock(&temporary, &name, readers)?;
         let output = OutputFile { name, target, temporary: Some(temporary), file, overwrite };
         // A writer that had the lock until now may have published the target.
         check(path, overwrite)?;
@@ -149,15 +176,14 @@ pub(crate) fn check(path: &Path, overwrite: Overwrite) -> Result<(), CommandErro
 }
 
 /// Opens and locks the temporary file. `name` is the target's name for messages.
-fn lock(temporary: &Path, name: &Path) -> Result<File, CommandError> {
+fn lock(temporary: &Path, name: &Path, readers: Readers) -> Result<File, CommandError> {
     let failed = CommandError::write(name);
     for _ in 0..ATTEMPTS_MAX {
         // Opening a link or a pipe of this name could change another file, or block.
         if fs::symlink_metadata(temporary).is_ok_and(|metadata| !metadata.is_file()) {
             return Err(failed(io::ErrorKind::AlreadyExists.into()));
         }
-        let file = File::options().write(true).create(true).truncate(false).open(temporary);
-        let file = file.map_err(&failed)?;
+        let file = open(temporary, readers).map_err(&failed)?;
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Err(CommandError::Busy { path: name.to_path_buf() }),
@@ -171,6 +197,21 @@ fn lock(temporary: &Path, name: &Path) -> Result<File, CommandError> {
         }
     }
     Err(CommandError::Busy { path: name.to_path_buf() })
+}
+
+/// Opens the temporary file, or creates it.
+fn open(temporary: &Path, readers: Readers) -> io::Result<File> {
+    let mut options = File::options();
+    options.write(true).create(true).truncate(false);
+    #[cfg(unix)]
+    if readers == Readers::Owner {
+        use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
+        let file = options.mode(OWNER_ONLY).open(temporary)?;
+        // The file may be one that a killed process has left.
+        file.set_permissions(fs::Permissions::from_mode(OWNER_ONLY))?;
+        return Ok(file);
+    }
+    options.open(temporary)
 }
 
 /// Whether `path` still names the open file.

@@ -39,7 +39,7 @@ impl<G: Game> Default for Tool<G> {
 
 impl<G: Game> Tool<G> {
     /// The commands that every game has: `verify`, `diff`, `bisect`, `trace`, `stress-saves`, `inspect`, `seek`,
-    /// `fork`, `trim`, `stats` and `export`.
+    /// `fork`, `trim`, `stats`, `export`, `keygen` and `sign`.
     #[must_use]
     pub fn new() -> Self {
         Tool { limits: Limits::default(), catalogue: None, view: None, own: Vec::new() }

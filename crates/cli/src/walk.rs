@@ -17,7 +17,7 @@ const NAMES_MAX: usize = 4096;
 /// with the name of a replay would block for ever.
 ///
 /// A file that is created during the walk may be found or not, but is never found twice.
-pub(crate) struct Walk {
+pub struct Walk {
     /// The current folder, last, and its ancestors.
     folders: Vec<Folder>,
     names_max: usize,
@@ -35,13 +35,18 @@ struct Folder {
 }
 
 /// A folder that cannot be listed, or an entry whose metadata cannot be read.
-pub(crate) struct WalkError {
-    pub(crate) path: PathBuf,
-    pub(crate) error: io::Error,
+#[derive(Debug)]
+pub struct WalkError {
+    /// Its path.
+    pub path: PathBuf,
+    /// The error of the system.
+    pub error: io::Error,
 }
 
 impl Walk {
-    pub(crate) fn new(folder: &Path) -> Self {
+    /// Begins a walk through a folder.
+    #[must_use]
+    pub fn new(folder: &Path) -> Self {
         Self::with_names_max(folder, NAMES_MAX)
     }
 

@@ -6,9 +6,11 @@ mod diff;
 mod export;
 mod fork;
 mod inspect;
+mod keygen;
 mod record;
 mod scenes;
 mod seek;
+pub(crate) mod sign;
 mod stats;
 mod stress_saves;
 mod trace;
@@ -50,6 +52,8 @@ pub(crate) fn table<G: Game>(has_scenes: bool) -> Vec<Row<G>> {
         "trim" => trim,
         "stats" => stats,
         "export" => export,
+        "keygen" => keygen,
+        "sign" => sign,
     ];
     if has_scenes {
         table.extend(rows![

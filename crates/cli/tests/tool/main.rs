@@ -23,6 +23,7 @@ mod long;
 mod outputs;
 mod record;
 mod seek;
+mod sign;
 mod stats;
 mod stress_saves;
 mod trim;

@@ -13,7 +13,7 @@ use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::Shown;
-use crate::identity::game_digest;
+use crate::identity::{GameDigest, mismatch};
 
 pub(super) fn print<G: Game>(
     bytes: &[u8],
@@ -112,7 +112,7 @@ impl Summary {
             blocks,
             runs,
             bytes,
-            game: game_digest(file, limits).map(|game| game.to_string()),
+            game: GameDigest::of_any(file, limits).ok().map(|game| game.to_string()),
             end,
         })
     }
@@ -226,15 +226,6 @@ impl Summary {
             "setup": setup_fields,
         })
     }
-}
-
-/// Why this program cannot verify a file made with this semantics and these rules, if so.
-pub(super) fn mismatch<G: Game>(semantics: u32, name: &str, version: u32) -> Option<Mismatch> {
-    if semantics != lockstep2d::SEMANTICS {
-        return Some(Mismatch::Semantics { file: semantics, here: lockstep2d::SEMANTICS });
-    }
-    let (file, here) = ((name.into(), version), (G::RULES.name.into(), G::RULES.version));
-    (file != here).then_some(Mismatch::Rules { file, here })
 }
 
 fn setup<G: Game>(rules: (&str, u32), bytes: &[u8]) -> Setup {

@@ -4,12 +4,13 @@ use lockstep2d::lockstep::Game;
 use lockstep2d::report::{DesyncReport, Group};
 use serde_json::{Value as Json, json};
 
-use super::replay::{Summary, mismatch};
+use super::replay::Summary;
 use super::{Arguments, shown};
 use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::Shown;
+use crate::identity::mismatch;
 
 pub(super) fn print<G: Game>(
     report: &DesyncReport,

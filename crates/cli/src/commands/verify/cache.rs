@@ -50,9 +50,7 @@ impl Cache {
 
     /// The key of the report on a file whose bytes have this digest.
     pub(super) fn key(&self, bytes: &Hash) -> Hash {
-        let mut hasher = blake3::Hasher::new();
-        hasher.update(self.context.as_bytes()).update(bytes.as_bytes());
-        hasher.finalize()
+        key(&self.context, bytes.as_bytes())
     }
 
     /// The cached report of a key, if there is an undamaged entry.
@@ -93,8 +91,15 @@ impl Cache {
     }
 }
 
+/// The key of the report on a file whose bytes have this digest.
+pub(super) fn key(context: &Hash, bytes: &[u8; 32]) -> Hash {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(context.as_bytes()).update(bytes);
+    hasher.finalize()
+}
+
 /// Hash of everything but the file's bytes that a verdict depends on.
-fn context(rules: RulesId, limits: &Limits) -> Hash {
+pub(super) fn context(rules: RulesId, limits: &Limits) -> Hash {
     // Exhaustive destructuring: a new limit does not compile until it is hashed here.
     let Limits {
         file_bytes,

@@ -3,12 +3,14 @@
 use std::io;
 use std::path::Path;
 
-use lockstep2d::replay::{ClaimDifference, Verdict};
+use lockstep2d::replay::{ClaimDifference, Limits, Verdict};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::panics::Panic;
+use super::signers::Signed;
 use crate::console::json_text;
+use crate::identity::GameDigest;
 
 /// The verdict on a file's bytes with its details. It depends on nothing but the bytes, the limits and the program.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -29,11 +31,16 @@ pub(super) struct Report {
 pub(super) struct Digests {
     /// Digest of the bytes that were judged.
     pub(super) blake3: blake3::Hash,
-    /// Digest of the game: see [`crate::identity::game_digest`].
-    pub(super) game: Option<blake3::Hash>,
+    /// Digest of the game: see [`GameDigest`].
+    pub(super) game: Option<GameDigest>,
 }
 
 impl Digests {
+    /// The digests of a file. One that is damaged or exceeds a limit has no digest of its game.
+    pub(super) fn of(bytes: &[u8], limits: &Limits) -> Self {
+        Digests { blake3: blake3::hash(bytes), game: GameDigest::of_any(bytes, limits).ok() }
+    }
+
     fn texts(&self) -> (String, Option<String>) {
         (self.blake3.to_string(), self.game.map(|game| game.to_string()))
     }
@@ -93,7 +100,13 @@ impl Report {
     }
 
     /// The report as one line of JSON.
-    pub(super) fn json(&self, file: &Path, digests: &Digests, cached: bool) -> String {
+    pub(super) fn json(
+        &self,
+        file: &Path,
+        digests: &Digests,
+        cached: bool,
+        signed: Option<&Signed>,
+    ) -> String {
         #[derive(Serialize)]
         struct Whole<'a> {
             file: String,
@@ -105,13 +118,15 @@ impl Report {
             game: Option<String>,
             cached: bool,
             #[serde(flatten)]
+            signed: Option<&'a Signed>,
+            #[serde(flatten)]
             details: &'a Map<String, Value>,
         }
         let Report { text: _, verdict, ticks, hash, bytes, details } = self;
         let (ticks, hash, bytes) = (*ticks, hash.as_deref(), *bytes);
         let file = file.display().to_string();
         let (blake3, game) = digests.texts();
-        let line = Whole { file, verdict, ticks, hash, bytes, blake3, game, cached, details };
+        let line = Whole { file, verdict, ticks, hash, bytes, blake3, game, cached, signed, details };
         json_text(&line)
     }
 }
@@ -122,9 +137,15 @@ pub(super) fn unread(file: &Path, error: &io::Error) -> String {
 }
 
 /// The line of a file that has used up its time, which has no verdict.
-pub(super) fn out_of_time(file: &Path, digests: &Digests, seconds: u64, ticks: u64) -> String {
+pub(super) fn out_of_time(
+    file: &Path,
+    digests: &Digests,
+    signed: Option<&Signed>,
+    seconds: u64,
+    ticks: u64,
+) -> String {
     #[derive(Serialize)]
-    struct OutOfTime {
+    struct OutOfTime<'a> {
         file: String,
         stopped: &'static str,
         seconds: u64,
@@ -132,10 +153,13 @@ pub(super) fn out_of_time(file: &Path, digests: &Digests, seconds: u64, ticks: u
         blake3: String,
         game: Option<String>,
         cached: bool,
+        #[serde(flatten)]
+        signed: Option<&'a Signed>,
     }
     let file = file.display().to_string();
     let (blake3, game) = digests.texts();
-    json_text(&OutOfTime { file, stopped: "max_seconds", seconds, ticks, blake3, game, cached: false })
+    let stopped = "max_seconds";
+    json_text(&OutOfTime { file, stopped, seconds, ticks, blake3, game, cached: false, signed })
 }
 
 fn details(verdict: &Verdict, claims: &[(String, i64)], needs: Option<Needs>) -> Map<String, Value> {

@@ -15,6 +15,8 @@ pub(super) struct Totals {
     others: BTreeMap<String, u64>,
     /// Files without a verdict because of `--max-seconds`.
     undecided: u64,
+    /// Files that are not signed as required.
+    unsigned: u64,
     /// Files whose report came from the cache.
     cached: u64,
     /// Ticks that were played in this run.
@@ -28,6 +30,11 @@ impl Totals {
         self.files += 1;
         self.undecided += 1;
         self.ticks = self.ticks.saturating_add(ticks);
+    }
+
+    /// Counts a file that is not signed as required, beside its verdict.
+    pub(super) fn add_unsigned(&mut self) {
+        self.unsigned += 1;
     }
 
     pub(super) fn add(&mut self, report: &Report, cached: bool) {
@@ -52,7 +59,7 @@ pub(super) fn rate(ticks: u64, elapsed: Duration) -> u128 {
 
 impl fmt::Display for Totals {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Totals { files, matches, others, undecided, cached, ticks, elapsed } = self;
+        let Totals { files, matches, others, undecided, unsigned, cached, ticks, elapsed } = self;
         write!(f, "{matches} of {files} files match")?;
         if !others.is_empty() {
             let others = others.iter().map(|(verdict, count)| format!("{count} {verdict}"));
@@ -60,6 +67,9 @@ impl fmt::Display for Totals {
         }
         if *undecided > 0 {
             write!(f, "; {undecided} out of time")?;
+        }
+        if *unsigned > 0 {
+            write!(f, "; {unsigned} not signed as required")?;
         }
         if *cached > 0 {
             write!(f, "; {cached} known from the cache")?;

@@ -1,0 +1,91 @@
+//! [`Judge`]: the verdicts of `verify` for servers that do not have their files in a folder.
+
+use std::marker::PhantomData;
+use std::path::Path;
+use std::sync::atomic::Ordering;
+
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::Limits;
+
+use super::cache;
+use super::judge::{Outcome, Shared, judge};
+use super::report::Digests;
+
+/// Verifies files of the game `G` one by one, on any thread, and gives the lines of `verify --json`.
+///
+/// ```
+/// use lockstep2d::lockstep::Sandbox;
+/// use lockstep2d::replay::{Limits, Recording};
+/// use lockstep2d_cli::Judge;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let replay = Recording::<Sandbox>::start(&Default::default(), 60)?.finish()?;
+/// let judge = Judge::<Sandbox>::new(Limits::default());
+/// let judged = judge.judge("17.replay", &replay).ok_or("stopped")?;
+/// assert_eq!(judged.verdict, "match");
+/// assert!(judged.line.starts_with(r#"{"file":"17.replay","verdict":"match","ticks":0,"#));
+/// # Ok(())
+/// # }
+/// ```
+pub struct Judge<G: Game> {
+    limits: Limits,
+    shared: Shared,
+    game: PhantomData<fn() -> G>,
+}
+
+/// The verdict on a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Judged {
+    /// The name of the verdict, as VERIFYING.md lists them.
+    pub verdict: String,
+    /// The line of JSON, without a line break.
+    pub line: String,
+}
+
+impl<G: Game> Judge<G> {
+    /// A judge with these limits of what one file may cost.
+    #[must_use]
+    pub fn new(limits: Limits) -> Self {
+        Judge { limits, shared: Shared::default(), game: PhantomData }
+    }
+
+    /// The limits.
+    #[must_use]
+    pub fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    /// Verifies the bytes of a file. A panic of the game is a verdict. Returns `None` after [`Judge::stop`].
+    ///
+    /// Of a file that is larger than the limit, one byte more than the limit is enough.
+    #[must_use]
+    pub fn judge(&self, name: &str, bytes: &[u8]) -> Option<Judged> {
+        let path = Path::new(name);
+        let at_work = self.shared.watch.begin(path.to_path_buf(), None);
+        match judge::<G>(bytes, &self.limits, &self.shared, at_work.work()) {
+            Outcome::Report(report) => {
+                let line = report.json(path, &Digests::of(bytes, &self.limits), false, None);
+                Some(Judged { verdict: report.verdict, line })
+            }
+            Outcome::OutOfTime { .. } | Outcome::Stopped => None,
+        }
+    }
+
+    /// Ends all files at work before their next tick, without a verdict, and all that begin later.
+    pub fn stop(&self) {
+        self.shared.stop.store(true, Ordering::Relaxed);
+    }
+
+    /// Number of ticks that were simulated.
+    #[must_use]
+    pub fn ticks(&self) -> u64 {
+        self.shared.ticks.load(Ordering::Relaxed)
+    }
+
+    /// Identifies everything that the verdict depends on, as 64 hexadecimal digits: the BLAKE3 of the bytes of the file,
+    /// the rules, the semantics of the engine, and the limits. It names the entries of `verify --cache`, too.
+    #[must_use]
+    pub fn key(&self, blake3: &[u8; 32]) -> String {
+        cache::key(&cache::context(G::RULES, &self.limits), blake3).to_string()
+    }
+}

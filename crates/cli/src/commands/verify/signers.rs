@@ -1,0 +1,124 @@
+//! [`Signers`]: checks who has signed a file (`--keys`).
+
+use std::fmt;
+use std::io;
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::tasks;
+use crate::commands::sign;
+use crate::error::CommandError;
+use crate::signature::{AllowedKeys, Check, GameDigest, path_beside};
+
+/// The keys of which signatures are required.
+pub(super) struct Signers {
+    keys: AllowedKeys,
+    /// Number of different names that have to sign each file.
+    required: usize,
+}
+
+/// Who has signed a file, as fields of its line. It is independent of the verdict.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub(super) struct Signed {
+    signature: State,
+    /// Names with a valid signature.
+    signed_by: Vec<String>,
+    /// Names with a signature that is not valid.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    forged: Vec<String>,
+    /// Why the signature file is malformed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    signature_error: Option<String>,
+}
+
+/// Whether a file is signed as required.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum State {
+    /// Enough names have signed, and no signature is forged.
+    Valid,
+    /// Too few names have signed.
+    Missing,
+    /// A signature by an allowed key is not valid for this game.
+    Forged,
+    /// The signature file cannot be parsed.
+    Malformed,
+}
+
+impl Signers {
+    /// Reads the file of public keys.
+    ///
+    /// # Errors
+    /// When it cannot be read or parsed, or has fewer than `required` names.
+    pub(super) fn read(path: &Path, required: usize) -> Result<Self, CommandError> {
+        let text = sign::read_text(path, u64::MAX)?;
+        let keys: AllowedKeys = text.parse().map_err(CommandError::line(path))?;
+        let names = keys.name_count();
+        if names < required {
+            return Err(CommandError::Require { required, names });
+        }
+        Ok(Signers { keys, required })
+    }
+
+    /// Checks the signatures beside a replay. `game` is `None` for a replay that is damaged: nobody can sign one.
+    ///
+    /// # Errors
+    /// When there is a signature file that cannot be read, or the replay comes from the standard input.
+    pub(super) fn check(&self, replay: &Path, game: Option<&GameDigest>) -> Result<Signed, CommandError> {
+        if replay.as_os_str() == tasks::INPUT {
+            return Err(CommandError::InputSignatures);
+        }
+        let signatures = match sign::read_signatures(&path_beside(replay)) {
+            Ok(signatures) => signatures,
+            Err(CommandError::Read { error, .. }) if error.kind() == io::ErrorKind::NotFound => {
+                return Ok(self.signed(Check::default()));
+            }
+            Err(error @ (CommandError::Line { .. } | CommandError::NoText { .. })) => {
+                return Ok(Signed::malformed(&error));
+            }
+            Err(error) => return Err(error),
+        };
+        Ok(self.signed(game.map(|game| self.keys.check(&signatures, game)).unwrap_or_default()))
+    }
+
+    fn signed(&self, check: Check) -> Signed {
+        let Check { signed_by, forged } = check;
+        let signature = match () {
+            () if !forged.is_empty() => State::Forged,
+            () if signed_by.len() < self.required => State::Missing,
+            () => State::Valid,
+        };
+        Signed { signature, signed_by, forged, signature_error: None }
+    }
+}
+
+impl Signed {
+    fn malformed(error: &CommandError) -> Self {
+        Signed {
+            signature: State::Malformed,
+            signed_by: Vec::new(),
+            forged: Vec::new(),
+            signature_error: Some(error.to_string()),
+        }
+    }
+
+    pub(super) fn is_valid(&self) -> bool {
+        self.signature == State::Valid
+    }
+}
+
+impl fmt::Display for Signed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let signed_by = self.signed_by.join(", ");
+        match (self.signature, &self.signature_error) {
+            (State::Valid, _) => write!(f, "signed by {signed_by}"),
+            (State::Missing, _) if self.signed_by.is_empty() => write!(f, "not signed"),
+            (State::Missing, _) => write!(f, "signed only by {signed_by}"),
+            (State::Forged, _) => write!(f, "forged signature of {}", self.forged.join(", ")),
+            (State::Malformed, error) => {
+                write!(f, "malformed signatures: {}", error.as_deref().unwrap_or_default())
+            }
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! [`AllowedKeys`]: the public keys that a verifier accepts.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::str::FromStr;
+
+use ed25519_dalek::VerifyingKey;
+
+use super::hex;
+use super::key::PublicKey;
+use super::line_error::{Flaw, LineError};
+use super::signatures::{Signatures, message};
+use crate::identity::GameDigest;
+
+/// Longest name in bytes.
+const NAME_BYTES_MAX: usize = 64;
+
+/// Public keys and the names of their owners. A name may have several keys.
+///
+/// The text has one line for each key: 64 hexadecimal digits, a space, the name. Empty lines and lines that begin with
+/// `#` are comments. The module [`signature`](crate::signature) has an example.
+#[derive(Clone, Debug, Default)]
+pub struct AllowedKeys(BTreeMap<PublicKey, Owner>);
+
+#[derive(Clone, Debug)]
+struct Owner {
+    key: VerifyingKey,
+    name: String,
+}
+
+/// Who has signed a game.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Check {
+    /// Names with a valid signature, sorted, each once.
+    pub signed_by: Vec<String>,
+    /// Names with a signature that is not valid for this game, sorted, each once.
+    pub forged: Vec<String>,
+}
+
+impl AllowedKeys {
+    /// Number of different names.
+    #[must_use]
+    pub fn name_count(&self) -> usize {
+        self.0.values().map(|owner| &owner.name).collect::<BTreeSet<_>>().len()
+    }
+
+    /// Checks the signatures of a game. Those of keys that are not in the list are ignored.
+    #[must_use]
+    pub fn check(&self, signatures: &Signatures, game: &GameDigest) -> Check {
+        let message = message(game);
+        let (mut valid, mut forged) = (BTreeSet::new(), BTreeSet::new());
+        for signature in signatures.all() {
+            let Some(Owner { key, name }) = self.0.get(&signature.key) else { continue };
+            let bytes = ed25519_dalek::Signature::from_bytes(&signature.bytes);
+            // The strict equation: there is no second signature that anybody could derive from a valid one.
+            let is_valid = key.verify_strict(&message, &bytes).is_ok();
+            if is_valid { &mut valid } else { &mut forged }.insert(name.clone());
+        }
+        Check { signed_by: valid.into_iter().collect(), forged: forged.into_iter().collect() }
+    }
+}
+
+impl FromStr for AllowedKeys {
+    type Err = LineError;
+
+    fn from_str(text: &str) -> Result<Self, LineError> {
+        let mut keys = BTreeMap::new();
+        for (line, text) in (1..).zip(text.lines()) {
+            let failed = |flaw| LineError { line, flaw };
+            let text = text.trim();
+            if text.is_empty() || text.starts_with('#') {
+                continue;
+            }
+            let (digits, name) = text.split_once(' ').ok_or(failed(Flaw::NoAllowedKey))?;
+            let public = PublicKey(hex::parse(digits).ok_or(failed(Flaw::NoAllowedKey))?);
+            let key = public.decode().ok_or(failed(Flaw::InvalidKey))?;
+            let name = name.trim().to_string();
+            if !is_name(&name) {
+                return Err(failed(Flaw::Name));
+            }
+            if keys.insert(public, Owner { key, name }).is_some() {
+                return Err(failed(Flaw::KeyTwice));
+            }
+        }
+        Ok(AllowedKeys(keys))
+    }
+}
+
+/// Whether a key may have this name.
+pub(crate) fn is_name(name: &str) -> bool {
+    !name.is_empty() && name.len() <= NAME_BYTES_MAX && !name.chars().any(char::is_control)
+}

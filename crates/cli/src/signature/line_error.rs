@@ -1,0 +1,63 @@
+//! [`LineError`]: why a file of keys or signatures cannot be read.
+
+use std::fmt;
+
+use super::signatures::SIGNATURES_MAX;
+
+/// A line of a file of keys or signatures that cannot be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LineError {
+    /// Number of the line, from 1.
+    pub line: u64,
+    /// What is wrong with it.
+    pub flaw: Flaw,
+}
+
+/// What is wrong with a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flaw {
+    /// It is not a signature: `lockstep2d signature 1 KEY SIGNATURE`.
+    NoSignature,
+    /// It is not a secret key: `lockstep2d secret key 1 SEED`.
+    NoSecretKey,
+    /// It is not an allowed key: `KEY NAME`.
+    NoAllowedKey,
+    /// The digits are no public key of Ed25519, or one for which anybody can sign.
+    InvalidKey,
+    /// The key has a line already.
+    KeyTwice,
+    /// The name is longer than 64 bytes or has control characters.
+    Name,
+    /// The line does not end with a line feed.
+    Unfinished,
+    /// There are more signatures than [`SIGNATURES_MAX`].
+    TooMany,
+}
+
+impl fmt::Display for Flaw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Flaw::NoSignature => {
+                write!(
+                    f,
+                    "not \"lockstep2d signature 1\", a public key of 64 and a signature of 128 hexadecimal digits"
+                )
+            }
+            Flaw::NoSecretKey => write!(f, "not \"lockstep2d secret key 1\" and 64 hexadecimal digits"),
+            Flaw::NoAllowedKey => write!(f, "not a public key of 64 hexadecimal digits, a space and a name"),
+            Flaw::InvalidKey => write!(f, "not a valid public key"),
+            Flaw::KeyTwice => write!(f, "a second line of the same key"),
+            Flaw::Name => write!(f, "the name is longer than 64 bytes or has control characters"),
+            Flaw::Unfinished => write!(f, "the line does not end"),
+            Flaw::TooMany => write!(f, "more than {SIGNATURES_MAX} signatures"),
+        }
+    }
+}
+
+impl fmt::Display for LineError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "line {}: {}", self.line, self.flaw)
+    }
+}
+
+impl std::error::Error for LineError {}

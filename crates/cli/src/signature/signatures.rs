@@ -1,0 +1,110 @@
+//! [`Signatures`]: the contents of a signature file.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use super::hex::{self, Hex};
+use super::key::PublicKey;
+use super::line_error::{Flaw, LineError};
+use crate::identity::GameDigest;
+
+/// Most signatures in a file: all players of a match, and servers.
+pub const SIGNATURES_MAX: usize = 256;
+
+/// A file of more bytes has more than [`SIGNATURES_MAX`] signatures.
+pub const FILE_BYTES_MAX: u64 = 64 << 10;
+
+/// Appended to the name of a replay for the name of its signature file.
+const SUFFIX: &str = ".sig";
+
+/// Beginning of every line of a signature file.
+const PREFIX: &str = "lockstep2d signature 1 ";
+
+/// Precedes the digest in the message that is signed, so that no other use of a key gives the same signature.
+const DOMAIN: &[u8; 22] = b"lockstep2d signature 1";
+
+/// The signature of one key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Signature {
+    /// The public key of the signer.
+    pub key: PublicKey,
+    /// The signature of Ed25519.
+    pub bytes: [u8; 64],
+}
+
+/// The signatures of a replay: at most one of each key, in the order of the file.
+///
+/// The text has one way to be written: a file with any other byte than `to_string` gives cannot be parsed
+/// or has other signatures. The module [`signature`](crate::signature) has an example.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Signatures(Vec<Signature>);
+
+/// The path of the signature file of a replay: `.sig` is appended to its name.
+#[must_use]
+pub fn path_beside(replay: &Path) -> PathBuf {
+    let mut path = replay.as_os_str().to_os_string();
+    path.push(SUFFIX);
+    path.into()
+}
+
+/// The bytes that are signed.
+pub(super) fn message(game: &GameDigest) -> Vec<u8> {
+    [DOMAIN.as_slice(), game.as_bytes()].concat()
+}
+
+impl Signatures {
+    /// The signatures.
+    #[must_use]
+    pub fn all(&self) -> &[Signature] {
+        &self.0
+    }
+
+    /// Adds a signature. An earlier one of the same key is replaced.
+    ///
+    /// # Errors
+    /// [`Flaw::TooMany`].
+    pub fn add(&mut self, signature: Signature) -> Result<(), LineError> {
+        if let Some(known) = self.0.iter_mut().find(|known| known.key == signature.key) {
+            *known = signature;
+        } else if self.0.len() < SIGNATURES_MAX {
+            self.0.push(signature);
+        } else {
+            let line = u64::try_from(SIGNATURES_MAX).unwrap_or(u64::MAX).saturating_add(1);
+            return Err(LineError { line, flaw: Flaw::TooMany });
+        }
+        Ok(())
+    }
+}
+
+impl FromStr for Signatures {
+    type Err = LineError;
+
+    fn from_str(text: &str) -> Result<Self, LineError> {
+        let mut signatures = Signatures::default();
+        for (line, text) in (1..).zip(text.split_inclusive('\n')) {
+            let failed = |flaw| LineError { line, flaw };
+            let text = text.strip_suffix('\n').ok_or(failed(Flaw::Unfinished))?;
+            let signature = parse_line(text).ok_or(failed(Flaw::NoSignature))?;
+            if signatures.0.iter().any(|known| known.key == signature.key) {
+                return Err(failed(Flaw::KeyTwice));
+            }
+            signatures.add(signature)?;
+        }
+        Ok(signatures)
+    }
+}
+
+fn parse_line(text: &str) -> Option<Signature> {
+    let (key, bytes) = text.strip_prefix(PREFIX)?.split_once(' ')?;
+    Some(Signature { key: PublicKey(hex::parse(key)?), bytes: hex::parse(bytes)? })
+}
+
+/// The text of a signature file.
+impl fmt::Display for Signatures {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0
+            .iter()
+            .try_for_each(|signature| writeln!(f, "{PREFIX}{} {}", signature.key, Hex(&signature.bytes)))
+    }
+}

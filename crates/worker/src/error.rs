@@ -1,0 +1,54 @@
+//! [`WorkerError`]: the errors that stop a command.
+
+use std::error::Error;
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// An error that stops a command.
+#[derive(Debug)]
+pub(crate) enum WorkerError {
+    /// The runtime, the metrics or the signals cannot be set up.
+    Start { what: &'static str, error: io::Error },
+    /// NATS refuses an operation, or does not answer.
+    Nats { what: &'static str, why: String },
+    /// A file cannot be read.
+    Read { path: PathBuf, error: io::Error },
+    /// A job cannot name this path: it is not relative, leads out of the folder, or is not UTF-8.
+    Path { path: PathBuf },
+    /// A folder contains no replays.
+    NothingToSubmit { path: PathBuf },
+    /// The standard output cannot be written.
+    Output(io::Error),
+}
+
+impl WorkerError {
+    /// Returns a function that wraps an error of an operation of NATS.
+    pub(crate) fn nats<E: Error>(what: &'static str) -> impl Fn(E) -> Self {
+        move |error| WorkerError::Nats { what, why: error.to_string() }
+    }
+
+    /// Returns a function that wraps an error of reading the file at `path`.
+    pub(crate) fn read(path: &Path) -> impl Fn(io::Error) -> Self {
+        move |error| WorkerError::Read { path: path.to_path_buf(), error }
+    }
+}
+
+impl fmt::Display for WorkerError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            WorkerError::Start { what, error } => write!(f, "cannot start {what}: {error}"),
+            WorkerError::Nats { what, why } => write!(f, "cannot {what}: {why}"),
+            WorkerError::Read { path, error } => write!(f, "cannot read {path:?}: {error}"),
+            WorkerError::Path { path } => {
+                write!(f, "{path:?} is not a relative path inside the folder of the workers")
+            }
+            WorkerError::NothingToSubmit { path } => {
+                write!(f, "{path:?}: nothing to submit, no *.replay here")
+            }
+            WorkerError::Output(error) => write!(f, "cannot write the output: {error}"),
+        }
+    }
+}
+
+impl Error for WorkerError {}

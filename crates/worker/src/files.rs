@@ -1,0 +1,61 @@
+//! Reading the bytes of a job, from a folder or from the object store.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Component, Path, PathBuf};
+
+use async_nats::jetstream::object_store::ObjectStore;
+use tokio::io::AsyncReadExt;
+
+use crate::job::Job;
+
+/// Reads a file below `folder`, but at most `bytes_max + 1` bytes.
+pub(crate) fn read_path(folder: &Path, file: &str, bytes_max: u64) -> io::Result<Vec<u8>> {
+    let path = inside(Path::new(file)).ok_or(io::Error::other("the path leads out of the folder"))?;
+    let path = folder.join(path);
+    // Opening a pipe would block.
+    if !path.metadata()?.is_file() {
+        return Err(io::Error::other("not a regular file"));
+    }
+    let mut bytes = Vec::new();
+    File::open(path)?.take(bytes_max.saturating_add(1)).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// Reads an object of the store, but at most `bytes_max + 1` bytes.
+pub(crate) async fn read_object(store: &ObjectStore, name: &str, bytes_max: u64) -> io::Result<Vec<u8>> {
+    let object = store.get(name).await.map_err(io::Error::other)?;
+    let mut bytes = Vec::new();
+    object.take(bytes_max.saturating_add(1)).read_to_end(&mut bytes).await?;
+    Ok(bytes)
+}
+
+/// Checks that the bytes are those of the job. Of a file that is too large, only the beginning was read.
+pub(crate) fn check(job: &Job, bytes: Vec<u8>, bytes_max: u64) -> io::Result<Vec<u8>> {
+    let is_whole = u64::try_from(bytes.len()).is_ok_and(|length| length <= bytes_max);
+    if is_whole && blake3::hash(&bytes).to_hex().as_str() != job.blake3 {
+        return Err(io::Error::other("the file is not the one that was submitted"));
+    }
+    Ok(bytes)
+}
+
+/// The path, if it is relative and stays inside the folder that it is relative to.
+pub(crate) fn inside(path: &Path) -> Option<PathBuf> {
+    let is_inside = |component| matches!(component, Component::Normal(_) | Component::CurDir);
+    (path.components().all(is_inside) && path.file_name().is_some()).then(|| path.to_path_buf())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_job_cannot_lead_out_of_the_folder() {
+        for path in ["a.replay", "./a/b.replay", "a/./b"] {
+            assert!(inside(Path::new(path)).is_some(), "{path}");
+        }
+        for path in ["", ".", "/a", "../a", "a/../../b", "a/.."] {
+            assert!(inside(Path::new(path)).is_none(), "{path}");
+        }
+    }
+}

@@ -1,0 +1,30 @@
+//! [`Job`]: a file to verify, as the queue has it.
+
+use serde::{Deserialize, Serialize};
+
+/// A file to verify.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Job {
+    /// The name in the result, and the path if the file is in a folder.
+    pub(crate) file: String,
+    pub(crate) source: Source,
+    /// BLAKE3 of the file: 64 hexadecimal digits.
+    pub(crate) blake3: String,
+}
+
+/// Where a worker finds the bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Source {
+    /// In the folder of the worker.
+    Folder,
+    /// In the object store of the queue, under its BLAKE3.
+    Object,
+}
+
+impl Job {
+    pub(crate) fn digest(&self) -> Option<[u8; 32]> {
+        blake3::Hash::from_hex(&self.blake3).ok().map(Into::into)
+    }
+}

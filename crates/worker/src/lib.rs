@@ -1,0 +1,41 @@
+//! Verifies replays on many machines: `submit` puts jobs into a queue, workers take them, and results are the lines of
+//! `verify --json` in a stream. The queue is NATS JetStream.
+//!
+//! A game gets the program with one line in `main`:
+//!
+//! ```no_run
+//! use lockstep2d::lockstep::Sandbox;
+//!
+//! fn main() -> std::process::ExitCode {
+//!     // Instead of `Sandbox`, any type that implements `lockstep2d::lockstep::Game`.
+//!     lockstep2d_worker::run::<Sandbox>()
+//! }
+//! ```
+//!
+//! Invariants:
+//! - A job stays in the queue until its result is in the stream of results.
+//! - A file has at most one result under the same rules and limits: the server refuses a second one.
+//! - A process has at most one file at work, so that a file that kills the process takes no other with it.
+
+mod app;
+mod error;
+mod files;
+mod job;
+mod metrics;
+mod queue;
+mod results;
+mod shutdown;
+mod submit;
+mod work;
+
+use std::process::ExitCode;
+
+use lockstep2d::lockstep::Game;
+
+pub use app::Worker;
+
+/// Runs the worker of a game with the default limits, with the arguments of this process.
+#[must_use]
+pub fn run<G: Game + 'static>() -> ExitCode {
+    Worker::<G>::new().run()
+}

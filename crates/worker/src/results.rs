@@ -1,0 +1,43 @@
+//! `results`: prints the results in the stream, one line of JSON for each file.
+
+use std::io::Write;
+use std::time::Duration;
+
+use futures_util::StreamExt;
+use lockstep2d::lockstep::RulesId;
+
+use crate::app::Connection;
+use crate::error::WorkerError;
+use crate::queue::Queue;
+use crate::shutdown::Shutdown;
+
+/// Longest time for which the server holds a request that it has no results for.
+const EXPIRES: Duration = Duration::from_secs(2);
+
+/// Most results of one request.
+const BATCH: usize = 500;
+
+/// Prints the results of a queue. With `follow`, also those that come later, until a signal.
+pub(crate) async fn run(connection: &Connection, rules: RulesId, follow: bool) -> Result<(), WorkerError> {
+    let shutdown = Shutdown::listen(Duration::ZERO)?;
+    let queue = Queue::open(connection, rules).await?;
+    let mut consumer = queue.results().await?;
+    let mut left = consumer.info().await.map_err(WorkerError::nats("read the results"))?.num_pending;
+    let mut out = std::io::stdout().lock();
+    while left > 0 || (follow && shutdown.is_running()) {
+        let batch = consumer.fetch().max_messages(BATCH).expires(EXPIRES).messages();
+        let mut batch = batch.await.map_err(WorkerError::nats("read the results"))?;
+        while let Some(result) = batch.next().await {
+            let message = result
+                .map_err(|error| WorkerError::Nats { what: "read the results", why: error.to_string() })?;
+            out.write_all(&message.payload).map_err(WorkerError::Output)?;
+            out.write_all(b"\n").map_err(WorkerError::Output)?;
+            left = left.saturating_sub(1);
+            if left == 0 && !follow {
+                break;
+            }
+        }
+        out.flush().map_err(WorkerError::Output)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,91 @@
+//! [`Shutdown`]: ends a process gracefully on SIGTERM or SIGINT.
+
+use std::time::Duration;
+
+use tokio::sync::watch;
+
+use crate::error::WorkerError;
+
+/// How far the process is in ending.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Phase {
+    /// It takes jobs.
+    Running,
+    /// It completes its file and takes no other.
+    Draining,
+    /// It gives its file back to the queue.
+    Stopping,
+}
+
+/// The phase of the process, for all its tasks.
+#[derive(Clone, Debug)]
+pub(crate) struct Shutdown(watch::Receiver<Phase>);
+
+impl Shutdown {
+    /// Listens for signals. The first begins to drain; a second one, or `grace` after the first, stops.
+    pub(crate) fn listen(grace: Duration) -> Result<Self, WorkerError> {
+        let (phase, shutdown) = watch::channel(Phase::Running);
+        let mut signals = Signals::new().map_err(|error| WorkerError::Start { what: "signals", error })?;
+        tokio::spawn(async move {
+            signals.next().await;
+            let _ = phase.send(Phase::Draining);
+            let _ = tokio::time::timeout(grace, signals.next()).await;
+            let _ = phase.send(Phase::Stopping);
+            phase.closed().await;
+        });
+        Ok(Shutdown(shutdown))
+    }
+
+    pub(crate) fn is_running(&self) -> bool {
+        *self.0.borrow() == Phase::Running
+    }
+
+    /// Waits until at least this phase is reached.
+    pub(crate) async fn reached(&mut self, phase: Phase) {
+        if self.0.wait_for(|now| *now >= phase).await.is_err() {
+            // The listener ends only with the process.
+            std::future::pending::<()>().await;
+        }
+    }
+}
+
+/// The signals that end a process.
+#[cfg(unix)]
+struct Signals {
+    terminate: tokio::signal::unix::Signal,
+    interrupt: tokio::signal::unix::Signal,
+}
+
+#[cfg(unix)]
+impl Signals {
+    fn new() -> std::io::Result<Self> {
+        use tokio::signal::unix::{SignalKind, signal};
+        Ok(Signals {
+            terminate: signal(SignalKind::terminate())?,
+            interrupt: signal(SignalKind::interrupt())?,
+        })
+    }
+
+    async fn next(&mut self) {
+        tokio::select! {
+            _ = self.terminate.recv() => {}
+            _ = self.interrupt.recv() => {}
+        }
+    }
+}
+
+#[cfg(not(unix))]
+struct Signals;
+
+#[cfg(not(unix))]
+impl Signals {
+    fn new() -> std::io::Result<Self> {
+        Ok(Signals)
+    }
+
+    async fn next(&mut self) {
+        if tokio::signal::ctrl_c().await.is_err() {
+            std::future::pending::<()>().await;
+        }
+    }
+}

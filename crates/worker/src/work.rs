@@ -1,0 +1,232 @@
+//! `work`: takes jobs from the queue and adds their results.
+
+use std::io;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+
+use async_nats::jetstream::consumer::PullConsumer;
+use async_nats::jetstream::object_store::ObjectStore;
+use async_nats::jetstream::{AckKind, Message};
+use futures_util::StreamExt;
+use lockstep2d::lockstep::Game;
+use lockstep2d::replay::Limits;
+use lockstep2d_cli::{Judge, Judged};
+use serde::Serialize;
+use tokio::net::TcpListener;
+
+use crate::app::WorkArguments;
+use crate::error::WorkerError;
+use crate::files;
+use crate::job::{Job, Source};
+use crate::metrics::Metrics;
+use crate::queue::{Added, Queue, json};
+use crate::shutdown::{Phase, Shutdown};
+
+/// Longest time for which the server holds a request for a job, and for which an idle worker takes to end.
+const EXPIRES: Duration = Duration::from_secs(2);
+
+/// Time after which a request counts as lost, because the server has gone.
+const LOST: Duration = Duration::from_secs(5);
+
+/// Pause before a file that cannot be read is tried again, for each delivery so far.
+const READ_AGAIN: Duration = Duration::from_secs(1);
+
+/// The verdict on a file for which workers have ended again and again without a result.
+const CRASHED: &str = "crashed";
+/// What metrics call the result of a file that cannot be read.
+const UNREAD: &str = "unread";
+
+/// A worker of the game `G`.
+struct Work<G: Game + 'static> {
+    queue: Queue,
+    judge: Arc<Judge<G>>,
+    folder: PathBuf,
+    store: ObjectStore,
+    max_deliver: u64,
+    /// Interval at which the server is told that a job is at work.
+    progress: Duration,
+    metrics: Arc<Metrics>,
+}
+
+/// What becomes of a job.
+enum Done {
+    /// It has a result, with this verdict.
+    Result(Judged),
+    /// Another worker has to try again, after a pause.
+    Again(Duration),
+}
+
+/// Takes jobs until a signal.
+pub(crate) async fn run<G: Game + 'static>(
+    arguments: &WorkArguments,
+    limits: &Limits,
+) -> Result<(), WorkerError> {
+    let mut shutdown = Shutdown::listen(arguments.grace_seconds)?;
+    let judge = Arc::new(Judge::<G>::new(arguments.limits.over(limits)));
+    let metrics = Arc::new(Metrics::default());
+    if let Some(address) = arguments.metrics {
+        let failed = |error| WorkerError::Start { what: "the metrics", error };
+        let listener = TcpListener::bind(address).await.map_err(failed)?;
+        let of_ticks = Arc::clone(&judge);
+        tokio::spawn(Arc::clone(&metrics).serve(listener, move || of_ticks.ticks()));
+    }
+    let start = async {
+        let queue = Queue::open(&arguments.connection, G::RULES).await?;
+        let (jobs, store) = (queue.jobs(arguments.ack_seconds).await?, queue.files().await?);
+        Ok::<_, WorkerError>((queue, jobs, store))
+    };
+    let (queue, jobs, store) = tokio::select! {
+        started = start => started?,
+        () = shutdown.reached(Phase::Draining) => return Ok(()),
+    };
+    let at_stop = (Arc::clone(&judge), shutdown.clone());
+    tokio::spawn(async move {
+        let (judge, mut shutdown) = at_stop;
+        shutdown.reached(Phase::Stopping).await;
+        judge.stop();
+    });
+    let work = Work {
+        queue,
+        judge,
+        folder: arguments.folder.clone(),
+        store,
+        max_deliver: arguments.max_deliver.into(),
+        progress: arguments.ack_seconds / 3,
+        metrics,
+    };
+    while shutdown.is_running() {
+        if let Some(message) = next(&jobs).await {
+            work.metrics.is_busy.store(true, Ordering::Relaxed);
+            work.take(&message).await?;
+            work.metrics.is_busy.store(false, Ordering::Relaxed);
+        }
+    }
+    Ok(())
+}
+
+/// The next job. `None` if there is none for a moment, also while the server is restarting.
+async fn next(jobs: &PullConsumer) -> Option<Message> {
+    let request = async {
+        let mut batch = jobs.fetch().max_messages(1).expires(EXPIRES).messages().await.ok()?;
+        match batch.next().await? {
+            Ok(message) => Some(message),
+            Err(_) => {
+                // Not every error takes time.
+                tokio::time::sleep(Duration::from_millis(100)).await;
+                None
+            }
+        }
+    };
+    tokio::time::timeout(EXPIRES + LOST, request).await.ok().flatten()
+}
+
+impl<G: Game + 'static> Work<G> {
+    /// Works on one job to its end.
+    async fn take(&self, message: &Message) -> Result<(), WorkerError> {
+        let job = serde_json::from_slice::<Job>(&message.payload).ok();
+        let Some((job, digest)) = job.and_then(|job| job.digest().map(|digest| (job, digest))) else {
+            eprintln!("warning: a message in the queue is not a job; it is dropped");
+            acknowledge(message, AckKind::Term).await;
+            return Ok(());
+        };
+        let delivered = message.info().map_or(1, |info| u64::try_from(info.delivered).unwrap_or(1));
+        if delivered > 1 {
+            self.metrics.redelivered.fetch_add(1, Ordering::Relaxed);
+        }
+        let key = self.judge.key(&digest);
+        if self.queue.has_result(&key).await? {
+            self.metrics.known.fetch_add(1, Ordering::Relaxed);
+            acknowledge(message, AckKind::Ack).await;
+            return Ok(());
+        }
+        match self.done(message, &job, delivered).await {
+            Done::Again(pause) => acknowledge(message, AckKind::Nak(Some(pause))).await,
+            Done::Result(Judged { verdict, line }) => {
+                // The job leaves the queue after its result has arrived, so that none is lost.
+                match self.queue.add_result(&key, &line).await? {
+                    Added::New => self.metrics.add_result(&verdict),
+                    Added::Known => drop(self.metrics.known.fetch_add(1, Ordering::Relaxed)),
+                }
+                acknowledge(message, AckKind::Ack).await;
+            }
+        }
+        Ok(())
+    }
+
+    /// Verifies the file of a job, and tells the server meanwhile that it is at work.
+    async fn done(&self, message: &Message, job: &Job, delivered: u64) -> Done {
+        if delivered > self.max_deliver {
+            return Done::Result(crashed(job, self.max_deliver));
+        }
+        let verify = self.verify(job, delivered);
+        tokio::pin!(verify);
+        loop {
+            tokio::select! {
+                done = &mut verify => return done,
+                () = tokio::time::sleep(self.progress) => {
+                    // If this is lost, another worker may verify the file as well; one result is refused.
+                    let _ = message.ack_with(AckKind::Progress).await;
+                }
+            }
+        }
+    }
+
+    async fn verify(&self, job: &Job, delivered: u64) -> Done {
+        let bytes = match self.read(job).await {
+            Ok(bytes) => bytes,
+            Err(error) if delivered >= self.max_deliver => return Done::Result(unread(job, &error)),
+            Err(_) => return Done::Again(READ_AGAIN * u32::try_from(delivered).unwrap_or(u32::MAX)),
+        };
+        let (judge, file) = (Arc::clone(&self.judge), job.file.clone());
+        let judged = tokio::task::spawn_blocking(move || judge.judge(&file, &bytes)).await;
+        // `None` after a signal: the file goes to another worker at once.
+        judged.ok().flatten().map_or(Done::Again(Duration::ZERO), Done::Result)
+    }
+
+    async fn read(&self, job: &Job) -> io::Result<Vec<u8>> {
+        let bytes_max = self.judge.limits().file_bytes;
+        let bytes = match job.source {
+            Source::Object => files::read_object(&self.store, &job.blake3, bytes_max).await?,
+            Source::Folder => {
+                let (folder, file) = (self.folder.clone(), job.file.clone());
+                let read = move || files::read_path(&folder, &file, bytes_max);
+                tokio::task::spawn_blocking(read).await.map_err(io::Error::other)??
+            }
+        };
+        files::check(job, bytes, bytes_max)
+    }
+}
+
+/// Answers for a job and waits until the server has noticed. If it does not, the job is delivered again, and its result
+/// is known then.
+async fn acknowledge(message: &Message, kind: AckKind) {
+    let _ = message.double_ack_with(kind).await;
+}
+
+/// The result of a file whose workers have ended without a result: it is not read again.
+fn crashed(job: &Job, deliveries: u64) -> Judged {
+    #[derive(Serialize)]
+    struct Line<'a> {
+        file: &'a str,
+        verdict: &'static str,
+        deliveries: u64,
+        blake3: &'a str,
+        cached: bool,
+    }
+    let line = Line { file: &job.file, verdict: CRASHED, deliveries, blake3: &job.blake3, cached: false };
+    Judged { verdict: CRASHED.into(), line: json(&line) }
+}
+
+/// The result of a file that cannot be read.
+fn unread(job: &Job, error: &io::Error) -> Judged {
+    #[derive(Serialize)]
+    struct Line<'a> {
+        file: &'a str,
+        error: String,
+        blake3: &'a str,
+    }
+    let line = Line { file: &job.file, error: error.to_string(), blake3: &job.blake3 };
+    Judged { verdict: UNREAD.into(), line: json(&line) }
+}

@@ -1,0 +1,151 @@
+//! A NATS server and processes for the tests.
+
+use std::fs;
+use std::net::{TcpListener, TcpStream};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+/// Longest time that a test waits for something.
+pub(crate) const PATIENCE: Duration = Duration::from_secs(300);
+
+/// Names of the program, the second for a shell whose search path lacks the folder of Debian's package.
+const PROGRAMS: [&str; 2] = ["nats-server", "/usr/sbin/nats-server"];
+
+/// A server with JetStream on a port of its own. It is killed when the value is dropped.
+pub(crate) struct Server {
+    program: &'static str,
+    port: u16,
+    store: PathBuf,
+    child: Child,
+}
+
+impl Server {
+    /// Starts a server. `None` if it is not installed; with `LOCKSTEP2D_NATS=required` that is an error.
+    pub(crate) fn start(folder: &Folder) -> Option<Self> {
+        let is_there = |program: &&&str| Command::new(program).arg("--version").output().is_ok();
+        let Some(program) = PROGRAMS.iter().find(is_there) else {
+            let is_required = std::env::var("LOCKSTEP2D_NATS").is_ok_and(|value| value == "required");
+            assert!(!is_required, "expected nats-server to be installed");
+            eprintln!("skipped: nats-server is not installed");
+            return None;
+        };
+        let port = free_port();
+        let store = folder.0.join("nats");
+        let child = spawn(program, port, &store);
+        Some(Server { program, port, store, child })
+    }
+
+    /// Kills the server without warning and starts it again.
+    pub(crate) fn restart(&mut self) {
+        kill(&mut self.child);
+        self.child = spawn(self.program, self.port, &self.store);
+    }
+
+    pub(crate) fn url(&self) -> String {
+        format!("nats://127.0.0.1:{}", self.port)
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        kill(&mut self.child);
+    }
+}
+
+fn spawn(program: &str, port: u16, store: &Path) -> Child {
+    let port_text = port.to_string();
+    let mut command = Command::new(program);
+    command.args(["--addr", "127.0.0.1", "--port", &port_text, "--jetstream", "--store_dir"]).arg(store);
+    let child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    wait_until("the server listens", || TcpStream::connect(("127.0.0.1", port)).is_ok());
+    child
+}
+
+/// A port that nobody listens on.
+pub(crate) fn free_port() -> u16 {
+    TcpListener::bind(("127.0.0.1", 0)).unwrap().local_addr().unwrap().port()
+}
+
+/// SIGKILL.
+pub(crate) fn kill(child: &mut Child) {
+    let _ = child.kill();
+    child.wait().unwrap();
+}
+
+/// SIGTERM. Returns the exit code.
+pub(crate) fn terminate(child: &mut Child) -> Option<i32> {
+    assert!(Command::new("kill").arg(child.id().to_string()).status().unwrap().success());
+    child.wait().unwrap().code()
+}
+
+/// Asks again and again until something is so.
+pub(crate) fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !is_so() {
+        assert!(start.elapsed() < PATIENCE, "waited too long until {what}");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+/// The worker program, or another one with the same commands.
+pub(crate) struct Program {
+    pub(crate) path: PathBuf,
+    pub(crate) url: String,
+    pub(crate) folder: PathBuf,
+}
+
+impl Program {
+    /// Runs a command to its end.
+    pub(crate) fn run(&self, arguments: &[&str]) -> Output {
+        let mut command = Command::new(&self.path);
+        let output = command.args(arguments).args(["--nats", &self.url]).current_dir(&self.folder).output();
+        output.unwrap()
+    }
+
+    /// Starts a worker.
+    pub(crate) fn work(&self, arguments: &[&str]) -> Child {
+        let mut command = Command::new(&self.path);
+        command.arg("work").args(["--nats", &self.url]).args(arguments).current_dir(&self.folder);
+        command.stderr(Stdio::null()).spawn().unwrap()
+    }
+
+    /// Adds files to the queue. Returns the lines about them.
+    pub(crate) fn submit(&self, arguments: &[&str]) -> Vec<String> {
+        let output = self.run(&[&["submit"], arguments].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        lines(&output)
+    }
+
+    /// The results so far, sorted. Not those that cannot be read because the server is restarting.
+    pub(crate) fn results(&self) -> Vec<String> {
+        let mut lines = lines(&self.run(&["results"]));
+        lines.sort();
+        lines
+    }
+}
+
+fn lines(output: &Output) -> Vec<String> {
+    String::from_utf8(output.stdout.clone()).unwrap().lines().map(String::from).collect()
+}
+
+/// A temporary folder for one test. It is deleted when the value is dropped.
+pub(crate) struct Folder(pub(crate) PathBuf);
+
+impl Folder {
+    pub(crate) fn new(test: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("lockstep2d-worker-{}-{test}", std::process::id()));
+        fs::create_dir_all(path.join("in")).unwrap();
+        Folder(path)
+    }
+
+    pub(crate) fn write(&self, name: &str, bytes: &[u8]) {
+        fs::write(self.0.join(name), bytes).unwrap();
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
