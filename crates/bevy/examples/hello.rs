@@ -1,9 +1,9 @@
 //! A ball falls onto a platform. Drag it with the mouse; Space throws everything up.
 
 use bevy::prelude::*;
-use bevy_lockstep2d::DragPlugin;
+use bevy_lockstep2d::PointerDragPlugin;
 use bevy_lockstep2d::prelude::*;
-use bevy_lockstep2d_examples::{app, drag_with_mouse};
+use bevy_lockstep2d_examples::app;
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::lockstep::{Sandbox, SandboxSetup};
@@ -21,9 +21,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         spawn(BodyDef::dynamic().position((fx!(-2), fx!(2))), square),
     ];
     app::<Sandbox>("hello", 15.0, Vec2::ZERO)
-        .add_plugins(DragPlugin)
+        .add_plugins(PointerDragPlugin)
         .insert_resource(Lockstep::<Sandbox>::local(&SandboxSetup { commands, ..SandboxSetup::default() })?)
-        .add_systems(PreUpdate, drag_with_mouse)
         .add_systems(bevy::app::RunFixedMainLoop, throw.in_set(LockstepSystems::Inputs))
         .add_systems(Update, (name_hits, on_space_log))
         .run();

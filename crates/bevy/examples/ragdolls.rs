@@ -2,8 +2,8 @@
 
 use bevy::prelude::*;
 use bevy_lockstep2d::prelude::*;
-use bevy_lockstep2d::{DragPlugin, SpawnBody, SpawnJoint, build_level};
-use bevy_lockstep2d_examples::{app, drag_with_mouse};
+use bevy_lockstep2d::{PointerDragPlugin, SpawnBody, SpawnJoint, build_level};
+use bevy_lockstep2d_examples::app;
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef, WorldError};
 use lockstep2d::fx;
 use lockstep2d::lockstep::{Sandbox, SandboxSetup};
@@ -71,9 +71,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         )?;
     }
     let commands = build_level(world, Config::default())?;
-    app.add_plugins(DragPlugin)
+    app.add_plugins(PointerDragPlugin)
         .insert_resource(Lockstep::<Sandbox>::local(&SandboxSetup { commands, ..SandboxSetup::default() })?)
-        .add_systems(PreUpdate, drag_with_mouse)
         .run();
     Ok(())
 }

@@ -1,11 +1,14 @@
 //! Shared by the examples: a window with a camera that draws the world as gizmos, and a simulated line.
 
+#[cfg(feature = "window")]
+mod screenshot;
+
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use bevy::prelude::*;
 use bevy_lockstep2d::prelude::*;
-use bevy_lockstep2d::{DragHand, LockstepGame, LockstepGizmosPlugin};
+use bevy_lockstep2d::{LockstepGame, LockstepGizmosPlugin};
 use lockstep2d::peer::Transport;
 use lockstep2d::session::Address;
 
@@ -28,22 +31,9 @@ pub fn app<G: LockstepGame>(title: &str, metres: f32, centre: Vec2) -> App {
     .add_systems(Startup, move |mut commands: Commands| {
         commands.spawn((Camera2d, Transform::from_translation((centre * scale).extend(0.0))));
     });
+    #[cfg(feature = "window")]
+    screenshot::take_when_asked(&mut app);
     app
-}
-
-/// Moves the hand of the `DragPlugin` with the mouse. Add it to `PreUpdate`.
-pub fn drag_with_mouse(
-    mut hand: ResMut<DragHand>,
-    buttons: Res<ButtonInput<MouseButton>>,
-    window: Single<&Window>,
-    camera: Single<(&Camera, &GlobalTransform)>,
-) {
-    let (camera, place) = *camera;
-    let pointer = window.cursor_position().and_then(|at| camera.viewport_to_world_2d(place, at).ok());
-    match pointer {
-        Some(at) if buttons.pressed(MouseButton::Left) => hand.hold(at),
-        _ => hand.release(),
-    }
 }
 
 /// A line between two peers that takes a tenth of a second and loses one packet of ten.

@@ -2,7 +2,7 @@
 
 use bevy::app::{App, Plugin, RunFixedMainLoop};
 use bevy::math::Vec2 as FloatVec2;
-use bevy::prelude::{IntoScheduleConfigs, Res, ResMut, Resource, resource_exists};
+use bevy::prelude::{IntoScheduleConfigs, Reflect, ReflectResource, Res, ResMut, Resource, resource_exists};
 use lockstep2d::body::BodyId;
 use lockstep2d::fx;
 use lockstep2d::lockstep::Sandbox;
@@ -15,14 +15,20 @@ use crate::plugin::{LockstepSettings, LockstepSystems};
 
 /// Drags the bodies of a [`Sandbox`] with a [`DragHand`]. The pull is a command, that is an input: it is recorded.
 ///
-/// It needs no window: a system of the game tells the hand where the pointer is, and when it presses.
+/// It needs no window: a system of the game tells the hand where the pointer is, and when it presses. With the feature
+/// `picking`, `PointerDragPlugin` does so for mouse and touch.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DragPlugin;
 
 /// The hand. Positions are those of the views, in units of `Transform`, as from `Camera::viewport_to_world_2d`.
-#[derive(Resource, Clone, Copy, Debug, Default)]
+#[derive(Resource, Reflect, Clone, Copy, Debug, Default)]
+#[reflect(Resource)]
 pub struct DragHand {
     at: Option<FloatVec2>,
+    /// The body to hold. Without one it is the first at the position.
+    #[reflect(ignore)]
+    target: Option<BodyId>,
+    #[reflect(ignore)]
     held: Option<Held>,
 }
 
@@ -39,9 +45,19 @@ impl DragHand {
         self.at = Some(at);
     }
 
+    /// The pointer is down at this position, on this body, which is held at this point until [`DragHand::release`].
+    pub fn hold_body(&mut self, body: BodyId, at: FloatVec2) {
+        *self = DragHand { at: Some(at), target: Some(body), held: None };
+    }
+
+    /// The pointer has moved. Nothing happens if it is up.
+    pub fn move_to(&mut self, at: FloatVec2) {
+        self.at = self.at.and(Some(at));
+    }
+
     /// The pointer is up.
     pub fn release(&mut self) {
-        (self.at, self.held) = (None, None);
+        *self = DragHand::default();
     }
 
     /// The body that is held.
@@ -53,7 +69,7 @@ impl DragHand {
 
 impl Plugin for DragPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<DragHand>().add_systems(
+        app.init_resource::<DragHand>().register_type::<DragHand>().add_systems(
             RunFixedMainLoop,
             pull.in_set(LockstepSystems::Inputs).run_if(resource_exists::<Lockstep<Sandbox>>),
         );
@@ -67,7 +83,7 @@ pub fn to_metres(at: FloatVec2, settings: &LockstepSettings) -> Vec2<Fx> {
     Vec2::new(metres(at.x), metres(at.y))
 }
 
-fn pull(
+pub(crate) fn pull(
     mut hand: ResMut<DragHand>,
     lockstep: Res<Lockstep<Sandbox>>,
     settings: Res<LockstepSettings>,
@@ -76,7 +92,10 @@ fn pull(
     let (Some(at), Some(world)) = (hand.at, lockstep.world()) else { return };
     let at = to_metres(at, &settings);
     if hand.held.is_none_or(|held| world.body(held.body).is_none()) {
-        hand.held = grab(world, at);
+        hand.held = match hand.target {
+            Some(body) => grip(world, body, at),
+            None => grab(world, at),
+        };
     }
     let Some(command) = hand.held.and_then(|held| pull_command(world, held, at)) else { return };
     // The force of a frame without a tick is replaced. In a frame with two ticks only the first one has it.
@@ -91,11 +110,15 @@ fn is_same_pull(a: &Command, b: &Command) -> bool {
 
 /// The first dynamic body at a point.
 fn grab(world: &World, at: Vec2<Fx>) -> Option<Held> {
-    let bodies = world.overlap_point(at, Default::default());
-    let bodies = bodies.into_iter().filter_map(|shape| world.shape(shape)).map(|shape| shape.body());
-    let mut dynamic =
-        bodies.filter_map(|id| world.body(id).filter(|body| body.is_dynamic()).map(|body| (id, body)));
-    dynamic.next().map(|(id, body)| Held { body: id, grip: body.transform().apply_inverse(at) })
+    let shapes = world.overlap_point(at, Default::default());
+    let mut bodies = shapes.into_iter().filter_map(|shape| world.shape(shape)).map(|shape| shape.body());
+    bodies.find_map(|body| grip(world, body, at))
+}
+
+/// A dynamic body, held at a point.
+fn grip(world: &World, id: BodyId, at: Vec2<Fx>) -> Option<Held> {
+    let body = world.body(id).filter(|body| body.is_dynamic())?;
+    Some(Held { body: id, grip: body.transform().apply_inverse(at) })
 }
 
 /// Stiffness per mass in 1/s2, and damping per mass in 1/s: a critically damped spring of 2 Hz.

@@ -48,6 +48,8 @@ mod inputs;
 mod level;
 mod lockstep;
 mod observed;
+#[cfg(feature = "picking")]
+mod picking;
 mod plugin;
 mod poses;
 mod smoothing;
@@ -67,6 +69,8 @@ pub use inputs::Inputs;
 pub use level::{LevelError, SpawnBody, SpawnJoint, build_level};
 pub use lockstep::{DriverKind, Lockstep};
 pub use observed::{Observed, ObservedSave};
+#[cfg(feature = "picking")]
+pub use picking::{LockstepPickingPlugin, PointerDragPlugin};
 pub use plugin::{
     LockstepPlugin, LockstepSettings, LockstepStatus, LockstepSystems, has_lockstep, has_rolled_back,
     has_stepped, is_running,

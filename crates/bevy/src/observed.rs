@@ -3,7 +3,7 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use lockstep2d::hash::StateHash;
-use lockstep2d::lockstep::{Game, RulesId, SetupError};
+use lockstep2d::lockstep::{Game, RulesId, SetupError, StartError};
 use lockstep2d::world::World;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
@@ -26,6 +26,12 @@ pub struct ObservedSave<S> {
 }
 
 impl<G: Game> Observed<G> {
+    /// A game before its first tick.
+    fn from_start(game: G) -> Self {
+        let log = Mutex::new(StepLog::new(game.world()));
+        Observed { game, log }
+    }
+
     /// The game.
     pub const fn game(&self) -> &G {
         &self.game
@@ -49,9 +55,12 @@ impl<G: Game> Game for Observed<G> {
     const RULES: RulesId = G::RULES;
 
     fn new(setup: &G::Setup) -> Result<Self, SetupError> {
-        let game = G::new(setup)?;
-        let log = Mutex::new(StepLog::new(game.world()));
-        Ok(Observed { game, log })
+        G::new(setup).map(Self::from_start)
+    }
+
+    fn new_within(setup: &G::Setup, work_max: u64) -> Result<(Self, u64), StartError> {
+        let (game, work) = G::new_within(setup, work_max)?;
+        Ok((Self::from_start(game), work))
     }
 
     fn players(&self) -> u32 {

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use bevy::diagnostic::{DiagnosticPath, DiagnosticsPlugin, DiagnosticsStore};
 use bevy::prelude::*;
+use bevy::reflect::GetPath;
 use bevy::time::TimeUpdateStrategy;
 use bevy_lockstep2d::*;
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef, WorldError};
@@ -125,4 +126,40 @@ fn diagnostics_are_measured() {
     let save = app.world().resource::<Lockstep<Sandbox>>().game().save();
     let bytes = lockstep2d::codec::encode(&save).len() as f64;
     assert!((value(Paths::SAVE).unwrap() - bytes).abs() < 200.0);
+}
+
+/// The entity of a resource.
+fn entity_of<R: Resource>(world: &World) -> Entity {
+    let id = world.component_id::<R>().unwrap();
+    world.resource_entities().get(id).unwrap()
+}
+
+/// An inspector finds the values by the names of their fields, without knowing the types.
+#[test]
+fn an_inspector_can_read_and_change_what_is_shown() {
+    let mut app = sandbox_app();
+    let [_, bar, _] = start(&mut app);
+    (0..10).for_each(|_| app.update());
+    let registry = app.world().resource::<AppTypeRegistry>().clone();
+    let registry = registry.read();
+    let shown = |name: &str| {
+        let registration = registry.get_with_short_type_path(name).unwrap_or_else(|| panic!("{name}"));
+        registration.data::<ReflectComponent>().unwrap()
+    };
+    let world = app.world();
+    let status = world.entity(entity_of::<LockstepStatus>(world));
+    let status = shown("LockstepStatus").reflect(status).unwrap();
+    let tick = world.resource::<Lockstep<Sandbox>>().tick();
+    assert_eq!(status.path::<u64>("tick").unwrap(), &tick);
+    let slot = world.get::<BodyView>(bar).unwrap().body().index();
+    let view = shown("BodyView").reflect(world.entity(bar)).unwrap();
+    assert_eq!(view.path::<u32>("slot").unwrap(), &slot);
+    let hand = shown("DragHand").reflect(world.entity(entity_of::<DragHand>(world))).unwrap();
+    assert_eq!(hand.path::<Option<Vec2>>("at").unwrap(), &None);
+    let settings = entity_of::<LockstepSettings>(world);
+    let mut settings = shown("LockstepSettings").reflect_mut(app.world_mut().entity_mut(settings)).unwrap();
+    *settings.path_mut::<f32>("pixels_per_metre").unwrap() = 7.0;
+    app.update();
+    let place = app.world().get::<Transform>(bar).unwrap().translation;
+    assert!(place.truncate().length() < 7.5, "a metre is 7 units wide: {place}");
 }

@@ -6,8 +6,10 @@ use bevy::prelude::*;
 use bevy_lockstep2d::*;
 use common::arena::{Arena, Setup, pad_at};
 use common::{Heard, TICK, app, check_views, reference};
-use lockstep2d::lockstep::Game;
+use lockstep2d::body::BodyDef;
+use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup, StartError};
 use lockstep2d::replay::{Limits, Recording};
+use lockstep2d::world::Command;
 
 fn recorded(ticks: u64) -> Vec<u8> {
     let mut recording = Recording::<Arena>::start(&Setup::default(), 60).unwrap();
@@ -53,4 +55,16 @@ fn other_bytes_are_refused() {
     ));
     let mut local = Lockstep::<Arena>::local(&Setup::default()).unwrap();
     assert!(matches!(local.seek(1), Err(LockstepError::Unsupported(_))));
+}
+
+#[test]
+fn a_setup_may_not_cost_more_than_its_budget() {
+    // The budget is checked by the game itself: the observer has to hand it on.
+    let setup = SandboxSetup::default();
+    let (_, work) = Sandbox::new_within(&setup, u64::MAX).unwrap();
+    assert_eq!(Observed::<Sandbox>::new_within(&setup, u64::MAX).map(|(_, work)| work), Ok(work));
+    let spawn = Command::Spawn { body: BodyDef::dynamic(), shapes: vec![] };
+    let setup = SandboxSetup { commands: vec![spawn; 100], ..SandboxSetup::default() };
+    let start = Observed::<Sandbox>::new_within(&setup, 1).map(|(_, work)| work);
+    assert!(matches!(start, Err(StartError::TooMuchWork { .. })), "{start:?}");
 }

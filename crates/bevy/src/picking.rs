@@ -1,0 +1,175 @@
+//! [`LockstepPickingPlugin`]: bodies are targets of Bevy's pointer events. [`PointerDragPlugin`] drags them.
+
+use core::marker::PhantomData;
+
+use bevy::app::{App, Plugin, PreUpdate, RunFixedMainLoop};
+use bevy::camera::Camera;
+use bevy::math::{Dir3, Ray3d, Vec3, Vec3Swizzles, primitives::InfinitePlane3d};
+use bevy::picking::backend::ray::{RayId, RayMap};
+use bevy::picking::backend::{HitData, PointerHits};
+use bevy::picking::events::{Pointer, Press};
+use bevy::picking::pointer::{PointerAction, PointerButton, PointerInput};
+use bevy::picking::{Pickable, PickingSystems};
+use bevy::prelude::{
+    Entity, IntoScheduleConfigs, MessageReader, MessageWriter, On, Query, Res, ResMut, Resource, Transform,
+    resource_exists,
+};
+use lockstep2d::lockstep::Sandbox;
+use lockstep2d::world::World;
+
+use crate::drag::{DragHand, DragPlugin, pull, to_metres};
+use crate::game::LockstepGame;
+use crate::lockstep::Lockstep;
+use crate::plugin::{LockstepSettings, LockstepSystems};
+use crate::views::{BodyView, BodyViews};
+
+/// A picking backend: views of bodies receive `Pointer<Click>`, `Pointer<Over>` and all other events of
+/// [`bevy::picking`], with the exact shapes of their bodies as hit areas. A view with [`Pickable::IGNORE`] is left out.
+/// Of several bodies at a point the one whose view has the largest z is in front.
+///
+/// It needs the plugins of `bevy::picking`, which `DefaultPlugins` contains.
+///
+/// ```
+/// # use bevy::picking::{InteractionPlugin, PickingPlugin};
+/// # use bevy::prelude::*;
+/// # use bevy_lockstep2d::{LockstepPickingPlugin, prelude::*};
+/// # use lockstep2d::lockstep::Sandbox;
+/// # let mut app = App::new();
+/// # app.add_plugins((MinimalPlugins, PickingPlugin, InteractionPlugin));
+/// app.add_plugins((LockstepPlugin::<Sandbox>::default(), LockstepPickingPlugin::<Sandbox>::default()))
+///     .add_observer(|click: On<Pointer<Click>>, views: Query<&BodyView>| {
+///         if let Ok(view) = views.get(click.entity) {
+///             println!("{} was clicked", view.body());
+///         }
+///     });
+/// # app.update();
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct LockstepPickingPlugin<G>(PhantomData<fn() -> G>);
+
+impl<G> Default for LockstepPickingPlugin<G> {
+    fn default() -> Self {
+        LockstepPickingPlugin(PhantomData)
+    }
+}
+
+impl<G: LockstepGame> Plugin for LockstepPickingPlugin<G> {
+    fn build(&self, app: &mut App) {
+        app.add_systems(
+            PreUpdate,
+            pick::<G>.in_set(PickingSystems::Backend).run_if(resource_exists::<Lockstep<G>>),
+        );
+    }
+}
+
+/// Drags the dynamic bodies of a [`Sandbox`] with the primary button or a finger: [`LockstepPickingPlugin`] and
+/// [`DragPlugin`], connected. Whatever else of the app is in front of a body keeps it from being dragged.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PointerDragPlugin;
+
+impl Plugin for PointerDragPlugin {
+    fn build(&self, app: &mut App) {
+        if !app.is_plugin_added::<LockstepPickingPlugin<Sandbox>>() {
+            app.add_plugins(LockstepPickingPlugin::<Sandbox>::default());
+        }
+        if !app.is_plugin_added::<DragPlugin>() {
+            app.add_plugins(DragPlugin);
+        }
+        app.init_resource::<HoldingPointer>()
+            .add_observer(grab)
+            .add_systems(RunFixedMainLoop, move_hand.before(pull).in_set(LockstepSystems::Inputs));
+    }
+}
+
+/// The point of a ray on the plane of the views, and its distance.
+fn on_plane(ray: Ray3d) -> Option<(Vec3, f32)> {
+    let distance = ray.intersect_plane(Vec3::ZERO, InfinitePlane3d { normal: Dir3::Z })?;
+    Some((ray.get_point(distance), distance))
+}
+
+/// Tells the pointers which views they hit.
+fn pick<G: LockstepGame>(
+    lockstep: Res<Lockstep<G>>,
+    (settings, views, rays): (Res<LockstepSettings>, Res<BodyViews>, Res<RayMap>),
+    cameras: Query<&Camera>,
+    shown: Query<(&Transform, Option<&Pickable>)>,
+    mut hits: MessageWriter<PointerHits>,
+) {
+    let Some(world) = lockstep.world() else { return };
+    let hits_of = |(id, ray): (&RayId, &Ray3d)| {
+        let order = cameras.get(id.camera).ok()?.order;
+        let (point, distance) = on_plane(*ray)?;
+        let hit = |entity: Entity| {
+            let (place, pickable) = shown.get(entity).ok()?;
+            let depth = distance - place.translation.z;
+            let is_pickable = pickable.is_none_or(|pickable| *pickable != Pickable::IGNORE);
+            is_pickable.then(|| (entity, HitData::new(id.camera, depth, Some(point), None)))
+        };
+        let picks = views_at(world, &views, point, &settings).filter_map(hit).collect();
+        Some(PointerHits::new(id.pointer, picks, order as f32))
+    };
+    hits.write_batch(rays.iter().filter_map(hits_of));
+}
+
+/// The views of the bodies at a point.
+fn views_at<'a>(
+    world: &'a World,
+    views: &'a BodyViews,
+    at: Vec3,
+    settings: &LockstepSettings,
+) -> impl Iterator<Item = Entity> + 'a {
+    let shapes = world.overlap_point(to_metres(at.xy(), settings), Default::default());
+    let mut entities: Vec<Entity> =
+        shapes.into_iter().filter_map(|shape| views.of_shape(world, shape)).collect();
+    // A body with several shapes at the point is one target.
+    entities.sort_unstable();
+    entities.dedup();
+    entities.into_iter()
+}
+
+/// The pointer that holds a body, as seen by a camera.
+#[derive(Resource, Default)]
+struct HoldingPointer(Option<RayId>);
+
+/// A press on a view, or on one of its children.
+fn grab(
+    press: On<Pointer<Press>>,
+    views: Query<&BodyView>,
+    lockstep: Option<Res<Lockstep<Sandbox>>>,
+    mut hand: ResMut<DragHand>,
+    mut holding: ResMut<HoldingPointer>,
+) {
+    let Some(world) = lockstep.as_ref().and_then(|lockstep| lockstep.world()) else { return };
+    let Ok(body) = views.get(press.entity).map(|view| view.body()) else { return };
+    let is_dynamic = world.body(body).is_some_and(|body| body.is_dynamic());
+    if let Some(at) = press.hit.position
+        && is_dynamic
+        && press.button == PointerButton::Primary
+        && holding.0.is_none()
+    {
+        hand.hold_body(body, at.xy());
+        holding.0 = Some(RayId::new(press.hit.camera, press.pointer_id));
+    }
+}
+
+/// Moves the hand with its pointer, and opens it when the button is up.
+fn move_hand(
+    rays: Res<RayMap>,
+    mut inputs: MessageReader<PointerInput>,
+    mut hand: ResMut<DragHand>,
+    mut holding: ResMut<HoldingPointer>,
+) {
+    let Some(ray) = holding.0 else { return inputs.clear() };
+    let change = |input: &PointerInput| match input.action {
+        PointerAction::Press(PointerButton::Primary) => Some(true),
+        PointerAction::Release(PointerButton::Primary) | PointerAction::Cancel => Some(false),
+        _ => None,
+    };
+    let own = inputs.read().filter(|input| input.pointer_id == ray.pointer);
+    if own.filter_map(change).last() == Some(false) {
+        hand.release();
+        holding.0 = None;
+    } else if let Some((at, _)) = rays.map.get(&ray).and_then(|ray| on_plane(*ray)) {
+        hand.move_to(at.xy());
+    }
+}
