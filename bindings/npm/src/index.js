@@ -6,6 +6,8 @@ export { box, capsule, chain, circle, hull, polygon, segment } from "./definitio
 export { Commands, Snapshot, World } from "./world.js";
 export { Recorder, Recording, Replay, verifyReplay } from "./replay.js";
 export { Match, MatchDriver } from "./match.js";
+export { Relay } from "./relay.js";
+export { decodeNativeState, encodeNativeState, nativeOffer } from "./native.js";
 export { Random, angleOf, cos, cross, dot, hashBytes, hypot, normalize, rotate, sin, sqrt } from "./maths.js";
 
 import { library } from "./library.js";
