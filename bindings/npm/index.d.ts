@@ -249,7 +249,7 @@ export interface ConfigOptions {
 
 /** Something that the library keeps. The garbage collector frees it some time, `dispose` at once. */
 declare class Handle {
-    private constructor();
+    protected constructor();
     dispose(): void;
 }
 
