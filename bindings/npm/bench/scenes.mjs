@@ -1,10 +1,5 @@
-// Scenes that are measured: piles of one shape, and ragdolls.
-
-const GROUND = (L, world) => {
-    world.spawn({ type: "fixed", position: [0, -1], shapes: [L.box(30, 1)] });
-    world.spawn({ type: "fixed", position: [-16, 10], shapes: [L.box(1, 20)] });
-    world.spawn({ type: "fixed", position: [16, 10], shapes: [L.box(1, 20)] });
-};
+// Scenes that are measured: heaps of one shape between walls, and ragdolls. Numbers are decimal text, which the engines with
+// floats convert.
 
 /** Positions of a heap: rows that are shifted against each other. */
 function* heap(count) {
@@ -14,42 +9,37 @@ function* heap(count) {
     }
 }
 
-const pile = (count, shape) => (L, world) => {
-    GROUND(L, world);
-    for (const position of heap(count)) {
-        world.spawn({ position, maySleep: false, shapes: [shape(L)] });
-    }
-};
-
+export const STATIC = [
+    { position: ["0", "-1"], half: ["30", "1"] },
+    { position: ["-16", "10"], half: ["1", "20"] },
+    { position: ["16", "10"], half: ["1", "20"] },
+];
 const SHAPES = {
-    boxes: (L) => L.box("0.4", "0.4"),
-    balls: (L) => L.circle("0.4"),
-    hexagons: (L) => L.polygon([["0.4", 0], ["0.2", "0.35"], ["-0.2", "0.35"], ["-0.4", 0], ["-0.2", "-0.35"], ["0.2", "-0.35"]]),
+    boxes: { kind: "box", half: ["0.4", "0.4"] },
+    balls: { kind: "ball", radius: "0.4" },
+    hexagons: {
+        kind: "polygon",
+        points: [["0.4", "0"], ["0.2", "0.35"], ["-0.2", "0.35"], ["-0.4", "0"], ["-0.2", "-0.35"], ["0.2", "-0.35"]],
+    },
 };
 
-/** Chains of four capsules, joined with limits. */
-const ragdolls = (count) => (L, world) => {
-    GROUND(L, world);
+/** Chains of four capsules, joined by hinges. */
+function ragdolls(count) {
+    const bodies = [];
+    const hinges = [];
     for (let index = 0; index < count; index++) {
-        const [x, y] = [-10 + 2 * (index % 10), 2 + 3 * Math.floor(index / 10)];
-        let last;
+        const [x, y] = [`${-10 + 2 * (index % 10)}`, 2 + 3 * Math.floor(index / 10)];
         for (let part = 0; part < 4; part++) {
-            const body = world.spawn({
-                position: [x, `${y + Math.floor(part / 2)}.${5 * (part % 2)}`],
-                maySleep: false,
-                shapes: [L.capsule([0, "-0.15"], [0, "0.15"], "0.1")],
-            });
-            if (last !== undefined) {
-                const anchor = [x, `${y + Math.floor((part - 1) / 2)}.${part % 2 ? 25 : 75}`];
-                world.addJoint({ type: "revolute", a: last, b: body, anchor, limit: ["-0.5", "0.5"] });
+            bodies.push({ position: [x, `${y + Math.floor(part / 2)}.${5 * (part % 2)}`], shape: { kind: "capsule", half: "0.15", radius: "0.1" } });
+            if (part > 0) {
+                hinges.push({ a: bodies.length - 2, b: bodies.length - 1, anchor: [x, `${y + Math.floor((part - 1) / 2)}.${part % 2 ? 25 : 75}`] });
             }
-            last = body;
         }
     }
-};
+    return { bodies, hinges };
+}
 
-export const SCENES = {
-    ...Object.fromEntries(Object.entries(SHAPES).flatMap(([name, shape]) => [24, 96, 384].map((count) => [`${name} ${count}`, pile(count, shape)]))),
-    "ragdolls 24": ragdolls(6),
-    "ragdolls 96": ragdolls(24),
-};
+export const SCENES = Object.fromEntries([24, 96, 384].flatMap((count) => [
+    ...Object.entries(SHAPES).map(([name, shape]) => [`${name} ${count}`, { bodies: [...heap(count)].map((position) => ({ position, shape })), hinges: [] }]),
+    [`ragdolls ${count}`, ragdolls(count / 4)],
+]));

@@ -1,67 +1,57 @@
-// Milliseconds of a step in Node for each wasm module given: node bindings/npm/bench/steps.mjs A.wasm [B.wasm ...]
+// Milliseconds of a step in Node, beside other engines or for other builds of the wasm module:
 //
-// Each module runs in processes of its own, in turns. The simulation is deterministic, so the time of a tick is the
-// shortest one of the rounds: a busy machine only makes ticks longer. The hashes have to be equal.
+//     npm ci && node steps.mjs             this package, rapier2d, planck, matter-js
+//     node steps.mjs A.wasm B.wasm ...     modules
+//
+// Each of them runs in processes of its own, in turns. A run is repeatable, so the time of a tick is the shortest one of the
+// rounds: a busy machine only makes ticks longer. Figures are means over the ticks, in brackets relative to the first column.
+// ROUNDS is 5 by default. Hashes, where there are any, have to be equal.
 import { execFileSync } from "node:child_process";
-import { readFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
-import { SCENES } from "./scenes.mjs";
+import { ENGINES, measure, moduleOf } from "./engines.mjs";
 
-const ROUNDS = Number(process.env.ROUNDS ?? 7);
+const ROUNDS = Number(process.env.ROUNDS ?? 5);
 const TICKS = 240;
 
-function play(L, build, ticks) {
-    const world = new L.World();
-    build(L, world);
-    const times = [];
-    for (let tick = 0; tick < ticks; tick++) {
-        const start = performance.now();
-        world.step();
-        times.push(performance.now() - start);
-    }
-    const hash = world.hash();
-    world.dispose();
-    return { times, hash };
-}
+const run = (name) => {
+    const text = execFileSync(process.execPath, [fileURLToPath(import.meta.url), "--one", name], { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
+    return JSON.parse(text.slice(text.indexOf("[{")));
+};
 
-async function measure(path) {
-    const L = await import("../src/index.js");
-    await L.init({ wasm: readFileSync(path) });
-    // The engine compiles a function again, with optimisations, once it is used often.
-    Object.values(SCENES).forEach((build) => play(L, build, 60));
-    const rows = Object.entries(SCENES).map(([name, build]) => ({ name, ...play(L, build, TICKS) }));
-    console.log(JSON.stringify(rows));
-}
-
-function compare(paths) {
+function compare(names) {
     const shortest = {};
     const hashes = {};
     for (let round = 0; round < ROUNDS; round++) {
-        for (const path of paths) {
-            const rows = JSON.parse(execFileSync(process.execPath, [fileURLToPath(import.meta.url), "--one", path], { encoding: "utf8" }));
-            for (const { name, times, hash } of rows) {
-                const best = ((shortest[name] ??= {})[path] ??= times);
+        for (const name of names) {
+            for (const { name: scene, times, hash } of run(name)) {
+                const best = ((shortest[scene] ??= {})[name] ??= times);
                 times.forEach((time, tick) => (best[tick] = Math.min(best[tick], time)));
-                if ((hashes[name] ??= hash) !== hash) {
-                    throw new Error(`${name}: ${path} has another hash`);
+                if (hash !== undefined && (hashes[scene] ??= hash) !== hash) {
+                    throw new Error(`${scene}: ${name} has another hash`);
                 }
             }
         }
     }
+    print(names, shortest);
+}
+
+function print(names, shortest) {
     const mean = (times) => times.reduce((sum, time) => sum + time, 0) / times.length;
-    const product = paths.map(() => 1);
-    for (const [name, each] of Object.entries(shortest)) {
-        const [first, ...rest] = paths.map((path) => mean(each[path]));
+    const product = names.map(() => 1);
+    console.log(`| | ${names.join(" | ")} |\n|---${"|---".repeat(names.length)}|`);
+    for (const [scene, each] of Object.entries(shortest)) {
+        const [first, ...rest] = names.map((name) => mean(each[name]));
         rest.forEach((time, index) => (product[index] *= time / first));
-        const ratios = rest.map((time) => `${time.toFixed(3)} (${(time / first).toFixed(2)})`);
-        console.log([name.padEnd(16), first.toFixed(3), ...ratios].join("  "));
+        const cells = rest.map((time) => `${time.toFixed(3)} (${(time / first).toFixed(2)})`);
+        console.log(`| ${[scene, first.toFixed(3), ...cells].join(" | ")} |`);
     }
-    const count = Object.keys(shortest).length;
-    console.log(`geometric mean of the ratios: ${product.slice(0, -1).map((each) => (each ** (1 / count)).toFixed(3)).join(" ")}`);
+    const scenes = Object.keys(shortest).length;
+    const means = product.slice(0, -1).map((each) => (each ** (1 / scenes)).toFixed(2));
+    console.log(`| geometric mean | 1 | ${means.join(" | ")} |`);
 }
 
 if (process.argv[2] === "--one") {
-    await measure(process.argv[3]);
+    console.log(JSON.stringify(await measure(ENGINES[process.argv[3]] ?? moduleOf(process.argv[3]), TICKS)));
 } else {
-    compare(process.argv.slice(2));
+    compare(process.argv.length > 2 ? process.argv.slice(2) : Object.keys(ENGINES));
 }

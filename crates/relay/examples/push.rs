@@ -37,15 +37,12 @@ fn setup() -> Result<Vec<Command>, WorldError> {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.6))?).density(fx!(3));
     let crates = ShapeDef::new(Polygon::square(fx!(0.5))?);
     let at = |x: i32, y: Fx| BodyDef::dynamic().position((Fx::from_num(x), y));
-    let mut commands = vec![Command::Spawn {
-        body: BodyDef::fixed().position((fx!(0), fx!(-1))),
-        shapes: vec![ground],
-    }];
-    commands.extend([-4, 4, -6, 6].map(|x| Command::Spawn { body: at(x, fx!(1)), shapes: vec![ball.clone()] }));
-    commands.extend((0..5).map(|row| Command::Spawn {
-        body: at(0, Fx::from_num(row) + fx!(0.5)),
-        shapes: vec![crates.clone()],
-    }));
+    let mut commands =
+        vec![Command::Spawn { body: BodyDef::fixed().position((fx!(0), fx!(-1))), shapes: vec![ground] }];
+    commands.extend([-4, 4, -6, 6].map(|x| Command::Spawn { body: at(x, fx!(1)), shapes: vec![ball] }));
+    commands.extend(
+        (0..5).map(|row| Command::Spawn { body: at(0, Fx::from_num(row) + fx!(0.5)), shapes: vec![crates] }),
+    );
     Ok(commands)
 }
 

@@ -21,6 +21,8 @@ const PAUSE_MIN: Duration = Duration::from_millis(250);
 const PAUSE_MAX: Duration = Duration::from_secs(8);
 /// Largest frame from the relay.
 const FRAME_MAX: usize = 64 * 1024;
+/// Close code: another connection of the same member has taken the place of this one.
+const REPLACED: u16 = 4003;
 /// Bytes that wait to be sent. Further datagrams are dropped, as in the buffer of a socket.
 const WRITE_MAX: usize = 512 * 1024;
 
@@ -66,6 +68,8 @@ enum State {
     Open(Box<Socket>),
     /// Another thread connects.
     Connecting(Receiver<Socket>),
+    /// Another connection has the place of this one.
+    Closed,
 }
 
 /// A member of a room of a relay. A lost connection is opened again in the background; datagrams are lost meanwhile.
@@ -113,7 +117,8 @@ impl Relay {
         let target = Target { url: format!("ws://{host}/{code}"), host, secret };
         let (socket, members) = open(&target).map_err(|why| RelayError::Refused { why })?;
         let nowhere = Address::nowhere();
-        let mut relay = Relay { target, state: State::Open(Box::new(socket)), own: nowhere, others: Vec::new() };
+        let mut relay =
+            Relay { target, state: State::Open(Box::new(socket)), own: nowhere, others: Vec::new() };
         relay.set_members(&members);
         Ok(relay)
     }
@@ -134,6 +139,12 @@ impl Relay {
     #[must_use]
     pub const fn is_open(&self) -> bool {
         matches!(self.state, State::Open(_))
+    }
+
+    /// Whether somebody else has connected with the same secret. This one does not connect again.
+    #[must_use]
+    pub const fn is_closed(&self) -> bool {
+        matches!(self.state, State::Closed)
     }
 
     fn set_members(&mut self, members: &Members) {
@@ -179,7 +190,7 @@ impl Relay {
         }
         match &mut self.state {
             State::Open(socket) => Some(socket),
-            State::Connecting(_) => None,
+            State::Connecting(_) | State::Closed => None,
         }
     }
 }
@@ -260,6 +271,9 @@ impl Transport for Relay {
                     }
                 }
                 Ok(Message::Text(text)) => self.take_members(&text),
+                Ok(Message::Close(Some(frame))) if u16::from(frame.code) == REPLACED => {
+                    self.state = State::Closed;
+                }
                 // Pings are answered by the next read or write.
                 Ok(_) => {}
                 Err(error) if is_passing(&error) => return None,

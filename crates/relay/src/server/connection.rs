@@ -13,11 +13,11 @@ use tokio_tungstenite::tungstenite::protocol::{CloseFrame, WebSocketConfig, fram
 use tokio_tungstenite::tungstenite::{Error, Message};
 use tokio_tungstenite::{WebSocketStream, accept_hdr_async_with_config};
 
+use super::Shared;
 use super::limits::Limits;
 use super::meter::{Meter, Pace};
 use super::queue::{Next, Queue};
 use super::rooms::Full;
-use super::Shared;
 use crate::frame::{ADDRESS_BYTES, Member, SECRET_BYTES, frame, unframe};
 
 /// Time for the handshake and for the first frame.

@@ -4,6 +4,10 @@ import {
     decodeNativeState, encodeNativeState, fx, nativeOffer, verifyReplay,
 } from "lockstep2d";
 
+import { World as CoreWorld, type BodyOptions } from "lockstep2d/core";
+
+const body: BodyOptions = { position: [0, "0.5"] };
+export const core = (made: CoreWorld): number => made.spawn(body);
 let world = new World();
 const game: MatchGame<Snapshot> = {
     step: (inputs) => world.step(inputs.length > 0 ? 1 : 0),
