@@ -5,7 +5,10 @@
 use alloc::vec::Vec;
 use core::fmt;
 
-use bincode::config::{Configuration, Fixint, Limit, LittleEndian};
+use bincode::config::{Configuration, Fixint, LittleEndian};
+use bincode::de::{Decode, Decoder, DecoderImpl, read::Reader};
+use bincode::error;
+use bincode::serde::Compat;
 use serde::{Serialize, de::DeserializeOwned};
 
 type Layout = Configuration<LittleEndian, Fixint>;
@@ -74,39 +77,56 @@ pub fn encode<T: Serialize + ?Sized>(value: &T) -> Vec<u8> {
 /// Largest number of bytes that [`decode`] accepts: 256 MiB.
 pub const DECODE_BYTES_MAX: usize = 256 << 20;
 
+/// Bytes by which the announced length of a string may exceed the bytes given before it counts as too long; below that,
+/// the error says how many bytes are missing. The longest number has as many.
+const SLACK: usize = 16;
+
 /// Decodes a value whose canonical encoding is all of `bytes`.
 ///
-/// A length prefix is not trusted. For a string, the allocation is at most the smallest of 4 KiB, 1 MiB and 256 MiB
-/// that is not less than the number of bytes given. For a list of values it is at most a small multiple of the number
-/// of bytes given, plus up to 1 MiB for each list that has begun, before its values are read. Two kinds of types defeat
-/// these limits and must not be decoded from untrusted bytes: lists of values that take no bytes, whose length is
-/// unbounded, and recursive types, whose depth is unbounded.
+/// A length prefix is not trusted. For a string, the allocation is at most 16 bytes more than the bytes given. For a list
+/// of values it is at most a small multiple of the number of bytes given, plus up to 1 MiB for each list that has begun,
+/// before its values are read. Two kinds of types defeat these limits and must not be decoded from untrusted bytes: lists
+/// of values that take no bytes, whose length is unbounded, and recursive types, whose depth is unbounded.
 ///
 /// # Errors
 /// [`DecodeError`] if the bytes are not exactly the encoding of one such value.
 pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, DecodeError> {
-    const SMALL: usize = 4 << 10;
-    const MEDIUM: usize = 1 << 20;
+    let unused = DECODE_BYTES_MAX.checked_sub(bytes.len());
+    let unused = unused.ok_or(DecodeError::TooLong { count: bytes.len() as u64 })?;
     // bincode allocates the announced length of a string before it checks that the bytes are present, unless the length
-    // exceeds a limit. The limit is a type parameter, hence the steps.
-    let count = bytes.len();
-    if count <= SMALL {
-        decode_within::<T, SMALL>(bytes)
-    } else if count <= MEDIUM {
-        decode_within::<T, MEDIUM>(bytes)
-    } else if count <= DECODE_BYTES_MAX {
-        decode_within::<T, DECODE_BYTES_MAX>(bytes)
-    } else {
-        Err(DecodeError::TooLong { count: count as u64 })
+    // exceeds a limit. That limit is a constant, so the part of it that the bytes given do not need is used up first.
+    let layout = LAYOUT.with_limit::<{ DECODE_BYTES_MAX + SLACK }>();
+    let mut decoder = DecoderImpl::new(Rest(bytes), layout, ());
+    let decoded = decoder.claim_bytes_read(unused).and_then(|()| Compat::<T>::decode(&mut decoder));
+    match (decoded, decoder.reader().0.len()) {
+        (Ok(Compat(value)), 0) => Ok(value),
+        (Ok(_), rest) => Err(DecodeError::TrailingBytes { count: rest as u64 }),
+        (Err(error), _) => Err(DecodeError::Invalid { why: alloc::format!("{error}") }),
     }
 }
 
-fn decode_within<T: DeserializeOwned, const LIMIT: usize>(bytes: &[u8]) -> Result<T, DecodeError> {
-    let layout: Configuration<LittleEndian, Fixint, Limit<LIMIT>> = LAYOUT.with_limit::<LIMIT>();
-    match bincode::serde::decode_from_slice(bytes, layout) {
-        Ok((value, used)) if used == bytes.len() => Ok(value),
-        Ok((_, used)) => Err(DecodeError::TrailingBytes { count: (bytes.len() - used) as u64 }),
-        Err(error) => Err(DecodeError::Invalid { why: alloc::format!("{error}") }),
+/// The bytes that have not been read.
+struct Rest<'a>(&'a [u8]);
+
+impl Reader for Rest<'_> {
+    #[inline]
+    fn read(&mut self, bytes: &mut [u8]) -> Result<(), error::DecodeError> {
+        let count = bytes.len();
+        let missing = error::DecodeError::UnexpectedEnd { additional: count.saturating_sub(self.0.len()) };
+        let (read, rest) = self.0.split_at_checked(count).ok_or(missing)?;
+        bytes.copy_from_slice(read);
+        self.0 = rest;
+        Ok(())
+    }
+
+    #[inline]
+    fn peek_read(&mut self, count: usize) -> Option<&[u8]> {
+        self.0.get(..count)
+    }
+
+    #[inline]
+    fn consume(&mut self, count: usize) {
+        self.0 = self.0.get(count..).unwrap_or_default();
     }
 }
 
@@ -139,19 +159,19 @@ mod tests {
         }
     }
 
-    /// The allocation is limited by the number of bytes given: a length far above it is rejected because of its size,
-    /// not because of the missing bytes.
+    /// The allocation is limited by the number of bytes given: a length that exceeds it by more than the slack is rejected
+    /// because of its size, not because of the missing bytes.
     #[test]
     fn an_announced_length_is_limited_by_how_much_there_is() {
-        for (count, announced) in
-            [(8, 4 << 10), (4 << 10, 4 << 10), ((4 << 10) + 1, 1 << 20), (1 << 20, 1 << 20)]
-        {
-            let mut bytes = encode::<u64>(&announced);
-            bytes.resize(count, b'x');
-            let Err(DecodeError::Invalid { why }) = decode::<String>(&bytes) else {
-                panic!("{announced} bytes announced in {count}");
-            };
-            assert!(why.contains("LimitExceeded"), "{announced} bytes announced in {count}: {why}");
+        for count in [8, 4 << 10, (4 << 10) + 1, 1 << 20] {
+            for (missing, reason) in [(16, "UnexpectedEnd { additional: 16 }"), (17, "LimitExceeded")] {
+                let mut bytes = encode::<u64>(&(count as u64 - 8 + missing));
+                bytes.resize(count, b'x');
+                let Err(DecodeError::Invalid { why }) = decode::<String>(&bytes) else {
+                    panic!("{missing} of {count} bytes are missing");
+                };
+                assert!(why.contains(reason), "{missing} of {count} bytes are missing: {why}");
+            }
         }
     }
 

@@ -249,7 +249,7 @@ export interface ConfigOptions {
 
 /** Something that the library keeps. The garbage collector frees it some time, `dispose` at once. */
 declare class Handle {
-    private constructor();
+    protected constructor();
     dispose(): void;
 }
 
@@ -569,4 +569,40 @@ export class MatchDriver<Saved = unknown> {
     receive(now: number, from: Uint8Array, packet: Uint8Array): void;
     /** Call it every few milliseconds. `readInputs` returns the inputs of the own seats, one after another. */
     update(now: number, readInputs: (seats: number[]) => Uint8Array): MatchEvent[];
+}
+
+/** The offer of a native `Peer<G>` (Rust), so that pages and native programs play together. `setup` are the canonical
+ * bytes of `G::Setup`, empty for `()`. */
+export function nativeOffer(options: {
+    rules: string;
+    rulesVersion?: number;
+    setup?: Uint8Array;
+    tickRate?: number;
+    seats: number;
+    inputBytes?: number;
+    /** Milliseconds, as in `MatchOptions`. */
+    patience?: number;
+}): Uint8Array;
+/** The state of a native game whose `Save` is the `Snapshot` of its world: what `MatchGame.encode` returns. */
+export function encodeNativeState(world: World): Uint8Array;
+/** The world of such a state, from any source: what `MatchGame.decode` takes. */
+export function decodeNativeState(bytes: Uint8Array): World;
+
+/** A member of a room of a relay (`crates/relay`): carries the packets of a match over a WebSocket. A lost connection is
+ * opened again; packets are lost meanwhile. */
+export class Relay {
+    private constructor();
+    /** Enters a room, which exists from then on. `url` is `wss://HOST` or `ws://HOST:PORT`, `code` 1 to 32 letters,
+     * digits and `-`. With the same `secret`, 16 random bytes, one has the same address again. `WebSocket` is needed
+     * where there is no global one, as in Node before 22. */
+    static connect(url: string, code: string, options?: { secret?: Uint8Array; WebSocket?: unknown }): Promise<Relay>;
+    readonly own: Uint8Array;
+    /** Addresses of the others in the room, in the order in which they came. */
+    readonly others: Uint8Array[];
+    readonly isOpen: boolean;
+    onPacket: (from: Uint8Array, packet: Uint8Array) => void;
+    /** Called when somebody comes or goes, and after connecting again. */
+    onMembers: (others: Uint8Array[]) => void;
+    send(to: Uint8Array, packet: Uint8Array): void;
+    close(): void;
 }

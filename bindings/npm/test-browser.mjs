@@ -1,30 +1,13 @@
 // Tests the package in a headless Chromium: node bindings/npm/test-browser.mjs [SCREENSHOT]
 //
-// Both modules verify a golden replay, and the page of examples/web plays a match between two peers.
+// Both modules verify a golden replay, and examples/web/local.html plays a match between two peers.
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
-import { createServer } from "node:http";
-import { extname } from "node:path";
 import { Browser } from "../../crates/viewer/web/browser.mjs";
+import { serve } from "./serve.mjs";
 
 const root = new URL("../../", import.meta.url);
-const TYPES = { ".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript" };
-const server = createServer((request, response) => {
-    const { pathname } = new URL(request.url, "http://localhost");
-    const path = pathname.endsWith("/") ? `${pathname}index.html` : pathname;
-    if (path === "/blank.html") {
-        response.writeHead(200, { "content-type": "text/html" }).end("<!doctype html>");
-        return;
-    }
-    try {
-        const bytes = readFileSync(new URL(`.${path}`, root));
-        response.writeHead(200, { "content-type": TYPES[extname(path)] ?? "application/octet-stream" }).end(bytes);
-    } catch {
-        response.writeHead(404).end();
-    }
-});
-await new Promise((done) => server.listen(0, "127.0.0.1", done));
-const address = `http://127.0.0.1:${server.address().port}`;
+const { address, close } = await serve(root);
 const golden = readFileSync(new URL("tests/goldens.txt", root), "utf8").split("\n").filter((line) => / ragdoll /.test(line)).at(-1).split(" ");
 
 async function goldens(simd) {
@@ -42,7 +25,7 @@ async function goldens(simd) {
 }
 
 async function match(screenshot) {
-    const browser = await Browser.open(`${address}/examples/web/`, [920, 560]);
+    const browser = await Browser.open(`${address}/examples/web/local.html`, [920, 560]);
     await browser.until("globalThis.example?.state()", (state) => state?.every(({ status }) => status === "playing"), "both play");
     await browser.press("ArrowUp");
     const state = await browser.until("example.state()", (state) => state.every(({ tick }) => tick > 200), "200 ticks");
@@ -54,10 +37,10 @@ async function match(screenshot) {
     assert.match(verdict, /^match: \d+ ticks/);
     assert.deepEqual(browser.complaints, []);
     await browser.close();
-    console.log(`examples/web: ${verdict}`);
+    console.log(`examples/web/local.html: ${verdict}`);
 }
 
 await goldens(true);
 await goldens(false);
 await match(process.argv[2]);
-server.close();
+close();

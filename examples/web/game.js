@@ -1,27 +1,46 @@
-// The rules: two players push crates. The whole state is the world.
-import { World, box, circle } from "lockstep2d";
+// The rules: players push crates. The whole state is the world. `crates/relay/examples/push.rs` has the same in Rust, so
+// that pages and native programs play together.
+import { World, box, circle, decodeNativeState, encodeNativeState, nativeOffer } from "lockstep2d";
 
-export const RULES = "push the crates 1";
+export const RULES = "push the crates";
+export const SEATS = 4;
+
+/** What all who play together have to agree on. */
+export const offer = () => nativeOffer({ rules: RULES, seats: SEATS });
+
+/** Sets up a world, or a list of commands. */
+export function setUp(edits) {
+    edits.spawn({ type: "fixed", position: [0, -1], shapes: [box(8, 1, { friction: "0.8" })] });
+    for (const x of [-4, 4, -6, 6]) {
+        edits.spawn({ position: [x, 1], shapes: [circle("0.6", { density: 3 })] });
+    }
+    for (let row = 0; row < 5; row++) {
+        edits.spawn({ position: [0, `${row}.5`], shapes: [box("0.5", "0.5")] });
+    }
+}
 
 export class Game {
     constructor() {
         this.world = new World();
-        this.world.spawn({ type: "fixed", position: [0, -1], shapes: [box(8, 1, { friction: "0.8" })] });
-        this.players = [-4, 4].map((x) => this.world.spawn({ position: [x, 1], shapes: [circle("0.6", { density: 3 })] }));
-        for (let row = 0; row < 5; row++) {
-            this.world.spawn({ position: [0, `${row}.5`], shapes: [box("0.5", "0.5")] });
-        }
+        setUp(this.world);
+        this.players = [...this.world.bodies()].slice(1, 1 + SEATS);
     }
 
-    // Bits of an input: left, right, up.
-    step(inputs) {
+    // What the inputs of a tick do, to the world or to a list of commands. Bits of an input: left, right, up.
+    apply(inputs, edits) {
         this.players.forEach((player, seat) => {
             const input = inputs[seat];
             const body = this.world.body(player);
             const along = ((input >> 1) & 1) - (input & 1);
             const jumps = (input & 4) !== 0 && body.velocity.y.abs().lt("0.05");
-            this.world.applyImpulse(player, [along, jumps ? 18 : 0], body.position);
+            if (along !== 0 || jumps) {
+                edits.applyImpulse(player, [along, jumps ? 18 : 0], body.position);
+            }
         });
+    }
+
+    step(inputs) {
+        this.apply(inputs, this.world);
         this.world.step();
     }
 
@@ -42,11 +61,12 @@ export class Game {
     }
 
     encode() {
-        return this.world.toBytes();
+        return encodeNativeState(this.world);
     }
 
     decode(bytes) {
+        const world = decodeNativeState(bytes);
         this.world.dispose();
-        this.world = World.fromBytes(bytes);
+        this.world = world;
     }
 }

@@ -482,7 +482,7 @@ typedef struct ls2d_body_def {
     uint8_t name[16];
 } ls2d_body_def;
 
-/* What is known of a body. */
+/* Properties of a body. */
 typedef struct ls2d_body_info {
     /* Kind of motion. */
     uint32_t kind;
@@ -1136,7 +1136,7 @@ ls2d_status ls2d_explosion_init(ls2d_fx x, ls2d_fx y, ls2d_fx impulse, ls2d_expl
 
 /* ---- What is in a world ---- */
 
-/* What is known of a body. */
+/* Properties of a body. */
 ls2d_status ls2d_body_get(uint32_t world, ls2d_body id, ls2d_body_info *info);
 
 /* All bodies in slot order. */

@@ -100,6 +100,7 @@ impl RawHash {
         RawHash { low, high }
     }
 
+    #[cfg(feature = "lockstep")]
     pub(crate) fn hash(self) -> StateHash {
         StateHash(u128::from(self.high) << 64 | u128::from(self.low))
     }

@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use lockstep2d::world::{Command, Snapshot, World};
 
+#[cfg(feature = "lockstep")]
 use crate::functions::{HostRecorder, HostReplay, Match, SandboxRecorder};
 use crate::status::{Failure, Outcome, Status};
 
@@ -17,21 +18,21 @@ const GENERATION_MAX: u32 = (1 << (32 - SLOT_BITS)) - 1;
 
 /// Defines the kinds of objects.
 macro_rules! kinds {
-    ($($variant:ident($type:ty), $name:literal;)+) => {
+    ($($(#[$condition:meta])* $variant:ident($type:ty), $name:literal;)+) => {
         /// Something that a handle stands for.
         pub(crate) enum Object {
-            $($variant(Box<$type>),)+
+            $($(#[$condition])* $variant(Box<$type>),)+
         }
 
         impl Object {
             fn name(&self) -> &'static str {
                 match self {
-                    $(Object::$variant(_) => $name,)+
+                    $($(#[$condition])* Object::$variant(_) => $name,)+
                 }
             }
         }
 
-        $(impl Kind for $type {
+        $($(#[$condition])* impl Kind for $type {
             const NAME: &'static str = $name;
 
             fn find(object: &mut Object) -> Option<&mut Self> {
@@ -67,9 +68,13 @@ kinds! {
     Snapshot(Snapshot), "a snapshot";
     Bytes(Bytes), "bytes";
     Commands(Commands), "a list of commands";
+    #[cfg(feature = "lockstep")]
     SandboxRecorder(SandboxRecorder), "a recording";
+    #[cfg(feature = "lockstep")]
     HostRecorder(HostRecorder), "a recorder";
+    #[cfg(feature = "lockstep")]
     HostReplay(HostReplay), "a replay";
+    #[cfg(feature = "lockstep")]
     Match(Match), "a match";
 }
 

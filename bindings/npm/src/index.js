@@ -1,16 +1,10 @@
 // lockstep2d: deterministic 2D physics for the web.
-export { Lockstep2dError } from "./error.js";
-export { Angle, Fx, degrees, fx, radians, turns } from "./fx.js";
-export { init, loaded } from "./library.js";
-export { box, capsule, chain, circle, hull, polygon, segment } from "./definitions.js";
-export { Commands, Snapshot, World } from "./world.js";
+export * from "./common.js";
 export { Recorder, Recording, Replay, verifyReplay } from "./replay.js";
 export { Match, MatchDriver } from "./match.js";
-export { Random, angleOf, cos, cross, dot, hashBytes, hypot, normalize, rotate, sin, sqrt } from "./maths.js";
+export { Relay } from "./relay.js";
+export { decodeNativeState, encodeNativeState, nativeOffer } from "./native.js";
 
-import { library } from "./library.js";
+import { initializer } from "./library.js";
 
-/** Version of the engine's arithmetic: programs with different ones do not compute the same states. */
-export const semantics = () => library().ls2d_semantics();
-/** Number of objects that are not disposed. */
-export const objectCount = () => library().ls2d_object_count();
+export const init = initializer({ simd: () => import("../wasm/simd.js"), plain: () => import("../wasm/plain.js") });

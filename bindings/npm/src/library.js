@@ -16,8 +16,8 @@ let bytes;
 let starting;
 let variant;
 
-async function inlined(simd) {
-    const { default: text } = simd ? await import("../wasm/simd.js") : await import("../wasm/plain.js");
+async function inlined(load) {
+    const { default: text } = await load();
     const packed = Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
     if (typeof DecompressionStream === "undefined") {
         const { gunzipSync } = await import(/* webpackIgnore: true */ /* @vite-ignore */ `node:${"zlib"}`);
@@ -27,9 +27,9 @@ async function inlined(simd) {
     return new Response(stream).arrayBuffer();
 }
 
-async function start({ simd, wasm } = {}) {
+async function start(modules, { simd, wasm } = {}) {
     const chosen = simd ?? WebAssembly.validate(new Uint8Array(SIMD));
-    let source = wasm ?? (await inlined(chosen));
+    let source = wasm ?? (await inlined(chosen ? modules.simd : modules.plain));
     if (typeof Response !== "undefined" && source instanceof Response) {
         source = await source.arrayBuffer();
     }
@@ -41,14 +41,15 @@ async function start({ simd, wasm } = {}) {
     variant = wasm ? "given" : chosen ? "simd" : "plain";
 }
 
-/** Loads the wasm module. Later calls wait for the first one and change nothing. */
-export function init(options) {
-    starting ??= start(options).catch((error) => {
+/** The function `init` for two inlined modules, with and without SIMD. Later calls wait for the first one and change
+ * nothing. */
+export const initializer = (modules) => (options) => {
+    starting ??= start(modules, options).catch((error) => {
         starting = undefined;
         throw error;
     });
     return starting;
-}
+};
 
 /** Which module was loaded: `simd`, `plain` or `given`; undefined before `init`. */
 export function loaded() {

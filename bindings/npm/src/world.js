@@ -338,7 +338,7 @@ export class World extends Edits {
         call("ls2d_world_restore", this.handle, snapshot.handle);
     }
 
-    /** What is known of a body, or undefined if it is not in the world. */
+    /** Properties of a body, or undefined if it is not in the world. */
     body(body) {
         const at = scratch(sizeOf("body_info"));
         try {

@@ -1,12 +1,12 @@
 import { readFileSync } from "node:fs";
-import * as lockstep2d from "../src/index.js";
 
-export const L = lockstep2d;
+const variant = process.env.VARIANT ?? "simd";
+export const L = await (variant.startsWith("core") ? import("../src/core.js") : import("../src/index.js"));
 export const root = new URL("../../../", import.meta.url);
 export const file = (path) => new Uint8Array(readFileSync(new URL(path, root)));
 
-// VARIANT=plain runs the tests with the module without SIMD.
-await L.init({ simd: process.env.VARIANT === "plain" ? false : undefined });
+// VARIANT=plain runs the tests with the module without SIMD, core and core-plain those of lockstep2d/core.
+await L.init({ simd: variant.endsWith("plain") ? false : undefined });
 
 export function fallingBox() {
     const world = new L.World();

@@ -3,11 +3,14 @@
 mod drawing;
 mod edit;
 mod events;
+#[cfg(feature = "lockstep")]
 mod host;
 mod library;
+#[cfg(feature = "lockstep")]
 mod matches;
 mod maths;
 mod query;
+#[cfg(feature = "lockstep")]
 mod replay;
 mod snapshot;
 mod view;
@@ -16,11 +19,14 @@ mod world;
 pub use drawing::*;
 pub use edit::*;
 pub use events::*;
+#[cfg(feature = "lockstep")]
 pub use host::*;
 pub use library::*;
+#[cfg(feature = "lockstep")]
 pub use matches::*;
 pub use maths::*;
 pub use query::*;
+#[cfg(feature = "lockstep")]
 pub use replay::*;
 pub use snapshot::*;
 pub use view::*;
@@ -38,8 +44,11 @@ pub(crate) const FUNCTIONS: &[(&str, &[Function])] = &[
     ("Events of the last tick", events::FUNCTIONS),
     ("Queries", query::FUNCTIONS),
     ("Snapshots", snapshot::FUNCTIONS),
+    #[cfg(feature = "lockstep")]
     ("Replays of worlds", replay::FUNCTIONS),
+    #[cfg(feature = "lockstep")]
     ("Replays of games with rules of their own", host::FUNCTIONS),
+    #[cfg(feature = "lockstep")]
     ("Matches", matches::FUNCTIONS),
     ("Mathematics", maths::FUNCTIONS),
 ];

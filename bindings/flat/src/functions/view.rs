@@ -27,7 +27,7 @@ fn joint(world: &World, raw: RawJoint) -> Outcome<&Joint> {
 }
 
 api! {
-    /// What is known of a body.
+    /// Properties of a body.
     fn ls2d_body_get(world: u32, id: RawBody, info: Out<'_, BodyInfo>) {
         let mut info = info;
         with(world, |world: &mut World| info.set(BodyInfo::of(body(world, id)?)))

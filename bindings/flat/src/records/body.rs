@@ -92,7 +92,7 @@ records! {
         name: [u8; 16],
     }
 
-    /// What is known of a body.
+    /// Properties of a body.
     struct BodyInfo = "ls2d_body_info" {
         /// Kind of motion.
         kind: u32,

@@ -8,6 +8,7 @@ mod config;
 mod events;
 mod joint;
 mod joint_parts;
+#[cfg_attr(not(feature = "lockstep"), expect(dead_code, reason = "conversions of the missing functions"))]
 mod matches;
 mod query;
 mod shape;

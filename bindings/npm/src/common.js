@@ -1,0 +1,14 @@
+// What both entries have: all but replays and matches.
+export { Lockstep2dError } from "./error.js";
+export { Angle, Fx, degrees, fx, radians, turns } from "./fx.js";
+export { loaded } from "./library.js";
+export { box, capsule, chain, circle, hull, polygon, segment } from "./definitions.js";
+export { Commands, Snapshot, World } from "./world.js";
+export { Random, angleOf, cos, cross, dot, hashBytes, hypot, normalize, rotate, sin, sqrt } from "./maths.js";
+
+import { library } from "./library.js";
+
+/** Version of the engine's arithmetic: programs with different ones do not compute the same states. */
+export const semantics = () => library().ls2d_semantics();
+/** Number of objects that are not disposed. */
+export const objectCount = () => library().ls2d_object_count();

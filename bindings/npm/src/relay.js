@@ -1,0 +1,118 @@
+// A member of a room of a relay (crates/relay): carries the packets of matches over a WebSocket.
+import { Lockstep2dError } from "./error.js";
+
+const ADDRESS = 8;
+const SECRET = 16;
+// Milliseconds before connecting again: the first time, and at most.
+const PAUSE_MIN = 250;
+const PAUSE_MAX = 8000;
+// Bytes that wait to be sent. Further packets are dropped, as in the buffer of a socket.
+const BUFFERED_MAX = 512 * 1024;
+// Close codes after which connecting again is of no use: a wrong secret, and another connection of the same member.
+const FINAL = [4000, 4003];
+
+const addressOf = (digits) => Uint8Array.from({ length: ADDRESS }, (_, index) => parseInt(digits.slice(2 * index, 2 * index + 2), 16));
+
+/** A member of a room. A lost connection is opened again; packets are lost meanwhile. */
+export class Relay {
+    #url;
+    #secret;
+    #WebSocket;
+    #socket;
+    #pause = PAUSE_MIN;
+    #timer;
+    #closed = false;
+    #ready;
+    /** The own address, and those of the others in the room in the order in which they came. */
+    own;
+    others = [];
+    /** Called with the sender and the bytes of each packet. */
+    onPacket = () => {};
+    /** Called when somebody comes or goes, and after connecting again. */
+    onMembers = () => {};
+
+    /** Enters a room, which exists from then on. `url` is `wss://HOST` or `ws://HOST:PORT`, `code` 1 to 32 letters,
+     * digits and `-`. With the same `secret`, 16 random bytes, one has the same address again. */
+    static async connect(url, code, { secret = crypto.getRandomValues(new Uint8Array(SECRET)), WebSocket = globalThis.WebSocket } = {}) {
+        if (WebSocket === undefined) {
+            throw new Lockstep2dError("VALUE", "there is no WebSocket here; pass one as option");
+        }
+        if (!/^[0-9A-Za-z-]{1,32}$/.test(code) || secret.length !== SECRET) {
+            throw new Lockstep2dError("VALUE", `a code is 1 to 32 letters, digits and -, a secret ${SECRET} bytes`);
+        }
+        const relay = new Relay(`${url.replace(/\/+$/, "")}/${code}`, secret, WebSocket);
+        try {
+            await new Promise((resolve, reject) => {
+                relay.#ready = { resolve, reject };
+                relay.#open();
+            });
+        } catch (error) {
+            relay.close();
+            throw error;
+        }
+        relay.#ready = undefined;
+        return relay;
+    }
+
+    constructor(url, secret, WebSocket) {
+        this.#url = url;
+        this.#secret = secret;
+        this.#WebSocket = WebSocket;
+    }
+
+    /** Whether there is a connection at the moment. */
+    get isOpen() {
+        return this.#socket?.readyState === 1;
+    }
+
+    #open() {
+        const socket = new this.#WebSocket(this.#url);
+        socket.binaryType = "arraybuffer";
+        this.#socket = socket;
+        socket.onopen = () => socket.send(this.#secret);
+        socket.onmessage = ({ data }) => (typeof data === "string" ? this.#members(JSON.parse(data)) : this.#packet(new Uint8Array(data)));
+        socket.onclose = ({ code, reason }) => socket === this.#socket && this.#lost(code, reason);
+    }
+
+    #members({ you, others }) {
+        this.#pause = PAUSE_MIN;
+        this.own = addressOf(you);
+        this.others = others.map(addressOf);
+        this.#ready?.resolve();
+        this.onMembers(this.others);
+    }
+
+    #packet(bytes) {
+        if (bytes.length >= ADDRESS) {
+            this.onPacket(bytes.slice(0, ADDRESS), bytes.slice(ADDRESS));
+        }
+    }
+
+    #lost(code, reason) {
+        this.#ready?.reject(new Lockstep2dError("RELAY", `the relay cannot be used: ${reason || `code ${code}`}`));
+        if (this.#closed || FINAL.includes(code)) {
+            this.#closed = true;
+            return;
+        }
+        this.#timer = setTimeout(() => this.#open(), this.#pause);
+        this.#pause = Math.min(2 * this.#pause, PAUSE_MAX);
+    }
+
+    /** Sends a packet, or loses it. */
+    send(to, packet) {
+        if (!this.isOpen || to.length !== ADDRESS || this.#socket.bufferedAmount > BUFFERED_MAX) {
+            return;
+        }
+        const frame = new Uint8Array(ADDRESS + packet.length);
+        frame.set(to);
+        frame.set(packet, ADDRESS);
+        this.#socket.send(frame);
+    }
+
+    /** Leaves the room. */
+    close() {
+        this.#closed = true;
+        clearTimeout(this.#timer);
+        this.#socket?.close();
+    }
+}

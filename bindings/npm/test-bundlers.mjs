@@ -1,0 +1,23 @@
+// Opens built pages in a headless Chromium: node bindings/npm/test-bundlers.mjs RESULT FOLDER...
+//
+// `globalThis.result` of each page has to have this result twice, from the page and from its worker.
+import assert from "node:assert/strict";
+import { basename, resolve } from "node:path";
+import { pathToFileURL } from "node:url";
+import { Browser } from "../../crates/viewer/web/browser.mjs";
+import { serve } from "./serve.mjs";
+
+const [expected, ...folders] = process.argv.slice(2);
+for (const folder of folders) {
+    const server = await serve(pathToFileURL(`${resolve(folder)}/`));
+    const browser = await Browser.open(`${server.address}/`, [800, 600]);
+    try {
+        const result = await browser.until("globalThis.result", (found) => found?.page && found.worker, `${folder}: both results`);
+        assert.deepEqual(result, { page: expected, worker: expected });
+        assert.deepEqual(browser.complaints, []);
+    } finally {
+        await browser.close();
+        server.close();
+    }
+    console.log(`${basename(folder)}: the page and its worker have the expected hash`);
+}

@@ -1,0 +1,82 @@
+// A match through the relay: node bindings/npm/test-relay.mjs RELAY PUSH LOCKSTEP2D
+//
+// The arguments are the programs `lockstep2d-relay`, the example `push` of that crate, and `lockstep2d`. Two peers in Node
+// and a native one play 3000 ticks. One is paused for five seconds; the other is closed, and opened again with its key.
+// All have the same hash, those who played from the first tick the same replay, and the command verifies it.
+import assert from "node:assert/strict";
+import { execFileSync, spawn } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { createInterface } from "node:readline";
+import { fileURLToPath } from "node:url";
+import * as L from "./src/index.js";
+
+const [relayProgram, pushProgram, command] = process.argv.slice(2);
+const TICKS = 3000;
+const CODE = "ROOM-7";
+const PEER = fileURLToPath(new URL("tests/relay/peer.mjs", import.meta.url));
+const folder = mkdtempSync(join(tmpdir(), "relay-"));
+const children = [];
+
+function start(program, ...args) {
+    const child = spawn(program, args, { stdio: ["ignore", "pipe", "inherit"] });
+    children.push(child);
+    const lines = [];
+    const reader = createInterface({ input: child.stdout });
+    reader.on("line", (line) => lines.push(line));
+    const first = () => (lines.length > 0 ? Promise.resolve() : new Promise((resolve) => reader.once("line", resolve)));
+    const ended = new Promise((resolve, reject) => {
+        child.on("error", reject);
+        child.on("close", (code) => (code === 0 ? resolve(lines) : reject(new Error(`${program} ${args.join(" ")}: exit code ${code}`))));
+    });
+    return { child, lines, first, ended, last: async () => JSON.parse((await ended).at(-1)) };
+}
+
+// Node 20 has a WebSocket behind a flag.
+const flags = typeof WebSocket === "undefined" ? ["--experimental-websocket", "--no-warnings"] : [];
+const peer = (...args) => start(process.execPath, ...flags, PEER, ...args);
+
+/** Hash of a sandbox whose world has this hash, and which has refused no command. */
+function sandboxHash(world) {
+    const bytes = (digits) => Buffer.from(digits, "hex").reverse();
+    return L.hashBytes(Buffer.concat([bytes(world), bytes(L.hashBytes(new Uint8Array(8)))]));
+}
+
+async function play() {
+    const relay = start(relayProgram, "--listen", "127.0.0.1:0", "--json");
+    await relay.first();
+    const { address } = JSON.parse(relay.lines[0]);
+    const file = (name) => join(folder, `${name}.replay`);
+    const native = start(pushProgram, address, CODE, "--ticks", String(TICKS), "-o", file("native"));
+    // The native peer opens the match: it has to be the first in the room.
+    await native.first();
+    const paused = peer(address, CODE, "1", "--pause-at", "700", "-o", file("paused"));
+    // The match begins when two are there, and only those have a replay.
+    await paused.first();
+    await peer(address, CODE, "2", "--quit-at", "1500").ended;
+    const again = peer(address, CODE, "2");
+    const ends = await Promise.all([native, paused, again].map((each) => each.last()));
+    relay.child.kill("SIGINT");
+    await relay.ended;
+    return { ends, files: ["native", "paused"].map(file) };
+}
+
+try {
+    const { ends, files } = await play();
+    const [native, paused, again] = ends;
+    assert.deepEqual(ends.map(({ ticks }) => ticks), [TICKS, TICKS, TICKS]);
+    assert.deepEqual(ends.map(({ hash }) => hash), [native.hash, native.hash, native.hash]);
+    assert.deepEqual([paused.desyncs, again.desyncs], [0, 0]);
+    assert.ok(paused.statuses.includes("dropped"), `the pause is longer than the patience: ${paused.statuses}`);
+    assert.ok(again.joinedAt > 1000, `it returned in the middle, at ${again.joinedAt}`);
+    const [a, b] = files.map((path) => readFileSync(path));
+    assert.ok(a.equals(b), "the replays are equal");
+    const verdict = JSON.parse(execFileSync(command, ["verify", "--json", files[0]], { encoding: "utf8" }).split("\n")[0]);
+    await L.init();
+    assert.deepEqual([verdict.verdict, verdict.ticks, verdict.hash], ["match", TICKS, sandboxHash(native.hash)]);
+    console.log(`relay: ${TICKS} ticks, ${native.hash}, ${a.length} bytes of replay verified; returned at tick ${again.joinedAt}`);
+} finally {
+    children.forEach((child) => child.exitCode ?? child.kill("SIGKILL"));
+    rmSync(folder, { recursive: true, force: true });
+}

@@ -1,0 +1,4 @@
+import { play } from "./play.js";
+
+const hash = await play();
+self.postMessage(hash);

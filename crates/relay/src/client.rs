@@ -1,0 +1,284 @@
+//! [`Relay`]: a member of a room, as a transport.
+
+use core::fmt;
+use core::time::Duration;
+use std::io;
+use std::net::{TcpStream, ToSocketAddrs};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::thread;
+
+use lockstep2d::peer::Transport;
+use lockstep2d::session::Address;
+use tungstenite::protocol::WebSocketConfig;
+use tungstenite::{Message, WebSocket, client::client_with_config};
+
+use crate::frame::{ADDRESS_BYTES, Members, SECRET_BYTES, frame, of_text, unframe};
+
+/// Time for connecting and for each step of the handshake.
+const CONNECT_MAX: Duration = Duration::from_secs(5);
+/// Pauses before connecting again: the first one, and the longest.
+const PAUSE_MIN: Duration = Duration::from_millis(250);
+const PAUSE_MAX: Duration = Duration::from_secs(8);
+/// Largest frame from the relay.
+const FRAME_MAX: usize = 64 * 1024;
+/// Close code: another connection of the same member has taken the place of this one.
+const REPLACED: u16 = 4003;
+/// Bytes that wait to be sent. Further datagrams are dropped, as in the buffer of a socket.
+const WRITE_MAX: usize = 512 * 1024;
+
+/// Why a relay cannot be used.
+#[derive(Debug)]
+pub enum RelayError {
+    /// The URL is not `ws://HOST:PORT`.
+    Url {
+        /// The URL.
+        url: String,
+    },
+    /// The relay cannot be reached, or has refused the connection.
+    Refused {
+        /// Message of the system or of the relay.
+        why: String,
+    },
+}
+
+impl fmt::Display for RelayError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            RelayError::Url { url } => write!(f, "expected ws://HOST:PORT, not {url}"),
+            RelayError::Refused { why } => write!(f, "the relay cannot be used: {why}"),
+        }
+    }
+}
+
+impl core::error::Error for RelayError {}
+
+type Socket = WebSocket<TcpStream>;
+
+/// Where to connect to.
+#[derive(Clone)]
+struct Target {
+    /// URL with the code of the room.
+    url: String,
+    /// Host and port.
+    host: String,
+    secret: [u8; SECRET_BYTES],
+}
+
+enum State {
+    Open(Box<Socket>),
+    /// Another thread connects.
+    Connecting(Receiver<Socket>),
+    /// Another connection has the place of this one.
+    Closed,
+}
+
+/// A member of a room of a relay. A lost connection is opened again in the background; datagrams are lost meanwhile.
+///
+/// ```no_run
+/// use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::peer::{Peer, PeerIdentity, PeerOptions};
+/// use lockstep2d_relay::Relay;
+///
+/// let mut relay = Relay::connect("ws://127.0.0.1:7010", "ABCD", rand_bytes())?;
+/// // Whoever is in the room already is asked; the first one opens the match.
+/// let (options, me) = (PeerOptions { input_bytes: Some(64), ..PeerOptions::lockstep() }, PeerIdentity::random());
+/// let setup = SandboxSetup::default();
+/// let peer = match relay.others().first().cloned() {
+///     None => Peer::<Sandbox, _>::host(&setup, options, me, relay)?,
+///     Some(contact) => Peer::<Sandbox, _>::join(&setup, options, me, relay, contact)?,
+/// };
+/// # fn rand_bytes() -> [u8; 16] { [7; 16] }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Relay {
+    target: Target,
+    state: State,
+    own: Address,
+    others: Vec<Address>,
+}
+
+impl fmt::Debug for Relay {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Relay").field("url", &self.target.url).field("own", &self.own).finish_non_exhaustive()
+    }
+}
+
+impl Relay {
+    /// Enters a room, which exists from then on. `url` is `ws://HOST:PORT`, `code` 1 to 32 letters, digits and `-`, and
+    /// `secret` 16 random bytes. Whoever comes again with the same secret has the same address. Blocks until the relay
+    /// has answered, at most for some seconds.
+    ///
+    /// # Errors
+    /// [`RelayError`] when the relay cannot be reached or refuses.
+    pub fn connect(url: &str, code: &str, secret: [u8; SECRET_BYTES]) -> Result<Self, RelayError> {
+        let host = url.strip_prefix("ws://").map(|host| host.trim_end_matches('/'));
+        let wrong = || RelayError::Url { url: url.to_owned() };
+        let host = host.filter(|host| !host.is_empty() && !host.contains('/')).ok_or_else(wrong)?.to_owned();
+        let target = Target { url: format!("ws://{host}/{code}"), host, secret };
+        let (socket, members) = open(&target).map_err(|why| RelayError::Refused { why })?;
+        let nowhere = Address::nowhere();
+        let mut relay =
+            Relay { target, state: State::Open(Box::new(socket)), own: nowhere, others: Vec::new() };
+        relay.set_members(&members);
+        Ok(relay)
+    }
+
+    /// The own address.
+    #[must_use]
+    pub const fn own(&self) -> &Address {
+        &self.own
+    }
+
+    /// Addresses of the other members, in the order in which they came.
+    #[must_use]
+    pub fn others(&self) -> &[Address] {
+        &self.others
+    }
+
+    /// Whether there is a connection at the moment.
+    #[must_use]
+    pub const fn is_open(&self) -> bool {
+        matches!(self.state, State::Open(_))
+    }
+
+    /// Whether somebody else has connected with the same secret. This one does not connect again.
+    #[must_use]
+    pub const fn is_closed(&self) -> bool {
+        matches!(self.state, State::Closed)
+    }
+
+    fn set_members(&mut self, members: &Members) {
+        let address = |text: &String| of_text(text).and_then(|member| Address::new(&member));
+        self.own = address(&members.you).unwrap_or_else(Address::nowhere);
+        self.others = members.others.iter().filter_map(address).collect();
+    }
+
+    fn take_members(&mut self, text: &str) {
+        if let Ok(members) = serde_json::from_str(text) {
+            self.set_members(&members);
+        }
+    }
+
+    /// Connects again in another thread.
+    fn reconnect(&mut self) {
+        let (sender, receiver) = channel();
+        let target = self.target.clone();
+        thread::spawn(move || {
+            let mut pause = PAUSE_MIN;
+            loop {
+                thread::sleep(pause);
+                let opened = open(&target);
+                if let Ok((socket, _)) = opened {
+                    // Without a receiver the member is gone, and the socket is closed.
+                    let _ = sender.send(socket);
+                    return;
+                }
+                pause = (pause * 2).min(PAUSE_MAX);
+            }
+        });
+        self.state = State::Connecting(receiver);
+    }
+
+    /// The socket, if there is a connection.
+    fn socket(&mut self) -> Option<&mut Socket> {
+        if let State::Connecting(receiver) = &self.state {
+            match receiver.try_recv() {
+                Ok(socket) => self.state = State::Open(Box::new(socket)),
+                Err(TryRecvError::Empty) => {}
+                Err(TryRecvError::Disconnected) => self.reconnect(),
+            }
+        }
+        match &mut self.state {
+            State::Open(socket) => Some(socket),
+            State::Connecting(_) | State::Closed => None,
+        }
+    }
+}
+
+/// Opens a connection and waits for the members of the room.
+fn open(target: &Target) -> Result<(Socket, Members), String> {
+    let stream = connect(&target.host).map_err(|error| error.to_string())?;
+    let config = WebSocketConfig::default()
+        .max_message_size(Some(FRAME_MAX))
+        .max_frame_size(Some(FRAME_MAX))
+        .write_buffer_size(0)
+        .max_write_buffer_size(WRITE_MAX);
+    let opened = client_with_config(&target.url, stream, Some(config));
+    let (mut socket, _) = opened.map_err(|error| error.to_string())?;
+    socket.send(Message::binary(target.secret.to_vec())).map_err(|error| error.to_string())?;
+    loop {
+        match socket.read().map_err(|error| error.to_string())? {
+            Message::Text(text) => {
+                let members = serde_json::from_str(&text).map_err(|error| error.to_string())?;
+                let stream = socket.get_ref();
+                stream.set_nonblocking(true).map_err(|error| error.to_string())?;
+                return Ok((socket, members));
+            }
+            Message::Close(frame) => {
+                return Err(frame.map_or_else(|| "closed".to_owned(), |frame| frame.reason.to_string()));
+            }
+            _ => {}
+        }
+    }
+}
+
+fn connect(host: &str) -> io::Result<TcpStream> {
+    let mut last = io::Error::new(io::ErrorKind::NotFound, "the host has no address");
+    for address in host.to_socket_addrs()? {
+        match TcpStream::connect_timeout(&address, CONNECT_MAX) {
+            Ok(stream) => {
+                stream.set_nodelay(true)?;
+                stream.set_read_timeout(Some(CONNECT_MAX))?;
+                stream.set_write_timeout(Some(CONNECT_MAX))?;
+                return Ok(stream);
+            }
+            Err(error) => last = error,
+        }
+    }
+    Err(last)
+}
+
+/// Whether an error leaves the connection as it is.
+fn is_passing(error: &tungstenite::Error) -> bool {
+    match error {
+        tungstenite::Error::Io(error) => {
+            matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted)
+        }
+        tungstenite::Error::WriteBufferFull(_) => true,
+        _ => false,
+    }
+}
+
+impl Transport for Relay {
+    fn send(&mut self, packet: &[u8], to: &Address) {
+        let Ok(to) = <[u8; ADDRESS_BYTES]>::try_from(to.bytes()) else { return };
+        let Some(socket) = self.socket() else { return };
+        if let Err(error) = socket.send(Message::binary(frame(to, packet)))
+            && !is_passing(&error)
+        {
+            self.reconnect();
+        }
+    }
+
+    fn receive(&mut self) -> Option<(Address, Vec<u8>)> {
+        loop {
+            match self.socket()?.read() {
+                Ok(Message::Binary(bytes)) => {
+                    if let Some((from, datagram)) = unframe(&bytes)
+                        && let Some(from) = Address::new(&from)
+                    {
+                        return Some((from, datagram.to_vec()));
+                    }
+                }
+                Ok(Message::Text(text)) => self.take_members(&text),
+                Ok(Message::Close(Some(frame))) if u16::from(frame.code) == REPLACED => {
+                    self.state = State::Closed;
+                }
+                // Pings are answered by the next read or write.
+                Ok(_) => {}
+                Err(error) if is_passing(&error) => return None,
+                Err(_) => self.reconnect(),
+            }
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! Frames: what client and server send to each other.
+
+use serde::{Deserialize, Serialize};
+
+/// Bytes of the address of a member.
+pub const ADDRESS_BYTES: usize = 8;
+
+/// Bytes of the secret that a client begins with.
+pub(crate) const SECRET_BYTES: usize = 16;
+
+/// Address of a member of a room.
+pub(crate) type Member = [u8; ADDRESS_BYTES];
+
+/// Appends a datagram to the address of its receiver (on the way to the relay) or sender (on the way from it).
+pub(crate) fn frame(member: Member, datagram: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(ADDRESS_BYTES + datagram.len());
+    bytes.extend_from_slice(&member);
+    bytes.extend_from_slice(datagram);
+    bytes
+}
+
+/// The address and the datagram of a frame.
+pub(crate) fn unframe(bytes: &[u8]) -> Option<(Member, &[u8])> {
+    bytes.split_first_chunk::<ADDRESS_BYTES>().map(|(member, datagram)| (*member, datagram))
+}
+
+/// The text frame of the relay: who is in the room. It is sent at the beginning and after every change.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Members {
+    /// Address of the receiver of this frame.
+    pub(crate) you: String,
+    /// Addresses of the others, in the order in which they came.
+    pub(crate) others: Vec<String>,
+}
+
+/// An address as hexadecimal digits.
+#[cfg(feature = "server")]
+pub(crate) fn to_text(member: Member) -> String {
+    format!("{:016x}", u64::from_be_bytes(member))
+}
+
+/// The address that [`to_text`] wrote.
+pub(crate) fn of_text(text: &str) -> Option<Member> {
+    if text.len() != 2 * ADDRESS_BYTES {
+        return None;
+    }
+    u64::from_str_radix(text, 16).ok().map(u64::to_be_bytes)
+}
+
+#[cfg(all(test, feature = "server"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn addresses_survive_as_text() {
+        let member = [0, 1, 2, 3, 4, 5, 6, 255];
+        assert_eq!(to_text(member), "00010203040506ff");
+        assert_eq!(of_text("00010203040506ff"), Some(member));
+        assert_eq!(of_text("00010203040506f"), None);
+        assert_eq!(of_text("zz010203040506ff"), None);
+    }
+
+    #[test]
+    fn a_frame_is_an_address_and_a_datagram() {
+        let member = [7; ADDRESS_BYTES];
+        assert_eq!(unframe(&frame(member, b"hello")), Some((member, &b"hello"[..])));
+        assert_eq!(unframe(&[1, 2, 3]), None);
+    }
+}

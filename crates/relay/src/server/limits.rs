@@ -1,0 +1,43 @@
+//! [`Limits`]: bounds of memory and traffic.
+
+use core::time::Duration;
+
+/// Limits of a relay. The memory is at most `connections` times (`queue_bytes` + a few `datagram_bytes`).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Connections at the same time.
+    pub connections: usize,
+    /// Rooms at the same time.
+    pub rooms: usize,
+    /// Members of a room.
+    pub members: usize,
+    /// Largest datagram in bytes. A larger one closes the connection.
+    pub datagram_bytes: usize,
+    /// Bytes that wait for one member. When there are more, the oldest datagrams are dropped.
+    pub queue_bytes: usize,
+    /// Bytes per second from one member, with a burst of a second. Datagrams above it are dropped; a member that sends
+    /// eight times as much is disconnected.
+    pub bytes_per_second: u32,
+    /// Datagrams per second from one member, likewise.
+    pub datagrams_per_second: u32,
+    /// Time without any frame after which a member is disconnected. It is pinged three times within it.
+    pub idle: Duration,
+    /// Origins of web pages that may connect. Empty: all. Native clients have no origin and are always admitted.
+    pub origins: Vec<String>,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Limits {
+            connections: 4096,
+            rooms: 1024,
+            members: 64,
+            datagram_bytes: 4096,
+            queue_bytes: 512 * 1024,
+            bytes_per_second: 2_000_000,
+            datagrams_per_second: 4000,
+            idle: Duration::from_secs(30),
+            origins: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! [`Meter`]: how much a member sends.
+
+use core::time::Duration;
+
+/// Excess over the rate that ends a connection.
+const EXCESS: u64 = 8;
+
+const MICROS: u64 = 1_000_000;
+
+/// Verdict about a datagram.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Pace {
+    /// Within the rate.
+    Fine,
+    /// Above the rate: the datagram is dropped.
+    Fast,
+    /// Far above the rate: the connection is closed.
+    Flood,
+}
+
+/// A token bucket that holds a second's worth.
+#[derive(Clone, Debug)]
+struct Bucket {
+    per_second: u64,
+    /// Millionths of a unit.
+    tokens: u64,
+}
+
+impl Bucket {
+    fn new(per_second: u64) -> Self {
+        Bucket { per_second, tokens: per_second.saturating_mul(MICROS) }
+    }
+
+    fn refill(&mut self, micros: u64) {
+        let more = self.tokens.saturating_add(self.per_second.saturating_mul(micros));
+        self.tokens = more.min(self.per_second.saturating_mul(MICROS));
+    }
+
+    fn take(&mut self, units: u64) -> bool {
+        let rest = self.tokens.checked_sub(units.saturating_mul(MICROS));
+        self.tokens = rest.unwrap_or(self.tokens);
+        rest.is_some()
+    }
+}
+
+/// Measures bytes and datagrams of a member. Time is an argument.
+#[derive(Clone, Debug)]
+pub(super) struct Meter {
+    /// For bytes and datagrams, the rates at which datagrams are dropped and those at which the connection is closed.
+    allowed: [Bucket; 2],
+    tolerated: [Bucket; 2],
+    last: Duration,
+}
+
+impl Meter {
+    /// A meter that starts at time zero.
+    pub(super) fn new(bytes_per_second: u32, datagrams_per_second: u32) -> Self {
+        let rates = [bytes_per_second, datagrams_per_second].map(u64::from);
+        Meter {
+            allowed: rates.map(Bucket::new),
+            tolerated: rates.map(|rate| Bucket::new(rate * EXCESS)),
+            last: Duration::ZERO,
+        }
+    }
+
+    /// Counts a datagram that arrives at a time.
+    pub(super) fn count(&mut self, now: Duration, bytes: usize) -> Pace {
+        let passed = now.saturating_sub(self.last);
+        self.last = self.last.max(now);
+        let micros = u64::try_from(passed.as_micros()).unwrap_or(u64::MAX);
+        let units = [u64::try_from(bytes).unwrap_or(u64::MAX), 1];
+        for bucket in self.allowed.iter_mut().chain(&mut self.tolerated) {
+            bucket.refill(micros);
+        }
+        let pay = |buckets: &mut [Bucket; 2]| {
+            buckets.iter_mut().zip(units).fold(true, |paid, (bucket, units)| bucket.take(units) && paid)
+        };
+        match (pay(&mut self.tolerated), pay(&mut self.allowed)) {
+            (false, _) => Pace::Flood,
+            (true, false) => Pace::Fast,
+            (true, true) => Pace::Fine,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Verdicts about datagrams at a constant interval.
+    fn run(interval_micros: u64, bytes: usize, count: u64) -> Vec<Pace> {
+        let mut meter = Meter::new(10_000, 100);
+        (0..count).map(|number| meter.count(Duration::from_micros(number * interval_micros), bytes)).collect()
+    }
+
+    #[test]
+    fn a_steady_member_loses_nothing() {
+        assert!(run(10_000, 100, 1000).iter().all(|pace| *pace == Pace::Fine));
+    }
+
+    #[test]
+    fn above_the_rate_a_part_is_dropped() {
+        // Twice as many bytes as are allowed: after the burst, every second datagram is lost.
+        let paces = run(10_000, 200, 1000);
+        let lost = paces.iter().filter(|pace| **pace == Pace::Fast).count();
+        assert!((440..=460).contains(&lost), "{lost}");
+        let first = paces.iter().position(|pace| *pace != Pace::Fine);
+        assert_eq!(first, Some(99), "a second's worth is a burst");
+    }
+
+    #[test]
+    fn a_flood_ends_the_connection() {
+        let paces = run(100, 1, 1000);
+        assert_eq!(paces.iter().position(|pace| *pace == Pace::Flood), Some(869));
+    }
+}

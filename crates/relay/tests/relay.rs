@@ -1,0 +1,255 @@
+//! The relay over real sockets: datagrams, rooms, limits, members that connect again.
+#![expect(clippy::unwrap_used, reason = "a failed unwrap in a helper fails the test")]
+
+use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::thread;
+use std::time::Duration;
+
+use lockstep2d::peer::Transport;
+use lockstep2d::session::Address;
+use lockstep2d_relay::{Limits, Relay, RelayError, Server};
+use tungstenite::Message;
+
+/// Longest time for anything to happen.
+const PATIENCE: Duration = Duration::from_secs(20);
+const STEP: Duration = Duration::from_millis(2);
+
+/// A relay in a thread, which ends with this value.
+struct Running {
+    address: SocketAddr,
+    stop: Option<tokio::sync::oneshot::Sender<()>>,
+    thread: Option<thread::JoinHandle<()>>,
+}
+
+impl Running {
+    fn start(limits: Limits) -> Self {
+        Self::start_at("127.0.0.1:0".parse().unwrap(), limits)
+    }
+
+    fn start_at(address: SocketAddr, limits: Limits) -> Self {
+        let (stop, stopped) = tokio::sync::oneshot::channel();
+        let (sender, receiver) = std::sync::mpsc::channel();
+        let thread = thread::spawn(move || {
+            let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+            runtime.block_on(async move {
+                let server = Server::bind(address, limits).await.unwrap();
+                sender.send(server.address().unwrap()).unwrap();
+                tokio::select! {
+                    () = server.run() => {}
+                    _ = stopped => {}
+                }
+            });
+        });
+        Running { address: receiver.recv().unwrap(), stop: Some(stop), thread: Some(thread) }
+    }
+
+    fn enter(&self, code: &str, secret: u8) -> Relay {
+        Relay::connect(&format!("ws://{}", self.address), code, [secret; 16]).unwrap()
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        drop(self.stop.take());
+        self.thread.take().map(thread::JoinHandle::join);
+    }
+}
+
+/// Repeats something until it has a result.
+fn until<T>(what: &str, mut attempt: impl FnMut() -> Option<T>) -> T {
+    for _ in 0..PATIENCE.as_millis() / STEP.as_millis() {
+        if let Some(found) = attempt() {
+            return found;
+        }
+        thread::sleep(STEP);
+    }
+    panic!("{what}: not within {PATIENCE:?}");
+}
+
+fn receive(relay: &mut Relay) -> (Address, Vec<u8>) {
+    until("a datagram", || relay.receive())
+}
+
+/// Reads what the relay sends, until the others in the room are these.
+fn until_others(relay: &mut Relay, others: &[Address]) {
+    until("the members", || {
+        assert_eq!(relay.receive(), None);
+        (relay.others() == others).then_some(())
+    });
+}
+
+#[test]
+fn datagrams_reach_the_member_they_are_for_and_name_their_sender() {
+    let server = Running::start(Limits::default());
+    let (mut a, mut b) = (server.enter("abcd", 1), server.enter("ABCD", 2));
+    let mut c = server.enter("abcd", 3);
+    let mut stranger = server.enter("other", 4);
+    until_others(&mut a, &[*b.own(), *c.own()]);
+    assert_eq!(c.others(), [*a.own(), *b.own()]);
+    assert!(stranger.others().is_empty());
+
+    let to = *b.own();
+    a.send(b"to b", &to);
+    c.send(b"also", &to);
+    let mut found = [receive(&mut b), receive(&mut b)];
+    found.sort_by_key(|(_, bytes)| bytes.clone());
+    assert_eq!(found, [(*c.own(), b"also".to_vec()), (*a.own(), b"to b".to_vec())]);
+    // Members of other rooms, and addresses that are none, get nothing.
+    stranger.send(b"from outside", &to);
+    a.send(b"nowhere", &Address::new(&[1, 2, 3]).unwrap());
+    a.send(b"last", &to);
+    assert_eq!(receive(&mut b), (*a.own(), b"last".to_vec()));
+    assert_eq!((b.receive(), c.receive()), (None, None));
+
+    let left = *c.own();
+    drop(c);
+    until_others(&mut a, &[to]);
+    a.send(b"gone", &left);
+}
+
+#[test]
+fn a_member_that_connects_again_has_its_address() {
+    let server = Running::start(Limits::default());
+    let mut a = server.enter("room", 1);
+    let old = server.enter("room", 2);
+    let address = *old.own();
+    // The old connection is still there, as after a change of networks.
+    let mut new = server.enter("room", 2);
+    assert_eq!(*new.own(), address);
+    until_others(&mut a, std::slice::from_ref(&address));
+    a.send(b"hello", &address);
+    assert_eq!(receive(&mut new), (*a.own(), b"hello".to_vec()));
+    // The old one does not take the place of the new one in turn.
+    let mut old = old;
+    until("the end", || {
+        assert_eq!(old.receive(), None);
+        old.is_closed().then_some(())
+    });
+    assert!(new.is_open());
+}
+
+#[test]
+fn members_find_each_other_after_a_restart_of_the_relay() {
+    let server = Running::start(Limits::default());
+    let address = server.address;
+    let (mut a, mut b) = (server.enter("room", 1), server.enter("room", 2));
+    let to = *b.own();
+    drop(server);
+    until("the loss", || {
+        let _ = (a.receive(), b.receive());
+        (!a.is_open() && !b.is_open()).then_some(())
+    });
+    let _server = Running::start_at(address, Limits::default());
+    let found = until("a datagram", || {
+        a.send(b"again", &to);
+        b.receive()
+    });
+    assert_eq!(found, (*a.own(), b"again".to_vec()));
+}
+
+#[test]
+fn a_member_that_does_not_read_loses_the_oldest_datagrams() {
+    let queue_bytes = 64 * 1024;
+    let limits = Limits {
+        queue_bytes,
+        datagrams_per_second: 1_000_000,
+        bytes_per_second: u32::MAX,
+        ..Limits::default()
+    };
+    let server = Running::start(limits);
+    let (mut a, mut b) = (server.enter("room", 1), server.enter("room", 2));
+    let to = *b.own();
+    // More than the buffers of the system and the queue hold.
+    let count = 20_000_u32;
+    for number in 0..count {
+        let mut datagram = vec![0; 1000];
+        datagram[..4].copy_from_slice(&number.to_le_bytes());
+        a.send(&datagram, &to);
+        while a.receive().is_some() {}
+        if number % 64 == 0 {
+            thread::sleep(STEP);
+        }
+    }
+    // What is sent last arrives, though b has not read before.
+    let mut numbers = Vec::new();
+    until("the newest datagram", || {
+        // A datagram that finds the own buffer full is lost, too.
+        a.send(&u32::MAX.to_le_bytes(), &to);
+        while let Some((_, bytes)) = b.receive() {
+            numbers.push(u32::from_le_bytes(*bytes.first_chunk().unwrap()));
+        }
+        numbers.contains(&u32::MAX).then_some(())
+    });
+    assert!(numbers.is_sorted());
+    let arrived = numbers.iter().filter(|number| **number < count).count();
+    assert!(arrived < 15_000, "{arrived} datagrams were kept");
+}
+
+/// Close code, or `None` if the connection ended without one.
+fn close_code(address: SocketAddr, path: &str, frames: &[Message]) -> Option<u16> {
+    let stream = TcpStream::connect(address).unwrap();
+    stream.set_read_timeout(Some(PATIENCE)).unwrap();
+    let (mut socket, _) = tungstenite::client(format!("ws://{address}/{path}"), stream).unwrap();
+    for frame in frames {
+        if socket.send(frame.clone()).is_err() {
+            break;
+        }
+    }
+    loop {
+        match socket.read() {
+            Ok(Message::Close(frame)) => return frame.map(|frame| frame.code.into()),
+            Ok(_) => {}
+            Err(tungstenite::Error::Io(error)) => {
+                assert_ne!(error.kind(), std::io::ErrorKind::WouldBlock, "the connection stays open");
+                return None;
+            }
+            Err(_) => return None,
+        }
+    }
+}
+
+#[test]
+fn limits_close_connections() {
+    let limits = Limits { members: 2, rooms: 1, datagrams_per_second: 100, ..Limits::default() };
+    let server = Running::start(limits);
+    let secret = |number: u8| Message::binary(vec![number; 16]);
+    let code = |path: &str, frames: &[Message]| close_code(server.address, path, frames);
+    assert_eq!(code("room", &[Message::binary(vec![0; 15])]), Some(4000));
+    let flood: Vec<_> =
+        std::iter::once(secret(1)).chain(std::iter::repeat_n(Message::binary(vec![0; 100]), 3000)).collect();
+    assert!(matches!(code("room", &flood), Some(4004) | None));
+    let large = [secret(1), Message::binary(vec![0; 5000])];
+    assert_eq!(code("room", &large), None);
+
+    let (_a, _b) = (server.enter("room", 1), server.enter("room", 2));
+    assert_eq!(code("room", &[secret(3)]), Some(4001));
+    assert_eq!(code("other", &[secret(3)]), Some(4002));
+    let full = Relay::connect(&format!("ws://{}", server.address), "room", [3; 16]);
+    assert!(full.unwrap_err().to_string().contains("the room is full"));
+}
+
+#[test]
+fn a_silent_member_is_disconnected_and_one_that_answers_pings_is_not() {
+    let server = Running::start(Limits { idle: Duration::from_millis(300), ..Limits::default() });
+    let mut a = server.enter("room", 1);
+    // This one does not read, so it answers no ping.
+    let silent = server.enter("room", 2);
+    until_others(&mut a, std::slice::from_ref(silent.own()));
+    until_others(&mut a, &[]);
+    assert!(a.is_open());
+}
+
+#[test]
+fn what_is_no_relay_is_an_error() {
+    for url in ["http://127.0.0.1:1", "ws://", "ws://host/room", "host:1"] {
+        assert!(matches!(Relay::connect(url, "room", [0; 16]), Err(RelayError::Url { .. })), "{url}");
+    }
+    let closed = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+    assert!(matches!(
+        Relay::connect(&format!("ws://{closed}"), "room", [0; 16]),
+        Err(RelayError::Refused { .. })
+    ));
+    let server = Running::start(Limits::default());
+    let invalid = Relay::connect(&format!("ws://{}", server.address), "no%20code", [0; 16]);
+    assert!(matches!(invalid, Err(RelayError::Refused { .. })));
+}

@@ -1,0 +1,126 @@
+// Data channels of WebRTC between the members of a room, with the relay for signals and for whoever cannot connect.
+//
+// A channel is unordered and does not repeat lost packets, like UDP. The addresses stay those of the relay, so that a match
+// does not notice by which way a packet comes. Signals are JSON behind
+// a text that no packet of a match begins with; the relay does not look into either.
+const SIGNAL = new TextEncoder().encode("lockstep2d signal ");
+const DECODER = new TextDecoder();
+// Between networks, a STUN server is needed: { iceServers: [{ urls: "stun:HOST:PORT" }] }.
+const CONFIG = {};
+const CHANNEL = { negotiated: true, id: 0, ordered: false, maxRetransmits: 0 };
+
+const nameOf = (address) => address.join(".");
+const isSignal = (bytes) => bytes.length > SIGNAL.length && SIGNAL.every((byte, index) => bytes[index] === byte);
+
+export class Direct {
+    #relay;
+    #links = new Map();
+    enabled = false;
+    onPacket = () => {};
+
+    constructor(relay) {
+        this.#relay = relay;
+        relay.onPacket = (from, bytes) => {
+            if (isSignal(bytes)) {
+                this.#signalled(from, JSON.parse(DECODER.decode(bytes.subarray(SIGNAL.length)))).catch(() => this.#drop(from));
+            } else {
+                this.onPacket(from, bytes);
+            }
+        };
+        relay.onMembers = () => this.#connect();
+    }
+
+    /** Number of members with an open channel. */
+    get count() {
+        return [...this.#links.values()].filter(({ channel }) => channel.readyState === "open").length;
+    }
+
+    enable() {
+        this.enabled = true;
+        this.#connect();
+    }
+
+    send(to, packet) {
+        const channel = this.#links.get(nameOf(to))?.channel;
+        if (channel?.readyState === "open") {
+            channel.send(packet);
+        } else {
+            this.#relay.send(to, packet);
+        }
+    }
+
+    close() {
+        [...this.#links.values()].forEach(({ connection }) => connection.close());
+        this.#links.clear();
+    }
+
+    // Of two, the one with the smaller address calls, also when the other one wishes it.
+    #connect() {
+        const names = new Set(this.#relay.others.map(nameOf));
+        [...this.#links.values()].filter(({ name }) => !names.has(name)).forEach(({ address }) => this.#drop(address));
+        for (const address of this.enabled ? this.#relay.others : []) {
+            if (this.#links.has(nameOf(address))) {
+                continue;
+            }
+            if (nameOf(this.#relay.own) < nameOf(address)) {
+                this.#call(address);
+            } else {
+                this.#signal(address, { wish: true });
+            }
+        }
+    }
+
+    #link(address) {
+        const name = nameOf(address);
+        const found = this.#links.get(name);
+        if (found) {
+            return found;
+        }
+        const connection = new RTCPeerConnection(CONFIG);
+        const channel = connection.createDataChannel("match", CHANNEL);
+        channel.binaryType = "arraybuffer";
+        channel.onmessage = ({ data }) => this.onPacket(address, new Uint8Array(data));
+        connection.onicecandidate = ({ candidate }) => candidate && this.#signal(address, { candidate });
+        connection.onconnectionstatechange = () => ["failed", "closed"].includes(connection.connectionState) && this.#drop(address);
+        const link = { name, address, connection, channel };
+        this.#links.set(name, link);
+        return link;
+    }
+
+    async #call(address) {
+        // The answer of whoever is called is a description, too.
+        const { connection } = this.#link(address);
+        await connection.setLocalDescription();
+        this.#signal(address, { description: connection.localDescription });
+    }
+
+    #signal(to, message) {
+        const text = new TextEncoder().encode(JSON.stringify(message));
+        const bytes = new Uint8Array(SIGNAL.length + text.length);
+        bytes.set(SIGNAL);
+        bytes.set(text, SIGNAL.length);
+        this.#relay.send(to, bytes);
+    }
+
+    async #signalled(from, { wish, description, candidate }) {
+        if (wish) {
+            this.#links.has(nameOf(from)) || (await this.#call(from));
+            return;
+        }
+        const { connection } = this.#link(from);
+        if (candidate) {
+            await connection.addIceCandidate(candidate);
+            return;
+        }
+        await connection.setRemoteDescription(description);
+        if (description.type === "offer") {
+            await this.#call(from);
+        }
+    }
+
+    #drop(address) {
+        const link = this.#links.get(nameOf(address));
+        this.#links.delete(nameOf(address));
+        link?.connection.close();
+    }
+}

@@ -1,0 +1,73 @@
+// One player of a match through a relay.
+import { Match, MatchDriver, Relay } from "lockstep2d";
+import { Direct } from "./direct.js";
+import { Game, SEATS, offer } from "./game.js";
+import { Tape } from "./tape.js";
+
+/** Identity of this window for a room: a page that is closed and opened again, or reloaded, has its seat again. */
+function identity(code) {
+    const name = `lockstep2d ${code.toUpperCase()}`;
+    const stored = sessionStorage.getItem(name);
+    const bytes = stored ? Uint8Array.from(stored.split(",").map(Number)) : crypto.getRandomValues(new Uint8Array(24));
+    sessionStorage.setItem(name, bytes.join(","));
+    return { secret: bytes.slice(0, 16), key: new DataView(bytes.buffer).getBigUint64(16) };
+}
+
+export class Player {
+    desyncs = 0;
+    #input;
+
+    /** Enters a room: opens a match, or joins the one that is there. `input` returns the bits of the pad. */
+    static async enter(url, code, input) {
+        const { secret, key } = identity(code);
+        const relay = await Relay.connect(url, code, { secret });
+        return new Player(relay, key, input);
+    }
+
+    constructor(relay, key, input) {
+        this.#input = input;
+        this.relay = relay;
+        this.game = new Game();
+        this.tape = new Tape();
+        this.direct = new Direct(relay);
+        this.match = new Match({ seats: SEATS, guess: 8, delayMin: 1, key, offer: offer(), contact: relay.others[0] });
+        this.driver = new MatchDriver(this.match, this.game, (to, packet) => this.direct.send(to, packet));
+        // A page in the background has few timers, but receives packets, so these play the match, too.
+        this.direct.onPacket = (from, packet) => {
+            this.driver.receive(performance.now(), from, packet);
+            this.update();
+        };
+        this.timer = setInterval(() => this.update(), 4);
+    }
+
+    set guess(ticks) {
+        this.match.status === "connecting" || this.match.setGuess(ticks);
+    }
+
+    update() {
+        const input = (seats) => Uint8Array.from(seats, () => this.#input());
+        const events = this.driver.update(performance.now(), input);
+        this.desyncs += events.filter(({ kind }) => kind === "desync").length;
+        this.tape.follow(this.match);
+        if (this.match.status === "closed") {
+            this.close();
+        }
+    }
+
+    leave() {
+        this.match.status === "connecting" ? this.close() : this.match.leave();
+    }
+
+    close() {
+        clearInterval(this.timer);
+        this.direct.close();
+        this.relay.close();
+    }
+
+    state() {
+        const { match, driver, direct, desyncs } = this;
+        const inside = match.status !== "connecting";
+        const { final } = inside ? match.ticks() : { final: 0 };
+        return { status: match.status, tick: driver.tick, final, seats: inside ? match.seats : [], desyncs, direct: direct.count };
+    }
+}

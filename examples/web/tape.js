@@ -1,0 +1,50 @@
+// Records the final inputs of a match as commands of a world: a replay that needs no rules. `lockstep2d verify` and the
+// viewer open it.
+import { Commands, Recording } from "lockstep2d";
+import { Game, setUp } from "./game.js";
+
+export class Tape {
+    #game = new Game();
+    #commands = new Commands();
+    #recording;
+    #parts = [];
+    /** Number of recorded ticks. */
+    ticks = 0;
+    /** Whether a tick is missing: somebody who joins late does not know the first ones. */
+    broken = false;
+
+    constructor() {
+        const setup = new Commands();
+        setUp(setup);
+        this.#recording = new Recording({ setup });
+    }
+
+    /** Records the ticks of a match that are final. Call it more often than every few minutes. */
+    follow(match) {
+        if (this.broken || match.status === "connecting") {
+            return;
+        }
+        for (const { confirmed } = match.ticks(); this.ticks < confirmed; this.ticks++) {
+            const inputs = match.finalInputs(this.ticks);
+            if (inputs === undefined) {
+                this.broken = true;
+                return;
+            }
+            this.#game.apply(inputs, this.#commands);
+            this.#recording.step(this.#commands);
+            this.#game.step(inputs);
+        }
+        const bytes = this.#recording.take();
+        if (bytes.length > 0) {
+            this.#parts.push(bytes);
+        }
+    }
+
+    /** Ends the replay and returns its bytes. */
+    finish() {
+        const parts = [...this.#parts, this.#recording.finish()];
+        const bytes = new Uint8Array(parts.reduce((sum, part) => sum + part.length, 0));
+        parts.reduce((at, part) => (bytes.set(part, at), at + part.length), 0);
+        return bytes;
+    }
+}
