@@ -17,8 +17,9 @@ const TICKS: u32 = 1200;
 
 /// Assemblies that pull so hard at long arms that a body turns too far within a sub-step, `h^2 F r / I` above 1
 /// (docs/DESIGN.md, "Result and known limits"). Sliders on springs are here pulled out to more than 16 radii of gyration.
-const BEYOND: [Case; 5] = [
-    Case { shape: Shape::Chain, mix: Mix::Hinge, start: Start::Spin, seed: 5 },
+const BEYOND: [Case; 6] = [
+    Case { shape: Shape::Star, mix: Mix::Hinge, start: Start::Spin, seed: 18 },
+    Case { shape: Shape::Tree, mix: Mix::Hinge, start: Start::Spin, seed: 10 },
     Case { shape: Shape::Chain, mix: Mix::Prismatic, start: Start::Spin, seed: 7 },
     Case { shape: Shape::Tree, mix: Mix::Prismatic, start: Start::Hang, seed: 9 },
     Case { shape: Shape::Chain, mix: Mix::Prismatic, start: Start::Hang, seed: 19 },

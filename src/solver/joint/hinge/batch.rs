@@ -52,8 +52,8 @@ pub(super) struct Shape<const N: usize> {
     pub(super) arms: [[Ints<N>; 2]; 2],
     /// Lever ratios in the frames of A and of B.
     pub(super) ratios: [[Ints<N>; 2]; 2],
-    /// `1 / k` of A ([`super::refresh::gap_factor`]).
-    pub(super) inverse_gyration_a: Ints<N>,
+    /// Changes of lever ratios per metre of the gap ([`super::refresh::gap_factors`]).
+    pub(super) gap_factors: [Ints<N>; 2],
     /// Mass fractions.
     pub(super) fractions: [Ints<N>; 2],
     /// Vector from the centre of mass of A to that of B at the start of the tick, with 52 fraction bits.
@@ -90,7 +90,7 @@ impl<const N: usize> Shape<N> {
     const NONE: Self = Shape {
         arms: [[Ints::ZERO; 2]; 2],
         ratios: [[Ints::ZERO; 2]; 2],
-        inverse_gyration_a: Ints::ZERO,
+        gap_factors: [Ints::ZERO; 2],
         fractions: [Ints::ZERO; 2],
         between: [[0; N]; 2],
     };

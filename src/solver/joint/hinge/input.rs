@@ -9,7 +9,7 @@ use super::super::super::softness::Softness;
 use super::super::def::JointFrame;
 use super::super::parts::slot;
 use super::super::state::Joint;
-use super::refresh::gap_factor;
+use super::refresh::gap_factors;
 use crate::body::{Body, Pose};
 use crate::math::{Angle, Fx, Length, Ratio, Reciprocal, Shift, Speed, Unit, Vec2, round_shift, saturate};
 
@@ -127,8 +127,8 @@ pub(in super::super) struct Input {
     /// Anchors from the centres of mass, in the frames of the bodies.
     pub(super) arms: [Vec2<Length>; 2],
     pub(super) ratios: [Vec2<Ratio>; 2],
-    /// `1 / k` of A ([`gap_factor`]).
-    pub(super) gap_factor_a: i32,
+    /// Changes of lever ratios per metre of the gap.
+    pub(super) gap_factors: [i32; 2],
     pub(super) fractions: MassFractions,
     /// Vector from the centre of mass of A to that of B.
     pub(super) between: Vec2<Fx>,
@@ -153,6 +153,7 @@ impl Input {
         let arms = [(&joint.def.frame_a, a), (&joint.def.frame_b, b)]
             .map(|(frame, end)| arm(frame.anchor - end.local_centre));
         let lambda = joint.impulses.point(slot::HOLD);
+        let fractions = MassFractions::of_masses(a.mass, b.mass);
         Input {
             slot,
             bodies: [a.turning.index, b.turning.index],
@@ -160,8 +161,8 @@ impl Input {
             angle,
             arms,
             ratios: [ratios(arms[0], a.inverse_gyration), ratios(arms[1], b.inverse_gyration)],
-            gap_factor_a: gap_factor(a.inverse_gyration),
-            fractions: MassFractions::of_masses(a.mass, b.mass),
+            gap_factors: gap_factors([a.inverse_gyration, b.inverse_gyration], fractions),
+            fractions,
             between: b.centre - a.centre,
             turns: joint.turns(a.turning.angle, b.turning.angle),
             rest: joint.def.rest_angle(),

@@ -238,8 +238,8 @@ impl<const N: usize> Shape<N> {
             self.arms[side][1].0[lane] = input.arms[side].y.to_bits();
             self.ratios[side][0].0[lane] = input.ratios[side].x.to_bits();
             self.ratios[side][1].0[lane] = input.ratios[side].y.to_bits();
+            self.gap_factors[side].0[lane] = input.gap_factors[side];
         }
-        self.inverse_gyration_a.0[lane] = input.gap_factor_a;
         self.fractions[0].0[lane] = input.fractions.a.to_bits();
         self.fractions[1].0[lane] = input.fractions.b.to_bits();
         self.put_between(lane, input.between);

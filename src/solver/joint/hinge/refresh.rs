@@ -1,8 +1,8 @@
 //! Refresh: computes lever ratios, gains and gaps of hinges at the current pose.
 //!
 //! Lever ratios are rotated from their body's frame, `e = R e0`, instead of computed again from the arms, because their
-//! length does not change. The lever of A then reaches across the gap to B's anchor, `eA + perp(gap) / kA`: an impulse
-//! that acts on both bodies at one point keeps angular momentum.
+//! length does not change. Both levers then reach to the middle of the gap, `eA + perp(gap) / (2 kA)` and `eB - perp(gap) /
+//! (2 kB)`: an impulse that acts on both bodies at one point keeps angular momentum.
 //!
 //! The products of `K` are computed exactly, in two parts of 32 bits, and then rounded:
 //!
@@ -17,6 +17,7 @@ use core::cell::Cell;
 
 use super::super::super::body::SolverBody;
 use super::super::super::pair::{RATIO, UNIT, beyond, shift};
+use super::super::super::row::MassFractions;
 use super::super::super::softness::Softness;
 use super::Poses;
 use super::angle::AngleRows;
@@ -99,8 +100,8 @@ fn refresh_gains<L: Lanes<N>, const N: usize>(
     gap: [L::Int; 2],
 ) {
     let e = [
-        reaching::<L, N>(rotated_ratios::<L, N>(&quads[0], &shape.ratios[0]), gap, &shape.inverse_gyration_a),
-        rotated_ratios::<L, N>(&quads[1], &shape.ratios[1]),
+        reaching::<L, N>(rotated_ratios::<L, N>(&quads[0], &shape.ratios[0]), gap, &shape.gap_factors[0]),
+        reaching::<L, N>(rotated_ratios::<L, N>(&quads[1], &shape.ratios[1]), gap, &shape.gap_factors[1]),
     ];
     for (e, batch) in e.iter().zip(&mut batch.e) {
         L::store(e[0], &mut batch[0]);
@@ -127,16 +128,23 @@ fn rotated_ratios<L: Lanes<N>, const N: usize>(quads: &[L::Int; 4], ratios: &[In
     rotated::<L, N>(quads, ratios).map(L::narrow::<UNIT>)
 }
 
-/// Fraction bits of [`gap_factor`].
+/// Fraction bits of [`gap_factors`].
 const FACTOR: u32 = 14;
 
-/// `1 / k` in 1/m, by which gaps become lever ratios. Saturates for bodies of less than a hundredth of a millimetre.
-pub(super) fn gap_factor(inverse_gyration: Reciprocal) -> i32 {
-    saturate(inverse_gyration.times_wide(Fx::ONE).to_bits() >> (Fx::FRAC_NBITS - FACTOR))
+/// `1 / (2 kA)` and `-1 / (2 kB)` in 1/m, by which a gap becomes a change of lever ratios. 0 if one of the bodies is not
+/// moved: no angular momentum is kept there, and the anchor is the better point. Saturates for bodies of less than a
+/// hundredth of a millimetre.
+pub(super) fn gap_factors(inverse_gyrations: [Reciprocal; 2], fractions: MassFractions) -> [i32; 2] {
+    if fractions.a == 0 || fractions.b == 0 {
+        return [0; 2];
+    }
+    let [a, b] = inverse_gyrations
+        .map(|inverse| saturate(inverse.times_wide(Fx::ONE).to_bits() >> (Fx::FRAC_NBITS - FACTOR + 1)));
+    [a, -b]
 }
 
-/// The lever ratios of A with an arm that is longer by the gap, `e + (-gap_y, gap_x) / k`. Levers that would be too long
-/// for the products of `K` stay as they are.
+/// Lever ratios that reach into the gap, `e + factor (-gap_y, gap_x)`. Those that would be too long for the products of
+/// `K` stay as they are.
 #[inline(always)]
 fn reaching<L: Lanes<N>, const N: usize>(
     e: [L::Int; 2],

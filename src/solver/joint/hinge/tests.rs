@@ -14,7 +14,7 @@ use super::super::super::settings::{SolverSettings, Tuning};
 use super::super::super::softness::Softness;
 use super::angle_input::{DriveInput, LimitInput, SpringInput};
 use super::input::ratios;
-use super::refresh::gap_factor;
+use super::refresh::gap_factors;
 use super::*;
 use crate::fx;
 use crate::math::{Angle, Fx, Length, Reciprocal, Rng, Rot, Shift, Speed, Unit, Vec2, narrow};
@@ -122,7 +122,7 @@ impl Setting {
             angle,
             arms: [locals[0], locals[1]],
             ratios: [0, 1].map(|side| ratios(locals[side], ends[side].inverse_gyration)),
-            gap_factor_a: gap_factor(ends[0].inverse_gyration),
+            gap_factors: gap_factors([ends[0].inverse_gyration, ends[1].inverse_gyration], fractions),
             fractions,
             between: ends[0].arm.widen() - ends[1].arm.widen() + gap,
             turns: i64::from(rng.next_u32()) - (1 << 31),
@@ -131,8 +131,12 @@ impl Setting {
             softness: Softness::RIGID,
             is_tuned: false,
         });
-        // The lever of A reaches to B's anchor.
-        ends[0].arm += gap.narrow();
+        // Both levers reach to the middle of the gap, unless one of the bodies is not moved.
+        if fractions.a != 0 && fractions.b != 0 {
+            let half: Vec2<Length> = Vec2::new(gap.x / 2, gap.y / 2).narrow();
+            ends[0].arm += half;
+            ends[1].arm -= half;
+        }
         self.ends.push([ends[0], ends[1]]);
         self.fractions.push(fractions);
     }
