@@ -62,8 +62,8 @@ impl Refresh<'_> {
             let (stiffness, poses) = (self.stiffness_of(batch, records), self.poses);
             let quads = [L::quads(poses.quads, &batch.bodies[0]), L::quads(poses.quads, &batch.bodies[1])];
             let gap = gaps::<L, N>(batch, &records.shape, &quads, bodies);
-            for axis in 0..2 {
-                L::store(closing::<L, N>(gap[axis], &stiffness.points), &mut batch.bias[axis]);
+            for (gap, bias) in gap.into_iter().zip(&mut batch.bias) {
+                L::store(closing::<L, N>(gap, &stiffness.points), bias);
             }
             refresh_gains::<L, N>(batch, &records.shape, &quads, gap);
             if let Some(rows) = angle {
