@@ -84,11 +84,10 @@ fn gaps<L: Lanes<N>, const N: usize>(
     let arms = [rotated::<L, N>(&quads[0], &shape.arms[0]), rotated::<L, N>(&quads[1], &shape.arms[1])];
     let (a, b) = (L::shifts(bodies, &batch.bodies[0]), L::shifts(bodies, &batch.bodies[1]));
     let moved = [L::sub(b.x, a.x), L::sub(b.y, a.y)];
-    [0, 1].map(|axis: usize| {
-        let between = L::load_wide(&shape.between[axis]);
-        let gap = L::add_wide(L::sub_wide(arms[1][axis], arms[0][axis]), between);
-        moved_gap::<L, N>(gap, moved[axis])
-    })
+    let [x, y] = &shape.between;
+    let gap_x = L::add_wide(L::sub_wide(arms[1][0], arms[0][0]), L::load_wide(x));
+    let gap_y = L::add_wide(L::sub_wide(arms[1][1], arms[0][1]), L::load_wide(y));
+    [moved_gap::<L, N>(gap_x, moved[0]), moved_gap::<L, N>(gap_y, moved[1])]
 }
 
 /// Computes lever ratios and gains at the current pose.
@@ -125,11 +124,12 @@ fn rotated<L: Lanes<N>, const N: usize>(quads: &[L::Int; 4], v: &[Ints<N>; 2]) -
 /// Lever ratios in world axes.
 #[inline(always)]
 fn rotated_ratios<L: Lanes<N>, const N: usize>(quads: &[L::Int; 4], ratios: &[Ints<N>; 2]) -> [L::Int; 2] {
-    rotated::<L, N>(quads, ratios).map(L::narrow::<UNIT>)
+    let [x, y] = rotated::<L, N>(quads, ratios);
+    [L::narrow::<UNIT>(x), L::narrow::<UNIT>(y)]
 }
 
 /// Fraction bits of [`gap_factors`].
-const FACTOR: u32 = 14;
+pub(super) const FACTOR: u32 = 14;
 
 /// `1 / (2 kA)` and `-1 / (2 kB)` in 1/m, by which a gap becomes a change of lever ratios. 0 if one of the bodies is not
 /// moved: no angular momentum is kept there, and the anchor is the better point. Saturates for bodies of less than a
@@ -155,8 +155,9 @@ fn reaching<L: Lanes<N>, const N: usize>(
     const REACH_MAX: Ratio = Ratio::lit("87");
     const SHIFT: i32 = shift(Step::FRAC_NBITS + FACTOR - Ratio::FRAC_NBITS);
     let factor = L::load(factors);
-    let ratio = |gap: L::Int| L::narrow_saturating::<SHIFT>(L::mul(gap, factor)).0;
-    let (x, y) = (L::sub_saturating(e[0], ratio(gap_y)), L::add_saturating(e[1], ratio(gap_x)));
+    let (across_x, _) = L::narrow_saturating::<SHIFT>(L::mul(gap_x, factor));
+    let (across_y, _) = L::narrow_saturating::<SHIFT>(L::mul(gap_y, factor));
+    let (x, y) = (L::sub_saturating(e[0], across_y), L::add_saturating(e[1], across_x));
     let most = L::splat(REACH_MAX.to_bits());
     let beyond = L::either(beyond::<L, N>(x, most), beyond::<L, N>(y, most));
     [L::select(beyond, e[0], x), L::select(beyond, e[1], y)]

@@ -14,7 +14,7 @@ use super::super::super::settings::{SolverSettings, Tuning};
 use super::super::super::softness::Softness;
 use super::angle_input::{DriveInput, LimitInput, SpringInput};
 use super::input::ratios;
-use super::refresh::gap_factors;
+use super::refresh::{FACTOR, gap_factors};
 use super::*;
 use crate::fx;
 use crate::math::{Angle, Fx, Length, Reciprocal, Rng, Rot, Shift, Speed, Unit, Vec2, narrow};
@@ -82,12 +82,13 @@ impl Setting {
     fn add(&mut self, slot: u32, rng: &mut Rng, sizes: Sizes) {
         let fractions = random_fractions(rng);
         let mut locals: Vec<Vec2<Length>> = Vec::new();
-        let mut ends = Vec::new();
+        let (mut ends, mut gyrations) = (Vec::new(), Vec::new());
         for _ in 0..2 {
             let gyration = rng.range(fx!(0.05), fx!(5));
             let reach = crate::math::fx_mul(gyration, rng.range(fx!(0), sizes.arm)).min(fx!(290));
             let local = Rot::from_angle(rng.angle()).apply_wide(Vec2::new(reach, Fx::ZERO)).narrow();
             let rotation = Rot::from_angle(rng.angle());
+            gyrations.push(gyration);
             ends.push(Lever { arm: rotation.apply(local), inverse_gyration: Reciprocal::of(gyration) });
             locals.push(local);
             let shift = || Vec2::<Shift>::ZERO;
@@ -108,6 +109,7 @@ impl Setting {
         }
         let gap = Vec2::new(rng.range(-sizes.gap, sizes.gap), rng.range(-sizes.gap, sizes.gap));
         let bodies = [2 * slot + 1, 2 * slot + 2];
+        let gap_factors = gap_factors([ends[0].inverse_gyration, ends[1].inverse_gyration], fractions);
         let angle = if rng.below(2) == 0 {
             self.hinges.angles.push(angle_input(rng, [ends[0], ends[1]], fractions));
             Some(u32::try_from(self.hinges.angles.len()).unwrap() - 1)
@@ -122,7 +124,7 @@ impl Setting {
             angle,
             arms: [locals[0], locals[1]],
             ratios: [0, 1].map(|side| ratios(locals[side], ends[side].inverse_gyration)),
-            gap_factors: gap_factors([ends[0].inverse_gyration, ends[1].inverse_gyration], fractions),
+            gap_factors,
             fractions,
             between: ends[0].arm.widen() - ends[1].arm.widen() + gap,
             turns: i64::from(rng.next_u32()) - (1 << 31),
@@ -131,11 +133,11 @@ impl Setting {
             softness: Softness::RIGID,
             is_tuned: false,
         });
-        // Both levers reach to the middle of the gap, unless one of the bodies is not moved.
-        if fractions.a != 0 && fractions.b != 0 {
-            let half: Vec2<Length> = Vec2::new(gap.x / 2, gap.y / 2).narrow();
-            ends[0].arm += half;
-            ends[1].arm -= half;
+        // Both levers reach into the gap by `k` times the factor, which is rounded.
+        for ((end, gyration), factor) in ends.iter_mut().zip(gyrations).zip(gap_factors) {
+            let share = crate::math::fx_mul(Fx::from_bits(i64::from(factor) << (32 - FACTOR)), gyration);
+            let reach = Vec2::new(crate::math::fx_mul(gap.x, share), crate::math::fx_mul(gap.y, share));
+            end.arm += reach.narrow();
         }
         self.ends.push([ends[0], ends[1]]);
         self.fractions.push(fractions);
