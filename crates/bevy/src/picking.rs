@@ -25,7 +25,7 @@ use crate::views::{BodyView, BodyViews};
 
 /// A picking backend: views of bodies receive `Pointer<Click>`, `Pointer<Over>` and all other events of
 /// [`bevy::picking`], with the exact shapes of their bodies as hit areas. A view with [`Pickable::IGNORE`] is left out.
-/// Of several bodies at a point the one whose view has the largest z is in front.
+/// Where bodies overlap, the view with the largest z is in front.
 ///
 /// It needs the plugins of `bevy::picking`, which `DefaultPlugins` contains.
 ///

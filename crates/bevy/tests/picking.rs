@@ -16,7 +16,7 @@ use lockstep2d::fx;
 use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 use lockstep2d::world::Command;
 
-/// What was clicked.
+/// The bodies that were clicked, in order.
 #[derive(Resource, Default)]
 struct Clicked(Vec<BodyId>);
 

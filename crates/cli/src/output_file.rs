@@ -41,12 +41,12 @@ impl Overwrite {
     pub(crate) const ALWAYS: Overwrite = Overwrite { force: true };
 }
 
-/// Who may read a new file.
+/// Permissions of a new file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Readers {
-    /// Those that the system gives new files.
+    /// The system's default permissions.
     Default,
-    /// Its owner only.
+    /// Readable and writable by the owner only.
     Owner,
 }
 
@@ -78,7 +78,7 @@ impl OutputFile {
     /// As [`OutputFile::create`], with a file that only its owner can read, where the system has such files.
     ///
     /// # Errors
-    /// Those of [`OutputFile::create`].
+    /// As [`OutputFile::create`].
     pub(crate) fn create_private(path: &Path, overwrite: Overwrite) -> Result<Self, CommandError> {
         Self::create_for(path, overwrite, Readers::Owner)
     }

@@ -27,7 +27,7 @@ struct Owner {
     name: String,
 }
 
-/// Who has signed a game.
+/// Result of checking the signatures of a game.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Check {
     /// Names with a valid signature, sorted, each once.

@@ -144,7 +144,7 @@ pub(super) fn gap_factors(inverse_gyrations: [Reciprocal; 2], fractions: MassFra
 }
 
 /// Lever ratios that reach into the gap, `e + factor (-gap_y, gap_x)`. Those that would be too long for the products of
-/// `K` stay as they are.
+/// `K` stay as they are: beyond 87 radii of gyration angular momentum is not kept.
 #[inline(always)]
 fn reaching<L: Lanes<N>, const N: usize>(
     e: [L::Int; 2],

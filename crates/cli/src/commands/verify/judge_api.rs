@@ -57,7 +57,7 @@ impl<G: Game> Judge<G> {
 
     /// Verifies the bytes of a file. A panic of the game is a verdict. Returns `None` after [`Judge::stop`].
     ///
-    /// Of a file that is larger than the limit, one byte more than the limit is enough.
+    /// `bytes` may be truncated to one byte more than the size limit; the verdict is the same.
     #[must_use]
     pub fn judge(&self, name: &str, bytes: &[u8]) -> Option<Judged> {
         let path = Path::new(name);

@@ -18,7 +18,7 @@ pub(super) struct Signers {
     required: usize,
 }
 
-/// Who has signed a file, as fields of its line. It is independent of the verdict.
+/// Result of the signature check, as fields of the JSON line. Independent of the verdict.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(super) struct Signed {
     signature: State,

@@ -33,7 +33,7 @@ pub(super) struct Verified {
     pub(super) cached: bool,
     /// Why the report could not be cached.
     pub(super) unkept: Option<io::Error>,
-    /// Who has signed the file, if signatures are required. This is never cached.
+    /// Result of the signature check, if signatures are required. Never cached.
     pub(super) signed: Option<Signed>,
 }
 
