@@ -1,0 +1,218 @@
+//! The samples of Box2D and the examples of rapier, each as a small world with what it is there to show. The table in
+//! `docs/SAMPLES.md` names the test of each sample. What a test expects follows from mechanics or from the purpose of
+//! the sample.
+
+/// A vector of two literals.
+macro_rules! at {
+    ($x:literal, $y:literal) => {
+        lockstep2d::math::Vec2::new(lockstep2d::fx!($x), lockstep2d::fx!($y))
+    };
+}
+
+mod bodies;
+mod continuous;
+mod events;
+mod joints;
+mod machines;
+mod queries;
+mod rapier;
+mod rapier_joints;
+mod robustness;
+mod shapes;
+mod stacking;
+mod surfaces;
+mod worlds;
+
+use lockstep2d::body::{Body, BodyDef, BodyId, Geometry, JointId, Polygon, ShapeDef, ShapeId};
+use lockstep2d::fx;
+use lockstep2d::lockstep::{Game, Sandbox};
+use lockstep2d::math::{Angle, Fx, Vec2, fx_mul};
+use lockstep2d::scenes::Scene;
+use lockstep2d::solver::{JointDef, JointKind};
+use lockstep2d::world::{Config, World};
+
+/// A world, and short names for what the samples do with it.
+struct Stage {
+    world: World,
+}
+
+impl Stage {
+    /// A world with the default settings: 60 Hz, 10 m/s² downwards.
+    fn new() -> Self {
+        Stage { world: World::default() }
+    }
+
+    fn weightless() -> Self {
+        Self::with_gravity(Vec2::ZERO)
+    }
+
+    fn with_gravity(gravity: Vec2<Fx>) -> Self {
+        Self::of(Config { gravity, ..Config::default() })
+    }
+
+    fn of(config: Config) -> Self {
+        Stage { world: World::new(config).expect("valid settings") }
+    }
+
+    /// The world of a scene before its first tick.
+    fn of_scene(name: &str) -> Self {
+        let scene = Scene::find(name).unwrap_or_else(|| panic!("no scene {name}"));
+        let game = Sandbox::new(&scene.setup(1)).expect("the scenes of this crate are valid");
+        Stage { world: game.world().clone() }
+    }
+
+    /// A world with a floor along the x axis.
+    fn with_floor() -> Self {
+        let mut stage = Self::new();
+        stage.floor();
+        stage
+    }
+
+    /// Adds a fixed floor, 200 m wide, whose top is the x axis.
+    fn floor(&mut self) -> BodyId {
+        self.fixed(at!(0, -1), rect(fx!(100), fx!(1)))
+    }
+
+    fn spawn(&mut self, def: BodyDef, shapes: &[ShapeDef]) -> BodyId {
+        self.world.spawn(&def, shapes).expect("a valid body")
+    }
+
+    /// Adds a fixed body with one shape.
+    fn fixed(&mut self, place: Vec2<Fx>, shape: ShapeDef) -> BodyId {
+        self.spawn(BodyDef::fixed().position(place), &[shape])
+    }
+
+    /// Adds a dynamic body with one shape.
+    fn add(&mut self, place: Vec2<Fx>, shape: ShapeDef) -> BodyId {
+        self.spawn(BodyDef::dynamic().position(place), &[shape])
+    }
+
+    /// Adds a dynamic body with one shape and a velocity.
+    fn throw(&mut self, place: Vec2<Fx>, velocity: Vec2<Fx>, shape: ShapeDef) -> BodyId {
+        self.spawn(BodyDef::dynamic().position(place).velocity(velocity), &[shape])
+    }
+
+    fn join(&mut self, def: JointDef) -> JointId {
+        self.world.add_joint(&def).expect("a valid joint")
+    }
+
+    /// Adds a joint whose anchors are at one point of the world.
+    fn join_at(&mut self, a: BodyId, b: BodyId, kind: impl Into<JointKind>, place: Vec2<Fx>) -> JointId {
+        let def = self.world.joint_at(a, b, kind, place).expect("bodies of the world");
+        self.join(def)
+    }
+
+    /// Adds a joint along an axis of the world.
+    fn join_along(
+        &mut self,
+        (a, b): (BodyId, BodyId),
+        kind: impl Into<JointKind>,
+        place: Vec2<Fx>,
+        axis: Vec2<Fx>,
+    ) -> JointId {
+        let def = self.world.joint_along(a, b, kind, place, axis).expect("bodies of the world");
+        self.join(def)
+    }
+
+    /// Simulates a number of ticks, in which the solver must not clamp anything.
+    fn run(&mut self, ticks: u32) {
+        self.run_and(ticks, |_| ());
+    }
+
+    /// Simulates a number of ticks and looks at the world after each.
+    fn run_and(&mut self, ticks: u32, mut look: impl FnMut(&mut Stage)) {
+        for _ in 0..ticks {
+            self.world.step();
+            look(self);
+        }
+        assert_eq!(self.world.faults(), 0, "expected no clamped value");
+        assert_eq!(self.world.validate(), Ok(()));
+    }
+
+    fn body(&self, id: BodyId) -> &Body {
+        self.world.body(id).expect("a body of the world")
+    }
+
+    fn place(&self, id: BodyId) -> Vec2<Fx> {
+        self.body(id).position()
+    }
+
+    fn velocity(&self, id: BodyId) -> Vec2<Fx> {
+        self.body(id).velocity()
+    }
+
+    /// Angle of a body in radians, from -pi to pi.
+    fn angle(&self, id: BodyId) -> Fx {
+        self.body(id).angle().to_radians()
+    }
+
+    /// The first shape of a body.
+    fn shape(&self, id: BodyId) -> ShapeId {
+        *self.world.shapes_of(id).first().expect("a shape")
+    }
+
+    /// Kinetic and potential energy of all dynamic bodies in J.
+    fn energy(&self) -> Fx {
+        let gravity = self.world.config().gravity;
+        let of =
+            |body: &Body| body.kinetic_energy() - fx_mul(body.mass(), gravity.dot(body.centre_of_mass()));
+        self.world.bodies().filter(|(_, body)| body.is_dynamic()).map(|(_, body)| of(body)).sum()
+    }
+
+    /// Speed in m/s of the fastest dynamic body.
+    fn fastest(&self) -> Fx {
+        let dynamic = self.world.bodies().filter(|(_, body)| body.is_dynamic());
+        dynamic.map(|(_, body)| body.velocity().length()).max().unwrap_or(Fx::ZERO)
+    }
+}
+
+fn ball(radius: Fx) -> ShapeDef {
+    ShapeDef::new(Geometry::circle(radius).expect("a valid circle"))
+}
+
+/// A rectangle of two half extents.
+fn rect(half_width: Fx, half_height: Fx) -> ShapeDef {
+    ShapeDef::new(Polygon::rectangle(half_width, half_height).expect("a valid rectangle"))
+}
+
+fn square(half: Fx) -> ShapeDef {
+    rect(half, half)
+}
+
+/// A rectangle whose outline with a radius has the given half extents.
+fn rounded(half_width: Fx, half_height: Fx, radius: Fx) -> ShapeDef {
+    let core = Polygon::rectangle(half_width - radius, half_height - radius);
+    ShapeDef::new(core.and_then(|core| core.rounded(radius)).expect("a valid rectangle"))
+}
+
+/// A lying capsule from `-half` to `half`.
+fn pill(half: Fx, radius: Fx) -> ShapeDef {
+    capsule(Vec2::new(-half, Fx::ZERO), Vec2::new(half, Fx::ZERO), radius)
+}
+
+fn capsule(a: Vec2<Fx>, b: Vec2<Fx>, radius: Fx) -> ShapeDef {
+    ShapeDef::new(Geometry::capsule(a, b, radius).expect("a valid capsule"))
+}
+
+fn line(a: Vec2<Fx>, b: Vec2<Fx>) -> ShapeDef {
+    ShapeDef::new(Geometry::segment(a, b).expect("a valid segment"))
+}
+
+fn hull(points: &[Vec2<Fx>]) -> ShapeDef {
+    ShapeDef::new(Polygon::hull(points).expect("a valid polygon"))
+}
+
+fn degrees(angle: i32) -> Angle {
+    Angle::from_degrees(Fx::from_num(angle))
+}
+
+/// The whole number as a fixed-point number.
+fn num(value: i32) -> Fx {
+    Fx::from_num(value)
+}
+
+/// Asserts that a value is within a tolerance of the expected one.
+#[track_caller]
+fn near(value: Fx, expected: Fx, tolerance: Fx) {
+    assert!((value - expected).abs() <= tolerance, "{value}, expected {expected} up to {tolerance}");
+}
