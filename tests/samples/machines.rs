@@ -125,6 +125,18 @@ fn a_car_drives_over_hills_and_a_teeter() {
     assert!(crossed < 1800, "it got to {:?}", stage.place(chassis));
 }
 
+/// Ragdoll. Figures fall in a heap; their joints hold, and they come to rest.
+#[test]
+fn ragdolls_hold_together() {
+    let mut stage = Stage::of_scene("ragdoll");
+    stage.run_and(900, |stage| {
+        let gap = stage.world.widest_joint_gap();
+        assert!(gap < fx!(0.05), "{gap} m at tick {}", stage.world.tick());
+    });
+    assert!(stage.world.widest_joint_gap() < fx!(0.005), "{} m", stage.world.widest_joint_gap());
+    assert!(stage.fastest() < fx!(0.2), "still {} m/s", stage.fastest());
+}
+
 /// Soft Body. A ring of capsules with soft welds falls, bends, and is a ring again.
 #[test]
 fn a_soft_ring_keeps_its_shape() {

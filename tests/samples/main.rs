@@ -21,6 +21,7 @@ mod robustness;
 mod shapes;
 mod stacking;
 mod surfaces;
+mod table;
 mod worlds;
 
 use lockstep2d::body::{Body, BodyDef, BodyId, Geometry, JointId, Polygon, ShapeDef, ShapeId};
