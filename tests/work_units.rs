@@ -8,7 +8,7 @@
 use std::time::{Duration, Instant};
 
 use lockstep2d::body::{
-    BodyDef, BodyId, BodyKind, BodySettings, Chain, Continuous, Geometry, JointId, MassSource, Polygon,
+    Area, BodyDef, BodyId, BodyKind, BodySettings, Chain, Continuous, Geometry, JointId, MassSource, Polygon,
     ShapeDef, ShapeId,
 };
 use lockstep2d::codec;
@@ -365,6 +365,15 @@ fn every_command_of_a_body() {
             "SetShape",
             vec![
                 Command::SetShape { shape, def: square(fx!(0.4)) },
+                Command::SetShape { shape, def: square(fx!(0.5)) },
+            ],
+        ),
+        (
+            "SetArea",
+            vec![
+                Command::SetShape { shape, def: square(fx!(0.5)).sensor() },
+                Command::SetArea { shape, area: Some(Area::new().acceleration(place(5))) },
+                Command::SetArea { shape, area: None },
                 Command::SetShape { shape, def: square(fx!(0.5)) },
             ],
         ),

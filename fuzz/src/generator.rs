@@ -180,6 +180,11 @@ impl Generator {
             26 => Command::Enable { body },
             27 => Command::Wake { body },
             28 | 29 => Command::Sleep { body },
+            30 if source.one_in(4) => {
+                let area = source.one_in(4).then(|| shapes::area(source));
+                // Most shapes are solid, for which an area is refused.
+                Command::SetArea { shape: self.shape(source, world), area }
+            }
             30 | 31 => {
                 let shape = self.shape(source, world);
                 Command::SetShape { shape, def: shapes::altered(source, world, shape) }

@@ -11,7 +11,7 @@ use lockstep2d::body::{Area, BodyDef, BodyId, Falloff, Geometry, MassSource, Pol
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, PI, Vec2, fx_div, fx_mul, sqrt};
 use lockstep2d::solver::SolverSettings;
-use lockstep2d::world::{Config, World};
+use lockstep2d::world::{Command, Config, World};
 
 fn world(gravity: Fx) -> World {
     World::new(Config { gravity: Vec2::new(fx!(0), gravity), ..Config::default() }).expect("valid")
@@ -314,6 +314,29 @@ fn what_floats_sleeps_and_wakes() {
     close(at(&world, bodies[0]).y, fx!(0.15), fx!(0.025));
     world.despawn(sea).expect("valid");
     assert_eq!(asleep(&world), [false, false]);
+}
+
+/// A wind that a command sets acts for as long as it is set. The same wind again wakes nobody.
+#[test]
+fn a_command_sets_the_wind() {
+    let mut world = world(fx!(0));
+    let air = ShapeDef::new(Polygon::rectangle(fx!(50), fx!(9)).expect("valid")).sensor();
+    let air = world.spawn(&BodyDef::fixed(), &[air]).expect("valid");
+    let air = world.shapes_of(air)[0];
+    let body = spawn(&mut world, square(fx!(0.5)), (fx!(0), fx!(0)));
+    let wind = Area::new().acceleration((fx!(3), fx!(0)));
+    world.execute(&Command::SetArea { shape: air, area: Some(wind) }).expect("a sensor");
+    run(&mut world, 60);
+    close(world.body(body).expect("valid").velocity().x, fx!(3), fx!(0.001));
+    world.set_area(air, None).expect("a sensor");
+    run(&mut world, 60);
+    close(world.body(body).expect("valid").velocity().x, fx!(3), fx!(0.001));
+    world.set_velocity(body, (fx!(0), fx!(0)).into(), fx!(0)).expect("valid");
+    run(&mut world, 60);
+    world.set_area(air, None).expect("a sensor");
+    assert!(world.body(body).expect("valid").is_asleep());
+    world.set_area(air, Some(wind)).expect("a sensor");
+    assert!(!world.body(body).expect("valid").is_asleep());
 }
 
 /// A body in the area of a dynamic body is awake for as long as that moves.

@@ -1,6 +1,6 @@
 //! Invalid changes to existing bodies, shapes and joints are refused with a typed error, and the world keeps its hash.
 
-use lockstep2d::body::{BodyDef, BodyKind, BodySettings, MassSource, ShapeDef, WorldError};
+use lockstep2d::body::{Area, BodyDef, BodyKind, BodySettings, MassSource, ShapeDef, WorldError};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::{JointDef, JointKind, Revolute};
@@ -138,8 +138,15 @@ fn changes_to_shapes_out_of_range_are_refused() {
     stage.world.set_velocity(stage.ball, Vec2::ZERO, fx!(50)).expect("valid");
     let large = lockstep2d::body::Geometry::Circle { radius: fx!(100) };
     stage.refuses(set(ShapeDef { geometry: large, ..old }), fast);
+    let area = |what| move |error: &WorldError| matches!(error, WorldError::AreaOutOfRange { what: of } if *of == what);
+    let set_area = |area| Command::SetArea { shape, area: Some(area) };
+    stage.refuses(set_area(Area::new()), area("sensor"));
+    stage.world.set_shape(shape, &old.sensor()).expect("valid");
+    stage.refuses(set_area(Area::fluid(fx!(-1))), area("density"));
+    stage.refuses(set_area(Area::new().acceleration((fx!(10001), fx!(0)))), area("acceleration"));
     stage.world.despawn(stage.ball).expect("there");
     stage.refuses(set(old), |error| matches!(error, WorldError::StaleShape(_)));
+    stage.refuses(set_area(Area::new()), |error| matches!(error, WorldError::StaleShape(_)));
 }
 
 #[test]

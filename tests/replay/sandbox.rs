@@ -1,7 +1,7 @@
 //! Sandbox replays: every command can be recorded, whether the world accepts or refuses it, and the replay matches.
 
 use lockstep2d::body::{
-    BodyDef, BodyId, BodyKind, BodySettings, Geometry, MassSource, Name, Polygon, ShapeDef,
+    Area, BodyDef, BodyId, BodyKind, BodySettings, Geometry, MassSource, Name, Polygon, ShapeDef,
 };
 use lockstep2d::fx;
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
@@ -73,6 +73,7 @@ fn commands(world: &World, body: BodyId, value: Fx) -> Vec<Command> {
     ];
     if let Some((shape, old)) = world.shapes().last() {
         commands.push(Command::SetShape { shape, def: old.def().friction(value) });
+        commands.push(Command::SetArea { shape, area: Some(Area::new().acceleration(vector)) });
         commands.push(Command::RemoveShape { shape });
     }
     if let Some((joint, old)) = world.joints().last() {

@@ -103,10 +103,16 @@ fn polygon() -> (ShapeDef, Written) {
 
 /// The same triangle as an area in which every effect is present.
 fn pool() -> (ShapeDef, Written) {
+    let (area, bytes) = area();
+    polygon_with(Some(area), w().u8(3).then(bytes))
+}
+
+/// An area with all effects.
+fn area() -> (Area, Written) {
     let area = Area::fluid(fx!(9)).drag(fx!(7), fx!(8)).flow((fx!(5), fx!(6))).force((fx!(3), fx!(4)));
     let area = area.acceleration((fx!(1), fx!(2))).attraction(fx!(-1), fx!(2), Falloff::InverseSquare);
-    let bytes = w().u8(3).fx(&[2, 4]).some(&[-2, 4]).u32(2).fx(&[6, 8]).fx(&[10, 12]).fx(&[14, 16]).fx(&[18]);
-    polygon_with(Some(area), bytes)
+    let bytes = w().fx(&[2, 4]).some(&[-2, 4]).u32(2).fx(&[6, 8]).fx(&[10, 12]).fx(&[14, 16]).fx(&[18]);
+    (area, bytes)
 }
 
 /// The triangle with the flags of a sensor, and its area.
@@ -282,6 +288,8 @@ fn cases(handles: &Handles) -> Vec<(Command, Written)> {
         (Command::DisableJoint { joint }, w().u32(28).u32(0).u32(0)),
         (Command::SetConfig { config: settings_of_world().0 }, w().u32(29).then(settings_of_world().1)),
         (Command::SetName { body, name: Name::new("ball").ok() }, on_body(30).u8(1).then(name_bytes())),
+        (Command::SetArea { shape, area: pool.area }, w().u32(31).then(shape_id()).u8(1).then(area().1)),
+        (Command::SetArea { shape, area: None }, w().u32(31).then(shape_id()).u8(0)),
     ]
 }
 
@@ -299,7 +307,7 @@ fn the_bytes_of_commands_are_those_of_the_document() {
         assert_eq!(encode(&geometry), expected.0, "{geometry:?}");
     }
     let inputs: Vec<Command> = cases.iter().map(|(command, _)| command.clone()).collect();
-    let all = cases.into_iter().fold(w().u64(31), |all, (_, bytes)| all.then(bytes));
+    let all = cases.into_iter().fold(w().u64(33), |all, (_, bytes)| all.then(bytes));
     assert_eq!(encode(&inputs), all.0, "an input of the sandbox");
 }
 

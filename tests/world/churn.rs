@@ -105,7 +105,13 @@ impl Churn {
             28 => Command::Sleep { body: self.any_body(world)? },
             29 => {
                 let shape = self.any_shape(world)?;
-                Command::SetShape { shape, def: self.changed_shape(*world.shape(shape)?.def()) }
+                let old = *world.shape(shape)?.def();
+                let def = self.changed_shape(old);
+                let is_area = def.area != old.area && def == (ShapeDef { area: def.area, ..old });
+                match is_area {
+                    true => Command::SetArea { shape, area: def.area },
+                    false => Command::SetShape { shape, def },
+                }
             }
             31 => Command::SetName { body: self.any_body(world)?, name: Name::new("named").ok() },
             30 => Command::SetConfig { config: self.changed_config(*world.config()) },
@@ -236,14 +242,19 @@ impl Churn {
         self.changed_shape(shape)
     }
 
+    /// A wind upwards and to a side.
+    fn wind(&mut self) -> Area {
+        let wind = Area::new().acceleration((self.rng.range(fx!(-9), fx!(9)), fx!(5)));
+        wind.drag(self.rng.range(fx!(0), fx!(4)), fx!(1))
+    }
+
     /// Returns a shape that differs from `def` in at most one setting.
     fn changed_shape(&mut self, mut def: ShapeDef) -> ShapeDef {
         let rng = &mut self.rng;
         match rng.below(14) {
             0 => (def.sensor, def.area) = (!def.sensor, None),
             13 => {
-                let wind = Area::new().acceleration((rng.range(fx!(-9), fx!(9)), fx!(5)));
-                def = def.area(wind.drag(rng.range(fx!(0), fx!(4)), fx!(1)));
+                def = def.area(self.wind());
             }
             1 => def.filter = Filter { category: 1 << rng.below(2), mask: rng.below(4).into(), group: 0 },
             2 => def.filter.group = [-1, 0, 1][rng.below(3) as usize],

@@ -72,7 +72,9 @@ impl<'a> Costs<'a> {
             }
             Command::AddShape { body, .. } => SHAPE_WORK + self.shapes_of(*body),
             Command::RemoveShape { shape } => 1 + self.removal() + self.shapes_beside(shape),
-            Command::SetShape { shape, .. } => SHAPE_WORK + self.removal() + self.shapes_beside(shape),
+            Command::SetShape { shape, .. } | Command::SetArea { shape, .. } => {
+                SHAPE_WORK + self.removal() + self.shapes_beside(shape)
+            }
             Command::SetKind { body, .. } => VISIT_WORK + self.shapes_of(*body) + self.removal(),
             Command::SetBody { body, .. } | Command::SetMass { body, .. } => {
                 VISIT_WORK + self.shapes_of(*body)

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{BodyPose, Explosion};
 use crate::body::{
-    BodyDef, BodyId, BodyKind, BodySettings, JointId, MassSource, Name, ShapeDef, ShapeId, WorldError,
+    Area, BodyDef, BodyId, BodyKind, BodySettings, JointId, MassSource, Name, ShapeDef, ShapeId, WorldError,
 };
 use crate::math::{Angle, Fx, Vec2};
 use crate::solver::JointDef;
@@ -228,6 +228,13 @@ pub enum Command {
         /// Its new name.
         name: Option<Name>,
     },
+    /// Calls [`World::set_area`].
+    SetArea {
+        /// The sensor.
+        shape: ShapeId,
+        /// Its new effect.
+        area: Option<Area>,
+    },
 }
 
 /// Handles of the bodies, shapes or joints that a command has added.
@@ -291,6 +298,7 @@ impl World {
             Command::DisableJoint { joint } => self.disable_joint(joint),
             Command::SetConfig { ref config } => self.set_config(config),
             Command::SetName { body, name } => self.set_name(body, name),
+            Command::SetArea { shape, area } => self.set_area(shape, area),
         }
         .map(|()| Outcome::Done)
     }

@@ -4,8 +4,8 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use crate::body::{
-    BodyId, BodyKind, BodySettings, EventSwitches, Filter, Geometry, Handle, MassProperties, MassSource,
-    Material, Name, ShapeDef, ShapeId, WorldError,
+    Area, BodyId, BodyKind, BodySettings, EventSwitches, Filter, Geometry, Handle, MassProperties,
+    MassSource, Material, Name, ShapeDef, ShapeId, WorldError,
 };
 use crate::math::{Fx, Vec2};
 use crate::world::World;
@@ -256,6 +256,32 @@ impl World {
     /// The errors of [`World::set_shape`].
     pub fn set_filter(&mut self, id: ShapeId, filter: Filter) -> Result<(), WorldError> {
         self.change_shape(id, |def| def.filter = filter)
+    }
+
+    /// Replaces the effect of a sensor on the bodies in it, such as a wind that turns or a tide that rises; `None` for a
+    /// sensor that only detects. Wakes what is in it, unless nothing changes: a game may set the wind in every tick.
+    ///
+    /// ```
+    /// use lockstep2d::{body::{Area, BodyDef, Polygon, ShapeDef}, fx, world::World};
+    /// let mut world = World::default();
+    /// let air = ShapeDef::new(Polygon::rectangle(fx!(9), fx!(9))?).sensor();
+    /// let air = world.spawn(&BodyDef::fixed(), &[air])?;
+    /// let air = world.shapes_of(air)[0];
+    /// let leaf = ShapeDef::new(Polygon::square(fx!(0.1))?);
+    /// let leaf = world.spawn(&BodyDef::dynamic().gravity_scale(fx!(0)), &[leaf])?;
+    /// world.set_area(air, Some(Area::new().flow((fx!(3), fx!(0))).drag(fx!(2), fx!(2))))?;
+    /// (0..60).for_each(|_| world.step());
+    /// assert!(world.body(leaf).is_some_and(|leaf| leaf.velocity().x > fx!(2)));
+    /// # Ok::<(), lockstep2d::body::WorldError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`WorldError`] if the handle is stale, or a value is out of range; [`WorldError::AreaOutOfRange`] also if there is
+    /// an effect and the shape is solid or has no inside.
+    #[doc(alias = "wind")]
+    pub fn set_area(&mut self, id: ShapeId, area: Option<Area>) -> Result<(), WorldError> {
+        let shape = self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?;
+        if shape.def.area == area { Ok(()) } else { self.change_shape(id, |def| def.area = area) }
     }
 
     /// Lets pairs and joints follow a body that is about to gain its first mass or to lose all of it: two bodies without
