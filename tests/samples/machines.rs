@@ -33,25 +33,27 @@ fn a_bridge_carries() {
     }
 }
 
-/// Ball & Chain. Links of 6 kg hold a ball of 1 t, and it swings no higher than it began.
+/// Ball & Chain. Thirty links of 6 kg hold a ball of 1 t, and it swings no higher than it began.
 #[test]
 fn a_chain_holds_a_heavy_ball() {
     let mut stage = Stage::new();
     let mut before = stage.spawn(BodyDef::fixed(), &[]);
     let own = |category, mask| Filter { category, mask, group: 0 };
     let link = pill(fx!(0.5), fx!(0.125)).density(fx!(20)).filter(own(1, 2));
-    for i in 0..10 {
+    let hinge = Revolute::new().motor(fx!(0), fx!(100));
+    let stiff = hinge.spring(fx!(4), fx!(0), fx!(0));
+    for i in 0..30 {
         let body = stage.add(Vec2::new(num(i) + fx!(0.5), fx!(5)), link);
-        let hinge = Revolute::new().motor(fx!(0), fx!(100));
-        stage.join_at(before, body, hinge, Vec2::new(num(i), fx!(5)));
+        stage.join_at(before, body, if i > 0 { stiff } else { hinge }, Vec2::new(num(i), fx!(5)));
         before = body;
     }
-    let heavy = stage.add(at!(14, 5), ball(fx!(4)).density(fx!(20)).filter(own(2, 1)));
-    stage.join_at(before, heavy, Revolute::new().motor(fx!(0), fx!(100)), at!(10, 5));
+    let heavy = stage.add(at!(34, 5), ball(fx!(4)).density(fx!(20)).filter(own(2, 1)));
+    stage.join_at(before, heavy, stiff, at!(30, 5));
     let start = stage.energy();
-    stage.run_and(600, |stage| {
+    stage.run_and(1200, |stage| {
         assert!(stage.world.widest_joint_gap() < fx!(0.2), "{} m", stage.world.widest_joint_gap());
-        assert!(stage.energy() < start + fx!(1000), "{} J of {start}", stage.energy());
+        // Of the 300 kJ that it can lose.
+        assert!(stage.energy() < start + fx!(100), "{} J of {start}", stage.energy());
     });
 }
 

@@ -22,15 +22,18 @@ fn pyramid(stage: &mut Stage, half: Fx, rows: i32, top: Fx) -> lockstep2d::body:
     last.expect("at least one row")
 }
 
-/// HighMassRatio1. A pyramid carries a top of 100 times the mass of a box.
+/// HighMassRatio1. A pyramid carries a top of 100 to 300 times the mass of a box.
 #[test]
 fn a_pyramid_carries_a_heavy_top() {
-    let mut stage = Stage::with_floor();
-    let top = pyramid(&mut stage, fx!(1), 6, fx!(100));
-    stage.run(900);
-    near(stage.place(top).y, fx!(11), fx!(0.8));
-    near(stage.place(top).x, fx!(0), fx!(0.3));
-    assert!(stage.fastest() < fx!(0.05), "still {} m/s", stage.fastest());
+    for density in [100, 200, 300] {
+        let mut stage = Stage::with_floor();
+        let top = pyramid(&mut stage, fx!(1), 10, num(density));
+        stage.run(900);
+        // A contact yields by its load over m (2 pi 30 Hz)^2: under 6 kN on 4 kg, 4 cm, and less in each row below.
+        near(stage.place(top).y, fx!(19), fx!(0.25));
+        near(stage.place(top).x, fx!(0), fx!(0.05));
+        assert_eq!(stage.world.awake_body_count(), 0);
+    }
 }
 
 /// HighMassRatio2 and 3. A box of 400 kg falls on two boxes of 1 kg, or on two triangles of half a kilogram.
