@@ -74,9 +74,9 @@ fn overlaps_are_resolved_gently() {
 fn a_tiny_pyramid_stands() {
     let mut stage = Stage::of(Config::default().for_smallest(fx!(0.05)));
     stage.floor();
-    let top = pyramid(&mut stage, fx!(0.025), 10, fx!(1));
-    stage.run(600);
-    near(stage.place(top).y, fx!(0.475), fx!(0.015));
+    let top = pyramid(&mut stage, fx!(0.025), 30, fx!(1));
+    stage.run(300);
+    near(stage.place(top).y, fx!(1.475), fx!(0.01));
     near(stage.place(top).x, fx!(0), fx!(0.005));
 }
 

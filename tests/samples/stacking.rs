@@ -81,10 +81,10 @@ fn balls_on_an_axis_bounce_in_order() {
 fn lying_capsules_stack() {
     let mut stage = Stage::with_floor();
     let place = |i: i32| Vec2::new(Fx::ZERO, fx!(0.5) + fx!(0.75) * i64::from(i));
-    let stack: Vec<_> = (0..12).map(|i| stage.add(place(i), pill(fx!(1), fx!(0.25)))).collect();
-    stage.run(600);
+    let stack: Vec<_> = (0..20).map(|i| stage.add(place(i), pill(fx!(1), fx!(0.25)))).collect();
+    stage.run(900);
     for (i, &id) in (0..).zip(&stack) {
-        near(stage.place(id).y, fx!(0.25) + num(i) / 2, fx!(0.1));
+        near(stage.place(id).y, fx!(0.25) + num(i) / 2, fx!(0.2));
         near(stage.place(id).x, fx!(0), fx!(0.02));
     }
 }
