@@ -63,9 +63,9 @@ fn heap(origin: Vec2<Fx>) -> Vec<(Vec2<Fx>, Angle)> {
     dynamic.map(|(_, body)| (body.position() - origin, body.angle())).collect()
 }
 
-/// Far Pyramid and Far Ragdolls. Up to a million kilometres from the origin nothing is lost. The arms of contacts with fixed
-/// bodies are rounded from the origin, up to 512 m: beyond, to the right and above, the last bits are others, the same
-/// ones everywhere.
+/// Far Pyramid and Far Ragdolls. Up to a million kilometres from the origin nothing is lost. The arms of contacts with
+/// fixed bodies are rounded from the origin, up to 512 m: beyond, to the right and above, the last bits are others, the
+/// same ones everywhere.
 #[test]
 fn the_world_is_the_same_everywhere() {
     let (here, there) = (heap(Vec2::ZERO), heap(at!(1000, 1000)));
