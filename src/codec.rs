@@ -16,6 +16,15 @@ type Layout = Configuration<LittleEndian, Fixint>;
 const LAYOUT: Layout = bincode::config::standard().with_little_endian().with_fixed_int_encoding();
 
 /// Error of decoding bytes that are not the canonical encoding of the expected value.
+///
+/// ```
+/// use lockstep2d::codec::{self, DecodeError};
+/// // A number of four bytes: complete, cut, and read as another type.
+/// let bytes = codec::encode(&0x0102_0304_u32);
+/// assert_eq!(codec::decode::<u32>(&bytes), Ok(0x0102_0304));
+/// assert!(matches!(codec::decode::<u32>(&bytes[..3]), Err(DecodeError::Invalid { .. })));
+/// assert_eq!(codec::decode::<u16>(&bytes), Err(DecodeError::TrailingBytes { count: 2 }));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DecodeError {
     /// The bytes are not a valid encoding of the expected type.

@@ -83,6 +83,23 @@ pub struct Area {
 }
 
 /// Acceleration towards a point, or away from it.
+///
+/// ```
+/// use lockstep2d::body::{Area, Attraction, BodyDef, Falloff, Geometry, ShapeDef};
+/// use lockstep2d::{fx, math::Vec2, world::{Config, World}};
+/// let mut world = World::new(Config { gravity: Vec2::ZERO, ..Config::default() })?;
+/// // A planet with a radius of 10 m, felt up to 40 m from its centre.
+/// let pull = Attraction { acceleration: fx!(5), radius: fx!(10), falloff: Falloff::InverseSquare };
+/// let field = ShapeDef::new(Geometry::circle(fx!(40))?).area(Area { attraction: Some(pull), ..Area::new() });
+/// world.spawn(&BodyDef::fixed(), &[field])?;
+/// let moon = ShapeDef::new(Geometry::circle(fx!(0.5))?);
+/// let moon = world.spawn(&BodyDef::dynamic().position((fx!(20), fx!(0))), &[moon])?;
+/// world.step();
+/// // A quarter of 5 m/s² at twice the radius, for a sixtieth of a second.
+/// let speed = world.body(moon).expect("still there").velocity().x * 60;
+/// assert!((speed + fx!(1.25)).abs() < fx!(0.01));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[doc(alias = "radial gravity")]
 #[doc(alias = "planet")]

@@ -67,18 +67,73 @@ macro_rules! define_handle {
 
 define_handle! {
     /// Handle of a body. Valid until that body is despawned; never resolves to another body.
+    ///
+    /// ```
+    /// # use lockstep2d::{body::{BodyDef, BodyId}, world::World};
+    /// # let mut world = World::default();
+    /// let first: BodyId = world.spawn(&BodyDef::dynamic(), &[])?;
+    /// // A table of the game's own, by slot.
+    /// let mut scores = vec![0; world.body_count()];
+    /// scores[first.index() as usize] += 5;
+    /// world.despawn(first)?;
+    /// // The slot is used again, and the old handle does not lead to the new body.
+    /// let second = world.spawn(&BodyDef::dynamic(), &[])?;
+    /// assert_eq!((second.index(), second.generation()), (first.index(), first.generation() + 1));
+    /// assert!(world.body(first).is_none() && world.body(second).is_some());
+    /// # Ok::<(), lockstep2d::body::WorldError>(())
+    /// ```
     BodyId
 }
 define_handle! {
     /// Handle of a shape. Valid until that shape or its body is removed.
+    ///
+    /// ```
+    /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef, ShapeId}, fx, world::World};
+    /// # let mut world = World::default();
+    /// let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+    /// let robot = world.spawn(&BodyDef::dynamic(), &[square])?;
+    /// // An arm that comes off again.
+    /// let arm: ShapeId = world.add_shape(robot, &square.offset((fx!(1), fx!(0))))?;
+    /// assert_eq!(world.shapes_of(robot).len(), 2);
+    /// world.remove_shape(arm)?;
+    /// assert!(world.shape(arm).is_none() && world.body(robot).is_some());
+    /// # Ok::<(), lockstep2d::body::WorldError>(())
+    /// ```
     ShapeId
 }
 define_handle! {
     /// Handle of a sleeping island. Valid until the island wakes.
+    ///
+    /// ```
+    /// # use lockstep2d::{body::{BodyDef, IslandId, Polygon, ShapeDef}, fx, world::World};
+    /// # let mut world = World::default();
+    /// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+    /// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-0.5))), &[square])?;
+    /// let lower = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(0.5))), &[square])?;
+    /// let upper = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(1.5))), &[square])?;
+    /// (0..120).for_each(|_| world.step());
+    /// // A stack sleeps as one island, and wakes as one.
+    /// let island = |body| -> Option<IslandId> { world.body(body)?.island() };
+    /// assert!(island(lower).is_some() && island(lower) == island(upper));
+    /// # Ok::<(), lockstep2d::body::WorldError>(())
+    /// ```
     IslandId
 }
 define_handle! {
     /// Handle of a joint. Valid until that joint or one of its bodies is removed.
+    ///
+    /// ```
+    /// # use lockstep2d::{body::{BodyDef, JointId}, fx, solver::{JointDef, Revolute}, world::World};
+    /// # let mut world = World::default();
+    /// let frame = world.spawn(&BodyDef::fixed(), &[])?;
+    /// let door = world.spawn(&BodyDef::dynamic(), &[])?;
+    /// let hinge: JointId = world.add_joint(&JointDef::new(frame, door, Revolute::new()))?;
+    /// assert_eq!(world.joints_of(door), [hinge]);
+    /// // A joint goes with either of its bodies.
+    /// world.despawn(door)?;
+    /// assert!(world.joint(hinge).is_none());
+    /// # Ok::<(), lockstep2d::body::WorldError>(())
+    /// ```
     JointId
 }
 

@@ -30,12 +30,14 @@ pub(crate) struct Pose {
 /// A body in the world.
 ///
 /// ```
-/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
+/// # use lockstep2d::body::{BodyDef, Polygon, ShapeDef};
+/// # use lockstep2d::world::World;
+/// use lockstep2d::{body::Body, fx, math::Vec2};
 /// # let mut world = World::default();
 /// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
 /// let id = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(3))), &[square])?;
 /// world.step();
-/// let body = world.body(id).expect("it was just created");
+/// let body: &Body = world.body(id).expect("it was just created");
 /// assert!(body.position().y < fx!(3) && body.velocity().y < fx!(0));
 /// assert_eq!(body.mass(), fx!(1));
 /// // Bodies are changed by methods of the world, which check what they are given.

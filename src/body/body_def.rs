@@ -10,6 +10,19 @@ use super::shape::WORLD_EXTENT_MAX;
 use crate::math::{Angle, Fx, Vec2};
 
 /// Kind of motion of a body.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, BodyKind, Polygon, ShapeDef}, fx, world::World};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// let lift = world.spawn(&BodyDef::kinematic().velocity((fx!(0), fx!(1))), &[square])?;
+/// world.step();
+/// // Its rope breaks.
+/// world.set_kind(lift, BodyKind::Dynamic)?;
+/// (0..60).for_each(|_| world.step());
+/// assert!(world.body(lift).is_some_and(|lift| lift.velocity().y < fx!(0)));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[doc(alias = "BodyType")]
 #[doc(alias = "RigidBodyType")]

@@ -6,6 +6,18 @@ use super::arena::{BodyId, JointId, ShapeId};
 use crate::math::Fx;
 
 /// Invalid geometry.
+///
+/// ```
+/// use lockstep2d::{body::{GeometryError, Polygon}, fx, math::Vec2};
+/// // A level editor marks the corner at which a drawn outline is wrong.
+/// let corners = [(fx!(0), fx!(0)), (fx!(4), fx!(0)), (fx!(1), fx!(1)), (fx!(0), fx!(4))];
+/// let outline = corners.map(|(x, y)| Vec2::new(x, y));
+/// match Polygon::new(&outline) {
+///     Err(GeometryError::NotConvex { vertex }) => assert_eq!(vertex, 1, "the edge from (4, 0) leads inwards"),
+///     other => panic!("{other:?}"),
+/// }
+/// assert_eq!(Polygon::new(&outline[..2]), Err(GeometryError::VertexCount { count: 2 }));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GeometryError {
     /// A polygon has 3 to 8 vertices.
@@ -74,6 +86,18 @@ impl fmt::Display for GeometryError {
 impl core::error::Error for GeometryError {}
 
 /// A change that the world rejects. The world stays as it was.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, WorldError}, fx, world::World};
+/// # let mut world = World::default();
+/// let bomb = world.spawn(&BodyDef::dynamic(), &[])?;
+/// world.despawn(bomb)?;
+/// let before = world.state_hash();
+/// // An input of a player that comes too late.
+/// assert_eq!(world.apply_torque(bomb, fx!(1)), Err(WorldError::StaleBody(bomb)));
+/// assert_eq!(world.state_hash(), before, "a refused change leaves no trace");
+/// # Ok::<(), WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WorldError {
     /// The geometry of a shape is not valid.

@@ -3,6 +3,21 @@
 use serde::{Deserialize, Serialize};
 
 /// Switches for the events in which a shape takes part.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, EventSwitches, Polygon, ShapeDef}, fx, world::World};
+/// # let mut world = World::default();
+/// let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// let goal = world.spawn(&BodyDef::fixed(), &[square.sensor()])?;
+/// // Debris does not count as a visitor of the goal.
+/// let unseen = EventSwitches { sensor: false, ..EventSwitches::default() };
+/// world.spawn(&BodyDef::dynamic(), &[square.events(unseen)])?;
+/// world.spawn(&BodyDef::dynamic(), &[square])?;
+/// world.step();
+/// assert_eq!(world.events().sensor_begin.len(), 1);
+/// # let _ = goal;
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct EventSwitches {
     /// Begin and end of contacts. A pair reports them if either shape enables them.

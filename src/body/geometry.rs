@@ -66,6 +66,22 @@ pub enum Geometry {
 }
 
 /// Sides from which a link is solid.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Chain, Geometry, Polygon, ShapeDef, Sides}, fx, math::Vec2, world::World};
+/// # let mut world = World::default();
+/// // A thin platform that is solid from above, because its points run from right to left.
+/// let ends = [Vec2::new(fx!(5), fx!(0)), Vec2::new(fx!(-5), fx!(0))];
+/// let platform = Chain::new(&ends).one_sided().links()?;
+/// assert!(matches!(platform[0].geometry, Geometry::Link { sides: Sides::Right, .. }));
+/// world.spawn(&BodyDef::fixed(), &platform)?;
+/// let jumper = ShapeDef::new(Polygon::square(fx!(0.25))?);
+/// let below = BodyDef::dynamic().position((fx!(0), fx!(-1))).velocity((fx!(0), fx!(7)));
+/// let jumper = world.spawn(&below, &[jumper])?;
+/// (0..180).for_each(|_| world.step());
+/// assert!(world.body(jumper).is_some_and(|body| body.position().y > fx!(0.2)));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Sides {
     /// Both sides.

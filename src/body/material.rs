@@ -7,6 +7,15 @@ use crate::math::{Fx, fx_mul};
 
 /// Rule that combines the values of a surface property of two shapes. If the shapes have different rules, the rule that
 /// comes later in this list applies.
+///
+/// ```
+/// use lockstep2d::{body::{Material, Mixing}, fx};
+/// // Ice is slippery, whatever slides on it.
+/// let ice = Material { friction: fx!(0.02), friction_mixing: Mixing::Minimum, ..Material::default() };
+/// let rubber = Material { friction: fx!(1.2), ..Material::default() };
+/// assert_eq!(ice.mixed_friction(&rubber), fx!(0.02));
+/// assert_eq!(rubber.mixed_friction(&ice), fx!(0.02));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Mixing {
     /// `(a + b) / 2`.

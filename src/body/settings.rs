@@ -11,6 +11,22 @@ use crate::math::Fx;
 /// A locked rotation is exact: contacts and joints treat the body as unable to rotate. A locked axis is enforced by
 /// clearing the velocity along it in every sub-step, so a body that is pushed both along and across a locked axis
 /// settles over a few ticks.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, BodySettings, MotionLocks, Polygon, ShapeDef}, fx, math::Vec2, world::World};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// // A counterweight in its shaft moves up and down only.
+/// let locks = MotionLocks { x: true, rotation: true, y: false };
+/// let settings = BodySettings { locks, ..BodySettings::default() };
+/// let weight = world.spawn(&BodyDef { settings, ..BodyDef::dynamic() }, &[square])?;
+/// world.apply_impulse(weight, Vec2::new(fx!(3), fx!(0)), Vec2::new(fx!(0), fx!(0.5)))?;
+/// (0..30).for_each(|_| world.step());
+/// let body = world.body(weight).expect("still there");
+/// assert_eq!((body.position().x, body.angular_velocity()), (fx!(0), fx!(0)));
+/// assert!(body.position().y < fx!(-1));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct MotionLocks {
     /// Locks motion along the world's x axis.
@@ -22,6 +38,20 @@ pub struct MotionLocks {
 }
 
 /// Bodies that a body is swept against, so that it does not tunnel through them within a tick.
+///
+/// ```
+/// use lockstep2d::body::{BodyDef, Continuous, Polygon, ShapeDef};
+/// use lockstep2d::{fx, math::Vec2, world::{Config, World}};
+/// let mut world = World::new(Config { gravity: Vec2::ZERO, ..Config::default() })?;
+/// let plate = ShapeDef::new(Polygon::rectangle(fx!(0.01), fx!(2))?).density(fx!(50));
+/// world.spawn(&BodyDef::dynamic().position((fx!(5), fx!(0))), &[plate])?;
+/// // A shot of 300 m/s, 5 m in a tick, meets a plate that is 2 cm thick and free to move.
+/// let shot = BodyDef::dynamic().velocity((fx!(300), fx!(0))).continuous(Continuous::Bullet);
+/// let shot = world.spawn(&shot, &[ShapeDef::new(Polygon::square(fx!(0.05))?)])?;
+/// (0..10).for_each(|_| world.step());
+/// assert!(world.body(shot).is_some_and(|shot| shot.velocity().x < fx!(150)));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Continuous {
     /// None: cheap, for debris.
@@ -37,6 +67,19 @@ pub enum Continuous {
 }
 
 /// Settings of a body. [`crate::world::World::set_body`] changes them later.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, BodySettings, Polygon, ShapeDef}, fx, world::World};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// let bird = world.spawn(&BodyDef::dynamic(), &[square])?;
+/// // It learns to fly: one setting of a copy changes, the others stay.
+/// let flying = BodySettings { gravity_scale: fx!(0), ..*world.body(bird).expect("just created").settings() };
+/// world.set_body(bird, &flying)?;
+/// (0..60).for_each(|_| world.step());
+/// assert_eq!(world.body(bird).map(|bird| bird.position().y), Some(fx!(0)));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BodySettings {
     /// Decay rate of the velocity, per second, 0 to 1000.

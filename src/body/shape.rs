@@ -238,6 +238,21 @@ fn check_reach(geometry: &Geometry, offset: Vec2<Fx>, reach_max: Fx) -> Result<(
 }
 
 /// A shape in the world.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Polygon, Shape, ShapeDef}, fx, math::Vec2, world::World};
+/// # let mut world = World::default();
+/// const HEAD: u64 = 1;
+/// let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// let parts = [square, square.offset((fx!(0), fx!(1))).user_data(HEAD)];
+/// let robot = world.spawn(&BodyDef::dynamic(), &parts)?;
+/// // Who was hit, and where?
+/// let (origin, translation) = (Vec2::new(fx!(-5), fx!(1)), Vec2::new(fx!(10), fx!(0)));
+/// let hit = world.cast_ray(origin, translation, Default::default()).expect("the head is in the way");
+/// let shape: &Shape = world.shape(hit.shape).expect("just hit");
+/// assert_eq!((shape.body(), shape.user_data()), (robot, HEAD));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[doc(alias = "Collider")]
 #[doc(alias = "Fixture")]

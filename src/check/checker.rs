@@ -12,6 +12,18 @@ use crate::replay::{LimitKind, Verdict};
 use crate::world::PhaseDigest;
 
 /// Result of a check that found no fault.
+///
+/// ```
+/// use lockstep2d::check::{Checked, CheckOptions, Variant, check};
+/// use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// # use lockstep2d::check::CheckError;
+/// // Ten ticks without commands, saved and loaded after each of them.
+/// let (setup, inputs) = (SandboxSetup::default(), vec![vec![vec![]]; 10]);
+/// let options = CheckOptions::default().only(&[Variant::Reloaded]);
+/// let Checked { ticks, variants, .. } = check::<Sandbox>(&setup, &inputs, &options)?;
+/// assert_eq!((ticks, variants), (10, vec![Variant::Reloaded]));
+/// # Ok::<(), CheckError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Checked {
     /// Number of ticks played.
@@ -28,6 +40,22 @@ pub struct Checked {
 /// but [`Variant::Recorded`].
 ///
 /// After the first finding it must not be used any more.
+///
+/// ```
+/// # use lockstep2d::{body::BodyDef, world::Command};
+/// use lockstep2d::check::{Checker, CheckOptions};
+/// use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// // A bot decides by what it sees, so that its inputs are not known beforehand.
+/// let setup = SandboxSetup::default();
+/// let mut checker = Checker::<Sandbox>::new(&setup, &CheckOptions::default())?;
+/// while checker.tick() < 10 {
+///     let is_empty = checker.game().world().body_count() == 0;
+///     let spawn = Command::Spawn { body: BodyDef::dynamic(), shapes: vec![] };
+///     checker.step(&[if is_empty { vec![spawn] } else { vec![] }]).expect("the same in every variant");
+/// }
+/// assert_eq!(checker.finish().map(|checked| checked.ticks), Ok(10));
+/// # Ok::<(), lockstep2d::lockstep::SetupError>(())
+/// ```
 pub struct Checker<'s, G: Game> {
     setup: &'s G::Setup,
     options: CheckOptions,

@@ -9,6 +9,41 @@ use crate::lockstep::InputError;
 use crate::replay::{RecordError, Verdict};
 
 /// A fault of a game, with a replay that reproduces it.
+///
+/// ```
+/// # use lockstep2d::{hash::StateHash, lockstep::{Game, RulesId, SetupError}};
+/// use lockstep2d::check::{CheckOptions, Failure, Fault, Variant, check, check_replay};
+/// /// Every press in a row counts one more than the last.
+/// #[derive(Default)]
+/// struct Combo { score: u32, row: u32 }
+/// impl Game for Combo {
+///     // `row` is missing from the save.
+///     fn save(&self) -> u32 { self.score }
+///     fn load(&mut self, save: &u32) { self.score = *save; }
+///     fn step(&mut self, inputs: &[bool]) {
+///         self.row = if inputs[0] { self.row + 1 } else { 0 };
+///         self.score += self.row;
+///     }
+/// #     type Setup = ();
+/// #     type Input = bool;
+/// #     type Save = u32;
+/// #     const RULES: RulesId = RulesId { name: "combo", version: 1 };
+/// #     fn new(_: &()) -> Result<Self, SetupError> { Ok(Combo::default()) }
+/// #     fn players(&self) -> u32 { 1 }
+/// #     fn tick_rate(&self) -> u32 { 60 }
+/// #     fn state_hash(&self) -> StateHash { StateHash::of(&self.score) }
+/// #     fn work(&self, _: &[bool]) -> u64 { 1 }
+///     // ...
+/// }
+/// let inputs: Vec<_> = (0..60).map(|tick| vec![tick > 20]).collect();
+/// let options = CheckOptions::default().only(&[Variant::Reloaded]);
+/// let error = check::<Combo>(&(), &inputs, &options).expect_err("a part of the state is not saved");
+/// let failure: &Failure = error.failure().expect("a fault of the game");
+/// assert_eq!((&failure.finding.variant, &failure.finding.fault), (&Variant::Reloaded, &Fault::Hash));
+/// // Two presses in a row are enough, and the replay shows it again.
+/// assert_eq!(failure.ticks, 2);
+/// assert!(check_replay::<Combo>(&failure.replay, &options).is_err());
+/// ```
 #[derive(Clone, PartialEq, Eq)]
 pub struct Failure {
     /// The finding in the log as it was given.
@@ -42,6 +77,17 @@ impl fmt::Debug for Failure {
 }
 
 /// Reason why a log of inputs did not pass.
+///
+/// ```
+/// use lockstep2d::check::{CheckError, CheckOptions, check_replay};
+/// use lockstep2d::{lockstep::Sandbox, replay::Verdict};
+/// // A tool tells a bad file from a bad game.
+/// match check_replay::<Sandbox>(b"not a replay", &CheckOptions::default()) {
+///     Err(CheckError::Replay(Verdict::Malformed { .. })) => {}
+///     Err(CheckError::Failed(failure)) => panic!("the game has a fault: {failure}"),
+///     other => panic!("{other:?}"),
+/// }
+/// ```
 #[derive(Clone, PartialEq, Eq)]
 pub enum CheckError {
     /// The setup cannot start a game, or a replay cannot represent this setup and these inputs.

@@ -12,6 +12,17 @@ use crate::replay::{RecordError, Verdict};
 use crate::world::Phase;
 
 /// The fault of a variant.
+///
+/// ```
+/// use lockstep2d::check::Fault;
+/// // Names what to look at first.
+/// let cause = |fault: &Fault| match fault {
+///     Fault::Hash => "a field that `save` or `load` leaves out, a clock, a hash map",
+///     Fault::Unhashed => "a field that `state_hash` leaves out",
+///     _ => "see docs/FUZZING.md",
+/// };
+/// assert!(cause(&Fault::Unhashed).contains("state_hash"));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Fault {
@@ -64,6 +75,22 @@ impl Guess {
 }
 
 /// A fault, its variant and its tick.
+///
+/// ```
+/// use lockstep2d::check::{Fault, Finding, Guess, Variant};
+/// let finding = Finding {
+///     variant: Variant::RolledBack,
+///     fault: Fault::Hash,
+///     tick: 40,
+///     played: 43,
+///     phase: None,
+///     rollback: Some((3, Guess::Held)),
+///     differences: vec![],
+/// };
+/// // What a failed test prints.
+/// let text = finding.to_string();
+/// assert!(text.contains("40") && text.contains('3'), "{text}");
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
     /// The variant.

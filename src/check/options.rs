@@ -12,6 +12,15 @@ use crate::world::Backend;
 ///
 /// Variants that act on a [`World`](crate::world::World) are skipped for a game that does not expose one
 /// ([`Game::world_mut`](crate::lockstep::Game::world_mut)).
+///
+/// ```
+/// use lockstep2d::check::{CheckOptions, Variant};
+/// // A short test for every build: the two variants that find most mistakes.
+/// let quick = CheckOptions::default().only(&[Variant::Reloaded, Variant::RolledBack]);
+/// assert_eq!(quick.variants.len(), 2);
+/// // All that this machine can play, for the night.
+/// assert!(Variant::all().contains(&Variant::ByteSwapped));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Variant {
@@ -91,6 +100,17 @@ impl fmt::Display for Variant {
 }
 
 /// The rollback depths of [`Variant::RolledBack`].
+///
+/// ```
+/// use lockstep2d::check::{check, CheckOptions, Depths, Phases, Variant};
+/// use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// // A short log, thoroughly: every rollback depth at every tick, and every phase of a tick compared.
+/// let options = CheckOptions { depths: Depths::Each, phases: Phases::Compared, ..CheckOptions::default() };
+/// let options = options.only(&[Variant::RolledBack]);
+/// let checked = check::<Sandbox>(&SandboxSetup::default(), &vec![vec![vec![]]; 4], &options)?;
+/// assert!(checked.simulated > 40, "four ticks, many times");
+/// # Ok::<(), lockstep2d::check::CheckError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Depths {
     /// One depth with one prediction at a time, the next at the next tick: all combinations within 24 ticks, at a cost

@@ -7,6 +7,19 @@ use crate::math::{Fx, Length, Step, Unit, Vec2};
 ///
 /// Identifiers that encode the clipping as well change while a pile settles. Every change loses a warm start, and the
 /// pile sinks (`docs/DESIGN.md` has the figures).
+///
+/// ```
+/// use lockstep2d::{body::Polygon, fx, math::Vec2, world::Probe};
+/// use lockstep2d::collision::Feature;
+/// let crate_ = Probe::new(Polygon::square(fx!(0.5))?, Vec2::ZERO)?;
+/// let features = |x| -> Vec<Feature> {
+///     let other = crate_.at(Vec2::new(x, fx!(1)));
+///     crate_.manifold(&other, fx!(0.01)).points().iter().map(|point| point.feature).collect()
+/// };
+/// // The corners stay the same while one crate slides on the other.
+/// assert_eq!(features(fx!(0.2)), features(fx!(0.3)));
+/// # Ok::<(), lockstep2d::body::GeometryError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Feature(pub(crate) u16);
 
@@ -38,6 +51,22 @@ pub struct ManifoldPoint {
 
 /// Contact manifold of shape A and shape B: that of the start of the tick, or of the time of impact for shapes that
 /// first touch later in the tick. The separations are always those of the start.
+///
+/// ```
+/// use lockstep2d::{body::Polygon, fx, math::Vec2, world::Probe};
+/// use lockstep2d::collision::{Manifold, ManifoldPoint};
+/// // Two crates, one on top of the other and 1 mm into it.
+/// let lower = Probe::new(Polygon::square(fx!(0.5))?, Vec2::new(fx!(0), fx!(0)))?;
+/// let upper = lower.at(Vec2::new(fx!(0.25), fx!(0.999)));
+/// let manifold: Manifold = lower.manifold(&upper, fx!(0.01));
+/// assert_eq!(manifold.normal, Vec2::Y);
+/// // Two points, at the ends of the edge that they share.
+/// let of_point = |point: &ManifoldPoint| (manifold.origin + point.anchor.widen()).x;
+/// let mut ends: Vec<_> = manifold.points().iter().map(of_point).collect();
+/// ends.sort();
+/// assert_eq!(ends, [fx!(-0.25), fx!(0.5)]);
+/// # Ok::<(), lockstep2d::body::GeometryError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Manifold {
     /// Unit vector from A to B.

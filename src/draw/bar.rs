@@ -6,6 +6,13 @@ use alloc::string::String;
 use crate::math::{Fx, ratio};
 
 /// A scale bar of a round length.
+///
+/// ```
+/// use lockstep2d::{draw::Bar, fx};
+/// // A picture is 7.3 m wide, and the bar may take a third of it.
+/// let bar = Bar::up_to(|length| length * 3 <= fx!(7.3)).expect("a millimetre fits");
+/// assert_eq!((bar.length, bar.label.as_str()), (fx!(2), "2 m"));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bar {
     /// Length in metres.

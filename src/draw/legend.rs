@@ -10,6 +10,18 @@ use crate::math::Fx;
 use crate::world::World;
 
 /// The text of a picture of a world, below its title.
+///
+/// ```
+/// use lockstep2d::{draw::{Layers, Legend, primitives}, world::World};
+/// # use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx};
+/// # let mut world = World::default();
+/// world.spawn(&BodyDef::fixed(), &[ShapeDef::new(Geometry::circle(fx!(1))?)])?;
+/// let styles = primitives(&world, Layers::default()).into_iter().map(|primitive| primitive.style);
+/// let legend = Legend::of(&world, styles);
+/// assert_eq!(legend.hash, world.state_hash());
+/// assert!(legend.names.iter().any(|(name, _)| *name == "fixed"), "{:?}", legend.names);
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Legend {
     /// Tick, numbers of bodies and contacts, [`World::deepest_overlap`], [`World::widest_joint_gap`], and faults.

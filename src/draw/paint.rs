@@ -3,6 +3,14 @@
 use super::primitive::{ContactProximity, Hue, Style};
 
 /// Appearance of a style on a light background.
+///
+/// ```
+/// use lockstep2d::draw::{Fill, Paint, Style};
+/// // The colours of the pictures, for a renderer of one's own.
+/// let Paint { fill, stroke, .. } = Style::Dynamic.paint();
+/// let Some(Fill { opacity, .. }) = fill else { panic!("bodies are filled") };
+/// assert!(opacity < 100 && stroke != Style::Asleep.paint().stroke);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Paint {
     /// Name in a legend. Styles with the same meaning share it.

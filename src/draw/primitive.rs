@@ -120,6 +120,26 @@ impl Default for Layers {
 }
 
 /// A primitive to draw.
+///
+/// ```
+/// use lockstep2d::draw::{Form, Layers, Primitive, Subject, primitives};
+/// # use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, math::Vec2, world::World};
+/// # let mut world = World::default();
+/// world.spawn(&BodyDef::dynamic(), &[ShapeDef::new(Geometry::circle(fx!(1))?)])?;
+/// // The painter of a game: it knows three forms, and highlights the body that was clicked.
+/// let clicked = world.overlap_point(Vec2::ZERO, Default::default());
+/// let clicked = clicked.first().and_then(|&shape| Some(world.shape(shape)?.body()));
+/// let mut highlighted = 0;
+/// for Primitive { form, subject, .. } in primitives(&world, Layers { outlines: true, ..Layers::NONE }) {
+///     let is_clicked = matches!(subject, Subject::Body(body) if clicked == Some(body));
+///     match form {
+///         Form::Circle { .. } | Form::Line { .. } | Form::Polygon { .. } => highlighted += i32::from(is_clicked),
+///         _ => {}
+///     }
+/// }
+/// assert_eq!(highlighted, 2, "the circle and its radius");
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Primitive {
     /// Meaning of the primitive; the renderer chooses the colours.
@@ -131,6 +151,21 @@ pub struct Primitive {
 }
 
 /// Meaning of a primitive. Styles are in painting order: small, explanatory marks are on top.
+///
+/// ```
+/// use lockstep2d::draw::{ContactProximity, Layers, Style, primitives};
+/// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::World};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-0.5))), &[square])?;
+/// # world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(0.5))), &[square])?;
+/// // A box on the ground: both corners touch.
+/// world.step();
+/// let points = primitives(&world, Layers { contact_points: true, ..Layers::NONE });
+/// let touching = Style::ContactPoint(ContactProximity::Touching);
+/// assert_eq!(points.iter().filter(|point| point.style == touching).count(), 2);
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Style {
     /// The outline of a sensor, on a body of any kind. It overlaps other shapes and stops none.
@@ -181,6 +216,15 @@ pub enum Style {
 }
 
 /// One of [`Hue::COUNT`] distinguishable colours, for things that have a number but no meaning.
+///
+/// ```
+/// use lockstep2d::draw::Hue;
+/// // A colour for each team, as long as there are enough.
+/// let palette = [0x1f77b4, 0xff7f0e, 0x2ca02c, 0xd62728];
+/// let colour = |team: usize| palette[usize::from(Hue::of(team).index()) % palette.len()];
+/// assert_ne!(colour(0), colour(1));
+/// assert_eq!(Hue::of(0), Hue::of(usize::from(Hue::COUNT)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Hue(u8);
 

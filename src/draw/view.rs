@@ -34,6 +34,19 @@ impl Default for View {
 }
 
 /// The part of the world that a picture shows.
+///
+/// ```
+/// use lockstep2d::draw::{Frame, View, fit, svg};
+/// # use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, world::World};
+/// # let mut world = World::default();
+/// # world.spawn(&BodyDef::dynamic(), &[ShapeDef::new(Geometry::circle(fx!(1))?)])?;
+/// // The camera of the first picture stays where it is in the later ones.
+/// let camera = View { frame: Frame::Window(fit(&world)), ..View::default() };
+/// assert_eq!(svg(&world, &camera), svg(&world, &View::default()));
+/// world.step();
+/// assert_ne!(svg(&world, &camera), svg(&world, &View { frame: Frame::Fit, ..camera.clone() }));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Frame {
     /// The window chosen by [`fit`](super::fit()).

@@ -8,6 +8,18 @@ use core::ops::Range;
 use super::value::{Field, Value};
 
 /// A field whose value differs between two lists, or that only one of them has.
+///
+/// ```
+/// use lockstep2d::inspect::{Difference, differences, fields};
+/// # use lockstep2d::{fx, math::Vec2, world::World};
+/// # let (mut a, mut b) = (World::default(), World::default());
+/// b.set_gravity(Vec2::new(fx!(0), fx!(-9.81)))?;
+/// // What is it that two machines disagree about?
+/// let [a, b] = [a.save(), b.save()].map(|save| fields(&save).expect("a world"));
+/// let found: Vec<Difference> = differences(&a, &b);
+/// assert_eq!(found.iter().map(|found| found.field().name()).collect::<Vec<_>>(), ["settings.gravity.y"]);
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
     field: Field,

@@ -14,6 +14,18 @@ use super::value::{Field, Value};
 use crate::math::Angle;
 
 /// Error of inspecting a value.
+///
+/// ```
+/// use lockstep2d::inspect::{InspectError, fields};
+/// /// Refuses to be shown.
+/// struct Secret;
+/// impl serde::Serialize for Secret {
+///     fn serialize<S: serde::Serializer>(&self, _: S) -> Result<S::Ok, S::Error> {
+///         Err(serde::ser::Error::custom("not for display"))
+///     }
+/// }
+/// assert_eq!(fields(&Secret), Err(InspectError { why: "not for display".into() }));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InspectError {
     /// Message of the value's `Serialize`, or that the value is nested too deep.

@@ -9,6 +9,18 @@ use super::decimal::Decimal;
 use crate::math::Angle;
 
 /// A value without parts, stored exactly.
+///
+/// ```
+/// use lockstep2d::{fx, inspect::{Value, fields}, math::{Angle, Fx}};
+/// #[derive(serde::Serialize)]
+/// struct Ship { fuel: Fx, heading: Angle, docked: bool }
+/// let ship = Ship { fuel: fx!(2.5), heading: Angle::QUARTER, docked: false };
+/// let values: Vec<Value> = fields(&ship)?.into_iter().map(|field| field.value).collect();
+/// assert_eq!(values[1..], [Value::Angle(Angle::QUARTER), Value::Bool(false)]);
+/// // A number keeps its bits beside the text for people.
+/// assert_eq!((values[0].bits(), values[0].decimal()), (Some(5 << 31), Some("2.5".into())));
+/// # Ok::<(), lockstep2d::inspect::InspectError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Value {
     /// True or false.
@@ -101,6 +113,19 @@ impl fmt::Display for Value {
 }
 
 /// A part of a value that has no parts itself.
+///
+/// ```
+/// # use lockstep2d::{body::BodyDef, world::World};
+/// use lockstep2d::inspect::{Field, fields};
+/// # let mut world = World::default();
+/// world.spawn(&BodyDef::dynamic(), &[])?;
+/// let fields = fields(&world.save()).expect("a world");
+/// // An inspector of one's own: everything about one body.
+/// let of_body = |field: &&Field| field.thing().is_some_and(|thing| thing.ends_with("body 0v0"));
+/// let names: Vec<_> = fields.iter().filter(of_body).map(Field::name).collect();
+/// assert!(names.contains(&"velocity.x"), "{names:?}");
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
     pub(super) path: String,

@@ -10,6 +10,14 @@ use crate::hash::StateHash;
 use crate::world::World;
 
 /// Identifies the rules that a replay was made with. Bump `version` whenever the same inputs lead to another state.
+///
+/// ```
+/// use lockstep2d::lockstep::RulesId;
+/// /// Version 2: a goal counts double in the last minute.
+/// const RULES: RulesId = RulesId { name: "pucks", version: 2 };
+/// // Replays of version 1 are refused instead of ending in another score.
+/// assert_ne!(RULES, RulesId { version: 1, ..RULES });
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RulesId {
     /// A short name, at most 64 bytes.
@@ -19,6 +27,16 @@ pub struct RulesId {
 }
 
 /// Reason why a game does not start within a budget.
+///
+/// ```
+/// use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup, StartError};
+/// # use lockstep2d::{body::BodyDef, world::Command};
+/// let spawn = Command::Spawn { body: BodyDef::dynamic(), shapes: vec![] };
+/// let setup = SandboxSetup { commands: vec![spawn; 1000], ..SandboxSetup::default() };
+/// // A server that starts a stranger's level sets a limit.
+/// assert!(matches!(Sandbox::new_within(&setup, 10), Err(StartError::TooMuchWork { max: 10, .. })));
+/// assert!(Sandbox::new_within(&setup, 1_000_000_000).is_ok());
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum StartError {
     /// The setup is not playable.
@@ -46,6 +64,17 @@ impl fmt::Display for StartError {
 impl core::error::Error for StartError {}
 
 /// A setup that cannot start a game.
+///
+/// ```
+/// use lockstep2d::lockstep::SetupError;
+/// /// The start of a game for two to four players: a setup may come from a stranger's file.
+/// fn checked(players: u32) -> Result<u32, SetupError> {
+///     let is_valid = (2..=4).contains(&players);
+///     is_valid.then_some(players).ok_or_else(|| SetupError { why: format!("{players} players") })
+/// }
+/// assert_eq!(checked(9).map_err(|error| error.why), Err("9 players".into()));
+/// assert_eq!(checked(4), Ok(4));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SetupError {
     /// Reason why the game refuses the setup.

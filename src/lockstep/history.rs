@@ -7,6 +7,21 @@ use super::Game;
 use crate::hash::StateHash;
 
 /// The game after a given tick.
+///
+/// ```
+/// use lockstep2d::lockstep::{Game, History, Past, Sandbox, SandboxSetup};
+/// let mut game = Sandbox::new(&SandboxSetup::default())?;
+/// let mut history = History::<Sandbox>::of_ticks(60);
+/// for tick in 0..10 {
+///     history.push(tick, game.save(), game.state_hash());
+///     game.step(&[vec![]]);
+/// }
+/// // Another input arrives for tick 7.
+/// let Past { tick, save, hash } = history.get(7).expect("a tick of the last second");
+/// game.load(save);
+/// assert_eq!((game.world().tick(), game.state_hash()), (*tick, *hash));
+/// # Ok::<(), lockstep2d::lockstep::SetupError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Past<S> {
     /// Number of ticks played.

@@ -8,6 +8,14 @@ use serde::{Serialize, de::DeserializeOwned};
 use crate::codec;
 
 /// Reason why inputs cannot be logged.
+///
+/// ```
+/// use lockstep2d::lockstep::{InputError, InputLog};
+/// let mut log = InputLog::<u8>::new(2);
+/// // Two players, and one input.
+/// assert_eq!(log.push(&[5]), Err(InputError::Count { players: 2, inputs: 1 }));
+/// assert_eq!(log.ticks(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InputError {
     /// The number of inputs is not the number of players.
@@ -36,6 +44,21 @@ impl core::error::Error for InputError {}
 ///
 /// An encoding may be lossy. The simulation always uses the decoded value, so that peers and verifiers, who receive
 /// only bytes, simulate the same.
+///
+/// ```
+/// use lockstep2d::lockstep::EncodedInputs;
+/// /// The stick is sent without its lowest bits, as drift of a worn pad changes them all the time.
+/// #[derive(serde::Serialize, serde::Deserialize, Debug, PartialEq)]
+/// #[serde(from = "i8", into = "i8")]
+/// struct Stick(i8);
+/// # impl Clone for Stick { fn clone(&self) -> Self { Stick(self.0) } }
+/// impl From<i8> for Stick { fn from(sent: i8) -> Self { Stick(sent * 16) } }
+/// impl From<Stick> for i8 { fn from(stick: Stick) -> i8 { stick.0 / 16 } }
+/// // The player's own machine, too, plays what the others receive.
+/// let inputs = EncodedInputs::new(&[Stick(100)], 1)?;
+/// assert_eq!((inputs.bytes(), inputs.inputs()), (&[6][..], &[Stick(96)][..]));
+/// # Ok::<(), lockstep2d::lockstep::InputError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct EncodedInputs<I> {
     bytes: Vec<u8>,

@@ -34,6 +34,17 @@ pub struct Sandbox {
 const SETUP_WORK_MAX: u64 = 100_000_000;
 
 /// Initial state of a sandbox.
+///
+/// ```
+/// use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
+/// # use lockstep2d::{body::BodyDef, fx, math::Vec2, world::{Command, Config}};
+/// // A level as data: settings, and the commands that build it.
+/// let config = Config { gravity: Vec2::new(fx!(0), fx!(-3.7)), ..Config::default() };
+/// let commands = vec![Command::Spawn { body: BodyDef::dynamic(), shapes: vec![] }];
+/// let game = Sandbox::new(&SandboxSetup { config, commands })?;
+/// assert_eq!((game.world().tick(), game.world().body_count()), (0, 1));
+/// # Ok::<(), lockstep2d::lockstep::SetupError>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SandboxSetup {
     /// The world's settings.
@@ -43,6 +54,18 @@ pub struct SandboxSetup {
 }
 
 /// A copy of a sandbox.
+///
+/// ```
+/// use lockstep2d::lockstep::{Game, Sandbox, SandboxSave, SandboxSetup};
+/// use lockstep2d::codec;
+/// let mut game = Sandbox::new(&SandboxSetup::default())?;
+/// (0..10).for_each(|_| game.step(&[vec![]]));
+/// // A saved game on disk.
+/// let bytes = codec::encode(&game.save());
+/// let save: SandboxSave = codec::decode(&bytes).expect("just encoded");
+/// assert_eq!(save.world.state_hash(), game.world().state_hash());
+/// # Ok::<(), lockstep2d::lockstep::SetupError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SandboxSave {
     /// The world.

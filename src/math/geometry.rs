@@ -11,6 +11,14 @@ use super::wide::{Difference, point_at};
 use core::cmp::Ordering;
 
 /// Direction in which a path through three points turns.
+///
+/// ```
+/// use lockstep2d::{fx, math::{Orientation, Vec2, orientation}};
+/// // Which side of the finish line is the car on? Exact, however close it is.
+/// let (left, right) = (Vec2::new(fx!(0), fx!(0)), Vec2::new(fx!(10), fx!(1)));
+/// let car = Vec2::new(fx!(5), fx!(0.5000000003));
+/// assert_eq!(orientation(left, right, car), Orientation::CounterClockwise);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Orientation {
     /// The path turns to the right.

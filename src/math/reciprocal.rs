@@ -10,6 +10,15 @@ use serde::{Deserialize, Serialize};
 use super::formats::{Fx, div_round, round_shift, round_shift_wide, saturate, saturate_wide};
 
 /// The reciprocal of a positive number: `mantissa / 2^shift`.
+///
+/// ```
+/// use lockstep2d::{fx, math::{Length, Reciprocal}};
+/// // A division for many values, paid once: shares of a prize among seven.
+/// let seventh = Reciprocal::of_integer(7);
+/// let share: Length = seventh.times(Length::from_num(21));
+/// assert_eq!(share, Length::from_num(3));
+/// assert_eq!(Reciprocal::of(fx!(7)), seventh);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reciprocal {
     /// Mantissa: 0, or 2^30 to 2^31 - 1.

@@ -9,6 +9,19 @@ use crate::replay::RecordError;
 use crate::session::ConfigError;
 
 /// Reason why a peer cannot continue.
+///
+/// ```
+/// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::peer::{LinkConditions, Network, Peer, PeerError, PeerIdentity, PeerOptions};
+/// # let network = Network::new(LinkConditions::default(), 1);
+/// // From a settings screen: the smallest delay is larger than the largest.
+/// let options = PeerOptions { delay: (9, 3), start_with: 1, ..PeerOptions::lockstep() };
+/// let me = PeerIdentity::new([1, 2, 3, 4]);
+/// match Peer::<Sandbox, _>::host(&SandboxSetup::default(), options, me, network.port(0)) {
+///     Err(PeerError::Config(error)) => assert_eq!(error.field, "delay_min"),
+///     other => panic!("{other:?}"),
+/// }
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PeerError {
     /// The setup cannot start a game, or the replay cannot be written.

@@ -16,6 +16,19 @@ const REORDER_DELAY: Duration = Duration::from_millis(20);
 const QUEUE_MAX: usize = 8192;
 
 /// Conditions of a link in one direction. The default is a link without delay or loss.
+///
+/// ```
+/// use core::time::Duration;
+/// use lockstep2d::peer::{LinkConditions, Network, Transport};
+/// // A train: how does the game feel there?
+/// let train = LinkConditions { jitter: Duration::from_millis(60), loss: 10, ..LinkConditions::default() };
+/// let network = Network::new(train, 1);
+/// let (mut phone, mut server) = (network.port(1), network.port(2));
+/// (0..100).for_each(|number| phone.send(&[number], &server.address()));
+/// network.set_time(Duration::from_millis(60));
+/// let arrived = std::iter::from_fn(|| server.receive()).count();
+/// assert!(arrived > 80 && arrived < 100, "{arrived}");
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LinkConditions {
     /// Smallest time from sending to receiving.
@@ -55,6 +68,18 @@ impl LinkConditions {
 pub struct Network(Arc<Mutex<State>>);
 
 /// The socket of a participant in a [`Network`].
+///
+/// ```
+/// use lockstep2d::peer::{LinkConditions, Network, Port, Transport};
+/// let network = Network::new(LinkConditions::default(), 1);
+/// let [mut phone, mut server]: [Port; 2] = [1, 2].map(|number| network.port(number));
+/// // In the tunnel the phone hears the server, and not the other way round.
+/// network.cut(1, 2);
+/// phone.send(b"lost", &server.address());
+/// server.send(b"heard", &phone.address());
+/// assert!(server.receive().is_none());
+/// assert_eq!(phone.receive(), Some((server.address(), b"heard".to_vec())));
+/// ```
 #[derive(Clone, Debug)]
 pub struct Port {
     network: Network,

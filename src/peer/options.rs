@@ -96,6 +96,16 @@ impl PeerOptions {
 }
 
 /// Identity of a peer.
+///
+/// ```
+/// use lockstep2d::{peer::PeerIdentity, session::Key};
+/// // The lobby knows the account of a player, and the game crashes.
+/// let account = Key(1234);
+/// let before = PeerIdentity::random().with_key(account);
+/// let after = PeerIdentity::random().with_key(account);
+/// // Another process, which gets the seat of the first.
+/// assert!(before.key == after.key && before.secret != after.secret);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PeerIdentity {
     /// A random number, new for each start of a process.

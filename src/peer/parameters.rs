@@ -11,6 +11,24 @@ use crate::lockstep::Game;
 use crate::session::Config;
 
 /// Parameters that have to be equal for all peers of a match.
+///
+/// ```
+/// use lockstep2d::{SEMANTICS, hash::StateHash, peer::{ParameterDifference, PeerParameters}};
+/// let ours = PeerParameters {
+///     semantics: SEMANTICS,
+///     rules: "pucks".into(),
+///     rules_version: 2,
+///     setup: StateHash::of("level 3"),
+///     tick_rate: 60,
+///     players: 2,
+///     input_bytes: 1,
+///     patience: 2_000_000,
+/// };
+/// // Why may a friend not join?
+/// let theirs = PeerParameters { rules_version: 1, ..ours.clone() };
+/// let [ParameterDifference { what, ours, theirs }] = &ours.differences(&theirs)[..] else { panic!("one") };
+/// assert_eq!(format!("{what}: {theirs} there, {ours} here"), "rules version: 1 there, 2 here");
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PeerParameters {
     /// Version of the engine's semantics, [`SEMANTICS`](crate::SEMANTICS).

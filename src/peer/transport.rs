@@ -51,6 +51,20 @@ mod udp {
     const PAYLOAD_MAX: usize = 1280 - 28;
 
     /// A UDP socket.
+    ///
+    /// ```
+    /// use lockstep2d::peer::{Transport, Udp, socket_address};
+    /// // Two sockets of one machine.
+    /// let (mut host, mut guest) = (Udp::bind("127.0.0.1:0")?, Udp::bind("127.0.0.1:0")?);
+    /// let address = socket_address(host.local_address()?);
+    /// guest.send(b"hello", &address);
+    /// let received = (0..1000).find_map(|_| {
+    ///     std::thread::sleep(std::time::Duration::from_millis(1));
+    ///     host.receive()
+    /// });
+    /// assert_eq!(received, Some((socket_address(guest.local_address()?), b"hello".to_vec())));
+    /// # Ok::<(), std::io::Error>(())
+    /// ```
     pub struct Udp {
         socket: UdpSocket,
         buffer: Vec<u8>,

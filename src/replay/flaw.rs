@@ -6,6 +6,17 @@ use core::fmt;
 use super::format::{CLAIM_NAME_BYTES_MAX, CLAIMS_MAX, PLAYERS_MAX, RULES_NAME_BYTES_MAX};
 
 /// Reason why a file is not a replay, or not a replay that a recorder could have written.
+///
+/// ```
+/// use lockstep2d::{lockstep::Sandbox, replay::{Flaw, Limits, Verdict, verify}};
+/// // What a website tells whoever uploads a file.
+/// let answer = |file: &[u8]| match verify::<Sandbox>(file, &Limits::default()) {
+///     Verdict::Malformed { flaw: Flaw::Magic, .. } => "this is no replay",
+///     Verdict::Malformed { .. } => "this replay is damaged",
+///     verdict => verdict.name(),
+/// };
+/// assert_eq!(answer(b"GIF89a, a picture"), "this is no replay");
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Flaw {
     /// The first bytes are not [`MAGIC`](super::MAGIC).

@@ -10,6 +10,18 @@ use super::reader::ReadError;
 use crate::hash::StateHash;
 
 /// The header fields of a replay, ahead of its first tick.
+///
+/// ```
+/// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::replay::{Header, Limits, Reader, Recording};
+/// # let recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
+/// # let file = recording.finish().expect("few claims");
+/// // A list of files: what belongs to which game? The header is read without playing anything.
+/// let reader = Reader::open(&file, &Limits::default())?;
+/// let Header { rules_name, players, tick_rate, .. } = reader.header();
+/// assert_eq!((*rules_name, *players, *tick_rate), ("sandbox", 1, 60));
+/// # Ok::<(), lockstep2d::replay::ReadError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Header<'a> {
     /// Version of the engine's semantics; [`SEMANTICS`](crate::SEMANTICS) for this engine.

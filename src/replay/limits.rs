@@ -60,6 +60,21 @@ impl Default for Limits {
 }
 
 /// Names one of the [`Limits`].
+///
+/// ```
+/// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::replay::{LimitKind, Limits, Recording, Verdict, verify};
+/// let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60)?;
+/// (0..90).try_for_each(|_| recording.step(&[vec![]]))?;
+/// let file = recording.finish()?;
+/// // A race lasts a second here.
+/// let limits = Limits { ticks: 60, ..Limits::default() };
+/// match verify::<Sandbox>(&file, &limits) {
+///     Verdict::LimitExceeded { limit, max, .. } => assert_eq!((limit, max), (LimitKind::Ticks, 60)),
+///     verdict => panic!("{verdict}"),
+/// }
+/// # Ok::<(), lockstep2d::replay::RecordError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitKind {
     /// [`Limits::file_bytes`]

@@ -12,6 +12,19 @@ use crate::world::World;
 
 /// A raw replay: simulates the inputs of a file. Unlike a [`VerifiedReplay`](super::VerifiedReplay) it compares
 /// nothing, so its states are those that the running engine computes from these inputs.
+///
+/// ```
+/// # use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
+/// use lockstep2d::replay::{Limits, RawReplay, Recording, Step};
+/// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
+/// # (0..90).for_each(|_| recording.step(&[vec![]]).expect("one input"));
+/// # let file = recording.finish().expect("no claims");
+/// // What would the rules of today make of a replay of last year? Nothing is compared, so it plays to the end.
+/// let mut replay = RawReplay::<Sandbox>::open(&file, &Limits::default())?;
+/// while replay.step()? == Step::Ticked {}
+/// assert_eq!((replay.tick(), replay.game().world().tick()), (90, 90));
+/// # Ok::<(), lockstep2d::replay::Verdict>(())
+/// ```
 pub struct RawReplay<'a, G: Game> {
     game: G,
     limits: Limits,

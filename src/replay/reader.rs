@@ -18,6 +18,14 @@ use super::runs::Runs;
 use crate::hash::StateHash;
 
 /// Reason why a file, or the rest of it, cannot be read.
+///
+/// ```
+/// use lockstep2d::replay::{Flaw, Limits, ReadError, Reader};
+/// assert!(matches!(
+///     Reader::open(b"GIF89a, a picture", &Limits::default()),
+///     Err(ReadError::Malformed { offset: 0, flaw: Flaw::Magic }),
+/// ));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ReadError {
     /// The bytes are not what a recorder writes.
@@ -58,6 +66,22 @@ impl fmt::Display for ReadError {
 impl core::error::Error for ReadError {}
 
 /// A part of the file after the header.
+///
+/// ```
+/// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::replay::{Limits, Part, Reader, Recording};
+/// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
+/// # (0..90).for_each(|_| recording.step(&[vec![]]).expect("one input"));
+/// # let file = recording.finish().expect("no claims");
+/// // Has the recorder of a file ended it, or was it killed?
+/// let mut reader = Reader::open(&file[..file.len() - 1], &Limits::default())?;
+/// let mut is_complete = false;
+/// while let Some(part) = reader.next_part()? {
+///     is_complete |= matches!(part, Part::Trailer(_));
+/// }
+/// assert_eq!((is_complete, reader.ticks()), (false, 90));
+/// # Ok::<(), lockstep2d::replay::ReadError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub enum Part<'a> {
     /// The inputs of some ticks.
@@ -69,6 +93,22 @@ pub enum Part<'a> {
 }
 
 /// A block of inputs.
+///
+/// ```
+/// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::replay::{InputBlock, Limits, Part, Reader, Recording};
+/// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
+/// # (0..90).for_each(|_| recording.step(&[vec![]]).expect("one input"));
+/// # let file = recording.finish().expect("no claims");
+/// let mut reader = Reader::open(&file, &Limits::default())?;
+/// // A checkpoint each second, and one at the end.
+/// let mut blocks = vec![];
+/// while let Some(Part::Inputs(InputBlock { ticks, .. })) = reader.next_part()? {
+///     blocks.push(ticks);
+/// }
+/// assert_eq!(blocks, [60, 30]);
+/// # Ok::<(), lockstep2d::replay::ReadError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct InputBlock<'a> {
     /// Number of ticks, at least one.
@@ -89,6 +129,20 @@ impl<'a> InputBlock<'a> {
 }
 
 /// The trailer of a file: its statements about the end of the game.
+///
+/// ```
+/// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::replay::{Limits, Recording, Trailer, VerifiedReplay};
+/// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
+/// # (0..90).for_each(|_| recording.step(&[vec![]]).expect("one input"));
+/// # let file = recording.finish().expect("no claims");
+/// // A scoreboard shows at once what a file claims, and verifies it later.
+/// let replay = VerifiedReplay::<Sandbox>::open(&file, &Limits::default())?;
+/// let Trailer { ticks, claims, .. } = replay.trailer().expect("a complete file");
+/// let score = claims.iter().find(|(name, _)| name == "score").map(|(_, score)| *score);
+/// assert_eq!((*ticks, score), (90, None), "the sandbox has no score");
+/// # Ok::<(), lockstep2d::replay::Verdict>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Trailer {
     /// Number of ticks in the game.
@@ -102,6 +156,19 @@ pub struct Trailer {
 }
 
 /// Reads a replay from the bytes of a file.
+///
+/// ```
+/// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::replay::{Limits, Reader, Recording};
+/// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
+/// # (0..90).for_each(|_| recording.step(&[vec![]]).expect("one input"));
+/// # let file = recording.finish().expect("no claims");
+/// // How long is a replay? All blocks are checked, and none is played.
+/// let mut reader = Reader::open(&file, &Limits::default())?;
+/// while reader.next_part()?.is_some() {}
+/// assert_eq!(reader.ticks() / u64::from(reader.header().tick_rate), 1, "second");
+/// # Ok::<(), lockstep2d::replay::ReadError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Reader<'a> {
     file: &'a [u8],

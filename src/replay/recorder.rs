@@ -24,6 +24,19 @@ pub const CHECKPOINT_INTERVAL: u32 = 60;
 const VARINT_BYTES_MAX: usize = 5;
 
 /// Reason why something cannot be recorded. The recorder is then unchanged.
+///
+/// ```
+/// use lockstep2d::lockstep::{InputError, Sandbox, SandboxSetup};
+/// use lockstep2d::replay::{RecordError, Recording};
+/// let setup = SandboxSetup::default();
+/// assert_eq!(Recording::<Sandbox>::start(&setup, 0).err(), Some(RecordError::CheckpointInterval { ticks: 0 }));
+/// // A tick with inputs of two players, in a game of one, is not recorded.
+/// let mut recording = Recording::<Sandbox>::start(&setup, 60)?;
+/// let wrong = InputError::Count { players: 1, inputs: 2 };
+/// assert_eq!(recording.step(&[vec![], vec![]]), Err(RecordError::Inputs(wrong)));
+/// assert_eq!(recording.ticks(), 0);
+/// # Ok::<(), RecordError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RecordError {
     /// The name of the rules is empty or too long.

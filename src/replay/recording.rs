@@ -7,13 +7,19 @@ use crate::lockstep::Game;
 
 /// A game that is recorded while it runs.
 ///
-/// ```text
-/// let mut recording = Recording::<MyGame>::start(&setup, CHECKPOINT_INTERVAL)?;
-/// while playing {
-///     recording.step(&inputs)?;
-///     file.write_all(&recording.take_bytes())?;
+/// ```
+/// use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, Recording, verify};
+/// let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), CHECKPOINT_INTERVAL)?;
+/// let mut file = vec![];
+/// for _ in 0..200 {
+///     recording.step(&[vec![]])?;
+///     // What is on disk is a replay up to the last full second, should the game crash.
+///     file.extend(recording.take_bytes());
 /// }
-/// file.write_all(&recording.finish()?)?;
+/// file.extend(recording.finish()?);
+/// assert!(verify::<Sandbox>(&file, &Limits::default()).is_match());
+/// # Ok::<(), lockstep2d::replay::RecordError>(())
 /// ```
 pub struct Recording<G: Game> {
     game: G,

@@ -7,6 +7,23 @@ use super::flaw::Flaw;
 use super::reader::ReadError;
 
 /// Consecutive ticks with the same inputs.
+///
+/// ```
+/// # use lockstep2d::{codec, lockstep::{Game, Sandbox, SandboxSetup}};
+/// use lockstep2d::replay::{Limits, Part, Reader, Recording, Run, Runs};
+/// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
+/// # (0..45).for_each(|_| recording.step(&[vec![]]).expect("one input"));
+/// # let file = recording.finish().expect("no claims");
+/// let mut reader = Reader::open(&file, &Limits::default())?;
+/// let Some(Part::Inputs(block)) = reader.next_part()? else { panic!("a block") };
+/// // An hour in which nobody presses anything takes a few bytes.
+/// let mut runs: Runs = block.runs();
+/// let run: Run = runs.next_run()?.expect("a block is not empty");
+/// assert_eq!(run.ticks, 45);
+/// assert_eq!(codec::decode::<<Sandbox as Game>::Input>(run.encoded), Ok(vec![]));
+/// assert!(runs.next_run()?.is_none());
+/// # Ok::<(), lockstep2d::replay::ReadError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Run<'a> {
     /// Number of ticks, at least one.

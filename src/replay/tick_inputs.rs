@@ -5,6 +5,22 @@ use super::reader::{InputBlock, Part, ReadError, Reader};
 use super::runs::{Run, Runs};
 
 /// The encoded inputs of a replay, tick by tick.
+///
+/// ```
+/// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::replay::{Limits, Recording, TickInputs};
+/// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
+/// # (0..90).for_each(|_| recording.step(&[vec![]]).expect("one input"));
+/// # let file = recording.finish().expect("no claims");
+/// // The ticks in which a player did something, for a bar below the picture of a replay.
+/// let mut inputs = TickInputs::open(&file, &Limits::default())?;
+/// let mut is_busy = vec![];
+/// while let Some(run) = inputs.next_tick()? {
+///     is_busy.push(run.encoded.iter().any(|&byte| byte != 0));
+/// }
+/// assert_eq!((is_busy.len(), is_busy.contains(&true)), (90, false));
+/// # Ok::<(), lockstep2d::replay::ReadError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct TickInputs<'a> {
     reader: Reader<'a>,

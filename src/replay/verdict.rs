@@ -74,6 +74,22 @@ pub enum Verdict {
 }
 
 /// A statement in the trailer that differs from the game.
+///
+/// ```
+/// use lockstep2d::replay::{ClaimDifference, Verdict};
+/// /// A line for the log of a scoreboard.
+/// fn line(verdict: &Verdict) -> String {
+///     match verdict {
+///         Verdict::ClaimMismatch { difference: ClaimDifference::Value { name, claimed, actual }, .. } => {
+///             format!("{name}: claims {}, has {}", claimed.unwrap_or(0), actual.unwrap_or(0))
+///         }
+///         verdict => verdict.name().into(),
+///     }
+/// }
+/// let difference = ClaimDifference::Value { name: "score".into(), claimed: Some(9000), actual: Some(12) };
+/// let forged = Verdict::ClaimMismatch { ticks: 600, hash: Default::default(), difference };
+/// assert_eq!(line(&forged), "score: claims 9000, has 12");
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ClaimDifference {
     /// The hash of the last state differs.
@@ -95,6 +111,19 @@ pub enum ClaimDifference {
 }
 
 /// Version of the format, engine or rules that the file needs and this program does not have.
+///
+/// ```
+/// use lockstep2d::replay::{Mismatch, Verdict};
+/// /// The program of a server that can verify a file which this one cannot.
+/// fn other_verifier(verdict: &Verdict) -> Option<String> {
+///     match verdict {
+///         Verdict::Unverifiable { why: Mismatch::Semantics { file, .. } } => Some(format!("verify-{file}")),
+///         _ => None,
+///     }
+/// }
+/// let old = Verdict::Unverifiable { why: Mismatch::Semantics { file: 9, here: 10 } };
+/// assert_eq!(other_verifier(&old).as_deref(), Some("verify-9"));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Mismatch {
     /// The file format has another version.

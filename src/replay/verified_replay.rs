@@ -32,6 +32,17 @@ pub fn verify<G: Game>(file: &[u8], limits: &Limits) -> Verdict {
 }
 
 /// Result of a step of a [`VerifiedReplay`].
+///
+/// ```
+/// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::replay::{Limits, Recording, Step, VerifiedReplay};
+/// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
+/// # (0..2).for_each(|_| recording.step(&[vec![]]).expect("one input"));
+/// # let file = recording.finish().expect("no claims");
+/// let mut replay = VerifiedReplay::<Sandbox>::open(&file, &Limits::default())?;
+/// assert_eq!([replay.step()?, replay.step()?, replay.step()?], [Step::Ticked, Step::Ticked, Step::Ended]);
+/// # Ok::<(), lockstep2d::replay::Verdict>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
     /// The game advanced by one tick.
@@ -41,6 +52,23 @@ pub enum Step {
 }
 
 /// A verified replay: a [`RawReplay`] whose states are compared with the checkpoints of the file.
+///
+/// ```
+/// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::replay::{Limits, Recording, Step, VerifiedReplay};
+/// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
+/// # (0..90).for_each(|_| recording.step(&[vec![]]).expect("one input"));
+/// # let file = recording.finish().expect("no claims");
+/// // A film of a replay that is verified on the way.
+/// let mut replay = VerifiedReplay::<Sandbox>::open(&file, &Limits::default())?;
+/// let mut frames = vec![];
+/// while replay.step()? == Step::Ticked {
+///     frames.push(replay.game().world().awake_body_count());
+/// }
+/// assert_eq!(frames.len(), 90);
+/// assert!(replay.conclude().is_match());
+/// # Ok::<(), lockstep2d::replay::Verdict>(())
+/// ```
 pub struct VerifiedReplay<'a, G: Game> {
     raw: RawReplay<'a, G>,
     ending: Ending,

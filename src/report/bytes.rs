@@ -18,6 +18,18 @@ pub const REPORT_FORMAT_VERSION: u32 = 2;
 const ENVELOPE: Envelope = Envelope { magic: REPORT_MAGIC, format: REPORT_FORMAT_VERSION };
 
 /// Reason why bytes are not a report.
+///
+/// ```
+/// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::{replay::Limits, report::{DesyncReport, ReportError, Trace}};
+/// # let trace = Trace::<Sandbox>::start(&SandboxSetup::default(), 10)?;
+/// let mut bytes = trace.report().to_bytes();
+/// // A player sends a report, and the mail server a part of it.
+/// bytes.pop();
+/// let error = DesyncReport::from_bytes(&bytes, &Limits::default()).expect_err("a byte is missing");
+/// assert!(matches!(error, ReportError::Length { announced, found } if announced == found + 1));
+/// # Ok::<(), lockstep2d::replay::RecordError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ReportError {
     /// The bytes do not start with [`REPORT_MAGIC`].

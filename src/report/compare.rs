@@ -15,6 +15,16 @@ use crate::replay::{Limits, Mismatch, ReadError, Reader, TickInputs, Verdict};
 use crate::world::World;
 
 /// Reason why two files cannot be compared.
+///
+/// ```
+/// # use lockstep2d::{lockstep::{Sandbox, SandboxSetup}, replay::{Limits, Recording}, world::World};
+/// use lockstep2d::report::{CompareError, Evidence, compare};
+/// # let recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60)?;
+/// let replay = Evidence::Replay(recording.finish()?);
+/// let world = Evidence::World(Box::new(World::default()));
+/// assert_eq!(compare::<Sandbox>(&replay, &world, &Limits::default()), Err(CompareError::Kinds));
+/// # Ok::<(), lockstep2d::replay::RecordError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum CompareError {
     /// A snapshot of a world can only be compared with another one.

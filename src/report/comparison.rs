@@ -9,6 +9,19 @@ use super::stage::Stage;
 use crate::inspect::Difference;
 
 /// One of two files.
+///
+/// ```
+/// # use lockstep2d::{lockstep::{Sandbox, SandboxSetup}, replay::{Limits, Recording}};
+/// use lockstep2d::report::{Evidence, Side, Trajectory, bisect};
+/// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60)?;
+/// # (0..120).try_for_each(|_| recording.step(&[vec![]]))?;
+/// // Does this machine still compute what the machine of the recording did?
+/// let replay = Evidence::Replay(recording.finish()?);
+/// let found = bisect::<Sandbox>(&replay, None, &Limits::default()).expect("it can be played");
+/// let Trajectory { equal_until, diverges, .. } = &found.trajectories[Side::A.index()];
+/// assert_eq!((*equal_until, *diverges), (Some(120), None));
+/// # Ok::<(), lockstep2d::replay::RecordError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Side {
     /// The first file.
@@ -41,6 +54,20 @@ impl fmt::Display for Side {
 }
 
 /// The side that diverged from the trajectory that the running engine computes from the setup and the inputs.
+///
+/// ```
+/// use lockstep2d::report::{Blame, Side};
+/// /// What a support team does next.
+/// fn next_step(blame: Blame) -> String {
+///     match blame {
+///         Blame::Nobody => "the files agree".into(),
+///         Blame::Side(side) => format!("ask for the machine of file {}", if side == Side::A { 1 } else { 2 }),
+///         Blame::Both => "look for another version of the game".into(),
+///         Blame::Unknown => "ask for the reports instead of snapshots".into(),
+///     }
+/// }
+/// assert_eq!(next_step(Blame::Side(Side::B)), "ask for the machine of file 2");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blame {
     /// Neither side diverged.
@@ -77,6 +104,23 @@ pub struct InputDifference {
 
 /// A subject of comparison that exists on one side only or differs between two states: a body, a contact, an entry of
 /// any map, or a section without entries.
+///
+/// ```
+/// # use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
+/// # use lockstep2d::{fx, lockstep::Sandbox, replay::Limits, world::{BodyField, World}};
+/// use lockstep2d::report::{Evidence, Subject, compare};
+/// # let mut ours = World::default();
+/// # let ball = ours.spawn(&BodyDef::dynamic(), &[ShapeDef::new(Geometry::circle(fx!(0.5))?)])?;
+/// let mut theirs = ours.clone();
+/// theirs.flip_bit(ball, BodyField::VelocityX, 3)?;
+/// let [a, b] = [ours, theirs].map(|world| Evidence::World(Box::new(world)));
+/// let found = compare::<Sandbox>(&a, &b, &Limits::default()).expect("two worlds");
+/// // What differs, and in which field?
+/// let Subject { path, differences, .. } = &found.subjects[0];
+/// assert!(path.ends_with("body 0v0"), "{path}");
+/// assert_eq!(differences[0].field().name(), "velocity.x");
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Subject {
     /// Path of the subject, such as `world.bodies.body 12v1`.
@@ -88,6 +132,25 @@ pub struct Subject {
 }
 
 /// A single bit flip between two ticks after which the rules lead exactly to the state of the diverged side.
+///
+/// ```
+/// use lockstep2d::report::{Comparison, Explanation, Stage};
+/// /// Where to search for the cause.
+/// fn place(found: &Comparison) -> String {
+///     match (&found.explanation, found.stage) {
+///         (Some(Explanation { path, bit, .. }), _) => format!("memory: bit {bit} of {path}"),
+///         (None, Some(Stage::BeforeStep | Stage::AfterStep)) => "the rules of the game".into(),
+///         (None, Some(Stage::Phase(phase))) => format!("the compiler or the processor, in {phase:?}"),
+///         (None, _) => "unknown".into(),
+///     }
+/// }
+/// # use lockstep2d::{lockstep::{Sandbox, SandboxSetup}, replay::{Limits, Recording}};
+/// # use lockstep2d::report::{Evidence, bisect};
+/// # let file = Recording::<Sandbox>::start(&SandboxSetup::default(), 60)?.finish()?;
+/// # let found = bisect::<Sandbox>(&Evidence::Replay(file), None, &Limits::default()).expect("it can be played");
+/// assert_eq!(place(&found), "unknown", "nothing differs");
+/// # Ok::<(), lockstep2d::replay::RecordError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Explanation {
     /// Number of ticks after which the bit flipped.
@@ -101,6 +164,22 @@ pub struct Explanation {
 }
 
 /// Result of comparing two reports, replays or snapshots.
+///
+/// ```
+/// # use lockstep2d::{body::BodyDef, lockstep::{Sandbox, SandboxSetup}, replay::{Limits, Recording}, world::Command};
+/// use lockstep2d::report::{Comparison, Evidence, InputDifference, compare};
+/// let spawn = Command::Spawn { body: BodyDef::dynamic(), shapes: vec![] };
+/// // Two runs of a level, and one of them with a body more.
+/// let [a, b] = [vec![], vec![spawn]].map(|commands| {
+///     let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
+///     (0..30).for_each(|_| recording.step(&[vec![]]).expect("one input"));
+///     recording.step(&[commands]).expect("one input");
+///     Evidence::Replay(recording.finish().expect("few claims"))
+/// });
+/// let found: Comparison = compare::<Sandbox>(&a, &b, &Limits::default()).expect("two replays");
+/// let Some(InputDifference { tick, seat, .. }) = found.input else { panic!("{found:?}") };
+/// assert_eq!((tick, seat, found.is_equal()), (30, 0, false));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Comparison {
     /// The last tick before the first difference at which both states are known to be equal; without a difference, the

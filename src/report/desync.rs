@@ -41,6 +41,26 @@ pub struct Group {
 }
 
 /// The data of one peer at a desync. Two reports together tell which peer diverged, when and where.
+///
+/// ```
+/// # use lockstep2d::{hash::StateHash, lockstep::{Game, History, Sandbox, SandboxSetup}, replay::Recording};
+/// use lockstep2d::report::{Desync, DesyncReport, Group};
+/// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60)?;
+/// # let mut history = History::<Sandbox>::of_ticks(60);
+/// # for tick in 0..=30 {
+/// #     history.push(tick, recording.game().save(), recording.game().state_hash());
+/// #     recording.step(&[vec![]])?;
+/// # }
+/// # let ours = history.get(30).expect("a tick of the last second").hash;
+/// # let replay = recording.take_bytes();
+/// // A netcode of one's own has found that the third player has another state than the first two.
+/// let hashes = vec![None, Some(ours), Some(StateHash(7))];
+/// let found = Desync { players: 3, tick: 30, known: 30, seats: vec![0], hashes };
+/// let report = DesyncReport::new(&found, &history, replay);
+/// let majority = Group { hash: ours, seats: vec![0, 1] };
+/// assert_eq!(report.groups(), [majority, Group { hash: StateHash(7), seats: vec![2] }]);
+/// # Ok::<(), lockstep2d::replay::RecordError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DesyncReport {
     /// Version of the engine's semantics.

@@ -24,6 +24,14 @@ pub enum Evidence {
 }
 
 /// Reason why bytes are not evidence.
+///
+/// ```
+/// use lockstep2d::{replay::Limits, report::{Evidence, EvidenceError}, world::World};
+/// // A tool opens what it is given: reports, replays and snapshots.
+/// let limits = Limits::default();
+/// assert!(matches!(Evidence::read(World::default().to_bytes(), &limits), Ok(Evidence::World(_))));
+/// assert_eq!(Evidence::read(b"GIF89a".to_vec(), &limits).err(), Some(EvidenceError::Unknown));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EvidenceError {
     /// A damaged report.

@@ -13,6 +13,18 @@ use crate::world::{Phase, Snapshot, World};
 pub const PHASE_DIGESTS_MAX: usize = 1024;
 
 /// Digests of the phases of one tick; see [`World::phase_digests`](crate::world::World::phase_digests).
+///
+/// ```
+/// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::report::{TickPhases, Trace};
+/// let mut trace = Trace::<Sandbox>::start(&SandboxSetup::default(), 10)?;
+/// (0..30).try_for_each(|_| trace.step(&[vec![]]))?;
+/// let report = trace.report();
+/// // The last tick: the start and the seven phases of its step.
+/// let (tick, TickPhases { digests, .. }) = report.phases().last().expect("the last ticks");
+/// assert_eq!((*tick, digests.len()), (30, 8));
+/// # Ok::<(), lockstep2d::replay::RecordError>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TickPhases {
     /// The digests, in the order of the phases.

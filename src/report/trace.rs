@@ -154,6 +154,13 @@ impl<G: Game> Memory<G> {
 }
 
 /// Reason why a replay cannot be traced.
+///
+/// ```
+/// use lockstep2d::{lockstep::Sandbox, replay::{Limits, Verdict}};
+/// use lockstep2d::report::{Trace, TraceError};
+/// let result = Trace::<Sandbox>::of_replay(b"GIF89a, a picture", &Limits::default(), u64::MAX, 60);
+/// assert!(matches!(result, Err(TraceError::Replay(Verdict::Malformed { offset: 0, .. }))));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TraceError {
     /// The replay cannot be played.

@@ -24,6 +24,18 @@ use crate::lockstep::{Sandbox, SandboxSetup};
 use crate::world::Command;
 
 /// A scene: a setup, and a script of the player's commands.
+///
+/// ```
+/// use lockstep2d::{lockstep::{Game, Sandbox}, scenes::Scene};
+/// let pyramid = Scene::find("pyramid").expect("a scene");
+/// let mut game = Sandbox::new(&pyramid.setup(0))?;
+/// for tick in 0..10 {
+///     let commands = pyramid.commands(tick, &game);
+///     game.step(&[commands]);
+/// }
+/// assert!(game.world().body_count() > 10);
+/// # Ok::<(), lockstep2d::lockstep::SetupError>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Scene {
     /// Name of the scene and of its replay.

@@ -9,6 +9,15 @@ pub const ADDRESS_BYTES_MAX: usize = 32;
 
 /// An address of a transport, such as an IP address with a port. The transport has to give one address in one form
 /// only: IPv4 addresses mapped to IPv6 count as others than the IPv4 addresses.
+///
+/// ```
+/// use lockstep2d::session::{ADDRESS_BYTES_MAX, Address};
+/// // A transport of one's own: players in a chat service, by their numbers there.
+/// let player = 76_561_197_960_287_930_u64;
+/// let address = Address::new(&player.to_le_bytes()).expect("eight bytes");
+/// assert_eq!(address.bytes(), player.to_le_bytes());
+/// assert_eq!(Address::new(&[0; ADDRESS_BYTES_MAX + 1]), None);
+/// ```
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Address {
     length: u8,

@@ -15,6 +15,14 @@ pub const DELAY_MAX: u16 = 60;
 pub const INPUT_BYTES_MAX: u16 = 512;
 
 /// Periods of a session, in microseconds. `patience` has to be the same for all peers of a match.
+///
+/// ```
+/// use lockstep2d::session::{Config, Timing};
+/// // A board game: whoever is gone for a minute is waited for.
+/// let timing = Timing { patience: 60_000_000, ..Timing::DEFAULT };
+/// let config = Config { timing, ..Config::new(0, 4) };
+/// assert!(config.validate().is_ok() && timing.patience > Timing::DEFAULT.patience);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
     /// Time for which play stands still for a peer before the others go on without it. `u64::MAX`: for ever, until somebody
@@ -51,6 +59,15 @@ impl Timing {
 }
 
 /// Parameters of a session.
+///
+/// ```
+/// use lockstep2d::session::{Config, ConfigError, GUESS_MAX};
+/// // Four players at 30 ticks a second with pads of two bytes, of whom two may begin.
+/// let config = Config { input_bytes: 2, tick_micros: 33_333, start_with: 2, guess: 8, ..Config::new(17, 4) };
+/// assert_eq!(config.validate(), Ok(()));
+/// let config = Config { guess: GUESS_MAX + 1, ..config };
+/// assert_eq!(config.validate(), Err(ConfigError { field: "guess" }));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Config {
     /// Distinguishes matches: packets with another tag are ignored.

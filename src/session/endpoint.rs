@@ -32,6 +32,21 @@ const ROSTER_INTERVAL: u64 = 500_000;
 const PACKETS_MAX: usize = 8192;
 
 /// What happened, besides the events of the session.
+///
+/// ```
+/// use lockstep2d::session::{JoinEvent, RefusalReason};
+/// /// A line for somebody who waits to be let in.
+/// fn line(event: &JoinEvent) -> &'static str {
+///     match event {
+///         JoinEvent::Refused { reason: RefusalReason::Offer, .. } => "they play another version",
+///         JoinEvent::Refused { .. } => "try again later",
+///         JoinEvent::State { .. } => "here we go",
+///         JoinEvent::BadState => "once more",
+///     }
+/// }
+/// let refused = JoinEvent::Refused { reason: RefusalReason::Offer, offer: b"pucks, version 3".to_vec() };
+/// assert_eq!(line(&refused), "they play another version");
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JoinEvent {
     /// The contact refuses; with the offer that it expects.
@@ -70,6 +85,38 @@ pub(super) enum Phase {
 /// In a loop: pass packets to [`receive`](Endpoint::receive), call [`update`](Endpoint::update), offer a state while
 /// [`wants_state`](Endpoint::wants_state), drive the [`session`](Endpoint::session) as described there, and send what
 /// [`next_packet`](Endpoint::next_packet) returns.
+///
+/// ```
+/// use lockstep2d::session::{Address, Config, Endpoint, Identity, Key, PeerId, Role, Status};
+/// let identity = |number: u32| Identity {
+///     id: PeerId(number),
+///     key: Key(number.into()),
+///     offer: b"pucks, version 2, level 3".to_vec(),
+///     secret: [number.into(), 7],
+/// };
+/// let config = Config { start_with: 2, ..Config::new(17, 2) };
+/// let [at_host, at_guest] = [1, 2].map(|number| Address::new(&[number]).expect("a byte"));
+/// let host = Endpoint::host(config.clone(), identity(1), 0b01)?;
+/// let guest = Endpoint::join(config, identity(2), Role::Player { seats: 1 }, at_host)?;
+/// let (mut ends, mut now) = ([(host, at_host), (guest, at_guest)], 0);
+/// let is_playing = |end: &Endpoint| end.session().is_some_and(|it| it.status() == Status::Playing);
+/// while !ends.iter().all(|(end, _)| is_playing(end)) {
+///     now += 10_000;
+///     for own in 0..2 {
+///         let (end, address) = &mut ends[own];
+///         end.update(now);
+///         if end.wants_state() {
+///             end.offer_state(0, b"the start of level 3".to_vec());
+///         }
+///         let (address, packets): (_, Vec<_>) = (*address, std::iter::from_fn(|| end.next_packet()).collect());
+///         for (_, packet) in packets {
+///             ends[1 - own].0.receive(now, address, &packet);
+///         }
+///     }
+/// }
+/// assert_eq!(ends[1].0.session().map(|session| session.seats()), Some(0b10));
+/// # Ok::<(), lockstep2d::session::ConfigError>(())
+/// ```
 #[derive(Debug)]
 pub struct Endpoint {
     pub(super) config: Config,
@@ -90,6 +137,21 @@ pub struct Endpoint {
 }
 
 /// Who somebody is, and what it brings along.
+///
+/// ```
+/// use lockstep2d::session::{Config, Endpoint, Identity, Key, PeerId};
+/// // A dedicated server: it has no seat, and others cannot guess its secret.
+/// let [id, key, secret @ ..] = random();
+/// let identity = Identity { id: PeerId(id as u32), key: Key(key), offer: b"pucks, version 2".to_vec(), secret };
+/// let server = Endpoint::host(Config::new(17, 4), identity, 0)?;
+/// assert_eq!(server.session().map(|session| session.seats()), Some(0));
+/// /// Numbers of the operating system.
+/// fn random() -> [u64; 4] {
+/// #     [1, 2, 3, 4]
+///     // ...
+/// }
+/// # Ok::<(), lockstep2d::session::ConfigError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Identity {
     /// A random number, new for each process.

@@ -3,6 +3,22 @@
 use super::id::{PeerId, Tick};
 
 /// Where a session stands.
+///
+/// ```
+/// use lockstep2d::session::Status;
+/// /// What the screen shows over the game.
+/// fn banner(status: Status) -> &'static str {
+///     match status {
+///         Status::Playing => "",
+///         Status::Waiting => "waiting for players",
+///         Status::Paused => "connection lost",
+///         Status::Finished { .. } | Status::Left | Status::Closed => "the match is over",
+///         _ => "one moment",
+///     }
+/// }
+/// assert_eq!(banner(Status::Finished { ticks: 3600 }), "the match is over");
+/// assert_eq!(banner(Status::Joining), "one moment");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
     /// Follows the match without a seat, and asks for one.
@@ -41,6 +57,22 @@ impl Status {
 }
 
 /// What happened since the last look.
+///
+/// ```
+/// use lockstep2d::session::{Event, PeerId};
+/// // For how long has somebody played? From the events of a match.
+/// let peer = PeerId(5);
+/// let events = [Event::Seated { peer, seat: 1, from: 60 }, Event::Unseated { peer, seat: 1, from: 660 }];
+/// let (mut since, mut played) = (0, 0);
+/// for event in events {
+///     match event {
+///         Event::Seated { from, .. } => since = from,
+///         Event::Unseated { from, .. } => played += from - since,
+///         _ => {}
+///     }
+/// }
+/// assert_eq!(played, 600, "ten seconds at 60 Hz");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// The session stands somewhere else.

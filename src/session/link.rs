@@ -8,6 +8,20 @@ const ROUND_TRIP_MAX: u64 = 4_000_000;
 const LOSS_WINDOW: u32 = 64;
 
 /// Measurements of the way to a peer and back.
+///
+/// ```
+/// use lockstep2d::session::Link;
+/// /// The bars beside the name of a player.
+/// fn bars(link: &Link) -> u32 {
+///     let slow = link.round_trip > 150_000;
+///     let lossy = link.loss_per_mille > 30;
+///     3 - u32::from(slow) - u32::from(lossy)
+/// }
+/// assert_eq!(bars(&Link::default()), 3);
+/// let mut satellite = Link::default();
+/// satellite.round_trip = 600_000;
+/// assert_eq!(bars(&satellite), 2);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Link {
     /// Smoothed round trip in microseconds; 0 if none was measured.

@@ -6,8 +6,8 @@ use alloc::vec::Vec;
 use super::config::Fault;
 use super::event::Event;
 use super::id::{NEVER, PeerId, Tick};
-use super::request::{Request, TickInputs};
-use super::state::{InputSize, Session};
+use super::request::{InputSize, Request, TickInputs};
+use super::state::Session;
 use super::view::{bit, bits, has_bit};
 
 /// Number of own hashes that are kept for comparison.
@@ -34,6 +34,31 @@ pub(super) struct Play {
     pub(super) replayed: u64,
     /// Most ticks that were played again at a time.
     pub(super) replayed_max: Tick,
+}
+
+/// Figures of a session.
+///
+/// ```
+/// # use lockstep2d::session::{Config, Key, PeerId, Role, Session, View};
+/// use lockstep2d::session::Statistics;
+/// # let view = View::opened_by(PeerId(1), Key(1), 0b01, true);
+/// # let session = Session::new(Config::new(17, 1), PeerId(1), Key(1), Role::Player { seats: 1 }, view, 7)?;
+/// // The corner of a debug screen.
+/// let Statistics { replayed, replayed_max, peers, .. } = session.statistics();
+/// let text = format!("{peers} peers, {replayed} ticks again, at most {replayed_max} at once");
+/// assert_eq!(text, "1 peers, 0 ticks again, at most 0 at once");
+/// # Ok::<(), lockstep2d::session::ConfigError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Statistics {
+    /// Ticks that were played again, because inputs had been guessed wrongly or a view changed.
+    pub replayed: u64,
+    /// Most ticks that were played again at a time.
+    pub replayed_max: Tick,
+    /// Bytes of inputs that are kept.
+    pub input_bytes: usize,
+    /// Number of peers that are known, this one included.
+    pub peers: usize,
 }
 
 impl Play {

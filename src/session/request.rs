@@ -1,6 +1,7 @@
 //! [`Request`]: what a session asks the game to do, and the inputs of a tick.
 
 use alloc::vec::Vec;
+use core::fmt;
 
 use super::id::Tick;
 use super::view::has_bit;
@@ -68,6 +69,51 @@ impl TickInputs {
 }
 
 /// What a session asks the game to do.
+///
+/// ```
+/// use lockstep2d::session::{Config, InputStatus, Request, Session, TickInputs, Tick};
+/// /// A game in a session: the sum of all inputs.
+/// #[derive(Default)]
+/// struct Sum { now: u64, saved: Vec<(Tick, u64)> }
+/// impl Sum {
+///     fn fulfil(&mut self, request: Request, session: &mut Session) {
+///         match request {
+///             Request::Save { tick } => self.saved.push((tick, self.now)),
+///             Request::Load { tick } => self.now = self.before(tick),
+///             Request::Advance { inputs, .. } => self.now += Self::of_tick(&inputs),
+///             Request::Checksum { tick } => session.report_hash(tick, self.before(tick).into()),
+///             Request::Forget { tick } => self.saved.retain(|saved| saved.0 >= tick),
+///         }
+///     }
+///     fn before(&self, tick: Tick) -> u64 {
+///         self.saved.iter().rev().find(|saved| saved.0 == tick).expect("saved").1
+///     }
+///     fn of_tick(inputs: &TickInputs) -> u64 {
+///         match inputs.seat(0) {
+///             Some((_, InputStatus::Absent)) | None => 0,
+///             Some((bytes, InputStatus::Confirmed | InputStatus::Guessed)) => bytes[0].into(),
+///         }
+///     }
+/// }
+/// # use lockstep2d::session::{Key, PeerId, Role, View};
+/// # let view = View::opened_by(PeerId(1), Key(1), 1, true);
+/// # let mut session = Session::new(Config::new(17, 1), PeerId(1), Key(1), Role::Player { seats: 1 }, view, 7)?;
+/// // A match of one player, who presses 3 in every tick of a second.
+/// let mut sum = Sum::default();
+/// for millisecond in 0..1000 {
+///     let now = millisecond * 1000;
+///     session.update(now);
+///     while session.is_due(now) {
+///         session.advance(now, &[3]).expect("one byte");
+///         while let Some(request) = session.next_request() {
+///             sum.fulfil(request, &mut session);
+///         }
+///     }
+/// }
+/// assert!(session.played() > 50);
+/// assert_eq!(sum.now, 3 * u64::from(session.played()));
+/// # Ok::<(), lockstep2d::session::ConfigError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Request {
     /// Keep a copy of the state before this tick. An older copy for the same tick is replaced.
@@ -99,3 +145,30 @@ pub enum Request {
         tick: Tick,
     },
 }
+
+/// Inputs that do not have the size that the session was configured for.
+///
+/// ```
+/// # use lockstep2d::session::{Config, Key, PeerId, Role, Session, View};
+/// use lockstep2d::session::InputSize;
+/// # let view = View::opened_by(PeerId(1), Key(1), 0b11, true);
+/// # let mut session = Session::new(Config::new(17, 2), PeerId(1), Key(1), Role::Player { seats: 2 }, view, 7)?;
+/// // Two players at one machine, and the pad of one of them.
+/// assert_eq!(session.advance(0, &[0x10]), Err(InputSize { expected: 2, given: 1 }));
+/// # Ok::<(), lockstep2d::session::ConfigError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct InputSize {
+    /// Number of bytes that were expected: the size of an input times the number of own seats.
+    pub expected: usize,
+    /// Number of bytes that were given.
+    pub given: usize,
+}
+
+impl fmt::Display for InputSize {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} bytes of inputs, {} are expected", self.given, self.expected)
+    }
+}
+
+impl core::error::Error for InputSize {}

@@ -2,7 +2,6 @@
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
-use core::fmt;
 
 use super::agreement::Agreement;
 use super::config::{Config, ConfigError};
@@ -13,7 +12,7 @@ use super::lifecycle::Lifecycle;
 use super::link::Link;
 use super::pace::Pace;
 use super::peers::Peers;
-use super::play::Play;
+use super::play::{Play, Statistics};
 use super::progress::Progress;
 use super::request::Request;
 use super::row::{REMOVALS_MAX, Removal, Wants};
@@ -21,6 +20,19 @@ use super::transmit::Outbox;
 use super::view::{Change, View};
 
 /// What a peer is in a match.
+///
+/// ```
+/// use lockstep2d::session::{Address, Config, Endpoint, Role};
+/// # use lockstep2d::session::{Identity, Key, PeerId};
+/// # let identity = Identity { id: PeerId(2), key: Key(2), offer: vec![], secret: [1, 2] };
+/// let host = Address::new(&[1]).expect("a byte");
+/// // Watches first. Whoever is watching may ask for a seat later, by `Session::set_role`.
+/// let mut guest = Endpoint::join(Config::new(17, 2), identity, Role::Spectator, host)?;
+/// guest.update(0);
+/// // It asks at once, and has no session before there is an answer.
+/// assert!(guest.next_packet().is_some_and(|(to, _)| to == host) && guest.session().is_none());
+/// # Ok::<(), lockstep2d::session::ConfigError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// Plays a number of seats as soon as it may.
@@ -32,36 +44,6 @@ pub enum Role {
     Spectator,
 }
 
-/// Inputs that do not have the size that the session was configured for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct InputSize {
-    /// Number of bytes that were expected: the size of an input times the number of own seats.
-    pub expected: usize,
-    /// Number of bytes that were given.
-    pub given: usize,
-}
-
-impl fmt::Display for InputSize {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} bytes of inputs, {} are expected", self.given, self.expected)
-    }
-}
-
-impl core::error::Error for InputSize {}
-
-/// Figures of a session.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Statistics {
-    /// Ticks that were played again, because inputs had been guessed wrongly or a view changed.
-    pub replayed: u64,
-    /// Most ticks that were played again at a time.
-    pub replayed_max: Tick,
-    /// Bytes of inputs that are kept.
-    pub input_bytes: usize,
-    /// Number of peers that are known, this one included.
-    pub peers: usize,
-}
-
 /// The part of one peer in a match.
 ///
 /// In a loop: pass every packet that arrives to [`receive`](Session::receive), call [`update`](Session::update), call
@@ -70,6 +52,33 @@ pub struct Statistics {
 /// returns.
 ///
 /// Times are microseconds since any fixed moment and never decrease.
+///
+/// ```
+/// use lockstep2d::session::{Config, Key, PeerId, Role, Session, View};
+/// // A lobby has told both peers who they are; each has a seat from the first tick on.
+/// let mut view = View::opened_by(PeerId(1), Key(1), 0b01, true);
+/// view.found(PeerId(2), Key(2), 1, 0b10);
+/// let peer = |number: u32| {
+///     let (id, key) = (PeerId(number), Key(number.into()));
+///     Session::new(Config::new(17, 2), id, key, Role::Player { seats: 1 }, view.clone(), 7)
+/// };
+/// let mut peers = [peer(1)?, peer(2)?];
+/// for now in (0..1_000_000).step_by(5000) {
+///     for at in 0..2 {
+///         peers[at].update(now);
+///         while peers[at].is_due(now) {
+///             peers[at].advance(now, &[5]).expect("one byte");
+///         }
+///         // `Request` has an example of what the game does with these.
+///         while peers[at].next_request().is_some() {}
+///         while let Some((_, packet)) = peers[at].next_packet() {
+///             peers[1 - at].receive(now, &packet);
+///         }
+///     }
+/// }
+/// assert!(peers.iter().all(|peer| peer.final_tick() > 40));
+/// # Ok::<(), lockstep2d::session::ConfigError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Session {
     pub(super) config: Config,

@@ -83,6 +83,19 @@ pub(super) struct Change {
 }
 
 /// Membership of a match.
+///
+/// ```
+/// use lockstep2d::session::{Key, PeerId, Span, View, Voter};
+/// let mut view = View::opened_by(PeerId(1), Key(10), 0b01, true);
+/// view.found(PeerId(2), Key(20), 1, 0b10);
+/// view.found(PeerId(3), Key(30), 1, 0b100);
+/// // Who decides: two of the three voters.
+/// assert!(view.is_quorum(0b011) && !view.is_quorum(0b100));
+/// assert!(view.voters.iter().all(|Voter { weight, .. }| *weight == 1));
+/// // Who plays the second seat?
+/// let player = view.spans.iter().find(|span: &&Span| span.seat == 1 && span.is_open());
+/// assert_eq!(player.map(|span| span.owner), Some(PeerId(2)));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct View {
     /// 0 at the start, and one more after each change.

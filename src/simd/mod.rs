@@ -208,6 +208,26 @@ impl Machine {
 }
 
 /// SIMD backend of the solver. It changes the speed, never the result.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::World};
+/// use lockstep2d::world::Backend;
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[square])?;
+/// # world.spawn(&BodyDef::dynamic(), &[square])?;
+/// let start = world.save();
+/// // The same bits with every instruction set that this machine has.
+/// let mut hashes = Backend::available().map(|backend| {
+///     world.restore(&start);
+///     assert!(world.set_backend(backend));
+///     (0..30).for_each(|_| world.step());
+///     world.state_hash()
+/// });
+/// let first = hashes.next().expect("one at least");
+/// assert!(hashes.all(|hash| hash == first));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Backend {

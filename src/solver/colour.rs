@@ -42,6 +42,20 @@ pub(super) enum Size {
 }
 
 /// Position of a contact in the order in which the solver solves contacts.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::World};
+/// use lockstep2d::world::SolverColour;
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-0.5))), &[square])?;
+/// # world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(0.5))), &[square])?;
+/// # world.step();
+/// // Many contacts without a colour would be slow: is a body touched by more than it should be?
+/// let colours: Vec<_> = world.contacts().map(|contact| contact.solver_colour()).collect();
+/// assert!(matches!(colours[..], [Some(SolverColour::Group(_))]));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SolverColour {
     /// The contact has this colour, counted from 0. It is independent of all other contacts of the colour.

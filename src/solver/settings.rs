@@ -7,6 +7,19 @@ use crate::fx;
 use crate::math::{Fx, Rate, Speed, Step, Vec2, narrow};
 
 /// Method by which contacts remove overlap.
+///
+/// ```
+/// use lockstep2d::solver::{ContactTuning, SolverSettings};
+/// use lockstep2d::{fx, world::{Config, World}};
+/// // Pillows: contacts that yield a few centimetres.
+/// let contact = ContactTuning::Soft { hertz: fx!(5), damping_ratio: fx!(1), push_speed: fx!(3) };
+/// let solver = SolverSettings { contact, ..SolverSettings::default() };
+/// assert!(World::new(Config { solver, ..Config::default() }).is_ok());
+/// // A setting that is out of range is named.
+/// let contact = ContactTuning::Soft { hertz: fx!(-1), damping_ratio: fx!(1), push_speed: fx!(3) };
+/// let solver = SolverSettings { contact, ..SolverSettings::default() };
+/// assert!(World::new(Config { solver, ..Config::default() }).is_err());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ContactTuning {
     /// Stiff damped springs, with a relax pass that removes the push-out velocity.

@@ -8,6 +8,26 @@ use crate::body::{BodyId, JointId, ShapeId};
 use crate::math::{Angle, Fx, Unit, Vec2};
 
 /// Two shapes that began or ceased to touch.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::World};
+/// use lockstep2d::world::ContactEvent;
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// let lava = world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[square])?;
+/// let victim = world.spawn(&BodyDef::dynamic(), &[square])?;
+/// world.step();
+/// // Whoever touches the lava is gone. The events are read to their end before the world is changed.
+/// let other = |event: &ContactEvent| {
+///     let pair = [event.shape_a, event.shape_b].map(|shape| Some(world.shape(shape)?.body()));
+///     let is_lava = |body: &_| *body == Some(lava);
+///     if pair.iter().any(is_lava) { pair.into_iter().find(|body| !is_lava(body))? } else { None }
+/// };
+/// let burnt: Vec<_> = world.events().contact_begin.iter().filter_map(other).collect();
+/// burnt.into_iter().try_for_each(|body| world.despawn(body))?;
+/// assert!(world.body(victim).is_none() && world.body(lava).is_some());
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct ContactEvent {
     /// The shape in the smaller slot. Its handle is stale if the contact ended by its removal.
@@ -17,6 +37,27 @@ pub struct ContactEvent {
 }
 
 /// Two shapes that hit each other: see [`super::Config::hit_speed`].
+///
+/// ```
+/// # use lockstep2d::{fx, math::Fx, world::World};
+/// use lockstep2d::world::HitEvent;
+/// /// Volume of the sound of a hit in percent: silent at 1 m/s, full at 10 m/s.
+/// fn volume(hit: &HitEvent) -> i32 {
+///     let share = (hit.approach_speed - fx!(1)) / 9;
+///     (share.clamp(Fx::ZERO, Fx::ONE) * 100).to_num()
+/// }
+/// # let mut world = World::default();
+/// # use lockstep2d::body::{BodyDef, EventSwitches, Polygon, ShapeDef};
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-0.5))), &[square])?;
+/// // A box that falls at 5.6 m/s, half a millimetre above the floor.
+/// # let hitting = square.events(EventSwitches { hit: true, ..EventSwitches::default() });
+/// # let falling = BodyDef::dynamic().position((fx!(0), fx!(0.5005))).velocity((fx!(0), fx!(-5.6)));
+/// # world.spawn(&falling, &[hitting])?;
+/// world.step();
+/// assert_eq!(world.events().hits.iter().map(volume).collect::<Vec<_>>(), [51]);
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HitEvent {
     /// The shape in the smaller slot.
@@ -38,6 +79,24 @@ pub struct HitEvent {
 /// a body moves on a straight line from its old pose to its new one and rotates evenly: a ball that hits a wall and
 /// returns within the tick does not cross what was only on its way there, and a shape that leaves a sensor and returns
 /// has no events. Overlaps of less than 0.05 mm may be missed between two ticks.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::World};
+/// use lockstep2d::world::SensorEvent;
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.1))?);
+/// let line = ShapeDef::new(Polygon::rectangle(fx!(0.1), fx!(5))?).sensor();
+/// world.spawn(&BodyDef::fixed(), &[line])?;
+/// let racer = |x, speed| BodyDef::dynamic().position((x, fx!(0))).velocity((speed, fx!(0)));
+/// let first = world.spawn(&racer(fx!(-1), fx!(60)), &[square])?;
+/// let second = world.spawn(&racer(fx!(-0.9), fx!(50)).position((fx!(-0.9), fx!(2))), &[square])?;
+/// world.step();
+/// // Both cross the finish line in this tick; the fraction tells who was first.
+/// let order = world.events().sensor_begin.iter().map(|event: &SensorEvent| event.visitor);
+/// let order: Vec<_> = order.filter_map(|shape| Some(world.shape(shape)?.body())).collect();
+/// assert_eq!(order, [first, second]);
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[doc(alias = "trigger")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct SensorEvent {
@@ -51,6 +110,22 @@ pub struct SensorEvent {
 }
 
 /// A body that moved.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, world::World};
+/// use lockstep2d::world::MoveEvent;
+/// # let mut world = World::default();
+/// # world.spawn(&BodyDef::fixed(), &[])?;
+/// let ball = world.spawn(&BodyDef::dynamic(), &[ShapeDef::new(Geometry::circle(fx!(0.5))?)])?;
+/// world.step();
+/// // Only the sprites of bodies that have moved are updated.
+/// let mut sprites = vec![None; world.body_count()];
+/// for MoveEvent { body, position, angle, .. } in &world.events().moved {
+///     sprites[body.index() as usize] = Some((*position, *angle));
+/// }
+/// assert!(sprites[0].is_none() && sprites[ball.index() as usize].is_some());
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MoveEvent {
     /// The body.
@@ -64,6 +139,29 @@ pub struct MoveEvent {
 }
 
 /// A joint whose force or torque exceeded its threshold.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::World};
+/// use lockstep2d::solver::{JointDef, Threshold, ThresholdAction, Weld};
+/// use lockstep2d::world::JointEvent;
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # let wall = world.spawn(&BodyDef::fixed(), &[])?;
+/// # let beam = world.spawn(&BodyDef::dynamic(), &[square])?;
+/// let weak = Threshold { force: Some(fx!(2)), action: ThresholdAction::Break, ..Threshold::NONE };
+/// let joint = world.add_joint(&JointDef::new(wall, beam, Weld::rigid()).threshold(weak))?;
+/// let mut broken = vec![];
+/// for _ in 0..10 {
+///     world.step();
+///     for JointEvent { joint, broke, .. } in &world.events().joints {
+///         broken.extend(broke.then_some(*joint));
+///     }
+/// }
+/// // The handle is stale by now, and good only to look up what the game knows about the joint.
+/// assert_eq!(broken, [joint]);
+/// assert!(world.joint(joint).is_none());
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JointEvent {
     /// The joint. Its handle is stale if it broke.
@@ -83,7 +181,7 @@ pub struct JointEvent {
 /// # let mut world = World::default();
 /// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
 /// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[square])?;
-/// use lockstep2d::body::EventSwitches;
+/// use lockstep2d::{body::EventSwitches, world::Events};
 /// // Hits are reported for shapes that ask for them.
 /// let heard = square.events(EventSwitches { hit: true, ..EventSwitches::default() });
 /// let falling = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(1))), &[heard])?;
@@ -91,7 +189,8 @@ pub struct JointEvent {
 /// for _ in 0..120 {
 ///     world.step();
 ///     // Right after the step, and in the same tick: a restored world has no events until its next tick.
-///     for hit in &world.events().hits {
+///     let events: &Events = world.events();
+///     for hit in &events.hits {
 ///         assert!(world.shapes_of(falling).contains(&hit.shape_b) && hit.approach_speed > fx!(3));
 ///         hits += 1;
 ///     }
@@ -122,6 +221,26 @@ pub struct Events {
 }
 
 /// A sensor event with its direction; see [`Events::sensor_changes`].
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, world::World};
+/// use lockstep2d::world::SensorChange;
+/// # let mut world = World::default();
+/// # let plate = ShapeDef::new(Polygon::square(fx!(1))?).sensor();
+/// # world.spawn(&BodyDef::fixed(), &[plate])?;
+/// # world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(3))), &[ShapeDef::new(Geometry::circle(fx!(0.5))?)])?;
+/// // A pressure plate counts what is on it, here while something falls through it.
+/// let (mut count, mut most) = (0, 0);
+/// for _ in 0..120 {
+///     world.step();
+///     for change in world.events().sensor_changes() {
+///         count += match change { SensorChange::Begin(_) => 1, SensorChange::End(_) => -1 };
+///         most = most.max(count);
+///     }
+/// }
+/// assert_eq!((most, count), (1, 0));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SensorChange {
     /// The visitor began to overlap the sensor.

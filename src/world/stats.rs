@@ -1,6 +1,15 @@
 //! Phases of a tick, and statistics for tuning and tests. Statistics are not part of the state.
 
 /// The phases of a tick, in order; see [`super::World::step_observed`].
+///
+/// ```
+/// use lockstep2d::world::{Phase, World};
+/// # let mut world = World::default();
+/// // A profiler: the engine says when each phase begins, and the game has the clock.
+/// let mut marks = vec![];
+/// world.step_observed(|phase| marks.push((phase, std::time::Instant::now())));
+/// assert!(marks.iter().map(|(phase, _)| *phase).eq(Phase::ALL));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Phase {
@@ -34,6 +43,20 @@ impl Phase {
 }
 
 /// Statistics of the last tick.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::World};
+/// use lockstep2d::world::StepStats;
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-0.5))), &[square])?;
+/// # world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(0.5))), &[square])?;
+/// world.step();
+/// // The corner of a debug screen.
+/// let StepStats { bodies, contacts, points, .. } = world.stats();
+/// assert_eq!(format!("{bodies} bodies, {contacts} contacts, {points} points"), "1 bodies, 1 contacts, 2 points");
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct StepStats {

@@ -3,6 +3,13 @@
 use std::process::ExitCode;
 
 /// The outcome of a command, as scripts see it. Of several, the last in this order counts.
+///
+/// ```
+/// use lockstep2d_cli::Exit;
+/// // The worst of several files decides, as in `verify`.
+/// let worst = [Exit::Success, Exit::NoMatch, Exit::Success].into_iter().max();
+/// assert_eq!(worst.map(Exit::code), Some(1));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Exit {
     /// The command succeeded; all files match, or nothing differs. Exit code 0.

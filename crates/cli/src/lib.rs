@@ -51,6 +51,8 @@ use std::process::ExitCode;
 
 use lockstep2d::lockstep::Game;
 
+/// The version of clap whose types [`Tool::with_command`] takes.
+pub use clap;
 pub use commands::verify::{Judge, Judged, LimitArguments, with_defaults};
 pub use exit::Exit;
 pub use sandbox::SandboxScenes;

@@ -6,6 +6,15 @@ use lockstep2d::scenes;
 use crate::scenes::{Catalogue, Scene, SceneInfo};
 
 /// The scenes that come with the engine.
+///
+/// ```
+/// use lockstep2d::lockstep::Sandbox;
+/// use lockstep2d_cli::{Exit, SandboxScenes, Tool};
+/// let (mut out, mut err) = (vec![], vec![]);
+/// let tool = Tool::<Sandbox>::new().with_scenes(SandboxScenes);
+/// assert_eq!(tool.run_with(["lockstep2d", "scenes"], &mut out, &mut err), Exit::Success);
+/// assert!(String::from_utf8_lossy(&out).contains("pyramid"));
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SandboxScenes;
 

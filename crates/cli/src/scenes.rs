@@ -6,6 +6,32 @@ use lockstep2d::lockstep::Game;
 pub type Script<G> = Box<dyn FnMut(u64, &G) -> Vec<<G as Game>::Input>>;
 
 /// The scenes of a game.
+///
+/// ```
+/// use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
+/// use lockstep2d_cli::{Catalogue, Scene, SceneInfo};
+/// # use lockstep2d::{body::BodyDef, world::Command};
+/// /// The levels of a game; here, of the sandbox.
+/// struct Levels;
+/// impl Catalogue<Sandbox> for Levels {
+///     fn scenes(&self) -> Vec<SceneInfo> {
+///         vec![SceneInfo { name: "empty", about: "somebody adds a body a second", ticks: 600 }]
+///     }
+///     fn open(&self, name: &str, _seed: u64) -> Option<Scene<Sandbox>> {
+///         let spawn = Command::Spawn { body: BodyDef::dynamic(), shapes: vec![] };
+///         let script = move |tick, _: &_| vec![if tick % 60 == 0 { vec![spawn.clone()] } else { vec![] }];
+///         let scene = || Scene { setup: SandboxSetup::default(), ticks: 600, script: Box::new(script) };
+///         (name == "empty").then(scene)
+///     }
+/// }
+/// let mut scene = Levels.open("empty", 0).expect("it is in the list");
+/// let mut game = Sandbox::new(&scene.setup).expect("a valid setup");
+/// (0..scene.ticks).for_each(|tick| {
+///     let inputs = (scene.script)(tick, &game);
+///     game.step(&inputs);
+/// });
+/// assert_eq!(game.world().body_count(), 10);
+/// ```
 pub trait Catalogue<G: Game> {
     /// All scenes, in the order in which to list them.
     fn scenes(&self) -> Vec<SceneInfo>;

@@ -17,8 +17,21 @@ use crate::scenes::Catalogue;
 
 /// The command-line tools of a game.
 ///
-/// ```text
-/// Tool::<MyGame>::new().with_scenes(MyScenes).with_view(view_of_my_game).run()
+/// ```
+/// use lockstep2d::lockstep::Sandbox;
+/// use lockstep2d_cli::{Exit, Tool, clap::Command};
+/// // A command of one's own beside those that every game has.
+/// let credits = Command::new("credits").about("Names everybody");
+/// let tool = Tool::<Sandbox>::new().with_command(credits, |_| {
+///     println!("thanks to everybody");
+///     Exit::Success
+/// });
+/// // `tool.run()` takes the arguments of the process.
+/// let (mut out, mut err) = (vec![], vec![]);
+/// assert_eq!(tool.run_with(["game", "credits"], &mut out, &mut err), Exit::Success);
+/// tool.run_with(["game", "--help"], &mut out, &mut err);
+/// let help = String::from_utf8_lossy(&out);
+/// assert!(["credits", "verify", "bisect"].iter().all(|command| help.contains(command)), "{help}");
 /// ```
 pub struct Tool<G: Game> {
     pub(crate) limits: Limits,

@@ -17,6 +17,24 @@ const NAMES_MAX: usize = 4096;
 /// with the name of a replay would block for ever.
 ///
 /// A file that is created during the walk may be found or not, but is never found twice.
+///
+/// ```
+/// use lockstep2d_cli::{Walk, WalkError};
+/// # let folder = std::env::temp_dir().join(format!("walk-{}", std::process::id()));
+/// # std::fs::create_dir_all(folder.join("old"))?;
+/// # ["b.replay", "old/a.replay", "notes.txt"].iter().try_for_each(|name| std::fs::write(folder.join(name), b""))?;
+/// // All replays of a folder. What cannot be listed is passed over with a message.
+/// let mut found = vec![];
+/// for entry in Walk::new(&folder) {
+///     match entry {
+///         Ok(path) => found.push(path),
+///         Err(WalkError { path, error }) => eprintln!("{}: {error}", path.display()),
+///     }
+/// }
+/// assert_eq!(found, [folder.join("b.replay"), folder.join("old/a.replay")]);
+/// # std::fs::remove_dir_all(&folder)?;
+/// # Ok::<(), std::io::Error>(())
+/// ```
 pub struct Walk {
     /// The current folder, last, and its ancestors.
     folders: Vec<Folder>,

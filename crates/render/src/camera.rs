@@ -11,6 +11,20 @@ const SCALE_MAX: f64 = 1e6;
 const MARGIN: f64 = 16.0;
 
 /// Visible part of a world, without rotation: y points up in the world and down on the screen.
+///
+/// ```
+/// use lockstep2d::{fx, math::{Aabb, Vec2}};
+/// use lockstep2d_render::Camera;
+/// // 20 m by 10 m of the world in a window of 800 by 400 pixels.
+/// let window = Aabb::new(Vec2::new(fx!(-10), fx!(0)), Vec2::new(fx!(10), fx!(10)));
+/// let mut camera = Camera::new(window, [0.0, 0.0], [800.0, 400.0]);
+/// assert_eq!(camera.place(Vec2::new(fx!(-10), fx!(10))), [0.0, 0.0]);
+/// // The mouse wheel: what is below the pointer stays there.
+/// let pointer = [600.0, 300.0];
+/// let below = camera.point(pointer);
+/// camera.zoom(2.0, pointer);
+/// assert_eq!((camera.place(below), camera.length(fx!(1))), (pointer, 80.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// World point in the middle of the area. Fixed-point, so that a world far from its origin is drawn with the same

@@ -1,6 +1,15 @@
 //! [`Colour`]: sRGB colour with opacity.
 
 /// Colour in sRGB with opacity, not premultiplied.
+///
+/// ```
+/// use lockstep2d_render::Colour;
+/// // The shadow of a team's colour.
+/// let team = Colour::hex(0xd62728);
+/// let shadow = team.with_opacity(64);
+/// assert_eq!((shadow.rgb, shadow.opacity), ([0xd6, 0x27, 0x28], 64));
+/// assert!(team.with_opacity(0).is_none());
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Colour {
     /// Red, green and blue, from 0 to 255.

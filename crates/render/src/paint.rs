@@ -39,6 +39,24 @@ const OCTAGON: [[f32; 2]; 8] = {
 const TINY: f32 = 1.5;
 
 /// Settings for painting a picture.
+///
+/// ```
+/// use lockstep2d::draw::{Layers, fit};
+/// use lockstep2d_render::{Brush, Camera, Colour, DrawList};
+/// # use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, world::World};
+/// # let mut world = World::default();
+/// # world.spawn(&BodyDef::dynamic(), &[ShapeDef::new(Geometry::circle(fx!(0.5))?)])?;
+/// # let predicted = world.clone();
+/// let camera = Camera::new(fit(&world), [0.0, 0.0], [640.0, 480.0]);
+/// let mut list = DrawList::default();
+/// lockstep2d_render::world(&mut list, &world, Layers::default(), &camera, &Brush::default());
+/// // Another world over it, in one colour: where this peer has predicted the bodies to be.
+/// let ghost = Brush { tint: Some(Colour::hex(0x1f77b4)), ..Brush::suiting(&world, &camera) };
+/// let solid = list.items().len();
+/// lockstep2d_render::world(&mut list, &predicted, Layers::default(), &camera, &ghost);
+/// assert_eq!(list.items().len(), 2 * solid);
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Brush {
     /// Scale factor of marks and line widths, from 1/6 to 1, smaller for small bodies.

@@ -23,6 +23,21 @@ mod tests;
 
 /// Data structure of the broad phase, for overlapping pairs in a tick and for queries. The choice changes the speed,
 /// never the result.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::World};
+/// use lockstep2d::collision::BroadPhaseKind;
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # world.spawn(&BodyDef::fixed(), &[square])?;
+/// # world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(2))), &[square])?;
+/// let mut other = world.clone();
+/// // Worth a try in a world in which nearly everything moves a little.
+/// other.set_broad_phase(BroadPhaseKind::SweepAndPrune);
+/// (0..60).for_each(|_| [&mut world, &mut other].into_iter().for_each(World::step));
+/// assert_eq!(world.state_hash(), other.state_hash());
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BroadPhaseKind {
     /// Dynamic AABB tree: the cost grows with the number of moving boxes, and queries are fast.

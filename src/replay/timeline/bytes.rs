@@ -25,6 +25,19 @@ pub const KEYFRAMES_BYTES_MAX: usize = 192 << 20;
 const ENVELOPE: Envelope = Envelope { magic: KEYFRAMES_MAGIC, format: KEYFRAMES_FORMAT_VERSION };
 
 /// Reason why bytes are not keyframes of this replay.
+///
+/// ```
+/// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::replay::{KeyframesError, Limits, Recording, Timeline, TimelineOptions};
+/// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
+/// # (0..90).for_each(|_| recording.step(&[vec![]]).expect("one input"));
+/// # let file = recording.finish().expect("no claims");
+/// let mut timeline = Timeline::<Sandbox>::open(&file, &TimelineOptions::default(), &Limits::default())?;
+/// // Keyframes beside a replay only save time: without them it is played.
+/// assert_eq!(timeline.use_keyframes(b"something else"), Err(KeyframesError::NotKeyframes));
+/// assert!(timeline.seek(90).is_ok());
+/// # Ok::<(), lockstep2d::replay::Verdict>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum KeyframesError {
     /// The bytes do not start with [`KEYFRAMES_MAGIC`].

@@ -35,6 +35,20 @@ use crate::lockstep::Game;
 use crate::world::World;
 
 /// Memory settings of a [`Timeline`].
+///
+/// ```
+/// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::replay::{Limits, Recording, Timeline, TimelineOptions};
+/// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 30).expect("a setup");
+/// # (0..90).for_each(|_| recording.step(&[vec![]]).expect("one input"));
+/// # let file = recording.finish().expect("no claims");
+/// // A phone: a state every half second, in at most 16 MiB.
+/// let options = TimelineOptions { interval: 30, bytes: 16 << 20 };
+/// let mut timeline = Timeline::<Sandbox>::open(&file, &options, &Limits::default())?;
+/// timeline.play_all().expect("it is valid");
+/// assert_eq!(timeline.keyframes().collect::<Vec<_>>(), [0, 30, 60, 90]);
+/// # Ok::<(), lockstep2d::replay::Verdict>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimelineOptions {
     /// Ticks between keyframes, at least 1. An interval longer than a block of the replay is rounded down to whole
@@ -53,6 +67,19 @@ impl Default for TimelineOptions {
 }
 
 /// Reason why a [`Timeline`] cannot seek to a tick.
+///
+/// ```
+/// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::replay::{Limits, Recording, SeekError, Timeline};
+/// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
+/// # (0..90).for_each(|_| recording.step(&[vec![]]).expect("one input"));
+/// # let file = recording.finish().expect("no claims");
+/// let mut timeline = Timeline::<Sandbox>::open(&file, &Default::default(), &Limits::default())?;
+/// assert_eq!(timeline.seek(91), Err(SeekError::NoSuchTick { tick: 91, ticks: 90 }));
+/// // It stays where it was.
+/// assert_eq!(timeline.tick(), 0);
+/// # Ok::<(), lockstep2d::replay::Verdict>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SeekError {
     /// The replay is shorter.

@@ -50,6 +50,23 @@ pub struct JointDef {
 }
 
 /// The frame of a joint on a body.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
+/// use lockstep2d::solver::{JointDef, JointFrame, Prismatic};
+/// use lockstep2d::{fx, math::{Angle, Vec2}};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// let shaft = world.spawn(&BodyDef::fixed(), &[])?;
+/// let cabin = world.spawn(&BodyDef::dynamic(), &[square])?;
+/// // Along the y axis of both bodies, from a place 10 m up in the shaft.
+/// let top = JointFrame { anchor: Vec2::new(fx!(0), fx!(10)), angle: Angle::QUARTER };
+/// let bottom = JointFrame { angle: Angle::QUARTER, ..JointFrame::ORIGIN };
+/// let slider = JointDef { frame_a: top, frame_b: bottom, ..JointDef::new(shaft, cabin, Prismatic::new()) };
+/// let slider = world.add_joint(&slider)?;
+/// assert_eq!(world.joint_translation(slider).map(|at| at.x), Some(fx!(-10)));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct JointFrame {
     /// Its origin in the body's frame, in metres: within ±128 on each axis, or anywhere in the world (±2^30) on a fixed
@@ -60,6 +77,24 @@ pub struct JointFrame {
 }
 
 /// The relative motion of two frames that a joint allows.
+///
+/// ```
+/// # use lockstep2d::{body::BodyDef, fx, world::World};
+/// use lockstep2d::solver::{Distance, JointDef, JointKind, Revolute};
+/// # let mut world = World::default();
+/// # let a = world.spawn(&BodyDef::fixed(), &[])?;
+/// # let b = world.spawn(&BodyDef::dynamic(), &[])?;
+/// # world.add_joint(&JointDef::new(a, b, Revolute::new()))?;
+/// # world.add_joint(&JointDef::new(a, b, Distance::rope(fx!(3))))?;
+/// // A saw cuts ropes, and nothing else.
+/// let is_rope = |kind: JointKind| matches!(kind, JointKind::Distance(Distance { rod: None, limit: Some(_), .. }));
+/// let ropes: Vec<_> = world.joints_of(b).into_iter()
+///     .filter(|&joint| world.joint(joint).is_some_and(|joint| is_rope(joint.def().kind)))
+///     .collect();
+/// ropes.into_iter().try_for_each(|rope| world.remove_joint(rope))?;
+/// assert_eq!(world.joint_count(), 1);
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum JointKind {
     /// The frames share their origin: a hinge.
@@ -114,7 +149,7 @@ pub struct Threshold {
     pub action: ThresholdAction,
 }
 
-/// The action on a joint whose load exceeds its threshold.
+/// The action on a joint whose load exceeds its [`Threshold`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ThresholdAction {
     /// The world reports it.

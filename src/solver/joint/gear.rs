@@ -89,6 +89,27 @@ impl Gear {
 /// The wheel touches its pitch line at the distance `radius` to the right of that axis, below it if the axis points to
 /// the right. The joint holds no distance: give the wheel a hinge and the rack a slider, or the wheel both.
 /// [`World::fit_joint`](crate::world::World::fit_joint) moves B's anchor so that the joint holds at the current poses.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, world::World};
+/// use lockstep2d::solver::{JointDef, Prismatic, Rack, Revolute};
+/// use lockstep2d::fx;
+/// # let mut world = World::default();
+/// # let ground = world.spawn(&BodyDef::fixed(), &[])?;
+/// # let (wheel, bar) = (Geometry::circle(fx!(0.4))?, Polygon::rectangle(fx!(2), fx!(0.1))?);
+/// # let pinion = BodyDef::dynamic().position((fx!(0), fx!(0.5)));
+/// # let pinion = world.spawn(&pinion, &[ShapeDef::new(wheel)])?;
+/// # let gate = world.spawn(&BodyDef::dynamic(), &[ShapeDef::new(bar)])?;
+/// // A pinion of 0.5 m turns at 2 rad/s on the rack of a sliding gate.
+/// let motor = Revolute::new().motor(fx!(2), fx!(1000));
+/// world.add_joint(&world.joint_at(ground, pinion, motor, (fx!(0), fx!(0.5)))?)?;
+/// world.add_joint(&JointDef::new(ground, gate, Prismatic::new()))?;
+/// world.add_joint(&world.fit_joint(&JointDef::new(pinion, gate, Rack::new(fx!(0.5))))?)?;
+/// (0..30).for_each(|_| world.step());
+/// let speed = world.body(gate).expect("still there").velocity().x;
+/// assert!((speed - fx!(1)).abs() < fx!(0.01), "{speed}");
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[doc(alias = "pinion")]
 #[doc(alias = "rack and pinion")]

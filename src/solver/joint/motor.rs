@@ -54,6 +54,24 @@ pub struct Motor {
 }
 
 /// A motor along both axes.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
+/// use lockstep2d::solver::{JointDef, LinearDrive, Motor};
+/// use lockstep2d::{fx, math::Vec2};
+/// # let mut world = World::default();
+/// # world.set_gravity(Vec2::ZERO)?;
+/// # let table = world.spawn(&BodyDef::fixed(), &[])?;
+/// let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// let puck = world.spawn(&BodyDef::dynamic().velocity((fx!(3), fx!(0))), &[square])?;
+/// // Seen from above: the table brakes a puck of 1 kg with 2 N, until it lies still.
+/// let friction = LinearDrive { velocity: Vec2::ZERO, max_force: fx!(2) };
+/// let friction = Motor { linear: Some(friction), ..Motor::new() };
+/// world.add_joint(&JointDef::new(table, puck, friction))?;
+/// (0..60).for_each(|_| world.step());
+/// assert!(world.body(puck).is_some_and(|puck| (puck.velocity().x - fx!(1)).abs() < fx!(0.01)));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LinearDrive {
     /// Target velocity of B's anchor relative to A's frame at that place, in m/s along the axes of the world, within
@@ -64,6 +82,24 @@ pub struct LinearDrive {
 }
 
 /// A spring of limited strength.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
+/// use lockstep2d::solver::{JointDef, Motor, Pull, Soft};
+/// use lockstep2d::{fx, math::Angle};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # let pilot = world.spawn(&BodyDef::kinematic().angle(Angle::QUARTER), &[])?;
+/// # let ship = world.spawn(&BodyDef::dynamic(), &[square])?;
+/// // A ship turns to where its pilot looks, with limited torque.
+/// let soft = Soft { hertz: fx!(2), damping_ratio: fx!(1) };
+/// let turn = Motor { angular_spring: Some(Pull { soft, max: fx!(50) }), ..Motor::new() };
+/// world.add_joint(&JointDef::new(pilot, ship, turn))?;
+/// (0..120).for_each(|_| world.step());
+/// let angle = world.body(ship).expect("still there").angle();
+/// assert!((angle - Angle::QUARTER).to_degrees().abs() < fx!(0.1));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Pull {
     /// Frequency and damping.

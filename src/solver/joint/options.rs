@@ -16,6 +16,22 @@ const DAMPING_RATIO_MAX: Fx = fx!(100);
 ///
 /// A limit is as stiff as joints are: a steady acceleration `a` against it exceeds it by `a / (2 pi f)^2`, with the
 /// [joint stiffness](crate::solver::SolverSettings::joint_hertz) `f`, at most a quarter of the sub-step rate.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, math::Vec2, world::World};
+/// use lockstep2d::{fx, solver::{JointLimit, Revolute}};
+/// # let mut world = World::default();
+/// # let wall = world.spawn(&BodyDef::fixed(), &[])?;
+/// # let plank = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(0.1))?);
+/// # let flap = world.spawn(&BodyDef::dynamic().position((fx!(1), fx!(0))), &[plank])?;
+/// let hinge = world.add_joint(&world.joint_at(wall, flap, Revolute::new(), (fx!(0), fx!(0)))?)?;
+/// // A key turns: the flap may open downwards by half a radian.
+/// world.set_joint_limit(hinge, Some(JointLimit { lower: fx!(-0.5), upper: fx!(0) }))?;
+/// (0..120).for_each(|_| world.step());
+/// assert!(world.joint_angle(hinge).is_some_and(|angle| (angle + fx!(0.5)).abs() < fx!(0.01)));
+/// # let _ = Vec2::<lockstep2d::math::Fx>::ZERO;
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct JointLimit {
     /// The lower end.
@@ -25,6 +41,20 @@ pub struct JointLimit {
 }
 
 /// A motor: drives the joint to a speed with limited force or torque. At speed 0 it is friction.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, world::World};
+/// use lockstep2d::{fx, math::Fx, solver::{Drive, Revolute}};
+/// # let mut world = World::default();
+/// # let wall = world.spawn(&BodyDef::fixed(), &[])?;
+/// # let fan = world.spawn(&BodyDef::dynamic(), &[ShapeDef::new(Geometry::circle(fx!(1))?)])?;
+/// // A motor that nothing holds back, for a game in which the fan never stops.
+/// let motor = Revolute { motor: Some(Drive { speed: fx!(-3), max: Fx::MAX }), ..Revolute::new() };
+/// world.add_joint(&world.joint_at(wall, fan, motor, (fx!(0), fx!(0)))?)?;
+/// (0..10).for_each(|_| world.step());
+/// assert!(world.body(fan).is_some_and(|fan| (fan.angular_velocity() + fx!(3)).abs() < fx!(0.001)));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Drive {
     /// Target speed of B relative to A in rad/s or m/s, within ±2^20.
@@ -39,6 +69,24 @@ pub struct Drive {
 /// more slowly. Along a line (sliders, wheels, distance joints), it is the one for the two bodies as points of mass:
 /// the stiffness is `(2 pi hertz)^2 m` N/m at every pose, with `m` as for [`Soft`]. Where the line passes a centre of
 /// mass at a distance, the spring also turns the body, and swings faster.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
+/// use lockstep2d::{fx, solver::{Distance, JointDef, Spring}};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # let ceiling = world.spawn(&BodyDef::fixed(), &[])?;
+/// # let lamp = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(-2))), &[square])?;
+/// // A lamp on a spring of 2 m that swings once a second, and comes to rest soon.
+/// let spring = Spring { hertz: fx!(1), damping_ratio: fx!(0.5), target: fx!(2) };
+/// let spring = Distance { spring: Some(spring), ..Distance::new() };
+/// world.add_joint(&JointDef::new(ceiling, lamp, spring))?;
+/// (0..600).for_each(|_| world.step());
+/// // It sags by g / (2 pi f)^2.
+/// let sag = fx!(-2) - world.body(lamp).expect("still there").position().y;
+/// assert!((sag - fx!(0.2533)).abs() < fx!(0.001), "{sag}");
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Spring {
     /// Undamped frequency in Hz, above 0, up to 1000. Above a tenth of the sub-step rate the effective frequency is
@@ -60,6 +108,24 @@ pub struct Spring {
 ///
 /// A spring between anchors that is stretched by `x` turns a body of mass `M` too fast for the time step if `(2 pi
 /// hertz / rate)^2 m x r / (M k^2)` is above about 1, with the sub-step rate. Then the body gains energy.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
+/// use lockstep2d::{fx, solver::{JointDef, Soft, Weld}};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # let truck = world.spawn(&BodyDef::fixed(), &[])?;
+/// # let jelly = world.spawn(&BodyDef::dynamic(), &[square])?;
+/// // A load of jelly, glued to the truck at both its place and its angle.
+/// let soft = Soft { hertz: fx!(3), damping_ratio: fx!(0.4) };
+/// let glue = Weld { linear: Some(soft), angular: Some(soft) };
+/// world.add_joint(&JointDef::new(truck, jelly, glue))?;
+/// (0..300).for_each(|_| world.step());
+/// // It sags by g / (2 pi f)^2.
+/// let sag = -world.body(jelly).expect("still there").position().y;
+/// assert!((sag - fx!(0.0281)).abs() < fx!(0.001), "{sag}");
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Soft {
     /// Undamped frequency in Hz, above 0, up to 1000.

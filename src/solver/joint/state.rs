@@ -13,6 +13,22 @@ use crate::body::Body;
 use crate::math::{Angle, Fx, Rot, Speed, TAU, Vec2, fx_mul};
 
 /// A joint in the world.
+///
+/// ```
+/// # use lockstep2d::{body::BodyDef, world::World};
+/// use lockstep2d::{fx, solver::{Joint, JointDef, JointKind, Revolute}};
+/// # let mut world = World::default();
+/// # let a = world.spawn(&BodyDef::fixed(), &[])?;
+/// # let b = world.spawn(&BodyDef::dynamic(), &[])?;
+/// let hinge = world.add_joint(&JointDef::new(a, b, Revolute::new()))?;
+/// // A motor is fitted later: read the definition, change a copy, and set it.
+/// let joint: &Joint = world.joint(hinge).expect("just created");
+/// let driven = JointDef { kind: Revolute::new().motor(fx!(1), fx!(5)).into(), ..*joint.def() };
+/// world.set_joint(hinge, &driven)?;
+/// let has_motor = |joint: &Joint| matches!(joint.def().kind, JointKind::Revolute(hinge) if hinge.motor.is_some());
+/// assert!(world.joint(hinge).is_some_and(has_motor));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Joint {
     /// Boxed, so that the parts that every step changes are close together in memory: saving them is memory-bound.
@@ -117,6 +133,22 @@ impl Joint {
 
 /// A part of a joint whose force can be asked for: see
 /// [`World::joint_part_force`](crate::world::World::joint_part_force).
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
+/// use lockstep2d::{fx, solver::{JointPart, Revolute}};
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # let wall = world.spawn(&BodyDef::fixed(), &[])?;
+/// # let weight = world.spawn(&BodyDef::dynamic().position((fx!(2), fx!(0))), &[square])?;
+/// // An arm of 2 m holds 10 N up: how hard does its motor work?
+/// let motor = Revolute::new().motor(fx!(0), fx!(100));
+/// let hinge = world.add_joint(&world.joint_at(wall, weight, motor, (fx!(0), fx!(0)))?)?;
+/// (0..60).for_each(|_| world.step());
+/// let (_, torque) = world.joint_part_force(hinge, JointPart::Motor).expect("still there");
+/// assert!((torque - fx!(20)).abs() < fx!(0.1), "{torque}");
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum JointPart {
     /// The motor; of a motor joint both motors.

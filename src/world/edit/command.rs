@@ -238,6 +238,22 @@ pub enum Command {
 }
 
 /// Handles of the bodies, shapes or joints that a command has added.
+///
+/// ```
+/// # use lockstep2d::{body::BodyDef, world::World};
+/// use lockstep2d::world::{Command, Outcome};
+/// # let mut world = World::default();
+/// let spawn = Command::Spawn { body: BodyDef::dynamic(), shapes: vec![] };
+/// // An editor selects what it has just created.
+/// let selected = match world.execute(&spawn)? {
+///     Outcome::Body(body) => vec![body],
+///     Outcome::Bodies(bodies) => bodies,
+///     _ => vec![],
+/// };
+/// assert!(world.body(selected[0]).is_some());
+/// assert_eq!(world.execute(&Command::Despawn { body: selected[0] })?, Outcome::Done);
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// Nothing.

@@ -17,6 +17,19 @@ use crate::world::islands::{joints_changed, wake_body, wake_overlapping, wake_ov
 use crate::world::state::{Island, State};
 
 /// Position and rotation of a body.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
+/// use lockstep2d::{fx, math::{Angle, Fx, Vec2}, world::BodyPose};
+/// # let mut world = World::default();
+/// // A row of dominoes.
+/// let place = |i| BodyPose { position: Vec2::new(fx!(0.4) * Fx::from_num(i), fx!(0.5)), angle: Angle::ZERO };
+/// let domino = ShapeDef::new(Polygon::rectangle(fx!(0.05), fx!(0.5))?);
+/// let places: Vec<_> = (0..10).map(place).collect();
+/// let row = world.spawn_each(&BodyDef::dynamic(), &[domino], &places)?;
+/// assert_eq!(world.body(row[9]).map(|last| last.position()), Some(places[9].position));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BodyPose {
     /// Position of the body's origin in the world, in metres.

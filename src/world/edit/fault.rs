@@ -6,6 +6,20 @@ use crate::world::World;
 use crate::world::movement::move_body;
 
 /// A component of a body's velocity or pose.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, world::World};
+/// use lockstep2d::world::BodyField;
+/// # let mut world = World::default();
+/// let ball = world.spawn(&BodyDef::dynamic(), &[ShapeDef::new(Geometry::circle(fx!(0.5))?)])?;
+/// // One flipped bit, as of failing memory, in a test of what a game does when peers diverge.
+/// let mut broken = world.clone();
+/// broken.flip_bit(ball, BodyField::VelocityX, 0)?;
+/// assert_ne!(world.state_hash(), broken.state_hash());
+/// broken.flip_bit(ball, BodyField::VelocityX, 0)?;
+/// assert_eq!(world.state_hash(), broken.state_hash());
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BodyField {
     /// The horizontal velocity of its centre of mass.

@@ -13,6 +13,19 @@ use crate::math::{Aabb, Fx, Unit, Vec2, saturate};
 use crate::world::World;
 
 /// Hit of a ray on a shape.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
+/// use lockstep2d::{fx, math::Vec2, world::RayHit};
+/// # let mut world = World::default();
+/// # world.spawn(&BodyDef::fixed().position((fx!(5), fx!(0))), &[ShapeDef::new(Polygon::square(fx!(1))?)])?;
+/// // A laser, 20 m long at most, and the mark that it burns.
+/// let hit = world.cast_ray(Vec2::ZERO, Vec2::new(fx!(20), fx!(0)), Default::default());
+/// let RayHit { point, normal, fraction, .. } = hit.expect("a wall at 4 m");
+/// assert_eq!((point.x, fraction), (fx!(4), fx!(0.2)));
+/// assert_eq!(normal, -Vec2::X, "towards the laser");
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RayHit {
     /// The shape.
@@ -28,6 +41,19 @@ pub struct RayHit {
 }
 
 /// Hit of a moving shape on another shape.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, world::World};
+/// use lockstep2d::{fx, math::Vec2, world::{CastHit, Probe}};
+/// # let mut world = World::default();
+/// # world.spawn(&BodyDef::fixed().position((fx!(5), fx!(0))), &[ShapeDef::new(Polygon::square(fx!(1))?)])?;
+/// // A camera of 0.5 m keeps out of walls while it moves back by 10 m.
+/// let camera = Probe::new(Geometry::circle(fx!(0.5))?, Vec2::ZERO)?;
+/// let hit: Option<CastHit> = world.cast_shape(&camera, Vec2::new(fx!(10), fx!(0)), Default::default());
+/// let travelled = hit.expect("a wall at 4 m").travelled.x;
+/// assert!(travelled < fx!(3.5) && travelled > fx!(3.499));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CastHit {
     /// The shape that is met.

@@ -121,6 +121,27 @@ impl Mover {
 }
 
 /// Position, velocity and ground of a character: data that the game stores, saves and hashes.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, world::World};
+/// use lockstep2d::world::{Mover, MoverState};
+/// use lockstep2d::{codec, fx, math::Vec2};
+/// # let mut world = World::default();
+/// # let floor = ShapeDef::new(Polygon::rectangle(fx!(50), fx!(1))?);
+/// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor])?;
+/// # let mover = Mover::new(Geometry::capsule((fx!(0), fx!(0.3)), (fx!(0), fx!(1.5)), fx!(0.3))?)?;
+/// let start = MoverState { velocity: Vec2::new(fx!(0), fx!(-1)), ..MoverState::at(Vec2::ZERO) };
+/// let mut player = world.move_character(&mover, &start, Default::default()).state;
+/// // It jumps only from ground.
+/// if player.is_on_ground() {
+///     player.velocity.y = fx!(5);
+/// }
+/// let player = world.move_character(&mover, &player, Default::default()).state;
+/// assert!(!player.is_on_ground() && player.position.y > fx!(0));
+/// // It belongs to the save of the game, beside the world.
+/// assert_eq!(codec::decode(&codec::encode(&player)), Ok(player));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MoverState {
     /// Position of its geometry's centre in the world, in metres.
@@ -147,6 +168,22 @@ impl MoverState {
 }
 
 /// Result of a character's move.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, world::World};
+/// use lockstep2d::world::{Moved, Mover, MoverState};
+/// use lockstep2d::{fx, math::Vec2};
+/// # let mut world = World::default();
+/// # let mover = Mover::new(Geometry::capsule((fx!(0), fx!(0.3)), (fx!(0), fx!(1.5)), fx!(0.3))?)?;
+/// let wall = ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(3))?);
+/// let wall = world.spawn(&BodyDef::fixed().position((fx!(1), fx!(0))), &[wall])?;
+/// let running = MoverState { velocity: Vec2::new(fx!(30), fx!(0)), ..MoverState::at(Vec2::ZERO) };
+/// // It runs into a wall: what did it touch?
+/// let Moved { state, met } = world.move_character(&mover, &running, Default::default());
+/// assert!(met.iter().any(|plane| plane.body == wall && plane.normal == -Vec2::X));
+/// assert_eq!(state.velocity.x, fx!(0));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Moved {
     /// The new state. Its velocity is what the surfaces have left of the old one; ground only stops a fall.

@@ -54,6 +54,21 @@ pub struct QueryFilter {
 }
 
 /// Treatment of shapes inside of which a ray or a cast starts. Hits say whether it starts inside.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
+/// use lockstep2d::{fx, math::Vec2, world::{InitialOverlap, QueryFilter}};
+/// # let mut world = World::default();
+/// let room = ShapeDef::new(Polygon::square(fx!(2))?);
+/// world.spawn(&BodyDef::fixed(), &[room])?;
+/// // A ray from within.
+/// let outside = Vec2::new(fx!(5), fx!(0));
+/// let solid = world.cast_ray(Vec2::ZERO, outside, QueryFilter::default());
+/// assert!(solid.is_some_and(|hit| hit.starts_inside && hit.fraction == 0));
+/// let hollow = QueryFilter::default().initial_overlap(InitialOverlap::Ignore);
+/// assert_eq!(world.cast_ray(Vec2::ZERO, outside, hollow), None);
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum InitialOverlap {
     /// A ray reports them, at fraction 0. A cast reports those into which it would go deeper, so that a shape that

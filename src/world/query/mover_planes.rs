@@ -32,6 +32,21 @@ const TOLERANCE: Fx = fx!(0.000001);
 const PARALLEL: Fx = fx!(0.000001);
 
 /// A surface near a mover, as a plane.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, world::World};
+/// use lockstep2d::world::{MoverPlane, Probe, solve_planes};
+/// use lockstep2d::{fx, math::Vec2};
+/// # let mut world = World::default();
+/// # let floor = ShapeDef::new(Polygon::rectangle(fx!(9), fx!(1))?);
+/// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor])?;
+/// // A character of one's own, 1 cm above the floor, that walks 5 cm to the right and falls by 1 m.
+/// let ball = Probe::new(Geometry::circle(fx!(0.5))?, Vec2::new(fx!(0), fx!(0.51)))?;
+/// let mut planes: Vec<MoverPlane> = world.collide_mover(&ball, fx!(1), Default::default());
+/// let step = solve_planes(Vec2::new(fx!(0.05), fx!(-1)), &mut planes);
+/// assert!(step.x == fx!(0.05) && (step.y + fx!(0.01)).abs() < fx!(0.001));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[doc(alias = "collision plane")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MoverPlane {

@@ -10,6 +10,19 @@ use crate::math::{Aabb, Fx, Unit, Vec2};
 use crate::world::World;
 
 /// The nearest points of two shapes, or of a shape and a point.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, world::World};
+/// use lockstep2d::{fx, math::Vec2, world::ClosestPoints};
+/// # let mut world = World::default();
+/// # let ball = ShapeDef::new(Geometry::circle(fx!(1))?);
+/// # let ball = world.spawn(&BodyDef::fixed().position((fx!(4), fx!(0))), &[ball])?;
+/// // The nearest thing within 10 m, for a homing missile.
+/// let (target, ClosestPoints { distance, point_b, .. }) =
+///     world.closest(Vec2::ZERO, fx!(10), Default::default()).expect("the ball");
+/// assert_eq!((target, distance, point_b.x), (world.shapes_of(ball)[0], fx!(3), fx!(3)));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClosestPoints {
     /// Distance between the surfaces in metres. If the shapes overlap it is negative: the displacement that separates

@@ -12,6 +12,15 @@ use crate::math::{Fx, Length, Unit, Vec2, narrow};
 use crate::world::World;
 
 /// Hit of a ray or of a moving shape on a single shape.
+///
+/// ```
+/// use lockstep2d::{body::Geometry, fx, math::Vec2, world::{Probe, ProbeHit}};
+/// // A target that is in no world, for a menu that is a game itself.
+/// let target = Probe::new(Geometry::circle(fx!(1))?, Vec2::new(fx!(6), fx!(0)))?;
+/// let hit: Option<ProbeHit> = target.cast_ray(Vec2::ZERO, Vec2::new(fx!(10), fx!(0)));
+/// assert_eq!(hit.map(|hit| (hit.fraction, hit.starts_inside)), Some((fx!(0.5), false)));
+/// # Ok::<(), lockstep2d::body::GeometryError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProbeHit {
     /// Fraction of the translation, 0 to 1.
@@ -25,6 +34,21 @@ pub struct ProbeHit {
 }
 
 /// How a shape moves from start to end of a search for the time of impact, at constant speed.
+///
+/// ```
+/// use lockstep2d::{body::{Geometry, Polygon}, fx, math::Vec2};
+/// use lockstep2d::world::{Displacement, Probe, TimeOfImpact};
+/// // A bat of 2 m turns by half a turn in the time of a swing. A ball lies still 1.5 m above its middle.
+/// let bat = Probe::new(Polygon::rectangle(fx!(2), fx!(0.1))?, Vec2::ZERO)?;
+/// let ball = Probe::new(Geometry::circle(fx!(0.1))?, Vec2::new(fx!(0), fx!(1.5)))?;
+/// let swing = Displacement { turns: fx!(0.5), ..Displacement::default() };
+/// match bat.time_of_impact(swing, &ball, Displacement::default()) {
+///     // Shortly before a quarter of a turn.
+///     TimeOfImpact::Hit { fraction } => assert!(fraction > fx!(0.45) && fraction < fx!(0.5)),
+///     other => panic!("{other:?}"),
+/// }
+/// # Ok::<(), lockstep2d::body::GeometryError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Displacement {
     /// Translation of the probe's position in metres.

@@ -17,6 +17,17 @@ const FORMAT: u32 = 3;
 const ENVELOPE: Envelope = Envelope { magic: MAGIC, format: FORMAT };
 
 /// Reason why bytes were refused as a world.
+///
+/// ```
+/// use lockstep2d::world::{SnapshotError, World};
+/// let bytes = World::default().to_bytes();
+/// // A saved game from a stranger, or from a bad disk.
+/// let mut damaged = bytes.clone();
+/// damaged[40] ^= 1;
+/// assert_eq!(World::from_bytes(&damaged).err(), Some(SnapshotError::Hash));
+/// let cut = World::from_bytes(&bytes[..bytes.len() - 1]).err();
+/// assert!(matches!(cut, Some(SnapshotError::Length { announced, found }) if announced == found + 1));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SnapshotError {
     /// The bytes do not start with the magic of a world.

@@ -11,6 +11,18 @@ use crate::hash::StateHash;
 use crate::world::state::State;
 
 /// A part of the state with a digest of its own.
+///
+/// ```
+/// # use lockstep2d::{body::BodyDef, world::World};
+/// use lockstep2d::world::Section;
+/// # let mut world = World::default();
+/// # world.spawn(&BodyDef::dynamic(), &[])?;
+/// let before = world.digest();
+/// world.rng().next_u32();
+/// // Which part of the state has changed?
+/// assert_eq!(world.digest().differing(&before), [Section::Random]);
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Section {
     /// Settings, tick and fault count.
@@ -44,6 +56,14 @@ impl fmt::Display for Section {
 }
 
 /// The digests of a world's sections, in order. Two worlds that differ have a section whose digests differ.
+///
+/// ```
+/// use lockstep2d::world::{World, WorldDigest};
+/// let (world, other) = (World::default(), World::default());
+/// let (ours, theirs): (WorldDigest, WorldDigest) = (world.digest(), other.digest());
+/// assert_eq!(ours.state_hash(), world.state_hash());
+/// assert!(ours.differing(&theirs).is_empty());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WorldDigest {
     /// The digest of each section.

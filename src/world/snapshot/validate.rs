@@ -16,6 +16,15 @@ use crate::world::derived::{fat_box, mass_of, offset_max};
 use crate::world::state::State;
 
 /// A broken invariant.
+///
+/// ```
+/// use lockstep2d::world::{Violation, World};
+/// // A test of one's own may ask after every tick whether the world is in order.
+/// let mut world = World::default();
+/// world.step();
+/// let result: Result<(), Violation> = world.validate();
+/// assert!(result.is_ok(), "{}", result.unwrap_err());
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Violation {
     /// Description of the broken invariant and of the object that breaks it.

@@ -17,13 +17,12 @@ use crate::world::World;
 /// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
 /// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-0.5))), &[square])?;
 /// # world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(0.5))), &[square])?;
-/// # (0..60).for_each(|_| world.step());
-/// # world.step();
-/// for contact in world.contacts() {
-///     // Two points carry the weight of 10 N.
-///     let load: Fx = contact.forces().map(|(_, force)| force.normal).sum();
-///     assert!(contact.touching && (load - fx!(10)).abs() < fx!(0.1));
-/// }
+/// # (0..20).for_each(|_| world.step());
+/// use lockstep2d::world::ContactView;
+/// let load = |contact: &ContactView| contact.forces().map(|(_, force)| force.normal).sum::<Fx>();
+/// // Two points carry the weight of 10 N.
+/// let contact = world.contacts().next().expect("a box on the ground");
+/// assert!(contact.touching && (load(&contact) - fx!(10)).abs() < fx!(0.1));
 /// # Ok::<(), lockstep2d::body::WorldError>(())
 /// ```
 #[derive(Clone, Copy)]
@@ -54,6 +53,22 @@ impl fmt::Debug for ContactView<'_> {
 }
 
 /// Force of a contact point on shape B.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, math::Fx, world::World};
+/// use lockstep2d::world::ContactForce;
+/// # let mut world = World::default();
+/// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
+/// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-0.5))), &[square])?;
+/// let scale = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(0.5))), &[square])?;
+/// # (0..20).for_each(|_| world.step());
+/// // How much does the box weigh? Its ground bears it.
+/// let push = |force: ContactForce| force.normal;
+/// let pushes = world.contacts_of(scale).map(|contact| contact.forces().map(|(_, force)| push(force)).sum::<Fx>());
+/// let weight: Fx = pushes.sum();
+/// assert!((weight - fx!(10)).abs() < fx!(0.1));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ContactForce {
     /// Component along the normal in N, not negative.

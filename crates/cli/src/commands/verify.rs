@@ -107,6 +107,20 @@ pub struct LimitArguments {
 
 impl LimitArguments {
     /// These limits, where an argument is given, and otherwise those of `limits`.
+    ///
+    /// ```
+    /// use lockstep2d::replay::Limits;
+    /// use lockstep2d_cli::{LimitArguments, clap::{self, Parser}};
+    /// /// A worker of one's own that verifies replays.
+    /// #[derive(Parser)]
+    /// struct Arguments {
+    ///     #[command(flatten)]
+    ///     limits: LimitArguments,
+    /// }
+    /// let arguments = Arguments::parse_from(["worker", "--max-ticks", "36000"]);
+    /// let limits = arguments.limits.over(&Limits::default());
+    /// assert_eq!((limits.ticks, limits.bodies), (36000, Limits::default().bodies));
+    /// ```
     #[must_use]
     pub fn over(&self, limits: &Limits) -> Limits {
         Limits {

@@ -28,6 +28,17 @@ struct Owner {
 }
 
 /// Result of checking the signatures of a game.
+///
+/// ```
+/// use lockstep2d_cli::signature::Check;
+/// /// Whether a match counts: both players have signed it, and nobody has forged a signature.
+/// fn counts(check: &Check) -> bool {
+///     check.forged.is_empty() && ["alice", "bob"].iter().all(|name| check.signed_by.iter().any(|by| by == name))
+/// }
+/// let check = Check { signed_by: vec!["alice".into(), "bob".into()], forged: vec![] };
+/// assert!(counts(&check));
+/// assert!(!counts(&Check { forged: vec!["bob".into()], ..check }));
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Check {
     /// Names with a valid signature, sorted, each once.

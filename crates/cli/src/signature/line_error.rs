@@ -5,6 +5,13 @@ use std::fmt;
 use super::signatures::SIGNATURES_MAX;
 
 /// A line of a file of keys or signatures that cannot be read.
+///
+/// ```
+/// use lockstep2d_cli::signature::{AllowedKeys, Flaw, LineError};
+/// // The file of an admin, with a mistake in its second line.
+/// let keys = "# players\nalice\n".parse::<AllowedKeys>();
+/// assert_eq!(keys.err(), Some(LineError { line: 2, flaw: Flaw::NoAllowedKey }));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LineError {
     /// Number of the line, from 1.

@@ -37,6 +37,26 @@ pub struct Signature {
 ///
 /// The text has one way to be written: a file with any other byte than `to_string` gives cannot be parsed
 /// or has other signatures. The module [`signature`](crate::signature) has an example.
+///
+/// ```
+/// use lockstep2d::{lockstep::Sandbox, replay::{Limits, Recording}};
+/// use lockstep2d_cli::signature::{GameDigest, PublicKey, SecretKey, Signature, Signatures};
+/// # let replay = Recording::<Sandbox>::start(&Default::default(), 60)?.finish()?;
+/// // Both players sign a match.
+/// let digest = GameDigest::of_replay::<Sandbox>(&replay, &Limits::default()).expect("a replay");
+/// let players = [SecretKey::generate()?, SecretKey::generate()?];
+/// let mut signatures = Signatures::default();
+/// for player in &players {
+///     let signature: Signature = player.sign(&digest);
+///     signatures.add(signature)?;
+/// }
+/// // Whose signatures are in the file? That they are valid is for `AllowedKeys::check` to say.
+/// let text = signatures.to_string();
+/// let read: Signatures = text.parse()?;
+/// let keys: Vec<PublicKey> = read.all().iter().map(|signature| signature.key).collect();
+/// assert_eq!(keys, players.map(|player| player.public_key()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Signatures(Vec<Signature>);
 

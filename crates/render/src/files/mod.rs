@@ -17,6 +17,21 @@ pub use pace::Pace;
 ///
 /// For each frame, only the bounding rectangle of the changed pixels is written. Unchanged pixels inside it are
 /// transparent where the format allows it.
+///
+/// ```
+/// use lockstep2d_render::{Animation, Colour, DrawList, Pace, raster};
+/// // A bar that grows, for a replay of 60 ticks a second with a frame for every third tick.
+/// let mut file = Vec::new();
+/// let mut animation = Animation::gif(&mut file, Pace { ticks: 3, tick_rate: 60 });
+/// for width in 1..=4 {
+///     let mut list = DrawList::default();
+///     list.rectangle([0.0, 0.0], [8.0 * width as f32, 8.0], Colour::hex(0xd62728));
+///     animation.add(&raster(&list, (32, 8), Colour::hex(0xffffff)))?;
+/// }
+/// animation.finish()?;
+/// assert!(file.starts_with(b"GIF89a"));
+/// # Ok::<(), std::io::Error>(())
+/// ```
 pub struct Animation<W: Write>(Format<W>);
 
 enum Format<W: Write> {

@@ -5,6 +5,19 @@ use tiny_skia::Pixmap;
 use crate::colour::Colour;
 
 /// Image of 8-bit RGBA pixels, in rows from top to bottom, each from left to right.
+///
+/// ```
+/// use lockstep2d::{draw::View, world::World};
+/// use lockstep2d_render::{Colour, DrawList, Image, page, raster};
+/// # let world = World::default();
+/// // A picture of a failed test, with the legend.
+/// let view = View { width: 320, height: 240, title: "after 3 s".into(), ..View::default() };
+/// let mut list = DrawList::default();
+/// page(&mut list, &world, &view);
+/// let image: Image = raster(&list, (view.width, view.height), Colour::hex(0xffffff));
+/// assert_eq!((image.width(), image.rgba().len()), (320, 4 * 320 * 240));
+/// assert!(image.is_opaque());
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
     width: u32,

@@ -6,8 +6,10 @@ use std::fs;
 
 // Your game, its setup and its number of players.
 use harvest::Harvest as MyGame;
-const SETUP: <MyGame as Game>::Setup = 7;
 const PLAYERS: u32 = 2;
+fn setup() -> <MyGame as Game>::Setup {
+    7
+}
 
 use libfuzzer_sys::fuzz_target;
 use lockstep2d::check::{CheckError, CheckOptions, check, inputs_from_bytes};
@@ -19,7 +21,7 @@ const TICKS_MAX: usize = 300;
 fuzz_target!(|bytes: &[u8]| {
     let mut inputs = inputs_from_bytes::<MyGame>(PLAYERS, bytes);
     inputs.truncate(TICKS_MAX);
-    match check::<MyGame>(&SETUP, &inputs, &CheckOptions::default()) {
+    match check::<MyGame>(&setup(), &inputs, &CheckOptions::default()) {
         Ok(_) => {}
         Err(CheckError::Failed(failure)) => {
             let name = "failure.replay";

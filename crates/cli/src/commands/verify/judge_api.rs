@@ -34,6 +34,16 @@ pub struct Judge<G: Game> {
 }
 
 /// The verdict on a file.
+///
+/// ```
+/// use lockstep2d::{lockstep::Sandbox, replay::Limits};
+/// use lockstep2d_cli::{Judge, Judged};
+/// // A worker counts what it has verified.
+/// let judge = Judge::<Sandbox>::new(Limits::default());
+/// let Judged { verdict, line } = judge.judge("18.replay", b"not a replay").expect("it was not stopped");
+/// assert_eq!(verdict, "malformed");
+/// assert!(line.contains(r#""file":"18.replay""#));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Judged {
     /// The name of the verdict, as VERIFYING.md lists them.

@@ -1,0 +1,145 @@
+//! Every public type is shown in use by an example of the documentation.
+//!
+//! A type is shown if Rust code in the documentation of its own top-level module uses its name: best in its own
+//! documentation, or where it is met, as the fields of an event are. A smaller crate counts as one module. Imports do
+//! not count, nor does what readers do not see: hidden lines, comments and literals. That the code compiles and is right
+//! is the matter of `cargo test --doc`.
+//!
+//! All types that are declared `pub` count, because the lint `unreachable_pub` refuses those that no user can name.
+
+mod source;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use source::{Source, files, tokens};
+
+/// The library, and crates that a game's author names types of.
+const FOLDERS: &[&str] = &["src", "crates/cli/src", "crates/render/src"];
+
+/// Public types without an example, and why.
+const WITHOUT: &[(&str, &str, &str)] = &[
+    ("body", "MassProperties", "opaque: only decoders of snapshots outside of this crate name it"),
+    ("replay", "KeyframesFlaw", "printed as the reason in a `KeyframesError`, not handled"),
+    ("report", "ReportFlaw", "printed as the reason in a `ReportError`, not handled"),
+    ("crates/cli", "RandomError", "opaque: printed when the system has no random numbers"),
+];
+
+/// Macro of `src/body/arena.rs` that declares a public type, whose name is on a line of its own.
+const TYPE_MACRO: &str = "define_handle! {";
+
+/// The types and the code of a top-level module.
+#[derive(Default)]
+struct Module {
+    types: Vec<String>,
+    /// Words of the code of all examples.
+    shown: BTreeSet<String>,
+}
+
+/// Reads the documentation comments of a file.
+fn read(text: &str, module: &mut Module) {
+    let (mut code, mut in_code, mut in_block) = (String::new(), false, false);
+    let (mut hidden, mut in_macro) = (false, false);
+    for line in text.lines().map(str::trim) {
+        if let Some(doc) = line.strip_prefix("///").or(line.strip_prefix("//!")) {
+            let doc = doc.strip_prefix(' ').unwrap_or(doc);
+            if let Some(kind) = doc.trim_start().strip_prefix("```") {
+                (in_block, in_code) = (!in_block, !in_block && is_tested(kind));
+            } else if in_code && !is_hidden_line(doc) {
+                code += doc;
+                code.push('\n');
+            }
+            continue;
+        }
+        let name = declared(line).or_else(|| in_macro.then(|| line.to_string()).filter(|name| is_name(name)));
+        module.types.extend(name.filter(|_| !hidden));
+        in_macro = line == TYPE_MACRO || in_macro && line != "}";
+        hidden = line == "#[doc(hidden)]" || hidden && line.starts_with("#[");
+    }
+    let mut in_import = false;
+    for token in tokens(&code) {
+        in_import |= token.text == "use";
+        if !in_import {
+            module.shown.insert(token.text.clone());
+        }
+        in_import &= token.text != ";";
+    }
+}
+
+/// Whether `cargo test --doc` compiles a code block of this kind.
+fn is_tested(kind: &str) -> bool {
+    kind.split(',').all(|word| matches!(word.trim(), "" | "rust" | "no_run" | "should_panic"))
+}
+
+fn is_hidden_line(line: &str) -> bool {
+    let line = line.trim_start();
+    line == "#" || line.starts_with("# ")
+}
+
+/// The name of the type that a line declares.
+fn declared(line: &str) -> Option<String> {
+    let rest = ["struct ", "enum ", "trait ", "union "].iter().find_map(|kind| {
+        let line = line.strip_prefix("pub ")?;
+        line.strip_prefix("unsafe ").unwrap_or(line).strip_prefix(kind)
+    })?;
+    let name: String = rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+    Some(name).filter(|name| is_name(name))
+}
+
+fn is_name(text: &str) -> bool {
+    text.starts_with(char::is_uppercase) && text.chars().all(|c| c.is_alphanumeric() || c == '_')
+}
+
+fn modules(files: &[Source]) -> BTreeMap<String, Module> {
+    let mut modules = BTreeMap::<String, Module>::new();
+    for file in files {
+        let name = match (file.path.strip_prefix("src/"), file.path.split_once("/src/")) {
+            (Some(path), _) => path.split('/').next().unwrap_or(path).trim_end_matches(".rs"),
+            (None, Some((name, _))) => name,
+            (None, None) => &file.path,
+        };
+        read(&file.text, modules.entry(name.into()).or_default());
+    }
+    modules
+}
+
+/// The types that no example shows, each with its module.
+fn not_shown(modules: &BTreeMap<String, Module>) -> Vec<(&str, &str)> {
+    let missing = modules.iter().flat_map(|(name, module)| {
+        let types = module.types.iter().filter(|found| !module.shown.contains(*found));
+        types.map(|found| (name.as_str(), found.as_str()))
+    });
+    missing.collect()
+}
+
+#[test]
+fn every_public_type_is_shown() {
+    let all: Vec<_> = FOLDERS.iter().flat_map(|folder| files(folder, &["rs"])).collect();
+    let modules = modules(&all);
+    let count: usize = modules.values().map(|module| module.types.len()).sum();
+    // Far fewer would mean that the declarations are no longer found.
+    assert!(count > 200, "only {count} public types");
+    let missing = not_shown(&modules);
+    let excused: Vec<_> = WITHOUT.iter().map(|&(module, name, _)| (module, name)).collect();
+    let wrong: Vec<_> = missing.iter().filter(|found| !excused.contains(found)).collect();
+    assert!(wrong.is_empty(), "{} of {count} types are in no example: {wrong:#?}", wrong.len());
+    let idle: Vec<_> = excused.iter().filter(|found| !missing.contains(found)).collect();
+    assert!(idle.is_empty(), "shown by now, or gone: {idle:?}");
+}
+
+#[test]
+fn a_missing_example_is_noticed() {
+    let missing = |text: &str| {
+        let modules = modules(&[Source { path: "src/body/a.rs".into(), text: text.into() }]);
+        not_shown(&modules).into_iter().map(|(_, name)| name.to_string()).collect::<Vec<_>>()
+    };
+    let example =
+        |code: &str| format!("/// A.\n/// ```\n/// {code}\n/// ```\n#[derive(Debug)]\npub struct A;");
+    assert_eq!(missing(&example("let a = A;")), [""; 0]);
+    for code in ["use a::A;", "# let a = A;", "// A", "print(\"A\");", "let a = Abc;"] {
+        assert_eq!(missing(&example(code)), ["A"], "{code}");
+    }
+    assert_eq!(missing(&example("let a = A;").replacen("```", "```text", 1)), ["A"]);
+    assert_eq!(missing("pub(crate) struct A;\n#[doc(hidden)]\n#[derive(Debug)]\npub enum B {}"), [""; 0]);
+    assert_eq!(missing("    pub trait A<T> {}\npub unsafe trait B {}"), ["A", "B"]);
+    assert_eq!(missing("define_handle! {\n    /// A.\n    A\n}\nOther"), ["A"]);
+}
