@@ -1,4 +1,4 @@
-//! Plays a replay of the sandbox: `replay_player ../../replays/ragdoll.replay`. Space pauses, the arrow keys step by a
+//! Plays a replay of the sandbox: `replay_player ../../replays/drum.replay`. Space pauses, the arrow keys step by a
 //! tick, Home and End go to the ends, PageUp and PageDown jump by a second.
 
 use bevy::prelude::*;
