@@ -165,16 +165,6 @@ impl PointBlock {
         Vec2::new(a.x.saturating_add(b.x), a.y.saturating_add(b.y))
     }
 
-    /// `p = G L`, of an `L` with any number of fraction bits.
-    pub(crate) fn impulse_wide(&self, [x, y]: [i64; 2]) -> [i64; 2] {
-        let sum = |Symmetric { m11, m12, m22 }: Symmetric<Unit>| {
-            let sum = |i: Unit, j: Unit| scaled(x, i).saturating_add(scaled(y, j));
-            [sum(m11, m12), sum(m12, m22)]
-        };
-        let ([a_x, a_y], [b_x, b_y]) = (sum(self.g_a), sum(self.g_b));
-        [a_x.saturating_add(b_x), a_y.saturating_add(b_y)]
-    }
-
     /// The lever ratios at this pose.
     pub(crate) fn ratios(&self) -> (Vec2<Ratio>, Vec2<Ratio>) {
         (self.e_a, self.e_b)

@@ -6,7 +6,7 @@
 #![expect(clippy::float_arithmetic, reason = "the oracle computes energy in floating point")]
 #![allow(dead_code, reason = "every start and kind is described, the tests use those that hold")]
 
-use lockstep2d::body::{Body, BodyDef, BodyId, JointId, MassSource};
+use lockstep2d::body::{BodyDef, BodyId, JointId, MassSource};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Rng, Rot, Vec2, fx_div, fx_mul};
 use lockstep2d::solver::{
@@ -304,103 +304,6 @@ impl Scaled for Vec2<Fx> {
     }
     fn map_mul(self, by: Fx) -> Self {
         Vec2::new(fx_mul(self.x, by), fx_mul(self.y, by))
-    }
-}
-
-fn float(x: Fx) -> f64 {
-    x.to_num::<f64>()
-}
-
-impl Assembly {
-    /// Kinetic and potential energy and that of springs, in J. The potential energy is that above the origin.
-    pub(crate) fn energy(&self) -> f64 {
-        let gravity = float(self.world.config().gravity.y);
-        let of = |body: &Body| {
-            let (m, k) = (float(body.mass()), float(body.radius_of_gyration()));
-            let (v, w) = (body.velocity(), float(body.angular_velocity()));
-            let (x, y) = (float(v.x), float(v.y));
-            m * (x * x + y * y + k * k * w * w) / 2.0 - m * gravity * float(body.centre_of_mass().y)
-        };
-        let bodies: f64 = self.bodies.iter().map(|&id| of(self.world.body(id).expect("there"))).sum();
-        bodies + self.joints.iter().map(|&id| self.spring_energy(id)).sum::<f64>()
-    }
-
-    /// Momentum, and angular momentum about the origin.
-    pub(crate) fn momentum(&self) -> Momentum {
-        let mut sum = Momentum::default();
-        for &id in &self.bodies {
-            let body = self.world.body(id).expect("there");
-            let (m, k) = (float(body.mass()), float(body.radius_of_gyration()));
-            let (v, at) = (body.velocity(), body.centre_of_mass());
-            let (v, w) = ([float(v.x), float(v.y)], float(body.angular_velocity()));
-            let own = [m * v[0], m * v[1]];
-            sum.linear = [sum.linear[0] + own[0], sum.linear[1] + own[1]];
-            sum.size += own[0].hypot(own[1]);
-            sum.angular += m * k * k * w + float(at.x) * own[1] - float(at.y) * own[0];
-        }
-        sum
-    }
-
-    /// Sum of masses times the largest height that gravity could have given or taken: the scale of potential energy.
-    pub(crate) fn scale(&self) -> f64 {
-        let gravity = float(self.world.config().gravity.y).abs();
-        self.bodies.iter().map(|&id| float(self.world.body(id).expect("there").mass()) * gravity).sum::<f64>()
-    }
-
-    fn spring_energy(&self, id: JointId) -> f64 {
-        let joint = self.world.joint(id).expect("there");
-        let (a, b) = joint.def().bodies();
-        let [a, b] = [a, b].map(|id| self.world.body(id).expect("there"));
-        let (at_a, at_b) = self.world.joint_anchors(id).expect("there");
-        let inverse = |body: &Body| if body.is_dynamic() { 1.0 / float(body.mass()) } else { 0.0 };
-        let turning = |body: &Body| if body.is_dynamic() { 1.0 / float(body.inertia()) } else { 0.0 };
-        let (im, it) = ([inverse(a), inverse(b)], [turning(a), turning(b)]);
-        let omega = |hertz: Fx| float(hertz) * core::f64::consts::TAU;
-        let angular = |hertz: Fx, x: Fx| omega(hertz).powi(2) * float(x).powi(2) / (it[0] + it[1]) / 2.0;
-        let angle = self.world.joint_angle(id).unwrap_or(Fx::ZERO);
-        let translation = self.world.joint_translation(id).map_or(0.0, |t| float(t.x));
-        let gap = at_b - at_a;
-        let gap = (float(gap.x), float(gap.y));
-        let linear = |hertz: Fx, square: f64| omega(hertz).powi(2) * square / (im[0] + im[1]) / 2.0;
-        match &joint.def().kind {
-            JointKind::Revolute(kind) => kind.spring.map_or(0.0, |s| angular(s.hertz, angle)),
-            JointKind::Weld(kind) => {
-                let turn = kind.angular.map_or(0.0, |soft| angular(soft.hertz, angle));
-                let square = gap.0 * gap.0 + gap.1 * gap.1;
-                turn + kind.linear.map_or(0.0, |soft| linear(soft.hertz, square))
-            }
-            JointKind::Prismatic(Prismatic { spring: Some(spring), .. })
-            | JointKind::Wheel(Wheel { spring: Some(spring), .. }) => {
-                linear(spring.hertz, translation.powi(2))
-            }
-            JointKind::Distance(Distance { spring: Some(spring), .. }) => {
-                linear(spring.hertz, (gap.0.hypot(gap.1) - float(spring.target)).powi(2))
-            }
-            _ => 0.0,
-        }
-    }
-
-    /// Largest gap of a hinge or weld in metres.
-    pub(crate) fn gap(&self) -> f64 {
-        let error = |&id: &JointId| self.world.joint_error(id).map_or(0.0, float);
-        self.joints.iter().map(error).fold(0.0, f64::max)
-    }
-}
-
-/// Momentum in kg m/s, and angular momentum in kg m^2/s.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Momentum {
-    linear: [f64; 2],
-    /// Sum of the magnitudes of the momenta of all bodies.
-    size: f64,
-    angular: f64,
-}
-
-impl Momentum {
-    /// Changes of momentum and angular momentum, as shares of the sizes at the start.
-    pub(crate) fn change(&self, end: &Self) -> [f64; 2] {
-        let apart = (end.linear[0] - self.linear[0]).hypot(end.linear[1] - self.linear[1]);
-        [apart / self.size, ((end.angular - self.angular) / self.angular).abs()]
     }
 }
 

@@ -2,6 +2,8 @@
 //! hundredth of the start. Stars, trees, chains, loops and grids of 3 to 12 bodies with mass ratios up to 100 and arms
 //! up to 16 radii of gyration, of which one body is hit.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use lockstep2d::body::{BodyDef, BodyId, Filter, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Rot, Vec2};
@@ -16,10 +18,14 @@ use crate::sweep;
 const TICKS: u32 = 1200;
 
 /// Assemblies that pull so hard at long arms that a body turns too far within a sub-step, `h^2 F r / I` above 1
-/// (docs/DESIGN.md, "Result and known limits"). Sliders on springs are here pulled out to more than 16 radii of gyration.
-const BEYOND: [Case; 6] = [
-    Case { shape: Shape::Star, mix: Mix::Hinge, start: Start::Spin, seed: 18 },
-    Case { shape: Shape::Tree, mix: Mix::Hinge, start: Start::Spin, seed: 10 },
+/// (docs/DESIGN.md, "Result and known limits"). Those of hinges gain 2 to 23 %. Sliders on springs are pulled out to more
+/// than 16 radii of gyration.
+const BEYOND: [Case; 9] = [
+    Case { shape: Shape::Chain, mix: Mix::Hinge, start: Start::Spin, seed: 12 },
+    Case { shape: Shape::Tree, mix: Mix::Hinge, start: Start::Hang, seed: 19 },
+    Case { shape: Shape::Star, mix: Mix::Hinge, start: Start::Hang, seed: 39 },
+    Case { shape: Shape::Chain, mix: Mix::Hinge, start: Start::Hang, seed: 2 },
+    Case { shape: Shape::Mesh, mix: Mix::Hinge, start: Start::Hang, seed: 19 },
     Case { shape: Shape::Chain, mix: Mix::Prismatic, start: Start::Spin, seed: 7 },
     Case { shape: Shape::Tree, mix: Mix::Prismatic, start: Start::Hang, seed: 9 },
     Case { shape: Shape::Chain, mix: Mix::Prismatic, start: Start::Hang, seed: 19 },
@@ -83,22 +89,36 @@ fn assemblies_of_welds_that_turn_or_hang_gain_no_energy() {
     never_gain(Mix::Weld, Start::Hang);
 }
 
+/// Before, bodies answered hard pulls at long arms with their inertia alone, and an assembly that hangs gained up to
+/// 934 446 times its energy. Now the worst of those left out gains 23 %.
 #[test]
-fn assemblies_of_hinges_that_turn_gain_no_energy() {
+fn assemblies_of_hinges_that_turn_or_hang_gain_no_energy() {
     never_gain(Mix::Hinge, Start::Spin);
+    never_gain(Mix::Hinge, Start::Hang);
 }
 
-/// In free space nothing changes the momentum and the angular momentum of an assembly of hinges or welds.
+/// Assemblies of hinges that are beyond the engine do not explode.
+#[test]
+fn assemblies_of_hinges_beyond_the_engine_stay_together() {
+    sweep::for_each(BEYOND.into_iter().filter(|case| case.mix == Mix::Hinge).collect(), |case| {
+        let outcome = case.run(TICKS);
+        assert!(outcome.gain <= 0.5 && outcome.gap < 0.6, "{case:?}: {outcome:?}");
+        assert_eq!(outcome.faults, 0, "{case:?}: expected no clamped value");
+    });
+}
+
+/// In free space nothing changes the momentum of an assembly of hinges or welds, and its angular momentum only where
+/// geometric stiffness acts: by up to 5 % in 20 s, in at most one of 50.
 #[test]
 fn assemblies_of_hinges_and_welds_keep_their_momentum() {
     let seeds = sweep::size(60, 3);
-    let mixes = [Mix::Weld, Mix::Hinge];
-    let cases = mixes.into_iter().flat_map(|mix| {
-        SHAPES
-            .into_iter()
-            .flat_map(move |shape| (0..seeds).map(move |seed| Case { shape, mix, start: Start::Spin, seed }))
-    });
-    sweep::for_each(cases.filter(|case| !BEYOND.contains(case)).collect(), |case| {
+    let cases: Vec<Case> = [Mix::Weld, Mix::Hinge]
+        .into_iter()
+        .flat_map(|mix| SHAPES.into_iter().map(move |shape| (mix, shape)))
+        .flat_map(|(mix, shape)| (0..seeds).map(move |seed| Case { shape, mix, start: Start::Spin, seed }))
+        .collect();
+    let (count, changed) = (cases.len(), AtomicUsize::new(0));
+    sweep::for_each(cases, |case| {
         let mut assembly = case.build();
         let start = assembly.momentum();
         for _ in 0..TICKS {
@@ -106,8 +126,11 @@ fn assemblies_of_hinges_and_welds_keep_their_momentum() {
         }
         let end = assembly.momentum();
         let [linear, angular] = start.change(&end);
-        assert!(linear <= 1e-3 && angular <= 1e-3, "{case:?}: {start:?} became {end:?}");
+        assert!(linear <= 1e-3 && angular <= 0.05, "{case:?}: {start:?} became {end:?}");
+        changed.fetch_add(usize::from(angular > 1e-3), Ordering::Relaxed);
     });
+    let changed = changed.into_inner();
+    assert!(changed * 50 <= count, "the angular momentum of {changed} of {count} assemblies changed");
 }
 
 /// Before, springs along a line had a stiffness that depended on the pose: 10 of 60 assemblies of wheels or of rods,
@@ -189,8 +212,11 @@ fn a_star_of_welds_comes_to_rest_on_a_floor() {
 /// Dropping the scratch memory and restoring an earlier state change no bit of a world with blocks.
 #[test]
 fn a_block_forgets_nothing_that_is_not_state() {
-    for mix in [Mix::Weld, Mix::Hinge, Mix::SoftWeld, Mix::Prismatic, Mix::Every] {
-        let build = || Case { shape: Shape::Mesh, mix, start: Start::Hit, seed: 1 }.build().world;
+    let mixes = [Mix::Weld, Mix::Hinge, Mix::SoftWeld, Mix::Prismatic, Mix::Every];
+    let hit = mixes.map(|mix| Case { shape: Shape::Mesh, mix, start: Start::Hit, seed: 1 });
+    // The last has geometric stiffness.
+    for case in hit.into_iter().chain([BEYOND[1]]) {
+        let build = || case.build().world;
         let (mut whole, mut dropped) = (build(), build());
         for tick in 0..60 {
             let early = dropped.save();
@@ -199,7 +225,7 @@ fn a_block_forgets_nothing_that_is_not_state() {
             dropped.clear_scratch();
             dropped.step();
             whole.step();
-            assert_eq!(whole.state_hash(), dropped.state_hash(), "{mix:?}, tick {tick}");
+            assert_eq!(whole.state_hash(), dropped.state_hash(), "{case:?}, tick {tick}");
         }
     }
 }

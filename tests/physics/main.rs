@@ -3,11 +3,13 @@
 
 mod areas;
 mod assembly;
+mod assembly_energy;
 mod capsule;
 mod chain;
 mod collisions;
 mod columns;
 mod continuous;
+mod driven_blocks;
 mod free_fall;
 mod gears;
 mod impacts;

@@ -9,7 +9,10 @@
 #[cfg(feature = "__faults")]
 mod faults;
 mod game;
+mod healing;
+mod invariants;
 mod joins;
+mod net;
 mod pace;
 mod sim;
 mod stories;

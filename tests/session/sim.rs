@@ -3,9 +3,9 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
-use lockstep2d::session::{Config, Event, Key, PeerId, Role, Session, Status, Tick, View};
+use lockstep2d::session::{Config, Key, PeerId, Role, Session, Tick, View};
 
-use super::game::{Game, START, mix, mix_inputs};
+use super::game::{Game, START, mix};
 
 pub(crate) type Us = u64;
 pub(crate) const MS: Us = 1000;
@@ -72,12 +72,12 @@ pub(crate) struct Peer {
     bytes: u64,
     pub(crate) finished: Option<(Tick, u64)>,
     /// Whether it was a voter when it asked to leave.
-    was_leaving: bool,
+    pub(crate) was_leaving: bool,
     /// When it had left, as it was told.
-    left_at: Us,
-    seen_view: u32,
-    seen_final: Tick,
-    seen_confirmed: Tick,
+    pub(crate) left_at: Us,
+    pub(crate) seen_view: u32,
+    pub(crate) seen_final: Tick,
+    pub(crate) seen_confirmed: Tick,
     input: u64,
 }
 
@@ -322,153 +322,6 @@ impl Sim {
         });
         self.packets[place] = Some((to, bytes));
         self.push(at, Kind::Packet(place));
-    }
-
-    /// Checks everything that must always hold, for a peer after each of its steps.
-    fn check(&mut self, index: usize) {
-        self.check_events(index);
-        self.check_view(index);
-        self.check_final(index);
-        self.check_played(index);
-        let peer = &mut self.peers[index];
-        if let (Status::Finished { ticks }, None) = (peer.session.status(), peer.finished) {
-            let hash = self.history.get(ticks as usize).copied().unwrap_or(0);
-            peer.finished = Some((ticks, hash));
-        }
-    }
-
-    fn check_events(&mut self, index: usize) {
-        while let Some(event) = self.peers[index].session.next_event() {
-            match event {
-                Event::Desync { .. } if self.peers[index].game.is_broken() => {}
-                Event::Desync { peer, .. } if self.is_broken(peer) => self.peers[index].desyncs += 1,
-                Event::Waiting { peer, heard } => self.peers[index].waiting.push((peer, heard)),
-                Event::Desync { peer, tick, .. } => {
-                    self.fail(format!("S1 {index} and {peer} differ at tick {tick}"))
-                }
-                Event::Conflict { peer, tick } if !self.expects_conflicts => {
-                    self.fail(format!("S6 two inputs of {peer} for tick {tick}"));
-                }
-                Event::Status(Status::Leaving) => self.peers[index].was_leaving = true,
-                Event::Status(Status::Left) => self.peers[index].left_at = self.now,
-                Event::Status(Status::Dropped) => self.peers[index].lost_seats += 1,
-                _ => {}
-            }
-        }
-    }
-
-    fn is_broken(&self, peer: PeerId) -> bool {
-        (0..self.peers.len()).any(|index| id(index) == peer && self.peers[index].game.is_broken())
-    }
-
-    /// Somebody who has left stops answering only when all others know it, or after a long time.
-    fn check_goodbye(&mut self, index: usize) {
-        let leaver = &self.peers[index];
-        let view = leaver.session.view();
-        let left = leaver.was_leaving && view.voter(id(index)).is_none() && leaver.finished.is_none();
-        // Later changes of the view do not make it wait longer.
-        if !left || self.now > leaver.left_at + 11 * S {
-            return;
-        }
-        let ignorant = (0..self.peers.len()).find(|&other| {
-            let peer = &self.peers[other];
-            peer.on && view.voter(id(other)).is_some() && peer.session.view().number < view.number
-        });
-        if let Some(other) = ignorant {
-            self.fail(format!("L4 {index} is gone before {other} knows that it left"));
-        }
-    }
-
-    fn check_view(&mut self, index: usize) {
-        let peer = &self.peers[index];
-        let view = peer.session.view();
-        if view.number == peer.seen_view {
-            return;
-        }
-        let final_before = peer.seen_final;
-        if view.cut < final_before {
-            let what = format!("S2 cut {} below {final_before} final ticks of {index}", view.cut);
-            return self.fail(what);
-        }
-        match self.views.get(&view.number) {
-            Some(known) if known != view => {
-                let what = format!("S3 two views {}: {known:?} and {view:?}", view.number);
-                return self.fail(what);
-            }
-            Some(_) => {}
-            None => {
-                let view = view.clone();
-                self.check_cut_is_held(&view);
-                self.views.insert(view.number, view);
-                if self.assassin > 0 && self.rng.percent(self.assassin) {
-                    self.assassin = self.assassin.saturating_sub(8);
-                    let at = self.now + self.rng.range(0, 250) * MS;
-                    self.crash_at(index, at);
-                }
-            }
-        }
-        self.peers[index].seen_view = self.peers[index].session.view().number;
-    }
-
-    /// A quorum of the view before holds all ticks before the cut.
-    fn check_cut_is_held(&mut self, view: &View) {
-        let Some(before) = view.number.checked_sub(1).and_then(|number| self.views.get(&number)) else {
-            return;
-        };
-        let holds = |(_, voter): &(usize, &lockstep2d::session::Voter)| {
-            let peer = (0..self.peers.len()).find(|&index| id(index) == voter.id);
-            peer.is_some_and(|peer| self.peers[peer].session.complete_tick() >= view.cut)
-        };
-        let holders =
-            before.voters.iter().enumerate().filter(holds).fold(0, |set, (index, _)| set | 1 << index);
-        if !before.is_quorum(holders) {
-            let what = format!("S7 view {}: ticks before {} not held by a quorum", view.number, view.cut);
-            self.fail(what);
-        }
-    }
-
-    /// All final ticks are those of the one history.
-    fn check_final(&mut self, index: usize) {
-        let fin = self.peers[index].session.final_tick();
-        let from = self.peers[index].seen_final;
-        if fin < from {
-            self.fail(format!("S1 final ticks of {index} fell from {from} to {fin}"));
-        }
-        for tick in from..fin {
-            let Some(inputs) = self.peers[index].session.final_inputs(tick) else {
-                return self.fail(format!("S1 {index} lacks inputs of final tick {tick}"));
-            };
-            let Some(&before) = self.history.get(tick as usize) else {
-                return self.fail(format!("S1 tick {tick} of {index} follows no known tick"));
-            };
-            let state = mix_inputs(before, &inputs);
-            match self.history.get(tick as usize + 1) {
-                None => self.history.push(state),
-                Some(&known) if known == state => {}
-                Some(_) => {
-                    let number = self.peers[index].session.view().number;
-                    return self.fail(format!("S1 two histories at tick {tick}, {index} in view {number}"));
-                }
-            }
-        }
-        self.peers[index].seen_final = fin;
-    }
-
-    /// What the game has played and is confirmed is the one history; memory is bounded.
-    fn check_played(&mut self, index: usize) {
-        let peer = &self.peers[index];
-        let confirmed = peer.session.confirmed();
-        let wrong = (peer.seen_confirmed..=confirmed)
-            .find(|&tick| peer.game.states.get(tick as usize) != self.history.get(tick as usize));
-        let kept = peer.game.kept();
-        self.peers[index].seen_confirmed = confirmed;
-        let broken = self.peers[index].game.is_broken();
-        if let Some(tick) = wrong.filter(|_| !broken) {
-            self.fail(format!("S1 the game of {index} has another state before tick {tick}"));
-        }
-        if kept > 140 {
-            self.fail(format!("memory: {kept} states"));
-        }
     }
 
     /// Bytes that a peer has sent.

@@ -394,8 +394,7 @@ impl<'a> Reader<'a> {
 
 /// Formats `bits / 2^fraction_bits` in decimal with at most six fractional digits, rounded towards zero.
 fn decimal(bits: i64, fraction_bits: u32) -> String {
-    let sign = if bits < 0 { "-" } else { "" };
     let micro = (u128::from(bits.unsigned_abs()) * 1_000_000) >> fraction_bits;
-    let text = format!("{}.{:06}", micro / 1_000_000, micro % 1_000_000);
-    format!("{sign}{}", text.trim_end_matches('0').trim_end_matches('.'))
+    let text = format!("{}{}.{:06}", if bits < 0 { "-" } else { "" }, micro / 1_000_000, micro % 1_000_000);
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

@@ -83,25 +83,33 @@ fn hinge_parts(kind: &JointKind) -> Option<AngleParts> {
 /// The properties of a joint by which blocks are chosen.
 fn candidate(joint: &Joint, [a, b]: [&HingeBody; 2]) -> Candidate {
     let limits = |limit: Option<JointLimit>| if limit.is_some() { 2 } else { 0 };
-    let (rows, is_hinge) = match &joint.def.kind {
-        JointKind::Revolute(kind) => (2 + u32::from(kind.spring.is_some()) + limits(kind.limit), true),
-        JointKind::Weld(_) => (3, false),
-        JointKind::Prismatic(kind) => (2 + u32::from(kind.spring.is_some()) + limits(kind.limit), false),
-        JointKind::Wheel(kind) => (1 + u32::from(kind.spring.is_some()) + limits(kind.limit), false),
+    let (holding, motor, is_hinge) = match &joint.def.kind {
+        JointKind::Revolute(kind) => {
+            (2 + u32::from(kind.spring.is_some()) + limits(kind.limit), kind.motor, true)
+        }
+        JointKind::Weld(_) => (3, None, false),
+        JointKind::Prismatic(kind) => {
+            (2 + u32::from(kind.spring.is_some()) + limits(kind.limit), kind.motor, false)
+        }
+        JointKind::Wheel(kind) => {
+            (1 + u32::from(kind.spring.is_some()) + limits(kind.limit), kind.motor, false)
+        }
         JointKind::Distance(kind) => {
             let parts = u32::from(kind.rod.is_some()) + u32::from(kind.spring.is_some());
-            (parts + limits(kind.limit), false)
+            (parts + limits(kind.limit), kind.motor, false)
         }
-        JointKind::Gear(_) | JointKind::Rack(_) | JointKind::Pulley(_) => (1, false),
-        JointKind::Motor(_) | JointKind::Filter => (0, false),
+        JointKind::Gear(_) | JointKind::Rack(_) | JointKind::Pulley(_) => (1, None, false),
+        JointKind::Motor(kind) => (0, kind.angular, false),
+        JointKind::Filter => (0, None, false),
     };
+    let (rows, holds) = (holding + u32::from(motor.is_some()), holding > 0);
     let shares = if is_hinge { shares(joint, [a, b]) } else { [Unit::ZERO; 2] };
     // The fraction of the lighter body has more significant bits.
     let fractions = MassFractions::of_masses(a.mass, b.mass);
     let (mass, fraction) =
         if fractions.a > fractions.b { (a.mass, fractions.a) } else { (b.mass, fractions.b) };
     let reduced_mass = fx_mul(mass, fraction.into());
-    Candidate { bodies: [a.changed(), b.changed()], rows, is_hinge, reduced_mass, shares }
+    Candidate { bodies: [a.changed(), b.changed()], rows, holds, is_hinge, reduced_mass, shares }
 }
 
 impl JointSet {
@@ -362,7 +370,10 @@ impl JointSet {
         }
         self.list.warm_start(context);
         self.hinges.warm_start(Poses { quads: &self.quads, body_rotations: &self.body_rotations }, context);
-        self.blocks.start_sub_step();
+        let JointSet { blocks, hinges, list, places, bodies, .. } = self;
+        blocks.start_sub_step(hinges, list, |body, spin| {
+            bodies[places[body as usize] as usize - 1].turning.ahead_of_wide(spin)
+        });
     }
 
     /// One iteration over all joints.

@@ -92,6 +92,8 @@ pub(super) enum BlockedTask {
     Spring,
     /// Its impulse is never negative.
     Limit,
+    /// A motor. Its impulse has a largest magnitude.
+    Drive,
 }
 
 /// Iterates over joints with their rows and points.
@@ -159,7 +161,7 @@ impl JointList {
         self.couplings.extend(Coupling::prepare(joint, bodies));
         let (rows, points) = (&mut self.rows[rows_before..], &mut self.points[points_before..]);
         if is_blocked {
-            rows.iter_mut().for_each(|row| row.is_blocked = row.is_unlimited());
+            rows.iter_mut().for_each(|row| row.is_blocked = row.can_be_blocked());
             points.iter_mut().for_each(|point| point.is_blocked = point.unlimited_softness().is_some());
         }
         let (rows, points) = (count(rows), count(points));

@@ -95,6 +95,7 @@ impl JointRow {
         let (row, bias, denominator) = (Row::NONE, Speed::ZERO, 0);
         let softness = match task {
             RowTask::Spring { softness, .. } => softness,
+            RowTask::Drive { .. } => Softness::RIGID,
             _ => softness,
         };
         JointRow {
@@ -112,13 +113,19 @@ impl JointRow {
         }
     }
 
-    /// Whether a block may compute the impulse: the row holds a position, is a limit, or a spring of any strength.
-    pub(super) fn is_unlimited(&self) -> bool {
+    /// Whether a block may compute the impulse: the row is no spring of limited force.
+    pub(super) fn can_be_blocked(&self) -> bool {
         match self.task {
-            RowTask::Hold { .. } | RowTask::Lower { .. } | RowTask::Upper { .. } => true,
             RowTask::Spring { lower, upper, .. } => lower == Fx::MIN && upper == Fx::MAX,
-            RowTask::Drive { .. } => false,
+            RowTask::Hold { .. } | RowTask::Lower { .. } | RowTask::Upper { .. } | RowTask::Drive { .. } => {
+                true
+            }
         }
+    }
+
+    /// The largest impulse of a motor.
+    pub(super) fn impulse_max(&self) -> Speed {
+        self.bounds.1
     }
 
     /// The function of the row in a block.
@@ -126,7 +133,8 @@ impl JointRow {
         match self.task {
             RowTask::Spring { .. } => BlockedTask::Spring,
             RowTask::Lower { .. } | RowTask::Upper { .. } => BlockedTask::Limit,
-            RowTask::Hold { .. } | RowTask::Drive { .. } => BlockedTask::Hold,
+            RowTask::Drive { .. } => BlockedTask::Drive,
+            RowTask::Hold { .. } => BlockedTask::Hold,
         }
     }
 

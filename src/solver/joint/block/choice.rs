@@ -31,8 +31,10 @@ const SUM_MIN: i64 = (1 << 30) / 100 * 152;
 pub(in super::super) struct Candidate {
     /// The indices of its bodies: the ground for a body that no impulse changes.
     pub(in super::super) bodies: [u32; 2],
-    /// Number of rows that hold the bodies or are springs. A joint without such rows takes no part.
+    /// Number of rows that hold the bodies, are springs or motors. A joint without such rows takes no part.
     pub(in super::super) rows: u32,
+    /// Whether it has more rows than that of a motor, which crowds no body.
+    pub(in super::super) holds: bool,
     /// Whether it is a hinge that holds nothing but a point.
     pub(in super::super) is_hinge: bool,
     /// `1 / (1 / M + 1 / M')` of the masses of its bodies, in kg.
@@ -44,7 +46,10 @@ pub(in super::super) struct Candidate {
 /// The sums over the joints of a body.
 #[derive(Clone, Copy, Debug, Default)]
 struct Crowd {
+    /// Number of joints.
     joints: u32,
+    /// Number of joints that hold it.
+    holds: u32,
     others: bool,
     sum: i64,
     largest: Unit,
@@ -52,9 +57,10 @@ struct Crowd {
 }
 
 impl Crowd {
-    fn add(&mut self, share: Unit, is_hinge: bool) {
+    fn add(&mut self, share: Unit, joint: &Candidate) {
         self.joints += 1;
-        self.others |= !is_hinge;
+        self.holds += u32::from(joint.holds);
+        self.others |= joint.holds && !joint.is_hinge;
         self.sum += i64::from(share.to_bits());
         self.second = self.second.max(share.min(self.largest));
         self.largest = self.largest.max(share);
@@ -62,7 +68,7 @@ impl Crowd {
 
     fn is_crowded(&self) -> bool {
         let rest = self.sum - i64::from(self.largest.to_bits());
-        self.joints >= 2 && (self.others || self.second >= PAIR_MIN || rest >= SUM_MIN)
+        self.holds >= 2 && (self.others || self.second >= PAIR_MIN || rest >= SUM_MIN)
     }
 }
 
@@ -119,7 +125,7 @@ impl Choice {
         self.crowds.resize(body_count, Crowd::default());
         for joint in candidates.iter().filter(|joint| joint.rows > 0) {
             for (&body, &share) in joint.bodies.iter().zip(&joint.shares) {
-                self.crowds[body as usize].add(share, joint.is_hinge);
+                self.crowds[body as usize].add(share, joint);
             }
         }
         // The ground connects nothing.

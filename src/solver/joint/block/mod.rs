@@ -2,7 +2,7 @@
 //!
 //! Warm-started iterations over joints that meet at one body may diverge: they are a heavy ball with momentum 1 in the
 //! sense of B. Polyak (1964), and joints that disturb each other in a circle make it spiral outwards. `choice.rs` finds
-//! such joints. All their rows without limits, `i`, then get the changes `d` that satisfy the softness of every row at
+//! such joints. All their rows, `i`, that are not held at a bound (`bounds.rs`) then get the changes `d` that satisfy the softness of every row at
 //! once, instead of the changes `w` that each row by itself would make:
 //!
 //! ```text
@@ -22,9 +22,11 @@
 //! The relax pass, which has no softness, adds [`EXCESS`] to the diagonal instead. The matrix depends on the pose
 //! alone. The impulses and the arithmetic that applies them are those of single rows.
 
+mod bounds;
 mod choice;
-mod limits;
+mod geometric_stiffness;
 mod matrix;
+mod mobility;
 mod scales;
 mod scaling;
 mod solve;
@@ -38,9 +40,9 @@ use super::super::context::{Pass, StepContext};
 use super::hinge::{HingeSet, Poses};
 use super::list::{BlockedPart, BlockedTask, JointList};
 use crate::math::{Fx, Speed, round_shift, saturate};
+use bounds::BoundedRow;
 pub(super) use choice::Candidate;
 use choice::Choice;
-use limits::Limit;
 use matrix::{Factor, Matrix, ONE};
 use scales::{Scales, mass_share};
 use scaling::{ScaledRow, root_and_inverse};
@@ -57,6 +59,8 @@ pub(super) struct Blocks {
     blocks: Vec<Block>,
     /// Whether bodies have moved since the matrices were computed.
     is_stale: bool,
+    /// Whether the rows of this tick have not been computed yet.
+    is_first_sub_step: bool,
 }
 
 /// A spring along a line.
@@ -82,10 +86,10 @@ struct Block {
     factor: Factor,
     /// The pass for which the factor is.
     factored: Option<Pass>,
-    limits: Vec<Limit>,
+    bounded: Vec<BoundedRow>,
     /// Springs whose softness depends on the pose.
     springs: Vec<Spring>,
-    /// The scales of the current pass, if the block has limits.
+    /// The scales of the current pass, if the block has rows with bounds.
     current: Scales,
     /// `L` of each row, a speed with 32 fraction bits. It may be larger than a joint can store.
     impulses: Vec<i64>,
@@ -93,6 +97,8 @@ struct Block {
     bodies: Vec<(u32, [i64; 3])>,
     /// For each unit, the places of its bodies in `bodies`.
     places: Vec<[u32; 2]>,
+    /// For each body, the share of its rotation that geometric stiffness leaves it.
+    spins: Vec<i64>,
     /// The changes that each row by itself would make.
     wanted: Vec<i64>,
     /// The unknowns, with 32 fraction bits.
@@ -162,18 +168,25 @@ impl Blocks {
 
     /// Takes the impulses of the last tick from the joints, at the start of a tick.
     pub(super) fn take_impulses(&mut self, hinges: &mut HingeSet, list: &mut JointList) {
+        self.is_first_sub_step = true;
         self.blocks.iter_mut().for_each(|block| block.take_impulses(hinges, list));
     }
 
     /// Returns the impulses to the joints, at the end of a tick.
     pub(super) fn return_impulses(&mut self, hinges: &mut HingeSet, list: &mut JointList) {
-        self.blocks.iter().for_each(|block| block.return_impulses(hinges, list));
+        self.blocks.iter_mut().for_each(|block| block.return_impulses(hinges, list));
     }
 
     /// Starts a sub-step with impulses of 0. Equations that are solved exactly need no warm start, and softness has the
     /// same result without. At a light body between heavy ones the impulses are large and cancel, but those of the last
-    /// pose do not cancel at the new one.
-    pub(super) fn start_sub_step(&mut self) {
+    /// pose do not cancel at the new one. `rotation_of` is that of [`Self::update_inertia`].
+    pub(super) fn start_sub_step(
+        &mut self,
+        hinges: &HingeSet,
+        list: &JointList,
+        rotation_of: impl Fn(u32, i64) -> i64,
+    ) {
+        self.update_inertia(hinges, list, rotation_of);
         self.blocks.iter_mut().for_each(|block| block.impulses.fill(0));
     }
 
@@ -213,8 +226,9 @@ impl Block {
         if let Some(at) = unit.list_row().filter(|_| unit.is_spring()) {
             self.springs.push(Spring { at, row: unit.row, mass });
         }
-        if unit.is_limit() {
-            self.limits.push(Limit { unit: self.units.len(), row: unit.row, mass, is_active: false });
+        if unit.is_limit() || unit.is_drive() {
+            let (at, row) = (self.units.len(), unit.row);
+            self.bounded.push(BoundedRow { unit: at, row, mass, is_active: false, held: 0 });
         }
         self.units.push(unit);
     }
@@ -291,7 +305,8 @@ impl Block {
 
     /// Returns the impulses to the joints, for the next tick. What does not fit their format is dropped: the impulses
     /// are only where the next tick begins.
-    fn return_impulses(&self, hinges: &mut HingeSet, list: &mut JointList) {
+    fn return_impulses(&mut self, hinges: &mut HingeSet, list: &mut JointList) {
+        self.restore_inertia(hinges, list);
         for unit in &self.units {
             let mut impulses = [0; 3];
             for (part, row) in unit.range().enumerate() {

@@ -19,8 +19,8 @@
 
 use crate::math::{Ratio, Unit, Vec2, round_shift_wide, saturate, saturate_wide};
 
-use super::super::super::row::{MassFractions, turning};
 use super::matrix::ONE;
+use super::mobility::Mobility;
 
 /// A scaled row: its Jacobian for each body, along x, along y and about the centre of mass, with 30 fraction bits.
 pub(super) type ScaledRow = [[i32; 3]; 2];
@@ -32,62 +32,53 @@ pub(super) struct Scaling {
     inverse: [i64; 3],
 }
 
-/// The square roots of mass fractions, with 30 fraction bits.
-pub(super) fn fraction_roots(fractions: MassFractions) -> [i64; 2] {
-    [fractions.a, fractions.b].map(|a| (u64::from(a.to_bits().unsigned_abs()) << 30).isqrt().cast_signed())
-}
+/// Signs of the Jacobians: B's velocity is measured relative to A's.
+const SIGNS: [i64; 2] = [-1, 1];
 
 impl Scaling {
     /// Scales a rigid point with the lever ratios of both bodies.
-    pub(super) fn of_point(
-        e: [Vec2<Ratio>; 2],
-        fractions: MassFractions,
-        roots: [i64; 2],
-    ) -> (Self, [ScaledRow; 2]) {
-        Self::of_point_with(ONE, e, fractions, roots)
+    pub(super) fn of_point(e: [Vec2<Ratio>; 2], mobility: &Mobility) -> (Self, [ScaledRow; 2]) {
+        Self::of_point_with(ONE, e, mobility, mobility.roots)
     }
 
     /// Scales a spring between two points.
     pub(super) fn of_spring(
         mass_scale: Unit,
         e: [Vec2<Ratio>; 2],
-        fractions: MassFractions,
-        roots: [i64; 2],
+        mobility: &Mobility,
     ) -> (Self, [ScaledRow; 2]) {
         let mass_scale = i64::from(mass_scale.to_bits());
         let (factor, inverse_factor) = root_and_inverse(mass_scale);
-        let roots = roots.map(|root| product(root, factor));
-        let (Scaling { root, inverse }, rows) = Self::of_point_with(mass_scale, e, fractions, roots);
+        let roots = mobility.roots.map(|root| product(root, factor));
+        let (Scaling { root, inverse }, rows) = Self::of_point_with(mass_scale, e, mobility, roots);
         let root = root.map(|entry| product(entry, factor));
         (Scaling { root, inverse: inverse.map(|entry| product(entry, inverse_factor)) }, rows)
     }
 
     fn of_point_with(
         mass_scale: i64,
-        [e_a, e_b]: [Vec2<Ratio>; 2],
-        fractions: MassFractions,
+        e: [Vec2<Ratio>; 2],
+        mobility: &Mobility,
         roots: [i64; 2],
     ) -> (Self, [ScaledRow; 2]) {
+        let &Mobility { fractions, spin_roots, .. } = mobility;
         let moving = i64::from(fractions.a.to_bits()) + i64::from(fractions.b.to_bits());
         let diagonal = ONE - mass_scale + product(moving, mass_scale);
-        let sum = |i: fn(Vec2<Ratio>) -> Ratio, j: fn(Vec2<Ratio>) -> Ratio| {
-            let sum = turning(fractions.a, i(e_a), j(e_a)) + turning(fractions.b, i(e_b), j(e_b));
-            product(sum, mass_scale)
-        };
-        let (xx, xy, yy) =
-            (diagonal + sum(|e| e.x, |e| e.x), sum(|e| e.x, |e| e.y), diagonal + sum(|e| e.y, |e| e.y));
+        let (e_x, e_y) = (e.map(|e| e.x), e.map(|e| e.y));
+        let sum = |i: [Ratio; 2], j: [Ratio; 2]| product(mobility.turning(i, j), mass_scale);
+        let (xx, xy, yy) = (diagonal + sum(e_x, e_x), sum(e_x, e_y), diagonal + sum(e_y, e_y));
         let (root_11, inverse_11) = root_and_inverse(xx);
         let root_21 = product(xy, inverse_11);
         let (root_22, inverse_22) = root_and_inverse(yy - product(root_21, root_21));
         let inverse_21 = -product(product(root_21, inverse_11), inverse_22);
         let scaled = |x: i64, y: i64| -> ScaledRow {
-            let side = |sign: i64, root: i64, e: Vec2<Ratio>| {
+            [0, 1].map(|side: usize| {
+                let (sign, e) = (SIGNS[side], e[side]);
                 let turn =
                     i128::from(x) * i128::from(e.x.to_bits()) + i128::from(y) * i128::from(e.y.to_bits());
-                [x, y, saturate_wide(round_shift_wide(turn, 24))]
-                    .map(|part| saturate(sign * product(part, root)))
-            };
-            [side(-1, roots[0], e_a), side(1, roots[1], e_b)]
+                let turn = product(saturate_wide(round_shift_wide(turn, 24)), spin_roots[side]);
+                [x, y, turn].map(|part| saturate(sign * product(part, roots[side])))
+            })
         };
         let scaling =
             Scaling { root: [root_11, root_21, root_22], inverse: [inverse_11, inverse_21, inverse_22] };
@@ -96,19 +87,19 @@ impl Scaling {
 
     /// Scales a row with the directions `n`, the lever ratios of both bodies, and the denominator `D` of the row.
     pub(super) fn of_row(
-        [n_a, n_b]: [Vec2<Unit>; 2],
-        [e_a, e_b]: [Ratio; 2],
+        n: [Vec2<Unit>; 2],
+        e: [Ratio; 2],
         denominator: i64,
-        roots: [i64; 2],
+        mobility: &Mobility,
     ) -> (Self, ScaledRow) {
         let (root, inverse) = root_and_inverse(denominator);
-        let side = |sign: i64, fraction_root: i64, n: Vec2<Unit>, e: Ratio| {
-            let linear = [n.x, n.y].map(|part| i64::from(part.to_bits()));
-            [linear[0], linear[1], i64::from(e.to_bits()) << 6]
-                .map(|part| saturate(sign * product(product(part, inverse), fraction_root)))
-        };
-        let scaling = Scaling { root: [root, 0, 0], inverse: [inverse, 0, 0] };
-        (scaling, [side(-1, roots[0], n_a, e_a), side(1, roots[1], n_b, e_b)])
+        let row = [0, 1].map(|side: usize| {
+            let [x, y] = [n[side].x, n[side].y].map(|part| i64::from(part.to_bits()));
+            let turn = product(i64::from(e[side].to_bits()) << 6, mobility.spin_roots[side]);
+            [x, y, turn]
+                .map(|part| saturate(SIGNS[side] * product(product(part, inverse), mobility.roots[side])))
+        });
+        (Scaling { root: [root, 0, 0], inverse: [inverse, 0, 0] }, row)
     }
 
     /// `R^-1 d`.
@@ -120,6 +111,16 @@ impl Scaling {
     pub(super) fn restore(&self, d: [i64; 2]) -> [i64; 2] {
         apply(self.root, d)
     }
+
+    /// `R^-T R^-1 d`.
+    pub(super) fn divide(&self, d: [i64; 2]) -> [i64; 2] {
+        apply_transposed(self.inverse, apply(self.inverse, d))
+    }
+
+    /// `R R^T d`.
+    pub(super) fn multiply(&self, d: [i64; 2]) -> [i64; 2] {
+        apply(self.root, apply_transposed(self.root, d))
+    }
 }
 
 /// A lower triangle times a vector.
@@ -127,6 +128,13 @@ fn apply(triangle: [i64; 3], d: [i64; 2]) -> [i64; 2] {
     let [t_11, t_21, t_22] = triangle.map(i128::from);
     let [x, y] = d.map(i128::from);
     [t_11 * x, t_21 * x + t_22 * y].map(|wide| saturate_wide(round_shift_wide(wide, 30)))
+}
+
+/// The transpose of a lower triangle times a vector.
+fn apply_transposed(triangle: [i64; 3], d: [i64; 2]) -> [i64; 2] {
+    let [t_11, t_21, t_22] = triangle.map(i128::from);
+    let [x, y] = d.map(i128::from);
+    [t_11 * x + t_21 * y, t_22 * y].map(|wide| saturate_wide(round_shift_wide(wide, 30)))
 }
 
 /// The product of two numbers of which one has 30 fraction bits, in the format of the other.

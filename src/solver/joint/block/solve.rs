@@ -17,19 +17,19 @@ impl Block {
         poses: Poses<'_>,
         context: &StepContext<'_>,
     ) {
-        if self.limits.is_empty() {
+        if self.bounded.is_empty() {
             self.compute_factor(pass);
             self.want(pass, hinges, list, poses, context);
             self.compute_changes(pass);
         } else {
-            self.solve_with_limits(pass, hinges, list, poses, context);
+            self.solve_within_bounds(pass, hinges, list, poses, context);
         }
         self.accept(context);
     }
 
     fn scales(&self, pass: Pass) -> &Scales {
         match pass {
-            _ if !self.limits.is_empty() => &self.current,
+            _ if !self.bounded.is_empty() => &self.current,
             Pass::Bias => &self.bias,
             Pass::Relax => &self.relax,
         }
@@ -57,19 +57,19 @@ impl Block {
         poses: Poses<'_>,
         context: &StepContext<'_>,
     ) {
-        let Block { units, bias, limits, impulses, wanted, .. } = self;
+        let Block { units, bias, bounded, impulses, wanted, .. } = self;
         let mut faults = 0;
         for unit in units.iter() {
             let changes = unit.wanted(pass, hinges, list, poses, context, &mut faults);
             let mut own = [0; 3];
             unit.range().zip(&mut own).for_each(|(row, impulse)| *impulse = impulses[row]);
-            let yielding = unit.yielding(list, own);
+            let yielding = unit.yielding(own);
             for (row, (change, impulse)) in unit.range().zip(changes.into_iter().zip(yielding)) {
                 let give = if pass == Pass::Bias { bias.yields[row] } else { 0 };
                 wanted[row] = (change << EXTRA_BITS).saturating_sub(product(impulse, give));
             }
         }
-        for limit in limits.iter().filter(|limit| units[limit.unit].is_open(hinges, list)) {
+        for limit in bounded.iter().filter(|bounded| units[bounded.unit].is_open(hinges, list)) {
             // A limit that is not reached is not soft.
             if pass == Pass::Bias {
                 wanted[limit.row] =
@@ -121,6 +121,7 @@ impl Block {
                         *sum = sum.saturating_add(product(x[row], entry.into()));
                     }
                 }
+                sum[2] = product(sum[2], unit.spin_root(side));
                 let (_, change) = &mut bodies[places[side] as usize];
                 for (change, sum) in change.iter_mut().zip(sum) {
                     *change = change.saturating_add(product(sum, root));

@@ -5,11 +5,14 @@ use core::ops::Range;
 use super::super::super::body_list::GROUND;
 use super::super::super::context::{Pass, StepContext};
 use super::super::super::limits::{Faults, IMPULSE_MAX};
-use super::super::super::row::{MassFractions, turning};
+use super::super::super::row::MassFractions;
 use super::super::hinge::{ANGLE_MAX, HingeSet, Poses};
 use super::super::list::{BlockedPart, BlockedTask, JointList, ListPart};
-use super::scaling::{ScaledRow, Scaling, fraction_roots};
-use crate::math::{Ratio, Speed, Unit as Fraction, Vec2};
+use super::EXTRA_BITS;
+use super::matrix::ONE;
+use super::mobility::Mobility;
+use super::scaling::{ScaledRow, Scaling, product};
+use crate::math::{Ratio, Speed, Unit as Fraction, Vec2, div_round, saturate_wide};
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Source {
@@ -17,6 +20,8 @@ pub(super) enum Source {
     Hinge(usize),
     /// A limit of such a hinge: 0 is the lower one.
     HingeLimit(usize, usize),
+    /// The motor of such a hinge.
+    HingeDrive(usize),
     /// A row or point of another joint.
     Part(ListPart),
 }
@@ -38,11 +43,14 @@ pub(super) struct Unit {
     source_bodies: [u32; 2],
     /// The same, with the ground for a body that no impulse changes.
     bodies: [u32; 2],
-    fractions: MassFractions,
-    roots: [i64; 2],
+    mobility: Mobility,
     softness: [Option<RowSoftness>; 3],
     scaling: Scaling,
     angle_scaling: Scaling,
+    /// Lever ratios of a hinge, by which geometric stiffness is computed. 0 for other units.
+    pub(super) levers: [Vec2<Ratio>; 2],
+    /// The denominator of a row with geometric stiffness divided by that without, with 30 fraction bits.
+    stiffened: i64,
 }
 
 impl Unit {
@@ -52,21 +60,37 @@ impl Unit {
         fractions: MassFractions,
         softness: [Option<RowSoftness>; 3],
     ) -> Self {
-        let roots = fraction_roots(fractions);
+        let mobility = Mobility::new(fractions);
         let source_bodies = bodies;
-        let bodies = [0, 1].map(|side: usize| if roots[side] == 0 { GROUND } else { bodies[side] });
+        let bodies = [0, 1].map(|side: usize| if mobility.roots[side] == 0 { GROUND } else { bodies[side] });
         let (scaling, angle_scaling) = (Scaling::default(), Scaling::default());
-        Unit { source, row: 0, source_bodies, bodies, fractions, roots, softness, scaling, angle_scaling }
+        let levers = [Vec2::new(Ratio::ZERO, Ratio::ZERO); 2];
+        Unit {
+            source,
+            row: 0,
+            source_bodies,
+            bodies,
+            mobility,
+            softness,
+            scaling,
+            angle_scaling,
+            levers,
+            stiffened: ONE,
+        }
     }
 
-    /// The units of a hinge, by its number among the hinges in blocks: the hinge, and its limits.
+    /// The units of a hinge, by its number among the hinges in blocks: the hinge, its limits and its motor.
     pub(super) fn of_hinge(number: usize, hinges: &HingeSet) -> impl Iterator<Item = Self> {
         let hinge = hinges.blocked_hinge(number);
         let row = Some(RowSoftness { mass_scale: hinge.softness.mass_scale, task: BlockedTask::Limit });
         let limits = (0..if hinge.has_limits { 2 } else { 0 }).map(move |side| {
             Unit::new(Source::HingeLimit(number, side), hinge.changed, hinge.fractions, [row, None, None])
         });
-        core::iter::once(Unit::hinge(number, hinges)).chain(limits)
+        let rigid = Some(RowSoftness { mass_scale: Fraction::ONE, task: BlockedTask::Drive });
+        let drive = hinge.has_drive.then(|| {
+            Unit::new(Source::HingeDrive(number), hinge.changed, hinge.fractions, [rigid, None, None])
+        });
+        core::iter::once(Unit::hinge(number, hinges)).chain(limits).chain(drive)
     }
 
     fn hinge(number: usize, hinges: &HingeSet) -> Self {
@@ -112,35 +136,40 @@ impl Unit {
 
     /// Computes the scaled rows at the current pose.
     pub(super) fn refresh(&mut self, hinges: &HingeSet, list: &JointList, rows: &mut [ScaledRow]) {
-        let Unit { row, fractions, roots, softness, scaling, angle_scaling, .. } = self;
+        let Unit { row, mobility, softness, scaling, angle_scaling, levers, stiffened, .. } = self;
+        let none = [Vec2::new(Fraction::ZERO, Fraction::ZERO); 2];
         match self.source {
             Source::Hinge(number) => {
                 let hinge = hinges.blocked_hinge(number);
-                (*scaling, [rows[*row], rows[*row + 1]]) = Scaling::of_point(hinge.e, *fractions, *roots);
+                *levers = hinge.e;
+                (*scaling, [rows[*row], rows[*row + 1]]) = Scaling::of_point(*levers, mobility);
                 if let Some(angle) = hinge.angle {
-                    let [e_a, e_b] = angle.e;
-                    let denominator = turning(fractions.a, e_a, e_a) + turning(fractions.b, e_b, e_b);
-                    let none = Vec2::new(Fraction::ZERO, Fraction::ZERO);
-                    (*angle_scaling, rows[*row + 2]) =
-                        Scaling::of_row([none; 2], angle.e, denominator, *roots);
+                    let e = angle.e;
+                    let denominator = mobility.turning(e, e);
+                    (*angle_scaling, rows[*row + 2]) = Scaling::of_row(none, e, denominator, mobility);
                 }
             }
             Source::HingeLimit(number, side) => {
                 let e = hinges.blocked_limit(number, side);
-                let denominator = turning(fractions.a, e[0], e[0]) + turning(fractions.b, e[1], e[1]);
-                let none = Vec2::new(Fraction::ZERO, Fraction::ZERO);
-                (*scaling, rows[*row]) = Scaling::of_row([none; 2], e, denominator, *roots);
+                (*scaling, rows[*row]) = Scaling::of_row(none, e, mobility.turning(e, e), mobility);
+            }
+            Source::HingeDrive(number) => {
+                let e = hinges.blocked_drive_ratios(number);
+                let denominator = mobility.turning(e, e);
+                *stiffened = quotient(denominator, denominator + mobility.lost_turning(e));
+                (*scaling, rows[*row]) = Scaling::of_row(none, e, denominator, mobility);
             }
             Source::Part(ListPart::Point(at)) => {
-                let (e_a, e_b): (Vec2<Ratio>, Vec2<Ratio>) = list.point(at).block.ratios();
+                let ratios = list.point(at).block.ratios().into();
                 let mass_scale = softness[0].map_or(Fraction::ONE, |softness| softness.mass_scale);
-                (*scaling, [rows[*row], rows[*row + 1]]) =
-                    Scaling::of_spring(mass_scale, [e_a, e_b], *fractions, *roots);
+                (*scaling, [rows[*row], rows[*row + 1]]) = Scaling::of_spring(mass_scale, ratios, mobility);
             }
             Source::Part(ListPart::Row(at)) => {
                 let part = list.row(at);
                 let (n, e) = part.row.jacobian();
-                (*scaling, rows[*row]) = Scaling::of_row(n, e, part.denominator(), *roots);
+                let denominator = part.denominator() - mobility.lost_turning(e);
+                *stiffened = quotient(denominator, part.denominator());
+                (*scaling, rows[*row]) = Scaling::of_row(n, e, denominator, mobility);
             }
         }
     }
@@ -163,6 +192,7 @@ impl Unit {
             Source::HingeLimit(number, side) => {
                 [hinges.blocked_limit_wanted((number, side), pass, context, faults), 0, 0]
             }
+            Source::HingeDrive(number) => [hinges.blocked_drive_wanted(number, context, faults), 0, 0],
             Source::Part(ListPart::Row(at)) if self.is_limit() => {
                 let [a, b] = bodies();
                 [list.row(at).wanted_of_limit(pass, &a, &b, faults), 0, 0]
@@ -188,13 +218,15 @@ impl Unit {
     }
 
     /// The impulses by which the rows yield, times their impulse scales: `L`, or `p` of a spring between two points.
-    pub(super) fn yielding(&self, list: &JointList, impulses: [i64; 3]) -> [i64; 3] {
-        match self.source {
-            Source::Part(ListPart::Point(at)) => {
-                let [x, y] = list.point(at).block.impulse_wide([impulses[0], impulses[1]]);
+    pub(super) fn yielding(&self, [x, y, angle]: [i64; 3]) -> [i64; 3] {
+        match (self.source, self.softness[0]) {
+            (Source::Part(ListPart::Point(_)), Some(softness)) => {
+                // The scale of a spring contains its softness.
+                let mass_scale = i64::from(softness.mass_scale.to_bits());
+                let [x, y] = self.scaling.divide([x, y]).map(|part| product(part, mass_scale));
                 [x, y, 0]
             }
-            _ => impulses,
+            _ => [x, y, angle],
         }
     }
 
@@ -210,11 +242,39 @@ impl Unit {
         [x, y, self.angle_scaling.restore([angle, 0])[0]]
     }
 
+    /// The impulses without the denominators by which they are scaled: `R^-T R^-1 L`.
+    pub(super) fn exerted(&self, [x, y, angle]: [i64; 3]) -> [i64; 3] {
+        let [x, y] = self.scaling.divide([x, y]);
+        [x, y, self.angle_scaling.divide([angle, 0])[0]]
+    }
+
+    /// `R R^T p` of the rows of the unit, the reverse of [`Self::exerted`].
+    pub(super) fn scaled_by_denominator(&self, [x, y, angle]: [i64; 3]) -> [i64; 3] {
+        let [x, y] = self.scaling.multiply([x, y]);
+        [x, y, self.angle_scaling.multiply([angle, 0])[0]]
+    }
+
+    /// Sets the shares of rotation that geometric stiffness leaves the bodies. Returns whether they have changed.
+    pub(super) fn set_spins(&mut self, spins: [i64; 2]) -> bool {
+        self.mobility.set_spins(spins)
+    }
+
+    /// Whether geometric stiffness acts on one of the bodies.
+    pub(super) fn is_stiffened(&self) -> bool {
+        self.mobility.is_stiffened()
+    }
+
+    /// The roots of the shares of rotation.
+    pub(super) fn spin_root(&self, side: usize) -> i64 {
+        self.mobility.spin_roots[side]
+    }
+
     /// Takes the impulses of the last tick from the joint, as speeds.
     pub(super) fn take_impulses(&self, hinges: &mut HingeSet, list: &mut JointList) -> [i32; 3] {
         match self.source {
             Source::Hinge(number) => hinges.take_impulses(number),
             Source::HingeLimit(number, side) => [hinges.take_limit_impulse(number, side), 0, 0],
+            Source::HingeDrive(number) => [hinges.take_drive_impulse(number), 0, 0],
             Source::Part(ListPart::Row(at)) => {
                 [core::mem::take(&mut list.row_mut(at).lambda).to_bits(), 0, 0]
             }
@@ -231,6 +291,7 @@ impl Unit {
         match self.source {
             Source::Hinge(number) => hinges.return_impulses(number, impulses),
             Source::HingeLimit(number, side) => hinges.return_limit_impulse(number, side, impulses[0]),
+            Source::HingeDrive(number) => hinges.return_drive_impulse(number, impulses[0]),
             Source::Part(ListPart::Row(at)) => list.row_mut(at).lambda = x,
             Source::Part(ListPart::Point(at)) => list.point_mut(at).lambda = Vec2::new(x, y),
         }
@@ -238,12 +299,13 @@ impl Unit {
 
     /// The body of a side and the root of its mass fraction, unless no impulse changes it.
     pub(super) fn moved(&self, side: usize) -> Option<(u32, i64)> {
-        (self.bodies[side] != GROUND).then_some((self.bodies[side], self.roots[side]))
+        (self.bodies[side] != GROUND).then_some((self.bodies[side], self.mobility.roots[side]))
     }
 
     /// The largest impulse of a row that the state can hold.
     pub(super) fn impulse_max(&self, part: usize) -> Speed {
-        if part == 2 || matches!(self.source, Source::HingeLimit(..)) { ANGLE_MAX } else { IMPULSE_MAX }
+        let is_angle = part == 2 || matches!(self.source, Source::HingeLimit(..) | Source::HingeDrive(_));
+        if is_angle { ANGLE_MAX } else { IMPULSE_MAX }
     }
 
     /// The index of the row, if the unit is a row of a joint that is not a hinge.
@@ -261,12 +323,33 @@ impl Unit {
         self.softness[0].is_some_and(|softness| softness.task == BlockedTask::Limit)
     }
 
+    /// Whether the unit is a motor, which has one row.
+    pub(super) fn is_drive(&self) -> bool {
+        self.softness[0].is_some_and(|softness| softness.task == BlockedTask::Drive)
+    }
+
+    /// The bounds of the impulse of a limit or motor, as speeds with 32 fraction bits.
+    pub(super) fn bounds(&self, hinges: &HingeSet, list: &JointList) -> [i64; 2] {
+        let max = match self.source {
+            Source::HingeDrive(number) => hinges.blocked_drive_max(number),
+            Source::Part(ListPart::Row(at)) if self.is_drive() => list.row(at).impulse_max(),
+            _ => return [0, i64::MAX],
+        };
+        let max = product(i64::from(max.to_bits()) << EXTRA_BITS, self.stiffened);
+        [-max, max]
+    }
+
     /// Whether the unit is a limit that is not reached.
     pub(super) fn is_open(&self, hinges: &HingeSet, list: &JointList) -> bool {
         match self.source {
             Source::HingeLimit(number, side) => hinges.blocked_limit_is_open(number, side),
             Source::Part(ListPart::Row(at)) => list.row(at).is_open(),
-            Source::Hinge(_) | Source::Part(ListPart::Point(_)) => false,
+            Source::Hinge(_) | Source::HingeDrive(_) | Source::Part(ListPart::Point(_)) => false,
         }
     }
+}
+
+/// A quotient of two denominators, at most 1, with 30 fraction bits.
+fn quotient(part: i64, whole: i64) -> i64 {
+    if part >= whole { ONE } else { saturate_wide(div_round(i128::from(part) << 30, whole.into())).max(0) }
 }

@@ -12,25 +12,20 @@ use super::angle::AngleRows;
 use super::refresh::Refresh;
 use super::solve::{ratios_of, relative_velocity, wanted};
 use super::{HingeSet, Hinges, Poses};
-use crate::math::{Ratio, Unit, Vec2};
+use crate::math::{Ratio, Speed, Unit, Vec2};
 use crate::simd::{Lanes, Scalar};
 
-/// A refresh, and the rows that do not belong to the block: motors.
+/// A refresh without a solve, which is the block's.
 #[derive(Clone, Copy)]
-struct SolveDrives<'a> {
+struct RefreshBlocked<'a> {
     refresh: Refresh<'a>,
 }
 
-impl Operation<Hinges> for SolveDrives<'_> {
+impl Operation<Hinges> for RefreshBlocked<'_> {
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Hinges, N>) {
-        let BatchParts { batch, record, extra: mut angle, bodies, faults } = parts;
-        self.refresh.refresh::<L, N>(batch, record, angle.as_deref_mut(), bodies);
-        if let Some(rows) = angle {
-            let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
-            rows.solve_drive(&mut pair, faults);
-            pair.store(bodies, &batch.changed);
-        }
+        let BatchParts { batch, record, extra, bodies, .. } = parts;
+        self.refresh.refresh::<L, N>(batch, record, extra, bodies);
     }
 }
 
@@ -43,6 +38,7 @@ pub(in super::super) struct BlockedHinge {
     /// Lever ratios and softness of the row that holds the angle, or of its spring.
     pub(in super::super) angle: Option<BlockedAngle>,
     pub(in super::super) has_limits: bool,
+    pub(in super::super) has_drive: bool,
     /// The softness of the point and the limits.
     pub(in super::super) softness: Softness,
 }
@@ -63,11 +59,9 @@ impl HingeSet {
         blocked_extras.len() - 1
     }
 
-    /// Refreshes the hinges in blocks, and solves their motors.
-    pub(super) fn solve_blocked_drives(&mut self, refresh: Refresh<'_>, context: &StepContext<'_>) {
-        if !self.blocked.overflow.batches.is_empty() {
-            self.blocked.run_overflow(SolveDrives { refresh }, context);
-        }
+    /// Refreshes the hinges in blocks.
+    pub(super) fn refresh_blocked(&mut self, refresh: Refresh<'_>, context: &StepContext<'_>) {
+        self.blocked.run_overflow(RefreshBlocked { refresh }, context);
     }
 
     /// The softness of the point and the limits of a hinge in a block.
@@ -88,6 +82,7 @@ impl HingeSet {
         BlockedHinge {
             softness: *self.blocked_softness(number),
             has_limits,
+            has_drive: self.blocked_rows(number).is_some_and(AngleRows::has_blocked_drive),
             changed: [batch.changed[0][0], batch.changed[1][0]],
             fractions: MassFractions { a, b },
             e: [ratio(0), ratio(1)],
@@ -154,6 +149,38 @@ impl HingeSet {
         let softness = self.blocked_softness(number);
         let rows = self.blocked_rows(number);
         rows.map_or(0, |rows| -rows.wanted_of_limit(side, pass, softness, &pair, faults))
+    }
+
+    /// Lever ratios of the motor of a hinge in a block.
+    pub(in super::super) fn blocked_drive_ratios(&self, number: usize) -> [Ratio; 2] {
+        self.blocked_limit(number, 0)
+    }
+
+    /// The change of the impulse of a motor that one iteration would make.
+    pub(in super::super) fn blocked_drive_wanted(
+        &self,
+        number: usize,
+        context: &StepContext<'_>,
+        faults: &mut Faults,
+    ) -> i64 {
+        let bodies = &self.blocked.overflow.batches[number].bodies;
+        let pair = BodyPairW::<Scalar<1>, 1>::load(context.bodies, bodies);
+        self.blocked_rows(number).map_or(0, |rows| -rows.wanted_of_drive(&pair, faults))
+    }
+
+    /// The largest impulse of a motor.
+    pub(in super::super) fn blocked_drive_max(&self, number: usize) -> Speed {
+        self.blocked_rows(number).map_or(Speed::ZERO, AngleRows::drive_max)
+    }
+
+    pub(in super::super) fn take_drive_impulse(&mut self, number: usize) -> i32 {
+        self.blocked_rows_mut(number).map_or(0, |rows| core::mem::take(rows.drive_impulse()))
+    }
+
+    pub(in super::super) fn return_drive_impulse(&mut self, number: usize, impulse: i32) {
+        if let Some(rows) = self.blocked_rows_mut(number) {
+            *rows.drive_impulse() = impulse;
+        }
     }
 
     pub(in super::super) fn take_limit_impulse(&mut self, number: usize, side: usize) -> i32 {

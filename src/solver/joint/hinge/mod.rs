@@ -113,7 +113,7 @@ impl HingeSet {
             Pass::Bias => self.hinges.run_overflow(Solve { refresh }, context),
             Pass::Relax => self.hinges.run_overflow(Relax { refresh }, context),
         }
-        self.solve_blocked_drives(refresh, context);
+        self.refresh_blocked(refresh, context);
         solve_blocks(self);
         match pass {
             Pass::Bias => {

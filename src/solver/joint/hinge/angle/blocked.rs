@@ -1,4 +1,4 @@
-//! The rows on the angle of a hinge in a block (`joint/block`). The block computes the impulses of all but the motor.
+//! The rows on the angle of a hinge in a block (`joint/block`), which computes their impulses.
 
 use super::super::super::super::context::Pass;
 use super::super::super::super::limits::Faults;
@@ -7,7 +7,7 @@ use super::super::super::super::softness::Softness;
 use super::super::super::list::BlockedTask;
 use super::super::blocked::BlockedAngle;
 use super::{AngleRows, SpringRow, velocity};
-use crate::math::{Ratio, Unit, round_shift};
+use crate::math::{Ratio, Speed, Unit, round_shift};
 use crate::simd::{Ints, Lanes};
 
 impl AngleRows<1> {
@@ -63,6 +63,38 @@ impl AngleRows<1> {
             Pass::Bias => round_shift(i64::from(softness.mass_scale.to_bits()) * vn, Unit::FRAC_NBITS) + push,
             Pass::Relax => vn,
         }
+    }
+
+    pub(in super::super) fn has_blocked_drive(&self) -> bool {
+        self.has_drive && self.drive.max.0[0] > 0
+    }
+
+    /// `w` of the motor. Its speed is limited to what the limits allow.
+    pub(in super::super) fn wanted_of_drive<L: Lanes<1>>(
+        &self,
+        pair: &BodyPairW<L, 1>,
+        faults: &mut Faults,
+    ) -> i64 {
+        let mut vn = Ints([0]);
+        L::store(velocity::<L, 1>(&self.e, L::load(&self.drive.max), pair, faults), &mut vn);
+        let speed = -i64::from(self.drive.bias.0[0]);
+        let speed = if self.has_blocked_limits() {
+            let [behind, ahead] = self.limits.each_ref().map(|limit| i64::from(limit.push.0[0]));
+            speed.min(ahead).max(-behind)
+        } else {
+            speed
+        };
+        i64::from(vn.0[0]) - speed
+    }
+
+    /// The largest impulse of the motor.
+    pub(in super::super) fn drive_max(&self) -> Speed {
+        Speed::from_bits(self.drive.max.0[0])
+    }
+
+    /// The impulse of the motor.
+    pub(in super::super) fn drive_impulse(&mut self) -> &mut i32 {
+        &mut self.drive.lambda.0[0]
     }
 
     /// The impulse of a limit.

@@ -5,199 +5,24 @@
 //! on its processor where the system tells it, and the shortest of several runs, so that a busy machine counts little.
 #![expect(clippy::disallowed_types, reason = "the test measures time")]
 
-use std::time::{Duration, Instant};
+mod builders;
+mod cost;
+
+use std::time::Duration;
 
 use lockstep2d::body::{
-    Area, BodyDef, BodyId, BodyKind, BodySettings, Chain, Continuous, Geometry, JointId, MassSource, Polygon,
-    ShapeDef, ShapeId,
+    Area, BodyDef, BodyKind, BodySettings, Chain, Continuous, Geometry, JointId, MassSource, ShapeDef,
+    ShapeId,
 };
-use lockstep2d::codec;
 use lockstep2d::fx;
-use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+use lockstep2d::lockstep::Sandbox;
 use lockstep2d::math::{Angle, Fx, Vec2};
-use lockstep2d::replay::{Limits, Recording, Step, VerifiedReplay, verify};
+use lockstep2d::replay::{Limits, Recording, verify};
 use lockstep2d::solver::{JointDef, Revolute, Threshold, ThresholdAction, Weld};
-use lockstep2d::world::{BodyPose, Command, Config, Explosion};
+use lockstep2d::world::{Command, Config, Explosion};
 
-/// Nanoseconds for each unit that are allowed. Without optimisation for release and with its checks, three times as many.
-const MAX: u128 = if cfg!(debug_assertions) { 3000 } else { 1000 };
-
-/// Shortest time that is judged: below it, the overhead of a tick counts more than its work.
-const JUDGED: Duration = Duration::from_millis(10);
-
-/// Time that this thread has computed, or elsewhere than on Linux the time of the clock.
-fn computed() -> Duration {
-    let known = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let nanoseconds = known.as_deref().and_then(|text| text.split(' ').next()?.parse().ok());
-    static START: std::sync::LazyLock<Instant> = std::sync::LazyLock::new(Instant::now);
-    nanoseconds.map_or_else(|| START.elapsed(), Duration::from_nanos)
-}
-
-/// The commands of a tick, by its number.
-type Script<'a> = Box<dyn Fn(u64) -> Vec<Command> + 'a>;
-
-/// Most times that a pair of short commands fits into a block of a file.
-const COMMANDS_MAX: usize = 300_000;
-
-/// How often the size of a case is doubled until a tick takes long enough to be judged.
-const DOUBLED_MAX: u32 = 7;
-
-/// The work units and the time of a part of a game.
-#[derive(Clone, Copy, Debug)]
-struct Cost {
-    units: u64,
-    time: Duration,
-}
-
-impl Cost {
-    fn per_unit(&self) -> u128 {
-        self.time.as_nanos() / u128::from(self.units.max(1))
-    }
-}
-
-fn setup(commands: Vec<Command>, config: Config) -> SandboxSetup {
-    SandboxSetup { config, commands }
-}
-
-/// The costs of the setup and of the most expensive tick.
-fn costs(setup: &SandboxSetup, ticks: u64, script: &Script<'_>) -> [Cost; 2] {
-    let mut recording = Recording::<Sandbox>::start(setup, 60).expect("a setup that can start");
-    for tick in 0..ticks {
-        recording.step(&[script(tick)]).expect("commands that can be recorded");
-    }
-    let file = recording.finish().expect("a replay");
-    let limits = Limits {
-        tick_work: u64::MAX,
-        total_work: u64::MAX,
-        file_bytes: u64::MAX,
-        block_bytes: u32::MAX,
-        ..Limits::default()
-    };
-    let mut best: Option<[Cost; 2]> = None;
-    for _ in 0..3 {
-        let start = computed();
-        let mut play = VerifiedReplay::<Sandbox>::open(&file, &limits).expect("a replay that can start");
-        let begun = Cost { units: play.work(), time: computed() - start };
-        let mut worst = Cost { units: 1, time: Duration::ZERO };
-        loop {
-            let (before, start) = (play.work(), computed());
-            if play.step().expect("a replay that can be played") == Step::Ended {
-                break;
-            }
-            let cost = Cost { units: play.work() - before, time: computed() - start };
-            if cost.time >= JUDGED && cost.per_unit() >= worst.per_unit() {
-                worst = cost;
-            }
-        }
-        best = Some(best.map_or([begun, worst], |[setup, tick]| {
-            [
-                if begun.time < setup.time { begun } else { setup },
-                if worst.per_unit() < tick.per_unit() { worst } else { tick },
-            ]
-        }));
-    }
-    best.expect("three runs")
-}
-
-/// A case of some size: its setup, its number of ticks and its commands.
-type Case<'a> = (SandboxSetup, u64, Script<'a>);
-
-/// Measures a case, prints its costs, and returns its name if it is too expensive. The size is doubled until a tick takes
-/// long enough to be judged. A case without such a tick is wrong, because it would show nothing.
-fn too_expensive<'a>(name: &str, size: i64, case: impl Fn(i64) -> Case<'a>) -> Option<String> {
-    for doubled in 0..=DOUBLED_MAX {
-        let size = size << doubled;
-        let (setup, ticks, script) = case(size);
-        let parts = costs(&setup, ticks, &script);
-        if parts[1].time >= JUDGED {
-            return judge(&format!("{name}, size {size}"), parts);
-        }
-    }
-    Some(format!("{name}: no tick takes {JUDGED:?}, so that nothing is judged"))
-}
-
-/// Measures a tick with commands that are repeated until they take most of its time.
-fn too_expensive_commands(name: &str, setup: &SandboxSetup, once: &[Command]) -> Option<String> {
-    let tick_of = |repeats: usize| {
-        let script = |_| once.iter().cycle().take(repeats * once.len()).cloned().collect();
-        costs(setup, 1, &(Box::new(script) as Script<'_>))
-    };
-    // A tick without commands takes no more than one with them once.
-    let least = 2 * tick_of(1)[1].time + JUDGED;
-    for repeats in [10, 100, 1000, 10_000, 100_000, COMMANDS_MAX] {
-        let parts = tick_of(repeats);
-        // Of cheap commands, no file has enough to take most of a tick: the tick with most of them is judged.
-        if parts[1].time >= least || (repeats == COMMANDS_MAX && parts[1].time >= JUDGED) {
-            return judge(&format!("{name}, {repeats} times"), parts);
-        }
-    }
-    Some(format!("{name}: no tick takes {JUDGED:?}, so that nothing is judged"))
-}
-
-/// Prints the costs of a case, and returns its name if it is too expensive.
-fn judge(name: &str, parts: [Cost; 2]) -> Option<String> {
-    let mut wrong = None;
-    for (part, cost) in ["setup", "tick"].into_iter().zip(parts) {
-        println!("{name}, {part}: {} units, {:?}, {} ns per unit", cost.units, cost.time, cost.per_unit());
-        if cost.time >= JUDGED && cost.per_unit() > MAX {
-            wrong = Some(format!("{name}, {part}: {cost:?}, {} ns per unit", cost.per_unit()));
-        }
-    }
-    wrong
-}
-
-/// The handle of the first occupant of a slot, in its canonical bytes.
-fn identifier<H: serde::de::DeserializeOwned>(slot: u32) -> H {
-    codec::decode(&u64::from(slot).to_le_bytes()).expect("a handle")
-}
-
-fn body(slot: u32) -> BodyId {
-    identifier::<BodyId>(slot)
-}
-
-fn square(side: Fx) -> ShapeDef {
-    ShapeDef::new(Polygon::square(side).expect("a square"))
-}
-
-fn octagon() -> ShapeDef {
-    let one = fx!(0.5);
-    let some = fx!(0.25);
-    let points = [
-        (one, some),
-        (some, one),
-        (-some, one),
-        (-one, some),
-        (-one, -some),
-        (-some, -one),
-        (some, -one),
-        (one, -some),
-    ];
-    ShapeDef::new(Polygon::new(&points.map(|(x, y)| Vec2::new(x, y))).expect("an octagon"))
-}
-
-fn spawn(body: BodyDef, shapes: Vec<ShapeDef>) -> Command {
-    Command::Spawn { body, shapes }
-}
-
-fn each(body: BodyDef, shape: ShapeDef, places: impl Iterator<Item = (Fx, Fx)>) -> Command {
-    let pose = |(x, y)| BodyPose { position: Vec2::new(x, y), angle: Angle::ZERO };
-    Command::SpawnEach { body, shapes: vec![shape], places: places.map(pose).collect() }
-}
-
-/// Places in a square of `side` times `side`, `gap` apart.
-fn grid(side: i64, gap: Fx) -> impl Iterator<Item = (Fx, Fx)> {
-    (0..side * side).map(move |number| (gap * (number % side), gap * (number / side)))
-}
-
-/// Two bodies with `count` joints between them.
-fn joined(count: usize, joint: JointDef) -> Vec<Command> {
-    let ball = || spawn(BodyDef::dynamic(), vec![square(fx!(0.5))]);
-    vec![ball(), ball(), Command::AddJointEach { joint, ends: vec![(body(0), body(1)); count] }]
-}
-
-fn still() -> Config {
-    Config { gravity: Vec2::ZERO, ..Config::default() }
-}
+use builders::{body, each, grid, identifier, joined, octagon, spawn, square, still};
+use cost::{Case, computed, setup, too_expensive, too_expensive_commands};
 
 #[test]
 fn removed_and_broken_joints() {
