@@ -54,6 +54,29 @@ fn removed_and_broken_joints() {
     assert!(wrong.iter().all(Option::is_none), "{wrong:#?}");
 }
 
+/// Hinges at one body, with motors of very different strength that all slip, so that a block finds their bounds in many
+/// rounds.
+#[test]
+fn motors_in_blocks() {
+    let case = |count: i64| -> Case<'_> {
+        let limbs = u32::try_from(count).expect("a number");
+        let mut commands = vec![each(
+            BodyDef::dynamic(),
+            square(fx!(0.5)),
+            grid(count + 1, fx!(2)).take(limbs as usize + 1),
+        )];
+        for power in 0..8u32 {
+            let motor = Revolute::new().motor(fx!(50), fx!(0.001) * 4i64.pow(power));
+            let joint = JointDef::new(body(0), body(1), motor).anchor_b((fx!(2), fx!(0)));
+            let ends = (1..=limbs).filter(|limb| limb % 8 == power).map(|limb| (body(0), body(limb)));
+            commands.push(Command::AddJointEach { joint, ends: ends.collect() });
+        }
+        (setup(commands, still()), 3, Box::new(|_| Vec::new()))
+    };
+    let wrong = too_expensive("motors in blocks", 64, case);
+    assert!(wrong.is_none(), "{wrong:#?}");
+}
+
 #[test]
 fn bullets_over_obstacles() {
     let mut wrong = Vec::new();

@@ -3,8 +3,9 @@
 use crate::world::cache::{Scratch, pair_work};
 use crate::world::state::State;
 
-/// Work units of a joint in a block in each sub-step: a full block of 96 rows factors its matrix for both passes.
-const BLOCKED_JOINT_WORK: u64 = 48;
+/// Work units of a joint in a block in each sub-step: a full block of 96 rows factors its matrix for both passes, in
+/// several rounds if it has limits or motors.
+const BLOCKED_JOINT_WORK: u64 = 96;
 
 /// Number of pairs of shapes.
 pub(super) fn pairs(state: &State) -> u64 {

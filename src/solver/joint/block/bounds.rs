@@ -21,12 +21,15 @@ pub(super) struct BoundedRow {
     pub(super) held: i64,
 }
 
-/// `S^2` of a motor, and of a limit that is not reached, with 30 fraction bits: 1, less so much that rows that depend on
+/// `S^2` of a limit that is not reached, with 30 fraction bits: 1, less so much that rows that depend on
 /// it have a solution.
-pub(super) const RIGID_SCALE: i64 = ONE - (1 << 20);
+const OPEN_SCALE: i64 = ONE - (1 << 20);
 
 /// The same of a motor.
 const DRIVE_SCALE: i64 = ONE - (1 << 16);
+
+/// Number of rounds in which only the motors that are furthest beyond their force are held at it.
+const ROUNDS_MAX: u32 = 4;
 
 impl Block {
     /// Solves the equations of all rows that are not held at a bound.
@@ -41,7 +44,7 @@ impl Block {
         self.want(pass, hinges, list, poses, context);
         self.activate(pass, hinges, list);
         // A row that was held at a bound stays there, so that the loop ends.
-        loop {
+        for round in 0.. {
             if self.hold(context) {
                 self.want(pass, hinges, list, poses, context);
             }
@@ -49,7 +52,7 @@ impl Block {
             self.factored = None;
             self.compute_factor(pass);
             self.compute_changes(pass);
-            if !self.deactivate(hinges, list) {
+            if !self.deactivate(round < ROUNDS_MAX, hinges, list) {
                 return;
             }
         }
@@ -69,9 +72,9 @@ impl Block {
     }
 
     /// Deactivates rows whose impulse would be beyond a bound: all limits, and the motors that are furthest beyond
-    /// theirs. A strong motor against a brake wants as much as the brake until the brake slips. Returns whether there
-    /// were any.
-    fn deactivate(&mut self, hinges: &HingeSet, list: &JointList) -> bool {
+    /// theirs, or all motors. A strong motor against a brake wants as much as the brake until the brake slips. Returns
+    /// whether there were any.
+    fn deactivate(&mut self, furthest_only: bool, hinges: &HingeSet, list: &JointList) -> bool {
         let Block { bounded, units, impulses, x, .. } = self;
         let impulse_of = |bounded: &BoundedRow| {
             let [change, ..] = units[bounded.unit].restore([x[bounded.row], 0, 0]);
@@ -90,7 +93,7 @@ impl Block {
             let impulse = impulse_of(bounded);
             bounded.held = impulse.clamp(lower, upper);
             let is_beyond = bounded.held != impulse;
-            if is_beyond && (!unit.is_drive() || excess(bounded) >= furthest / 2) {
+            if is_beyond && (!furthest_only || !unit.is_drive() || excess(bounded) >= furthest / 2) {
                 bounded.is_active = false;
                 any = true;
             }
@@ -128,7 +131,7 @@ impl Block {
             } else if units[bounded.unit].is_drive() {
                 current.set(bounded.row, root_and_inverse(DRIVE_SCALE), bounded.mass, 0);
             } else if units[bounded.unit].is_open(hinges, list) {
-                current.set(bounded.row, root_and_inverse(RIGID_SCALE), bounded.mass, 0);
+                current.set(bounded.row, root_and_inverse(OPEN_SCALE), bounded.mass, 0);
             }
         }
     }

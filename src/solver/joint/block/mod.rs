@@ -2,8 +2,8 @@
 //!
 //! Warm-started iterations over joints that meet at one body may diverge: they are a heavy ball with momentum 1 in the
 //! sense of B. Polyak (1964), and joints that disturb each other in a circle make it spiral outwards. `choice.rs` finds
-//! such joints. All their rows, `i`, that are not held at a bound (`bounds.rs`) then get the changes `d` that satisfy the softness of every row at
-//! once, instead of the changes `w` that each row by itself would make:
+//! such joints. All their rows, `i`, that are not held at a bound (`bounds.rs`) then get the changes `d` that satisfy
+//! the softness of every row at once, instead of the changes `w` that each row by itself would make:
 //!
 //! ```text
 //! w_i = -massScale_i (v_i + bias_i) - impulseScale_i L_i           as for a single row
