@@ -52,7 +52,7 @@ fn a_chain_holds_a_heavy_ball() {
     let start = stage.energy();
     stage.run_and(1200, |stage| {
         assert!(stage.world.widest_joint_gap() < fx!(0.2), "{} m", stage.world.widest_joint_gap());
-        // Of the 300 kJ that it can lose.
+        // A tolerance of 100 J; the load can lose 300 kJ of potential energy.
         assert!(stage.energy() < start + fx!(100), "{} J of {start}", stage.energy());
     });
 }
@@ -206,10 +206,10 @@ fn doohickeys_hold_together() {
 }
 
 /// Scissor Lift. A motor lengthens a strut; the platform rises level, as the geometry of the links says. The platform
-/// moves seven times as fast as the strut.
+/// moves seven times as fast as the strut: the motor holds with one iteration, but the links give way by up to 0.23 m.
 #[test]
 fn a_scissor_lift_rises_level() {
-    let solver = SolverSettings { sub_steps: 8, iterations: 2, ..SolverSettings::default() };
+    let solver = SolverSettings { sub_steps: 8, iterations: 8, ..SolverSettings::default() };
     let mut stage = Stage::of(Config { solver, ..Config::default() });
     let ground = stage.floor();
     let stiff = |def: JointDef| def.softness(fx!(120), fx!(5));

@@ -318,7 +318,7 @@ fn a_carried_sensor_sees_what_it_passes() {
         let begun = stage.world.events().sensor_begin.iter();
         seen.extend(begun.map(|event| stage.world.shape(event.visitor).expect("there").body()));
     });
-    // Those within 1 m of the place where it lands.
+    // Boxes 4 and 5 are within 1 m of the place where the sensor lands.
     assert!(seen.contains(&boxes[4]) && seen.contains(&boxes[5]), "{seen:?}");
     assert!(!seen.contains(&boxes[0]) && !seen.contains(&boxes[9]));
     let eye = *stage.world.shapes_of(carrier).last().expect("two shapes");

@@ -13,7 +13,7 @@ use lockstep2d::draw::{PAPER, Style};
 const FILE: &str = "LOCKSTEP2D_SCREENSHOT";
 /// Number of frames before it is taken.
 const FRAMES: &str = "LOCKSTEP2D_FRAMES";
-/// What it has to show: names of styles, and the least number of pixels of each, as in `fixed=1400 dynamic=400`.
+/// Minimum number of pixels of each style, as in `fixed=1400 dynamic=400`.
 const SHOWS: &str = "LOCKSTEP2D_SHOWS";
 
 /// A colour value may differ by so much, as it is converted to a linear float and back.

@@ -7,19 +7,17 @@ use alloc::vec::Vec;
 use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::Colouring;
 use super::super::context::{Pass, StepContext};
-use super::super::row::MassFractions;
 use super::super::settings::Tuning;
 use super::block::{Blocks, Candidate};
 use super::cache_key::{CacheKey, Definitions, Validity};
 use super::def::{JointFrame, JointKind};
-use super::hinge::{AngleParts, HingeBody, HingeSet, Poses, Turning, node, shares};
+use super::hinge::{AngleParts, HingeBody, HingeSet, Poses, Turning, node};
 use super::list::{BlockedPart, JointList};
-use super::options::JointLimit;
 use super::pose::BodyRotation;
 use super::rotations::Rotations;
 use super::state::Joint;
 use crate::body::{Arena, Body, BodyId, JointId};
-use crate::math::{Unit, fx_mul, mul};
+use crate::math::{Unit, mul};
 use crate::simd::Quad;
 
 /// All joints, for one tick.
@@ -78,38 +76,6 @@ fn hinge_parts(kind: &JointKind) -> Option<AngleParts> {
         JointKind::Weld(kind) => kind.angle_parts(),
         _ => None,
     }
-}
-
-/// The properties of a joint by which blocks are chosen.
-fn candidate(joint: &Joint, [a, b]: [&HingeBody; 2]) -> Candidate {
-    let limits = |limit: Option<JointLimit>| if limit.is_some() { 2 } else { 0 };
-    let (holding, motor, is_hinge) = match &joint.def.kind {
-        JointKind::Revolute(kind) => {
-            (2 + u32::from(kind.spring.is_some()) + limits(kind.limit), kind.motor, true)
-        }
-        JointKind::Weld(_) => (3, None, false),
-        JointKind::Prismatic(kind) => {
-            (2 + u32::from(kind.spring.is_some()) + limits(kind.limit), kind.motor, false)
-        }
-        JointKind::Wheel(kind) => {
-            (1 + u32::from(kind.spring.is_some()) + limits(kind.limit), kind.motor, false)
-        }
-        JointKind::Distance(kind) => {
-            let parts = u32::from(kind.rod.is_some()) + u32::from(kind.spring.is_some());
-            (parts + limits(kind.limit), kind.motor, false)
-        }
-        JointKind::Gear(_) | JointKind::Rack(_) | JointKind::Pulley(_) => (1, None, false),
-        JointKind::Motor(kind) => (0, kind.angular, false),
-        JointKind::Filter => (0, None, false),
-    };
-    let (rows, holds) = (holding + u32::from(motor.is_some()), holding > 0);
-    let shares = if is_hinge { shares(joint, [a, b]) } else { [Unit::ZERO; 2] };
-    // The fraction of the lighter body has more significant bits.
-    let fractions = MassFractions::of_masses(a.mass, b.mass);
-    let (mass, fraction) =
-        if fractions.a > fractions.b { (a.mass, fractions.a) } else { (b.mass, fractions.b) };
-    let reduced_mass = fx_mul(mass, fraction.into());
-    Candidate { bodies: [a.changed(), b.changed()], rows, holds, is_hinge, reduced_mass, shares }
 }
 
 impl JointSet {
@@ -210,7 +176,7 @@ impl JointSet {
                 Some(parts) => Entry::Hinge(self.hinges.push_input(slot, joint, ends, &parts, tuning)),
                 None => Entry::Other(slot),
             });
-            self.candidates.push(candidate(joint, ends));
+            self.candidates.push(Candidate::of(joint, ends));
         }
         self.blocks.choose(&self.candidates, list.len());
         self.is_blocked.resize(if self.blocks.is_empty() { 0 } else { self.candidates.len() }, false);

@@ -14,6 +14,6 @@ pub trait Engine {
     /// Returns to the oldest save that is kept, and drops those after it.
     fn load(&mut self);
 
-    /// What is compared after a rollback: bits of all positions, rotations and velocities, or a hash of the state.
+    /// The state for comparison after a rollback: bits of all positions, rotations and velocities, or a hash.
     fn state(&mut self) -> Vec<u64>;
 }

@@ -17,7 +17,7 @@ pub fn place(number: usize) -> (i16, i16) {
     (bits(x) - 640, bits(y))
 }
 
-/// The same in metres.
+/// Position of a body in metres.
 pub fn metres(number: usize) -> (f32, f32) {
     let (x, y) = place(number);
     (f32::from(x) / 64.0, f32::from(y) / 64.0)

@@ -25,7 +25,8 @@ pub(super) struct BoundedRow {
 /// it have a solution.
 const OPEN_SCALE: i64 = ONE - (1 << 20);
 
-/// The same of a motor.
+/// `S^2` of a motor, with 30 fraction bits. Closer to 1 than that of a limit: under leverage the impulse is large, and
+/// the error of the speed is the impulse times `1 - S^2`.
 const DRIVE_SCALE: i64 = ONE - (1 << 16);
 
 /// Number of rounds in which only the motors that are furthest beyond their force are held at it.

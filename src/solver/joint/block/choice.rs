@@ -13,7 +13,12 @@
 use alloc::vec::Vec;
 
 use super::super::super::body_list::GROUND;
-use crate::math::{Fx, Unit};
+use super::super::super::row::MassFractions;
+use super::super::def::JointKind;
+use super::super::hinge::{HingeBody, shares};
+use super::super::options::JointLimit;
+use super::super::state::Joint;
+use crate::math::{Fx, Unit, fx_mul};
 
 /// Largest number of rows of a block. The cost of a block without any order, such as a hub, grows with the third power
 /// of its rows: this many cost about as much as 5000 contacts.
@@ -41,6 +46,40 @@ pub(in super::super) struct Candidate {
     pub(in super::super) reduced_mass: Fx,
     /// The shares of the bodies in the mobility of the point.
     pub(in super::super) shares: [Unit; 2],
+}
+
+impl Candidate {
+    /// The properties of a joint between two bodies.
+    pub(in super::super) fn of(joint: &Joint, [a, b]: [&HingeBody; 2]) -> Self {
+        let limits = |limit: Option<JointLimit>| if limit.is_some() { 2 } else { 0 };
+        let (holding, motor, is_hinge) = match &joint.def.kind {
+            JointKind::Revolute(kind) => {
+                (2 + u32::from(kind.spring.is_some()) + limits(kind.limit), kind.motor, true)
+            }
+            JointKind::Weld(_) => (3, None, false),
+            JointKind::Prismatic(kind) => {
+                (2 + u32::from(kind.spring.is_some()) + limits(kind.limit), kind.motor, false)
+            }
+            JointKind::Wheel(kind) => {
+                (1 + u32::from(kind.spring.is_some()) + limits(kind.limit), kind.motor, false)
+            }
+            JointKind::Distance(kind) => {
+                let parts = u32::from(kind.rod.is_some()) + u32::from(kind.spring.is_some());
+                (parts + limits(kind.limit), kind.motor, false)
+            }
+            JointKind::Gear(_) | JointKind::Rack(_) | JointKind::Pulley(_) => (1, None, false),
+            JointKind::Motor(kind) => (0, kind.angular, false),
+            JointKind::Filter => (0, None, false),
+        };
+        let (rows, holds) = (holding + u32::from(motor.is_some()), holding > 0);
+        let shares = if is_hinge { shares(joint, [a, b]) } else { [Unit::ZERO; 2] };
+        // The fraction of the lighter body has more significant bits.
+        let fractions = MassFractions::of_masses(a.mass, b.mass);
+        let (mass, fraction) =
+            if fractions.a > fractions.b { (a.mass, fractions.a) } else { (b.mass, fractions.b) };
+        let reduced_mass = fx_mul(mass, fraction.into());
+        Candidate { bodies: [a.changed(), b.changed()], rows, holds, is_hinge, reduced_mass, shares }
+    }
 }
 
 /// The sums over the joints of a body.

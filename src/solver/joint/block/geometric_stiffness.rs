@@ -14,8 +14,8 @@ use super::scaling::product;
 use super::{Block, Blocks};
 use crate::math::{round_shift_wide, saturate_wide};
 
-/// Smallest kick that changes the inertia, with 30 fraction bits. What the body does not answer is angular momentum that
-/// is lost, so that bodies below the instability keep their inertia.
+/// Smallest kick that changes the inertia, with 30 fraction bits. The larger inertia costs angular momentum, so that
+/// bodies below the instability keep theirs.
 const KICK_MIN: i64 = ONE / 2;
 
 /// Largest kick that is told from larger ones.

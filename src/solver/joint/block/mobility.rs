@@ -45,7 +45,7 @@ impl Mobility {
             + product(turning(b, e[1], other[1]), self.spins[1])
     }
 
-    /// What geometric stiffness takes from the denominator of a row.
+    /// The decrease of the denominator of a row by geometric stiffness.
     pub(super) fn lost_turning(&self, e: [Ratio; 2]) -> i64 {
         if self.is_stiffened() { Mobility::new(self.fractions).turning(e, e) - self.turning(e, e) } else { 0 }
     }
