@@ -10,6 +10,8 @@ use core::marker::PhantomData;
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
+use crate::threads::split_at_ends;
+
 mod pages;
 
 use pages::Kept;
@@ -159,6 +161,24 @@ pub(crate) struct Arena<T, H> {
     handle: PhantomData<fn() -> H>,
 }
 
+/// The values in a range of slots.
+pub(crate) struct ArenaPart<'a, T> {
+    /// The first slot.
+    first: u32,
+    slots: &'a mut [Slot<T>],
+}
+
+impl<T> ArenaPart<'_, T> {
+    /// Mutable access to the value in an occupied slot of the range: see [`Arena::at_mut`].
+    ///
+    /// # Panics
+    /// If the slot is vacant or in another range.
+    #[inline]
+    pub(crate) fn at_mut(&mut self, slot: u32) -> &mut T {
+        self.slots[(slot - self.first) as usize].value.as_mut().expect("an occupied slot")
+    }
+}
+
 /// Largest number of slots that is decoded: the capacity of a world plus some retired slots. A vacant slot takes 5
 /// bytes in a file and hundreds in memory, so the length of a file alone does not bound the allocation.
 const DECODED_SLOTS_MAX: usize = (1 << 20) + (1 << 12);
@@ -279,6 +299,17 @@ impl<T, H: Handle> Arena<T, H> {
     #[inline]
     pub(crate) fn at_mut(&mut self, slot: u32) -> &mut T {
         self.slots[slot as usize].value.as_mut().expect("an occupied slot")
+    }
+
+    /// Divides the values into ranges of slots, of which each but the last ends at one of the given slots, only for fields
+    /// that every step changes: see [`Arena::at_mut`].
+    pub(crate) fn split(
+        &mut self,
+        ends: impl Iterator<Item = u32> + Clone,
+    ) -> impl Iterator<Item = ArenaPart<'_, T>> {
+        let firsts = core::iter::once(0).chain(ends.clone());
+        let parts = split_at_ends(&mut self.slots, ends.map(|end| end as usize));
+        firsts.zip(parts).map(|(first, slots)| ArenaPart { first, slots })
     }
 
     /// Value in a slot; `None` if the slot is vacant.

@@ -14,8 +14,8 @@ pub(crate) use contact::{Contact, KeptArms, Pair, PointImpulse};
 pub(crate) use manifold::Impact;
 pub use manifold::{Feature, Manifold, ManifoldPoint};
 pub(crate) use narrow_phase::{
-    BoxPairs, CachedAxis, GhostFilter, OneWay, SatCounters, SmallBoxes, collide, collide_near, is_ghost,
-    margin_for, may_meet,
+    BoxPairs, CachedAxis, GhostFilter, OneWay, SatCounters, SmallBoxes, SmallBoxesPart, collide,
+    collide_near, is_ghost, margin_for, may_meet,
 };
 pub(crate) use query::{
     Place, Ring, SKIN, SKIN_TOLERANCE, ShapeHit, StartPolicy, Sweep, TimeOfImpact, cast_ray, cast_shape,

@@ -1,27 +1,32 @@
-//! Solver bodies that several threads access.
-#![expect(unsafe_code, reason = "the guarantee of graph colouring is not expressed in the types")]
+//! Data that several threads access in place.
+#![expect(unsafe_code, reason = "which thread owns an element is not expressed in the types")]
 
 use core::cell::Cell;
 
-use super::body::SolverBody;
+/// A slice shared between the threads of a team, under the condition that no thread writes an element that another
+/// thread accesses between the same two barriers.
+pub(crate) struct Shared<'a, T>(&'a [Cell<T>]);
 
-/// Bodies shared between threads, under the condition that no thread writes a body that another thread accesses.
-#[derive(Clone, Copy)]
-pub(crate) struct Shared<'a>(&'a [Cell<SolverBody>]);
+impl<T> Clone for Shared<'_, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
 
-// SAFETY: the creator guarantees that no body is written by one thread and accessed by another.
-unsafe impl Send for Shared<'_> {}
+impl<T> Copy for Shared<'_, T> {}
+
+// SAFETY: whoever creates it guarantees that no element is written by one thread and accessed by another.
+unsafe impl<T: Send> Send for Shared<'_, T> {}
 // SAFETY: as above.
-unsafe impl Sync for Shared<'_> {}
+unsafe impl<T: Send> Sync for Shared<'_, T> {}
 
-impl<'a> Shared<'a> {
-    /// Shares the bodies between the batches of one colour. No two constraints of a colour have a common body that
-    /// impulses can change, and batches write only such bodies ([`super::Lanes::set_velocities`] skips the ground).
-    pub(crate) fn within_a_colour(bodies: &'a [Cell<SolverBody>]) -> Self {
-        Shared(bodies)
+impl<'a, T> Shared<'a, T> {
+    /// Shares a slice. Every access must follow the condition of the type.
+    pub(crate) fn new(elements: &'a mut [T]) -> Self {
+        Shared(Cell::from_mut(elements).as_slice_of_cells())
     }
 
-    pub(crate) fn bodies(self) -> &'a [Cell<SolverBody>] {
+    pub(crate) fn cells(self) -> &'a [Cell<T>] {
         self.0
     }
 }

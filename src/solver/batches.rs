@@ -1,8 +1,8 @@
 //! Batches of constraints of one kind, and how a stage of the solver runs over them.
 //!
 //! Contacts and hinges are solved in batches. No two constraints of a colour change the same body, so that the batches
-//! of a colour may be solved in any order and on several threads. Constraints that fit no colour are the overflow: they
-//! are solved one after the other, by the same code with one lane.
+//! of a colour may be solved in any order and on several threads: each thread has batches of its own of every colour.
+//! Constraints that fit no colour are the overflow: they are solved one after the other, by the same code with one lane.
 //!
 //! Each kind of constraint defines the parts of its batches ([`BatchKind`]), and each stage of the solver an operation
 //! on one batch ([`Operation`]).
@@ -14,10 +14,7 @@ use core::fmt::Debug;
 use super::body::SolverBody;
 use super::context::StepContext;
 use super::limits::Faults;
-use crate::simd::{Kernel, Lanes, Scalar, Shared, WIDTH, prefetch};
-
-/// Smallest number of batches in a job. Handing a smaller job to a thread costs more than doing it.
-const BATCHES_PER_JOB: usize = 16;
+use crate::simd::{Kernel, Lanes, Scalar, WIDTH, prefetch};
 
 /// A kind of constraint. `N` constraints of the kind are solved at a time.
 pub(super) trait BatchKind: Clone + Debug + 'static {
@@ -56,8 +53,23 @@ pub(super) struct BatchParts<'a, K: BatchKind, const N: usize> {
 pub(super) struct BatchList<K: BatchKind> {
     /// The overflow: the constraints that fit no colour, in the order in which they are solved.
     pub(super) overflow: Batches<K, 1>,
-    /// All other constraints, colour by colour.
-    pub(super) coloured: Batches<K, WIDTH>,
+    /// All other constraints, colour by colour: the batches of each thread.
+    pub(super) coloured: Vec<Batches<K, WIDTH>>,
+}
+
+/// The constraints of a kind that one thread solves.
+#[derive(Debug)]
+pub(super) struct BatchShare<'a, K: BatchKind> {
+    /// `None` if there is no overflow.
+    overflow: Option<Overflow<'a, K>>,
+    coloured: &'a mut Batches<K, WIDTH>,
+}
+
+/// The constraints that fit no colour, which one of the threads solves.
+#[derive(Debug)]
+enum Overflow<'a, K: BatchKind> {
+    Own(&'a mut Batches<K, 1>),
+    OfAnotherThread,
 }
 
 /// Batches in the order in which they are solved.
@@ -68,13 +80,20 @@ pub(super) struct Batches<K: BatchKind, const N: usize> {
     pub(super) records: Vec<K::Record<N>>,
     /// One for each batch that has an extra, in the order of the batches.
     pub(super) extras: Vec<K::Extra<N>>,
-    /// End of each colour's range of batches. The overflow counts as one colour.
-    pub(super) colour_ends: Vec<usize>,
+    /// The end of each colour. The overflow counts as one colour.
+    colour_ends: Vec<ColourEnd>,
+}
+
+/// The numbers of batches and of extras up to the end of a colour.
+#[derive(Clone, Copy, Debug, Default)]
+struct ColourEnd {
+    batches: usize,
+    extras: usize,
 }
 
 impl<K: BatchKind> Default for BatchList<K> {
     fn default() -> Self {
-        BatchList { overflow: Batches::default(), coloured: Batches::default() }
+        BatchList { overflow: Batches::default(), coloured: Vec::from([Batches::default()]) }
     }
 }
 
@@ -86,36 +105,79 @@ impl<K: BatchKind, const N: usize> Default for Batches<K, N> {
 
 impl<K: BatchKind, const N: usize> Batches<K, N> {
     pub(super) fn clear(&mut self) {
-        let Batches { batches, records, extras, colour_ends } = self;
-        batches.clear();
-        records.clear();
-        extras.clear();
-        colour_ends.clear();
+        self.clear_all_but_batches();
+        self.batches.clear();
+        self.records.clear();
     }
 
-    /// Ends the current colour, unless it has no batch.
-    pub(super) fn end_colour(&mut self) {
-        let end = self.batches.len();
-        if self.colour_ends.last().map_or(end > 0, |&last| end > last) {
-            self.colour_ends.push(end);
-        }
+    /// Clears the list for new contents of its batches and records.
+    pub(super) fn clear_all_but_batches(&mut self) {
+        self.extras.clear();
+        self.colour_ends.clear();
+    }
+
+    /// Ends a colour after the first `batches` batches.
+    pub(super) fn end_colour(&mut self, batches: usize) {
+        self.colour_ends.push(ColourEnd { batches, extras: self.extras.len() });
     }
 }
 
 impl<K: BatchKind> BatchList<K> {
     /// Whether there are no constraints.
     pub(super) fn is_empty(&self) -> bool {
-        self.overflow.batches.is_empty() && self.coloured.batches.is_empty()
+        self.overflow.batches.is_empty() && self.coloured.iter().all(|coloured| coloured.batches.is_empty())
     }
 
     /// Whether any batch has an extra.
     pub(super) fn has_extras(&self) -> bool {
-        !self.overflow.extras.is_empty() || !self.coloured.extras.is_empty()
+        !self.overflow.extras.is_empty() || self.coloured.iter().any(|coloured| !coloured.extras.is_empty())
+    }
+
+    /// The constraints that each thread solves.
+    pub(super) fn shares(&mut self) -> impl Iterator<Item = BatchShare<'_, K>> {
+        let has_overflow = !self.overflow.batches.is_empty();
+        let mut own = Some(&mut self.overflow).filter(|_| has_overflow);
+        self.coloured.iter_mut().map(move |coloured| {
+            let overflow = own.take().map(Overflow::Own);
+            BatchShare { overflow: overflow.or(has_overflow.then_some(Overflow::OfAnotherThread)), coloured }
+        })
+    }
+}
+
+impl<K: BatchKind> BatchShare<'_, K> {
+    /// The overflow, if this thread solves it.
+    pub(super) fn own_overflow(&self) -> Option<&Batches<K, 1>> {
+        match &self.overflow {
+            Some(Overflow::Own(batches)) => Some(batches),
+            Some(Overflow::OfAnotherThread) | None => None,
+        }
+    }
+
+    /// The coloured constraints of the thread.
+    pub(super) fn coloured(&self) -> &Batches<K, WIDTH> {
+        self.coloured
     }
 
     /// Runs an operation over the overflow, one constraint after the other.
     pub(super) fn run_overflow(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
-        let Batches { batches, records, extras, .. } = &mut self.overflow;
+        match &mut self.overflow {
+            None => return,
+            Some(Overflow::Own(batches)) => batches.run_in_order(operation, context),
+            Some(Overflow::OfAnotherThread) => {}
+        }
+        context.wait();
+    }
+
+    /// Runs an operation over the coloured constraints, colour by colour.
+    pub(super) fn run_coloured(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
+        self.coloured.run_coloured(operation, context);
+    }
+}
+
+impl<K: BatchKind> Batches<K, 1> {
+    /// Runs an operation over constraints, one after the other.
+    pub(super) fn run_in_order(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
+        let Batches { batches, records, extras, .. } = self;
         if batches.is_empty() {
             return;
         }
@@ -124,42 +186,43 @@ impl<K: BatchKind> BatchList<K> {
         Run { batches, records, extras, operation, bodies, faults: faults_of_run }.run::<Scalar<1>>();
         context.add_faults(faults);
     }
+}
 
-    /// Runs an operation over the coloured constraints, colour by colour. All threads share the batches of a colour.
+impl<K: BatchKind> Batches<K, WIDTH> {
+    /// Runs an operation over the batches of a thread, and waits after each colour for the other threads.
     pub(super) fn run_coloured(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
-        let StepContext { machine, threads, .. } = *context;
-        let Batches { batches, records, extras, colour_ends } = &mut self.coloured;
+        if context.is_alone() {
+            // The batches are in the order of the colours.
+            let all = ColourEnd { batches: self.batches.len(), extras: self.extras.len() };
+            self.run_colour(ColourEnd::default(), all, operation, context);
+            return;
+        }
+        let mut start = ColourEnd::default();
+        for colour in 0..self.colour_ends.len() {
+            let end = self.colour_ends[colour];
+            self.run_colour(start, end, operation, context);
+            start = end;
+            context.wait();
+        }
+    }
+
+    fn run_colour(
+        &mut self,
+        start: ColourEnd,
+        end: ColourEnd,
+        operation: impl Operation<K>,
+        context: &StepContext<'_>,
+    ) {
+        let batches = &mut self.batches[start.batches..end.batches];
         if batches.is_empty() {
             return;
         }
-        if threads.count() == 1 {
-            // The batches are in the order of the colours.
-            let mut faults = 0;
-            let bodies = context.bodies;
-            machine.run(Run { batches, records, extras, operation, bodies, faults: &mut faults });
-            context.add_faults(faults);
-            return;
-        }
-        let bodies = Shared::within_a_colour(context.bodies);
-        let (mut start, mut extras) = (0, &mut extras[..]);
-        for &end in colour_ends.iter() {
-            let (colour, records) = (&mut batches[start..end], &records[start..end]);
-            start = end;
-            let share = threads.share(colour.len(), BATCHES_PER_JOB);
-            let jobs = colour.chunks_mut(share).zip(records.chunks(share)).map(|(batches, records)| {
-                let count = batches.iter().filter(|batch| K::has_extra(batch)).count();
-                let (own, others) = core::mem::take(&mut extras).split_at_mut(count);
-                extras = others;
-                (batches, records, own)
-            });
-            let faults = threads.run(jobs, |(batches, records, extras)| {
-                let mut faults = 0;
-                let bodies = bodies.bodies();
-                machine.run(Run { batches, records, extras, operation, bodies, faults: &mut faults });
-                faults
-            });
-            context.add_faults(faults);
-        }
+        let records = &self.records[start.batches..end.batches];
+        let extras = &mut self.extras[start.extras..end.extras];
+        let mut faults = 0;
+        let (bodies, faults_of_run) = (context.bodies, &mut faults);
+        context.machine.run(Run { batches, records, extras, operation, bodies, faults: faults_of_run });
+        context.add_faults(faults);
     }
 }
 

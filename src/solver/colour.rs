@@ -1,6 +1,9 @@
 //! Graph colouring: no two constraints of a colour change the same body, so that the order within a colour does not
 //! matter. A scalar, a wide and a threaded solver then give the same bits.
 //!
+//! The constraints of a colour are divided among the threads of a tick by their bodies, so that a body is seldom passed
+//! from one processor to another.
+//!
 //! Constraints are coloured greedily, in the order of a hash of their shapes or of their joint. In sorted order the
 //! solver would always sweep the same way: a pyramid then sways by 0.1 to 0.4 m, in hashed order by 0.006 m.
 
@@ -109,13 +112,14 @@ pub(super) struct Colouring {
     /// For each body, a bit set of the colours that its constraints already have.
     used: Vec<u32>,
     hashed: Vec<u32>,
-    /// For each constraint, its rank in the order; see [`place_of`].
+    /// For each constraint, its place in the order; see [`place_of`].
     places: Vec<u8>,
     order: Vec<u32>,
-    /// For each rank, the end of its constraints in the order.
+    /// For each rank, the end of its constraints in the order; see [`Ranks`].
     ends: Vec<u32>,
     /// Number of colours in use.
     colour_count: u8,
+    ranks: Ranks,
 }
 
 impl Colouring {
@@ -135,17 +139,20 @@ impl Colouring {
         self.nodes.iter_mut().for_each(|node| node.cold = is_cold(node.bodies));
     }
 
-    /// Sorts the constraints into colours.
-    pub(super) fn sort(&mut self, body_slots: usize) {
-        let Colouring { nodes, ordered, used, hashed, places, order, ends, colour_count } = self;
-        if ordered == nodes {
+    /// Sorts the constraints into colours, each of which is divided among `parts` threads. `body_count` is one more than
+    /// the largest index of a body.
+    pub(super) fn sort(&mut self, body_count: usize, parts: usize) {
+        let Colouring { nodes, ordered, used, hashed, places, order, ends, colour_count, ranks } = self;
+        let new_ranks = Ranks { parts: parts.max(1), body_count };
+        if ordered == nodes && *ranks == new_ranks {
             return;
         }
+        *ranks = new_ranks;
         ordered.clone_from(nodes);
         used.clear();
-        used.resize(body_slots, 0);
+        used.resize(body_count, 0);
         *colour_count = 0;
-        counting_sort(nodes.len(), |i| nodes[i].bucket, hashed, ends);
+        counting_sort(nodes.len(), BUCKETS, |i| nodes[i].bucket.into(), hashed, ends);
         places.clear();
         places.resize(nodes.len(), 0);
         for &index in hashed.iter() {
@@ -160,7 +167,8 @@ impl Colouring {
             *colour_count = (*colour_count).max(place.div_ceil(2));
             places[index as usize] = place + if cold { PLACES } else { 0 };
         }
-        counting_sort(nodes.len(), |i| places[i], order, ends);
+        let rank_of = |i: usize| ranks.rank_of(places[i], ranks.part_of(&nodes[i]));
+        counting_sort(nodes.len(), ranks.count(), rank_of, order, ends);
     }
 
     /// Whether any constraint of the last order changes a body.
@@ -176,38 +184,78 @@ impl Colouring {
         })
     }
 
+    /// All constraints in the last order: the overflow, then colour by colour.
+    pub(super) fn order(&self) -> &[u32] {
+        &self.order
+    }
+
     /// The overflow of the last order: constraints that fit no colour and are solved one after the other.
     pub(super) fn overflow(&self, cold: bool) -> &[u32] {
-        self.group(if cold { PLACES } else { 0 })
+        let place = if cold { PLACES } else { 0 };
+        &self.order[self.start(place, 0)..self.end(place, 0)]
     }
 
-    /// The coloured constraints, colour by colour. Empty colours are left out: in a small world most are empty, and
-    /// every operation iterates over the colours.
-    pub(super) fn colours(&self, cold: bool) -> impl Iterator<Item = Group<'_>> {
+    /// The coloured constraints of one of the threads, colour by colour. Empty colours are left out: in a small world
+    /// most are empty, and every operation iterates over the colours.
+    pub(super) fn colours(&self, cold: bool, part: usize) -> impl Iterator<Item = Group<'_>> {
         let first = if cold { PLACES } else { 0 };
-        let groups = (0..self.colour_count).map(move |colour| {
-            let place = first + 2 * colour + 1;
-            let [start, middle, end] = [place - 1, place, place + 1].map(|place| self.end(place));
-            Group { indices: &self.order[start..end], large: middle - start }
-        });
-        groups.filter(|group| !group.indices.is_empty())
+        let places = (0..self.colour_count).map(move |colour| first + place_of(colour.into(), Size::Large));
+        let is_used = |place: &u8| self.end(place + 1, self.ranks.parts - 1) > self.start(*place, 0);
+        places.filter(is_used).map(move |place| {
+            let (start, middle) = (self.start(place, part), self.end(place, part));
+            Group { indices: &self.order[start..self.end(place + 1, part)], large: middle - start }
+        })
     }
 
-    /// The constraints of a rank.
-    fn group(&self, place: u8) -> &[u32] {
-        &self.order[place.checked_sub(1).map_or(0, |place| self.end(place))..self.end(place)]
+    /// The start of the constraints of a place and a part in the order.
+    fn start(&self, place: u8, part: usize) -> usize {
+        let rank = self.ranks.rank_of(place, part);
+        rank.checked_sub(1).and_then(|last| self.ends.get(last)).map_or(0, |&end| end as usize)
     }
 
-    /// The end of the constraints of a rank in the order.
-    fn end(&self, place: u8) -> usize {
-        self.ends.get(usize::from(place)).map_or(0, |&end| end as usize)
+    /// The end of the constraints of a place and a part in the order.
+    fn end(&self, place: u8, part: usize) -> usize {
+        self.ends.get(self.ranks.rank_of(place, part)).map_or(0, |&end| end as usize)
     }
 }
 
-/// Number of ranks of constraints that are not cold, and of cold ones.
+/// The order of the constraints: first the overflow, then colour by colour, within a colour part by part, and within a
+/// part first the large and then the small constraints. Cold constraints follow in the same order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Ranks {
+    /// Number of threads.
+    parts: usize,
+    body_count: usize,
+}
+
+impl Ranks {
+    fn count(self) -> usize {
+        2 * (1 + 2 * usize::from(COLOURS_MAX) * self.parts)
+    }
+
+    /// The thread that solves a constraint: that of one of its bodies. Every thread has as many bodies, in the order of
+    /// their indices.
+    fn part_of(self, node: &Node) -> usize {
+        let body = if node.bodies[0] == GROUND { node.bodies[1] } else { node.bodies[0] };
+        body as usize * self.parts / self.body_count
+    }
+
+    /// The rank of a constraint with a place. The overflow has one rank for all threads.
+    fn rank_of(self, place: u8, part: usize) -> usize {
+        let first = if place < PLACES { 0 } else { self.count() / 2 };
+        first
+            + match (place % PLACES).checked_sub(1).map(usize::from) {
+                None => 0,
+                Some(place) => 1 + 2 * (place / 2 * self.parts + part) + place % 2,
+            }
+    }
+}
+
+/// Number of places of constraints that are not cold, and of cold ones.
 const PLACES: u8 = 1 + 2 * COLOURS_MAX;
 
-/// The rank in the order: the overflow comes first, then the large and the small constraints of each colour.
+/// The place in the order of a single thread: the overflow comes first, then the large and the small constraints of each
+/// colour.
 #[expect(clippy::cast_possible_truncation, reason = "at most COLOURS_MAX")]
 fn place_of(colour: u32, size: Size) -> u8 {
     match colour as u8 {
@@ -221,13 +269,19 @@ fn bucket_of(key: u64) -> u8 {
     (key.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 56) as u8
 }
 
-/// Sorts the indices `0..count` by bucket, stably, and lists the end of each bucket.
+/// Sorts the indices `0..count` by bucket, stably, and lists the end of each of `buckets` buckets.
 #[expect(clippy::cast_possible_truncation, reason = "constraints are counted in 32 bits")]
-fn counting_sort(count: usize, bucket_of: impl Fn(usize) -> u8, sorted: &mut Vec<u32>, ends: &mut Vec<u32>) {
+fn counting_sort(
+    count: usize,
+    buckets: usize,
+    bucket_of: impl Fn(usize) -> usize,
+    sorted: &mut Vec<u32>,
+    ends: &mut Vec<u32>,
+) {
     ends.clear();
-    ends.resize(BUCKETS, 0);
+    ends.resize(buckets, 0);
     for i in 0..count {
-        ends[usize::from(bucket_of(i))] += 1;
+        ends[bucket_of(i)] += 1;
     }
     let mut start = 0;
     for end in ends.iter_mut() {
@@ -236,7 +290,7 @@ fn counting_sort(count: usize, bucket_of: impl Fn(usize) -> u8, sorted: &mut Vec
     sorted.clear();
     sorted.resize(count, 0);
     for i in 0..count {
-        let place = &mut ends[usize::from(bucket_of(i))];
+        let place = &mut ends[bucket_of(i)];
         sorted[*place as usize] = i as u32;
         *place += 1;
     }
@@ -247,12 +301,18 @@ mod tests {
     use super::*;
     use crate::math::Rng;
 
-    /// Checks that the constraints of a colour change different bodies, and come in the order of their sizes.
-    fn check(group: &Group<'_>, nodes: &[Node], cold: bool) {
-        let mut bodies = std::collections::BTreeSet::new();
+    /// Checks that the constraints of a thread come in the order of their sizes.
+    fn check_sizes(group: &Group<'_>, nodes: &[Node], cold: bool) {
         for (place, node) in group.indices.iter().map(|&i| nodes[i as usize]).enumerate() {
             let size = if place < group.large { Size::Large } else { Size::Small };
             assert_eq!((node.size, node.cold), (size, cold));
+        }
+    }
+
+    /// Checks that the constraints of a colour change different bodies.
+    fn check_bodies(indices: &[u32], nodes: &[Node]) {
+        let mut bodies = std::collections::BTreeSet::new();
+        for node in indices.iter().map(|&i| nodes[i as usize]) {
             for body in node.bodies.into_iter().filter(|&body| body != GROUND) {
                 assert!(bodies.insert(body), "body {body} twice in a colour");
             }
@@ -282,7 +342,7 @@ mod tests {
     #[test]
     fn no_colour_holds_a_body_twice_and_nothing_is_lost() {
         let mut rng = Rng::new(11);
-        for bodies in [2u32, 10, 300] {
+        for (bodies, parts) in [(2u32, 1), (10, 1), (300, 1), (2, 3), (10, 2), (300, 5)] {
             // Body 0 is a hub, so that the overflow list is used too.
             let nodes: Vec<Node> = (0..400)
                 .map(|key| {
@@ -297,20 +357,27 @@ mod tests {
             nodes.iter().for_each(|&node| colouring.add(node));
             colouring.set_cold(|[a, _]| a % 5 < 2);
             let nodes = colouring.nodes.clone();
-            colouring.sort(bodies as usize + 1);
+            colouring.sort(bodies as usize + 1, parts);
             let mut seen = colouring.order.clone();
             seen.sort_unstable();
             assert!(seen.iter().copied().eq(0..400));
             let mut solved = colouring.overflow(false).to_vec();
             assert!(solved.iter().all(|&i| colouring.places[i as usize] == 0));
-            for group in colouring.colours(false) {
-                check(&group, &nodes, false);
-                solved.extend_from_slice(group.indices);
-            }
-            solved.extend_from_slice(colouring.overflow(true));
-            for group in colouring.colours(true) {
-                check(&group, &nodes, true);
-                solved.extend_from_slice(group.indices);
+            for cold in [false, true] {
+                let colours = (0..parts).map(|part| colouring.colours(cold, part).collect::<Vec<_>>());
+                let colours: Vec<_> = colours.collect();
+                if cold {
+                    solved.extend_from_slice(colouring.overflow(cold));
+                }
+                for colour in 0..colours[0].len() {
+                    let mut all = Vec::new();
+                    for part in &colours {
+                        check_sizes(&part[colour], &nodes, cold);
+                        all.extend_from_slice(part[colour].indices);
+                    }
+                    solved.extend_from_slice(&all);
+                    check_bodies(&all, &nodes);
+                }
             }
             assert_eq!(solved, colouring.order, "the groups follow the order");
             assert!(

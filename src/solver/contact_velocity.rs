@@ -24,14 +24,14 @@ use super::limits::Faults;
 use super::pair::BodyPairW;
 use crate::simd::{GROUND, Ints, Kernel, Lanes, VelocityW, WIDTH};
 
-/// The velocity changes that contacts have caused, for all bodies with contacts.
+/// The velocity changes that contacts have caused, for those bodies with contacts that one thread integrates.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactVelocities {
     groups: Vec<Group<WIDTH>>,
     /// Whether the tick has had a sub-step, so that velocity changes can be measured.
     known: bool,
-    /// Whether any group is shared.
-    shared: bool,
+    /// Whether any group is shared, of this or of another thread.
+    pub(super) shared: bool,
 }
 
 /// Bodies that are processed together: as many as there are lanes.
@@ -40,7 +40,7 @@ struct Group<const N: usize> {
     /// The indices of the bodies. Lanes without a body have the ground.
     at: [u32; N],
     /// Whether something other than contacts changes the velocity of one of these bodies between the warm start and the
-    /// end of a sub-step.
+    /// end of a sub-step. The others keep their bits: `free - v + v` is exact, as both are below 512 m/s.
     shared: bool,
     free: VelocityW<Ints<N>>,
     push: VelocityW<Ints<N>>,
@@ -94,22 +94,21 @@ impl ContactVelocities {
     /// Records the free velocities and applies the velocity changes of the last sub-step again. Returns `false` in the
     /// first sub-step of a tick, which has no changes to apply.
     pub(super) fn apply(&mut self, context: &StepContext<'_>) -> bool {
-        let was_known = self.known;
-        if !self.groups.is_empty() {
-            self.perform(Task::Apply, context);
-            self.known = true;
-        }
-        was_known
+        self.perform(Task::Apply, context);
+        core::mem::replace(&mut self.known, true)
     }
 
     /// Runs `change`, and excludes its velocity changes from those by contacts.
     pub(super) fn exempt(&mut self, context: &StepContext<'_>, change: impl FnOnce()) {
         if self.shared {
             self.perform(Task::Suspend, context);
+            context.wait();
         }
         change();
         if self.shared {
+            context.wait();
             self.perform(Task::Resume, context);
+            context.wait();
         }
     }
 

@@ -6,7 +6,7 @@ use super::body::SolverBody;
 use super::limits::Faults;
 use super::settings::Tuning;
 use crate::simd::Machine;
-use crate::threads::Threads;
+use crate::threads::Member;
 
 /// Whether a pass removes position errors or only velocity errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,11 +17,11 @@ pub(super) enum Pass {
     Relax,
 }
 
-/// Backend, threads and settings of a tick, and the bodies that the stages change.
+/// Backend and settings of a tick, the thread that works on it, and the bodies that the stages change.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StepContext<'a> {
     pub(super) machine: Machine,
-    pub(super) threads: &'a Threads,
+    member: Member<'a>,
     pub(super) tuning: &'a Tuning,
     /// The bodies of the tick, by their indices in the body list.
     pub(super) bodies: &'a [Cell<SolverBody>],
@@ -29,16 +29,36 @@ pub(super) struct StepContext<'a> {
 }
 
 impl<'a> StepContext<'a> {
-    /// Creates the context. The faults of all stages are added to `faults`.
+    /// Creates the context of a thread that works alone. The faults of all stages are added to `faults`.
     pub(super) fn new(
         machine: Machine,
-        threads: &'a Threads,
         tuning: &'a Tuning,
         bodies: &'a mut [SolverBody],
         faults: &'a mut Faults,
     ) -> Self {
         let (bodies, faults) = (SolverBody::cells(bodies), Cell::from_mut(faults));
-        StepContext { machine, threads, tuning, bodies, faults }
+        StepContext { machine, member: Member::ALONE, tuning, bodies, faults }
+    }
+
+    /// Creates the context of a member of a team, to which the bodies belong.
+    pub(super) fn of_member(
+        machine: Machine,
+        member: Member<'a>,
+        tuning: &'a Tuning,
+        bodies: &'a [Cell<SolverBody>],
+        faults: &'a mut Faults,
+    ) -> Self {
+        StepContext { machine, member, tuning, bodies, faults: Cell::from_mut(faults) }
+    }
+
+    /// Whether no other thread works on the stages.
+    pub(super) fn is_alone(&self) -> bool {
+        self.member.is_alone()
+    }
+
+    /// Waits for all other threads: they may then read what this one has written.
+    pub(super) fn wait(&self) {
+        self.member.wait();
     }
 
     /// Adds faults that a stage has counted.

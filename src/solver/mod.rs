@@ -1,6 +1,6 @@
 //! The solver: sequential impulses in sub-steps, in a fixed order.
 //!
-//! `Solver::sub_step` lists the stages of a sub-step, those of E. Catto's soft step (Solver2D, `solve_soft_step.c`).
+//! `sub_step` lists the stages of a sub-step, those of E. Catto's soft step (Solver2D, `solve_soft_step.c`).
 //! Each stage has a file of its own: `integrate` for bodies; `contact_velocity`, `contact/warm_start`, `contact/solve`,
 //! `contact/relax` and `contact/restitution` for contacts; `joint/hinge` for hinges; `joint/list` for all other joints.
 //!
@@ -24,6 +24,7 @@ mod point_block;
 mod row;
 mod settings;
 mod softness;
+mod sub_step;
 
 use alloc::vec::Vec;
 
@@ -34,17 +35,17 @@ use body_list::BodyList;
 use colour::Colouring;
 pub use colour::SolverColour;
 pub(crate) use contact::{ActiveContact, Surface, SurfaceSide, WarmStarts};
-use contact::{Constants, ContactSet, ContactSource, Measure, ObserveApproach, PointOrder};
+use contact::{ContactSet, ContactSource, ContactStore};
 use contact_velocity::{ContactVelocities, PushedBody};
-use context::{Pass, StepContext};
+use context::StepContext;
 pub(crate) use integrate::AreaEffect;
-use integrate::{MovingBody, integrate_displacements, integrate_velocities};
+use integrate::MovingBody;
 pub use joint::{
     Distance, Drive, Gear, Joint, JointDef, JointFrame, JointKind, JointLimit, JointPart, LinearDrive, Motor,
     Prismatic, Pull, Pulley, Rack, Revolute, Soft, Spring, Threshold, ThresholdAction, Weld, Wheel,
 };
 use joint::{JointSet, JointSource};
-use limits::Faults;
+pub(crate) use limits::Faults;
 pub(crate) use limits::IMPULSE_MAX;
 pub use settings::{ContactTuning, DISTANCE_MAX, SolverSettings};
 pub(crate) use settings::{RATE_MAX, SUB_STEPS_MAX, Tuning};
@@ -52,7 +53,9 @@ pub(crate) use settings::{RATE_MAX, SUB_STEPS_MAX, Tuning};
 use crate::body::{Arena, Body, BodyId, JointId};
 use crate::collision::{Contact, Impact, Manifold};
 use crate::math::{Fx, Vec2};
-use crate::threads::Threads;
+use crate::simd::{Shared, WIDTH};
+use crate::threads::{Threads, part_of};
+use sub_step::SolverShare;
 
 /// Factor on the iterations of cold contacts. New contacts have no impulse for the warm start, and one iteration in a
 /// sub-step is then not enough for piles: in their first ticks the 20 x 20 pyramids of 55 boxes move at 0.27 m/s and
@@ -68,12 +71,15 @@ pub(crate) struct Solver {
     /// Working memory for the reaction of a single joint.
     reaction: JointSet,
     contacts: ContactSet,
-    contact_velocities: ContactVelocities,
+    /// The velocity changes of the bodies that each thread integrates.
+    contact_velocities: Vec<ContactVelocities>,
     /// For each contact in the state, whether its shapes have pushed each other in this tick.
     pub(crate) pushed: Vec<bool>,
     colouring: Colouring,
     pub(crate) machine: Machine,
     pub(crate) threads: Threads,
+    /// Number of threads that share the tick.
+    pub(crate) parts: usize,
     pub(crate) warm_starts: WarmStarts,
     pub(crate) faults: Faults,
 }
@@ -119,9 +125,10 @@ impl Solver {
         bodies: &Arena<Body, BodyId>,
         tuning: &Tuning,
     ) {
-        let Solver { list, joints: set, colouring, machine, threads, faults, .. } = self;
-        set.prepare(&JointSource { joints, slots, bodies, tuning }, list, colouring);
-        set.refresh(&StepContext::new(*machine, threads, tuning, &mut list.bodies, faults));
+        let parts = self.parts;
+        let Solver { list, joints: set, colouring, machine, faults, .. } = self;
+        set.prepare(&JointSource { joints, slots, bodies, tuning }, list, colouring, parts);
+        set.refresh(&StepContext::new(*machine, tuning, &mut list.bodies, faults));
     }
 
     /// Number of joints that are solved in blocks in this tick.
@@ -147,14 +154,22 @@ impl Solver {
         impacts: &[Impact],
         contacts: &[Contact],
     ) {
-        let Solver { list, moving, joints, colouring, contacts: set, machine, warm_starts, .. } = self;
-        *warm_starts =
-            set.prepare(&ContactSource { pairs, manifolds, impacts, contacts, list }, colouring, *machine);
-        let touched = moving.iter().filter(|moving| colouring.holds(moving.index()));
-        self.contact_velocities.begin(touched.map(|moving| PushedBody {
-            index: moving.index(),
-            shared: set.bounces(moving.index()) || moving.has_extras() || joints.holds(moving.index()),
-        }));
+        let parts = self.parts;
+        let Solver { list, moving, joints, colouring, contacts: set, machine, threads, .. } = self;
+        let source = ContactSource { pairs, manifolds, impacts, contacts, list };
+        set.sort(&source, colouring, parts);
+        self.warm_starts = set.fill(&source, colouring, (threads, parts), *machine);
+        self.contact_velocities.resize_with(parts, ContactVelocities::default);
+        for (part, velocities) in self.contact_velocities.iter_mut().enumerate() {
+            let moving = &moving[part_of(moving.len(), WIDTH, part, parts)];
+            let touched = moving.iter().filter(|moving| colouring.holds(moving.index()));
+            velocities.begin(touched.map(|moving| PushedBody {
+                index: moving.index(),
+                shared: set.bounces(moving.index()) || moving.has_extras() || joints.holds(moving.index()),
+            }));
+        }
+        let is_shared = self.contact_velocities.iter().any(|velocities| velocities.shared);
+        self.contact_velocities.iter_mut().for_each(|velocities| velocities.shared = is_shared);
     }
 
     /// The colour of a touching pair's contact in the last tick.
@@ -162,69 +177,35 @@ impl Solver {
         self.colouring.colour_of(pair)
     }
 
-    /// Performs one sub-step. `index` is the number of sub-steps since the world was created.
-    pub(crate) fn sub_step(&mut self, index: u64, tuning: &Tuning) {
-        let iterations = tuning.iterations;
-        let cold_iterations = if self.contacts.has_cold() { iterations * COLD_ROUNDS } else { 0 };
-        let constants = Constants::new(tuning);
-        let Solver { list, moving, joints, contacts, contact_velocities, machine, threads, faults, .. } =
-            self;
-        let context = &StepContext::new(*machine, threads, tuning, &mut list.bodies, faults);
-
-        // Integrate velocities.
-        joints.predict_rotations(context);
-        contact_velocities.measure(context);
-        integrate_velocities(moving, context);
-
-        // Warm start.
-        if contacts.has_extras() {
-            contacts.run_overflow(ObserveApproach, context);
-            contacts.run_coloured(ObserveApproach, context);
-        }
-        joints.warm_start(context);
-        if !contact_velocities.apply(context) {
-            contacts.run_overflow(contact::WarmStart, context);
-            contacts.run_coloured(contact::WarmStart, context);
-        }
-
-        // Solve with bias.
-        for iteration in 0..iterations {
-            let solve = contact::Solve { order: PointOrder::of(index, iteration), constants };
-            contacts.run_overflow(solve, context);
-            contact_velocities.exempt(context, || joints.solve(Pass::Bias, context));
-            contacts.run_coloured(solve, context);
-        }
-        for iteration in iterations..cold_iterations {
-            contacts.run_cold(contact::Solve { order: PointOrder::of(index, iteration), constants }, context);
-        }
-
-        // Integrate displacements.
-        contact_velocities.exempt(context, || integrate_displacements(moving, context));
-        joints.refresh(context);
-
-        // Relax: solve without bias.
-        let (iterations, cold_iterations) = if tuning.relax { (iterations, cold_iterations) } else { (0, 0) };
-        for iteration in 0..iterations {
-            let relax = contact::Relax { order: PointOrder::of(index, iteration), constants };
-            contacts.run_overflow(relax, context);
-            contact_velocities.exempt(context, || joints.solve(Pass::Relax, context));
-            contacts.run_coloured(relax, context);
-        }
-        for iteration in iterations..cold_iterations {
-            contacts.run_cold(contact::Relax { order: PointOrder::of(index, iteration), constants }, context);
-        }
-        if !tuning.relax {
-            contacts.run_overflow(Measure, context);
-            contacts.run_coloured(Measure, context);
-        }
-        if contacts.has_extras() {
-            contact_velocities.exempt(context, || contacts.bounce(context));
-        }
+    /// Performs `count` sub-steps, and stores the impulses for the next tick. `first` is the number of sub-steps since
+    /// the world was created.
+    pub(crate) fn sub_steps(
+        &mut self,
+        (first, count): (u64, u32),
+        tuning: &Tuning,
+        contacts: &mut [Contact],
+    ) {
+        let Solver { list, moving, joints, contacts: set, contact_velocities, machine, threads, .. } = self;
+        let (machine, parts) = (*machine, contact_velocities.len());
+        let bodies = Shared::new(&mut list.bodies);
+        let store = ContactStore::new(contacts, &mut self.pushed);
+        let mut joints = joints.split();
+        let moving = (0..parts).map(|part| &moving[part_of(moving.len(), WIDTH, part, parts)]);
+        let shares = moving.zip(set.shares()).zip(contact_velocities).zip(joints.shares());
+        self.faults += threads.run_team(shares, |(((moving, contacts), velocities), joints), member| {
+            let mut faults = 0;
+            let context = StepContext::of_member(machine, member, tuning, bodies.cells(), &mut faults);
+            let mut share = SolverShare { moving, contacts, velocities, joints };
+            for index in 0..count {
+                share.sub_step(first.wrapping_add(index.into()), &context);
+            }
+            share.contacts.store(store, machine);
+            faults
+        });
     }
 
-    /// Stores the impulses for the next tick.
-    pub(crate) fn store_impulses(&mut self, contacts: &mut [Contact], joints: &mut Arena<Joint, JointId>) {
+    /// Stores the impulses of joints for the next tick.
+    pub(crate) fn store_joints(&mut self, joints: &mut Arena<Joint, JointId>) {
         self.joints.store(joints);
-        self.contacts.store(self.machine, contacts, &mut self.pushed);
     }
 }

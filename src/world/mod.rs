@@ -242,8 +242,11 @@ impl World {
     }
 
     /// Sets the number of threads that share a tick, at least 1. Does not change any hash. Returns whether the threads
-    /// could be created; if not, nothing changes. Worth while for thousands of bodies. Clones of the world use the same
-    /// threads.
+    /// could be created; if not, nothing changes.
+    ///
+    /// Worth while for thousands of bodies; ticks with fewer than 256 awake bodies use the calling thread only. Threads
+    /// keep a processor busy until the tick is over, also where only one of them has work. Clones of the world use the
+    /// same threads, and their ticks take turns.
     #[cfg(feature = "parallel")]
     pub fn set_threads(&mut self, count: usize) -> bool {
         let threads = Threads::new(count);

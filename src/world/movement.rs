@@ -4,37 +4,30 @@ use super::cache::Scratch;
 use super::derived::fattened;
 use super::state::State;
 use crate::body::{Handle, Pose};
-use crate::math::Vec2;
 
 /// Moves a body to a pose. Shapes that leave their fat box get a new one.
 pub(crate) fn move_body(state: &mut State, scratch: &mut Scratch, slot: u32, pose: Pose) {
-    let body = state.bodies.at_mut(slot);
-    let (by, is_rotated) = (pose.centre - body.centre, pose.angle != body.angle);
-    if is_rotated || by != Vec2::ZERO {
-        (body.centre, body.angle) = (pose.centre, pose.angle);
-        let body = state.bodies.at(slot);
-        if is_rotated {
-            scratch.shapes.move_body(state, body);
-        } else {
-            scratch.shapes.shift_body(body, by);
+    let State { bodies, shapes, .. } = &mut *state;
+    if !scratch.shapes.whole().move_body(bodies.at_mut(slot), pose, shapes) {
+        return;
+    }
+    for index in 0..state.bodies.at(slot).shapes().len() {
+        let shape = state.bodies.at(slot).shapes()[index].slot();
+        let bounds = scratch.shapes.motion().shape(shape).bounds;
+        if !scratch.shapes.broad_phase().fat(shape).contains(bounds) {
+            cover_shape(state, scratch, shape);
         }
-        cover_shapes(state, scratch, slot);
     }
 }
 
-/// Gives the shapes of a body that have left their fat box a new one, so that queries find them.
-fn cover_shapes(state: &mut State, scratch: &mut Scratch, slot: u32) {
-    let State { bodies, shapes, config, .. } = state;
-    for id in bodies.at(slot).shapes() {
-        let bounds = scratch.shapes.poses().at(id.slot()).bounds;
-        if !scratch.shapes.broad_phase().fat(id.slot()).contains(bounds) {
-            let fat = fattened(bounds, config.margin_of(bounds));
-            shapes.at_mut(id.slot()).fat = fat;
-            scratch.shapes.refit(id.slot(), fat);
-            scratch.pairs.changes.box_changed(id.slot());
-            if scratch.shapes.motion().may_have_sensors() {
-                scratch.sweeps.left_boxes.push(id.slot());
-            }
-        }
+/// Gives a shape that has left its fat box a new one, so that queries find it.
+pub(crate) fn cover_shape(state: &mut State, scratch: &mut Scratch, shape: u32) {
+    let bounds = scratch.shapes.motion().shape(shape).bounds;
+    let fat = fattened(bounds, state.config.margin_of(bounds));
+    state.shapes.at_mut(shape).fat = fat;
+    scratch.shapes.refit(shape, fat);
+    scratch.pairs.changes.box_changed(shape);
+    if scratch.shapes.motion().may_have_sensors() {
+        scratch.sweeps.left_boxes.push(shape);
     }
 }

@@ -15,6 +15,7 @@ use crate::collision::shape::posed::{Faces, PosedShape};
 use crate::fx;
 use crate::math::{Fx, Length, Rot, Step, Unit, Vec2};
 use crate::simd::{Ints, Machine, Quad, WIDTH, prefetch};
+use crate::threads::split_at_ends;
 
 /// Largest distance in metres of the two centres along either axis for the SIMD path. No corner of one box is then more
 /// than `5 sqrt(2) + 2 * 3 < 14` m from a corner of the other, which fits a `Step` (16 m).
@@ -39,6 +40,40 @@ pub(crate) struct SmallBoxes {
 #[repr(align(32))]
 struct Turned([Quad; 2]);
 
+/// The boxes in a range of slots, by their index in the range.
+pub(crate) struct SmallBoxesPart<'a> {
+    turned: &'a mut [Turned],
+    centred: &'a [Option<Faces>],
+}
+
+impl Turned {
+    #[inline(always)]
+    fn new(Faces { vertices: [v0, v1], normals: [n0, n1] }: &Faces) -> Self {
+        Turned([
+            Quad([v0.x, v0.y, v1.x, v1.y].map(Length::to_bits)),
+            Quad([n0.x, n0.y, n1.x, n1.y].map(Unit::to_bits)),
+        ])
+    }
+}
+
+impl SmallBoxesPart<'_> {
+    /// Updates a shape that has been rotated.
+    #[inline]
+    pub(crate) fn renew(&mut self, index: usize, shape: &PosedShape) {
+        if let Some(faces) = shape.as_small_box() {
+            self.turned[index] = Turned::new(&faces);
+        }
+    }
+
+    /// Rotates a centred box and returns its faces. Returns `None` for any other shape, which stays unchanged.
+    #[inline(always)]
+    pub(crate) fn turn(&mut self, index: usize, rotation: &impl Deref<Target = Rot>) -> Option<Faces> {
+        let faces = self.centred[index].as_ref()?.rotated(**rotation);
+        self.turned[index] = Turned::new(&faces);
+        Some(faces)
+    }
+}
+
 impl SmallBoxes {
     /// Resizes the arrays for a number of slots.
     pub(crate) fn resize(&mut self, slot_count: usize) {
@@ -49,31 +84,20 @@ impl SmallBoxes {
     /// Stores a shape that is posed for the first time or was redefined. `centred` is [`PosedShape::as_centred_box`].
     pub(crate) fn place(&mut self, slot: u32, shape: &PosedShape, centred: Option<Faces>) {
         self.centred[slot as usize] = centred;
-        self.renew(slot, shape);
-    }
-
-    /// Updates a shape that has been rotated.
-    #[inline]
-    pub(crate) fn renew(&mut self, slot: u32, shape: &PosedShape) {
         if let Some(faces) = shape.as_small_box() {
-            self.set(slot, &faces);
+            self.turned[slot as usize] = Turned::new(&faces);
         }
     }
 
-    /// Rotates a centred box and returns its faces. Returns `None` for any other shape, which stays unchanged.
-    #[inline(always)]
-    pub(crate) fn turn(&mut self, slot: u32, rotation: &impl Deref<Target = Rot>) -> Option<Faces> {
-        let faces = self.centred[slot as usize].as_ref()?.rotated(**rotation);
-        self.set(slot, &faces);
-        Some(faces)
-    }
-
-    #[inline(always)]
-    fn set(&mut self, slot: u32, Faces { vertices: [v0, v1], normals: [n0, n1] }: &Faces) {
-        self.turned[slot as usize] = Turned([
-            Quad([v0.x, v0.y, v1.x, v1.y].map(Length::to_bits)),
-            Quad([n0.x, n0.y, n1.x, n1.y].map(Unit::to_bits)),
-        ]);
+    /// Divides the boxes into ranges of slots, which end at the given slots.
+    pub(crate) fn split(
+        &mut self,
+        ends: impl Iterator<Item = usize> + Clone,
+    ) -> impl Iterator<Item = SmallBoxesPart<'_>> {
+        let centred = split_at_ends(&mut self.centred, ends.clone());
+        split_at_ends(&mut self.turned, ends)
+            .zip(centred)
+            .map(|(turned, centred)| SmallBoxesPart { turned, centred })
     }
 
     /// Prefetches a box.

@@ -35,7 +35,7 @@ mod warm_start;
 
 use alloc::vec::Vec;
 
-use super::batches::{BatchKind, BatchList, Operation};
+use super::batches::{BatchKind, BatchList, BatchShare, Operation};
 use super::context::StepContext;
 use crate::math::Speed;
 use batch::Batch;
@@ -48,6 +48,7 @@ pub(super) use relax::{Measure, Relax};
 use restitution::ApplyRestitution;
 pub(super) use restitution::ObserveApproach;
 pub(super) use solve::{PointOrder, Solve};
+pub(super) use store::ContactStore;
 use store::Records;
 pub(crate) use surface::{Surface, SurfaceSide};
 pub(super) use warm_start::WarmStart;
@@ -68,11 +69,44 @@ pub(super) struct ContactSet {
     warm: BatchList<Contacts>,
     cold: BatchList<Contacts>,
     prospects: Vec<Prospect>,
+    /// The statistics of each thread.
+    warm_starts: Vec<WarmStarts>,
+    features: Features,
+}
+
+/// The operations that the contacts of a tick need.
+#[derive(Clone, Copy, Debug, Default)]
+struct Features {
     /// Whether any contact is elastic.
     elastic: bool,
+    /// Whether any contact is cold.
+    cold: bool,
+    /// Whether any surface bounces, moves or resists rolling.
+    extras: bool,
+}
+
+/// The contacts that one thread solves.
+#[derive(Debug)]
+pub(super) struct ContactShare<'a> {
+    warm: BatchShare<'a, Contacts>,
+    cold: BatchShare<'a, Contacts>,
+    features: Features,
 }
 
 impl ContactSet {
+    /// The contacts that each thread solves.
+    pub(super) fn shares(&mut self) -> impl Iterator<Item = ContactShare<'_>> {
+        let ContactSet { warm, cold, features, .. } = self;
+        warm.shares().zip(cold.shares()).map(|(warm, cold)| ContactShare { warm, cold, features: *features })
+    }
+
+    /// Whether a contact of a body of the tick may bounce, by index.
+    pub(super) fn bounces(&self, body: u32) -> bool {
+        self.prospects[body as usize].bounces()
+    }
+}
+
+impl ContactShare<'_> {
     /// Runs an operation over the contacts that fit no colour, one after the other.
     pub(super) fn run_overflow(&mut self, operation: impl Operation<Contacts>, context: &StepContext<'_>) {
         self.warm.run_overflow(operation, context);
@@ -87,7 +121,12 @@ impl ContactSet {
 
     /// Whether any contact is cold.
     pub(super) fn has_cold(&self) -> bool {
-        !self.cold.is_empty()
+        self.features.cold
+    }
+
+    /// Whether any surface bounces, moves or resists rolling.
+    pub(super) fn has_extras(&self) -> bool {
+        self.features.extras
     }
 
     /// Runs an operation over the cold contacts.
@@ -98,21 +137,11 @@ impl ContactSet {
 
     /// Applies restitution, after the passes of a sub-step.
     pub(super) fn bounce(&mut self, context: &StepContext<'_>) {
-        for pass in 0..if self.elastic { RESTITUTION_PASSES } else { 1 } {
+        for pass in 0..if self.features.elastic { RESTITUTION_PASSES } else { 1 } {
             let restitution = ApplyRestitution { again: pass > 0 };
             self.run_overflow(restitution, context);
             self.run_coloured(restitution, context);
         }
-    }
-
-    /// Whether a contact of a body of the tick may bounce, by index.
-    pub(super) fn bounces(&self, body: u32) -> bool {
-        self.prospects[body as usize].bounces()
-    }
-
-    /// Whether any surface bounces, moves or resists rolling.
-    pub(super) fn has_extras(&self) -> bool {
-        self.warm.has_extras() || self.cold.has_extras()
     }
 }
 
@@ -145,4 +174,14 @@ pub(crate) struct WarmStarts {
     pub(crate) kept: u32,
     /// Points with an impulse in the last tick that no longer exist, although the shapes still touch.
     pub(crate) lost: u32,
+}
+
+impl core::iter::Sum for WarmStarts {
+    fn sum<I: Iterator<Item = Self>>(parts: I) -> Self {
+        parts.fold(WarmStarts::default(), |a, b| WarmStarts {
+            points: a.points + b.points,
+            kept: a.kept + b.kept,
+            lost: a.lost + b.lost,
+        })
+    }
 }

@@ -11,32 +11,56 @@ use super::store::Records;
 use super::{ContactSet, Contacts, WarmStarts};
 use crate::math::Unit;
 use crate::simd::{Kernel, Lanes, Machine, Scalar, prefetch};
+use crate::threads::Threads;
 
 /// Prefetch distances in batches, for the touching pairs and for the data that they refer to.
 const PAIRS_AHEAD: usize = 4;
 const MANIFOLDS_AHEAD: usize = 2;
 
 impl ContactSet {
-    /// Sorts the contacts of a tick into colours and fills their batches. Returns the statistics of warm starting.
-    pub(in crate::solver) fn prepare(
+    /// Sorts the contacts of a tick into colours, for `parts` threads.
+    pub(in crate::solver) fn sort(
         &mut self,
         source: &ContactSource<'_>,
         colouring: &mut Colouring,
+        parts: usize,
+    ) {
+        colouring.begin();
+        self.features.elastic = source.add_nodes(colouring, &mut self.prospects);
+        colouring.sort(source.list.len(), parts);
+    }
+
+    /// Fills the batches of each of `parts` threads. Returns the statistics of warm starting.
+    pub(in crate::solver) fn fill(
+        &mut self,
+        source: &ContactSource<'_>,
+        colouring: &Colouring,
+        (threads, parts): (&Threads, usize),
         machine: Machine,
     ) -> WarmStarts {
-        let ContactSet { warm, cold, prospects, elastic } = self;
-        colouring.begin();
-        *elastic = source.add_nodes(colouring, prospects);
-        colouring.sort(source.list.len());
-        let mut warm_starts = WarmStarts::default();
-        for (list, is_cold) in [(warm, false), (cold, true)] {
-            let warm_starts = &mut warm_starts;
+        let ContactSet { warm, cold, prospects, warm_starts, features } = self;
+        warm_starts.clear();
+        warm_starts.resize(parts, WarmStarts::default());
+        for (list, is_cold) in [(&mut *warm, false), (&mut *cold, true)] {
+            list.coloured.resize_with(parts, Batches::default);
             let colours = core::iter::once(Group::of_singles(colouring.overflow(is_cold)));
-            Fill { batches: &mut list.overflow, source, prospects, colours, warm_starts }.run::<Scalar<1>>();
-            let colours = colouring.colours(is_cold);
-            machine.run(Fill { batches: &mut list.coloured, source, prospects, colours, warm_starts });
+            let (batches, warm_starts) = (&mut list.overflow, &mut warm_starts[0]);
+            Fill { batches, source, prospects, colours, warm_starts }.run::<Scalar<1>>();
         }
-        warm_starts
+        let shares = warm.coloured.iter_mut().zip(&mut cold.coloured).zip(&mut *warm_starts).enumerate();
+        threads.run_team(shares, |(part, ((warm, cold), warm_starts)), _| {
+            // Counted here, because the counts of all threads are in one cache line.
+            let mut own = WarmStarts::default();
+            for (batches, is_cold) in [(warm, false), (cold, true)] {
+                let colours = colouring.colours(is_cold, part);
+                machine.run(Fill { batches, source, prospects, colours, warm_starts: &mut own });
+            }
+            *warm_starts = [*warm_starts, own].into_iter().sum();
+            0
+        });
+        features.cold = !cold.is_empty();
+        features.extras = warm.has_extras() || cold.has_extras();
+        warm_starts.iter().copied().sum()
     }
 }
 
@@ -53,8 +77,7 @@ impl<'a, I: Iterator<Item = Group<'a>>, const N: usize> Kernel<N> for Fill<'_, I
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
         let Fill { batches, source, prospects, colours, warm_starts } = self;
-        batches.extras.clear();
-        batches.colour_ends.clear();
+        batches.clear_all_but_batches();
         let mut count = 0;
         for group in colours {
             let mut start = 0;
@@ -69,7 +92,7 @@ impl<'a, I: Iterator<Item = Group<'a>>, const N: usize> Kernel<N> for Fill<'_, I
                 start += indices.len();
                 count += 1;
             }
-            batches.colour_ends.push(count);
+            batches.end_colour(count);
         }
         batches.batches.truncate(count);
         batches.records.truncate(count);

@@ -1,6 +1,7 @@
 //! Returns the impulses of batches to the contacts of the state.
 
 use alloc::vec::Vec;
+use core::cell::Cell;
 
 use super::super::batches::Batches;
 use super::super::pair::{UNIT, clamp};
@@ -9,10 +10,10 @@ use super::batch::Batch;
 use super::input::Input;
 use super::overflow_policy::FRICTION_RATIO;
 use super::rows::Inverses;
-use super::{ContactSet, Contacts};
+use super::{ContactShare, Contacts};
 use crate::collision::{Contact, Feature, KeptArms, PointImpulse};
 use crate::math::Speed;
-use crate::simd::{Ints, Kernel, Lanes, Machine, Scalar, prefetch};
+use crate::simd::{Ints, Kernel, Lanes, Machine, Scalar, Shared, prefetch};
 
 /// Prefetch distance in batches: in the order of colours, contacts are random accesses.
 const CONTACTS_AHEAD: usize = 2;
@@ -98,19 +99,31 @@ fn shares_of_friction<L: Lanes<N>, const N: usize>(batch: &Batch<N>) -> [L::Int;
     [L::sub(whole, rest), rest]
 }
 
-impl ContactSet {
-    /// Stores the impulses for the next tick. Sets `pushed` for each contact whose shapes have pushed each other.
-    pub(in crate::solver) fn store(
-        &self,
-        machine: Machine,
-        contacts: &mut [Contact],
-        pushed: &mut Vec<bool>,
-    ) {
+/// Where impulses are stored: the contacts of the state, and for each of them whether its shapes have pushed each other.
+#[derive(Clone, Copy)]
+pub(in crate::solver) struct ContactStore<'a> {
+    contacts: Shared<'a, Contact>,
+    pushed: Shared<'a, bool>,
+}
+
+impl<'a> ContactStore<'a> {
+    /// Each contact is in one batch, and so belongs to one thread.
+    pub(in crate::solver) fn new(contacts: &'a mut [Contact], pushed: &'a mut Vec<bool>) -> Self {
         pushed.clear();
         pushed.resize(contacts.len(), false);
-        for list in [&self.warm, &self.cold] {
-            Store { batches: &list.overflow, contacts, pushed }.run::<Scalar<1>>();
-            machine.run(Store { batches: &list.coloured, contacts, pushed });
+        ContactStore { contacts: Shared::new(contacts), pushed: Shared::new(pushed) }
+    }
+}
+
+impl ContactShare<'_> {
+    /// Stores the impulses for the next tick.
+    pub(in crate::solver) fn store(&self, store: ContactStore<'_>, machine: Machine) {
+        let (contacts, pushed) = (store.contacts.cells(), store.pushed.cells());
+        for share in [&self.warm, &self.cold] {
+            if let Some(batches) = share.own_overflow() {
+                Store { batches, contacts, pushed }.run::<Scalar<1>>();
+            }
+            machine.run(Store { batches: share.coloured(), contacts, pushed });
         }
     }
 }
@@ -118,8 +131,8 @@ impl ContactSet {
 /// Stores the impulses of batches.
 struct Store<'a, const N: usize> {
     batches: &'a Batches<Contacts, N>,
-    contacts: &'a mut [Contact],
-    pushed: &'a mut [bool],
+    contacts: &'a [Cell<Contact>],
+    pushed: &'a [Cell<bool>],
 }
 
 impl<const N: usize> Kernel<N> for Store<'_, N> {
@@ -134,7 +147,8 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
             let extras = if batch.extras { extras.next() } else { None };
             let impulses = record.impulses::<L>(batch);
             for (lane, index, count) in record.lanes() {
-                let old = record.wedged[lane].then(|| contacts[index]);
+                let mut contact = contacts[index].get();
+                let old = record.wedged[lane].then_some(contact);
                 let point = |i: usize| {
                     let [normal, tangent] = &impulses[i];
                     let impulse = PointImpulse {
@@ -146,14 +160,15 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
                 };
                 let second = if count > 1 { point(1) } else { PointImpulse::default() };
                 let rolling = extras.map_or(Speed::ZERO, |extras| extras.rolling.impulse(lane));
-                contacts[index].store_impulses([point(0), second], count, rolling);
+                contact.store_impulses([point(0), second], count, rolling);
                 if record.arms.lanes >> lane & 1 != 0 {
                     let [a, b, between] = &record.arms.words;
                     let second = if count > 1 { b.0[lane] } else { 0 };
-                    contacts[index].arms = KeptArms([a.0[lane], second, between.0[lane]]);
+                    contact.arms = KeptArms([a.0[lane], second, between.0[lane]]);
                 }
-                pushed[index] =
-                    batch.pushed[0] >> lane & 1 != 0 || count > 1 && batch.pushed[1] >> lane & 1 != 0;
+                contacts[index].set(contact);
+                let has_pushed = |point: usize| batch.pushed[point] >> lane & 1 != 0;
+                pushed[index].set(has_pushed(0) || count > 1 && has_pushed(1));
             }
         }
     }

@@ -9,7 +9,6 @@ use crate::math::{Rng, Speed, Vec2, narrow};
 use crate::simd::{Backend, Machine};
 use crate::solver::settings::SolverSettings;
 use crate::solver::{Solver, Tuning, contact};
-use crate::threads::Threads;
 
 /// Number of bodies. It is not a multiple of the lanes, so that the last group is not full.
 const COUNT: usize = 21;
@@ -22,7 +21,7 @@ fn with_context<T>(
     run: impl FnOnce(&StepContext<'_>) -> T,
 ) -> T {
     let tuning = Tuning::new(&SolverSettings::default(), Vec2::ZERO, 60);
-    run(&StepContext::new(machine, &Threads::default(), &tuning, bodies, faults))
+    run(&StepContext::new(machine, &tuning, bodies, faults))
 }
 
 fn change(bodies: &mut [SolverBody], by: &[[Speed; 3]]) {
@@ -111,14 +110,16 @@ impl Solver {
     /// Compares the velocity changes that contacts have caused in the last sub-step with those by the accumulated
     /// impulses in their rows. Returns the largest difference and the largest change by impulses, in units of a speed.
     pub(crate) fn push_error(&mut self, tuning: &Tuning) -> (i32, i32) {
-        let Solver { list, contacts, contact_velocities, machine, threads, faults, .. } = self;
-        let context = &StepContext::new(*machine, threads, tuning, &mut list.bodies, faults);
-        contact_velocities.measure(context);
+        let Solver { list, contacts, contact_velocities, machine, faults, .. } = self;
+        let context = &StepContext::new(*machine, tuning, &mut list.bodies, faults);
+        contact_velocities.iter_mut().for_each(|velocities| velocities.measure(context));
         context.bodies.iter().for_each(|body| body.set(SolverBody::default()));
-        contacts.run_overflow(contact::WarmStart, context);
-        contacts.run_coloured(contact::WarmStart, context);
+        for mut share in contacts.shares() {
+            share.run_overflow(contact::WarmStart, context);
+            share.run_coloured(contact::WarmStart, context);
+        }
         let (mut error, mut largest) = (0, 0);
-        for group in &self.contact_velocities.groups {
+        for group in self.contact_velocities.iter().flat_map(|velocities| &velocities.groups) {
             for (lane, &index) in group.at.iter().enumerate() {
                 let body = &self.list.bodies[index as usize];
                 let rows = [body.velocity.x, body.velocity.y, body.spin].map(Speed::to_bits);

@@ -7,7 +7,6 @@ use super::*;
 use crate::fx;
 use crate::math::Rng;
 use crate::simd::{Backend, Machine};
-use crate::threads::Threads;
 
 fn random_speed(rng: &mut Rng, size: Fx) -> Speed {
     narrow(rng.range(-size, size))
@@ -70,8 +69,7 @@ fn every_machine_integrates_as_one_body_at_a_time() {
         for backend in Backend::available() {
             let machine = Machine::new(backend).expect("available");
             let (mut wide, mut wide_faults) = (bodies.clone(), 0);
-            let threads = Threads::default();
-            let context = StepContext::new(machine, &threads, &tuning, &mut wide, &mut wide_faults);
+            let context = StepContext::new(machine, &tuning, &mut wide, &mut wide_faults);
             integrate_velocities(&moving, &context);
             integrate_displacements(&moving, &context);
             assert_eq!(wide_faults, faults);
@@ -97,8 +95,8 @@ fn a_damped_speed_is_rounded_towards_rest_in_lanes_too() {
         let speed = Speed::from_bits(speed);
         let body = SolverBody { velocity: Vec2::new(speed, -speed), spin: speed, ..SolverBody::default() };
         let mut bodies = [body; 9];
-        let (threads, mut faults) = (Threads::default(), 0);
-        let context = StepContext::new(Machine::default(), &threads, &tuning, &mut bodies, &mut faults);
+        let mut faults = 0;
+        let context = StepContext::new(Machine::default(), &tuning, &mut bodies, &mut faults);
         integrate_velocities(&moving, &context);
         let expected = towards_rest(speed, Unit::from_bits(factor));
         let found = bodies.last().expect("nine");

@@ -27,12 +27,14 @@ pub(super) enum Validity {
     Nothing,
 }
 
-/// The revisions of joints and bodies, and the settings.
+/// The revisions of joints and bodies, the settings, and the number of threads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Definitions {
     pub(super) joints: u64,
     pub(super) bodies: u64,
     pub(super) tuning: Tuning,
+    /// Number of threads that solve them.
+    pub(super) parts: usize,
 }
 
 impl CacheKey {

@@ -6,19 +6,19 @@ use alloc::vec::Vec;
 
 use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::Colouring;
-use super::super::context::{Pass, StepContext};
+use super::super::context::StepContext;
 use super::super::settings::Tuning;
 use super::block::{Blocks, Candidate};
 use super::cache_key::{CacheKey, Definitions, Validity};
 use super::def::{JointFrame, JointKind};
-use super::hinge::{AngleParts, HingeBody, HingeSet, Poses, Turning, node};
+use super::hinge::{AngleParts, HingeBody, HingePart, HingeSet, Turning, node};
 use super::list::{BlockedPart, JointList};
 use super::pose::BodyRotation;
-use super::rotations::Rotations;
+use super::share::{BodyRotations, JointSplit, OwnJoints};
 use super::state::Joint;
 use crate::body::{Arena, Body, BodyId, JointId};
-use crate::math::{Unit, mul};
 use crate::simd::Quad;
+use crate::threads::TeamLock;
 
 /// All joints, for one tick.
 #[derive(Clone, Debug, Default)]
@@ -39,6 +39,10 @@ pub(in crate::solver) struct JointSet {
     /// For each joint in the order of the state, the constraint as which it is solved.
     entries: Vec<Entry>,
     hinges: HingeSet,
+    /// The coloured hinges of each thread.
+    parts: Vec<HingePart>,
+    /// The bodies of anchored hinges.
+    anchored: Vec<u32>,
     /// The slots of all joints that are not hinges, in the order in which they are solved, and whether they are in a
     /// block.
     others: Vec<(u32, bool)>,
@@ -49,7 +53,7 @@ pub(in crate::solver) struct JointSet {
     is_blocked: Vec<bool>,
     blocks: Blocks,
     /// The rows and points in blocks of joints that are not hinges, by slot.
-    parts: Vec<(u32, BlockedPart)>,
+    blocked_parts: Vec<(u32, BlockedPart)>,
 }
 
 /// The joints of a tick, before they are arranged.
@@ -90,12 +94,14 @@ impl JointSet {
             quads,
             entries,
             hinges,
+            parts,
+            anchored,
             others,
             list,
             candidates,
             is_blocked,
             blocks,
-            parts,
+            blocked_parts,
         } = self;
         anchors.clear();
         places.clear();
@@ -105,31 +111,36 @@ impl JointSet {
         quads.clear();
         entries.clear();
         hinges.clear();
+        parts.iter_mut().for_each(HingePart::clear);
+        anchored.clear();
         others.clear();
         list.clear();
         candidates.clear();
         is_blocked.clear();
         blocks.clear();
-        parts.clear();
+        blocked_parts.clear();
     }
 
-    /// Makes the constraints of all joints that are solved, in the order in which they are solved.
+    /// Makes the constraints of all joints that are solved, in the order in which they are solved, for `parts` threads.
     pub(in crate::solver) fn prepare(
         &mut self,
         source: &JointSource<'_>,
         list: &mut BodyList,
         colouring: &mut Colouring,
+        parts: usize,
     ) {
         let &JointSource { joints, slots, bodies, tuning } = source;
         let definitions =
-            Definitions { joints: joints.revision(), bodies: bodies.revision(), tuning: *tuning };
+            Definitions { joints: joints.revision(), bodies: bodies.revision(), tuning: *tuning, parts };
         match self.cache_key.renew(definitions, joints.returns(), slots, list.slots()) {
             Validity::All => self.resume(bodies, list),
             Validity::Arrangement => {
                 self.hinges.reload(joints);
+                self.parts.iter_mut().for_each(|part| part.reload(joints));
                 self.resume(bodies, list);
             }
             Validity::Nothing => {
+                self.parts.resize_with(parts, HingePart::default);
                 self.clear();
                 self.arrange(source, list, colouring);
                 self.sort(colouring);
@@ -155,6 +166,7 @@ impl JointSet {
             body.angle = list.poses()[body.index as usize].angle;
         }
         self.hinges.resume(list.poses());
+        self.parts.iter_mut().for_each(|part| part.resume(list.poses()));
     }
 
     /// Lists the joints and their bodies.
@@ -225,9 +237,20 @@ impl JointSet {
 
     /// Sorts the joints into colours.
     fn sort(&mut self, colouring: &mut Colouring) {
-        let JointSet { entries, hinges, others, places, bodies, is_blocked, .. } = self;
+        let JointSet {
+            entries,
+            hinges,
+            parts,
+            anchored,
+            others,
+            places,
+            bodies,
+            body_rotations,
+            is_blocked,
+            ..
+        } = self;
         let is_alone = |index: u32| bodies[places[index as usize] as usize - 1].joints == 1;
-        colouring.sort(self.body_rotations.len());
+        colouring.sort(body_rotations.len(), parts.len());
         let input_of = |&index: &u32| match entries[index as usize] {
             Entry::Hinge(input) if !is_blocked.get(index as usize).is_some_and(|&blocked| blocked) => {
                 Some(input)
@@ -235,12 +258,13 @@ impl JointSet {
             Entry::Hinge(_) | Entry::Other(_) => None,
         };
         hinges.push_overflow(colouring.overflow(false).iter().filter_map(input_of));
-        let colours = || colouring.colours(false).map(|group| group.indices);
-        for indices in colours() {
-            hinges.push_colour(indices.iter().filter_map(input_of), is_alone);
+        for (number, part) in parts.iter_mut().enumerate() {
+            for group in colouring.colours(false, number) {
+                hinges.push_colour(part, group.indices.iter().filter_map(input_of), is_alone);
+            }
+            anchored.extend(part.anchored_bodies());
         }
-        let order = core::iter::once(colouring.overflow(false)).chain(colours()).flatten();
-        others.extend(order.filter_map(|&index| match entries[index as usize] {
+        others.extend(colouring.order().iter().filter_map(|&index| match entries[index as usize] {
             Entry::Hinge(_) => None,
             Entry::Other(slot) => {
                 Some((slot, is_blocked.get(index as usize).is_some_and(|&blocked| blocked)))
@@ -273,18 +297,18 @@ impl JointSet {
 
     /// Arranges the joints in blocks.
     fn arrange_blocks(&mut self) {
-        let JointSet { blocks, hinges, list, parts, entries, candidates, .. } = self;
+        let JointSet { blocks, hinges, list, blocked_parts, entries, candidates, .. } = self;
         if blocks.is_empty() {
             return;
         }
-        list.blocked_parts(|slot, part| parts.push((slot, part)));
-        parts.sort_by_key(|&(slot, _)| slot);
+        list.blocked_parts(|slot, part| blocked_parts.push((slot, part)));
+        blocked_parts.sort_by_key(|&(slot, _)| slot);
         let number = |&joint: &u32| match entries[joint as usize] {
             Entry::Hinge(input) => Ok(hinges.push_blocked(input)),
             Entry::Other(slot) => Err(slot),
         };
         let numbers: Vec<_> = blocks.chosen().iter().map(number).collect();
-        blocks.arrange(hinges, parts, candidates, &numbers);
+        blocks.arrange(hinges, blocked_parts, candidates, &numbers);
     }
 
     /// Whether a body of the tick has a joint, by its index.
@@ -292,83 +316,27 @@ impl JointSet {
         self.places.get(index as usize).is_some_and(|&place| place != 0)
     }
 
-    /// Computes arms, gains and gaps at the current poses. Those of hinges are computed by the next operation on them.
+    /// Computes arms, gains and gaps at the current poses, with one thread.
     pub(in crate::solver) fn refresh(&mut self, context: &StepContext<'_>) {
-        if self.turning.is_empty() {
-            return;
-        }
-        let &StepContext { machine, bodies, tuning, .. } = context;
-        let JointSet { turning, body_rotations, quads, .. } = self;
-        machine.run(Rotations { turning, bodies, body_rotations, quads });
-        self.blocks.expire();
-        self.hinges.expire();
-        self.list.refresh(bodies, &self.body_rotations, tuning);
+        self.split().shares().for_each(|mut share| share.refresh(context));
     }
 
-    /// Predicts the rotations in the next sub-step from the velocities after the last one.
-    pub(in crate::solver) fn predict_rotations(&mut self, context: &StepContext<'_>) {
-        if self.turning.is_empty() {
-            return;
+    /// Divides the joints among the threads of the sub-steps.
+    pub(in crate::solver) fn split(&mut self) -> JointSplit<'_> {
+        let JointSet { turning, body_rotations, quads, hinges, parts, list, blocks, .. } = self;
+        JointSplit {
+            is_empty: turning.is_empty(),
+            own: OwnJoints { hinges, list, blocks, turning, places: &self.places, anchored: &self.anchored },
+            parts,
+            rotations: TeamLock::new(BodyRotations { body_rotations, quads }),
         }
-        let &StepContext { bodies, tuning, .. } = context;
-        let JointSet { turning, quads, hinges, places, .. } = self;
-        let mut predict = |body: &Turning, stretch: Stretch| {
-            let spin = bodies[body.index as usize].get().spin;
-            let turn = body.ahead_of(spin).clamp(-TURN_MAX, TURN_MAX);
-            let (across, squared): (Unit, Unit) = (mul(stretch.half, turn), mul(turn, turn));
-            let along: Unit = mul(stretch.sixth, squared);
-            let Quad(numbers) = &mut quads[body.index as usize];
-            [numbers[2], numbers[3]] = [across.to_bits(), along.to_bits()];
-        };
-        let [joint, anchored] = [tuning.joint, tuning.anchored].map(|softness| {
-            let stretch = softness.stretch();
-            Stretch { half: stretch / 2, sixth: stretch / 6 }
-        });
-        turning.iter().for_each(|body| predict(body, joint));
-        for index in hinges.anchored_bodies() {
-            predict(&turning[places[index as usize] as usize - 1], anchored);
-        }
-    }
-
-    pub(in crate::solver) fn warm_start(&mut self, context: &StepContext<'_>) {
-        if self.turning.is_empty() {
-            return;
-        }
-        self.list.warm_start(context);
-        self.hinges.warm_start(Poses { quads: &self.quads, body_rotations: &self.body_rotations }, context);
-        let JointSet { blocks, hinges, list, places, bodies, .. } = self;
-        blocks.start_sub_step(hinges, list, |body, spin| {
-            bodies[places[body as usize] as usize - 1].turning.ahead_of_wide(spin)
-        });
-    }
-
-    /// One iteration over all joints.
-    pub(in crate::solver) fn solve(&mut self, pass: Pass, context: &StepContext<'_>) {
-        if self.turning.is_empty() {
-            return;
-        }
-        let JointSet { list, hinges, blocks, quads, body_rotations, .. } = self;
-        list.solve(pass, context);
-        let poses = Poses { quads, body_rotations };
-        hinges.solve(pass, poses, context, |hinges| blocks.solve(pass, hinges, list, poses, context));
     }
 
     /// Stores impulses and angles for the next tick.
     pub(in crate::solver) fn store(&mut self, joints: &mut Arena<Joint, JointId>) {
         self.blocks.return_impulses(&mut self.hinges, &mut self.list);
         self.hinges.store(joints, &self.body_rotations);
+        self.parts.iter_mut().for_each(|part| part.store(joints, &self.body_rotations));
         self.list.store(joints, &self.body_rotations);
     }
 }
-
-/// Coefficients for averaging a lever ratio over a predicted rotation `t`: the ratio changes by `half t` of its length
-/// perpendicular to itself, and by `sixth t^2` of its length along itself.
-#[derive(Clone, Copy)]
-struct Stretch {
-    half: Unit,
-    sixth: Unit,
-}
-
-/// Largest predicted rotation, in radians. Beyond a quarter of a radian the third order is not better than the second,
-/// and adds energy to chains that one iteration does not solve.
-const TURN_MAX: Unit = Unit::lit("0.25");

@@ -1,8 +1,12 @@
 //! The bodies and joints that a tick simulates.
 
 use alloc::vec::Vec;
+use core::ops::Range;
+
+use smallvec::SmallVec;
 
 use crate::body::{Body, BodyKind, Handle};
+use crate::threads::part_of;
 use crate::world::state::State;
 
 /// Slots of the bodies and joints that a tick simulates, in ascending order. A cache of the state.
@@ -17,6 +21,15 @@ pub(crate) struct AwakeSet {
     is_current: bool,
     /// Whether the world may have kinematic bodies. Never false while there is one.
     may_have_kinematic: bool,
+}
+
+/// The awake bodies of one thread.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SlotShare<'a> {
+    /// Slots of the bodies.
+    pub(crate) bodies: &'a [u32],
+    /// The ends of the ranges of slots of bodies and of shapes.
+    pub(crate) ends: [u32; 2],
 }
 
 impl AwakeSet {
@@ -66,6 +79,21 @@ impl AwakeSet {
     /// Slots of the bodies.
     pub(crate) fn bodies(&self) -> &[u32] {
         &self.bodies
+    }
+
+    /// Divides the bodies among `count` threads, each with a range of slots of bodies and of shapes. The shapes of a body
+    /// may be outside of the range of its thread.
+    pub(crate) fn shares(&self, state: &State, count: usize) -> SmallVec<[SlotShare<'_>; 1]> {
+        let mut shape_end = 0;
+        let mut share = |number: usize| {
+            let Range { start, end } = part_of(self.bodies.len(), 1, number, count);
+            let next = if number + 1 == count { None } else { self.bodies.get(end) };
+            let first_shape = next.and_then(|&slot| state.bodies.at(slot).shapes().first());
+            shape_end = first_shape.map_or(shape_end, |id| id.slot().max(shape_end));
+            let ends = next.map_or([u32::MAX; 2], |&slot| [slot, shape_end]);
+            SlotShare { bodies: &self.bodies[start..end], ends }
+        };
+        (0..count).map(&mut share).collect()
     }
 
     /// Slots of the joints.

@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use crate::collision::{BoxPairs, CachedAxis, Contact, Impact, Manifold, SatCounters};
 use crate::solver::ActiveContact;
+use crate::threads::Threads;
 use crate::world::events::HitEvent;
 
 /// Cache of the narrow phase. Manifolds and axes are indexed by a contact's place in the state, and so become invalid
@@ -12,7 +13,7 @@ use crate::world::events::HitEvent;
 pub(crate) struct ContactCache {
     /// Output of the last narrow phase.
     output: NarrowPhaseOutput,
-    /// Output of each job of a narrow phase.
+    /// Output of each thread of a narrow phase.
     parts: Vec<NarrowPhaseOutput>,
     /// For each contact of the state, the axis that separated its shapes in the last tick. May be shorter or longer
     /// than the list of contacts: contacts without an entry have no cached axis.
@@ -27,14 +28,16 @@ pub(crate) struct ContactCache {
 pub(crate) struct NarrowPhaseBuffers<'a> {
     /// For each contact, the axis that separated its shapes in the last tick.
     pub(crate) axes: &'a mut [CachedAxis],
-    /// An empty output for each job.
+    /// An empty output for each thread.
     pub(crate) parts: &'a mut [NarrowPhaseOutput],
     /// The touching pairs of the last tick whose surfaces are still valid, sorted by pair.
     pub(crate) touched: &'a [ActiveContact],
 }
 
-/// Output of the narrow phase, or of one of its jobs, in the order of contacts.
+/// Output of the narrow phase, or of one of its threads, in the order of contacts. Aligned, so that no two threads write
+/// the same cache line.
 #[derive(Clone, Debug, Default)]
+#[repr(align(128))]
 pub(crate) struct NarrowPhaseOutput {
     /// Manifolds with at least one point.
     pub(crate) manifolds: Vec<Manifold>,
@@ -98,26 +101,29 @@ impl ContactCache {
         &mut self.axes
     }
 
-    /// Starts a narrow phase over `contact_count` contacts with at least one job.
-    pub(crate) fn begin(&mut self, contact_count: usize, job_count: usize) -> NarrowPhaseBuffers<'_> {
+    /// Starts a narrow phase over `contact_count` contacts with at least one part.
+    pub(crate) fn begin(&mut self, contact_count: usize, part_count: usize) -> NarrowPhaseBuffers<'_> {
         let ContactCache { output, parts, axes, touched, surfaces_changed } = self;
         axes.resize(contact_count, CachedAxis::default());
         core::mem::swap(&mut output.touching, touched);
         if core::mem::take(surfaces_changed) {
             touched.clear();
         }
-        parts.resize_with(job_count, NarrowPhaseOutput::default);
-        // The memory of the last output is reused for the first job.
-        core::mem::swap(&mut parts[0], output);
+        parts.resize_with(part_count, NarrowPhaseOutput::default);
+        if let [only] = &mut **parts {
+            core::mem::swap(only, output);
+        }
         parts.iter_mut().for_each(NarrowPhaseOutput::clear);
         NarrowPhaseBuffers { axes, parts, touched }
     }
 
-    /// Joins the outputs of the jobs in order.
-    pub(crate) fn finish(&mut self) {
+    /// Joins the outputs of the parts in order.
+    pub(crate) fn finish(&mut self, threads: &Threads) {
         let ContactCache { output, parts, .. } = self;
-        core::mem::swap(&mut parts[0], output);
-        parts[1..].iter().for_each(|part| output.append(part));
+        match &mut **parts {
+            [only] => core::mem::swap(only, output),
+            parts => output.join(parts, threads),
+        }
     }
 
     /// Makes room for a contact without a manifold that is inserted into the list of contacts at `index`.
@@ -181,27 +187,81 @@ impl NarrowPhaseOutput {
         self.sat = SatCounters::default();
     }
 
-    /// Appends the output of the next job.
-    fn append(&mut self, next: &NarrowPhaseOutput) {
-        let first = self.next_manifold();
-        let touching = next.touching.iter();
-        self.touching.extend(touching.map(|pair| ActiveContact { manifold: first + pair.manifold, ..*pair }));
-        let impacts = u32::try_from(self.impacts.len()).expect("fewer than 2^32 contacts");
-        self.manifolds.extend_from_slice(&next.manifolds);
-        for manifold in &mut self.manifolds[first as usize..] {
-            if manifold.impact > 0 {
-                manifold.impact += impacts;
+    /// Joins the outputs of several parts in order. Each thread copies the output that it has written.
+    fn join(&mut self, parts: &[Self], threads: &Threads) {
+        let NarrowPhaseOutput { manifolds, impacts, contacts, touching, approaches, sat, boxes: _ } = self;
+        impacts.clear();
+        approaches.clear();
+        *sat = SatCounters::default();
+        make_room(manifolds, parts.iter().map(|part| &*part.manifolds));
+        make_room(contacts, parts.iter().map(|part| &*part.contacts));
+        make_room(touching, parts.iter().map(|part| &*part.touching));
+        let (mut manifolds, mut contacts, mut touching) =
+            (&mut manifolds[..], &mut contacts[..], &mut touching[..]);
+        let mut first_manifold = 0;
+        let copies = parts.iter().map(|part| {
+            let copy = Copy {
+                part,
+                first_manifold,
+                first_impact: count(impacts),
+                manifolds: split_off(&mut manifolds, part.manifolds.len()),
+                contacts: split_off(&mut contacts, part.contacts.len()),
+                touching: split_off(&mut touching, part.touching.len()),
+            };
+            first_manifold += count(&part.manifolds);
+            impacts.extend_from_slice(&part.impacts);
+            approaches.extend_from_slice(&part.approaches);
+            sat.cached_axis_hits += part.sat.cached_axis_hits;
+            sat.searches += part.sat.searches;
+            copy
+        });
+        threads.run_team(copies, |copy, _| {
+            copy.run();
+            0
+        });
+    }
+}
+
+/// The output of a part, and its place in the output of the narrow phase.
+struct Copy<'a> {
+    part: &'a NarrowPhaseOutput,
+    first_manifold: u32,
+    first_impact: u32,
+    manifolds: &'a mut [Manifold],
+    contacts: &'a mut [u32],
+    touching: &'a mut [ActiveContact],
+}
+
+impl Copy<'_> {
+    fn run(self) {
+        self.contacts.copy_from_slice(&self.part.contacts);
+        for (to, from) in self.manifolds.iter_mut().zip(&self.part.manifolds) {
+            *to = *from;
+            if to.impact > 0 {
+                to.impact += self.first_impact;
             }
         }
-        self.impacts.extend_from_slice(&next.impacts);
-        self.contacts.extend_from_slice(&next.contacts);
-        self.approaches.extend_from_slice(&next.approaches);
-        self.sat.cached_axis_hits += next.sat.cached_axis_hits;
-        self.sat.searches += next.sat.searches;
+        for (to, from) in self.touching.iter_mut().zip(&self.part.touching) {
+            *to = ActiveContact { manifold: self.first_manifold + from.manifold, ..*from };
+        }
     }
+}
 
-    /// Index of the next manifold.
-    fn next_manifold(&self) -> u32 {
-        u32::try_from(self.manifolds.len()).expect("fewer than 2^32 contacts")
+/// Sets the length of a list to that of all parts.
+fn make_room<'a, T: Clone + 'a>(list: &mut Vec<T>, parts: impl Iterator<Item = &'a [T]> + Clone) {
+    match parts.clone().find_map(<[T]>::first) {
+        None => list.clear(),
+        Some(filler) => list.resize(parts.map(<[T]>::len).sum(), filler.clone()),
     }
+}
+
+/// Removes the first elements of a slice and returns them.
+fn split_off<'a, T>(rest: &mut &'a mut [T], len: usize) -> &'a mut [T] {
+    let (first, others) = core::mem::take(rest).split_at_mut(len);
+    *rest = others;
+    first
+}
+
+fn count<T>(list: &[T]) -> u32 {
+    u32::try_from(list.len()).expect("fewer than 2^32 contacts")
 }

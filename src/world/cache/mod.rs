@@ -20,22 +20,24 @@ mod joint_links;
 mod meter;
 mod motion;
 mod pairs;
+mod pose_part;
 mod poses;
 mod results;
 mod shapes;
 mod union_find;
 
-pub(crate) use awake::{AwakeSet, is_awake};
+pub(crate) use awake::{AwakeSet, SlotShare, is_awake};
 pub(crate) use changes::Changes;
 pub(crate) use contacts::{ContactCache, NarrowPhaseBuffers, NarrowPhaseOutput, PendingHit};
 pub(crate) use joint_links::JointLinks;
 pub(crate) use meter::{WorkMeter, pair_work};
 pub(crate) use motion::{
-    ClosingBound, GHOST_TRAVEL_MIN, Margins, MotionCache, PredictedMotion, ShapeMotion, Travel,
+    ClosingBound, GHOST_TRAVEL_MIN, Margins, MotionCache, MotionPart, PredictedMotion, ShapeMotion, Travel,
 };
 pub(crate) use pairs::{MergedContacts, NonCollidingPairs, PairCache, merge_sorted};
+pub(crate) use pose_part::PosePart;
 pub(crate) use poses::{Extents, Poses};
-pub(crate) use results::{Sweeps, SweptBody, TickResults};
+pub(crate) use results::{Finalised, Outgrown, Predicted, Sweeps, SweptBody, TickResults};
 pub(crate) use shapes::ShapeCache;
 pub(crate) use union_find::UnionFind;
 
@@ -57,6 +59,10 @@ pub(crate) struct Scratch {
     pub(crate) union: UnionFind,
     /// Buffer for the shapes in areas: slots of the body, the area and the shape.
     pub(crate) area_visitors: Vec<[u32; 3]>,
+    /// Buffers of the threads that predict motion.
+    pub(crate) predicted: Vec<Predicted>,
+    /// Buffers of the threads that move bodies.
+    pub(crate) finalised: Vec<Finalised>,
     /// Buffers for continuous collision.
     pub(crate) sweeps: Sweeps,
     pub(crate) solver: Solver,
@@ -76,6 +82,8 @@ impl Scratch {
             contacts: ContactCache::new(),
             union: UnionFind::default(),
             area_visitors: Vec::new(),
+            predicted: Vec::new(),
+            finalised: Vec::new(),
             sweeps: Sweeps::default(),
             solver: Solver::default(),
             results: TickResults::default(),

@@ -10,6 +10,7 @@ use crate::collision::{PosedShape, arm_of, margin_for, may_meet};
 use crate::fx;
 use crate::math::{Aabb, Fx, Length, Reciprocal, Speed, Step, Unit, Vec2, fx_mul, narrow, saturate, widen};
 use crate::simd::prefetch;
+use crate::threads::split_at_ends;
 use crate::world::config::Config;
 use fixed::FixedI32;
 use fixed::types::extra::{U16, U24};
@@ -130,6 +131,19 @@ impl ShapeMotion {
         }
     }
 
+    /// Sets the bounds of a shape that has been moved.
+    #[inline]
+    pub(super) fn set_bounds(&mut self, bounds: Aabb) {
+        (self.bounds, self.slack) = (bounds, slack_of(bounds));
+    }
+
+    /// Sets the predicted motion: the translation of its body, and how far the body's rotation moves any of its points,
+    /// in metres.
+    #[inline]
+    pub(crate) fn set_motion(&mut self, motion: &PredictedMotion, turn: Fx) {
+        (self.shift, self.turn) = (motion.shift, narrow(turn));
+    }
+
     /// The centre of the bounds, which is the centre of a shape that is a box.
     #[inline]
     pub(crate) fn centre(&self) -> Vec2<Fx> {
@@ -151,6 +165,36 @@ impl ShapeMotion {
         let apart = |a: Travel, b: Travel| (i64::from(b.to_bits()) - i64::from(a.to_bits())).abs();
         let shift = apart(self.shift.x, other.shift.x) + apart(self.shift.y, other.shift.y);
         Travel::from_bits(saturate(shift + i64::from(self.turn.to_bits()) + i64::from(other.turn.to_bits())))
+    }
+}
+
+/// Bounds and predicted motion of the bodies and shapes in ranges of slots.
+pub(crate) struct MotionPart<'a> {
+    /// The first slot of each range.
+    first_body: u32,
+    bodies: &'a mut [PredictedMotion],
+    first_shape: u32,
+    shapes: &'a mut [ShapeMotion],
+}
+
+impl MotionPart<'_> {
+    /// Whether a body and all of its shapes are in the ranges.
+    pub(crate) fn holds(&self, slot: u32, body: &Body) -> bool {
+        let holds = |first: u32, len: usize, slot: u32| slot >= first && ((slot - first) as usize) < len;
+        holds(self.first_body, self.bodies.len(), slot)
+            && body.shapes().iter().all(|id| holds(self.first_shape, self.shapes.len(), id.slot()))
+    }
+
+    /// The motion of a body of the range.
+    #[inline]
+    pub(crate) fn body_mut(&mut self, slot: u32) -> &mut PredictedMotion {
+        &mut self.bodies[(slot - self.first_body) as usize]
+    }
+
+    /// A shape of the range.
+    #[inline]
+    pub(crate) fn shape_mut(&mut self, slot: u32) -> &mut ShapeMotion {
+        &mut self.shapes[(slot - self.first_shape) as usize]
     }
 }
 
@@ -227,18 +271,18 @@ pub(crate) struct MotionCache {
     shapes: Vec<ShapeMotion>,
     /// Slots of the bodies that move.
     moving_bodies: Vec<u32>,
-    moving_shapes: Vec<u32>,
     /// Whether there may be a sensor. Never false while there is one.
     may_have_sensors: bool,
 }
 
 impl MotionCache {
-    /// Starts a tick: nothing moves, and there are `body_slots` slots for bodies.
-    pub(super) fn begin(&mut self, body_slots: usize) {
+    /// Starts a tick: nothing moves, and there are `body_slots` slots for bodies. `last_moving` lists the shapes whose
+    /// motion was predicted for the last tick.
+    pub(super) fn begin(&mut self, body_slots: usize, last_moving: impl Iterator<Item = u32>) {
         for slot in self.moving_bodies.drain(..) {
             self.bodies[slot as usize] = PredictedMotion::default();
         }
-        for slot in self.moving_shapes.drain(..) {
+        for slot in last_moving {
             let shape = &mut self.shapes[slot as usize];
             (shape.shift, shape.turn) = (Vec2::ZERO, Travel::ZERO);
         }
@@ -254,21 +298,40 @@ impl MotionCache {
         self.may_have_sensors |= shape.is_sensor();
     }
 
-    /// Sets the bounds of a shape that has been moved.
-    pub(super) fn set_bounds(&mut self, shape: u32, bounds: Aabb) {
-        let shape = &mut self.shapes[shape as usize];
-        (shape.bounds, shape.slack) = (bounds, slack_of(bounds));
+    /// Divides the shapes into ranges of slots, which end at the given slots.
+    pub(super) fn split_shapes(
+        &mut self,
+        ends: impl Iterator<Item = usize>,
+    ) -> impl Iterator<Item = &mut [ShapeMotion]> {
+        split_at_ends(&mut self.shapes, ends)
     }
 
-    pub(super) fn set_motion(&mut self, body: u32, motion: PredictedMotion) {
-        self.bodies[body as usize] = motion;
-        self.moving_bodies.push(body);
+    /// Divides bodies and shapes into ranges of slots, for threads that predict their motion. Each range ends at the
+    /// given slots of a body and of a shape.
+    pub(crate) fn split(
+        &mut self,
+        ends: impl Iterator<Item = [u32; 2]> + Clone,
+    ) -> impl Iterator<Item = MotionPart<'_>> {
+        let firsts = core::iter::once([0, 0]).chain(ends.clone());
+        let bodies = split_at_ends(&mut self.bodies, ends.clone().map(|[body, _]| body as usize));
+        let shapes = split_at_ends(&mut self.shapes, ends.map(|[_, shape]| shape as usize));
+        let parts = firsts.zip(bodies).zip(shapes);
+        parts.map(|(([first_body, first_shape], bodies), shapes)| MotionPart {
+            first_body,
+            bodies,
+            first_shape,
+            shapes,
+        })
     }
 
-    pub(super) fn set_shape_motion(&mut self, slot: u32, shift: Vec2<Travel>, turn: Fx) {
-        let shape = &mut self.shapes[slot as usize];
-        (shape.shift, shape.turn) = (shift, narrow(turn));
-        self.moving_shapes.push(slot);
+    /// All bodies and shapes.
+    pub(crate) fn whole(&mut self) -> MotionPart<'_> {
+        MotionPart { first_body: 0, bodies: &mut self.bodies, first_shape: 0, shapes: &mut self.shapes }
+    }
+
+    /// Lists bodies whose motion has been predicted, for the next tick.
+    pub(super) fn bodies_move(&mut self, bodies: &[u32]) {
+        self.moving_bodies.extend_from_slice(bodies);
     }
 
     /// Whether the world may have sensors.

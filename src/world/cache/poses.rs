@@ -1,14 +1,15 @@
 //! The shapes of the world in world axes.
 
 use alloc::vec::Vec;
-use core::cell::LazyCell;
 
 use super::motion::MotionCache;
+use super::pose_part::PosePart;
 use crate::body::{Body, Geometry, Handle};
 use crate::collision::{PosedShape, SmallBoxes};
 use crate::fx;
-use crate::math::{Aabb, Fx, Vec2};
+use crate::math::{Aabb, Fx};
 use crate::simd::prefetch;
+use crate::threads::split_at_ends;
 use crate::world::state::State;
 
 /// Shapes in world axes, by shape slot. A cache of the state.
@@ -76,33 +77,22 @@ impl Poses {
         self.extents[slot as usize] = Extents::of(state, body);
     }
 
-    /// Poses the shapes of a body again after it was translated but not rotated, like most falling and resting bodies.
-    pub(crate) fn shift_body(&mut self, body: &Body, by: Vec2<Fx>) {
-        for &id in body.shapes() {
-            let posed =
-                self.shapes[id.slot() as usize].as_mut().expect("every shape is posed when it is added");
-            posed.shift(by);
-            self.motion.set_bounds(id.slot(), posed.bounds);
-        }
+    /// Divides the shapes into ranges of slots, which end at the given slots. Returns the extents of all bodies as well.
+    pub(crate) fn split(
+        &mut self,
+        ends: impl Iterator<Item = u32> + Clone,
+    ) -> (impl Iterator<Item = PosePart<'_>>, &[Extents]) {
+        let Poses { shapes, motion, boxes, extents } = self;
+        let firsts = core::iter::once(0).chain(ends.clone());
+        let ends = ends.map(|end| end as usize);
+        let shapes = split_at_ends(shapes, ends.clone()).zip(motion.split_shapes(ends.clone()));
+        let parts = firsts.zip(shapes).zip(boxes.split(ends));
+        (parts.map(|((first, (shapes, motion)), boxes)| PosePart { first, shapes, motion, boxes }), extents)
     }
 
-    /// Poses the shapes of a body again after it was moved.
-    pub(crate) fn move_body(&mut self, state: &State, body: &Body) {
-        let rotation = LazyCell::new(|| body.rotation());
-        for &id in body.shapes() {
-            let posed =
-                self.shapes[id.slot() as usize].as_mut().expect("every shape is posed when it is added");
-            if let Some(faces) = self.boxes.turn(id.slot(), &rotation) {
-                posed.turn_box(&faces, body.centre);
-            } else if self.motion.shape(id.slot()).disc {
-                // Without reading the definition of the shape, a random access.
-                posed.shift(body.centre.wrapping_sub(posed.centre));
-            } else {
-                posed.renew(&state.shapes.at(id.slot()).def, body, &rotation);
-                self.boxes.renew(id.slot(), posed);
-            }
-            self.motion.set_bounds(id.slot(), posed.bounds);
-        }
+    /// All shapes.
+    pub(crate) fn whole(&mut self) -> PosePart<'_> {
+        self.split(core::iter::once(u32::MAX)).0.next().expect("a part for each end")
     }
 
     /// Whether a shape has been posed.
@@ -123,6 +113,11 @@ impl Poses {
 
     pub(super) fn motion_mut(&mut self) -> &mut MotionCache {
         &mut self.motion
+    }
+
+    /// The motion of bodies and shapes, and the extents of bodies by slot.
+    pub(super) fn motion_and_extents(&mut self) -> (&mut MotionCache, &[Extents]) {
+        (&mut self.motion, &self.extents)
     }
 
     /// The small boxes in the layout of the SIMD kernel.

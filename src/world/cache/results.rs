@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use crate::body::Pose;
 use crate::collision::Sweep;
+use crate::math::Aabb;
 use crate::world::events::Events;
 use crate::world::stats::StepStats;
 
@@ -18,6 +19,73 @@ impl TickResults {
     pub(crate) fn clear(&mut self) {
         self.events.clear();
         self.stats = StepStats::default();
+    }
+}
+
+/// What a thread finds when it predicts the motion of its bodies. Aligned, so that no two threads write the same cache
+/// line.
+#[derive(Clone, Debug, Default)]
+#[repr(align(128))]
+pub(crate) struct Predicted {
+    /// Slots of the shapes that move. They are kept until the next tick.
+    pub(crate) moving: Vec<u32>,
+    pub(crate) outgrown: Vec<Outgrown>,
+    /// Slots of the bodies of which a shape is in the range of another thread.
+    pub(crate) others: Vec<u32>,
+}
+
+impl Predicted {
+    pub(crate) fn clear(&mut self) {
+        let Predicted { moving, outgrown, others } = self;
+        moving.clear();
+        outgrown.clear();
+        others.clear();
+    }
+}
+
+/// A shape that needs a new fat box.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Outgrown {
+    /// Slot of the shape.
+    pub(crate) shape: u32,
+    pub(crate) fat: Aabb,
+    /// Whether its body is active.
+    pub(crate) is_active: bool,
+}
+
+/// What a thread finds when it moves its bodies to the poses of the solver. Aligned like [`Predicted`].
+#[derive(Clone, Debug, Default)]
+#[repr(align(128))]
+pub(crate) struct Finalised {
+    /// Kinematic bodies that have stopped.
+    pub(crate) settled: Vec<u32>,
+    /// Shapes that have left their fat box.
+    pub(crate) left_boxes: Vec<u32>,
+    /// Fast bodies that only fixed bodies stop.
+    pub(crate) swept: Vec<SweptBody>,
+    /// The poses at which these bodies stop.
+    pub(crate) moved: Vec<(u32, Pose)>,
+    /// Number of these bodies that were stopped.
+    pub(crate) impacts: u32,
+    /// Bodies that may be fast relative to kinematic bodies.
+    pub(crate) relative: Vec<SweptBody>,
+    /// Fast bullets.
+    pub(crate) bullets: Vec<SweptBody>,
+    /// Bodies of which a shape is in the range of another thread, and their poses. They have not been moved.
+    pub(crate) others: Vec<(u32, Pose)>,
+}
+
+impl Finalised {
+    pub(crate) fn clear(&mut self) {
+        let Finalised { settled, left_boxes, swept, moved, impacts, relative, bullets, others } = self;
+        settled.clear();
+        left_boxes.clear();
+        swept.clear();
+        moved.clear();
+        *impacts = 0;
+        relative.clear();
+        bullets.clear();
+        others.clear();
     }
 }
 

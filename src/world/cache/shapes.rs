@@ -2,8 +2,9 @@
 
 use alloc::vec::Vec;
 
-use super::motion::{MotionCache, PredictedMotion};
-use super::poses::Poses;
+use super::motion::MotionCache;
+use super::pose_part::PosePart;
+use super::poses::{Extents, Poses};
 use crate::body::{Body, BodyKind, Handle, Shape, ShapeId};
 use crate::collision::{BroadPhase, BroadPhaseKind, Moved, Pair};
 use crate::math::{Aabb, Fx, Vec2};
@@ -67,23 +68,30 @@ impl ShapeCache {
     }
 
     /// Starts the prediction of motion for a tick. Until its motion is set, a body does not move. Drops queued fat
-    /// boxes.
-    pub(crate) fn begin_prediction(&mut self, body_slots: usize) {
+    /// boxes. `last_moving` lists the shapes whose motion was predicted for the last tick.
+    pub(crate) fn begin_prediction(&mut self, body_slots: usize, last_moving: impl Iterator<Item = u32>) {
         self.refits.clear();
-        self.poses.motion_mut().begin(body_slots);
+        self.poses.motion_mut().begin(body_slots, last_moving);
     }
 
-    /// Sets the predicted motion of a body.
-    #[inline]
-    pub(crate) fn set_body_motion(&mut self, body: u32, motion: PredictedMotion) {
-        self.poses.motion_mut().set_motion(body, motion);
+    /// The motion of bodies and shapes, and what its prediction reads beside it.
+    pub(crate) fn prediction(&mut self) -> (&mut MotionCache, &[Extents], &BroadPhase) {
+        let (motion, extents) = self.poses.motion_and_extents();
+        (motion, extents, &self.broad_phase)
     }
 
-    /// Sets the predicted motion of a shape: the translation of its body, and how far the body's rotation moves any of
-    /// its points, in metres.
-    #[inline]
-    pub(crate) fn set_shape_motion(&mut self, shape: u32, motion: &PredictedMotion, turn: Fx) {
-        self.poses.motion_mut().set_shape_motion(shape, motion.shift, turn);
+    /// Lists bodies whose motion has been predicted.
+    pub(crate) fn bodies_move(&mut self, bodies: &[u32]) {
+        self.poses.motion_mut().bodies_move(bodies);
+    }
+
+    /// Divides the shapes into ranges of slots: see [`Poses::split`].
+    pub(crate) fn split(
+        &mut self,
+        ends: impl Iterator<Item = u32> + Clone,
+    ) -> (impl Iterator<Item = PosePart<'_>>, &[Extents], &BroadPhase) {
+        let (parts, extents) = self.poses.split(ends);
+        (parts, extents, &self.broad_phase)
     }
 
     /// Queues a new fat box for a shape.
@@ -102,14 +110,9 @@ impl ShapeCache {
         self.broad_phase.set(shape, fat);
     }
 
-    /// Poses the shapes of a body again after it was translated and not rotated.
-    pub(crate) fn shift_body(&mut self, body: &Body, by: Vec2<Fx>) {
-        self.poses.shift_body(body, by);
-    }
-
-    /// Poses the shapes of a body again after it was moved.
-    pub(crate) fn move_body(&mut self, state: &State, body: &Body) {
-        self.poses.move_body(state, body);
+    /// All shapes in world axes.
+    pub(crate) fn whole(&mut self) -> PosePart<'_> {
+        self.poses.whole()
     }
 
     /// Poses the shapes of a body that was added, changed or moved by hand, and takes over their fat boxes.
@@ -147,13 +150,13 @@ impl ShapeCache {
         let is_posed = |poses: &Poses, body: &Body| body.shapes().iter().all(|id| poses.has(id.slot()));
         for body in moved.iter().map(|&slot| state.bodies.at(slot)) {
             if is_posed(&self.poses, body) {
-                self.poses.move_body(state, body);
+                self.poses.whole().renew_body(&state.shapes, body);
             }
         }
         for &(slot, by) in shifted {
             let body = state.bodies.at(slot);
             if is_posed(&self.poses, body) {
-                self.poses.shift_body(body, by);
+                self.poses.whole().shift_body(body, by);
             }
         }
         for &slot in redefined {

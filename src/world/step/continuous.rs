@@ -15,7 +15,7 @@ use crate::body::{Body, BodyKind, Continuous, Handle, Pose, WORLD_EXTENT_MAX};
 use crate::collision::{SupportShape, Sweep, TimeOfImpact, time_of_impact};
 use crate::fx;
 use crate::math::{Aabb, Angle, Fx, Rot, Vec2, fx_mul};
-use crate::world::cache::{Scratch, SweptBody, WorkMeter};
+use crate::world::cache::{Extents, Scratch, SweptBody, WorkMeter};
 use crate::world::movement::move_body;
 use crate::world::state::State;
 
@@ -31,17 +31,15 @@ const VISITS_PER_WORK: u64 = 8;
 /// Returns the sweep of a body if it moves so far that it may pass through a shape: if any of its points moves further
 /// than half of the inner radius of its thinnest shape. `turn` is its rotation in units of 2^-32 turns.
 pub(super) fn swept_body(
-    state: &State,
-    scratch: &Scratch,
     slot: u32,
-    end: Pose,
-    turn: i64,
+    body: &Body,
+    extents: &Extents,
+    (end, turn): (Pose, i64),
+    may_have_kinematic: bool,
 ) -> Option<SweptBody> {
-    let body = state.bodies.at(slot);
-    if !state.config.continuous || !body.is_dynamic() || body.settings.continuous == Continuous::Off {
+    if !body.is_dynamic() || body.settings.continuous == Continuous::Off {
         return None;
     }
-    let extents = scratch.shapes.poses().extents(slot);
     let limit = SWEPT_MIN.max(extents.core / 2);
     let shift = end.centre - body.centre;
     let turned = match turn {
@@ -49,7 +47,7 @@ pub(super) fn swept_body(
         _ => fx_mul(Angle::turns_to_radians(turn).saturating_abs(), extents.reach),
     };
     let is_fast = shift.is_longer_than(limit.saturating_sub(turned));
-    let may_be_relative = sees_kinematic(body) && scratch.awake.may_have_kinematic();
+    let may_be_relative = sees_kinematic(body) && may_have_kinematic;
     (is_fast || may_be_relative).then_some(SweptBody {
         slot,
         sweep: Sweep { start: body.centre, end: end.centre, turn },
@@ -79,11 +77,21 @@ fn carried(sweep: &Sweep, point: Vec2<Fx>, fraction: Fx) -> Vec2<Fx> {
 /// Moves a fast body along its sweep to the end or to the first impact.
 pub(super) fn sweep(state: &mut State, scratch: &mut Scratch, swept: &SweptBody) {
     let mut meter = scratch.meter;
-    let impact = first_impact(state, scratch, swept, &mut meter);
+    let (pose, is_impact) = swept_pose(state, scratch, swept, &mut meter);
     scratch.meter = meter;
-    let pose = impact.map_or(swept.end, |impact| pose_after(state, scratch, swept, impact));
-    scratch.results.stats.impacts += u32::from(impact.is_some());
+    scratch.results.stats.impacts += u32::from(is_impact);
     move_body(state, scratch, swept.slot, pose);
+}
+
+/// The pose of a fast body at the end of its sweep or after the first impact, and whether there is an impact.
+pub(super) fn swept_pose(
+    state: &State,
+    scratch: &Scratch,
+    swept: &SweptBody,
+    meter: &mut WorkMeter,
+) -> (Pose, bool) {
+    let impact = first_impact(state, scratch, swept, meter);
+    (impact.map_or(swept.end, |impact| pose_after(state, scratch, swept, impact)), impact.is_some())
 }
 
 /// An obstacle that stops a body. The order is by fraction, then by slot.

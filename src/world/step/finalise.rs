@@ -1,35 +1,32 @@
 //! Copies the solver's velocities and poses to the state.
 
 use super::continuous;
-use crate::body::{BodyKind, Pose, WORLD_EXTENT_MAX};
+use crate::body::{Arena, ArenaPart, Body, BodyKind, Handle, Pose, Shape, ShapeId, WORLD_EXTENT_MAX};
+use crate::collision::BroadPhase;
 use crate::math::{Angle, Fx, Vec2};
-use crate::solver::{SolverBody, turn_of};
-use crate::world::cache::Scratch;
-use crate::world::movement::move_body;
+use crate::solver::{Faults, Solver, SolverBody, turn_of};
+use crate::threads::split_at_ends;
+use crate::world::cache::{Extents, Finalised, PosePart, Scratch, SweptBody};
+use crate::world::movement::{cover_shape, move_body};
 use crate::world::state::State;
 
 /// Moves the awake bodies to the poses that the solver has computed, and fast bodies as far as nothing stops them.
 pub(super) fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
     scratch.results.stats.impacts = 0;
-    scratch.sweeps.starts.clear();
     scratch.sweeps.relative.clear();
     scratch.sweeps.bullets.clear();
     scratch.sweeps.left_boxes.clear();
-    for index in 0..scratch.awake.bodies().len() {
-        let slot = scratch.awake.bodies()[index];
-        let body = state.bodies.at(slot);
-        scratch.sweeps.starts.push(Pose { centre: body.centre, angle: body.angle });
-        let end = finalise_body(state, scratch, slot);
-        match continuous::swept_body(state, scratch, slot, end.pose, end.turn) {
-            None => move_body(state, scratch, slot, end.pose),
-            Some(fast) if continuous::is_bullet(state.bodies.at(slot)) => scratch.sweeps.bullets.push(fast),
-            Some(fast) if continuous::sees_kinematic(state.bodies.at(slot)) => {
-                scratch.sweeps.relative.push(fast)
-            }
-            // Only fixed bodies stop this body, so that it need not wait for all other bodies.
-            Some(fast) => continuous::sweep(state, scratch, &fast),
-        }
+    let starts = scratch.awake.bodies().len();
+    scratch.sweeps.starts.resize(starts, Pose { centre: Vec2::ZERO, angle: Angle::ZERO });
+    scratch.solver.faults +=
+        run_parts(state, scratch, |part, slots, sources| part.finalise_bodies(slots, sources));
+    if scratch.solver.parts > 1 {
+        sweep_bodies(state, scratch);
+        run_parts(state, scratch, |part, _, sources| part.move_stopped(sources));
     }
+    let finalised = core::mem::take(&mut scratch.finalised);
+    finalised.iter().for_each(|finalised| complete(state, scratch, finalised));
+    scratch.finalised = finalised;
     for index in 0..scratch.sweeps.relative.len() {
         let body = scratch.sweeps.relative[index];
         continuous::sweep(state, scratch, &body);
@@ -41,6 +38,145 @@ pub(super) fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
     }
 }
 
+/// Lets each thread work on its bodies and shapes. Returns the sum of the results.
+fn run_parts(
+    state: &mut State,
+    scratch: &mut Scratch,
+    work: impl Fn(&mut Part<'_>, &[u32], &Sources<'_>) -> Faults + Sync,
+) -> Faults {
+    let Scratch { awake, shapes: cache, solver, finalised, sweeps, .. } = scratch;
+    let shares = awake.shares(state, solver.parts);
+    finalised.resize_with(shares.len(), Finalised::default);
+    let starts = shares.iter().scan(0, |end, share| {
+        *end += share.bodies.len();
+        Some(*end)
+    });
+    let starts = split_at_ends(&mut sweeps.starts, starts);
+    let State { bodies, shapes, config, .. } = state;
+    let bodies = bodies.split(shares.iter().map(|share| share.ends[0]));
+    let (poses, extents, broad_phase) = cache.split(shares.iter().map(|share| share.ends[1]));
+    let is_continuous = config.continuous;
+    let may_have_kinematic = awake.may_have_kinematic();
+    let sources = Sources { shapes, solver, extents, broad_phase, is_continuous, may_have_kinematic };
+    let parts = shares.iter().zip(bodies).zip(poses).zip(starts).zip(finalised);
+    solver.threads.run_team(parts, |((((share, bodies), poses), starts), finalised), _| {
+        work(&mut Part { bodies, poses, starts, finalised }, share.bodies, &sources)
+    })
+}
+
+/// Sweeps the fast bodies that only fixed bodies stop, so that they need not wait for all other bodies, each thread its
+/// own.
+fn sweep_bodies(state: &State, scratch: &mut Scratch) {
+    let mut finalised = core::mem::take(&mut scratch.finalised);
+    if finalised.iter().any(|finalised| !finalised.swept.is_empty()) {
+        let meter = scratch.meter;
+        let source = &*scratch;
+        let spent = source.solver.threads.run_team(finalised.iter_mut(), |finalised, _| {
+            let mut own = meter;
+            for swept in finalised.swept.drain(..) {
+                let (pose, is_impact) = continuous::swept_pose(state, source, &swept, &mut own);
+                finalised.moved.push((swept.slot, pose));
+                finalised.impacts += u32::from(is_impact);
+            }
+            own.spent() - meter.spent()
+        });
+        scratch.meter.spend(spent);
+    }
+    scratch.finalised = finalised;
+}
+
+/// Data that all threads read.
+struct Sources<'a> {
+    shapes: &'a Arena<Shape, ShapeId>,
+    solver: &'a Solver,
+    /// By body slot.
+    extents: &'a [Extents],
+    broad_phase: &'a BroadPhase,
+    is_continuous: bool,
+    may_have_kinematic: bool,
+}
+
+/// The bodies and shapes that a thread moves.
+struct Part<'a> {
+    bodies: ArenaPart<'a, Body>,
+    poses: PosePart<'a>,
+    /// The pose of each of the awake bodies at the start of the tick.
+    starts: &'a mut [Pose],
+    finalised: &'a mut Finalised,
+}
+
+impl Part<'_> {
+    /// Copies the velocities of bodies from the solver, and moves those that are not fast. Returns the faults.
+    fn finalise_bodies(&mut self, slots: &[u32], sources: &Sources<'_>) -> Faults {
+        self.finalised.clear();
+        let mut faults = 0;
+        for (index, &slot) in slots.iter().enumerate() {
+            let body = self.bodies.at_mut(slot);
+            self.starts[index] = Pose { centre: body.centre, angle: body.angle };
+            let was_settled = body.rest_ticks.has_settled();
+            let end = finalise_body(body, sources.solver.body(slot), &mut faults);
+            if body.rest_ticks.has_settled() && !was_settled {
+                self.finalised.settled.push(slot);
+            }
+            match sources.swept_body(slot, body, &end) {
+                None => self.move_body(slot, end.pose, sources),
+                Some(fast) if continuous::is_bullet(body) => self.finalised.bullets.push(fast),
+                Some(fast) if continuous::sees_kinematic(body) => self.finalised.relative.push(fast),
+                Some(fast) => self.finalised.swept.push(fast),
+            }
+        }
+        faults
+    }
+
+    /// Moves the bodies that have been swept.
+    fn move_stopped(&mut self, sources: &Sources<'_>) -> Faults {
+        for index in 0..self.finalised.moved.len() {
+            let (slot, pose) = self.finalised.moved[index];
+            self.move_body(slot, pose, sources);
+        }
+        0
+    }
+
+    #[inline]
+    fn move_body(&mut self, slot: u32, pose: Pose, sources: &Sources<'_>) {
+        let Part { bodies, poses, finalised, .. } = self;
+        let body = bodies.at_mut(slot);
+        if !poses.holds(body) {
+            finalised.others.push((slot, pose));
+        } else if poses.move_body(body, pose, sources.shapes) {
+            let has_left = |slot: &u32| !sources.broad_phase.fat(*slot).contains(poses.bounds(*slot));
+            finalised.left_boxes.extend(body.shapes().iter().map(|id| id.slot()).filter(has_left));
+        }
+    }
+}
+
+impl Sources<'_> {
+    /// The sweep of a body that may be fast.
+    fn swept_body(&self, slot: u32, body: &Body, end: &FinalPose) -> Option<SweptBody> {
+        if !self.is_continuous {
+            return None;
+        }
+        let extents = &self.extents[slot as usize];
+        continuous::swept_body(slot, body, extents, (end.pose, end.turn), self.may_have_kinematic)
+    }
+}
+
+/// Does what a thread has left to be done in order.
+fn complete(state: &mut State, scratch: &mut Scratch, finalised: &Finalised) {
+    for &slot in &finalised.settled {
+        scratch.pairs.changes.body_changed(state.bodies.at(slot));
+    }
+    finalised.left_boxes.iter().for_each(|&shape| cover_shape(state, scratch, shape));
+    for &(slot, pose) in &finalised.others {
+        move_body(state, scratch, slot, pose);
+    }
+    // A single thread moves each of these bodies at once, while it is in the cache.
+    finalised.swept.iter().for_each(|swept| continuous::sweep(state, scratch, swept));
+    scratch.results.stats.impacts += finalised.impacts;
+    scratch.sweeps.relative.extend_from_slice(&finalised.relative);
+    scratch.sweeps.bullets.extend_from_slice(&finalised.bullets);
+}
+
 /// The end of a body's motion in the tick, as computed by the solver.
 struct FinalPose {
     pose: Pose,
@@ -49,9 +185,8 @@ struct FinalPose {
 }
 
 /// Copies the velocity of a body from the solver, clears its forces, and returns the pose to which it has to be moved.
-fn finalise_body(state: &mut State, scratch: &mut Scratch, slot: u32) -> FinalPose {
-    let SolverBody { velocity, spin, shift, turn, .. } = *scratch.solver.body(slot);
-    let body = state.bodies.at_mut(slot);
+fn finalise_body(body: &mut Body, solved: &SolverBody, faults: &mut Faults) -> FinalPose {
+    let SolverBody { velocity, spin, shift, turn, .. } = *solved;
     body.velocity = velocity;
     body.spin = spin;
     body.hold_locked_axes();
@@ -59,7 +194,6 @@ fn finalise_body(state: &mut State, scratch: &mut Scratch, slot: u32) -> FinalPo
     body.torque = Fx::ZERO;
     if body.kind() == BodyKind::Kinematic && !body.is_moving() && !body.rest_ticks.has_settled() {
         body.rest_ticks.settle();
-        scratch.pairs.changes.body_changed(body);
     }
     let turn = turn_of(turn, body.mass.inverse_gyration);
     if let Some(target) = body.target.take() {
@@ -69,7 +203,7 @@ fn finalise_body(state: &mut State, scratch: &mut Scratch, slot: u32) -> FinalPo
     let centre = body.centre + shift.widen();
     let edge = Vec2::new(WORLD_EXTENT_MAX, WORLD_EXTENT_MAX);
     let inside = centre.max(-edge).min(edge);
-    scratch.solver.faults += u64::from(inside != centre);
+    *faults += u64::from(inside != centre);
     let angle = body.angle + Angle::from_turns(Fx::from_bits(turn));
     FinalPose { pose: Pose { centre: inside, angle }, turn }
 }

@@ -21,7 +21,11 @@ use super::World;
 use super::cache::Scratch;
 use super::stats::Phase;
 use crate::solver::Tuning;
+use crate::threads::Threads;
 use phases::PhaseView;
+
+/// Number of awake bodies from which on threads share a tick. With fewer, barriers cost more than a second thread gains.
+const BODIES_MIN: usize = 256;
 
 impl World {
     /// Advances the world by one tick of `1 / tick_rate` seconds.
@@ -48,9 +52,17 @@ impl World {
         self.advance(|phase, _| begin(phase));
     }
 
+    fn advance(&mut self, begin: impl FnMut(Phase, PhaseView<'_>)) {
+        let Scratch { solver, awake, .. } = &mut self.scratch;
+        let threads =
+            if awake.bodies().len() < BODIES_MIN { Threads::default() } else { solver.threads.clone() };
+        solver.parts = threads.count();
+        threads.run_tick(|| self.run_phases(begin));
+    }
+
     /// The algorithm of a tick. `begin` is called at the beginning of each phase with a view of the results of all
     /// earlier phases.
-    fn advance(&mut self, mut begin: impl FnMut(Phase, PhaseView<'_>)) {
+    fn run_phases(&mut self, mut begin: impl FnMut(Phase, PhaseView<'_>)) {
         let World { state, scratch, phases: _ } = self;
         let state = &mut **state;
         let settings = state.config.solver;
@@ -82,13 +94,10 @@ impl World {
         begin(Phase::Solve, PhaseView::of(state, scratch));
         let Scratch { solver, .. } = scratch;
         let first_sub_step = state.tick.wrapping_mul(settings.sub_steps.into());
-        solver.threads.clone().install(|| {
-            // Without the budget for it nobody looks at the result.
-            for index in 0..if can_solve { settings.sub_steps } else { 0 } {
-                solver.sub_step(first_sub_step.wrapping_add(index.into()), &tuning);
-            }
-        });
-        solver.store_impulses(&mut state.contacts, &mut state.joints);
+        // Without the budget for it nobody looks at the result.
+        let sub_steps = if can_solve { settings.sub_steps } else { 0 };
+        solver.sub_steps((first_sub_step, sub_steps), &tuning, &mut state.contacts);
+        solver.store_joints(&mut state.joints);
 
         begin(Phase::Finalise, PhaseView::of(state, scratch));
         contact_events::report_contacts(state, scratch);

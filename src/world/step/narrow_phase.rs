@@ -14,8 +14,8 @@ use crate::world::cache::{
 use crate::world::events::{ContactEvent, HitEvent};
 use crate::world::state::State;
 
-/// Smallest number of contacts for a job of its own.
-const JOB_MIN: usize = 512;
+/// Smallest number of contacts for a thread.
+const CONTACTS_MIN: usize = 512;
 
 /// Contacts whose bounds are tested before the boxes among them are collided: enough that few SIMD lanes stay empty,
 /// few enough that their data stays in the cache.
@@ -24,27 +24,27 @@ const BLOCK: usize = 64;
 /// Prefetch distance in contacts: shape B is a random access.
 const CONTACTS_AHEAD: usize = 8;
 
-/// Finds the manifolds of all contacts, and lists the pairs that the solver has to solve. The contacts are divided into
-/// jobs whose outputs are joined in order, so that the result does not depend on the number of jobs.
+/// Finds the manifolds of all contacts, and lists the pairs that the solver has to solve. Each thread has a part of the
+/// contacts. Their outputs are joined in order, so that the result does not depend on the number of threads.
 pub(super) fn find_manifolds(state: &mut State, scratch: &mut Scratch) {
     let Scratch { shapes, contacts: cache, solver, .. } = scratch;
     let mut contacts = core::mem::take(&mut state.contacts);
-    let share = solver.threads.share(contacts.len(), JOB_MIN);
-    let job_count = contacts.len().div_ceil(share).max(1);
-    let NarrowPhaseBuffers { axes, parts, touched } = cache.begin(contacts.len(), job_count);
+    let share = contacts.len().div_ceil(solver.parts).max(CONTACTS_MIN);
+    let part_count = contacts.len().div_ceil(share).max(1);
+    let NarrowPhaseBuffers { axes, parts, touched } = cache.begin(contacts.len(), part_count);
     let (margins, machine) = (Margins::of(&state.config), solver.machine);
     let narrow_phase = NarrowPhase { state, poses: shapes.poses(), touched, margins, machine };
     let chunks = contacts.chunks_mut(share).zip(axes.chunks_mut(share));
     let jobs = (0u32..).step_by(share).zip(chunks).zip(parts.iter_mut());
-    solver.threads.run(jobs, |((first, (contacts, axes)), output)| {
+    solver.threads.run_team(jobs, |((first, (contacts, axes)), output), _| {
         narrow_phase.run(Job { contacts, axes, first }, output);
         0
     });
-    cache.finish();
+    cache.finish(&solver.threads);
     state.contacts = contacts;
 }
 
-/// Data that all jobs read.
+/// Data that all threads read.
 struct NarrowPhase<'a> {
     state: &'a State,
     poses: &'a Poses,
@@ -54,7 +54,7 @@ struct NarrowPhase<'a> {
     machine: Machine,
 }
 
-/// A part of the contacts.
+/// The contacts of a thread.
 struct Job<'a> {
     contacts: &'a mut [Contact],
     /// For each of the contacts, the axis that separated its shapes in the last tick.

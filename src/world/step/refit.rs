@@ -3,9 +3,17 @@
 //! The swept AABB of a shape is its box, extended by the translation of its body, by the largest movement that the
 //! body's rotation can cause, and by the speculative distance.
 
+use alloc::vec::Vec;
+
+use smallvec::SmallVec;
+
 use crate::body::{Body, Handle};
+use crate::collision::BroadPhase;
 use crate::math::{Aabb, Fx, Reciprocal, Vec2, fx_mul};
-use crate::world::cache::{Extents, PredictedMotion, Scratch};
+use crate::solver::Solver;
+use crate::world::cache::{
+    Extents, MotionPart, Outgrown, Predicted, PredictedMotion, Scratch, ShapeCache, SlotShare,
+};
 use crate::world::derived::fattened;
 use crate::world::state::State;
 
@@ -16,39 +24,89 @@ const MARGINS_MAX: i64 = 4;
 /// Predicts the motion of all awake bodies and their shapes, and gives every shape that may leave its fat box within
 /// the tick, or whose fat box has become too large, a new one.
 pub(super) fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
-    let State { bodies, shapes, config, .. } = state;
-    let Scratch { awake, shapes: cache, pairs, .. } = scratch;
-    let per_second = Reciprocal::of_integer(config.tick_rate);
-    cache.begin_prediction(bodies.slot_count());
-    for &slot in awake.bodies() {
-        let body = bodies.at(slot);
-        let motion = PredictedMotion::of(body, per_second);
+    let Scratch { awake, shapes: cache, pairs, solver, predicted, .. } = scratch;
+    let last_moving = predicted.iter_mut().flat_map(|predicted| predicted.moving.drain(..));
+    cache.begin_prediction(state.bodies.slot_count(), last_moving);
+    predict(state, cache, awake.shares(state, solver.parts), solver, predicted);
+    for &Outgrown { shape, fat, is_active } in predicted.iter().flat_map(|predicted| &predicted.outgrown) {
+        state.shapes.at_mut(shape).fat = fat;
+        cache.queue_refit(shape, fat);
+        pairs.changes.box_changed(shape);
+        if !is_active {
+            // The new fat box of a kinematic body that has stopped may no longer overlap shapes that rest on it.
+            pairs.changes.sleeping_contacts_changed();
+        }
+    }
+    cache.bodies_move(awake.bodies());
+    cache.apply_refits();
+}
+
+/// Predicts motion, each thread that of its bodies.
+fn predict(
+    state: &State,
+    cache: &mut ShapeCache,
+    shares: SmallVec<[SlotShare<'_>; 1]>,
+    solver: &Solver,
+    predicted: &mut Vec<Predicted>,
+) {
+    predicted.resize_with(shares.len(), Predicted::default);
+    let (motion, extents, broad_phase) = cache.prediction();
+    let per_second = Reciprocal::of_integer(state.config.tick_rate);
+    let prediction = Prediction { state, extents, broad_phase, per_second };
+    let parts = shares.iter().zip(motion.split(shares.iter().map(|share| share.ends))).zip(&mut *predicted);
+    solver.threads.run_team(parts, |((share, mut motion), predicted), _| {
+        predicted.clear();
+        for &slot in share.bodies {
+            if motion.holds(slot, state.bodies.at(slot)) {
+                prediction.predict(slot, &mut motion, predicted);
+            } else {
+                predicted.others.push(slot);
+            }
+        }
+        0
+    });
+    let mut motion = motion.whole();
+    for predicted in predicted {
+        for slot in core::mem::take(&mut predicted.others) {
+            prediction.predict(slot, &mut motion, predicted);
+        }
+    }
+}
+
+/// Data that all threads read.
+struct Prediction<'a> {
+    state: &'a State,
+    extents: &'a [Extents],
+    broad_phase: &'a BroadPhase,
+    per_second: Reciprocal,
+}
+
+impl Prediction<'_> {
+    /// Predicts the motion of the body in a slot.
+    #[inline]
+    fn predict(&self, slot: u32, part: &mut MotionPart<'_>, predicted: &mut Predicted) {
+        let Prediction { state, extents, broad_phase, per_second } = self;
+        let body = state.bodies.at(slot);
+        let motion = PredictedMotion::of(body, *per_second);
         let turn = motion.turned();
-        cache.set_body_motion(slot, motion);
-        let extents = cache.poses().extents(slot);
-        let swept = SweptAabb::of(body, extents, &motion, config.speculative_distance);
+        *part.body_mut(slot) = motion;
+        let config = &state.config;
+        let swept = SweptAabb::of(body, extents[slot as usize], &motion, config.speculative_distance);
         for &id in body.shapes() {
-            let shape = cache.motion().shape(id.slot());
+            let shape = part.shape_mut(id.slot());
             let (bounds, turn_reach) = (shape.bounds, motion.turn_reach(turn, shape));
-            cache.set_shape_motion(id.slot(), &motion, turn_reach);
+            shape.set_motion(&motion, turn_reach);
+            predicted.moving.push(id.slot());
             let needed = swept.around(bounds);
             let margin = config.margin_of(bounds);
-            let fat = cache.broad_phase().fat(id.slot());
+            let fat = broad_phase.fat(id.slot());
             let largest = needed.expanded_nearby(margin.wrapping_mul_int(MARGINS_MAX));
             if !fat.contains(needed) || !largest.contains(fat) {
-                let fat = fattened(needed, margin);
-                shapes.at_mut(id.slot()).fat = fat;
-                cache.queue_refit(id.slot(), fat);
-                pairs.changes.box_changed(id.slot());
-                if !body.is_active() {
-                    // The new fat box of a kinematic body that has stopped may no longer overlap shapes that rest on
-                    // it.
-                    pairs.changes.sleeping_contacts_changed();
-                }
+                let (shape, fat) = (id.slot(), fattened(needed, margin));
+                predicted.outgrown.push(Outgrown { shape, fat, is_active: body.is_active() });
             }
         }
     }
-    cache.apply_refits();
 }
 
 /// Extends the AABB of a shape to its swept AABB, alike for all shapes of a body. Positions are in the world and

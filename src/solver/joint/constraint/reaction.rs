@@ -5,14 +5,13 @@ use super::super::super::context::StepContext;
 use super::super::super::settings::Tuning;
 use super::super::Pulley;
 use super::super::def::{JointFrame, JointKind};
-use super::super::hinge::HingeBody;
+use super::super::hinge::{HingeBody, HingePart};
 use super::super::pose::{BodyRotation, Ends};
 use super::super::state::Joint;
 use super::{JointSet, hinge_parts};
 use crate::body::Body;
 use crate::math::{Fx, Vec2, fx_mul, widen};
 use crate::simd::{Machine, Quad};
-use crate::threads::Threads;
 
 impl JointSet {
     /// The force and the torque about B's anchor that a joint exerted on B in the last sub-step: `P / h`. The impulse
@@ -27,6 +26,7 @@ impl JointSet {
         if !joint.is_solved() || !(a.has_mass() || b.has_mass()) {
             return (Vec2::ZERO, Fx::ZERO);
         }
+        self.parts.resize_with(1, HingePart::default);
         self.clear();
         // Index 0 is the ground.
         let indices = [1, 2];
@@ -45,11 +45,11 @@ impl JointSet {
             }
             None => self.list.push(0, joint, indices, [a, b], tuning, false),
         }
-        let (threads, mut bodies, mut faults) = (Threads::default(), [SolverBody::default(); 3], 0);
-        let context = StepContext::new(Machine::default(), &threads, tuning, &mut bodies, &mut faults);
+        let (mut bodies, mut faults) = ([SolverBody::default(); 3], 0);
+        let context = StepContext::new(Machine::default(), tuning, &mut bodies, &mut faults);
         self.refresh(&context);
         let place = Ends::prepare(joint, indices, [a, b]).place(context.bodies, &self.body_rotations);
-        self.warm_start(&context);
+        self.split().shares().for_each(|mut share| share.warm_start(&context));
         if let JointKind::Pulley(pulley) = &joint.def.kind {
             return pulley_reaction(pulley, joint, (a, b), &bodies, tuning);
         }

@@ -53,26 +53,26 @@ impl HingeSet {
     /// Adds a hinge to the hinges in blocks, by the index of its input. Returns its number.
     pub(in super::super) fn push_blocked(&mut self, index: u32) -> usize {
         let HingeSet { inputs, angles, blocked, blocked_extras, .. } = self;
-        blocked.overflow.push(inputs, angles, core::iter::once(index));
+        blocked.push(inputs, angles, core::iter::once(index));
         let has_angle = inputs[index as usize].angle.is_some();
-        blocked_extras.push(has_angle.then(|| blocked.overflow.extras.len() - 1));
+        blocked_extras.push(has_angle.then(|| blocked.extras.len() - 1));
         blocked_extras.len() - 1
     }
 
     /// Refreshes the hinges in blocks.
     pub(super) fn refresh_blocked(&mut self, refresh: Refresh<'_>, context: &StepContext<'_>) {
-        self.blocked.run_overflow(RefreshBlocked { refresh }, context);
+        self.blocked.run_in_order(RefreshBlocked { refresh }, context);
     }
 
     /// The softness of the point and the limits of a hinge in a block.
     fn blocked_softness(&self, number: usize) -> &Softness {
-        &self.blocked.overflow.records[number].softness
+        &self.blocked.records[number].softness
     }
 
     /// A hinge in a block, at its last refresh.
     pub(in super::super) fn blocked_hinge(&self, number: usize) -> BlockedHinge {
-        let batch = &self.blocked.overflow.batches[number];
-        let record = &self.blocked.overflow.records[number];
+        let batch = &self.blocked.batches[number];
+        let record = &self.blocked.records[number];
         let ratio = |side: usize| {
             let [x, y] = [0, 1].map(|axis: usize| Ratio::from_bits(batch.e[side][axis].0[0]));
             Vec2::new(x, y)
@@ -86,8 +86,7 @@ impl HingeSet {
             changed: [batch.changed[0][0], batch.changed[1][0]],
             fractions: MassFractions { a, b },
             e: [ratio(0), ratio(1)],
-            angle: self.blocked_extras[number]
-                .and_then(|extra| self.blocked.overflow.extras[extra].blocked_row()),
+            angle: self.blocked_extras[number].and_then(|extra| self.blocked.extras[extra].blocked_row()),
         }
     }
 
@@ -102,7 +101,7 @@ impl HingeSet {
         faults: &mut Faults,
     ) -> [i32; 3] {
         type L = Scalar<1>;
-        let batch = &self.blocked.overflow.batches[number];
+        let batch = &self.blocked.batches[number];
         let softness = self.blocked_softness(number);
         let pair = BodyPairW::<L, 1>::load(context.bodies, &batch.bodies);
         let (e_a, e_b) = ratios_of::<L, 1>(batch, pass, poses.quads);
@@ -112,18 +111,18 @@ impl HingeSet {
             w.saturating_neg()
         });
         let angle = self.blocked_extras[number].map_or(0, |extra| {
-            self.blocked.overflow.extras[extra].blocked_wanted::<L>(pass, &pair, faults)[0].saturating_neg()
+            self.blocked.extras[extra].blocked_wanted::<L>(pass, &pair, faults)[0].saturating_neg()
         });
         [point[0], point[1], angle]
     }
 
     /// The rows on the angle of a hinge in a block.
     fn blocked_rows(&self, number: usize) -> Option<&AngleRows<1>> {
-        self.blocked_extras[number].map(|extra| &self.blocked.overflow.extras[extra])
+        self.blocked_extras[number].map(|extra| &self.blocked.extras[extra])
     }
 
     fn blocked_rows_mut(&mut self, number: usize) -> Option<&mut AngleRows<1>> {
-        self.blocked_extras[number].map(|extra| &mut self.blocked.overflow.extras[extra])
+        self.blocked_extras[number].map(|extra| &mut self.blocked.extras[extra])
     }
 
     /// Lever ratios of a limit of a hinge in a block: 0 is the lower one.
@@ -144,7 +143,7 @@ impl HingeSet {
         context: &StepContext<'_>,
         faults: &mut Faults,
     ) -> i64 {
-        let bodies = &self.blocked.overflow.batches[number].bodies;
+        let bodies = &self.blocked.batches[number].bodies;
         let pair = BodyPairW::<Scalar<1>, 1>::load(context.bodies, bodies);
         let softness = self.blocked_softness(number);
         let rows = self.blocked_rows(number);
@@ -163,7 +162,7 @@ impl HingeSet {
         context: &StepContext<'_>,
         faults: &mut Faults,
     ) -> i64 {
-        let bodies = &self.blocked.overflow.batches[number].bodies;
+        let bodies = &self.blocked.batches[number].bodies;
         let pair = BodyPairW::<Scalar<1>, 1>::load(context.bodies, bodies);
         self.blocked_rows(number).map_or(0, |rows| -rows.wanted_of_drive(&pair, faults))
     }
@@ -197,19 +196,19 @@ impl HingeSet {
     /// the hinge become 0.
     pub(in super::super) fn take_impulses(&mut self, number: usize) -> [i32; 3] {
         let HingeSet { blocked, blocked_extras, .. } = self;
-        let [x, y] = &mut blocked.overflow.batches[number].lambda;
-        let angle = blocked_extras[number]
-            .map_or(0, |extra| core::mem::take(blocked.overflow.extras[extra].held_impulse()));
+        let [x, y] = &mut blocked.batches[number].lambda;
+        let angle =
+            blocked_extras[number].map_or(0, |extra| core::mem::take(blocked.extras[extra].held_impulse()));
         [core::mem::take(&mut x.0[0]), core::mem::take(&mut y.0[0]), angle]
     }
 
     /// Returns the impulses of a hinge from its block, for the next tick. They are within the limits of its format.
     pub(in super::super) fn return_impulses(&mut self, number: usize, [x, y, angle]: [i32; 3]) {
         let HingeSet { blocked, blocked_extras, .. } = self;
-        let batch = &mut blocked.overflow.batches[number];
+        let batch = &mut blocked.batches[number];
         (batch.lambda[0].0[0], batch.lambda[1].0[0]) = (x, y);
         if let Some(extra) = blocked_extras[number] {
-            *blocked.overflow.extras[extra].held_impulse() = angle;
+            *blocked.extras[extra].held_impulse() = angle;
         }
     }
 }

@@ -21,10 +21,10 @@ mod warm_start;
 use alloc::vec::Vec;
 use core::mem;
 
-use super::super::batches::{BatchKind, BatchList};
+use super::super::batches::{BatchKind, Batches};
 use super::super::context::{Pass, StepContext};
 use super::pose::BodyRotation;
-use crate::simd::Quad;
+use crate::simd::{Quad, WIDTH};
 use angle::AngleRows;
 pub(super) use angle_input::{ANGLE_MAX, AngleParts};
 use angle_input::{AngleInput, Memo};
@@ -64,7 +64,7 @@ pub(super) struct Poses<'a> {
     pub(super) body_rotations: &'a [BodyRotation],
 }
 
-/// The hinges of a tick.
+/// The hinges of a tick, except those with a colour, which are in a [`HingePart`].
 #[derive(Clone, Debug, Default)]
 pub(super) struct HingeSet {
     /// The hinges in the order of the state, before they are put into batches.
@@ -73,12 +73,10 @@ pub(super) struct HingeSet {
     memo: Memo,
     /// Working memory: the hinges of a colour that have a softness of their own.
     tuned: Vec<u32>,
-    hinges: BatchList<Hinges>,
-    /// Anchored hinges, whose points are stiffer: they connect a body that has no other joint to a body that no impulse
-    /// moves.
-    anchored: BatchList<Hinges>,
-    /// Hinges in blocks (`joint/block`), in the order of the blocks. They have one lane and one colour.
-    blocked: BatchList<Hinges>,
+    /// Hinges that fit no colour.
+    overflow: Batches<Hinges, 1>,
+    /// Hinges in blocks (`joint/block`), in the order of the blocks.
+    blocked: Batches<Hinges, 1>,
     /// For each hinge in a block, the index of its rows on the angle.
     blocked_extras: Vec<Option<usize>>,
     /// Whether bodies have moved since the batches were refreshed.
@@ -93,46 +91,66 @@ impl HingeSet {
     }
 
     pub(super) fn warm_start(&mut self, poses: Poses<'_>, context: &StepContext<'_>) {
-        let [refresh, refresh_anchored] = self.refreshes(poses, context);
-        self.hinges.run_overflow(WarmStart { refresh }, context);
-        self.blocked.run_overflow(WarmStart { refresh }, context);
-        self.hinges.run_coloured(WarmStart { refresh }, context);
+        let [refresh, _] = refreshes(&mut self.is_stale, poses, context);
+        self.overflow.run_in_order(WarmStart { refresh }, context);
+        self.blocked.run_in_order(WarmStart { refresh }, context);
+    }
+
+    /// One iteration over the overflow. Refreshes the hinges in blocks.
+    pub(super) fn solve(&mut self, pass: Pass, poses: Poses<'_>, context: &StepContext<'_>) {
+        let [refresh, _] = refreshes(&mut self.is_stale, poses, context);
+        match pass {
+            Pass::Bias => self.overflow.run_in_order(Solve { refresh }, context),
+            Pass::Relax => self.overflow.run_in_order(Relax { refresh }, context),
+        }
+        self.refresh_blocked(refresh, context);
+    }
+}
+
+/// The coloured hinges that one thread solves.
+#[derive(Clone, Debug, Default)]
+pub(super) struct HingePart {
+    ordinary: Batches<Hinges, WIDTH>,
+    /// Anchored hinges, whose points are stiffer: they connect a body that has no other joint to a body that no impulse
+    /// moves.
+    anchored: Batches<Hinges, WIDTH>,
+    /// Whether bodies have moved since the batches were refreshed.
+    is_stale: bool,
+}
+
+impl HingePart {
+    /// Invalidates the batches, as [`HingeSet::expire`].
+    pub(super) fn expire(&mut self) {
+        self.is_stale = true;
+    }
+
+    pub(super) fn warm_start(&mut self, poses: Poses<'_>, context: &StepContext<'_>) {
+        let [refresh, refresh_anchored] = refreshes(&mut self.is_stale, poses, context);
+        self.ordinary.run_coloured(WarmStart { refresh }, context);
         self.anchored.run_coloured(WarmStart { refresh: refresh_anchored }, context);
     }
 
-    /// One iteration over all hinges. `solve_blocks` solves the hinges in blocks, after the overflow.
-    pub(super) fn solve(
-        &mut self,
-        pass: Pass,
-        poses: Poses<'_>,
-        context: &StepContext<'_>,
-        solve_blocks: impl FnOnce(&mut Self),
-    ) {
-        let [refresh, refresh_anchored] = self.refreshes(poses, context);
-        match pass {
-            Pass::Bias => self.hinges.run_overflow(Solve { refresh }, context),
-            Pass::Relax => self.hinges.run_overflow(Relax { refresh }, context),
-        }
-        self.refresh_blocked(refresh, context);
-        solve_blocks(self);
+    /// One iteration over all hinges.
+    pub(super) fn solve(&mut self, pass: Pass, poses: Poses<'_>, context: &StepContext<'_>) {
+        let [refresh, refresh_anchored] = refreshes(&mut self.is_stale, poses, context);
         match pass {
             Pass::Bias => {
-                self.hinges.run_coloured(Solve { refresh }, context);
+                self.ordinary.run_coloured(Solve { refresh }, context);
                 self.anchored.run_coloured(Solve { refresh: refresh_anchored }, context);
             }
             Pass::Relax => {
-                self.hinges.run_coloured(Relax { refresh }, context);
+                self.ordinary.run_coloured(Relax { refresh }, context);
                 self.anchored.run_coloured(Relax { refresh: refresh_anchored }, context);
             }
         }
     }
+}
 
-    /// Returns the refresh that the next operation has to perform, for ordinary and for anchored hinges.
-    fn refreshes<'a>(&mut self, poses: Poses<'a>, context: &StepContext<'_>) -> [Refresh<'a>; 2] {
-        let (is_stale, tuning) = (mem::take(&mut self.is_stale), context.tuning);
-        [tuning.joint, tuning.anchored].map(|points| {
-            let stiffness = Stiffness { points, limits: tuning.joint };
-            Refresh { is_stale, stiffness, poses }
-        })
-    }
+/// Returns the refresh that the next operation has to perform, for ordinary and for anchored hinges.
+fn refreshes<'a>(is_stale: &mut bool, poses: Poses<'a>, context: &StepContext<'_>) -> [Refresh<'a>; 2] {
+    let (is_stale, tuning) = (mem::take(is_stale), context.tuning);
+    [tuning.joint, tuning.anchored].map(|points| {
+        let stiffness = Stiffness { points, limits: tuning.joint };
+        Refresh { is_stale, stiffness, poses }
+    })
 }

@@ -8,30 +8,19 @@ use super::super::pose::BodyRotation;
 use super::super::state::{Joint, JointImpulses, nearest_turns};
 use super::angle::AngleRows;
 use super::batch::{Batch, Records, Shape};
-use super::{AngleInput, AngleParts, HingeBody, HingeSet, Hinges, Input};
+use super::{AngleInput, AngleParts, HingeBody, HingePart, HingeSet, Hinges, Input};
 use crate::body::{Arena, JointId, Pose};
 use crate::math::{Fx, Length, Speed, Unit, Vec2};
 
 impl HingeSet {
     pub(in super::super) fn clear(&mut self) {
-        let HingeSet {
-            inputs,
-            angles,
-            memo: _,
-            tuned: _,
-            hinges,
-            anchored,
-            blocked,
-            blocked_extras,
-            is_stale,
-        } = self;
+        let HingeSet { inputs, angles, memo: _, tuned: _, overflow, blocked, blocked_extras, is_stale } =
+            self;
         *is_stale = true;
         inputs.clear();
         angles.clear();
-        hinges.overflow.clear();
-        hinges.coloured.clear();
-        anchored.coloured.clear();
-        blocked.overflow.clear();
+        overflow.clear();
+        blocked.clear();
         blocked_extras.clear();
     }
 
@@ -57,65 +46,57 @@ impl HingeSet {
 
     /// Adds batches for the overflow: hinges that fit no colour, given by the indices of their inputs.
     pub(in super::super) fn push_overflow(&mut self, indices: impl Iterator<Item = u32> + Clone) {
-        let HingeSet { inputs, angles, hinges, .. } = self;
+        let HingeSet { inputs, angles, overflow, .. } = self;
         for has_angle in [false, true] {
             let indices =
                 indices.clone().filter(|&index| inputs[index as usize].angle.is_some() == has_angle);
-            hinges.overflow.push(inputs, angles, indices);
+            overflow.push(inputs, angles, indices);
         }
     }
 
-    /// Adds batches for the hinges of a colour, given by the indices of their inputs. Hinges with rows on the angle and
-    /// anchored hinges have separate batches. `is_alone` returns whether the body with an index has only one joint.
+    /// Adds batches for the hinges of a colour to a part, given by the indices of their inputs. Hinges with rows on the
+    /// angle and anchored hinges have separate batches. `is_alone` returns whether the body with an index has only one
+    /// joint.
     pub(in super::super) fn push_colour(
         &mut self,
+        part: &mut HingePart,
         indices: impl Iterator<Item = u32> + Clone,
         is_alone: impl Fn(u32) -> bool,
     ) {
-        let HingeSet { inputs, angles, hinges, anchored, tuned, .. } = self;
+        let HingeSet { inputs, angles, tuned, .. } = self;
+        let HingePart { ordinary: batches, anchored, .. } = part;
         for has_angle in [false, true] {
             let indices =
                 indices.clone().filter(|&index| inputs[index as usize].angle.is_some() == has_angle);
             let is_anchored = |&index: &u32| inputs[index as usize].anchored_body().is_some_and(&is_alone);
             let is_tuned = |&index: &u32| inputs[index as usize].is_tuned;
             let ordinary = indices.clone().filter(|index| !is_anchored(index) && !is_tuned(index));
-            hinges.coloured.push(inputs, angles, ordinary);
-            anchored.coloured.push(inputs, angles, indices.clone().filter(is_anchored));
+            batches.push(inputs, angles, ordinary);
+            anchored.push(inputs, angles, indices.clone().filter(is_anchored));
             // All hinges of a batch have the same softness.
             tuned.clear();
             tuned.extend(indices.filter(is_tuned));
             let softness = |&index: &u32| inputs[index as usize].softness.to_bits();
             tuned.sort_by_key(softness);
             for equal in tuned.chunk_by(|a, b| softness(a) == softness(b)) {
-                hinges.coloured.push(inputs, angles, equal.iter().copied());
+                batches.push(inputs, angles, equal.iter().copied());
             }
         }
-        hinges.coloured.end_colour();
-        anchored.coloured.end_colour();
-    }
-
-    /// The indices of the bodies of anchored hinges.
-    pub(in super::super) fn anchored_bodies(&self) -> impl Iterator<Item = u32> {
-        let Batches { batches, records, .. } = &self.anchored.coloured;
-        batches.iter().zip(records).flat_map(|(Batch { changed: [a, b], .. }, records)| {
-            a.iter().zip(b).take(records.len).map(|(&a, &b)| if a == GROUND { b } else { a })
-        })
+        for batches in [batches, anchored] {
+            batches.end_colour(batches.batches.len());
+        }
     }
 
     /// Replaces the impulses and angles of the last tick by those of joints that have been restored.
     pub(in super::super) fn reload(&mut self, joints: &Arena<Joint, JointId>) {
-        self.hinges.overflow.reload(joints);
-        self.hinges.coloured.reload(joints);
-        self.anchored.coloured.reload(joints);
-        self.blocked.overflow.reload(joints);
+        self.overflow.reload(joints);
+        self.blocked.reload(joints);
     }
 
     /// Reuses the hinges of the last tick, with the bodies at their current poses.
     pub(in super::super) fn resume(&mut self, poses: &[Pose]) {
-        self.hinges.overflow.resume(poses);
-        self.hinges.coloured.resume(poses);
-        self.anchored.coloured.resume(poses);
-        self.blocked.overflow.resume(poses);
+        self.overflow.resume(poses);
+        self.blocked.resume(poses);
     }
 
     /// Stores impulses and angles for the next tick.
@@ -124,10 +105,47 @@ impl HingeSet {
         joints: &mut Arena<Joint, JointId>,
         body_rotations: &[BodyRotation],
     ) {
-        self.hinges.overflow.store(joints, body_rotations);
-        self.hinges.coloured.store(joints, body_rotations);
-        self.anchored.coloured.store(joints, body_rotations);
-        self.blocked.overflow.store(joints, body_rotations);
+        self.overflow.store(joints, body_rotations);
+        self.blocked.store(joints, body_rotations);
+    }
+}
+
+impl HingePart {
+    pub(in super::super) fn clear(&mut self) {
+        let HingePart { ordinary, anchored, is_stale } = self;
+        *is_stale = true;
+        ordinary.clear();
+        anchored.clear();
+    }
+
+    /// The indices of the bodies of anchored hinges.
+    pub(in super::super) fn anchored_bodies(&self) -> impl Iterator<Item = u32> {
+        let Batches { batches, records, .. } = &self.anchored;
+        batches.iter().zip(records).flat_map(|(Batch { changed: [a, b], .. }, records)| {
+            a.iter().zip(b).take(records.len).map(|(&a, &b)| if a == GROUND { b } else { a })
+        })
+    }
+
+    /// Replaces the impulses and angles of the last tick by those of joints that have been restored.
+    pub(in super::super) fn reload(&mut self, joints: &Arena<Joint, JointId>) {
+        self.ordinary.reload(joints);
+        self.anchored.reload(joints);
+    }
+
+    /// Reuses the hinges of the last tick, with the bodies at their current poses.
+    pub(in super::super) fn resume(&mut self, poses: &[Pose]) {
+        self.ordinary.resume(poses);
+        self.anchored.resume(poses);
+    }
+
+    /// Stores impulses and angles for the next tick.
+    pub(in super::super) fn store(
+        &mut self,
+        joints: &mut Arena<Joint, JointId>,
+        body_rotations: &[BodyRotation],
+    ) {
+        self.ordinary.store(joints, body_rotations);
+        self.anchored.store(joints, body_rotations);
     }
 }
 

@@ -19,12 +19,12 @@ use super::*;
 use crate::fx;
 use crate::math::{Angle, Fx, Length, Reciprocal, Rng, Rot, Shift, Speed, Unit, Vec2, narrow};
 use crate::simd::{Backend, Machine};
-use crate::threads::Threads;
 
 /// Eight hinges in random poses, each between two bodies of its own.
 #[derive(Clone)]
 struct Setting {
     hinges: HingeSet,
+    part: HingePart,
     bodies: Vec<SolverBody>,
     quads: Vec<Quad>,
     body_rotations: Vec<BodyRotation>,
@@ -69,6 +69,7 @@ impl Setting {
     fn random(rng: &mut Rng, sizes: Sizes) -> Self {
         let mut setting = Setting {
             hinges: HingeSet::default(),
+            part: HingePart::default(),
             bodies: vec![SolverBody::default()],
             quads: vec![Quad::default()],
             body_rotations: vec![BodyRotation::default()],
@@ -145,36 +146,40 @@ impl Setting {
 
     /// Solves two sub-steps. Returns the faults.
     fn solve(&mut self, machine: Machine) -> Faults {
-        let (tuning, threads, mut faults) = (tuning(), Threads::default(), 0);
-        let Setting { hinges, bodies, quads, body_rotations, .. } = self;
-        let (poses, context) = (
-            Poses { quads, body_rotations },
-            StepContext::new(machine, &threads, &tuning, bodies, &mut faults),
-        );
+        let (tuning, mut faults) = (tuning(), 0);
+        let Setting { hinges, part, bodies, quads, body_rotations, .. } = self;
+        let poses = Poses { quads, body_rotations };
+        let context = StepContext::new(machine, &tuning, bodies, &mut faults);
         for _ in 0..2 {
             hinges.expire();
+            part.expire();
             hinges.warm_start(poses, &context);
-            hinges.solve(Pass::Bias, poses, &context, |_| ());
-            hinges.solve(Pass::Relax, poses, &context, |_| ());
+            part.warm_start(poses, &context);
+            for pass in [Pass::Bias, Pass::Relax] {
+                hinges.solve(pass, poses, &context);
+                part.solve(pass, poses, &context);
+            }
         }
         faults
     }
 
     /// Solves one iteration of a relax pass. Returns the faults.
     fn relax(&mut self) -> Faults {
-        let (tuning, threads, mut faults) = (tuning(), Threads::default(), 0);
-        let Setting { hinges, bodies, quads, body_rotations, .. } = self;
-        let context = StepContext::new(Machine::default(), &threads, &tuning, bodies, &mut faults);
-        hinges.solve(Pass::Relax, Poses { quads, body_rotations }, &context, |_| ());
+        let (tuning, mut faults) = (tuning(), 0);
+        let Setting { hinges, part, bodies, quads, body_rotations, .. } = self;
+        let context = StepContext::new(Machine::default(), &tuning, bodies, &mut faults);
+        let poses = Poses { quads, body_rotations };
+        hinges.solve(Pass::Relax, poses, &context);
+        part.solve(Pass::Relax, poses, &context);
         faults
     }
 
     /// Impulses in the order of the slots.
     fn impulses(&self) -> Vec<(u32, Vec<i32>)> {
         let mut all = Vec::new();
-        self.hinges.hinges.overflow.collect(&mut all);
-        self.hinges.hinges.coloured.collect(&mut all);
-        self.hinges.anchored.coloured.collect(&mut all);
+        self.hinges.overflow.collect(&mut all);
+        self.part.ordinary.collect(&mut all);
+        self.part.anchored.collect(&mut all);
         all.sort();
         all
     }
@@ -243,7 +248,7 @@ fn every_machine_solves_as_one_hinge_at_a_time() {
         assert!(alone.bodies.iter().all(|body| body.velocity.x.abs() <= 511 && body.spin.abs() <= 511));
         for backend in Backend::available() {
             let mut wide = setting.clone();
-            wide.hinges.push_colour(order.into_iter(), |body| body % 3 == 0);
+            wide.hinges.push_colour(&mut wide.part, order.into_iter(), |body| body % 3 == 0);
             assert_eq!(wide.solve(Machine::new(backend).expect("available")), faults);
             assert_eq!(wide.impulses(), alone.impulses());
             for (wide, alone) in wide.bodies.iter().zip(&alone.bodies) {
@@ -267,8 +272,8 @@ fn a_point_is_solved_as_by_the_scalar_block() {
             (input.angle, input.lambda) = (None, [0; 2]);
         }
         let before = setting.bodies.clone();
-        setting.hinges.push_colour(0..8, |_| false);
-        setting.hinges.expire();
+        setting.hinges.push_colour(&mut setting.part, 0..8, |_| false);
+        setting.part.expire();
         let mut faults = setting.relax();
         let Setting { bodies, ends, fractions, .. } = &setting;
         for (i, (&[a, b], &fractions)) in ends.iter().zip(fractions.iter()).enumerate() {

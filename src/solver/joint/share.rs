@@ -1,0 +1,167 @@
+//! The joints that each thread solves in the sub-steps of a tick.
+//!
+//! Every thread has hinges of each colour. One of them also solves all other joints, while the others wait.
+
+use super::super::context::{Pass, StepContext};
+use super::block::Blocks;
+use super::hinge::{HingePart, HingeSet, Poses, Turning};
+use super::list::JointList;
+use super::pose::BodyRotation;
+use super::rotations::Rotations;
+use crate::math::{Unit, mul};
+use crate::simd::Quad;
+use crate::threads::TeamLock;
+
+/// All joints of a tick, divided.
+pub(in crate::solver) struct JointSplit<'a> {
+    pub(super) is_empty: bool,
+    pub(super) own: OwnJoints<'a>,
+    pub(super) parts: &'a mut [HingePart],
+    pub(super) rotations: TeamLock<BodyRotations<'a>>,
+}
+
+/// The joints that one thread solves.
+pub(in crate::solver) struct JointShare<'a, 'set> {
+    is_empty: bool,
+    /// `None` for all threads but one.
+    own: Option<&'a mut OwnJoints<'set>>,
+    part: &'a mut HingePart,
+    rotations: &'a TeamLock<BodyRotations<'set>>,
+}
+
+/// The joints that a single thread solves.
+pub(super) struct OwnJoints<'a> {
+    pub(super) hinges: &'a mut HingeSet,
+    pub(super) list: &'a mut JointList,
+    pub(super) blocks: &'a mut Blocks,
+    /// The rotation coefficients of the bodies with joints.
+    pub(super) turning: &'a [Turning],
+    /// For each body of the tick, its place in `turning`, counted from 1.
+    pub(super) places: &'a [u32],
+    /// The bodies of anchored hinges.
+    pub(super) anchored: &'a [u32],
+}
+
+/// The rotations of the bodies of a tick, by their indices.
+pub(super) struct BodyRotations<'a> {
+    pub(super) body_rotations: &'a mut [BodyRotation],
+    pub(super) quads: &'a mut [Quad],
+}
+
+impl BodyRotations<'_> {
+    fn poses(&self) -> Poses<'_> {
+        Poses { quads: self.quads, body_rotations: self.body_rotations }
+    }
+}
+
+impl<'set> JointSplit<'set> {
+    /// The joints that each thread solves.
+    pub(in crate::solver) fn shares(&mut self) -> impl Iterator<Item = JointShare<'_, 'set>> {
+        let JointSplit { is_empty, own, parts, rotations } = self;
+        let (is_empty, mut own, rotations) = (*is_empty, Some(own), &*rotations);
+        parts.iter_mut().map(move |part| JointShare { is_empty, own: own.take(), part, rotations })
+    }
+}
+
+impl JointShare<'_, '_> {
+    /// Computes arms, gains and gaps at the current poses. Those of hinges are computed by the next operation on them.
+    pub(in crate::solver) fn refresh(&mut self, context: &StepContext<'_>) {
+        if self.is_empty {
+            return;
+        }
+        if let Some(own) = &mut self.own {
+            own.refresh(&mut self.rotations.write(), context);
+        }
+        self.part.expire();
+        context.wait();
+    }
+
+    /// Predicts the rotations in the next sub-step from the velocities after the last one.
+    pub(in crate::solver) fn predict_rotations(&mut self, context: &StepContext<'_>) {
+        if self.is_empty {
+            return;
+        }
+        if let Some(own) = &mut self.own {
+            own.predict_rotations(&mut self.rotations.write(), context);
+        }
+        context.wait();
+    }
+
+    pub(in crate::solver) fn warm_start(&mut self, context: &StepContext<'_>) {
+        if self.is_empty {
+            return;
+        }
+        let rotations = self.rotations.read();
+        if let Some(OwnJoints { list, hinges, .. }) = &mut self.own {
+            list.warm_start(context);
+            hinges.warm_start(rotations.poses(), context);
+        }
+        context.wait();
+        self.part.warm_start(rotations.poses(), context);
+        if let Some(OwnJoints { blocks, hinges, list, turning, places, .. }) = &mut self.own {
+            blocks.start_sub_step(hinges, list, |body, spin| {
+                turning[places[body as usize] as usize - 1].ahead_of_wide(spin)
+            });
+        }
+    }
+
+    /// One iteration over all joints.
+    pub(in crate::solver) fn solve(&mut self, pass: Pass, context: &StepContext<'_>) {
+        if self.is_empty {
+            return;
+        }
+        let rotations = self.rotations.read();
+        let poses = rotations.poses();
+        if let Some(OwnJoints { list, hinges, blocks, .. }) = &mut self.own {
+            list.solve(pass, context);
+            hinges.solve(pass, poses, context);
+            blocks.solve(pass, hinges, list, poses, context);
+        }
+        context.wait();
+        self.part.solve(pass, poses, context);
+    }
+}
+
+impl OwnJoints<'_> {
+    fn refresh(&mut self, rotations: &mut BodyRotations<'_>, context: &StepContext<'_>) {
+        let &StepContext { machine, bodies, tuning, .. } = context;
+        let BodyRotations { body_rotations, quads } = rotations;
+        machine.run(Rotations { turning: self.turning, bodies, body_rotations, quads });
+        self.blocks.expire();
+        self.hinges.expire();
+        self.list.refresh(bodies, body_rotations, tuning);
+    }
+
+    fn predict_rotations(&self, rotations: &mut BodyRotations<'_>, context: &StepContext<'_>) {
+        let &StepContext { bodies, tuning, .. } = context;
+        let OwnJoints { turning, places, anchored, .. } = self;
+        let mut predict = |body: &Turning, stretch: Stretch| {
+            let spin = bodies[body.index as usize].get().spin;
+            let turn = body.ahead_of(spin).clamp(-TURN_MAX, TURN_MAX);
+            let (across, squared): (Unit, Unit) = (mul(stretch.half, turn), mul(turn, turn));
+            let along: Unit = mul(stretch.sixth, squared);
+            let Quad(numbers) = &mut rotations.quads[body.index as usize];
+            [numbers[2], numbers[3]] = [across.to_bits(), along.to_bits()];
+        };
+        let [joint, anchored_joint] = [tuning.joint, tuning.anchored].map(|softness| {
+            let stretch = softness.stretch();
+            Stretch { half: stretch / 2, sixth: stretch / 6 }
+        });
+        turning.iter().for_each(|body| predict(body, joint));
+        for &index in *anchored {
+            predict(&turning[places[index as usize] as usize - 1], anchored_joint);
+        }
+    }
+}
+
+/// Coefficients for averaging a lever ratio over a predicted rotation `t`: the ratio changes by `half t` of its length
+/// perpendicular to itself, and by `sixth t^2` of its length along itself.
+#[derive(Clone, Copy)]
+struct Stretch {
+    half: Unit,
+    sixth: Unit,
+}
+
+/// Largest predicted rotation, in radians. Beyond a quarter of a radian the third order is not better than the second,
+/// and adds energy to chains that one iteration does not solve.
+const TURN_MAX: Unit = Unit::lit("0.25");

@@ -1,0 +1,84 @@
+//! One sub-step: the stages of E. Catto's soft step (Solver2D, `solve_soft_step.c`).
+//!
+//! The threads of a tick run every stage at the same time, each on bodies and constraints of its own. A stage that reads
+//! bodies of other threads begins after a barrier: [`StepContext::wait`]. Stages over constraints end with one.
+
+use super::COLD_ROUNDS;
+use super::contact::{self, Constants, ContactShare, Measure, ObserveApproach, PointOrder};
+use super::contact_velocity::ContactVelocities;
+use super::context::{Pass, StepContext};
+use super::integrate::{MovingBody, integrate_displacements, integrate_velocities};
+use super::joint::JointShare;
+
+/// The bodies and constraints of one thread.
+pub(super) struct SolverShare<'a, 'set> {
+    pub(super) moving: &'a [MovingBody],
+    pub(super) contacts: ContactShare<'a>,
+    pub(super) velocities: &'a mut ContactVelocities,
+    pub(super) joints: JointShare<'a, 'set>,
+}
+
+impl SolverShare<'_, '_> {
+    /// Performs one sub-step. `index` is the number of sub-steps since the world was created.
+    pub(super) fn sub_step(&mut self, index: u64, context: &StepContext<'_>) {
+        let SolverShare { moving, contacts, velocities, joints } = self;
+        let tuning = context.tuning;
+        let iterations = tuning.iterations;
+        let cold_iterations = if contacts.has_cold() { iterations * COLD_ROUNDS } else { 0 };
+        let constants = Constants::new(tuning);
+
+        // Integrate velocities.
+        joints.predict_rotations(context);
+        velocities.measure(context);
+        integrate_velocities(moving, context);
+        context.wait();
+
+        // Warm start.
+        if contacts.has_extras() {
+            contacts.run_overflow(ObserveApproach, context);
+            contacts.run_coloured(ObserveApproach, context);
+        }
+        joints.warm_start(context);
+        let is_warm = velocities.apply(context);
+        context.wait();
+        if !is_warm {
+            contacts.run_overflow(contact::WarmStart, context);
+            contacts.run_coloured(contact::WarmStart, context);
+        }
+
+        // Solve with bias.
+        for iteration in 0..iterations {
+            let solve = contact::Solve { order: PointOrder::of(index, iteration), constants };
+            contacts.run_overflow(solve, context);
+            velocities.exempt(context, || joints.solve(Pass::Bias, context));
+            contacts.run_coloured(solve, context);
+        }
+        for iteration in iterations..cold_iterations {
+            contacts.run_cold(contact::Solve { order: PointOrder::of(index, iteration), constants }, context);
+        }
+
+        // Integrate displacements.
+        velocities.exempt(context, || integrate_displacements(moving, context));
+        context.wait();
+        joints.refresh(context);
+
+        // Relax: solve without bias.
+        let (iterations, cold_iterations) = if tuning.relax { (iterations, cold_iterations) } else { (0, 0) };
+        for iteration in 0..iterations {
+            let relax = contact::Relax { order: PointOrder::of(index, iteration), constants };
+            contacts.run_overflow(relax, context);
+            velocities.exempt(context, || joints.solve(Pass::Relax, context));
+            contacts.run_coloured(relax, context);
+        }
+        for iteration in iterations..cold_iterations {
+            contacts.run_cold(contact::Relax { order: PointOrder::of(index, iteration), constants }, context);
+        }
+        if !tuning.relax {
+            contacts.run_overflow(Measure, context);
+            contacts.run_coloured(Measure, context);
+        }
+        if contacts.has_extras() {
+            velocities.exempt(context, || contacts.bounce(context));
+        }
+    }
+}

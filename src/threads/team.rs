@@ -1,0 +1,103 @@
+//! The calling thread and the threads of a pool, which run the parts of a stage.
+
+use core::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use alloc::vec::Vec;
+use std::sync::{Mutex, PoisonError};
+
+use super::Member;
+use super::barrier::{Barrier, Guard};
+
+/// Number of times that a thread without work looks for it before it lets other threads of the machine run.
+const LOOKS: u32 = 1000;
+
+/// Time for the other threads to return from the last barrier of a stage, in spins. The calling thread would otherwise
+/// go to sleep, and waking it takes 50 microseconds.
+const RETURN_SPINS: u32 = 100;
+
+/// Threads that work on a tick together with the calling thread.
+#[derive(Debug)]
+pub(super) struct Team {
+    /// All threads but the calling one.
+    pool: rayon::ThreadPool,
+    /// Held during a tick: worlds that are clones of each other share a team. If two of them ran at once, each could wait
+    /// at its barrier for a thread that waits at the other's.
+    turn: Mutex<()>,
+}
+
+/// Ends the tick for the other threads, also if the calling one panics.
+struct TickEnd<'a>(&'a AtomicBool);
+
+impl Drop for TickEnd<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Release);
+    }
+}
+
+/// Runs what the pool has for this thread until the tick is over.
+fn run_stages(is_over: &AtomicBool) {
+    let mut looks = 0;
+    while !is_over.load(Ordering::Acquire) {
+        if rayon::yield_now() == Some(rayon::Yield::Executed) {
+            looks = 0;
+        } else if looks < LOOKS {
+            looks += 1;
+            core::hint::spin_loop();
+        } else {
+            std::thread::yield_now();
+        }
+    }
+}
+
+impl Team {
+    /// Starts `count - 1` threads.
+    pub(super) fn new(count: usize) -> Option<Self> {
+        let name = |number: usize| alloc::format!("lockstep2d {}", number + 1);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(count - 1).thread_name(name).build().ok()?;
+        Some(Team { pool, turn: Mutex::new(()) })
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.pool.current_num_threads() + 1
+    }
+
+    /// Runs a tick, of which the stages are runs of the team. The threads stay awake in between: a thread that sleeps
+    /// takes 50 microseconds to begin.
+    pub(super) fn run_tick<R>(&self, tick: impl FnOnce() -> R) -> R {
+        let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_over = &AtomicBool::new(false);
+        self.pool.in_place_scope(|scope| {
+            scope.spawn_broadcast(|_, _| run_stages(is_over));
+            let _end = TickEnd(is_over);
+            tick()
+        })
+    }
+
+    /// Runs `work` on the first part in the calling thread, and on each of the others in a thread of its own. Returns
+    /// the sum of the results. Must be called in a tick.
+    pub(super) fn run<P: Send>(
+        &self,
+        first: P,
+        others: impl Iterator<Item = P>,
+        work: impl Fn(P, Member<'_>) -> u64 + Sync,
+    ) -> u64 {
+        let others: Vec<_> = others.map(|part| Mutex::new(Some(part))).collect();
+        let (barrier, total) = (&Barrier::new(others.len() + 1), &AtomicU64::new(0));
+        let run = |part: P| {
+            let guard = Guard(barrier);
+            total.fetch_add(work(part, Member { barrier: Some(barrier) }), Ordering::Relaxed);
+            barrier.wait();
+            core::mem::forget(guard);
+        };
+        self.pool.in_place_scope(|scope| {
+            scope.spawn_broadcast(|_, context| {
+                let part = others.get(context.index()).map(Mutex::lock);
+                let part = part.and_then(|part| part.unwrap_or_else(PoisonError::into_inner).take());
+                part.into_iter().for_each(&run);
+            });
+            run(first);
+            (0..RETURN_SPINS).for_each(|_| core::hint::spin_loop());
+        });
+        total.load(Ordering::Relaxed)
+    }
+}
