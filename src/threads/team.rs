@@ -3,7 +3,7 @@
 use core::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use alloc::vec::Vec;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError, TryLockError};
 
 use super::Member;
 use super::barrier::{Barrier, Guard};
@@ -20,8 +20,8 @@ const RETURN_SPINS: u32 = 100;
 pub(super) struct Team {
     /// All threads but the calling one.
     pool: rayon::ThreadPool,
-    /// Held during a tick: worlds that are clones of each other share a team. If two of them ran at once, each could wait
-    /// at its barrier for a thread that waits at the other's.
+    /// Held during a tick: worlds that are clones of each other share a team. If two of them used it at once, each could
+    /// wait at its barrier for a thread that waits at the other's.
     turn: Mutex<()>,
 }
 
@@ -61,15 +61,19 @@ impl Team {
         self.pool.current_num_threads() + 1
     }
 
-    /// Runs a tick, of which the stages are runs of the team. The threads stay awake in between: a thread that sleeps
-    /// takes 50 microseconds to begin.
-    pub(super) fn run_tick<R>(&self, tick: impl FnOnce() -> R) -> R {
-        let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
+    /// Runs a tick with all threads, or with one while another tick uses them. The threads stay awake between its stages: a
+    /// thread that sleeps takes 50 microseconds to begin.
+    pub(super) fn run_tick<R>(&self, tick: impl FnOnce(usize) -> R) -> R {
+        let _turn = match self.turn.try_lock() {
+            Ok(turn) => turn,
+            Err(TryLockError::Poisoned(turn)) => turn.into_inner(),
+            Err(TryLockError::WouldBlock) => return tick(1),
+        };
         let is_over = &AtomicBool::new(false);
         self.pool.in_place_scope(|scope| {
             scope.spawn_broadcast(|_, _| run_stages(is_over));
             let _end = TickEnd(is_over);
-            tick()
+            tick(self.count())
         })
     }
 

@@ -246,7 +246,7 @@ impl World {
     ///
     /// Worth while for thousands of bodies; ticks with fewer than 256 awake bodies use the calling thread only. Threads
     /// keep a processor busy until the tick is over, also where only one of them has work. Clones of the world use the
-    /// same threads, and their ticks take turns.
+    /// same threads: a tick during that of another clone uses its calling thread only.
     #[cfg(feature = "parallel")]
     pub fn set_threads(&mut self, count: usize) -> bool {
         let threads = Threads::new(count);

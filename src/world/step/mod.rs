@@ -53,11 +53,12 @@ impl World {
     }
 
     fn advance(&mut self, begin: impl FnMut(Phase, PhaseView<'_>)) {
-        let Scratch { solver, awake, .. } = &mut self.scratch;
-        let threads =
-            if awake.bodies().len() < BODIES_MIN { Threads::default() } else { solver.threads.clone() };
-        solver.parts = threads.count();
-        threads.run_tick(|| self.run_phases(begin));
+        let is_small = self.scratch.awake.bodies().len() < BODIES_MIN;
+        let threads = if is_small { Threads::default() } else { self.scratch.solver.threads.clone() };
+        threads.run_tick(|parts| {
+            self.scratch.solver.parts = parts;
+            self.run_phases(begin);
+        });
     }
 
     /// The algorithm of a tick. `begin` is called at the beginning of each phase with a view of the results of all
