@@ -162,13 +162,13 @@ pub(crate) struct Arena<T, H> {
 }
 
 /// The values in a range of slots.
-pub(crate) struct ArenaPart<'a, T> {
+pub(crate) struct ArenaRange<'a, T> {
     /// The first slot.
     first: u32,
     slots: &'a mut [Slot<T>],
 }
 
-impl<T> ArenaPart<'_, T> {
+impl<T> ArenaRange<'_, T> {
     /// Mutable access to the value in an occupied slot of the range: see [`Arena::at_mut`].
     ///
     /// # Panics
@@ -306,10 +306,10 @@ impl<T, H: Handle> Arena<T, H> {
     pub(crate) fn split(
         &mut self,
         ends: impl Iterator<Item = u32> + Clone,
-    ) -> impl Iterator<Item = ArenaPart<'_, T>> {
+    ) -> impl Iterator<Item = ArenaRange<'_, T>> {
         let firsts = core::iter::once(0).chain(ends.clone());
         let parts = split_at_ends(&mut self.slots, ends.map(|end| end as usize));
-        firsts.zip(parts).map(|(first, slots)| ArenaPart { first, slots })
+        firsts.zip(parts).map(|(first, slots)| ArenaRange { first, slots })
     }
 
     /// Value in a slot; `None` if the slot is vacant.

@@ -21,7 +21,7 @@ mod shape_fields;
 mod shape_list;
 
 pub use area::{Area, Attraction, Falloff};
-pub(crate) use arena::{Arena, ArenaPart, Handle, SharedArena};
+pub(crate) use arena::{Arena, ArenaRange, Handle, SharedArena};
 pub use arena::{BodyId, IslandId, JointId, ShapeId};
 pub use body::Body;
 pub(crate) use body::{Pose, SPEED_MAX};

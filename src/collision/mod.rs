@@ -14,7 +14,7 @@ pub(crate) use contact::{Contact, KeptArms, Pair, PointImpulse};
 pub(crate) use manifold::Impact;
 pub use manifold::{Feature, Manifold, ManifoldPoint};
 pub(crate) use narrow_phase::{
-    BoxPairs, CachedAxis, GhostFilter, OneWay, SatCounters, SmallBoxes, SmallBoxesPart, collide,
+    BoxPairs, CachedAxis, GhostFilter, OneWay, SatCounters, SmallBoxes, SmallBoxesRange, collide,
     collide_near, is_ghost, margin_for, may_meet,
 };
 pub(crate) use query::{

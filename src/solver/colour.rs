@@ -234,9 +234,13 @@ impl Ranks {
     }
 
     /// The thread that solves a constraint: that of one of its bodies. Every thread has as many bodies, in the order of
-    /// their indices.
+    /// their indices. Always the first body would give most constraints of a mixed heap to the first thread.
     fn part_of(self, node: &Node) -> usize {
-        let body = if node.bodies[0] == GROUND { node.bodies[1] } else { node.bodies[0] };
+        let body = match node.bodies {
+            [GROUND, body] | [body, GROUND] => body,
+            [a, b] if (a ^ b) & 1 == 0 => a,
+            [_, b] => b,
+        };
         body as usize * self.parts / self.body_count
     }
 

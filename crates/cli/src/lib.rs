@@ -26,7 +26,8 @@
 //! ```
 //!
 //! This gives `verify`, `diff`, `bisect`, `trace`, `stress-saves`, `inspect`, `seek`, `fork`, `trim`, `stats`,
-//! `export`, `keygen` and `sign`. [`Tool::with_scenes`] adds `scenes` and `record`; [`Tool::with_view`] sets how pictures show the game.
+//! `export`, `keygen` and `sign`. [`Tool::with_scenes`] adds `scenes` and `record`; [`Tool::with_view`] sets how pictures
+//! show the game. With the feature `view`, `Tool::with_viewer` adds `view`, which opens a window.
 
 mod clock;
 mod commands;
@@ -45,6 +46,8 @@ mod sandbox;
 mod scenes;
 pub mod signature;
 mod tool;
+#[cfg(feature = "view")]
+mod view;
 mod walk;
 
 use std::process::ExitCode;
@@ -55,6 +58,9 @@ use lockstep2d::lockstep::Game;
 pub use clap;
 pub use commands::verify::{Judge, Judged, LimitArguments, with_defaults};
 pub use exit::Exit;
+/// The viewer that [`Tool::with_viewer`] takes.
+#[cfg(feature = "view")]
+pub use lockstep2d_viewer;
 pub use sandbox::SandboxScenes;
 pub use scenes::{Catalogue, Scene, SceneInfo, Script};
 pub use tool::Tool;

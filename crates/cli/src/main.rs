@@ -6,5 +6,8 @@ use lockstep2d::lockstep::Sandbox;
 use lockstep2d_cli::{SandboxScenes, Tool};
 
 fn main() -> ExitCode {
-    Tool::<Sandbox>::new().with_scenes(SandboxScenes).run()
+    let tool = Tool::<Sandbox>::new().with_scenes(SandboxScenes);
+    #[cfg(feature = "view")]
+    let tool = tool.with_viewer(lockstep2d_viewer::sandbox);
+    tool.run()
 }

@@ -14,6 +14,8 @@ use crate::console::Console;
 use crate::context::{CommandResult, Context};
 use crate::exit::Exit;
 use crate::scenes::Catalogue;
+#[cfg(feature = "view")]
+use crate::view;
 
 /// The command-line tools of a game.
 ///
@@ -42,7 +44,7 @@ pub struct Tool<G: Game> {
 }
 
 /// Runs a command that the game has added.
-type OwnCommand = fn(&ArgMatches) -> Exit;
+type OwnCommand = Box<dyn Fn(&ArgMatches) -> Exit>;
 
 impl<G: Game> Default for Tool<G> {
     fn default() -> Self {
@@ -80,7 +82,28 @@ impl<G: Game> Tool<G> {
     /// Adds a command of the game's own. `run` gets its arguments and prints its own output.
     #[must_use]
     pub fn with_command(mut self, command: Command, run: fn(&ArgMatches) -> Exit) -> Self {
-        self.own.push((command, run));
+        self.own.push((command, Box::new(run)));
+        self
+    }
+
+    /// Adds the command `view`, which shows replays, snapshots and divergence reports in a window, or plays a scene of
+    /// the viewer. `viewer` is called when the command is run. The arguments of `view` are those of
+    /// [`Viewer::run`](lockstep2d_viewer::Viewer::run).
+    ///
+    /// ```no_run
+    /// use lockstep2d::lockstep::Sandbox;
+    /// use lockstep2d_cli::{Tool, lockstep2d_viewer::Viewer};
+    /// Tool::<Sandbox>::new().with_viewer(Viewer::new).run();
+    /// ```
+    #[cfg(feature = "view")]
+    #[must_use]
+    pub fn with_viewer(mut self, viewer: fn() -> lockstep2d_viewer::Viewer<G>) -> Self
+    where
+        G: 'static,
+    {
+        let limits = self.limits.clone();
+        let run = move |matches: &ArgMatches| view::run(viewer().limits(limits.clone()), matches);
+        self.own.push((view::command(), Box::new(run)));
         self
     }
 

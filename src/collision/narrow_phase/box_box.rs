@@ -41,7 +41,7 @@ pub(crate) struct SmallBoxes {
 struct Turned([Quad; 2]);
 
 /// The boxes in a range of slots, by their index in the range.
-pub(crate) struct SmallBoxesPart<'a> {
+pub(crate) struct SmallBoxesRange<'a> {
     turned: &'a mut [Turned],
     centred: &'a [Option<Faces>],
 }
@@ -56,7 +56,7 @@ impl Turned {
     }
 }
 
-impl SmallBoxesPart<'_> {
+impl SmallBoxesRange<'_> {
     /// Updates a shape that has been rotated.
     #[inline]
     pub(crate) fn renew(&mut self, index: usize, shape: &PosedShape) {
@@ -93,11 +93,11 @@ impl SmallBoxes {
     pub(crate) fn split(
         &mut self,
         ends: impl Iterator<Item = usize> + Clone,
-    ) -> impl Iterator<Item = SmallBoxesPart<'_>> {
+    ) -> impl Iterator<Item = SmallBoxesRange<'_>> {
         let centred = split_at_ends(&mut self.centred, ends.clone());
         split_at_ends(&mut self.turned, ends)
             .zip(centred)
-            .map(|(turned, centred)| SmallBoxesPart { turned, centred })
+            .map(|(turned, centred)| SmallBoxesRange { turned, centred })
     }
 
     /// Prefetches a box.

@@ -9,7 +9,7 @@ mod link;
 mod one_way;
 pub(in crate::collision) mod segment;
 
-pub(crate) use box_box::{BoxPairs, SmallBoxes, SmallBoxesPart};
+pub(crate) use box_box::{BoxPairs, SmallBoxes, SmallBoxesRange};
 pub(crate) use ghost_collision::{GhostFilter, is_ghost};
 pub(crate) use hull_hull::{CachedAxis, SatCounters};
 pub(crate) use one_way::OneWay;

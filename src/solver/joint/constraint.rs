@@ -11,7 +11,7 @@ use super::super::settings::Tuning;
 use super::block::{Blocks, Candidate};
 use super::cache_key::{CacheKey, Definitions, Validity};
 use super::def::{JointFrame, JointKind};
-use super::hinge::{AngleParts, HingeBody, HingePart, HingeSet, Turning, node};
+use super::hinge::{AngleParts, HingeBody, HingeSet, HingeShare, Turning, node};
 use super::list::{BlockedPart, JointList};
 use super::pose::BodyRotation;
 use super::share::{BodyRotations, JointSplit, OwnJoints};
@@ -40,7 +40,7 @@ pub(in crate::solver) struct JointSet {
     entries: Vec<Entry>,
     hinges: HingeSet,
     /// The coloured hinges of each thread.
-    parts: Vec<HingePart>,
+    parts: Vec<HingeShare>,
     /// The bodies of anchored hinges.
     anchored: Vec<u32>,
     /// The slots of all joints that are not hinges, in the order in which they are solved, and whether they are in a
@@ -111,7 +111,7 @@ impl JointSet {
         quads.clear();
         entries.clear();
         hinges.clear();
-        parts.iter_mut().for_each(HingePart::clear);
+        parts.iter_mut().for_each(HingeShare::clear);
         anchored.clear();
         others.clear();
         list.clear();
@@ -140,7 +140,7 @@ impl JointSet {
                 self.resume(bodies, list);
             }
             Validity::Nothing => {
-                self.parts.resize_with(parts, HingePart::default);
+                self.parts.resize_with(parts, HingeShare::default);
                 self.clear();
                 self.arrange(source, list, colouring);
                 self.sort(colouring);

@@ -4,7 +4,7 @@
 
 use super::super::context::{Pass, StepContext};
 use super::block::Blocks;
-use super::hinge::{HingePart, HingeSet, Poses, Turning};
+use super::hinge::{HingeSet, HingeShare, Poses, Turning};
 use super::list::JointList;
 use super::pose::BodyRotation;
 use super::rotations::Rotations;
@@ -16,7 +16,7 @@ use crate::threads::TeamLock;
 pub(in crate::solver) struct JointSplit<'a> {
     pub(super) is_empty: bool,
     pub(super) own: OwnJoints<'a>,
-    pub(super) parts: &'a mut [HingePart],
+    pub(super) parts: &'a mut [HingeShare],
     pub(super) rotations: TeamLock<BodyRotations<'a>>,
 }
 
@@ -25,7 +25,7 @@ pub(in crate::solver) struct JointShare<'a, 'set> {
     is_empty: bool,
     /// `None` for all threads but one.
     own: Option<&'a mut OwnJoints<'set>>,
-    part: &'a mut HingePart,
+    part: &'a mut HingeShare,
     rotations: &'a TeamLock<BodyRotations<'set>>,
 }
 

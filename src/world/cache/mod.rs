@@ -20,7 +20,7 @@ mod joint_links;
 mod meter;
 mod motion;
 mod pairs;
-mod pose_part;
+mod pose_range;
 mod poses;
 mod results;
 mod shapes;
@@ -32,10 +32,10 @@ pub(crate) use contacts::{ContactCache, NarrowPhaseBuffers, NarrowPhaseOutput, P
 pub(crate) use joint_links::JointLinks;
 pub(crate) use meter::{WorkMeter, pair_work};
 pub(crate) use motion::{
-    ClosingBound, GHOST_TRAVEL_MIN, Margins, MotionCache, MotionPart, PredictedMotion, ShapeMotion, Travel,
+    ClosingBound, GHOST_TRAVEL_MIN, Margins, MotionCache, MotionRange, PredictedMotion, ShapeMotion, Travel,
 };
 pub(crate) use pairs::{MergedContacts, NonCollidingPairs, PairCache, merge_sorted};
-pub(crate) use pose_part::PosePart;
+pub(crate) use pose_range::PoseRange;
 pub(crate) use poses::{Extents, Poses};
 pub(crate) use results::{Finalised, Outgrown, Predicted, Sweeps, SweptBody, TickResults};
 pub(crate) use shapes::ShapeCache;

@@ -169,7 +169,7 @@ impl ShapeMotion {
 }
 
 /// Bounds and predicted motion of the bodies and shapes in ranges of slots.
-pub(crate) struct MotionPart<'a> {
+pub(crate) struct MotionRange<'a> {
     /// The first slot of each range.
     first_body: u32,
     bodies: &'a mut [PredictedMotion],
@@ -177,7 +177,7 @@ pub(crate) struct MotionPart<'a> {
     shapes: &'a mut [ShapeMotion],
 }
 
-impl MotionPart<'_> {
+impl MotionRange<'_> {
     /// Whether a body and all of its shapes are in the ranges.
     pub(crate) fn holds(&self, slot: u32, body: &Body) -> bool {
         let holds = |first: u32, len: usize, slot: u32| slot >= first && ((slot - first) as usize) < len;
@@ -311,12 +311,12 @@ impl MotionCache {
     pub(crate) fn split(
         &mut self,
         ends: impl Iterator<Item = [u32; 2]> + Clone,
-    ) -> impl Iterator<Item = MotionPart<'_>> {
+    ) -> impl Iterator<Item = MotionRange<'_>> {
         let firsts = core::iter::once([0, 0]).chain(ends.clone());
         let bodies = split_at_ends(&mut self.bodies, ends.clone().map(|[body, _]| body as usize));
         let shapes = split_at_ends(&mut self.shapes, ends.map(|[_, shape]| shape as usize));
         let parts = firsts.zip(bodies).zip(shapes);
-        parts.map(|(([first_body, first_shape], bodies), shapes)| MotionPart {
+        parts.map(|(([first_body, first_shape], bodies), shapes)| MotionRange {
             first_body,
             bodies,
             first_shape,
@@ -325,8 +325,8 @@ impl MotionCache {
     }
 
     /// All bodies and shapes.
-    pub(crate) fn whole(&mut self) -> MotionPart<'_> {
-        MotionPart { first_body: 0, bodies: &mut self.bodies, first_shape: 0, shapes: &mut self.shapes }
+    pub(crate) fn whole(&mut self) -> MotionRange<'_> {
+        MotionRange { first_body: 0, bodies: &mut self.bodies, first_shape: 0, shapes: &mut self.shapes }
     }
 
     /// Lists bodies whose motion has been predicted, for the next tick.

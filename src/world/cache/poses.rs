@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use super::motion::MotionCache;
-use super::pose_part::PosePart;
+use super::pose_range::PoseRange;
 use crate::body::{Body, Geometry, Handle};
 use crate::collision::{PosedShape, SmallBoxes};
 use crate::fx;
@@ -81,17 +81,17 @@ impl Poses {
     pub(crate) fn split(
         &mut self,
         ends: impl Iterator<Item = u32> + Clone,
-    ) -> (impl Iterator<Item = PosePart<'_>>, &[Extents]) {
+    ) -> (impl Iterator<Item = PoseRange<'_>>, &[Extents]) {
         let Poses { shapes, motion, boxes, extents } = self;
         let firsts = core::iter::once(0).chain(ends.clone());
         let ends = ends.map(|end| end as usize);
         let shapes = split_at_ends(shapes, ends.clone()).zip(motion.split_shapes(ends.clone()));
         let parts = firsts.zip(shapes).zip(boxes.split(ends));
-        (parts.map(|((first, (shapes, motion)), boxes)| PosePart { first, shapes, motion, boxes }), extents)
+        (parts.map(|((first, (shapes, motion)), boxes)| PoseRange { first, shapes, motion, boxes }), extents)
     }
 
     /// All shapes.
-    pub(crate) fn whole(&mut self) -> PosePart<'_> {
+    pub(crate) fn whole(&mut self) -> PoseRange<'_> {
         self.split(core::iter::once(u32::MAX)).0.next().expect("a part for each end")
     }
 

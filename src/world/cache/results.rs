@@ -22,7 +22,7 @@ impl TickResults {
     }
 }
 
-/// What a thread finds when it predicts the motion of its bodies. Aligned, so that no two threads write the same cache
+/// The output of a thread that predicts the motion of its bodies. Aligned, so that no two threads write the same cache
 /// line.
 #[derive(Clone, Debug, Default)]
 #[repr(align(128))]
@@ -53,7 +53,7 @@ pub(crate) struct Outgrown {
     pub(crate) is_active: bool,
 }
 
-/// What a thread finds when it moves its bodies to the poses of the solver. Aligned like [`Predicted`].
+/// The output of a thread that moves its bodies to the poses of the solver. Aligned like [`Predicted`].
 #[derive(Clone, Debug, Default)]
 #[repr(align(128))]
 pub(crate) struct Finalised {

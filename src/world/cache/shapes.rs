@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use super::motion::MotionCache;
-use super::pose_part::PosePart;
+use super::pose_range::PoseRange;
 use super::poses::{Extents, Poses};
 use crate::body::{Body, BodyKind, Handle, Shape, ShapeId};
 use crate::collision::{BroadPhase, BroadPhaseKind, Moved, Pair};
@@ -89,7 +89,7 @@ impl ShapeCache {
     pub(crate) fn split(
         &mut self,
         ends: impl Iterator<Item = u32> + Clone,
-    ) -> (impl Iterator<Item = PosePart<'_>>, &[Extents], &BroadPhase) {
+    ) -> (impl Iterator<Item = PoseRange<'_>>, &[Extents], &BroadPhase) {
         let (parts, extents) = self.poses.split(ends);
         (parts, extents, &self.broad_phase)
     }
@@ -111,7 +111,7 @@ impl ShapeCache {
     }
 
     /// All shapes in world axes.
-    pub(crate) fn whole(&mut self) -> PosePart<'_> {
+    pub(crate) fn whole(&mut self) -> PoseRange<'_> {
         self.poses.whole()
     }
 

@@ -1,12 +1,12 @@
 //! Copies the solver's velocities and poses to the state.
 
 use super::continuous;
-use crate::body::{Arena, ArenaPart, Body, BodyKind, Handle, Pose, Shape, ShapeId, WORLD_EXTENT_MAX};
+use crate::body::{Arena, ArenaRange, Body, BodyKind, Handle, Pose, Shape, ShapeId, WORLD_EXTENT_MAX};
 use crate::collision::BroadPhase;
 use crate::math::{Angle, Fx, Vec2};
 use crate::solver::{Faults, Solver, SolverBody, turn_of};
 use crate::threads::split_at_ends;
-use crate::world::cache::{Extents, Finalised, PosePart, Scratch, SweptBody};
+use crate::world::cache::{Extents, Finalised, PoseRange, Scratch, SweptBody};
 use crate::world::movement::{cover_shape, move_body};
 use crate::world::state::State;
 
@@ -19,10 +19,10 @@ pub(super) fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
     let starts = scratch.awake.bodies().len();
     scratch.sweeps.starts.resize(starts, Pose { centre: Vec2::ZERO, angle: Angle::ZERO });
     scratch.solver.faults +=
-        run_parts(state, scratch, |part, slots, sources| part.finalise_bodies(slots, sources));
+        run_shares(state, scratch, |share, slots, sources| share.finalise_bodies(slots, sources));
     if scratch.solver.parts > 1 {
         sweep_bodies(state, scratch);
-        run_parts(state, scratch, |part, _, sources| part.move_stopped(sources));
+        run_shares(state, scratch, |share, _, sources| share.move_stopped(sources));
     }
     let finalised = core::mem::take(&mut scratch.finalised);
     finalised.iter().for_each(|finalised| complete(state, scratch, finalised));
@@ -39,10 +39,10 @@ pub(super) fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
 }
 
 /// Lets each thread work on its bodies and shapes. Returns the sum of the results.
-fn run_parts(
+fn run_shares(
     state: &mut State,
     scratch: &mut Scratch,
-    work: impl Fn(&mut Part<'_>, &[u32], &Sources<'_>) -> Faults + Sync,
+    work: impl Fn(&mut FinaliseShare<'_>, &[u32], &Sources<'_>) -> Faults + Sync,
 ) -> Faults {
     let Scratch { awake, shapes: cache, solver, finalised, sweeps, .. } = scratch;
     let shares = awake.shares(state, solver.parts);
@@ -60,7 +60,7 @@ fn run_parts(
     let sources = Sources { shapes, solver, extents, broad_phase, is_continuous, may_have_kinematic };
     let parts = shares.iter().zip(bodies).zip(poses).zip(starts).zip(finalised);
     solver.threads.run_team(parts, |((((share, bodies), poses), starts), finalised), _| {
-        work(&mut Part { bodies, poses, starts, finalised }, share.bodies, &sources)
+        work(&mut FinaliseShare { bodies, poses, starts, finalised }, share.bodies, &sources)
     })
 }
 
@@ -97,15 +97,15 @@ struct Sources<'a> {
 }
 
 /// The bodies and shapes that a thread moves.
-struct Part<'a> {
-    bodies: ArenaPart<'a, Body>,
-    poses: PosePart<'a>,
+struct FinaliseShare<'a> {
+    bodies: ArenaRange<'a, Body>,
+    poses: PoseRange<'a>,
     /// The pose of each of the awake bodies at the start of the tick.
     starts: &'a mut [Pose],
     finalised: &'a mut Finalised,
 }
 
-impl Part<'_> {
+impl FinaliseShare<'_> {
     /// Copies the velocities of bodies from the solver, and moves those that are not fast. Returns the faults.
     fn finalise_bodies(&mut self, slots: &[u32], sources: &Sources<'_>) -> Faults {
         self.finalised.clear();
@@ -139,7 +139,7 @@ impl Part<'_> {
 
     #[inline]
     fn move_body(&mut self, slot: u32, pose: Pose, sources: &Sources<'_>) {
-        let Part { bodies, poses, finalised, .. } = self;
+        let FinaliseShare { bodies, poses, finalised, .. } = self;
         let body = bodies.at_mut(slot);
         if !poses.holds(body) {
             finalised.others.push((slot, pose));

@@ -12,7 +12,7 @@ use crate::collision::BroadPhase;
 use crate::math::{Aabb, Fx, Reciprocal, Vec2, fx_mul};
 use crate::solver::Solver;
 use crate::world::cache::{
-    Extents, MotionPart, Outgrown, Predicted, PredictedMotion, Scratch, ShapeCache, SlotShare,
+    Extents, MotionRange, Outgrown, Predicted, PredictedMotion, Scratch, ShapeCache, SlotShare,
 };
 use crate::world::derived::fattened;
 use crate::world::state::State;
@@ -84,16 +84,16 @@ struct Prediction<'a> {
 impl Prediction<'_> {
     /// Predicts the motion of the body in a slot.
     #[inline]
-    fn predict(&self, slot: u32, part: &mut MotionPart<'_>, predicted: &mut Predicted) {
+    fn predict(&self, slot: u32, range: &mut MotionRange<'_>, predicted: &mut Predicted) {
         let Prediction { state, extents, broad_phase, per_second } = self;
         let body = state.bodies.at(slot);
         let motion = PredictedMotion::of(body, *per_second);
         let turn = motion.turned();
-        *part.body_mut(slot) = motion;
+        *range.body_mut(slot) = motion;
         let config = &state.config;
         let swept = SweptAabb::of(body, extents[slot as usize], &motion, config.speculative_distance);
         for &id in body.shapes() {
-            let shape = part.shape_mut(id.slot());
+            let shape = range.shape_mut(id.slot());
             let (bounds, turn_reach) = (shape.bounds, motion.turn_reach(turn, shape));
             shape.set_motion(&motion, turn_reach);
             predicted.moving.push(id.slot());

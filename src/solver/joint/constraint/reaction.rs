@@ -5,7 +5,7 @@ use super::super::super::context::StepContext;
 use super::super::super::settings::Tuning;
 use super::super::Pulley;
 use super::super::def::{JointFrame, JointKind};
-use super::super::hinge::{HingeBody, HingePart};
+use super::super::hinge::{HingeBody, HingeShare};
 use super::super::pose::{BodyRotation, Ends};
 use super::super::state::Joint;
 use super::{JointSet, hinge_parts};
@@ -26,7 +26,7 @@ impl JointSet {
         if !joint.is_solved() || !(a.has_mass() || b.has_mass()) {
             return (Vec2::ZERO, Fx::ZERO);
         }
-        self.parts.resize_with(1, HingePart::default);
+        self.parts.resize_with(1, HingeShare::default);
         self.clear();
         // Index 0 is the ground.
         let indices = [1, 2];

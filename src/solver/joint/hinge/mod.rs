@@ -64,7 +64,7 @@ pub(super) struct Poses<'a> {
     pub(super) body_rotations: &'a [BodyRotation],
 }
 
-/// The hinges of a tick, except those with a colour, which are in a [`HingePart`].
+/// The hinges of a tick, except those with a colour, which are in a [`HingeShare`].
 #[derive(Clone, Debug, Default)]
 pub(super) struct HingeSet {
     /// The hinges in the order of the state, before they are put into batches.
@@ -109,7 +109,7 @@ impl HingeSet {
 
 /// The coloured hinges that one thread solves.
 #[derive(Clone, Debug, Default)]
-pub(super) struct HingePart {
+pub(super) struct HingeShare {
     ordinary: Batches<Hinges, WIDTH>,
     /// Anchored hinges, whose points are stiffer: they connect a body that has no other joint to a body that no impulse
     /// moves.
@@ -118,7 +118,7 @@ pub(super) struct HingePart {
     is_stale: bool,
 }
 
-impl HingePart {
+impl HingeShare {
     /// Invalidates the batches, as [`HingeSet::expire`].
     pub(super) fn expire(&mut self) {
         self.is_stale = true;

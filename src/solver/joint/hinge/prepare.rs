@@ -8,7 +8,7 @@ use super::super::pose::BodyRotation;
 use super::super::state::{Joint, JointImpulses, nearest_turns};
 use super::angle::AngleRows;
 use super::batch::{Batch, Records, Shape};
-use super::{AngleInput, AngleParts, HingeBody, HingePart, HingeSet, Hinges, Input};
+use super::{AngleInput, AngleParts, HingeBody, HingeSet, HingeShare, Hinges, Input};
 use crate::body::{Arena, JointId, Pose};
 use crate::math::{Fx, Length, Speed, Unit, Vec2};
 
@@ -59,12 +59,12 @@ impl HingeSet {
     /// joint.
     pub(in super::super) fn push_colour(
         &mut self,
-        part: &mut HingePart,
+        part: &mut HingeShare,
         indices: impl Iterator<Item = u32> + Clone,
         is_alone: impl Fn(u32) -> bool,
     ) {
         let HingeSet { inputs, angles, tuned, .. } = self;
-        let HingePart { ordinary: batches, anchored, .. } = part;
+        let HingeShare { ordinary: batches, anchored, .. } = part;
         for has_angle in [false, true] {
             let indices =
                 indices.clone().filter(|&index| inputs[index as usize].angle.is_some() == has_angle);
@@ -110,9 +110,9 @@ impl HingeSet {
     }
 }
 
-impl HingePart {
+impl HingeShare {
     pub(in super::super) fn clear(&mut self) {
-        let HingePart { ordinary, anchored, is_stale } = self;
+        let HingeShare { ordinary, anchored, is_stale } = self;
         *is_stale = true;
         ordinary.clear();
         anchored.clear();

@@ -24,7 +24,7 @@ use crate::simd::{Backend, Machine};
 #[derive(Clone)]
 struct Setting {
     hinges: HingeSet,
-    part: HingePart,
+    part: HingeShare,
     bodies: Vec<SolverBody>,
     quads: Vec<Quad>,
     body_rotations: Vec<BodyRotation>,
@@ -69,7 +69,7 @@ impl Setting {
     fn random(rng: &mut Rng, sizes: Sizes) -> Self {
         let mut setting = Setting {
             hinges: HingeSet::default(),
-            part: HingePart::default(),
+            part: HingeShare::default(),
             bodies: vec![SolverBody::default()],
             quads: vec![Quad::default()],
             body_rotations: vec![BodyRotation::default()],

@@ -4,19 +4,19 @@ use core::cell::LazyCell;
 
 use super::motion::ShapeMotion;
 use crate::body::{Arena, Body, Handle, Pose, Shape, ShapeId};
-use crate::collision::{PosedShape, SmallBoxesPart};
+use crate::collision::{PosedShape, SmallBoxesRange};
 use crate::math::{Aabb, Fx, Vec2};
 
 /// The shapes in a range of slots.
-pub(crate) struct PosePart<'a> {
+pub(crate) struct PoseRange<'a> {
     /// The first slot.
     pub(super) first: u32,
     pub(super) shapes: &'a mut [Option<PosedShape>],
     pub(super) motion: &'a mut [ShapeMotion],
-    pub(super) boxes: SmallBoxesPart<'a>,
+    pub(super) boxes: SmallBoxesRange<'a>,
 }
 
-impl PosePart<'_> {
+impl PoseRange<'_> {
     /// Whether all shapes of a body are in the range.
     pub(crate) fn holds(&self, body: &Body) -> bool {
         let is_held = |slot: u32| slot >= self.first && self.index(slot) < self.shapes.len();
