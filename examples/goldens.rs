@@ -7,8 +7,8 @@ use std::process::ExitCode;
 
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::replay::{Limits, Verdict, verify};
-use lockstep2d::scenes::Scene;
 use lockstep2d::world::Backend;
+use lockstep2d_scenes::Scene;
 
 const GOLDENS: &str = include_str!("../tests/goldens.txt");
 const BACKENDS: &str = include_str!("../tests/backends.txt");

@@ -4,8 +4,8 @@
 use lockstep2d::fx;
 use lockstep2d::lockstep::{Game, Sandbox, SetupError};
 use lockstep2d::math::Vec2;
-use lockstep2d::scenes::Scene;
 use lockstep2d::world::Command;
+use lockstep2d_scenes::Scene;
 
 /// The player's input: a single push in this example.
 fn true_input(game: &Sandbox, tick: u64) -> Vec<Command> {

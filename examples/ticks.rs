@@ -4,8 +4,8 @@
 use std::process::ExitCode;
 
 use lockstep2d::lockstep::{Game, Sandbox};
-use lockstep2d::scenes::Scene;
 use lockstep2d::world::Backend;
+use lockstep2d_scenes::Scene;
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();

@@ -13,7 +13,7 @@
 //! - [`report`]: the report that a peer writes when states differ, and its analysis: who diverged, when and where.
 //! - [`check`]: runs a game in many ways that must give the same result, for tests and fuzzers.
 //! - [`inspect`]: converts any value to named fields, and compares two values.
-//! - [`draw`]: renders a world. [`scenes`]: worlds that tests, replays and tools share.
+//! - [`draw`]: renders a world.
 //! - [`hash`] and [`codec`]: the state hash and the canonical encoding that it covers.
 //!
 //! ```
@@ -48,7 +48,6 @@ pub mod math;
 pub mod peer;
 pub mod replay;
 pub mod report;
-pub mod scenes;
 pub mod session;
 mod simd;
 pub mod solver;

@@ -6,9 +6,9 @@ use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::math::Fx;
-use lockstep2d::scenes::Scene;
 use lockstep2d::solver::{JointDef, Revolute, Threshold};
 use lockstep2d::world::{Config, Snapshot, World};
+use lockstep2d_scenes::Scene;
 
 /// System allocator that counts allocations and bytes for each thread.
 mod counting {

@@ -9,8 +9,8 @@ use core::fmt::Debug;
 use std::sync::Mutex;
 
 use lockstep2d::lockstep::{Game, Sandbox};
-use lockstep2d::scenes::Scene;
 use lockstep2d::world::{Backend, StepStats, World};
+use lockstep2d_scenes::Scene;
 
 const HASHES: &str = "tests/backends.txt";
 

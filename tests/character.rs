@@ -4,8 +4,8 @@ use lockstep2d::body::{BodyDef, BodyId, Chain, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::math::{Angle, Fx, Rng, Rot, Vec2, fx_mul};
-use lockstep2d::scenes::Scene;
 use lockstep2d::world::{Mover, MoverState, QueryFilter, World};
+use lockstep2d_scenes::Scene;
 
 fn at(x: Fx, y: Fx) -> Vec2<Fx> {
     Vec2::new(x, y)

@@ -12,8 +12,8 @@ use common::goldens;
 use lockstep2d::collision::BroadPhaseKind;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, Sandbox};
-use lockstep2d::scenes::{self, Scene};
 use lockstep2d::world::{Events, World};
+use lockstep2d_scenes::{ALL, Scene};
 
 /// Observable results of a run after every tick.
 struct Trace {
@@ -54,14 +54,14 @@ const TICKS_MAX: u64 = 300;
 /// The trace of an undisturbed run of a scene, up to its golden. Each scene is run once, by the test that comes first.
 fn undisturbed(scene: &Scene) -> &'static Trace {
     static TRACES: LazyLock<Vec<OnceLock<Trace>>> =
-        LazyLock::new(|| scenes::ALL.iter().map(|_| OnceLock::new()).collect());
-    let place = scenes::ALL.iter().position(|other| other.name == scene.name).expect("a scene of this crate");
+        LazyLock::new(|| ALL.iter().map(|_| OnceLock::new()).collect());
+    let place = ALL.iter().position(|other| other.name == scene.name).expect("a scene of this crate");
     TRACES[place].get_or_init(|| trace(scene, scene.golden_ticks, |_, _| {}))
 }
 
 /// Every scene, for as long as its golden but at most [`TICKS_MAX`], with the trace of an undisturbed run.
 fn each_scene(hold: impl Fn(&Scene, u64, &Trace) + Sync) {
-    sweep::for_each(scenes::ALL.iter().collect(), |scene| {
+    sweep::for_each(ALL.iter().collect(), |scene| {
         hold(scene, scene.golden_ticks.min(TICKS_MAX), undisturbed(scene));
     });
 }
@@ -146,10 +146,9 @@ fn every_scene_ends_in_its_golden() {
     let goldens = goldens();
     let listed: Vec<(&str, u64)> =
         goldens.iter().map(|golden| (golden.scene.as_str(), golden.ticks)).collect();
-    let complete =
-        listed.iter().copied().eq(scenes::ALL.iter().map(|scene| (scene.name, scene.golden_ticks)));
+    let complete = listed.iter().copied().eq(ALL.iter().map(|scene| (scene.name, scene.golden_ticks)));
     let mut wrong = Vec::new();
-    for scene in scenes::ALL {
+    for scene in ALL {
         let end = undisturbed(scene).hashes.last().expect("at least one").to_string();
         let golden = goldens.iter().find(|golden| golden.scene == scene.name);
         if !complete || golden.is_none_or(|golden| golden.hash != end) {

@@ -6,8 +6,8 @@ use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::math::{Fx, Rng, Vec2};
-use lockstep2d::scenes::Scene;
 use lockstep2d::world::{Config, ContactEvent, World};
+use lockstep2d_scenes::Scene;
 
 /// Updates the set of touching pairs from the events of a tick.
 fn follow(world: &World, touching: &mut BTreeSet<ContactEvent>) {

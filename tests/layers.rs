@@ -8,15 +8,14 @@
 //! ```text
 //!             peer
 //!          report   check
-//! scenes   replay
-//!       \  /
-//!     lockstep   draw
-//!            \  /
-//!           world
-//!           solver
-//!         collision
-//!            body
-//!            simd
+//!          replay
+//!         lockstep   draw
+//!                \  /
+//!               world
+//!              solver
+//!             collision
+//!               body
+//!               simd
 //! math, hash, codec, threads, inspect, session
 //! ```
 
@@ -70,7 +69,6 @@ const LAYERS: Rules = &[
             "report",
         ],
     ),
-    ("scenes", &["math", "codec", "hash", "body", "collision", "solver", "world", "lockstep"]),
 ];
 
 /// For each module with folders: each of its folders, and the other folders of the module that it may use. `.` stands
@@ -267,7 +265,7 @@ fn wrong_directions_are_found() {
         "fn f() -> u64 { crate::world::World::default().tick() }",
         "use super::super::world::World;",
         "mod tests { use super::super::super::world::World; }",
-        "fn f() { let slash = '\"'; crate::scenes::f() }",
+        "fn f() { let slash = '\"'; crate::report::f() }",
         "use crate::elsewhere::Thing;",
         "use crate::*;",
     ] {
@@ -286,7 +284,11 @@ fn wrong_directions_are_found() {
         assert_eq!(found(&["body", "arena"], right), 0, "{right}");
     }
     assert_eq!(found(&["draw"], "use crate::lockstep::Game;"), 1, "draw and lockstep are siblings");
-    assert_eq!(found(&["replay", "verdict"], "use crate::scenes::ALL;"), 1, "scenes and replay are siblings");
+    assert_eq!(
+        found(&["replay", "verdict"], "use crate::draw::primitives;"),
+        1,
+        "draw and replay are siblings"
+    );
     assert_eq!(found(&["toys"], ""), 1, "a module without a layer is an error");
 }
 

@@ -6,7 +6,7 @@ mod sweep;
 
 use lockstep2d::lockstep::Sandbox;
 use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, Recording, Verdict, verify};
-use lockstep2d::scenes::Scene;
+use lockstep2d_scenes::Scene;
 
 fn replays() -> Vec<(String, Vec<u8>)> {
     let folder = std::fs::read_dir(common::root().join("replays")).expect("replays/");

@@ -5,7 +5,7 @@ use anyhow::{Result, anyhow};
 use lockstep2d::body::{BodyDef, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Vec2};
-use lockstep2d::scenes::Builder;
+use lockstep2d_scenes::Builder;
 use lockstep2d::world::{Config, World};
 use serde::Serialize;
 

@@ -6,7 +6,7 @@
 
 use anyhow::{Context, Result, anyhow};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
-use lockstep2d::scenes::Scene;
+use lockstep2d_scenes::Scene;
 use lockstep2d::world::{Command, Config, Outcome};
 
 /// The ten scenes, in the order of the tables.

@@ -24,6 +24,8 @@ mod snapshot;
 mod state;
 mod stats;
 mod step;
+#[cfg(test)]
+mod tests;
 mod timestep;
 mod view;
 

@@ -3,7 +3,6 @@
 use lockstep2d::check::{CheckOptions, Phases, Variant, check, random_inputs};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::math::Rng;
-use lockstep2d::scenes;
 
 /// Largest number of shapes of a scene in this test: all variants together take twenty times as long as one.
 const SHAPES_MAX: usize = 300;
@@ -11,7 +10,7 @@ const SHAPES_MAX: usize = 300;
 #[test]
 fn every_scene_passes() {
     let mut passed = 0;
-    for scene in scenes::ALL {
+    for scene in lockstep2d_scenes::ALL {
         let setup = scene.setup(1);
         let mut game = Sandbox::new(&setup).unwrap();
         if game.world().shape_count() > SHAPES_MAX {

@@ -14,8 +14,8 @@ use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::math::Rng;
-use lockstep2d::scenes::Scene;
 use lockstep2d::world::{SnapshotError, World};
+use lockstep2d_scenes::Scene;
 
 use judge::{Figures, check_replays, files_wanted, mutated};
 
@@ -42,7 +42,7 @@ fn a_mutated_replay_is_never_another_match() {
 /// Returns the bytes of each scene's world after 40 ticks.
 fn snapshots() -> Vec<Vec<u8>> {
     let mut snapshots = vec![World::default().to_bytes()];
-    for scene in lockstep2d::scenes::ALL {
+    for scene in lockstep2d_scenes::ALL {
         let mut game = Sandbox::new(&scene.setup(common::SEED)).unwrap();
         for tick in 0..40 {
             let commands = Scene::commands(scene, tick, &game);

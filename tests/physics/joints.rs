@@ -42,7 +42,7 @@ fn long_arms_stay_closed() {
 fn spinning_rod_with_arm(arm: Fx) -> lockstep2d::lockstep::Sandbox {
     use lockstep2d::lockstep::Game;
     use lockstep2d::world::Command;
-    let scene = lockstep2d::scenes::Scene::find("long_arm").expect("there");
+    let scene = lockstep2d_scenes::Scene::find("long_arm").expect("there");
     let mut setup = scene.setup(0);
     for command in &mut setup.commands {
         match command {

@@ -5,8 +5,8 @@ use lockstep2d::body::Body;
 use lockstep2d::fx;
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::math::{Fx, Vec2};
-use lockstep2d::scenes::Scene;
 use lockstep2d::world::World;
+use lockstep2d_scenes::Scene;
 
 use super::{deepest, joint_gap, open, speed_max};
 

@@ -35,8 +35,8 @@ mod sweep;
 
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::math::{Fx, fx_mul};
-use lockstep2d::scenes::Scene;
 use lockstep2d::world::World;
+use lockstep2d_scenes::Scene;
 
 /// Returns the scene of a name, before its first tick.
 fn open(name: &str) -> Sandbox {

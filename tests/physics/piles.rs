@@ -60,8 +60,8 @@ fn a_box_rests_on_one_of_a_hundredth_of_its_mass() {
 #[test]
 fn a_stack_stands_on_baumgarte_contacts() {
     use lockstep2d::lockstep::{Game, Sandbox};
-    use lockstep2d::scenes::Scene;
     use lockstep2d::solver::ContactTuning;
+    use lockstep2d_scenes::Scene;
     for (sub_steps, iterations) in [(4, 1), (1, 8)] {
         let mut setup = Scene::find("box_stack").expect("there").setup(1);
         setup.config.solver.contact =

@@ -8,7 +8,6 @@ use lockstep2d::math::Rng;
 use lockstep2d::replay::{
     LimitKind, Limits, Recording, SeekError, Step, Timeline, TimelineOptions, Verdict, VerifiedReplay,
 };
-use lockstep2d::scenes;
 
 use crate::counter::{Counter, Input, Setup, add, inputs_at, like_its_counter, setup};
 use crate::forge::forge;
@@ -38,7 +37,7 @@ fn random_tick(rng: &mut Rng, ticks: u64) -> u64 {
 }
 
 pub(crate) fn recorded(scene: &str, ticks: u64, interval: u32) -> Vec<u8> {
-    let scene = scenes::Scene::find(scene).unwrap();
+    let scene = lockstep2d_scenes::Scene::find(scene).unwrap();
     let mut recording = Recording::<Sandbox>::start(&scene.setup(1), interval).unwrap();
     for tick in 0..ticks {
         let commands = scene.commands(tick, recording.game());

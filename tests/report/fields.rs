@@ -4,8 +4,8 @@ use lockstep2d::hash::StateHash;
 use lockstep2d::inspect::{Field, differences, fields};
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::math::Rng;
-use lockstep2d::scenes::Scene;
 use lockstep2d::world::World;
+use lockstep2d_scenes::Scene;
 
 use crate::sweep;
 

@@ -28,9 +28,9 @@ use lockstep2d::body::{Body, BodyDef, BodyId, Geometry, JointId, Polygon, ShapeD
 use lockstep2d::fx;
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::math::{Angle, Fx, Vec2, fx_mul};
-use lockstep2d::scenes::Scene;
 use lockstep2d::solver::{JointDef, JointKind};
 use lockstep2d::world::{Config, World};
+use lockstep2d_scenes::Scene;
 
 /// A world, and short names for what the samples do with it.
 struct Stage {

@@ -59,7 +59,7 @@ fn the_bytes_of_a_world_are_those_of_the_document() {
 fn the_state_hash_is_made_of_the_sections() {
     let mut scenes: Vec<World> = vec![example().expect("a valid world")];
     for name in ["hundred_polygons", "chain", "game", "ragdoll"] {
-        let scene = lockstep2d::scenes::Scene::find(name).expect("a scene");
+        let scene = lockstep2d_scenes::Scene::find(name).expect("a scene");
         let mut game = Sandbox::new(&scene.setup(1)).expect("a valid scene");
         for tick in 0..90 {
             game.step(&[scene.commands(tick, &game)]);

@@ -1,8 +1,8 @@
 //! Digests after each phase of a tick: equal for equal states, and without effect on the simulation.
 
 use lockstep2d::lockstep::{Game, Sandbox};
-use lockstep2d::scenes::Scene;
 use lockstep2d::world::{BodyField, World};
+use lockstep2d_scenes::Scene;
 
 fn pile() -> World {
     let setup = Scene::find("pyramid").expect("a scene").setup(0);

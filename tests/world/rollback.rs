@@ -5,7 +5,6 @@ use lockstep2d::collision::BroadPhaseKind;
 use lockstep2d::fx;
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSave, SandboxSetup};
 use lockstep2d::math::{Rng, Vec2};
-use lockstep2d::scenes;
 use lockstep2d::world::{Command, Snapshot, World};
 
 use super::churn::Churn;
@@ -154,7 +153,7 @@ fn a_reused_snapshot_is_as_good_as_new() {
 /// same hashes again.
 #[test]
 fn snapshots_of_every_scene_are_small_and_come_back() {
-    sweep::for_each(scenes::ALL.iter().collect(), |scene| {
+    sweep::for_each(lockstep2d_scenes::ALL.iter().collect(), |scene| {
         let mut game = Sandbox::new(&scene.setup(1)).expect("the scenes of this crate are valid");
         let step = |game: &mut Sandbox, tick: u64| {
             let commands = scene.commands(tick, game);
@@ -213,7 +212,7 @@ fn random_numbers_and_clones_are_hashed_as_they_are() {
 #[test]
 fn snapshots_come_back_from_their_bytes() {
     for name in ["ragdoll", "game", "box_stack"] {
-        let scene = scenes::Scene::find(name).expect("a scene");
+        let scene = lockstep2d_scenes::Scene::find(name).expect("a scene");
         let mut game = Sandbox::new(&scene.setup(1)).expect("a valid scene");
         for tick in 0..60 {
             game.step(&[scene.commands(tick, &game)]);

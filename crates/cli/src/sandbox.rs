@@ -1,7 +1,6 @@
 //! The sandbox's scenes, for the `lockstep2d` command.
 
 use lockstep2d::lockstep::Sandbox;
-use lockstep2d::scenes;
 
 use crate::scenes::{Catalogue, Scene, SceneInfo};
 
@@ -20,13 +19,16 @@ pub struct SandboxScenes;
 
 impl Catalogue<Sandbox> for SandboxScenes {
     fn scenes(&self) -> Vec<SceneInfo> {
-        let info =
-            |scene: &scenes::Scene| SceneInfo { name: scene.name, about: scene.about, ticks: scene.ticks };
-        scenes::ALL.iter().map(info).collect()
+        let info = |scene: &lockstep2d_scenes::Scene| SceneInfo {
+            name: scene.name,
+            about: scene.about,
+            ticks: scene.ticks,
+        };
+        lockstep2d_scenes::ALL.iter().map(info).collect()
     }
 
     fn open(&self, name: &str, seed: u64) -> Option<Scene<Sandbox>> {
-        let scene = scenes::Scene::find(name)?;
+        let scene = lockstep2d_scenes::Scene::find(name)?;
         let script = |tick: u64, game: &Sandbox| vec![scene.commands(tick, game)];
         Some(Scene { setup: scene.setup(seed), ticks: scene.ticks, script: Box::new(script) })
     }

@@ -5,8 +5,8 @@
 use lockstep2d::draw::{Form, Frame, Layers, PAPER, Style, View, fit, primitives};
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::math::{Fx, Vec2};
-use lockstep2d::scenes::Scene;
 use lockstep2d_render::{Brush, Camera, Colour, DrawList, Image, page, raster, world};
+use lockstep2d_scenes::Scene;
 
 const SIZE: (u32, u32) = (400, 300);
 

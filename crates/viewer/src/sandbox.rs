@@ -1,7 +1,7 @@
 //! [`sandbox`]: the viewer of the plain physics world.
 
 use lockstep2d::lockstep::Sandbox;
-use lockstep2d::scenes::ALL;
+use lockstep2d_scenes::ALL;
 
 use crate::live::Live;
 use crate::source::{Source, SourceError};

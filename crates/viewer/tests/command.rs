@@ -23,7 +23,7 @@ fn file(name: &str, bytes: &[u8]) -> String {
 fn it_lists_its_scenes() {
     let (code, scenes, errors) = viewer(&["--list"]);
     assert_eq!((code, errors.as_str()), (Some(0), ""));
-    assert_eq!(scenes.lines().count(), lockstep2d::scenes::ALL.len());
+    assert_eq!(scenes.lines().count(), lockstep2d_scenes::ALL.len());
     assert!(scenes.lines().any(|line| line.starts_with("pyramid ")));
 }
 

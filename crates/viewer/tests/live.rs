@@ -7,8 +7,8 @@ use lockstep2d::fx;
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::math::{Fx, Rng, Vec2};
 use lockstep2d::replay::{Limits, Verdict, verify};
-use lockstep2d::scenes::Scene;
 use lockstep2d::world::{Command, Config, World};
+use lockstep2d_scenes::Scene;
 use lockstep2d_viewer::Source;
 use lockstep2d_viewer::live::{Act, Aim, Form, Live, Playground};
 

@@ -1,5 +1,5 @@
 //! The velocity change that the warm start applies to a body is the one that contacts have caused. The tests of
-//! `scenes` check the same property for whole worlds with `push_error`.
+//! `world::tests` checks the same property for whole worlds with `push_error`.
 
 use std::vec::Vec;
 

@@ -3,8 +3,8 @@
 
 use lockstep2d::codec;
 use lockstep2d::lockstep::{Game, Sandbox};
-use lockstep2d::scenes::{self, Scene};
 use lockstep2d::world::{BodyPose, Command};
+use lockstep2d_scenes::{ALL, Scene};
 
 use super::{done, hash_of, list_of, take};
 use crate::*;
@@ -69,7 +69,7 @@ fn build(scene: &Scene) -> u32 {
 
 #[test]
 fn scenes_built_from_structs_have_the_same_hashes() {
-    for scene in scenes::ALL {
+    for scene in ALL {
         let mut game = game(scene);
         if game.world().shape_count() > 2000 {
             continue;
@@ -116,7 +116,7 @@ fn a_recorded_scene_verifies_and_rolls_back() {
 
 #[test]
 fn definitions_survive_the_way_there_and_back() {
-    for scene in scenes::ALL {
+    for scene in ALL {
         for command in scene.setup(SEED).commands {
             match command {
                 Command::Spawn { body, shapes } => {

@@ -2,9 +2,9 @@
 
 use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 use lockstep2d::replay::Recording;
-use lockstep2d::scenes::Scene;
 use lockstep2d::world::Command;
 use lockstep2d_cli::Exit;
+use lockstep2d_scenes::Scene;
 use serde_json::Value;
 
 use crate::{Folder, run_sandbox};

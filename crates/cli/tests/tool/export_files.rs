@@ -8,9 +8,9 @@ use lockstep2d::draw::{Frame, Layers, View, fit};
 use lockstep2d::lockstep::Sandbox;
 use lockstep2d::math::Aabb;
 use lockstep2d::replay::{Limits, Recording, Step, VerifiedReplay};
-use lockstep2d::scenes::Scene;
 use lockstep2d_cli::Exit;
 use lockstep2d_render::{Colour, DrawList, Image, page, raster};
+use lockstep2d_scenes::Scene;
 
 use crate::{Folder, golden, run_sandbox};
 

@@ -81,7 +81,7 @@ impl App {
             }
             Key::Character('s') => self.save(),
             Key::Character(']') => self.show_neighbour(1),
-            Key::Character('[') => self.show_neighbour(lockstep2d::scenes::ALL.len() - 1),
+            Key::Character('[') => self.show_neighbour(lockstep2d_scenes::ALL.len() - 1),
             Key::Character('t') => self.inspector.toggle_state(),
             Key::Escape => {
                 self.help = false;

@@ -10,8 +10,8 @@ pub use act::{Act, Aim, Form, Held, Playground};
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSave, SandboxSetup};
 use lockstep2d::replay::{Limits, RecordError};
-use lockstep2d::scenes::Scene;
 use lockstep2d::world::{Command, World};
+use lockstep2d_scenes::Scene;
 
 use crate::recording::{Recording, RecordingError};
 use crate::source::{Source, SourceError};
@@ -24,7 +24,7 @@ use hand::Hand;
 /// the later ticks. The recording can be saved as a replay at any time, and that replay verifies.
 ///
 /// ```
-/// use lockstep2d::scenes::Scene;
+/// use lockstep2d_scenes::Scene;
 /// use lockstep2d_viewer::{Source, live::{Act, Live, Playground}};
 ///
 /// let scene = Scene::find("box_stack").expect("a scene");

@@ -5,8 +5,8 @@ use std::time::Duration;
 use lockstep2d::draw::Layers;
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::replay::Recording;
-use lockstep2d::scenes::Scene;
 use lockstep2d::world::Command;
+use lockstep2d_scenes::Scene;
 use lockstep2d_viewer::{App, Button, Event, Key, LAYER_KEYS};
 
 pub(crate) const SIZE: [f32; 2] = [1000.0, 700.0];

@@ -138,12 +138,12 @@ fn bodies_come_and_go_and_gravity_turns() {
 fn every_scene_can_be_gone_through() {
     let mut app = live("free_fall");
     let mut names = vec![app.report().name];
-    for _ in 1..lockstep2d::scenes::ALL.len() {
+    for _ in 1..lockstep2d_scenes::ALL.len() {
         press(&mut app, Key::Character(']'));
         frames(&mut app, 1);
         names.push(app.report().name);
     }
-    let all: Vec<&str> = lockstep2d::scenes::ALL.iter().map(|scene| scene.name).collect();
+    let all: Vec<&str> = lockstep2d_scenes::ALL.iter().map(|scene| scene.name).collect();
     assert_eq!(names, all);
     press(&mut app, Key::Character('['));
     assert_eq!(app.report().name, all[all.len() - 2]);

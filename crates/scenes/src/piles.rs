@@ -2,10 +2,10 @@
 
 use super::Scene;
 use super::builder::{Builder, build, floor, rectangle, sleepless};
-use crate::body::{BodyDef, Geometry, Polygon, ShapeDef, WorldError};
-use crate::fx;
-use crate::math::{Fx, Rng, Vec2};
-use crate::world::Config;
+use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef, WorldError};
+use lockstep2d::fx;
+use lockstep2d::math::{Fx, Rng, Vec2};
+use lockstep2d::world::Config;
 
 pub(super) const BOX_STACK: Scene =
     Scene::new("box_stack", 600, "ten boxes on top of each other stand still", |_| {
@@ -109,7 +109,7 @@ pub(super) fn random_polygon(rng: &mut Rng) -> Polygon {
         let corners = rng.below(6) + 3;
         let points: alloc::vec::Vec<_> = (0..corners)
             .map(|_| {
-                let direction = crate::math::Rot::from_angle(rng.angle());
+                let direction = lockstep2d::math::Rot::from_angle(rng.angle());
                 direction.apply_wide(Vec2::new(rng.range(fx!(0.3), fx!(0.9)), Fx::ZERO))
             })
             .collect();
@@ -117,7 +117,7 @@ pub(super) fn random_polygon(rng: &mut Rng) -> Polygon {
         // Slivers are valid but hard to see in pictures.
         let wide_enough = |polygon: &Polygon| {
             polygon.vertices().iter().zip(polygon.normals()).all(|(&vertex, &normal)| {
-                let depth = |other: &Vec2<crate::math::Length>| -> crate::math::Length {
+                let depth = |other: &Vec2<lockstep2d::math::Length>| -> lockstep2d::math::Length {
                     (vertex - *other).dot(normal)
                 };
                 polygon
@@ -125,7 +125,7 @@ pub(super) fn random_polygon(rng: &mut Rng) -> Polygon {
                     .iter()
                     .map(depth)
                     .max()
-                    .is_some_and(|deepest| deepest > crate::math::Length::lit("0.3"))
+                    .is_some_and(|deepest| deepest > lockstep2d::math::Length::lit("0.3"))
             })
         };
         let polygon = Polygon::hull(&points).and_then(|polygon| polygon.rounded(rounding));

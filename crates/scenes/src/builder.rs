@@ -3,17 +3,18 @@
 
 use alloc::vec::Vec;
 
-use crate::body::{BodyDef, BodyId, JointId, Polygon, ShapeDef, WorldError};
-use crate::fx;
-use crate::lockstep::SandboxSetup;
-use crate::math::{Fx, Vec2};
-use crate::solver::JointDef;
-use crate::world::{BodyPose, Command, Config, Outcome, World};
+use lockstep2d::body::{BodyDef, BodyId, JointId, Polygon, ShapeDef, WorldError};
+use lockstep2d::fx;
+use lockstep2d::lockstep::SandboxSetup;
+use lockstep2d::math::{Fx, Vec2};
+use lockstep2d::solver::JointDef;
+use lockstep2d::world::{BodyPose, Command, Config, Outcome, World};
 
 /// A setup under construction.
 ///
 /// ```
-/// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, scenes::Builder, world::Config};
+/// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::Config};
+/// use lockstep2d_scenes::Builder;
 /// let mut scene = Builder::new(Config::default());
 /// let plank = ShapeDef::new(Polygon::rectangle(fx!(2), fx!(0.1))?);
 /// scene.spawn(BodyDef::dynamic(), &[plank])?;

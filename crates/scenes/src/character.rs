@@ -5,11 +5,11 @@ use alloc::vec::Vec;
 
 use super::Scene;
 use super::builder::{build, rectangle};
-use crate::body::{Body, BodyDef, BodyId, Chain, Geometry, ShapeDef, WorldError};
-use crate::fx;
-use crate::lockstep::Sandbox;
-use crate::math::{Angle, Fx, Vec2};
-use crate::world::{Command, Config, Mover, MoverState, QueryFilter};
+use lockstep2d::body::{Body, BodyDef, BodyId, Chain, Geometry, ShapeDef, WorldError};
+use lockstep2d::fx;
+use lockstep2d::lockstep::Sandbox;
+use lockstep2d::math::{Angle, Fx, Vec2};
+use lockstep2d::world::{Command, Config, Mover, MoverState, QueryFilter};
 
 pub(super) const CHARACTER: Scene = Scene {
     name: "character",

@@ -6,11 +6,11 @@ use alloc::vec::Vec;
 use super::Scene;
 use super::builder::{build, floor, rectangle};
 use super::piles::random_polygon;
-use crate::body::{BodyDef, Geometry, ShapeDef};
-use crate::fx;
-use crate::lockstep::Sandbox;
-use crate::math::{Fx, Rng, Vec2};
-use crate::world::{Command, Config};
+use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
+use lockstep2d::fx;
+use lockstep2d::lockstep::Sandbox;
+use lockstep2d::math::{Fx, Rng, Vec2};
+use lockstep2d::world::{Command, Config};
 
 pub(super) const GAME: Scene = Scene {
     name: "game",

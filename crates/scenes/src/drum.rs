@@ -6,11 +6,11 @@ use alloc::vec::Vec;
 use super::Scene;
 use super::builder::{build, floor, rectangle};
 use super::piles::random_polygon;
-use crate::body::{BodyDef, Geometry, Polygon, ShapeDef, WorldError};
-use crate::fx;
-use crate::lockstep::Sandbox;
-use crate::math::{Angle, Fx, Rng, Rot, Vec2, fx_mul};
-use crate::world::{Command, Config};
+use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef, WorldError};
+use lockstep2d::fx;
+use lockstep2d::lockstep::Sandbox;
+use lockstep2d::math::{Angle, Fx, Rng, Rot, Vec2, fx_mul};
+use lockstep2d::world::{Command, Config};
 
 pub(super) const DRUM: Scene =
     Scene::new("drum", 600, "a drum with paddles churns 400 boxes, discs and polygons", |seed| {

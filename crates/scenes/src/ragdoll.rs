@@ -5,11 +5,11 @@ use alloc::vec::Vec;
 
 use super::Scene;
 use super::builder::{build, floor, rectangle};
-use crate::body::{BodyDef, BodyId, Filter, Geometry, Polygon, ShapeDef, WorldError};
-use crate::fx;
-use crate::math::{Angle, Fx, PI, Vec2, fx_mul};
-use crate::solver::{JointDef, Revolute};
-use crate::world::Config;
+use lockstep2d::body::{BodyDef, BodyId, Filter, Geometry, Polygon, ShapeDef, WorldError};
+use lockstep2d::fx;
+use lockstep2d::math::{Angle, Fx, PI, Vec2, fx_mul};
+use lockstep2d::solver::{JointDef, Revolute};
+use lockstep2d::world::Config;
 
 /// Collision categories of the ground and of ragdolls.
 const GROUND: u64 = 1;

@@ -1,73 +1,53 @@
-//! Tests that the scenes have the documented sizes, and tests of the engine that need these scenes.
+//! Tests of parts of the engine in whole worlds.
 
 use alloc::vec::Vec;
 
-use super::{ALL, Scene};
-use crate::body::{BodyDef, Geometry, Handle, Polygon, ShapeDef};
+use crate::body::{BodyDef, BodyId, Geometry, Handle, Polygon, ShapeDef};
 use crate::collision::{CachedAxis, PosedShape, SatCounters, collide, collide_near};
 use crate::fx;
-use crate::lockstep::{Game, Sandbox};
-use crate::math::{Length, narrow};
+use crate::math::{Fx, Length, Rng, Rot, Vec2, narrow};
+use crate::solver::{JointDef, Revolute};
 use crate::world::World;
 
-fn open(name: &str) -> Sandbox {
-    Sandbox::new(&Scene::find(name).unwrap().setup(1)).unwrap()
+fn rectangle(half_width: Fx, half_height: Fx) -> ShapeDef {
+    ShapeDef::new(Polygon::rectangle(half_width, half_height).unwrap())
 }
 
-fn counts(world: &World) -> (usize, usize, usize) {
-    (world.body_count(), world.shape_count(), world.joint_count())
+/// A floor of 24 m between two walls.
+fn pit() -> World {
+    let mut world = World::default();
+    let parts = [
+        rectangle(fx!(12), fx!(1)).offset((fx!(0), fx!(-1))),
+        rectangle(fx!(1), fx!(10)).offset((fx!(-11), fx!(10))),
+        rectangle(fx!(1), fx!(10)).offset((fx!(11), fx!(10))),
+    ];
+    world.spawn(&BodyDef::fixed(), &parts).unwrap();
+    world
 }
 
-#[test]
-fn every_scene_starts_and_has_a_setup_that_fits_a_replay() {
-    for scene in ALL {
-        let setup = scene.setup(1);
-        let bytes = crate::codec::encode(&setup).len();
-        assert!(bytes < 1 << 20, "{}: a setup of {bytes} bytes", scene.name);
-        assert!(Sandbox::new(&setup).is_ok(), "{}", scene.name);
-        assert_eq!(Scene::find(scene.name).map(|found| found.about), Some(scene.about), "names are unique");
-    }
+fn spawn(world: &mut World, x: Fx, y: Fx, shape: ShapeDef) -> BodyId {
+    world.spawn(&BodyDef::dynamic().position((x, y)), &[shape]).unwrap()
 }
 
-#[test]
-fn benchmarks_have_the_size_that_they_have_elsewhere() {
-    for (name, size) in [
-        ("large_pyramid", (5051, 5051, 0)),
-        ("many_pyramids", (22001, 22020, 0)),
-        ("joint_grid", (10000, 10000, 19794)),
-        ("smash", (9601, 9601, 0)),
-        ("spinner", (6078, 6437, 1)),
-        ("tumbler", (2027, 2029, 1)),
-        ("washer", (8101, 8140, 0)),
-        ("junkyard", (8002, 8262, 0)),
-        ("compounds", (3001, 6282, 0)),
-    ] {
-        assert_eq!(counts(open(name).world()), size, "{name}");
+/// A pit with 100 convex hulls of up to 8 random points.
+fn hundred_polygons() -> World {
+    let (mut world, mut rng) = (pit(), Rng::new(1));
+    for i in 0..100 {
+        let hull = loop {
+            let count = rng.below(6) + 3;
+            let mut point = || {
+                let direction = Rot::from_angle(rng.angle());
+                direction.apply_wide(Vec2::new(rng.range(fx!(0.3), fx!(0.9)), Fx::ZERO))
+            };
+            let points: Vec<_> = (0..count).map(|_| point()).collect();
+            if let Ok(hull) = Polygon::hull(&points) {
+                break hull;
+            }
+        };
+        let x = Fx::from_num(i % 8 - 4) * 2 + fx!(1) + rng.range(fx!(-0.2), fx!(0.2));
+        spawn(&mut world, x, Fx::from_num(i / 8) * 2 + fx!(2), ShapeDef::new(hull));
     }
-}
-
-/// Executes the script without stepping: complete ragdolls are added, and old ones are removed.
-#[test]
-fn forty_columns_of_ragdolls_stand_at_a_time() {
-    let mut game = open("rain");
-    let scene = Scene::find("rain").unwrap();
-    for tick in 0..=8 * 42 {
-        for command in scene.commands(tick, &game) {
-            game.world_mut().execute(&command).unwrap();
-        }
-        let world = game.world();
-        let columns = usize::try_from(tick / 8 + 1).unwrap().min(40);
-        if tick % 8 == 0 {
-            assert_eq!(counts(world), (1 + 275 * columns, 2505 + 325 * columns, 250 * columns));
-            assert!(world.bodies().all(|(_, body)| body.is_enabled()));
-        }
-    }
-    let world = game.world();
-    for (id, _) in world.joints() {
-        let (a, b) = world.joint_anchors(id).unwrap();
-        assert!(a.distance(b) < crate::fx!(0.000001), "joint {id}: {a:?} {b:?}");
-    }
-    assert_eq!(world.faults(), 0);
+    world
 }
 
 /// Input of the narrow phase in a tick: posed shapes, and the pairs whose fat boxes overlap.
@@ -125,12 +105,12 @@ impl Near {
 /// instruction counts of the two functions of [`Near`] can be measured with `valgrind --tool=callgrind`.
 #[test]
 fn reject_and_axis_spare_a_hundred_polygons_most_searches() {
-    let mut game = open("hundred_polygons");
-    let margin = narrow(game.world().config().speculative_distance);
+    let mut world = hundred_polygons();
+    let margin = narrow(world.config().speculative_distance);
     let ticks: Vec<Near> = (0..300)
         .map(|_| {
-            game.world_mut().step();
-            Near::of(game.world())
+            world.step();
+            Near::of(&world)
         })
         .collect();
     let mut cached_axes = alloc::vec![CachedAxis::default(); ticks[0].shapes.len().pow(2)];
@@ -146,18 +126,46 @@ fn reject_and_axis_spare_a_hundred_polygons_most_searches() {
     assert!(spared, "{fast} points, {pairs} pairs, {counters:?}");
 }
 
-/// Boxes, hinges, motors and rolling: the accumulated velocity change of the contacts equals the sum of their impulses,
-/// except for the rounding of about twenty changes per row.
+/// A pyramid of boxes, balls with rolling resistance on their way to it, and three chains of planks of which the first
+/// hinge of each has a motor.
+fn boxes_balls_and_hinges() -> World {
+    let (mut world, half) = (pit(), fx!(0.5));
+    for (row, column) in (0..6).flat_map(|row| (row..6).map(move |column| (row, column))) {
+        let x = Fx::from_num(2 * column - row) / 2 - fx!(8);
+        spawn(&mut world, x, Fx::from_num(row) + half, rectangle(half, half));
+    }
+    let ball =
+        ShapeDef::new(Geometry::circle(half).unwrap()).rolling_resistance(fx!(0.05)).restitution(fx!(0.3));
+    for i in 0..4 {
+        let body = BodyDef::dynamic().position((Fx::from_num(2 * i), fx!(1))).velocity((fx!(-4), fx!(0)));
+        world.spawn(&body, &[ball]).unwrap();
+    }
+    for chain in 0..3 {
+        let y = Fx::from_num(2 * chain) + fx!(2);
+        let mut before = world.spawn(&BodyDef::fixed().position((fx!(4), y)), &[]).unwrap();
+        for i in 0..5 {
+            let plank = rectangle(half, fx!(0.1)).density(fx!(2));
+            let plank = spawn(&mut world, Fx::from_num(i) + fx!(4.5), y, plank);
+            let anchor_a = if i == 0 { fx!(0) } else { half };
+            let hinge = if i == 0 { Revolute::new().motor(fx!(2), fx!(40)) } else { Revolute::new() };
+            let hinge =
+                JointDef::new(before, plank, hinge).anchor_a((anchor_a, fx!(0))).anchor_b((-half, fx!(0)));
+            world.add_joint(&hinge).unwrap();
+            before = plank;
+        }
+    }
+    world
+}
+
+/// The accumulated velocity change of the contacts equals the sum of their impulses, except for the rounding of about
+/// twenty changes per row.
 #[test]
 fn pushes_are_what_the_impulses_amount_to() {
-    for (name, ticks) in [("pyramid", 30), ("bridge", 120), ("ragdoll", 90), ("drum", 120), ("slope", 60)] {
-        let scene = Scene::find(name).expect("a scene");
-        let mut game = open(name);
+    for (name, mut world) in [("mixed", boxes_balls_and_hinges()), ("polygons", hundred_polygons())] {
         let (mut worst, mut most) = (0, 0);
-        for tick in 0..ticks {
-            let commands = scene.commands(tick, &game);
-            game.step(&[commands]);
-            let (error, largest) = game.world().push_error();
+        for _ in 0..120 {
+            world.step();
+            let (error, largest) = world.push_error();
             (worst, most) = (worst.max(error), most.max(largest));
         }
         assert!(worst <= 100, "{name}: the velocity change differs from the impulses by {worst} units");

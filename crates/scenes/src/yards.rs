@@ -5,11 +5,11 @@ use alloc::vec::Vec;
 
 use super::Scene;
 use super::builder::{Builder, build, rectangle, weightless};
-use crate::body::{BodyDef, BodyKind, Geometry, Polygon, ShapeDef, WorldError};
-use crate::fx;
-use crate::lockstep::Sandbox;
-use crate::math::{Angle, Fx, Rot, Vec2, fx_mul, widen};
-use crate::world::{Command, Config};
+use lockstep2d::body::{BodyDef, BodyKind, Geometry, Polygon, ShapeDef, WorldError};
+use lockstep2d::fx;
+use lockstep2d::lockstep::Sandbox;
+use lockstep2d::math::{Angle, Fx, Rot, Vec2, fx_mul, widen};
+use lockstep2d::world::{Command, Config};
 
 pub(super) const SMASH: Scene =
     Scene::new("smash", 300, "a heavy box hits a block of 9600 sleeping boxes, without gravity", |_| {
@@ -89,7 +89,7 @@ fn push_junk(tick: u64, game: &Sandbox) -> Vec<Command> {
     let pusher = game.world().bodies().find(|(_, body)| body.kind() == BodyKind::Kinematic);
     let Some((body, _)) = pusher else { return vec![] };
     // 300 ticks are 5 s, which is one radian.
-    let phase = Angle::from_radians(crate::math::ratio(i64::try_from(tick).unwrap_or(i64::MAX), 300));
+    let phase = Angle::from_radians(lockstep2d::math::ratio(i64::try_from(tick).unwrap_or(i64::MAX), 300));
     let position = Vec2::new(fx_mul(fx!(60), widen(phase.sin())), fx!(0));
     vec![Command::MoveTo { body, position, angle: Angle::ZERO }]
 }

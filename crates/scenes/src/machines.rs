@@ -6,11 +6,11 @@ use super::Scene;
 use super::builder::{Builder, build, rectangle};
 use super::drum::plate;
 use super::yards::grid;
-use crate::body::{BodyDef, Chain, EventSwitches, Geometry, Material, Polygon, ShapeDef, WorldError};
-use crate::fx;
-use crate::math::{Angle, Fx, Rot, Vec2};
-use crate::solver::{JointDef, Revolute};
-use crate::world::Config;
+use lockstep2d::body::{BodyDef, Chain, EventSwitches, Geometry, Material, Polygon, ShapeDef, WorldError};
+use lockstep2d::fx;
+use lockstep2d::math::{Angle, Fx, Rot, Vec2};
+use lockstep2d::solver::{JointDef, Revolute};
+use lockstep2d::world::Config;
 
 /// 25 degrees per second, in rad/s.
 const TURNING: Fx = fx!(0.436332312999);

@@ -6,11 +6,11 @@ use alloc::vec::Vec;
 use super::Scene;
 use super::builder::{build, rectangle};
 use super::ragdoll::BONES;
-use crate::body::{BodyDef, BodyId, WorldError};
-use crate::fx;
-use crate::lockstep::Sandbox;
-use crate::math::{Angle, Fx, Vec2};
-use crate::world::{BodyPose, Command, Config};
+use lockstep2d::body::{BodyDef, BodyId, WorldError};
+use lockstep2d::fx;
+use lockstep2d::lockstep::Sandbox;
+use lockstep2d::math::{Angle, Fx, Vec2};
+use lockstep2d::world::{BodyPose, Command, Config};
 
 /// Number of columns that exist at a time.
 const COLUMNS: u64 = 40;

@@ -4,11 +4,11 @@ use alloc::vec::Vec;
 
 use super::Scene;
 use super::builder::{Builder, build, rectangle, sleepless, weightless};
-use crate::body::{BodyDef, BodyId, Filter, Geometry, MassSource, ShapeDef, WorldError};
-use crate::fx;
-use crate::math::{Angle, Fx, Rot, Vec2, fx_mul};
-use crate::solver::{JointDef, Revolute};
-use crate::world::Config;
+use lockstep2d::body::{BodyDef, BodyId, Filter, Geometry, MassSource, ShapeDef, WorldError};
+use lockstep2d::fx;
+use lockstep2d::math::{Angle, Fx, Rot, Vec2, fx_mul};
+use lockstep2d::solver::{JointDef, Revolute};
+use lockstep2d::world::Config;
 
 /// Makes a shape collide with nothing.
 fn ghost(shape: ShapeDef) -> ShapeDef {
@@ -41,7 +41,7 @@ pub(super) const LONG_ARM: Scene = Scene::new(
 );
 
 /// A rod of 1 m and 1 kg, pinned `arm` metres from its centre, at 20 rad/s, without gravity.
-fn rod(arm: Fx) -> crate::lockstep::SandboxSetup {
+fn rod(arm: Fx) -> lockstep2d::lockstep::SandboxSetup {
     build(weightless(), |scene| {
         let pivot = scene.spawn(BodyDef::fixed(), &[])?;
         let shape = rectangle(fx!(0.5), fx!(0.02))?;

@@ -2,10 +2,10 @@
 
 use super::Scene;
 use super::builder::{build, floor, rectangle, weightless};
-use crate::body::{BodyDef, Geometry, ShapeDef};
-use crate::fx;
-use crate::math::{Angle, Vec2};
-use crate::world::Config;
+use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
+use lockstep2d::fx;
+use lockstep2d::math::{Angle, Vec2};
+use lockstep2d::world::Config;
 
 pub(super) const FREE_FALL: Scene =
     Scene::new("free_fall", 600, "a ball falls for 10 s: semi-implicit Euler to the last bit", |_| {
@@ -70,7 +70,7 @@ pub(super) const SLOPE: Scene = Scene::new(
     |_| {
         build(Config::default(), |scene| {
             let angle = Angle::from_degrees(fx!(25));
-            let (sin, cos) = (crate::math::widen(angle.sin()), crate::math::widen(angle.cos()));
+            let (sin, cos) = (lockstep2d::math::widen(angle.sin()), lockstep2d::math::widen(angle.cos()));
             let ramp = rectangle(fx!(100), fx!(0.5))?.friction(fx!(1));
             scene.spawn(BodyDef::fixed().angle(angle), &[ramp])?;
             for (along, friction) in [(fx!(60), fx!(0.36)), (fx!(80), fx!(0.09))] {

@@ -6,10 +6,10 @@ use alloc::vec::Vec;
 
 use super::Scene;
 use super::builder::{build, rectangle};
-use crate::body::{Body, BodyDef, BodyId, Chain, Geometry, ShapeDef, WorldError};
-use crate::fx;
-use crate::math::{Angle, Fx, Vec2, fx_mul};
-use crate::world::{CastHit, Command, Config, Probe, QueryFilter, World};
+use lockstep2d::body::{Body, BodyDef, BodyId, Chain, Geometry, ShapeDef, WorldError};
+use lockstep2d::fx;
+use lockstep2d::math::{Angle, Fx, Vec2, fx_mul};
+use lockstep2d::world::{CastHit, Command, Config, Probe, QueryFilter, World};
 
 pub(super) const SPRING_LEG: Scene = Scene {
     name: "spring_leg",

@@ -1,4 +1,9 @@
-//! Scenes as plain data, built once and shared by tests, replays, examples and benchmarks.
+//! Scenes of [`lockstep2d`] as plain data, built once and shared by tests, replays, tools and benchmarks.
+//!
+//! [`ALL`] lists them, [`Scene::find`] finds one by name, and [`Builder`] builds a setup of one's own.
+#![no_std]
+
+extern crate alloc;
 
 mod builder;
 mod character;
@@ -20,13 +25,14 @@ use alloc::vec::Vec;
 
 pub use builder::Builder;
 
-use crate::lockstep::{Sandbox, SandboxSetup};
-use crate::world::Command;
+use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+use lockstep2d::world::Command;
 
 /// A scene: a setup, and a script of the player's commands.
 ///
 /// ```
-/// use lockstep2d::{lockstep::{Game, Sandbox}, scenes::Scene};
+/// use lockstep2d::lockstep::{Game, Sandbox};
+/// use lockstep2d_scenes::Scene;
 /// let pyramid = Scene::find("pyramid").expect("a scene");
 /// let mut game = Sandbox::new(&pyramid.setup(0))?;
 /// for tick in 0..10 {
