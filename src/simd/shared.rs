@@ -5,6 +5,11 @@ use core::cell::Cell;
 
 /// A slice shared between the threads of a team, under the condition that no thread writes an element that another
 /// thread accesses between the same two barriers.
+///
+/// There are two: the bodies of the solver (`Solver::sub_steps`), each of which is in one constraint of a colour and is
+/// integrated by one thread; and the contacts of the state (`ContactStore::new`), of which each thread stores its own.
+/// `new` is not an `unsafe` function, since each access, not the sharing, has to follow the condition. Tests compare
+/// the results of 1, 2, 4 and 8 threads.
 pub(crate) struct Shared<'a, T>(&'a [Cell<T>]);
 
 impl<T> Clone for Shared<'_, T> {
@@ -15,7 +20,8 @@ impl<T> Clone for Shared<'_, T> {
 
 impl<T> Copy for Shared<'_, T> {}
 
-// SAFETY: whoever creates it guarantees that no element is written by one thread and accessed by another.
+// SAFETY: the uses that are listed above write no element that another thread accesses between the same two barriers,
+// and a barrier synchronises memory.
 unsafe impl<T: Send> Send for Shared<'_, T> {}
 // SAFETY: as above.
 unsafe impl<T: Send> Sync for Shared<'_, T> {}

@@ -88,6 +88,14 @@ pub(crate) struct Lever {
     pub(crate) inverse_gyration: Reciprocal,
 }
 
+impl Lever {
+    /// The length of the arm over the radius of gyration.
+    pub(crate) fn ratio(self) -> Ratio {
+        let ratio: Ratio = self.inverse_gyration.times(self.arm.length());
+        ratio.min(RATIO_MAX)
+    }
+}
+
 /// The constant part of a row.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row {

@@ -41,7 +41,12 @@ pub(crate) enum Mix {
     Wheel,
     Rod,
     Friction,
+    /// Any of those above.
     Every,
+    /// Springs between two points and between two angles.
+    MotorSpring,
+    /// Springs between two anchors that only pull, only push, or have a largest force.
+    LimitedSpring,
 }
 
 /// How the assembly moves at the start.
@@ -59,8 +64,9 @@ pub(crate) enum Start {
 
 pub(crate) const SHAPES: [Shape; 6] =
     [Shape::Star, Shape::Tree, Shape::Chain, Shape::Loop, Shape::Mesh, Shape::Grid];
-pub(crate) const MIXES: [Mix; 8] =
-    [Mix::Weld, Mix::Hinge, Mix::SoftWeld, Mix::Prismatic, Mix::Wheel, Mix::Rod, Mix::Friction, Mix::Every];
+/// The mixes of one kind.
+pub(crate) const MIXES: [Mix; 7] =
+    [Mix::Weld, Mix::Hinge, Mix::SoftWeld, Mix::Prismatic, Mix::Wheel, Mix::Rod, Mix::Friction];
 pub(crate) const STARTS: [Start; 4] = [Start::Hit, Start::Spin, Start::Scatter, Start::Hang];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -205,7 +211,7 @@ impl Case {
         let hertz = rng.range(fx!(2), fx!(8));
         let ratio = rng.range(fx!(0.1), fx!(1));
         let mix = match self.mix {
-            Mix::Every => pick(rng, &MIXES[..7]),
+            Mix::Every => pick(rng, &MIXES),
             mix => mix,
         };
         let kind: JointKind = match mix {
@@ -226,17 +232,22 @@ impl Case {
                 _ => Prismatic::new().limit(fx!(-0.3), fx!(0.3)).spring(hertz, ratio, fx!(0)).into(),
             },
             Mix::Wheel => Wheel::new().limit(fx!(-0.3), fx!(0.3)).spring(hertz, ratio, fx!(0)).into(),
-            Mix::Rod => {
+            Mix::Rod | Mix::LimitedSpring => {
                 let far = pb.place + aside;
                 let arm = far - pb.place;
                 let far = if length(arm) > pb.gyration * 16 { pb.place } else { far };
                 let near = anchor - (anchor - pa.place).scale_half();
                 let apart = length(far - near);
                 if apart > fx!(0.05) {
-                    let kind: JointKind = match rng.below(3) {
-                        0 => Distance::rod(apart).into(),
-                        1 => Distance::rope(apart).into(),
-                        _ => Distance::new().spring(hertz, ratio, apart).limit(apart / 2, apart * 2).into(),
+                    let spring = Distance::new().spring(hertz, ratio, apart);
+                    let within = spring.limit(apart / 2, apart * 2);
+                    let kind: JointKind = match (mix, rng.below(3)) {
+                        (Mix::Rod, 0) => Distance::rod(apart).into(),
+                        (Mix::Rod, 1) => Distance::rope(apart).into(),
+                        (Mix::Rod, _) => within.into(),
+                        (_, 0) => spring.spring_force(Fx::MIN, fx!(0)).into(),
+                        (_, 1) => within.spring_force(fx!(0), Fx::MAX).into(),
+                        _ => within.spring_force(fx!(-50), fx!(50)).into(),
                     };
                     return JointDef::new(a, b, kind).anchor_a(near - pa.place).anchor_b(far - pb.place);
                 }
@@ -246,6 +257,14 @@ impl Case {
                 let max = rng.range(fx!(0.1), fx!(20));
                 let linear = LinearDrive { velocity: Vec2::ZERO, max_force: max };
                 Motor { linear: Some(linear), ..Motor::new() }.angular(fx!(0), max).into()
+            }
+            Mix::MotorSpring => {
+                let spring = Motor::new().linear_spring(hertz, ratio, Fx::MAX);
+                match rng.below(3) {
+                    0 => spring.into(),
+                    1 => spring.angular_spring(hertz, ratio, rng.range(fx!(5), fx!(100))).into(),
+                    _ => spring.angular_spring(hertz, ratio, Fx::MAX).into(),
+                }
             }
             Mix::Every => unreachable!("one kind was picked"),
         };

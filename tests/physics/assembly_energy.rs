@@ -4,7 +4,7 @@
 
 use lockstep2d::body::{Body, JointId};
 use lockstep2d::math::Fx;
-use lockstep2d::solver::{Distance, JointKind, Prismatic, Wheel};
+use lockstep2d::solver::{Distance, JointKind, JointLimit, Motor, Prismatic, Pull, Wheel};
 
 use crate::assembly::Assembly;
 
@@ -63,6 +63,12 @@ impl Assembly {
         let gap = at_b - at_a;
         let gap = (float(gap.x), float(gap.y));
         let linear = |hertz: Fx, square: f64| omega(hertz).powi(2) * square / (im[0] + im[1]) / 2.0;
+        // A spring whose force is at most `max`.
+        let limited = |hertz: Fx, mobility: f64, x: f64, max: f64| {
+            let stiffness = omega(hertz).powi(2) / mobility;
+            let soft = x.min(max / stiffness);
+            stiffness * soft * soft / 2.0 + max * (x - soft)
+        };
         match &joint.def().kind {
             JointKind::Revolute(kind) => kind.spring.map_or(0.0, |s| angular(s.hertz, angle)),
             JointKind::Weld(kind) => {
@@ -74,8 +80,19 @@ impl Assembly {
             | JointKind::Wheel(Wheel { spring: Some(spring), .. }) => {
                 linear(spring.hertz, translation.powi(2))
             }
-            JointKind::Distance(Distance { spring: Some(spring), .. }) => {
-                linear(spring.hertz, (gap.0.hypot(gap.1) - float(spring.target)).powi(2))
+            JointKind::Distance(Distance { spring: Some(spring), spring_force, .. }) => {
+                let x = gap.0.hypot(gap.1) - float(spring.target);
+                let max = |force: JointLimit| {
+                    float(if x > 0.0 { force.lower.saturating_neg() } else { force.upper })
+                };
+                limited(spring.hertz, im[0] + im[1], x.abs(), spring_force.map_or(f64::MAX, max))
+            }
+            JointKind::Motor(Motor { linear_spring, angular_spring, .. }) => {
+                let pull = |pull: &Option<Pull>, mobility: f64, x: f64| {
+                    pull.map_or(0.0, |pull| limited(pull.soft.hertz, mobility, x, float(pull.max)))
+                };
+                let turn = pull(angular_spring, it[0] + it[1], float(angle).abs());
+                turn + pull(linear_spring, im[0] + im[1], gap.0.hypot(gap.1))
             }
             _ => 0.0,
         }

@@ -18,18 +18,14 @@ use crate::sweep;
 const TICKS: u32 = 1200;
 
 /// Assemblies that pull so hard at long arms that a body turns too far within a sub-step, `h^2 F r / I` above 1
-/// (docs/DESIGN.md, "Result and known limits"). Those of hinges gain 2 to 23 %. Sliders on springs are pulled out to more
-/// than 16 radii of gyration.
-const BEYOND: [Case; 9] = [
+/// (docs/DESIGN.md, "Result and known limits"). They gain 2 to 39 %.
+const BEYOND: [Case; 6] = [
     Case { shape: Shape::Chain, mix: Mix::Hinge, start: Start::Spin, seed: 12 },
     Case { shape: Shape::Tree, mix: Mix::Hinge, start: Start::Hang, seed: 19 },
     Case { shape: Shape::Star, mix: Mix::Hinge, start: Start::Hang, seed: 39 },
     Case { shape: Shape::Chain, mix: Mix::Hinge, start: Start::Hang, seed: 2 },
     Case { shape: Shape::Mesh, mix: Mix::Hinge, start: Start::Hang, seed: 19 },
-    Case { shape: Shape::Chain, mix: Mix::Prismatic, start: Start::Spin, seed: 7 },
-    Case { shape: Shape::Tree, mix: Mix::Prismatic, start: Start::Hang, seed: 9 },
-    Case { shape: Shape::Chain, mix: Mix::Prismatic, start: Start::Hang, seed: 19 },
-    Case { shape: Shape::Mesh, mix: Mix::Prismatic, start: Start::Hang, seed: 14 },
+    Case { shape: Shape::Tree, mix: Mix::Prismatic, start: Start::Hang, seed: 45 },
 ];
 
 fn never_gain(mix: Mix, start: Start) {
@@ -97,10 +93,10 @@ fn assemblies_of_hinges_that_turn_or_hang_gain_no_energy() {
     never_gain(Mix::Hinge, Start::Hang);
 }
 
-/// Assemblies of hinges that are beyond the engine do not explode.
+/// Assemblies that are beyond the engine do not explode.
 #[test]
-fn assemblies_of_hinges_beyond_the_engine_stay_together() {
-    sweep::for_each(BEYOND.into_iter().filter(|case| case.mix == Mix::Hinge).collect(), |case| {
+fn assemblies_beyond_the_engine_stay_together() {
+    sweep::for_each(BEYOND.to_vec(), |case| {
         let outcome = case.run(TICKS);
         assert!(outcome.gain <= 0.5 && outcome.gap < 0.6, "{case:?}: {outcome:?}");
         assert_eq!(outcome.faults, 0, "{case:?}: expected no clamped value");
@@ -140,6 +136,34 @@ fn assemblies_on_springs_that_turn_or_hang_gain_no_energy() {
     for mix in [Mix::Wheel, Mix::Rod, Mix::Prismatic] {
         never_gain(mix, Start::Spin);
         never_gain(mix, Start::Hang);
+    }
+}
+
+/// Before, sliders had no geometric stiffness, and these four gained up to 7600 times their energy.
+#[test]
+fn sliders_on_springs_that_pull_hard_gain_no_energy() {
+    let slider = |shape, start, seed| Case { shape, mix: Mix::Prismatic, start, seed };
+    let cases = vec![
+        slider(Shape::Chain, Start::Spin, 7),
+        slider(Shape::Tree, Start::Hang, 9),
+        slider(Shape::Chain, Start::Hang, 19),
+        slider(Shape::Mesh, Start::Hang, 14),
+    ];
+    sweep::for_each(cases, |case| {
+        let outcome = case.run(TICKS);
+        assert!(outcome.gain <= 0.01 && outcome.faults == 0, "{case:?}: {outcome:?}");
+    });
+}
+
+/// Before, springs of motors and those of limited force were solved one after the other, before the blocks: 6 of 720
+/// assemblies of motors gained up to 40 times their energy, and 10 of 720 on springs that only pull, only push or have a
+/// largest force.
+#[test]
+fn assemblies_on_springs_of_motors_or_of_limited_force_gain_no_energy() {
+    for mix in [Mix::MotorSpring, Mix::LimitedSpring] {
+        for start in [Start::Hit, Start::Spin, Start::Scatter, Start::Hang] {
+            never_gain(mix, start);
+        }
     }
 }
 

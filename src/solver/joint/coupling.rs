@@ -6,7 +6,7 @@ use super::super::body::SolverBody;
 use super::super::row::{Lever, Row, angular_scale};
 use super::def::{JointDef, JointKind};
 use super::pose::{BodyRotation, Ends, JointPose};
-use super::row::Measure;
+use super::row::{Measure, NO_REACH};
 use super::state::{Joint, radians};
 use super::{Gear, Pulley, Rack};
 use crate::body::Body;
@@ -227,5 +227,5 @@ fn pulley_measure(ratio: Fx, ropes: [Vec2<Fx>; 2], pose: &JointPose) -> Measure 
 fn measured(n: [Vec2<Unit>; 2], arms: [Fx; 2], pose: &JointPose, position: Fx, scale: Fx) -> Measure {
     let inverse = [pose.lever_a.inverse_gyration, pose.lever_b.inverse_gyration];
     let (row, denominator) = Row::coupled(n, arms.map(narrow), inverse, pose.fractions);
-    Measure { row, denominator, position, scale }
+    Measure { row, denominator, position, scale, reach: NO_REACH }
 }

@@ -20,7 +20,7 @@ use super::pose::{BodyRotation, Ends};
 use super::row::JointRow;
 use super::state::{Joint, JointImpulses};
 use crate::body::{Arena, Body, JointId};
-use crate::math::Unit;
+use crate::math::{Speed, Unit};
 
 /// Joints in the order in which they are solved.
 #[derive(Clone, Debug, Default)]
@@ -82,6 +82,8 @@ pub(super) struct BlockedPart {
     pub(super) fractions: MassFractions,
     pub(super) mass_scale: Unit,
     pub(super) task: BlockedTask,
+    /// Whether it is a spring of limited force.
+    pub(super) is_limited: bool,
 }
 
 /// The function of a row in a block.
@@ -161,8 +163,8 @@ impl JointList {
         self.couplings.extend(Coupling::prepare(joint, bodies));
         let (rows, points) = (&mut self.rows[rows_before..], &mut self.points[points_before..]);
         if is_blocked {
-            rows.iter_mut().for_each(|row| row.is_blocked = row.can_be_blocked());
-            points.iter_mut().for_each(|point| point.is_blocked = point.unlimited_softness().is_some());
+            rows.iter_mut().for_each(|row| row.is_blocked = true);
+            points.iter_mut().for_each(|point| point.is_blocked = point.softness().is_some());
         }
         let (rows, points) = (count(rows), count(points));
         self.links.push(Link { bodies: indices, rows, points, remainders: Remainders::starting(bodies) });
@@ -242,20 +244,26 @@ impl JointList {
         for (joint, link) in self.joints.iter().zip(&self.links) {
             let (rows, points) = (row..row + usize::from(link.rows), point..point + usize::from(link.points));
             (row, point) = (rows.end, points.end);
-            let part = |part, softness: &Softness, task| BlockedPart {
+            let part = |part, softness: &Softness, task, is_limited| BlockedPart {
                 part,
                 bodies: link.bodies,
                 fractions: joint.ends.fractions(),
                 mass_scale: softness.mass_scale,
                 task,
+                is_limited,
             };
             for at in rows.filter(|&at| self.rows[at].is_blocked) {
                 let row = &self.rows[at];
-                each(joint.slot, part(ListPart::Row(at), row.softness(), row.blocked_task()));
+                each(
+                    joint.slot,
+                    part(ListPart::Row(at), row.softness(), row.blocked_task(), row.is_limited_spring()),
+                );
             }
             for at in points.filter(|&at| self.points[at].is_blocked) {
-                let Some(softness) = self.points[at].unlimited_softness() else { continue };
-                each(joint.slot, part(ListPart::Point(at), softness, BlockedTask::Spring));
+                let point = &self.points[at];
+                let Some(softness) = point.softness() else { continue };
+                let is_limited = point.impulse_max() != Speed::MAX;
+                each(joint.slot, part(ListPart::Point(at), softness, BlockedTask::Spring, is_limited));
             }
         }
     }

@@ -40,12 +40,18 @@ impl JointPoint {
         JointPoint { slot, task, block, bias: Vec2::ZERO, is_blocked: false, lambda }
     }
 
-    /// The softness of a spring whose impulse has no limit.
-    pub(super) fn unlimited_softness(&self) -> Option<&Softness> {
+    /// The softness of a spring.
+    pub(super) fn softness(&self) -> Option<&Softness> {
         match &self.task {
-            PointTask::Spring { softness, max } if *max == Speed::MAX => Some(softness),
-            PointTask::Spring { .. } | PointTask::Drive { .. } => None,
+            PointTask::Spring { softness, .. } => Some(softness),
+            PointTask::Drive { .. } => None,
         }
+    }
+
+    /// The largest impulse times `mA + mB`; [`Speed::MAX`] is unlimited.
+    pub(super) fn impulse_max(&self) -> Speed {
+        let (PointTask::Spring { max, .. } | PointTask::Drive { max, .. }) = self.task;
+        max
     }
 
     /// The change of the impulse of a spring that the bias pass wants.

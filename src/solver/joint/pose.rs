@@ -7,7 +7,7 @@ use super::super::point_block::PointBlock;
 use super::super::row::{Lever, MassFractions, Row};
 use super::def::JointDef;
 use super::parts::Direction;
-use super::row::Measure;
+use super::row::{Measure, NO_REACH};
 use super::state::{Joint, radians};
 use crate::body::Body;
 use crate::fx;
@@ -137,11 +137,15 @@ impl Ends {
                 // Anchors that coincide define no direction, so that any direction is valid.
                 let n = place.gap.normalized().unwrap_or(self.axis);
                 let (row, denominator) = Row::prepare(n, place.lever_a, place.lever_b, place.fractions);
-                Measure { row, denominator, position: place.gap.length(), scale: Fx::ONE }
+                Measure { row, denominator, position: place.gap.length(), scale: Fx::ONE, reach: NO_REACH }
             }
-            Direction::Coupled(_) => {
-                Measure { row: Row::NONE, denominator: 0, position: Fx::ZERO, scale: Fx::ONE }
-            }
+            Direction::Coupled(_) => Measure {
+                row: Row::NONE,
+                denominator: 0,
+                position: Fx::ZERO,
+                scale: Fx::ONE,
+                reach: NO_REACH,
+            },
         }
     }
 
@@ -150,13 +154,20 @@ impl Ends {
         let n = body_rotations[self.body_a as usize].rotation.apply(axis);
         let [a, b] = place.levers_at_one_point().unwrap_or([place.reach_of_a(), place.lever_b]);
         let (row, denominator) = Row::prepare(n, a, b, place.fractions);
-        Measure { row, denominator, position: place.gap.dot(n.widen()), scale: Fx::ONE }
+        let position = place.gap.dot(n.widen());
+        Measure { row, denominator, position, scale: Fx::ONE, reach: [a, b].map(Lever::ratio) }
     }
 
     fn measure_angle(&self, body_rotations: &[BodyRotation]) -> Measure {
         let (row, denominator, scale) =
             Row::angular(self.inverse_gyration_a, self.inverse_gyration_b, self.fractions);
-        Measure { row, denominator, position: radians(self.turns(body_rotations)), scale: scale.into() }
+        Measure {
+            row,
+            denominator,
+            position: radians(self.turns(body_rotations)),
+            scale: scale.into(),
+            reach: NO_REACH,
+        }
     }
 }
 

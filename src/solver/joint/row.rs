@@ -33,7 +33,7 @@ use super::super::softness::Softness;
 use super::list::BlockedTask;
 use super::options::JointLimit;
 use super::parts::Direction;
-use crate::math::{Fx, Speed, fx_div, fx_mul, narrow, saturate_wide};
+use crate::math::{Fx, Ratio, Speed, fx_div, fx_mul, narrow, saturate_wide};
 
 /// The function of a row.
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +60,12 @@ pub(super) struct Measure {
     pub(super) position: Fx,
     /// Units of the row per unit of the position: 1, or `s` for an angle.
     pub(super) scale: Fx,
+    /// For an axis that turns with A: the arms of both bodies over their radii of gyration. 0 for other directions.
+    pub(super) reach: [Ratio; 2],
 }
+
+/// [`Measure::reach`] of directions that do not turn with A.
+pub(super) const NO_REACH: [Ratio; 2] = [Ratio::ZERO; 2];
 
 /// A row of a joint, for one tick.
 #[derive(Clone, Copy, Debug)]
@@ -77,6 +82,8 @@ pub(super) struct JointRow {
     open: bool,
     bounds: (Speed, Speed),
     denominator: Denominator,
+    /// That of the [`Measure`] at the last refresh.
+    pub(super) reach: [Ratio; 2],
     /// Whether a block computes the impulse.
     pub(super) is_blocked: bool,
     pub(super) lambda: Speed,
@@ -108,24 +115,20 @@ impl JointRow {
             open: false,
             bounds,
             denominator,
+            reach: NO_REACH,
             is_blocked: false,
             lambda,
         }
     }
 
-    /// Whether a block may compute the impulse: the row is no spring of limited force.
-    pub(super) fn can_be_blocked(&self) -> bool {
-        match self.task {
-            RowTask::Spring { lower, upper, .. } => lower == Fx::MIN && upper == Fx::MAX,
-            RowTask::Hold { .. } | RowTask::Lower { .. } | RowTask::Upper { .. } | RowTask::Drive { .. } => {
-                true
-            }
-        }
+    /// Whether the row is a spring of limited force.
+    pub(super) fn is_limited_spring(&self) -> bool {
+        matches!(self.task, RowTask::Spring { lower, upper, .. } if lower != Fx::MIN || upper != Fx::MAX)
     }
 
-    /// The largest impulse of a motor.
-    pub(super) fn impulse_max(&self) -> Speed {
-        self.bounds.1
+    /// The bounds of the impulse at the last refresh.
+    pub(super) fn bounds(&self) -> (Speed, Speed) {
+        self.bounds
     }
 
     /// The function of the row in a block.
@@ -172,8 +175,8 @@ impl JointRow {
 
     /// Computes Jacobian, gains, bias and bounds at the current pose.
     pub(super) fn refresh(&mut self, measure: &Measure, rate: u32) {
-        let Measure { row, denominator, position, scale } = *measure;
-        (self.row, self.denominator) = (row, denominator);
+        let Measure { row, denominator, position, scale, reach } = *measure;
+        (self.row, self.denominator, self.reach) = (row, denominator, reach);
         self.bounds = (-IMPULSE_MAX, IMPULSE_MAX);
         let metres = |x: Fx| fx_mul(x, scale);
         let bias_rate = Fx::from(self.softness.bias_rate);

@@ -1,24 +1,25 @@
-//! Rows with bounds in a block: limits, which may only push, and motors, whose force is limited. The block has to find
-//! out which bounds are reached. It begins with all motors, and with those limits that would push if only their own two
-//! bodies were there; a row that would be beyond a bound is held at it, until there is none.
+//! Units with bounds in a block: limits, which may only push, motors, whose force is limited, and springs of limited
+//! force. The block has to find out which bounds are reached. It begins with all motors, and with those limits
+//! and springs that would be within their bounds if only their own two bodies were there; a unit that would be beyond a
+//! bound is held at it, until there is none.
 
 use super::super::super::context::{Pass, StepContext};
 use super::super::hinge::{HingeSet, Poses};
 use super::super::list::JointList;
 use super::scaling::root_and_inverse;
+use super::unit::Unit;
 use super::{Block, ONE};
 
-/// A row with bounds.
+/// A unit with bounds: one row, or the two rows of a spring between two points.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct BoundedRow {
+pub(super) struct BoundedUnit {
     pub(super) unit: usize,
-    pub(super) row: usize,
     /// `Q` and `1 / Q`.
     pub(super) mass: (i64, i64),
-    /// Whether its equation is solved in the current pass. Otherwise its impulse is `held`.
+    /// Whether its equations are solved in the current pass. Otherwise its impulse is `held`.
     pub(super) is_active: bool,
-    /// The bound at which its impulse is held.
-    pub(super) held: i64,
+    /// The impulse at which it is held, that of a bound.
+    pub(super) held: [i64; 2],
 }
 
 /// `S^2` of a limit that is not reached, with 30 fraction bits: 1, less so much that rows that depend on
@@ -59,42 +60,51 @@ impl Block {
         }
     }
 
-    /// Activates all motors, and the limits that would push if nothing but their own bodies were there.
+    /// Activates all motors, and the limits and springs that would be within their bounds if nothing but their own bodies
+    /// were there. The other springs are held at a bound; in the relax pass, springs keep their impulses.
     fn activate(&mut self, pass: Pass, hinges: &HingeSet, list: &JointList) {
         let Block { bounded, units, impulses, wanted, .. } = self;
         for bounded in bounded.iter_mut() {
-            let (impulse, change) = (impulses[bounded.row], wanted[bounded.row]);
             let unit = &units[bounded.unit];
+            let (impulse, change) = (impulses[unit.row], wanted[unit.row]);
             // As with contacts, a gap without an impulse is left to the next sub-step.
             let untouched = pass == Pass::Relax && impulse == 0 && unit.is_open(hinges, list);
-            bounded.is_active = unit.is_drive() || !untouched && impulse.saturating_add(change) > 0;
-            bounded.held = 0;
+            (bounded.is_active, bounded.held) = match pass {
+                _ if !unit.is_spring() => {
+                    (unit.is_drive() || !untouched && impulse.saturating_add(change) > 0, [0; 2])
+                }
+                Pass::Bias => {
+                    let ([x, y], [dx, dy]) = (unit.impulses(impulses), unit.impulses(wanted));
+                    let alone = [x.saturating_add(dx), y.saturating_add(dy)];
+                    let within = unit.within_bounds(alone, hinges, list);
+                    (within == alone, within)
+                }
+                Pass::Relax => (false, unit.impulses(impulses)),
+            };
         }
     }
 
-    /// Deactivates rows whose impulse would be beyond a bound: all limits, and the motors that are furthest beyond
-    /// theirs, or all motors. A strong motor against a brake wants as much as the brake until the brake slips. Returns
-    /// whether there were any.
+    /// Deactivates units whose impulse would be beyond a bound: all limits and springs, and the motors that are furthest
+    /// beyond theirs, or all motors. A strong motor against a brake wants as much as the brake until the brake slips.
+    /// Returns whether there were any.
     fn deactivate(&mut self, furthest_only: bool, hinges: &HingeSet, list: &JointList) -> bool {
         let Block { bounded, units, impulses, x, .. } = self;
-        let impulse_of = |bounded: &BoundedRow| {
-            let [change, ..] = units[bounded.unit].restore([x[bounded.row], 0, 0]);
-            impulses[bounded.row].saturating_add(change)
+        let impulses_of = |unit: &Unit| {
+            let [x, y] = unit.impulses(x);
+            let [x, y, _] = unit.restore([x, y, 0]);
+            let [before_x, before_y] = unit.impulses(impulses);
+            [before_x.saturating_add(x), before_y.saturating_add(y)]
         };
-        let excess = |bounded: &BoundedRow| {
-            let [_, max] = units[bounded.unit].bounds(hinges, list);
-            impulse_of(bounded).unsigned_abs() / max.unsigned_abs().max(1)
-        };
-        let drives = bounded.iter().filter(|bounded| bounded.is_active && units[bounded.unit].is_drive());
-        let furthest = drives.map(excess).max().unwrap_or(0);
+        let excess = |unit: &Unit| unit.excess(impulses_of(unit)[0], hinges, list);
+        let active = bounded.iter().filter(|bounded| bounded.is_active).map(|bounded| &units[bounded.unit]);
+        let furthest = active.filter(|unit| unit.is_drive()).map(excess).max().unwrap_or(0);
         let mut any = false;
         for bounded in bounded.iter_mut().filter(|bounded| bounded.is_active) {
             let unit = &units[bounded.unit];
-            let [lower, upper] = unit.bounds(hinges, list);
-            let impulse = impulse_of(bounded);
-            bounded.held = impulse.clamp(lower, upper);
-            let is_beyond = bounded.held != impulse;
-            if is_beyond && (!furthest_only || !unit.is_drive() || excess(bounded) >= furthest / 2) {
+            let impulses = impulses_of(unit);
+            bounded.held = unit.within_bounds(impulses, hinges, list);
+            let is_beyond = bounded.held != impulses;
+            if is_beyond && (!furthest_only || !unit.is_drive() || excess(unit) >= furthest / 2) {
                 bounded.is_active = false;
                 any = true;
             }
@@ -102,16 +112,19 @@ impl Block {
         any
     }
 
-    /// Gives rows that are not active the impulses at which they are held. Returns whether an impulse has changed.
+    /// Gives units that are not active the impulses at which they are held. Returns whether an impulse has changed.
     fn hold(&mut self, context: &StepContext<'_>) -> bool {
         let Block { bounded, units, impulses, x, .. } = self;
         x.fill(0);
         let mut any = false;
         for bounded in bounded.iter().filter(|bounded| !bounded.is_active) {
-            let before = core::mem::replace(&mut impulses[bounded.row], bounded.held);
-            let change = bounded.held.saturating_sub(before);
-            [x[bounded.row], ..] = units[bounded.unit].scale([change, 0, 0]);
-            any |= change != 0;
+            let unit = &units[bounded.unit];
+            let mut changes = [0; 3];
+            for (row, (held, change)) in unit.range().zip(bounded.held.into_iter().zip(&mut changes)) {
+                *change = held.saturating_sub(core::mem::replace(&mut impulses[row], held));
+                any |= *change != 0;
+            }
+            unit.range().zip(unit.scale(changes)).for_each(|(row, scaled)| x[row] = scaled);
         }
         if any {
             self.apply(context);
@@ -119,7 +132,7 @@ impl Block {
         any
     }
 
-    /// The scales of a pass for the rows that are active.
+    /// The scales of a pass for the units that are active.
     fn set_current_scales(&mut self, pass: Pass, hinges: &HingeSet, list: &JointList) {
         let Block { bounded, units, bias, relax, current, .. } = self;
         current.clone_from(match pass {
@@ -127,13 +140,17 @@ impl Block {
             Pass::Relax => relax,
         });
         for bounded in bounded.iter() {
-            if !bounded.is_active {
-                current.set(bounded.row, (0, 0), bounded.mass, 0);
-            } else if units[bounded.unit].is_drive() {
-                current.set(bounded.row, root_and_inverse(DRIVE_SCALE), bounded.mass, 0);
-            } else if units[bounded.unit].is_open(hinges, list) {
-                current.set(bounded.row, root_and_inverse(OPEN_SCALE), bounded.mass, 0);
-            }
+            let unit = &units[bounded.unit];
+            let scale = if !bounded.is_active {
+                (0, 0)
+            } else if unit.is_drive() {
+                root_and_inverse(DRIVE_SCALE)
+            } else if unit.is_open(hinges, list) {
+                root_and_inverse(OPEN_SCALE)
+            } else {
+                continue;
+            };
+            unit.range().for_each(|row| current.set(row, scale, bounded.mass, 0));
         }
     }
 }

@@ -68,7 +68,10 @@ impl Candidate {
                 (parts + limits(kind.limit), kind.motor, false)
             }
             JointKind::Gear(_) | JointKind::Rack(_) | JointKind::Pulley(_) => (1, None, false),
-            JointKind::Motor(kind) => (0, kind.angular, false),
+            JointKind::Motor(kind) => {
+                let linear = if kind.linear_spring.is_some() { 2 } else { 0 };
+                (linear + u32::from(kind.angular_spring.is_some()), kind.angular, false)
+            }
             JointKind::Filter => (0, None, false),
         };
         let (rows, holds) = (holding + u32::from(motor.is_some()), holding > 0);

@@ -10,9 +10,9 @@
 use super::super::hinge::HingeSet;
 use super::super::list::JointList;
 use super::matrix::ONE;
-use super::scaling::product;
+use super::scaling::{length, product};
 use super::{Block, Blocks};
-use crate::math::{round_shift_wide, saturate_wide};
+use crate::math::{Ratio, Vec2, round_shift_wide, saturate_wide};
 
 /// Smallest kick that changes the inertia, with 30 fraction bits. The larger inertia costs angular momentum, so that
 /// bodies below the instability keep theirs.
@@ -20,6 +20,34 @@ const KICK_MIN: i64 = ONE / 2;
 
 /// Largest kick that is told from larger ones.
 const KICK_MAX: i64 = 1000 * ONE;
+
+/// How the torque of a force changes while its body rotates.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Leverage {
+    /// Not at all, or by little.
+    None,
+    /// The point turns with the body and the force does not: `F . r`. With the lever ratios of both bodies, which are
+    /// the arms over the radii of gyration, turned by a right angle.
+    AtPoint([Vec2<Ratio>; 2]),
+    /// The force turns with A, and acts at a point of B. With `d` from A's centre to that point, `r` from B's, and the
+    /// position `n . d` on the axis `n`, the derivatives of the torques are `F n . d` and `F n . r` by the rotations of A
+    /// and B, and `F` by a translation across the axis. Each body takes its `|F| |r|`, which is at least the derivative
+    /// by its own rotation, whatever the direction. With the lengths of the lever ratios.
+    AlongAxis([Ratio; 2]),
+}
+
+impl Leverage {
+    /// The torque for each radian over the radius of gyration, of an impulse on the body of a side.
+    fn stiffness(&self, side: usize, impulse: [i64; 2]) -> i64 {
+        let [x, y] = impulse.map(i128::from);
+        let product = match self {
+            Leverage::None => 0,
+            Leverage::AtPoint(e) => x * i128::from(e[side].y.to_bits()) - y * i128::from(e[side].x.to_bits()),
+            Leverage::AlongAxis(reach) => length(impulse) * i128::from(reach[side].to_bits()),
+        };
+        saturate_wide(round_shift_wide(product, 24))
+    }
+}
 
 impl Blocks {
     /// Computes the inertia of all bodies for the next sub-step from the impulses of the last. `rotation_of` is the
@@ -59,12 +87,8 @@ impl Block {
                         *change = change.saturating_add(product(product(x, entry.into()), root));
                     }
                 }
-                // The lever ratio is the arm over the radius of gyration, turned by a right angle.
-                let e = unit.levers[side];
-                let [x, y] = change.map(i128::from);
-                let outward = x * i128::from(e.y.to_bits()) - y * i128::from(e.x.to_bits());
                 let (_, [sum, ..]) = &mut bodies[places[side] as usize];
-                *sum = sum.saturating_add(saturate_wide(round_shift_wide(outward, 24)));
+                *sum = sum.saturating_add(unit.leverage.stiffness(side, change));
             }
         }
         spins.clear();

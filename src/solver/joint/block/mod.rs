@@ -40,7 +40,7 @@ use super::super::context::{Pass, StepContext};
 use super::hinge::{HingeSet, Poses};
 use super::list::{BlockedPart, BlockedTask, JointList};
 use crate::math::{Fx, Speed, round_shift, saturate};
-use bounds::BoundedRow;
+use bounds::BoundedUnit;
 pub(super) use choice::Candidate;
 use choice::Choice;
 use matrix::{Factor, Matrix, ONE};
@@ -86,7 +86,7 @@ struct Block {
     factor: Factor,
     /// The pass for which the factor is.
     factored: Option<Pass>,
-    bounded: Vec<BoundedRow>,
+    bounded: Vec<BoundedUnit>,
     /// Springs whose softness depends on the pose.
     springs: Vec<Spring>,
     /// The scales of the current pass, if the block has rows with bounds.
@@ -226,9 +226,8 @@ impl Block {
         if let Some(at) = unit.list_row().filter(|_| unit.is_spring()) {
             self.springs.push(Spring { at, row: unit.row, mass });
         }
-        if unit.is_limit() || unit.is_drive() {
-            let (at, row) = (self.units.len(), unit.row);
-            self.bounded.push(BoundedRow { unit: at, row, mass, is_active: false, held: 0 });
+        if unit.is_bounded() {
+            self.bounded.push(BoundedUnit { unit: self.units.len(), mass, is_active: false, held: [0; 2] });
         }
         self.units.push(unit);
     }

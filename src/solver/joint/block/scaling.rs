@@ -142,6 +142,12 @@ pub(super) fn product(a: i64, b: i64) -> i64 {
     saturate_wide(round_shift_wide(i128::from(a) * i128::from(b), 30))
 }
 
+/// The length of a vector.
+pub(super) fn length(v: [i64; 2]) -> i128 {
+    let [x, y] = v.map(|part| u128::from(part.unsigned_abs()).pow(2));
+    (x + y).isqrt().cast_signed()
+}
+
 /// `sqrt(x)` and `1 / sqrt(x)` of a number with 30 fraction bits, at least 2^-24, in the same format.
 pub(super) fn root_and_inverse(x: i64) -> (i64, i64) {
     let x = x.max(1 << 6).unsigned_abs();

@@ -69,11 +69,11 @@ impl Block {
                 wanted[row] = (change << EXTRA_BITS).saturating_sub(product(impulse, give));
             }
         }
-        for limit in bounded.iter().filter(|bounded| units[bounded.unit].is_open(hinges, list)) {
+        let limits = bounded.iter().map(|bounded| &units[bounded.unit]);
+        for row in limits.filter(|limit| limit.is_open(hinges, list)).map(|limit| limit.row) {
             // A limit that is not reached is not soft.
             if pass == Pass::Bias {
-                wanted[limit.row] =
-                    wanted[limit.row].saturating_add(product(impulses[limit.row], bias.yields[limit.row]));
+                wanted[row] = wanted[row].saturating_add(product(impulses[row], bias.yields[row]));
             }
         }
         context.add_faults(faults);

@@ -9,10 +9,11 @@ use super::super::super::row::MassFractions;
 use super::super::hinge::{ANGLE_MAX, HingeSet, Poses};
 use super::super::list::{BlockedPart, BlockedTask, JointList, ListPart};
 use super::EXTRA_BITS;
+use super::geometric_stiffness::Leverage;
 use super::matrix::ONE;
 use super::mobility::Mobility;
-use super::scaling::{ScaledRow, Scaling, product};
-use crate::math::{Ratio, Speed, Unit as Fraction, Vec2, div_round, saturate_wide};
+use super::scaling::{ScaledRow, Scaling, length, product};
+use crate::math::{Speed, Unit as Fraction, Vec2, div_round, saturate_wide};
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Source {
@@ -47,8 +48,9 @@ pub(super) struct Unit {
     softness: [Option<RowSoftness>; 3],
     scaling: Scaling,
     angle_scaling: Scaling,
-    /// Lever ratios of a hinge, by which geometric stiffness is computed. 0 for other units.
-    pub(super) levers: [Vec2<Ratio>; 2],
+    pub(super) leverage: Leverage,
+    /// Whether the unit is a spring of limited force.
+    is_limited: bool,
     /// The denominator of a row with geometric stiffness divided by that without, with 30 fraction bits.
     stiffened: i64,
 }
@@ -64,7 +66,6 @@ impl Unit {
         let source_bodies = bodies;
         let bodies = [0, 1].map(|side: usize| if mobility.roots[side] == 0 { GROUND } else { bodies[side] });
         let (scaling, angle_scaling) = (Scaling::default(), Scaling::default());
-        let levers = [Vec2::new(Ratio::ZERO, Ratio::ZERO); 2];
         Unit {
             source,
             row: 0,
@@ -74,7 +75,8 @@ impl Unit {
             softness,
             scaling,
             angle_scaling,
-            levers,
+            leverage: Leverage::None,
+            is_limited: false,
             stiffened: ONE,
         }
     }
@@ -103,13 +105,13 @@ impl Unit {
 
     /// A row or point of another joint.
     pub(super) fn part(part: &BlockedPart) -> Self {
-        let &BlockedPart { part, bodies, fractions, mass_scale, task } = part;
+        let &BlockedPart { part, bodies, fractions, mass_scale, task, is_limited } = part;
         let row = Some(RowSoftness { mass_scale, task });
         let softness = match part {
             ListPart::Row(_) => [row, None, None],
             ListPart::Point(_) => [row, row, None],
         };
-        Unit::new(Source::Part(part), bodies, fractions, softness)
+        Unit { is_limited, ..Unit::new(Source::Part(part), bodies, fractions, softness) }
     }
 
     pub(super) fn rows(&self) -> impl Iterator<Item = RowSoftness> {
@@ -118,6 +120,13 @@ impl Unit {
 
     pub(super) fn range(&self) -> Range<usize> {
         self.row..self.row + self.rows().count()
+    }
+
+    /// Its first two numbers among those of all rows.
+    pub(super) fn impulses(&self, numbers: &[i64]) -> [i64; 2] {
+        let mut own = [0; 2];
+        self.range().zip(&mut own).for_each(|(row, number)| *number = numbers[row]);
+        own
     }
 
     /// Whether an impulse of one unit changes a velocity that the other measures.
@@ -136,13 +145,13 @@ impl Unit {
 
     /// Computes the scaled rows at the current pose.
     pub(super) fn refresh(&mut self, hinges: &HingeSet, list: &JointList, rows: &mut [ScaledRow]) {
-        let Unit { row, mobility, softness, scaling, angle_scaling, levers, stiffened, .. } = self;
+        let Unit { row, mobility, softness, scaling, angle_scaling, leverage, stiffened, .. } = self;
         let none = [Vec2::new(Fraction::ZERO, Fraction::ZERO); 2];
         match self.source {
             Source::Hinge(number) => {
                 let hinge = hinges.blocked_hinge(number);
-                *levers = hinge.e;
-                (*scaling, [rows[*row], rows[*row + 1]]) = Scaling::of_point(*levers, mobility);
+                *leverage = Leverage::AtPoint(hinge.e);
+                (*scaling, [rows[*row], rows[*row + 1]]) = Scaling::of_point(hinge.e, mobility);
                 if let Some(angle) = hinge.angle {
                     let e = angle.e;
                     let denominator = mobility.turning(e, e);
@@ -169,6 +178,7 @@ impl Unit {
                 let (n, e) = part.row.jacobian();
                 let denominator = part.denominator() - mobility.lost_turning(e);
                 *stiffened = quotient(denominator, part.denominator());
+                *leverage = Leverage::AlongAxis(part.reach);
                 (*scaling, rows[*row]) = Scaling::of_row(n, e, denominator, mobility);
             }
         }
@@ -201,7 +211,7 @@ impl Unit {
                 let [a, b] = bodies();
                 [list.row(at).wanted(pass, &a, &b, faults).unwrap_or(0), 0, 0]
             }
-            Source::Part(ListPart::Point(at)) => match list.point(at).unlimited_softness() {
+            Source::Part(ListPart::Point(at)) => match list.point(at).softness() {
                 Some(softness) if pass == Pass::Bias => {
                     let [a, b] = bodies();
                     let Vec2 { x, y } = list.point(at).wanted(softness, &a, &b, faults);
@@ -328,15 +338,47 @@ impl Unit {
         self.softness[0].is_some_and(|softness| softness.task == BlockedTask::Drive)
     }
 
-    /// The bounds of the impulse of a limit or motor, as speeds with 32 fraction bits.
-    pub(super) fn bounds(&self, hinges: &HingeSet, list: &JointList) -> [i64; 2] {
-        let max = match self.source {
-            Source::HingeDrive(number) => hinges.blocked_drive_max(number),
-            Source::Part(ListPart::Row(at)) if self.is_drive() => list.row(at).impulse_max(),
+    /// Whether the unit has bounds: those of a limit, a motor, or a spring of limited force.
+    pub(super) fn is_bounded(&self) -> bool {
+        self.is_limit() || self.is_drive() || self.is_limited
+    }
+
+    /// The bounds of the impulse of a row, as speeds with 32 fraction bits.
+    fn bounds(&self, hinges: &HingeSet, list: &JointList) -> [i64; 2] {
+        let (lower, upper) = match self.source {
+            Source::HingeDrive(number) => {
+                let max = hinges.blocked_drive_max(number);
+                (-max, max)
+            }
+            Source::Part(ListPart::Row(at)) if !self.is_limit() => list.row(at).bounds(),
             _ => return [0, i64::MAX],
         };
-        let max = product(i64::from(max.to_bits()) << EXTRA_BITS, self.stiffened);
-        [-max, max]
+        [lower, upper].map(|bound| product(i64::from(bound.to_bits()) << EXTRA_BITS, self.stiffened))
+    }
+
+    /// The impulse within the bounds that is nearest to one, or has its direction.
+    pub(super) fn within_bounds(&self, impulse: [i64; 2], hinges: &HingeSet, list: &JointList) -> [i64; 2] {
+        match self.source {
+            Source::Part(ListPart::Point(at)) => {
+                let max = i64::from(list.point(at).impulse_max().to_bits()) << EXTRA_BITS;
+                let [x, y, _] = self.yielding([impulse[0], impulse[1], 0]);
+                let (length, max) = (length([x, y]), i128::from(max));
+                if length <= max {
+                    return impulse;
+                }
+                impulse.map(|part| saturate_wide(div_round(i128::from(part) * max, length)))
+            }
+            _ => {
+                let [lower, upper] = self.bounds(hinges, list);
+                [impulse[0].clamp(lower, upper), 0]
+            }
+        }
+    }
+
+    /// The magnitude of an impulse over that of the bound of a motor.
+    pub(super) fn excess(&self, impulse: i64, hinges: &HingeSet, list: &JointList) -> u64 {
+        let [_, max] = self.bounds(hinges, list);
+        impulse.unsigned_abs() / max.unsigned_abs().max(1)
     }
 
     /// Whether the unit is a limit that is not reached.
