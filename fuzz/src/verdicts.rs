@@ -58,7 +58,10 @@ pub fn run(bytes: &[u8]) -> Verdict {
 }
 
 /// A small scene, and the generator of its commands.
-pub(crate) fn scene(source: &mut Source<'_>) -> (SandboxSetup, Generator) {
+///
+/// # Panics
+/// Never: settings that no world has are replaced by the default.
+pub fn scene(source: &mut Source<'_>) -> (SandboxSetup, Generator) {
     let config = generator::config(source);
     let config = World::new(config).map(|_| config).unwrap_or_default();
     let mut generator = Generator::new(source);

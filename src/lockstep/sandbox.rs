@@ -30,6 +30,9 @@ pub struct Sandbox {
     refused: u64,
 }
 
+/// Work units of a setup without commands: the allocations of a world.
+const START_WORK: u64 = 100;
+
 /// Maximum work units of a setup's commands: a few seconds. A million bodies of one shape take 12 million.
 const SETUP_WORK_MAX: u64 = 100_000_000;
 
@@ -116,7 +119,7 @@ impl Game for Sandbox {
         let max = work_max.min(SETUP_WORK_MAX);
         let refused = |why| StartError::Refused(SetupError { why });
         let mut world = World::new(setup.config).map_err(|error| refused(format!("{error}")))?;
-        let mut work = 0u64;
+        let mut work = START_WORK;
         for (index, command) in setup.commands.iter().enumerate() {
             work = work.saturating_add(Costs::of(&world).command(command));
             if work > max {

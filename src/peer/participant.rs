@@ -147,7 +147,9 @@ impl<G: Game, T: Transport> Peer<G, T> {
             let Some((from, bytes)) = self.transport.receive() else { break };
             self.endpoint.receive(self.now, from, &bytes);
         }
-        self.ask_for_end();
+        if let (Some(end), Some(session)) = (self.end, self.endpoint.session_mut()) {
+            session.end_at(Tick::try_from(end).unwrap_or(Tick::MAX));
+        }
         self.endpoint.update(self.now);
         self.take_join_events()?;
         if let Some(seat) = self.endpoint.session().and_then(Session::taken_seat) {
@@ -162,16 +164,6 @@ impl<G: Game, T: Transport> Peer<G, T> {
         self.fulfil()?;
         self.send();
         Ok(())
-    }
-
-    /// Asks for the end when it is near: nobody can join a match whose end is decided.
-    fn ask_for_end(&mut self) {
-        let Some(end) = self.end else { return };
-        let lead = 2 * u64::from(self.simulation.game.tick_rate());
-        let near = self.simulation.tick.saturating_add(lead) >= end;
-        if let Some(session) = self.endpoint.session_mut().filter(|session| near && session.view().begun) {
-            session.end_at(Tick::try_from(end).unwrap_or(Tick::MAX));
-        }
     }
 
     fn take_join_events(&mut self) -> Result<(), PeerError> {
@@ -338,8 +330,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         }
     }
 
-    /// Wants the match to end after a number of ticks. If others want it, too, the largest such number counts. It is decided
-    /// by a majority two seconds before; until then others can join.
+    /// Asks for an end of the match after a number of ticks, as [`Session::end_at`] does.
     pub const fn end_at(&mut self, ticks: u64) {
         self.end = Some(ticks);
     }

@@ -28,6 +28,9 @@ pub(super) struct Lifecycle {
 /// waits for.
 const WAITING_TICKS: u64 = 6;
 
+/// Microseconds before the end of a match from which it is asked for.
+const END_NOTICE: u64 = 2_000_000;
+
 impl Lifecycle {
     pub(super) fn new(role: Role) -> Self {
         let status = match role {
@@ -99,6 +102,12 @@ impl Session {
         // Who was dropped takes any seats when somebody else has its own.
         let which = if self.lifecycle.dropped { 0 } else { self.config.seats_wanted };
         self.wants.seats = wants.then_some(SeatWant { seats, key: self.key, which });
+        let notice =
+            Tick::try_from(END_NOTICE / u64::from(self.config.tick_micros.max(1))).unwrap_or(Tick::MAX);
+        let near = self.play.played.saturating_add(notice);
+        if let Some(end) = self.end_at.filter(|&end| self.view.begun && near >= end) {
+            self.wants.end.get_or_insert(end);
+        }
     }
 
     /// A seat that this peer asks for and that belongs to somebody else.

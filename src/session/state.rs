@@ -96,6 +96,8 @@ pub struct Session {
     pub(super) pace: Pace,
     pub(super) role: Role,
     pub(super) wants: Wants,
+    /// Number of ticks after which this peer wants the match to end.
+    pub(super) end_at: Option<Tick>,
     pub(super) paused: bool,
     pub(super) lifecycle: Lifecycle,
     pub(super) outbox: Outbox,
@@ -182,6 +184,7 @@ impl Session {
             view: first,
             role,
             wants: Wants::default(),
+            end_at: None,
             paused: false,
             lifecycle,
             outbox: Outbox::default(),
@@ -240,9 +243,11 @@ impl Session {
         self.wants.leave = true;
     }
 
-    /// Asks for an end of the match after `ticks` ticks. Once a majority has decided on it, nothing changes the end.
+    /// Asks for an end of the match after `ticks` ticks. If others do so as well, the largest such number counts. The
+    /// others hear of it two seconds before, and not before the match begins: until then peers can join, and once a
+    /// majority has decided on an end, nobody can and nothing changes it.
     pub fn end_at(&mut self, ticks: Tick) {
-        self.wants.end.get_or_insert(ticks);
+        self.end_at = Some(ticks);
     }
 
     /// Asks all others to stop for now, or not to any longer. What a game does with [`Event::Pause`] is its decision.

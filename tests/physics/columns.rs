@@ -1,8 +1,8 @@
-//! Things that stand: columns, plates on discs, an arch and a house of cards stand for ever, and fall asleep.
+//! Things that stand: columns, plates on discs, arches and a house of cards stand for ever, and fall asleep.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
-use lockstep2d::math::{Angle, Fx, Vec2};
+use lockstep2d::math::{Angle, Fx, PI, Rot, Unit, Vec2};
 use lockstep2d::world::{Config, World};
 
 use crate::sweep;
@@ -99,5 +99,91 @@ fn a_house_of_cards_stands() {
             first += fx!(0.175);
         }
         expect_stands(&format!("cards at {rate} Hz"), world, fx!(0.05), fx!(0.08));
+    }
+}
+
+/// Spawns a semicircular arch of wedge-shaped stones, with a mean radius of 4 m.
+fn spawn_arch(world: &mut World, stones: u32, thickness: Fx) {
+    for stone in 0..stones {
+        let place = |number: u32, radius: Fx| {
+            let angle = Angle::from_radians(PI * i64::from(number) / i64::from(stones));
+            Rot::from_angle(angle).apply(Vec2::<Unit>::X).widen().scale(radius)
+        };
+        let (inner, outer) = (fx!(4) - thickness * 2, fx!(4) + thickness * 2);
+        let corners =
+            [place(stone, inner), place(stone, outer), place(stone + 1, outer), place(stone + 1, inner)];
+        let stone = ShapeDef::new(Polygon::hull(&corners).expect("valid")).friction(fx!(0.9));
+        world.spawn(&BodyDef::dynamic(), &[stone]).expect("valid");
+    }
+}
+
+/// A semicircular arch stands if its thickness is more than 0.1075 of its mean radius, if its stones do not slide
+/// (J. Heyman, "The safety of masonry arches", 1969).
+#[test]
+fn an_arch_stands_if_it_is_thick_enough() {
+    let thick = [7u32, 9, 15].map(|stones| [fx!(0.13), fx!(0.2), fx!(0.3)].map(|part| (stones, part)));
+    let cases =
+        thick.into_iter().flatten().flat_map(|(stones, part)| [60, 120].map(|rate| (stones, part, rate)));
+    sweep::for_each(sweep::sample(cases, 5), |(stones, part, rate): (u32, Fx, u32)| {
+        let mut world = world_at(rate);
+        spawn_arch(&mut world, stones, part);
+        expect_stands(&format!("{stones} stones, {part} thick, at {rate} Hz"), world, fx!(0.05), fx!(0.06));
+    });
+    for stones in [9, 15] {
+        let mut world = world_at(60);
+        spawn_arch(&mut world, stones, fx!(0.09));
+        for _ in 0..60 * 20 {
+            world.step();
+        }
+        let top = world.bodies().map(|(_, body)| body.centre_of_mass().y).max().expect("there");
+        assert!(top < fx!(2), "an arch of {stones} stones is too thin to stand: its top is at {top} m");
+    }
+}
+
+/// E. Catto's arch: 17 stones that carry four planks.
+#[test]
+fn an_arch_carries_planks() {
+    const INNER: [(Fx, Fx); 9] = [
+        (fx!(16), fx!(0)),
+        (fx!(14.93803712795643), fx!(5.133601056842984)),
+        (fx!(13.79871746027416), fx!(10.24928069555078)),
+        (fx!(12.56252963284711), fx!(15.34107019122473)),
+        (fx!(11.20040987372525), fx!(20.39856541571217)),
+        (fx!(9.66521217819836), fx!(25.40369899225096)),
+        (fx!(7.87179930638133), fx!(30.3179337000085)),
+        (fx!(5.635199558196225), fx!(35.03820717801641)),
+        (fx!(2.405937953536585), fx!(39.09554102558315)),
+    ];
+    const OUTER: [(Fx, Fx); 9] = [
+        (fx!(24), fx!(0)),
+        (fx!(22.33619528222415), fx!(6.02299846205841)),
+        (fx!(20.54936888969905), fx!(12.00964361211476)),
+        (fx!(18.60854610798073), fx!(17.9470321677465)),
+        (fx!(16.46769273811807), fx!(23.81367936585418)),
+        (fx!(14.05325025774858), fx!(29.57079353071012)),
+        (fx!(11.23551045834022), fx!(35.13775818285372)),
+        (fx!(7.752568160730571), fx!(40.30450679009583)),
+        (fx!(3.016931552701656), fx!(44.28891593799322)),
+    ];
+    let place = |(x, y): (Fx, Fx), side: i64| Vec2::new(x / 4 * side, y / 4);
+    for rate in [60, 120] {
+        let mut world = world_at(rate);
+        let mut stone = |corners: [Vec2<Fx>; 4]| {
+            let shape = ShapeDef::new(Polygon::hull(&corners).expect("valid"));
+            world.spawn(&BodyDef::dynamic(), &[shape]).expect("valid");
+        };
+        for side in [1, -1] {
+            for i in 0..8 {
+                let corners = [INNER[i], OUTER[i], OUTER[i + 1], INNER[i + 1]];
+                stone(corners.map(|corner| place(corner, side)));
+            }
+        }
+        stone([place(INNER[8], 1), place(OUTER[8], 1), place(OUTER[8], -1), place(INNER[8], -1)]);
+        for i in 0..4 {
+            let y = OUTER[8].1 / 4 + fx!(0.5) + Fx::from(i);
+            let plank = rectangle(fx!(2), fx!(0.5));
+            world.spawn(&BodyDef::dynamic().position((fx!(0), y)), &[plank]).expect("valid");
+        }
+        expect_stands(&format!("an arch with planks at {rate} Hz"), world, fx!(0.05), fx!(0.35));
     }
 }

@@ -83,6 +83,33 @@ fn colliding_balls_keep_their_angular_momentum() {
     });
 }
 
+/// A bar that falls flat on a ledge under half of it turns. What makes it turn pushes upwards, so that it is hardly
+/// moved sideways: at most as Box2D moves it.
+#[test]
+fn a_bar_on_a_ledge_is_not_kicked_sideways() {
+    let cases = [60u32, 240].into_iter().flat_map(|rate| {
+        [(fx!(10), fx!(0.23)), (fx!(40), fx!(0.68))].map(|(speed, most)| (rate, speed, most))
+    });
+    for (rate, speed, most) in cases {
+        for phase in 0..16 {
+            let mut world = world_with(rate, fx!(-10));
+            let ledge = rectangle(fx!(10), fx!(1)).offset((fx!(-10), fx!(-1)));
+            world.spawn(&BodyDef::fixed(), &[ledge]).expect("valid");
+            let height = fx!(0.1) + speed / 20 + speed * phase / 16 / i64::from(rate);
+            let def = BodyDef::dynamic().position((fx!(0), height)).velocity((fx!(0), -speed));
+            let bar = world.spawn(&def, &[rectangle(fx!(1), fx!(0.1))]).expect("valid");
+            for _ in 0..rate / 3 {
+                world.step();
+                let bar = world.body(bar).expect("there");
+                if bar.position().y > fx!(-1) {
+                    let aside = bar.velocity().x.abs();
+                    assert!(aside <= most, "{speed} m/s, {rate} Hz, {phase}: {aside} m/s sideways");
+                }
+            }
+        }
+    }
+}
+
 /// A rod of restitution 1 that hits a floor without friction: an impact gains no energy, and loses nearly none.
 #[test]
 fn a_spinning_rod_gains_no_energy() {

@@ -171,6 +171,29 @@ fn the_first_tick_waits_for_enough_players() {
     assert_eq!(sim.failure, None);
 }
 
+/// An end that is asked for at once neither begins the match nor shuts out whoever has not joined yet.
+#[test]
+fn a_match_whose_end_is_known_waits_for_its_players() {
+    let mut sim = Sim::new(2, 2);
+    sim.look = MS;
+    sim.ways = vec![vec![way(40 * MS); 2]; 2];
+    let config = Config { start_with: 2, ..Config::new(5, 2) };
+    let first = lockstep2d::session::View::opened_by(id(0), key(0), 1, false);
+    for index in 0..2 {
+        sim.add(config.clone(), Role::Player { seats: 1 }, &first, 1000);
+        (0..index).for_each(|other| sim.introduce(index, other));
+        sim.start(index, index as u64 * 3 * S);
+    }
+    sim.peers[0].session.end_at(300);
+    sim.run(3 * S);
+    assert_eq!((status(&sim, 0), played(&sim, 0)), (Status::Waiting, 0));
+    sim.run(20 * S);
+    assert!(sim.peers.iter().all(|peer| peer.finished.is_some_and(|(ticks, _)| ticks == 300)));
+    let spans = &sim.peers[0].session.view().spans;
+    assert_eq!(spans.iter().map(|span| (span.seat, span.from)).collect::<Vec<_>>(), [(0, 0), (1, 0)]);
+    assert_eq!(sim.failure, None);
+}
+
 #[test]
 fn another_state_is_noticed_by_all_others() {
     let mut sim = players(3, way(30 * MS), |_| ());

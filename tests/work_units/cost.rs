@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use lockstep2d::lockstep::{Sandbox, SandboxSetup};
-use lockstep2d::replay::{Limits, Recording, Step, VerifiedReplay};
+use lockstep2d::replay::{Limits, Recording, Step, VerifiedReplay, verify};
 use lockstep2d::world::{Command, Config};
 
 /// Nanoseconds for each unit that are allowed. Without optimisation for release and with its checks, three times as many.
@@ -46,24 +46,33 @@ pub(super) fn setup(commands: Vec<Command>, config: Config) -> SandboxSetup {
     SandboxSetup { config, commands }
 }
 
-/// The costs of the setup and of the most expensive tick.
-fn costs(setup: &SandboxSetup, ticks: u64, script: &Script<'_>) -> [Cost; 2] {
+/// A replay of a case.
+fn record(setup: &SandboxSetup, ticks: u64, script: &Script<'_>) -> Vec<u8> {
     let mut recording = Recording::<Sandbox>::start(setup, 60).expect("a setup that can start");
     for tick in 0..ticks {
         recording.step(&[script(tick)]).expect("commands that can be recorded");
     }
-    let file = recording.finish().expect("a replay");
-    let limits = Limits {
+    recording.finish().expect("a replay")
+}
+
+/// Limits of work only.
+fn limits(total_work: u64) -> Limits {
+    Limits {
         tick_work: u64::MAX,
-        total_work: u64::MAX,
+        total_work,
         file_bytes: u64::MAX,
         block_bytes: u32::MAX,
         ..Limits::default()
-    };
+    }
+}
+
+/// The costs of the setup and of the most expensive tick.
+fn costs(file: &[u8]) -> [Cost; 2] {
     let mut best: Option<[Cost; 2]> = None;
     for _ in 0..3 {
         let start = computed();
-        let mut play = VerifiedReplay::<Sandbox>::open(&file, &limits).expect("a replay that can start");
+        let mut play =
+            VerifiedReplay::<Sandbox>::open(file, &limits(u64::MAX)).expect("a replay that can start");
         let begun = Cost { units: play.work(), time: computed() - start };
         let mut worst = Cost { units: 1, time: Duration::ZERO };
         loop {
@@ -95,9 +104,11 @@ pub(super) fn too_expensive<'a>(name: &str, size: i64, case: impl Fn(i64) -> Cas
     for doubled in 0..=DOUBLED_MAX {
         let size = size << doubled;
         let (setup, ticks, script) = case(size);
-        let parts = costs(&setup, ticks, &script);
+        let file = record(&setup, ticks, &script);
+        let parts = costs(&file);
         if parts[1].time >= JUDGED {
-            return judge(&format!("{name}, size {size}"), parts);
+            let name = format!("{name}, size {size}");
+            return judge(&name, parts).or_else(|| stopped_late(&name, &file));
         }
     }
     Some(format!("{name}: no tick takes {JUDGED:?}, so that nothing is judged"))
@@ -107,15 +118,17 @@ pub(super) fn too_expensive<'a>(name: &str, size: i64, case: impl Fn(i64) -> Cas
 pub(super) fn too_expensive_commands(name: &str, setup: &SandboxSetup, once: &[Command]) -> Option<String> {
     let tick_of = |repeats: usize| {
         let script = |_| once.iter().cycle().take(repeats * once.len()).cloned().collect();
-        costs(setup, 1, &(Box::new(script) as Script<'_>))
+        let file = record(setup, 1, &(Box::new(script) as Script<'_>));
+        (costs(&file), file)
     };
     // A tick without commands takes no more than one with them once.
-    let least = 2 * tick_of(1)[1].time + JUDGED;
+    let least = 2 * tick_of(1).0[1].time + JUDGED;
     for repeats in [10, 100, 1000, 10_000, 100_000, COMMANDS_MAX] {
-        let parts = tick_of(repeats);
+        let (parts, file) = tick_of(repeats);
         // Of cheap commands, no file has enough to take most of a tick: the tick with most of them is judged.
         if parts[1].time >= least || (repeats == COMMANDS_MAX && parts[1].time >= JUDGED) {
-            return judge(&format!("{name}, {repeats} times"), parts);
+            let name = format!("{name}, {repeats} times");
+            return judge(&name, parts).or_else(|| stopped_late(&name, &file));
         }
     }
     Some(format!("{name}: no tick takes {JUDGED:?}, so that nothing is judged"))
@@ -131,4 +144,32 @@ fn judge(name: &str, parts: [Cost; 2]) -> Option<String> {
         }
     }
     wrong
+}
+
+/// Verifies a file with a part of the work that it needs, and returns its name if the limit has stopped it later than
+/// the allowed time for the units of the limit. For limits so small that the setup exceeds them, too.
+fn stopped_late(name: &str, file: &[u8]) -> Option<String> {
+    let needed = {
+        let limits = limits(u64::MAX);
+        let mut play = VerifiedReplay::<Sandbox>::open(file, &limits).expect("a replay that can start");
+        while play.step().expect("a replay that can be played") != Step::Ended {}
+        play.work()
+    };
+    for part in [2, 5, 20] {
+        let (limit, start) = (needed / part, computed());
+        let verdict = verify::<Sandbox>(file, &limits(limit));
+        let cost = Cost { units: limit, time: computed() - start };
+        println!(
+            "{name}, stopped at {limit} of {needed} units: {:?}, {} ns per unit",
+            cost.time,
+            cost.per_unit()
+        );
+        if verdict.name() != "limit_exceeded" {
+            return Some(format!("{name}: {verdict} in place of a limit of {limit} units"));
+        }
+        if cost.time >= JUDGED && cost.per_unit() > MAX {
+            return Some(format!("{name}, limit {limit}: {cost:?}, {} ns per unit", cost.per_unit()));
+        }
+    }
+    None
 }

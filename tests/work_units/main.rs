@@ -1,7 +1,8 @@
 //! Work units are honest: no tick and no setup takes more than a microsecond for each unit that it is charged, whatever
 //! the commands do. Otherwise the limits of a verifier would not protect it.
 //!
-//! Every case is recorded, then played by the verifier's player, which charges the units. The time is that of the thread
+//! Every case is recorded, then played by the verifier's player, which charges the units, and verified with a part of the
+//! work that it needs: the limit has to stop it within the time of its units. The time is that of the thread
 //! on its processor where the system tells it, and the shortest of several runs, so that a busy machine counts little.
 #![expect(clippy::disallowed_types, reason = "the test measures time")]
 
@@ -114,7 +115,7 @@ fn bullets_over_obstacles() {
 #[test]
 fn explosions_beside_many_shapes() {
     let body = BodyDef::dynamic().position((fx!(1), fx!(0)));
-    let add = move || spawn(body, vec![square(fx!(0.5)); 1024]);
+    let add = move || spawn(body, vec![square(fx!(0.5)); 4096]);
     let explode = |count| {
         let count = usize::try_from(count).expect("a number");
         vec![Command::Explode { explosion: Explosion::new(Vec2::ZERO, fx!(0.001)) }; count]

@@ -1398,7 +1398,8 @@ ls2d_status ls2d_match_link(uint32_t handle, uint32_t peer, uint32_t *delay, uin
 /* Leaves the match. Call `ls2d_match_update` until the status is `LS2D_MATCH_CLOSED`. */
 ls2d_status ls2d_match_leave(uint32_t handle);
 
-/* Asks for an end of the match after a number of ticks. */
+/* Asks for an end of the match after a number of ticks. It is decided two seconds before; until then others can
+ * join. */
 ls2d_status ls2d_match_end_at(uint32_t handle, uint32_t ticks);
 
 /* Asks all others to stop for now, or, with 0, no longer to. */

@@ -7,6 +7,12 @@ const PAIRS_PER_BODY: u64 = 32;
 /// Cost of a pair beyond [`PAIRS_PER_BODY`], in ordinary pairs: measured on a thousand squares at the same position.
 const CROWDED_WORK: u64 = 64;
 
+/// Cost of comparing the shapes of a pair in a tick, whatever the solver does: measured on shapes of extreme sizes.
+pub(crate) const NARROW_PHASE_WORK: u64 = 4;
+
+/// Cost of a new pair, whose axis of separation is not known: measured on a hundred octagons at the same position.
+pub(crate) const NEW_PAIR_WORK: u64 = 8;
+
 /// Counts work units and ends what costs too much. It is no part of the state: a world whose meter is exhausted has a
 /// wrong state, which whoever set the budget must not use.
 #[derive(Clone, Copy, Debug)]

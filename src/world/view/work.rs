@@ -2,7 +2,10 @@
 
 use crate::solver::SolverSettings;
 use crate::world::World;
-use crate::world::cache::{WorkMeter, pair_work};
+use crate::world::cache::{NARROW_PHASE_WORK, WorkMeter, pair_work};
+
+/// Work units of a tick of an empty world, which takes some microseconds.
+const TICK_WORK: u64 = 8;
 
 /// What the commands of a tick add to a world.
 #[derive(Clone, Copy, Debug, Default)]
@@ -15,13 +18,14 @@ pub(crate) struct AddedWork {
 impl World {
     /// Returns an upper bound of the cost of the next tick in work units, if at most `bodies` bodies with `shapes` shapes
     /// altogether are added before it: a start for [`Game::work`](crate::lockstep::Game::work). It counts bodies, shapes,
-    /// pairs and joints, times the solver's sub-steps and iterations. Shapes may be added on top of each other: it
-    /// assumes as many new pairs as the world allows, for which every shape is compared with every other.
+    /// pairs and joints, times the solver's sub-steps and iterations, 4 more for each pair, and 8 for the tick. Shapes may
+    /// be added on top of each other: it assumes as many new pairs as the world allows, for which every shape is compared
+    /// with every other.
     ///
     /// ```
     /// # use lockstep2d::world::World;
     /// let world = World::default();
-    /// assert_eq!(world.work(0, 0), 0);
+    /// assert_eq!(world.work(0, 0), 8);
     /// assert!(world.work(10, 20) > world.work(10, 10));
     /// ```
     #[must_use]
@@ -38,11 +42,14 @@ impl World {
         let shapes = count(self.shape_count()).saturating_add(shapes);
         let bodies = count(self.body_count()).saturating_add(bodies);
         let joints = count(self.joint_count()).saturating_add(joints);
-        let constraints = joints.saturating_add(pair_work(count(self.pair_count()), bodies));
+        let pairs = count(self.pair_count());
+        let constraints = joints.saturating_add(pair_work(pairs, bodies));
         let solved = bodies.saturating_add(shapes).saturating_add(constraints).saturating_mul(rounds);
         let compared = shapes.saturating_mul(shapes);
         let possible_pairs = (compared / 2).min(self.config().pair_limit.into());
-        solved.saturating_add(possible_pairs).saturating_add(compared / 64)
+        let found = possible_pairs.saturating_add(compared / 64);
+        let narrow_phase = pairs.saturating_mul(NARROW_PHASE_WORK);
+        [solved, found, narrow_phase].into_iter().fold(TICK_WORK, u64::saturating_add)
     }
 
     /// Starts to count work whose amount is known only when it is done: sweeps of fast bodies, shapes in reach of an

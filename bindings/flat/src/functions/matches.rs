@@ -353,7 +353,8 @@ api! {
         })
     }
 
-    /// Asks for an end of the match after a number of ticks.
+    /// Asks for an end of the match after a number of ticks. It is decided two seconds before; until then others can
+    /// join.
     fn ls2d_match_end_at(handle: u32, ticks: u32) {
         with(handle, |game: &mut Match| {
             game.session()?.end_at(ticks);

@@ -183,36 +183,21 @@ fn a_damaged_replay_leaves_no_file() {
     assert_eq!(fs::read_dir(folder.path("")).unwrap().count(), 1, "no unfinished file is left");
 }
 
-/// Peak resident memory of a process, in KiB.
-#[cfg(target_os = "linux")]
-fn memory_peak(pid: u32) -> Option<u64> {
-    let status = fs::read_to_string(format!("/proc/{pid}/status")).ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
-    line.split_whitespace().nth(1)?.parse().ok()
-}
-
 /// Runs the tool as its own process, so that memory of other tests does not count.
 #[cfg(target_os = "linux")]
 #[test]
 fn memory_does_not_grow_with_the_frames() {
     let folder = Folder::new("export-memory");
-    let peak = |frames: u32| {
+    let peak_of = |frames: u32| {
         let to = folder.path(&format!("{frames}.gif"));
-        let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_lockstep2d"))
-            .args(["export", &golden("box_stack"), "-o", &to, "--every", "1", "--to", &frames.to_string()])
-            .stderr(std::process::Stdio::null())
-            .spawn()
-            .unwrap();
-        let mut peak = 0;
-        while child.try_wait().unwrap().is_none() {
-            peak = memory_peak(child.id()).unwrap_or(0).max(peak);
-            std::thread::sleep(std::time::Duration::from_millis(2));
-        }
+        let frames = frames.to_string();
+        let arguments = ["export", &golden("box_stack"), "-o", &to, "--every", "1", "--to", &frames];
+        let peak = crate::memory::peak(&arguments);
         assert!(fs::exists(&to).unwrap());
         peak
     };
     let frames = crate::sweep::size(500, 150);
-    let (few, many) = (peak(50), peak(frames));
+    let (few, many) = (peak_of(50), peak_of(frames));
     // 100 frames are 120 MB of pixels, 450 are 550 MB.
     assert!(many < few + 10_000, "{few} KiB for 50 frames, {many} KiB for {frames}");
 }

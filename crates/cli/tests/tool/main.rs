@@ -20,10 +20,13 @@ mod fork;
 mod hostile;
 mod inspect;
 mod long;
+#[cfg(target_os = "linux")]
+mod memory;
 mod outputs;
 mod record;
 mod seek;
 mod sign;
+mod small_outputs;
 mod stats;
 mod stress_saves;
 mod trim;

@@ -10,10 +10,10 @@ use std::time::Duration;
 
 use crate::{Folder, golden};
 
-const TOOL: &str = env!("CARGO_BIN_EXE_lockstep2d");
+pub(crate) const TOOL: &str = env!("CARGO_BIN_EXE_lockstep2d");
 
 /// The contents of a file that exists already.
-const OLD: &[u8] = b"what was there before";
+pub(crate) const OLD: &[u8] = b"what was there before";
 
 /// Every command that writes the file `to`, which has more than 512 bytes.
 fn writers(to: &str) -> Vec<Vec<String>> {
@@ -41,12 +41,12 @@ fn forced(arguments: &[String]) -> Vec<String> {
     [arguments, &["--force".into()]].concat()
 }
 
-fn message(output: &Output) -> String {
+pub(crate) fn message(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 /// The names in a folder, sorted.
-fn names(folder: &Folder) -> Vec<String> {
+pub(crate) fn names(folder: &Folder) -> Vec<String> {
     let entries = fs::read_dir(folder.path("")).unwrap();
     let mut names: Vec<String> =
         entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();

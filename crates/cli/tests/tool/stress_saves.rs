@@ -161,3 +161,12 @@ fn goldens_of_the_sandbox_hold() {
         }
     }
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_failing_replay_that_cannot_be_written_is_an_error() {
+    let folder = Folder::new("stress-full");
+    let outcome = stress_saves(&folder, &forgetful(), &["-o", "/dev/full"]);
+    assert_eq!(outcome.exit, Exit::Trouble, "{}", outcome.out);
+    assert!(outcome.err.contains("cannot write /dev/full"), "{}", outcome.err);
+}

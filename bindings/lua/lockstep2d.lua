@@ -1,0 +1,131 @@
+--- The flat API of lockstep2d for LuaJIT and LÖVE. Functions, structs and constants are those of lockstep2d.h without
+--- their prefix: `ls.world_step(world)`, `ls.DYNAMIC`. `lockstep2d.h` and the library have to be in the folder of this
+--- file, or in that of the LÖVE game; a library that the system finds will do as well.
+---
+--- A function that returns a status raises an error if it fails, and otherwise returns whether there was something to
+--- return (`LS2D_OK`, not `LS2D_NONE`). Other functions return their result.
+---
+--- Numbers that enter the state are integers (`ls.fx`). Numbers of Lua are floats: use them only for drawing.
+local ffi = require("ffi")
+
+local ls = {}
+
+local folder = debug.getinfo(1, "S").source:match("^@(.*)lockstep2d%.lua$") or ""
+local love_folder = love and love.filesystem.getSource() .. "/"
+
+local function read_header()
+    local name = "lockstep2d.h"
+    if love and love.filesystem.getInfo(name) then
+        return (assert(love.filesystem.read(name)))
+    end
+    local file = assert(io.open(folder .. name))
+    local text = file:read("*a")
+    file:close()
+    return text
+end
+
+local function load_library()
+    local names = { Windows = "lockstep2d_flat.dll", OSX = "liblockstep2d_flat.dylib" }
+    local name = names[ffi.os] or "liblockstep2d_flat.so"
+    for _, path in ipairs({ (love_folder or folder) .. name, "./" .. folder .. name }) do
+        local file = io.open(path)
+        if file then
+            file:close()
+            return ffi.load(path)
+        end
+    end
+    return ffi.load("lockstep2d_flat")
+end
+
+local header = read_header()
+for name, value in header:gmatch("\n#define LS2D_([%u%d_]+) ([%w_]+)") do
+    ls[name] = value == "UINT64_MAX" and 0xffffffffffffffffULL or tonumber(value)
+end
+local returns_status = {}
+for name in header:gmatch("\nls2d_status (ls2d_[%w_]+)%(") do
+    returns_status[name] = true
+end
+-- A struct that ends with its layout unknown to LuaJIT would be an error here.
+ffi.cdef((header:gsub("/%*.-%*/", ""):gsub("#ifdef __cplusplus.-#endif", ""):gsub("\n#[^\n]*", "")))
+local C = load_library()
+assert(C.ls2d_api_version() == ls.API_VERSION, "lockstep2d.h and the library have different versions")
+
+local function last_error()
+    local text, length = ffi.new("uint8_t[256]"), ffi.new("size_t[1]")
+    C.ls2d_last_error(text, 256, length)
+    return ffi.string(text, math.min(256, tonumber(length[0])))
+end
+
+local function wrap(name)
+    local raw = C[name]
+    if not returns_status[name] then
+        return raw
+    end
+    return function(...)
+        local status = raw(...)
+        if status == ls.OK or status == ls.NONE then
+            return status == ls.OK
+        end
+        error(("%s: %s (status %d)"):format(name, last_error(), status), 2)
+    end
+end
+
+setmetatable(ls, {
+    __index = function(self, key)
+        local found, value = pcall(wrap, "ls2d_" .. key)
+        if not found then
+            error("lockstep2d has no " .. tostring(key), 2)
+        end
+        self[key] = value
+        return value
+    end,
+})
+
+--- A struct with its defaults: `ls.make("body_def", ls.DYNAMIC)` is what `ls2d_body_def_init` makes of the arguments.
+function ls.make(struct, ...)
+    local made = ffi.new("ls2d_" .. struct)
+    local arguments = { ... }
+    arguments[#arguments + 1] = made
+    ls[struct .. "_init"](unpack(arguments))
+    return made
+end
+
+--- A place for a result, whose value is at index 0: `ls.out("handle")`, `ls.out("body")`.
+function ls.out(type)
+    return ffi.new("ls2d_" .. type .. "[1]")
+end
+
+--- A number for the state, from a whole number or from decimal text: `ls.fx(3)`, `ls.fx("0.25")`.
+function ls.fx(value)
+    if type(value) == "string" then
+        local number = ls.out("fx")
+        ls.fx_parse(value, #value, number)
+        return number[0]
+    end
+    if type(value) ~= "number" or value % 1 ~= 0 then
+        error("a number with a fraction enters the state as text: fx(\"0.25\"), not fx(0.25)", 2)
+    end
+    return ffi.new("int64_t", value) * 4294967296LL
+end
+
+--- A number of the state as a number of Lua, for drawing.
+function ls.number(fx)
+    return tonumber(fx) / 4294967296
+end
+
+--- Bytes as a string. Frees the object.
+function ls.take_bytes(handle)
+    local size = ffi.new("size_t[1]")
+    ls.bytes_size(handle, size)
+    local buffer = ffi.new("uint8_t[?]", math.max(1, tonumber(size[0])))
+    ls.bytes_copy(handle, buffer, size[0])
+    ls.free(handle)
+    return ffi.string(buffer, size[0])
+end
+
+--- A hash as 32 hexadecimal digits.
+function ls.hex(hash)
+    return bit.tohex(hash.high, 16) .. bit.tohex(hash.low, 16)
+end
+
+return ls

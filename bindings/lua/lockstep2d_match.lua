@@ -1,0 +1,203 @@
+--- Plays a game in a match: does what the session of `ls2d_match_host` or `ls2d_match_join` asks for.
+---
+--- The game has
+--- - `step(inputs, absent)`: advances by a tick with the inputs of all seats, a string; `absent` has a bit for each seat
+---   that nobody plays;
+--- - `save()`, `load(saved)`, `drop(saved)`: a copy of the whole state, and back;
+--- - `hash()`: an `ls2d_hash` of the whole state;
+--- - `encode()`, `decode(bytes)`: the state as a string, for those who join.
+---
+--- `send(to, packet)` carries packets; both are strings.
+local ffi = require("ffi")
+local ls = require("lockstep2d")
+
+local Driver = {}
+Driver.__index = Driver
+
+local ADDRESS_MAX, PACKET_MAX = 32, 2048
+
+--- Opens a match, or joins one if there is a `contact`: the address of somebody who takes part, as a string. `settings`
+--- are fields of `ls2d_match_config`. All who play together need the same `offer`, a string with rules and version.
+function Driver.new(options)
+    local config = ls.make("match_config", options.seats)
+    for field, value in pairs(options.settings or {}) do
+        config[field] = value
+    end
+    -- Random numbers from the system: they identify this peer, and nobody else may guess them.
+    local file = assert(io.open("/dev/urandom", "rb"))
+    local random = file:read(28)
+    file:close()
+    ffi.copy(ffi.cast("uint8_t *", config) + ffi.offsetof(config, "peer"), random:sub(1, 4), 4)
+    ffi.copy(ffi.cast("uint8_t *", config) + ffi.offsetof(config, "key"), random:sub(5), 24)
+    local handle, offer, contact = ls.out("handle"), options.offer, options.contact
+    if contact then
+        ls.match_join(config, offer, #offer, contact, #contact, handle)
+    else
+        ls.match_host(config, offer, #offer, handle)
+    end
+    local self = setmetatable({
+        match = handle[0],
+        game = options.game,
+        send = options.send,
+        tick = 0,
+        saves = {},
+        size = ffi.new("size_t[2]"),
+        capacity = tonumber(config.seats * config.input_bytes),
+        inputs = ffi.new("uint8_t[?]", config.seats * config.input_bytes),
+        packet = ffi.new("uint8_t[?]", PACKET_MAX),
+        address = ffi.new("uint8_t[?]", ADDRESS_MAX),
+        request = ffi.new("ls2d_request"),
+        event = ffi.new("ls2d_match_event"),
+        flag = ffi.new("uint32_t[3]"),
+    }, Driver)
+    self:keep(0)
+    return self
+end
+
+--- Takes a packet from an address. `now` is in seconds.
+function Driver:receive(now, from, packet)
+    ls.match_receive(self.match, now * 1e6, from, #from, packet, #packet)
+end
+
+--- Passes the time, in seconds, and plays what is due with the inputs that `read(seats)` returns: a string for the own
+--- seats, of which there are so many. Returns what happened, as a list of tables.
+function Driver:update(now, read)
+    ls.match_update(self.match, now * 1e6)
+    local events = {}
+    while ls.match_next_event(self.match, self.event) do
+        local event = { kind = self.event.kind, peer = self.event.peer, tick = self.event.tick, value = self.event.value }
+        if event.kind == ls.EVENT_STATE then
+            self:resume(event.tick, ls.take_bytes(event.value))
+        end
+        events[#events + 1] = event
+    end
+    self:fulfil()
+    while self:is_due(now) do
+        local seats = self:seat_count()
+        local inputs = seats > 0 and read(seats) or ""
+        ls.match_advance(self.match, now * 1e6, inputs, #inputs, self.flag)
+        local issued, before = self.flag[0] == 1, self.tick
+        self:fulfil()
+        if not issued and self.tick == before then
+            break
+        end
+    end
+    ls.match_wants_state(self.match, self.flag)
+    if self.flag[0] == 1 then
+        self:offer_state()
+    end
+    local size = self.size
+    while ls.match_next_packet(self.match, self.address, ADDRESS_MAX, size, self.packet, PACKET_MAX, size + 1) do
+        self.send(ffi.string(self.address, size[0]), ffi.string(self.packet, size[1]))
+    end
+    return events
+end
+
+function Driver:is_due(now)
+    ls.match_is_due(self.match, now * 1e6, self.flag)
+    return self.flag[0] == 1
+end
+
+--- Number of own seats.
+function Driver:seat_count()
+    local seats, count = ffi.new("uint64_t[1]"), 0
+    ls.match_seats(self.match, seats)
+    while seats[0] ~= 0 do
+        seats[0] = bit.band(seats[0], seats[0] - 1)
+        count = count + 1
+    end
+    return count
+end
+
+--- Where the match stands: `ls.MATCH_PLAYING` and so on.
+function Driver:status()
+    ls.match_status(self.match, self.flag)
+    return self.flag[0]
+end
+
+--- Numbers of ticks that were played, that are final, and that are both: 0 before it has joined.
+function Driver:ticks()
+    if self:status() == ls.MATCH_CONNECTING then
+        return 0, 0, 0
+    end
+    ls.match_ticks(self.match, self.flag, self.flag + 1, self.flag + 2)
+    return self.flag[0], self.flag[1], self.flag[2]
+end
+
+function Driver:keep(tick)
+    self:forget(function(kept) return kept == tick end)
+    self.saves[tick] = { saved = self.game:save(), hash = self.game:hash() }
+end
+
+function Driver:forget(condition)
+    for tick, kept in pairs(self.saves) do
+        if condition(tick) then
+            self.game:drop(kept.saved)
+            self.saves[tick] = nil
+        end
+    end
+end
+
+function Driver:resume(tick, state)
+    self.game:decode(state)
+    self.tick = tick
+    self:forget(function() return true end)
+    self:keep(tick)
+end
+
+--- The newest state up to a tick, or nil.
+function Driver:newest(tick)
+    local newest
+    for kept in pairs(self.saves) do
+        if kept <= tick and kept > (newest or -1) then
+            newest = kept
+        end
+    end
+    return newest
+end
+
+local answers = {
+    [ls.REQUEST_SAVE] = function(self, tick)
+        self:keep(tick)
+    end,
+    [ls.REQUEST_LOAD] = function(self, tick)
+        self.game:load(self.saves[tick].saved)
+        self:forget(function(kept) return kept > tick end)
+        self.tick = tick
+    end,
+    [ls.REQUEST_ADVANCE] = function(self, tick)
+        self.game:step(ffi.string(self.inputs, self.size[0]), self.request.absent)
+        self.tick = tick + 1
+    end,
+    [ls.REQUEST_CHECKSUM] = function(self, tick)
+        ls.match_report_hash(self.match, tick, self.saves[tick].hash)
+    end,
+    -- The newest state before the forgotten ones is kept for those who join.
+    [ls.REQUEST_FORGET] = function(self, tick)
+        local newest = self:newest(tick)
+        self:forget(function(kept) return newest ~= nil and kept < newest end)
+    end,
+}
+
+function Driver:fulfil()
+    while ls.match_next_request(self.match, self.request, self.inputs, self.capacity, self.size) do
+        answers[self.request.kind](self, self.request.tick)
+    end
+end
+
+-- The newest state that is final, as bytes. The game is back where it was afterwards.
+function Driver:offer_state()
+    local _, _, confirmed = self:ticks()
+    local tick = self:newest(confirmed)
+    if not tick then
+        return
+    end
+    local now = self.game:save()
+    self.game:load(self.saves[tick].saved)
+    local state = self.game:encode()
+    self.game:load(now)
+    self.game:drop(now)
+    ls.match_offer_state(self.match, tick, state, #state)
+end
+
+return Driver

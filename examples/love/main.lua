@@ -1,0 +1,140 @@
+--- Two players over UDP, with rollback:
+---
+---     love examples/love --host 4000
+---     love examples/love --join 127.0.0.1:4000
+---
+--- Arrow keys or A, D and W. `--guess N` plays up to N ticks ahead of the inputs of the other player (6 without it; 0 is
+--- lockstep). For tests: `--ticks N` of the host ends the match, `--random SEED` presses keys, `--screenshot NAME` saves a picture.
+local ffi = require("ffi")
+local socket = require("socket")
+local ls = require("lockstep2d")
+local Driver = require("lockstep2d_match")
+local Game = require("game")
+
+-- Pixels per metre.
+local SCALE = 40
+-- The window shows the poses of at most so many bodies.
+local ROWS = 64
+
+local game, driver, udp, options, final_hash
+local statuses = {}
+for name, value in pairs(ls) do
+    if type(name) == "string" and name:match("^MATCH_") then
+        statuses[value] = name:sub(7):lower()
+    end
+end
+
+local function parse(arguments)
+    local parsed = { guess = "6" }
+    for i = 1, #arguments, 2 do
+        local name = arguments[i]:match("^%-%-(%a+)$")
+        assert(name and arguments[i + 1], "options are --host PORT or --join ADDRESS:PORT, and those in main.lua")
+        parsed[name] = arguments[i + 1]
+    end
+    assert(parsed.host or parsed.join, "pass --host PORT or --join ADDRESS:PORT")
+    return parsed
+end
+
+local function send(to, packet)
+    local address, port = to:match("^(.*):(%d+)$")
+    udp:sendto(packet, address, tonumber(port))
+end
+
+function love.load(arguments)
+    options = parse(arguments)
+    udp = assert(socket.udp())
+    udp:settimeout(0)
+    assert(udp:setsockname("*", tonumber(options.host or 0)))
+    game = Game.new()
+    driver = Driver.new({
+        seats = Game.SEATS,
+        offer = Game.OFFER,
+        contact = options.join,
+        settings = { guess = tonumber(options.guess), start_with = Game.SEATS },
+        game = game,
+        send = send,
+    })
+    if options.random then
+        love.math.setRandomSeed(tonumber(options.random))
+    end
+    if options.host and options.ticks then
+        ls.match_end_at(driver.match, tonumber(options.ticks))
+    end
+end
+
+local function read_keys()
+    if options.random then
+        return string.char(love.math.random(0, 7))
+    end
+    local down, keys = love.keyboard.isDown, 0
+    keys = keys + (down("left", "a") and Game.LEFT or 0)
+    keys = keys + (down("right", "d") and Game.RIGHT or 0)
+    keys = keys + (down("up", "w", "space") and Game.JUMP or 0)
+    return string.char(keys)
+end
+
+function love.update()
+    local now = love.timer.getTime()
+    local packet, address, port = udp:receivefrom()
+    while packet do
+        driver:receive(now, address .. ":" .. port, packet)
+        packet, address, port = udp:receivefrom()
+    end
+    for _, event in ipairs(driver:update(now, read_keys)) do
+        if event.kind == ls.EVENT_DESYNC then
+            error("the states differ at tick " .. event.tick)
+        end
+    end
+    local status = driver:status()
+    if status == ls.MATCH_FINISHED and not final_hash then
+        final_hash = ls.hex(game:hash())
+        print(("%d ticks: %s"):format(driver.tick, final_hash))
+        ls.match_leave(driver.match)
+        if options.screenshot then
+            love.graphics.captureScreenshot(options.screenshot)
+        end
+    elseif status == ls.MATCH_CLOSED then
+        love.event.quit()
+    end
+end
+
+local rows, count = ffi.new("double[?]", 5 * ROWS), ffi.new("size_t[1]")
+local colours = { [2] = { 0.9, 0.4, 0.3 }, [3] = { 0.3, 0.6, 0.9 } }
+
+function love.draw()
+    local graphics = love.graphics
+    graphics.clear(0.1, 0.11, 0.13)
+    graphics.push()
+    graphics.translate(graphics.getWidth() / 2, graphics.getHeight() - 80)
+    graphics.scale(SCALE, -SCALE)
+    graphics.setLineWidth(0.05)
+    ls.draw_poses(game.world, rows, 5 * ROWS, count)
+    for body = 1, tonumber(count[0]) / 5 do
+        local row = rows + 5 * (body - 1)
+        graphics.push()
+        graphics.translate(row[1], row[2])
+        graphics.rotate(row[3])
+        graphics.setColor(colours[body] or (row[4] == 1 and { 0.8, 0.7, 0.5 } or { 0.5, 0.5, 0.5 }))
+        if body == 1 then
+            graphics.rectangle("line", -8, -1, 16, 2)
+        elseif colours[body] then
+            graphics.circle("line", 0, 0, 0.6)
+            graphics.line(0, 0, 0.6, 0)
+        else
+            graphics.rectangle("line", -0.5, -0.5, 1, 1)
+        end
+        graphics.pop()
+    end
+    graphics.pop()
+    graphics.setColor(1, 1, 1)
+    local played, _, confirmed = driver:ticks()
+    local text = "%s   tick %d, %d ahead of the confirmed inputs"
+    graphics.print(text:format(statuses[driver:status()], played, played - confirmed), 10, 10)
+end
+
+function love.quit()
+    if driver:status() ~= ls.MATCH_CLOSED then
+        ls.match_leave(driver.match)
+        driver:update(love.timer.getTime(), read_keys)
+    end
+end

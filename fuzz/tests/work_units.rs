@@ -1,0 +1,113 @@
+//! Work units are honest in random worlds, too: no setup and no tick takes more than a microsecond for each unit that it
+//! is charged. `tests/work_units` of the library has the worlds that are made to be expensive.
+//!
+//! `WORLDS` is the number of worlds, 200 by default.
+
+use std::time::{Duration, Instant};
+
+use lockstep2d::lockstep::Sandbox;
+use lockstep2d::math::Rng;
+use lockstep2d::replay::{Limits, Recording, Step, VerifiedReplay};
+use lockstep2d_fuzz::source::Source;
+use lockstep2d_fuzz::{generator, verdicts};
+
+/// Nanoseconds for each unit that are allowed, with and without debug assertions and overflow checks.
+const MAX: u128 = if cfg!(debug_assertions) { 3000 } else { 1000 };
+
+/// Shortest time that is judged alone. The time of a shorter part is judged with the whole file.
+const JUDGED: Duration = Duration::from_micros(50);
+
+/// The shortest of so many runs counts, so that a busy machine counts little.
+const RUNS: usize = 5;
+
+/// Ticks of a world.
+const TICKS: u64 = 60;
+
+/// A part of a file: its units, and the shortest time that it has taken.
+#[derive(Clone, Copy, Debug)]
+struct Cost {
+    units: u64,
+    time: Duration,
+}
+
+impl Cost {
+    fn per_unit(&self) -> u128 {
+        self.time.as_nanos() / u128::from(self.units.max(1))
+    }
+}
+
+/// A replay of the scene that the bytes describe, which gets more commands in two of three ticks.
+fn record(bytes: &[u8]) -> Vec<u8> {
+    let mut source = Source::new(bytes);
+    let (setup, mut generator) = verdicts::scene(&mut source);
+    let mut recording = Recording::<Sandbox>::start(&setup, 60).expect("a valid setup");
+    let mut cost = 0;
+    for tick in 0..TICKS {
+        let world = recording.game().world();
+        let commands = if tick % 3 == 0 { Vec::new() } else { generator.tick(&mut source, world) };
+        recording.step(&[commands]).expect("inputs that can be recorded");
+        cost += generator::cost(recording.game().world());
+        if cost > 300_000 {
+            break;
+        }
+    }
+    recording.finish().expect("the sandbox has no claims")
+}
+
+/// The costs of the setup and of each tick in one run.
+fn play(file: &[u8]) -> Vec<Cost> {
+    let limits = Limits { tick_work: u64::MAX, total_work: u64::MAX, ..Limits::default() };
+    let start = Instant::now();
+    let mut play = VerifiedReplay::<Sandbox>::open(file, &limits).expect("a replay that can start");
+    let mut costs = vec![Cost { units: play.work(), time: start.elapsed() }];
+    loop {
+        let (before, start) = (play.work(), Instant::now());
+        if play.step().expect("a replay that can be played") == Step::Ended {
+            return costs;
+        }
+        costs.push(Cost { units: play.work() - before, time: start.elapsed() });
+    }
+}
+
+/// The costs of the setup and of each tick, each in the run in which it was the shortest.
+fn costs(file: &[u8]) -> Vec<Cost> {
+    let mut best = play(file);
+    for _ in 1..RUNS {
+        for (best, cost) in best.iter_mut().zip(play(file)) {
+            assert_eq!(best.units, cost.units, "units do not depend on the run");
+            best.time = best.time.min(cost.time);
+        }
+    }
+    best
+}
+
+#[test]
+fn no_unit_of_a_random_world_takes_more_than_a_microsecond() {
+    let worlds = std::env::var("WORLDS").map_or(200, |worlds| worlds.parse().expect("a number"));
+    let (mut judged, mut worst, mut wrong) = (0, Cost { units: 1, time: Duration::ZERO }, Vec::new());
+    let mut all = Cost { units: 0, time: Duration::ZERO };
+    for seed in 0..worlds {
+        let mut rng = Rng::new(seed);
+        let bytes: Vec<u8> = (0..4000).map(|_| rng.next_u32() as u8).collect();
+        let parts = costs(&record(&bytes));
+        let whole = parts.iter().fold(Cost { units: 0, time: Duration::ZERO }, |sum, part| Cost {
+            units: sum.units + part.units,
+            time: sum.time + part.time,
+        });
+        all = Cost { units: all.units + whole.units, time: all.time + whole.time };
+        let long = parts.iter().enumerate().filter(|(_, part)| part.time >= JUDGED);
+        for (part, cost) in long.map(|(at, cost)| (Some(at), *cost)).chain([(None, whole)]) {
+            judged += 1;
+            if cost.per_unit() > worst.per_unit() {
+                worst = cost;
+                println!("world {seed}, part {part:?}: {cost:?}, {} ns per unit", cost.per_unit());
+            }
+            if cost.per_unit() > MAX {
+                wrong.push((seed, part, cost, cost.per_unit()));
+            }
+        }
+    }
+    println!("{worlds} worlds, {judged} parts judged, {} ns per unit in the mean: {all:?}", all.per_unit());
+    assert!(judged > 5 * worlds, "only {judged} parts are long enough to be judged");
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
