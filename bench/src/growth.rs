@@ -7,8 +7,8 @@ use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef, WorldError};
 use lockstep2d::fx;
 use lockstep2d::lockstep::SandboxSetup;
 use lockstep2d::math::{Angle, Fx, Vec2};
-use lockstep2d_scenes::Builder;
 use lockstep2d::world::Config;
+use lockstep2d_scenes::Builder;
 use serde::Serialize;
 
 use crate::engine::Kind;

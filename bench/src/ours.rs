@@ -80,6 +80,10 @@ impl Engine for Ours {
         self.world.to_bytes().len()
     }
 
+    fn held_bytes(&self, slot: usize) -> usize {
+        self.saves[slot].as_ref().map_or(0, |save| save.rollback_bytes())
+    }
+
     fn restore(&mut self, slot: usize) -> Result<()> {
         self.world.restore(self.saves[slot].as_ref().context("nothing is saved")?);
         Ok(())

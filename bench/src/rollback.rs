@@ -5,8 +5,8 @@ use anyhow::{Result, anyhow};
 use lockstep2d::body::{BodyDef, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Vec2};
-use lockstep2d_scenes::Builder;
 use lockstep2d::world::{Config, World};
+use lockstep2d_scenes::Builder;
 use serde::Serialize;
 
 use crate::measure::timed;

@@ -6,8 +6,8 @@
 
 use anyhow::{Context, Result, anyhow};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
-use lockstep2d_scenes::Scene;
 use lockstep2d::world::{Command, Config, Outcome};
+use lockstep2d_scenes::Scene;
 
 /// The ten scenes, in the order of the tables.
 pub const SCENES: [&str; 10] = [

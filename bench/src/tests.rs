@@ -77,6 +77,8 @@ fn every_engine_continues_from_what_it_saved() {
         assert!(after(&mut *engine) == first, "{}", kind.name());
         let keeping = keeping(&mut *engine).unwrap();
         assert!(keeping.bytes_per_body > 50.0 && keeping.save_ms > 0.0, "{keeping:?}");
+        let held = engine.held_bytes(0) / engine.bodies().len();
+        assert!((20..4000).contains(&held), "{}: {held} bytes per body", kind.name());
     }
 }
 

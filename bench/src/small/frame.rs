@@ -28,13 +28,30 @@ pub struct Frame {
     pub vs_box2d: f64,
     /// Median of the rounds' ratios of the frame to rapier2d's.
     pub vs_rapier: f64,
-    /// CPU time of saves and hashes in lockstep2d, in percent of a restore and
-    /// eight steps.
-    pub save_and_hash_percent: f64,
-    /// CPU time of saves and hashes in Box2D, in percent of its restore and steps.
-    pub box2d_save_and_hash_percent: f64,
-    /// CPU time of saves and hashes in rapier2d, in percent of its restore and steps.
-    pub rapier_save_and_hash_percent: f64,
+    /// Saves and hashes in lockstep2d.
+    pub ours: Saving,
+    /// Saves and hashes in Box2D.
+    pub box2d: Saving,
+    /// Saves and hashes in rapier2d.
+    pub rapier: Saving,
+}
+
+/// Cost of the saves and hashes of an engine: medians of the rounds.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Saving {
+    /// CPU time of a save and its hash in microseconds.
+    pub us: f64,
+    /// CPU time of the saves and hashes in percent of a restore and eight steps.
+    pub percent: f64,
+    /// Memory of a save in bytes.
+    pub bytes: usize,
+}
+
+/// A frame of an engine in one round.
+struct Round {
+    /// CPU time of the frame in microseconds.
+    frame_us: f64,
+    saving: Saving,
 }
 
 /// Measures the rollback frame of a world.
@@ -46,39 +63,49 @@ pub fn frame(world: World, size: u32, rounds: usize, progress: &ProgressBar) -> 
         (0..UNTIMED).for_each(|_| engine.step());
         engines.push(engine);
     }
-    let mut frames: [Vec<f64>; 3] = Default::default();
-    let mut keeping: [Vec<f64>; 3] = Default::default();
+    let mut measured: [Vec<Round>; 3] = Default::default();
     for round in 1..=rounds {
         for kind in Kind::ALL {
             progress.set_message(format!("frame, {} of {size}: {}, round {round}", world.name, kind.name()));
-            let engine = &mut *engines[kind as usize];
-            let (frame, percent) = measure(engine)?;
-            frames[kind as usize].push(frame);
-            keeping[kind as usize].push(percent);
+            measured[kind as usize].push(measure(&mut *engines[kind as usize])?);
             progress.inc(1);
         }
     }
+    let times =
+        measured.each_ref().map(|rounds| rounds.iter().map(|round| round.frame_us).collect::<Vec<_>>());
     let ratio = |other: usize| {
-        median(&frames[0].iter().zip(&frames[other]).map(|(ours, other)| ours / other).collect::<Vec<_>>())
+        median(&times[0].iter().zip(&times[other]).map(|(ours, other)| ours / other).collect::<Vec<_>>())
     };
-    let [ours, box2d, rapier] = keeping.each_ref().map(|percents| median(percents));
+    let [ours, box2d, rapier] = measured.each_ref().map(|rounds| saving(rounds));
     Ok(Frame {
         world: world.name,
         bodies: dynamic(&*engines[0]),
-        frame_us: median(&frames[0]),
+        frame_us: median(&times[0]),
         vs_box2d: ratio(1),
         vs_rapier: ratio(2),
-        save_and_hash_percent: ours,
-        box2d_save_and_hash_percent: box2d,
-        rapier_save_and_hash_percent: rapier,
+        ours,
+        box2d,
+        rapier,
     })
 }
 
-/// Returns the mean time of a frame in microseconds, and the time of its saves and hashes in percent of the rest.
+/// Returns the medians of the rounds. The bytes are those of the last one: all rounds save the same ticks.
+fn saving(rounds: &[Round]) -> Saving {
+    let of = |part: fn(&Saving) -> f64| {
+        median(&rounds.iter().map(|round| part(&round.saving)).collect::<Vec<_>>())
+    };
+    Saving {
+        us: of(|saving| saving.us),
+        percent: of(|saving| saving.percent),
+        bytes: rounds.last().map_or(0, |round| round.saving.bytes),
+    }
+}
+
+/// Measures a frame, as the mean of [`FRAMES`].
 ///
 /// Slot 0 has the start of the frame, which is the same for all frames, and the others have its ticks. Saves are timed
 /// as the difference to frames without them, because a clock takes as long as the save of a small world.
-fn measure(engine: &mut dyn Engine) -> Result<(f64, f64)> {
+fn measure(engine: &mut dyn Engine) -> Result<Round> {
     engine.save(0);
     let (bare, done) = timed(|| frames(engine, |_, _| {}));
     done?;
@@ -89,8 +116,13 @@ fn measure(engine: &mut dyn Engine) -> Result<(f64, f64)> {
         })
     });
     done?;
+    let saving = Saving {
+        us: (full - bare) * 1e3 / (FRAMES * (SAVES - 1)) as f64,
+        percent: (full - bare) / bare * 100.0,
+        bytes: engine.held_bytes(SAVES - 1),
+    };
     engine.restore(0)?;
-    Ok((full * 1e3 / FRAMES as f64, (full - bare) / bare * 100.0))
+    Ok(Round { frame_us: full * 1e3 / FRAMES as f64, saving })
 }
 
 fn frames(engine: &mut dyn Engine, after_step: impl Fn(&mut dyn Engine, usize)) -> Result<()> {
@@ -107,22 +139,29 @@ fn frames(engine: &mut dyn Engine, after_step: impl Fn(&mut dyn Engine, usize)) 
 /// Returns the column heads of [`frame_row`].
 pub fn frame_head() -> String {
     format!(
-        "{:10} {:>6} {:>9} {:>9} {:>9}  save and hash, % of the rest: {:>5} {:>6} {:>7}",
-        "frame", "bodies", "ours us", "vs Box2D", "vs rapier", "ours", "Box2D", "rapier"
+        "{:10} {:>6} {:>9} {:>9} {:>9}  a save and its hash: ours, Box2D, rapier\n{:47}  {:>20} {:>21} {:>24}",
+        "frame", "bodies", "ours us", "vs Box2D", "vs rapier", "", "us", "% of the rest", "bytes of the save"
     )
 }
 
 /// Formats the cost of a frame as a table row.
 pub fn frame_row(frame: &Frame) -> String {
+    let [ours, box2d, rapier] = [frame.ours, frame.box2d, frame.rapier];
     format!(
-        "{:10} {:6} {:9.1} {:9.2} {:9.2} {:34.1} {:6.1} {:7.1}",
+        "{:10} {:6} {:9.1} {:9.2} {:9.2}  {:6.1} {:6.1} {:6.1}  {:6.1} {:6.1} {:6.1}  {:7} {:7} {:8}",
         frame.world,
         frame.bodies,
         frame.frame_us,
         frame.vs_box2d,
         frame.vs_rapier,
-        frame.save_and_hash_percent,
-        frame.box2d_save_and_hash_percent,
-        frame.rapier_save_and_hash_percent
+        ours.us,
+        box2d.us,
+        rapier.us,
+        ours.percent,
+        box2d.percent,
+        rapier.percent,
+        ours.bytes,
+        box2d.bytes,
+        rapier.bytes
     )
 }

@@ -4,8 +4,8 @@ use lockstep2d::body::{BodyDef, BodyId, Chain, Filter, Geometry, Polygon, ShapeD
 use lockstep2d::fx;
 use lockstep2d::lockstep::SandboxSetup;
 use lockstep2d::math::{Angle, Fx, Rot, Vec2};
-use lockstep2d_scenes::Builder;
 use lockstep2d::solver::{JointDef, Revolute};
+use lockstep2d_scenes::Builder;
 
 use super::config;
 
