@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use source::{Source, files, tokens};
 
 /// The library, and crates that a game's author names types of.
-const FOLDERS: &[&str] = &["src", "crates/cli/src", "crates/render/src"];
+const FOLDERS: &[&str] = &["src", "crates/cli/src", "crates/render/src", "crates/viewer/src"];
 
 /// Public types without an example, and why.
 const WITHOUT: &[(&str, &str, &str)] = &[

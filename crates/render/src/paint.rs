@@ -172,7 +172,9 @@ impl Look {
     fn of(style: Style, brush: &Brush) -> Self {
         let Paint { stroke, fill, width, .. } = style.paint();
         let width = f32::from(width) / 100.0;
-        let width = (width * brush.marks).max(width.min(0.4));
+        // Ground is as long as ever when the bodies on it are small: a thin line of it would hardly be seen.
+        let width_min = if style == Style::Fixed { 1.0 } else { 0.4 };
+        let width = (width * brush.marks).max(width.min(width_min));
         let fill = fill.map_or(Colour::NONE, |Fill { colour, opacity }| {
             Colour::hex(colour).with_opacity(u8::try_from(u16::from(opacity) * 255 / 100).unwrap_or(255))
         });

@@ -18,6 +18,21 @@ const INSIDE: u8 = 150;
 /// Draws over the world, in world coordinates: metres, with y upwards. Later shapes lie on top.
 ///
 /// [`Canvas::list`] and [`Canvas::camera`] give access to pixels.
+///
+/// A game gets it from [`Viewer::draw`](crate::Viewer::draw). Elsewhere it draws into any list:
+///
+/// ```
+/// use lockstep2d::{fx, math::{Aabb, Vec2}};
+/// use lockstep2d_viewer::{Camera, Canvas, Colour, DrawList};
+///
+/// let window = Aabb::new(Vec2::new(fx!(-10), fx!(-5)), Vec2::new(fx!(10), fx!(5)));
+/// let camera = Camera::new(window, [0.0, 0.0], [800.0, 400.0]);
+/// let mut list = DrawList::default();
+/// let mut canvas = Canvas::new(&mut list, &camera);
+/// canvas.circle(Vec2::ZERO, fx!(0.5), Colour::hex(0x009e73));
+/// canvas.text(Vec2::new(fx!(0), fx!(1)), Colour::hex(0xffffff), "goal");
+/// assert_eq!((list.items().len(), list.texts().len()), (1, 1));
+/// ```
 pub struct Canvas<'a> {
     list: &'a mut DrawList,
     camera: &'a Camera,

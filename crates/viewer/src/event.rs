@@ -74,6 +74,17 @@ impl From<char> for Key {
 }
 
 /// Button of the pointer.
+///
+/// ```
+/// use lockstep2d_viewer::{App, Button, Event};
+///
+/// // A click in the middle of the picture, and a drag with the right button, which draws a new body in a live scene.
+/// let mut app = App::default();
+/// app.show_scene("box_stack", 0);
+/// let click = [Event::Moved([480.0, 360.0]), Event::Down(Button::Left), Event::Up(Button::Left)];
+/// let body = [Event::Down(Button::Right), Event::Moved([500.0, 360.0]), Event::Up(Button::Right)];
+/// click.into_iter().chain(body).for_each(|event| app.handle(event));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Button {
     /// The left button, or a touch.

@@ -32,6 +32,18 @@ pub const FRAME: Duration = Duration::from_nanos(16_666_667);
 const FRAMES_MAX: u32 = 216_000;
 
 /// List of instructions that replaces user input.
+///
+/// ```
+/// use lockstep2d_viewer::script::{Script, ScriptError, ScriptFlaw, Step};
+///
+/// let script = Script::parse("key space\nframes 60\nscreenshot after.png\nquit")?;
+/// assert_eq!(script.steps()[2..], [Step::Frames(60), Step::Screenshot("after.png".into()), Step::Quit]);
+///
+/// let error = ScriptError { line: 2, flaw: ScriptFlaw::UnknownInstruction("frame".into()) };
+/// assert_eq!(Script::parse("quit\nframe 60"), Err(error.clone()));
+/// assert_eq!(error.to_string(), "line 2: there is no instruction \"frame\"");
+/// # Ok::<(), ScriptError>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Script {
     steps: Vec<Step>,

@@ -1,6 +1,8 @@
 //! The game: one player drives a car over hills and fires shells. A bridge breaks under too much load.
 
-use lockstep2d::body::{BodyDef, BodyId, Geometry, Name, Polygon, ShapeDef, WorldError};
+use std::collections::BTreeSet;
+
+use lockstep2d::body::{BodyDef, BodyId, Chain, Geometry, Name, Polygon, ShapeDef, WorldError};
 use lockstep2d::fx;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
@@ -36,9 +38,13 @@ pub(crate) struct Save {
 const PLANKS: i32 = 10;
 /// Ends of the bridge.
 const BRIDGE: (i32, i32) = (12, 12 + PLANKS);
-/// Force at which a joint of the bridge breaks, in N.
-const STRENGTH: Fx = fx!(400);
+/// Force at which a joint of the bridge breaks, in N. It bears the car, but not every shell.
+const STRENGTH: Fx = fx!(200);
 const RELOAD: u32 = 30;
+/// Ticks after which a shell is removed.
+const SHELL_TIME: u64 = 300;
+/// Largest torque at a wheel, in N m. With twice as much the car would turn over backwards.
+const TORQUE: Fx = fx!(3);
 
 fn named(def: BodyDef, name: &str) -> Result<BodyDef, WorldError> {
     Ok(def.name(Name::new(name)?))
@@ -55,7 +61,7 @@ impl Hill {
         add_bridge(&mut world, ground)?;
         add_car(&mut world)?;
         for x in [9, 30] {
-            let goal = ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(4))?).sensor();
+            let goal = ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(2))?).sensor();
             world.spawn(&named(BodyDef::fixed().position(at(x, 2)), "goal")?, &[goal])?;
         }
         Ok(Hill { world, goals: 0, reload: 0 })
@@ -74,8 +80,9 @@ impl Hill {
         self.world.bodies().map(|(id, _)| id).filter(move |id| self.name_of(*id) == name)
     }
 
+    /// Planks that are held at both ends.
     pub(crate) fn planks_left(&self) -> usize {
-        self.named("plank").count()
+        self.named("plank").filter(|&plank| self.world.joints_of(plank).into_iter().count() == 2).count()
     }
 
     fn drive(&mut self, input: Drive) -> Result<(), WorldError> {
@@ -90,23 +97,27 @@ impl Hill {
             let place = self.world.body(car).map_or(Vec2::ZERO, |body| body.position());
             let shell = ShapeDef::new(Geometry::circle(fx!(0.12))?).density(fx!(8));
             let def = BodyDef::dynamic().position(place + Vec2::new(fx!(0.6), fx!(0.9))).bullet();
-            self.world.spawn(&named(def.velocity((fx!(16), fx!(6))), "shell")?, &[shell])?;
+            // User data of a body is state: here it is the tick at which the shell is removed.
+            let def = def.velocity((fx!(16), fx!(6))).user_data(self.world.tick() + SHELL_TIME);
+            self.world.spawn(&named(def, "shell")?, &[shell])?;
             self.reload = RELOAD;
         }
         Ok(())
     }
 
-    /// Counts the goals that a car has reached, and removes what fell out of the world.
+    /// Counts the goals that a car has reached, and removes old shells and what fell out of the world.
     fn judge(&mut self) -> Result<(), WorldError> {
         let reached = self.world.events().sensor_begin.iter().filter(|event| {
             let visitor = self.world.shape(event.visitor).map(|shape| shape.body());
             visitor.is_some_and(|body| self.name_of(body) == "car")
         });
         self.goals = self.goals.saturating_add(u32::try_from(reached.count()).unwrap_or(u32::MAX));
-        let is_lost = |y: Fx| y < fx!(-12);
-        let lost: Vec<_> =
-            self.world.bodies().filter(|(_, body)| is_lost(body.position().y)).map(|(id, _)| id).collect();
-        lost.into_iter().try_for_each(|id| self.world.despawn(id))
+        let now = self.world.tick();
+        let old =
+            self.named("shell").filter(|&id| self.world.body(id).is_some_and(|body| body.user_data() <= now));
+        let lost = self.world.bodies().filter(|(_, body)| body.position().y < fx!(-12)).map(|(id, _)| id);
+        let gone: BTreeSet<_> = old.chain(lost).collect();
+        gone.into_iter().try_for_each(|id| self.world.despawn(id))
     }
 }
 
@@ -125,9 +136,7 @@ fn add_ground(world: &mut World, seed: u64) -> Result<BodyId, WorldError> {
         at(BRIDGE.1, 0),
     ]);
     points.extend([at(40, 0), at(42, 6)]);
-    let links = points.windows(2).map(|ends| Ok(ShapeDef::new(Geometry::segment(ends[0], ends[1])?)));
-    let links: Vec<_> = links.collect::<Result<_, WorldError>>()?;
-    world.spawn(&named(BodyDef::fixed(), "ground")?, &links)
+    world.spawn(&named(BodyDef::fixed(), "ground")?, &Chain::new(&points).links()?)
 }
 
 fn add_bridge(world: &mut World, ground: BodyId) -> Result<(), WorldError> {
@@ -156,7 +165,7 @@ fn add_car(world: &mut World) -> Result<(), WorldError> {
         let anchor = Vec2::new(x, fx!(-0.5));
         let def = named(BodyDef::dynamic().position(start + anchor), "wheel")?;
         let wheel = world.spawn(&def, std::slice::from_ref(&tyre))?;
-        let suspension = Wheel::new().spring(fx!(5), fx!(0.7), fx!(0)).motor(fx!(0), fx!(20));
+        let suspension = Wheel::new().spring(fx!(5), fx!(0.7), fx!(0)).motor(fx!(0), TORQUE);
         world.add_joint(&JointDef::new(car, wheel, suspension).anchor_a(anchor).angle_a(Angle::QUARTER))?;
     }
     Ok(())

@@ -15,7 +15,7 @@ fn main() -> std::process::ExitCode {
     Viewer::<Hill>::new()
         .scene("hill", "drive to the right with the arrows, fire with the upper one", |seed| seed)
         .keys(keys)
-        .status(|game| format!("{} goals, {} planks left", game.goals, game.planks_left()))
+        .status(|game| format!("goals {}, planks {}", game.goals, game.planks_left()))
         .draw(|game, canvas| {
             canvas.bodies(game.world(), |id| match game.name_of(id).as_str() {
                 "car" | "wheel" => Some(Colour::hex(0xd55e00)),

@@ -81,7 +81,7 @@ impl App {
             }
             Key::Character('s') => self.save(),
             Key::Character(']') => self.show_neighbour(1),
-            Key::Character('[') => self.show_neighbour(lockstep2d_scenes::ALL.len() - 1),
+            Key::Character('[') => self.show_neighbour(self.content.scenes.len().saturating_sub(1)),
             Key::Character('t') => self.inspector.toggle_state(),
             Key::Escape => {
                 self.help = false;
@@ -109,8 +109,8 @@ impl App {
                 let at_end = source.ticks() == Some(source.tick());
                 player.toggle(if at_end { Some(source.first()) } else { None });
             }
-            Key::Left => player.go_by(-one, source.as_ref()),
-            Key::Right => player.go_by(one, source.as_ref()),
+            Key::Left | Key::Character(',') => player.go_by(-one, source.as_ref()),
+            Key::Right | Key::Character('.') => player.go_by(one, source.as_ref()),
             Key::PageUp => player.go_by(-second, source.as_ref()),
             Key::PageDown => player.go_by(second, source.as_ref()),
             Key::Home => player.go_to(source.first()),

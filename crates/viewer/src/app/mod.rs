@@ -69,6 +69,21 @@ pub struct App {
 }
 
 /// Request to the host of the app, which has access to files.
+///
+/// ```
+/// use lockstep2d_viewer::{App, Request};
+///
+/// let mut app = App::default();
+/// app.show_scene("pendulum", 0);
+/// app.save(); // as the key `s` does
+/// for Request::Save { name, bytes } in app.take_requests() {
+///     assert_eq!(name, "pendulum.replay");
+///     # if false {
+///     std::fs::write(name, bytes)?;
+///     # }
+/// }
+/// # Ok::<(), std::io::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Request {
     /// Write a file.
@@ -81,6 +96,16 @@ pub enum Request {
 }
 
 /// Description of what is shown, for a line of text beside the picture and for tests.
+///
+/// ```
+/// use lockstep2d_viewer::{App, Report};
+///
+/// let mut app = App::default();
+/// app.show_scene("pendulum", 0);
+/// app.advance(std::time::Duration::from_secs(1));
+/// let Report { name, tick, ticks, .. } = app.report();
+/// assert_eq!((name.as_str(), tick, ticks), ("pendulum", 60, None));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Report {
     /// Name of the source; "nothing" if there is no source.

@@ -21,7 +21,8 @@ const LAYERS_TOP: f32 = 136.0;
 /// Fills the draw list.
 pub(super) fn draw(app: &mut App) {
     let (report, remarks) = (app.report(), app.remarks());
-    let App { source, comparison, player, view, layers, inspector, hand, pointer, size, list, .. } = app;
+    let App { source, comparison, player, view, layers, inspector, hand, pointer, help, size, list, .. } =
+        app;
     list.clear();
     list.rectangle([0.0; 2], *size, theme::GROUND);
     let mut lines = Vec::new();
@@ -59,14 +60,18 @@ pub(super) fn draw(app: &mut App) {
     lines.push((theme::FAINT, "h: help".into()));
     let bottom = draw_lines(list, &lines, *size);
     let layer_list = LayerList { corner: [LEFT, LAYERS_TOP.max(bottom + CELL_HEIGHT / 2.0)] };
-    // In a small window the layer list is left out; its keys still work.
+    let players = source.as_ref().map_or(Vec::new(), |source| source.keys());
+    // In a small window the layer list is left out, and while people play, because it would lie over their game; its
+    // keys still work.
     let fits = source.is_some() && layer_list.corner[1] + LayerList::size()[1] < size[1] - CELL_HEIGHT * 3.0;
-    app.layer_list = fits.then_some(layer_list);
+    let is_in_the_way = player.playing && !players.is_empty() && !*help;
+    app.layer_list = (fits && !is_in_the_way).then_some(layer_list);
     if let Some(layer_list) = app.layer_list {
         layer_list.draw(list, *layers);
     }
-    if app.help {
-        help::draw(list, *size);
+    if *help {
+        let is_live = source.as_mut().is_some_and(|source| source.playground().is_some());
+        help::draw(list, *size, is_live, &players);
     }
 }
 

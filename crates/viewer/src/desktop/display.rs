@@ -12,7 +12,9 @@ use std::path::PathBuf;
 pub(super) fn check() -> Result<(), String> {
     let set = |name: &str| env::var(name).ok().filter(|value| !value.is_empty());
     match (set("DISPLAY"), set("WAYLAND_DISPLAY")) {
-        (None, None) => Err("no display: neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned()),
+        (None, None) => Err("no display: neither DISPLAY nor WAYLAND_DISPLAY is set; \
+                             on a machine without a screen, `xvfb-run` gives a program a display"
+            .to_owned()),
         (Some(display), None) if !answers(&display) => {
             Err(format!("no display: no X server accepts connections at DISPLAY={display}"))
         }

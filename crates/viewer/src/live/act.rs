@@ -56,6 +56,32 @@ impl Aim {
 ///
 /// Acts take effect in the next tick, in their order. An act has no effect if it makes no sense in that tick, such as
 /// dragging without a grabbed body, or if the world refuses it.
+///
+/// ```
+/// use lockstep2d::{body::BodyKind, fx, math::Vec2};
+/// use lockstep2d_scenes::Scene;
+/// use lockstep2d_viewer::{Source, live::{Act, Aim, Form, Held, Live, Playground}};
+///
+/// let mut live = Live::scene(Scene::find("box_stack").expect("a scene"), 0)?;
+/// let place = Vec2::new(fx!(5), fx!(9));
+/// live.act(Act::Spawn { form: Form::Circle, at: place, to: place });
+/// live.seek(1)?;
+/// // A person who draws sees the body, and takes it where it is then.
+/// let (_, ball) = live.world().bodies().last().expect("the circle");
+/// let at = ball.position();
+/// assert_eq!(ball.kind(), BodyKind::Dynamic);
+/// live.act(Act::Grab(Aim::at(at)));
+/// live.seek(4)?;
+/// let Some(Held { point, .. }) = live.held() else { panic!("the circle is held") };
+/// assert_eq!(point, Vec2::ZERO, "by its centre");
+/// fn throw(playground: &mut impl Playground) {
+///     playground.act(Act::DragTo(Vec2::new(fx!(9), fx!(9))));
+///     playground.act(Act::Release);
+/// }
+/// throw(&mut live);
+/// assert_eq!(live.waiting(), 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Act {
     /// Grabs the dynamic body at this point, if there is one. A body that was held before is released.

@@ -11,6 +11,25 @@
 //! where `distance` is the distance from the centre line in screen pixels, and `reach` is half the line width plus
 //! half a pixel. So edges are antialiased over one pixel, and a line takes two triangles per segment. For text, the
 //! coverage is the opacity of the glyph's pixel in the [`Atlas`].
+//!
+//! ```
+//! use lockstep2d_viewer::mesh::{Atlas, Chunk, Mesh, Screen, Vertex};
+//! use lockstep2d_viewer::{Colour, DrawList};
+//!
+//! // The texture, once.
+//! let atlas = Atlas::default();
+//! assert_eq!(atlas.pixels.len(), Atlas::WIDTH * Atlas::HEIGHT * 4);
+//! // A frame: a vertex and an index buffer for each chunk.
+//! let mut list = DrawList::default();
+//! list.rectangle([10.0, 10.0], [80.0, 8.0], Colour::hex(0x2ca02c));
+//! list.text([10.0, 20.0], 1.0, Colour::hex(0x222222), "80");
+//! let mut mesh = Mesh::default();
+//! mesh.build(&list, &Screen { size: [800.0, 600.0], pixel: 1.0 });
+//! let [chunk]: &[Chunk] = mesh.chunks() else { panic!("few triangles") };
+//! let first: &Vertex = &chunk.vertices[usize::from(chunk.indices[0])];
+//! assert_eq!(first.colour, [0x2c, 0xa0, 0x2c, 0xff]);
+//! assert_eq!(chunk.indices.len() % 3, 0);
+//! ```
 
 mod atlas;
 mod build;

@@ -73,6 +73,11 @@ impl<I: Default> Controls<I> {
         self
     }
 
+    /// Returns the keys, in the order in which they were added.
+    pub fn keys(&self) -> impl Iterator<Item = Key> {
+        self.bindings.iter().map(|(key, _)| *key)
+    }
+
     /// Handles a key that goes down or up. Returns `true` if it is a key of this player.
     pub fn handle(&mut self, event: &Event) -> bool {
         let (Event::Pressed(key) | Event::Released(key)) = event else { return false };

@@ -8,7 +8,7 @@ use lockstep2d_render::{Camera, DrawList};
 
 use super::player::{Player, Seated};
 use super::presentation::Presentation;
-use crate::event::Event;
+use crate::event::{Event, Key};
 use crate::recording::{Recording, RecordingError};
 use crate::source::{Source, SourceError};
 
@@ -125,6 +125,10 @@ impl<G: Game + 'static> Source for LocalMatch<G> {
         // All players get the event, so that none misses the release of a key.
         let taken = self.players.iter_mut().map(|player| player.handle(event));
         taken.fold(false, |any, taken| any | taken)
+    }
+
+    fn keys(&self) -> Vec<Key> {
+        self.players.iter().flat_map(Seated::keys).collect()
     }
 
     fn decorate(&mut self, list: &mut DrawList, camera: &Camera) {

@@ -12,7 +12,7 @@ use lockstep2d_render::{Camera, DrawList};
 
 use super::controls::Controls;
 use super::presentation::Presentation;
-use crate::event::Event;
+use crate::event::{Event, Key};
 use crate::source::{Source, SourceError};
 
 /// Longest time for which closing waits until the others know that this peer leaves, and time between two updates.
@@ -23,6 +23,27 @@ const LEAVE_STEP: Duration = Duration::from_millis(5);
 ///
 /// The match runs by the clock that all participants share, so it can neither be paused nor sought. The last few ticks
 /// shown may be played with guessed inputs. The replay contains only final ticks.
+///
+/// ```
+/// use std::time::Duration;
+/// use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::peer::{LinkConditions, Network, Peer, PeerIdentity, PeerOptions};
+/// use lockstep2d_viewer::{App, Controls, Online};
+///
+/// // A network in memory; `Viewer::online` takes UDP.
+/// let (network, setup) = (Network::new(LinkConditions::default(), 1), SandboxSetup::default());
+/// // The sandbox has one seat.
+/// let options = PeerOptions { start_with: 1, ..PeerOptions::lockstep() };
+/// let peer = Peer::<Sandbox, _>::host(&setup, options, PeerIdentity::random(), network.port(0))?;
+/// let mut app = App::default();
+/// app.show(Box::new(Online::new("alone", setup, peer, Controls::new())));
+/// for _ in 0..60 {
+///     app.advance(Duration::from_millis(16));
+/// }
+/// assert!(app.report().tick > 30, "{}", app.report());
+/// app.close();
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Online<G: Game, T: Transport> {
     name: String,
     setup: G::Setup,
@@ -188,6 +209,10 @@ impl<G: Game + 'static, T: Transport> Source for Online<G, T> {
 
     fn handle(&mut self, event: &Event) -> bool {
         self.controls.handle(event)
+    }
+
+    fn keys(&self) -> Vec<Key> {
+        self.controls.keys().collect()
     }
 
     fn advance(&mut self, time: Duration) -> Result<bool, SourceError> {

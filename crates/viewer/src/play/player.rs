@@ -6,7 +6,7 @@ use std::rc::Rc;
 use lockstep2d::lockstep::Game;
 
 use super::controls::Controls;
-use crate::event::Event;
+use crate::event::{Event, Key};
 
 /// A computer player: returns the input for the next tick of a game. It is called once per tick.
 pub type Bot<G> = Box<dyn FnMut(&G) -> <G as Game>::Input>;
@@ -14,7 +14,31 @@ pub type Bot<G> = Box<dyn FnMut(&G) -> <G as Game>::Input>;
 /// Creates the bot of a seat, with the random seed of the scene.
 type MakeBot<G> = Rc<dyn Fn(u64, usize) -> Bot<G>>;
 
-/// Who controls a seat.
+/// Who controls a seat. [`Viewer::keys`](crate::Viewer::keys) and [`Viewer::bot`](crate::Viewer::bot) make them; tests
+/// give them to a [`LocalMatch`](crate::LocalMatch).
+///
+/// ```
+/// use std::rc::Rc;
+/// use lockstep2d::{lockstep::{Sandbox, SandboxSetup}, math::Vec2, world::Command};
+/// use lockstep2d_viewer::{Bot, Controls, LocalMatch, Player, Source};
+///
+/// // The sandbox has one seat: a bot that turns gravity off in the first tick.
+/// fn bot(_seed: u64, _seat: usize) -> Bot<Sandbox> {
+///     Box::new(|game| match game.world().tick() {
+///         0 => vec![Command::SetGravity { gravity: Vec2::ZERO }],
+///         _ => vec![],
+///     })
+/// }
+/// let bot = Player::<Sandbox>::Bot(Rc::new(bot));
+/// let mut play = LocalMatch::new("weightless", &SandboxSetup::default(), &[bot], 0)?;
+/// play.seek(10)?;
+/// assert_eq!(play.world().config().gravity, Vec2::ZERO);
+/// // A person without keys, and nobody: both do nothing.
+/// for player in [Player::Keys(Controls::new()), Player::Absent] {
+///     LocalMatch::<Sandbox>::new("still", &SandboxSetup::default(), &[player], 0)?.seek(10)?;
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub enum Player<G: Game> {
     /// A person at the keyboard.
     Keys(Controls<G::Input>),
@@ -72,6 +96,15 @@ impl<G: Game> Seated<G> {
     /// Whether a person presses a key.
     pub(super) fn presses(&self) -> bool {
         matches!(self, Seated::Keys(controls) if controls.is_pressed())
+    }
+
+    /// The keys of a person.
+    pub(super) fn keys(&self) -> impl Iterator<Item = Key> {
+        let controls = match self {
+            Seated::Keys(controls) => Some(controls),
+            _ => None,
+        };
+        controls.into_iter().flat_map(Controls::keys)
     }
 
     /// Handles a key. Returns `true` if it is one of this player.

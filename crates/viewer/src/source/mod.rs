@@ -15,12 +15,36 @@ use lockstep2d::hash::StateHash;
 use lockstep2d::world::World;
 use lockstep2d_render::{Camera, DrawList};
 
-use crate::event::Event;
+use crate::event::{Event, Key};
 use crate::live::Playground;
 
 /// Something that has a world at every tick: a replay, a snapshot or a live game.
 ///
 /// *Tick t* is the state after *t* ticks.
+///
+/// ```
+/// use lockstep2d::{hash::StateHash, world::World};
+/// use lockstep2d_viewer::{App, Source, SourceError};
+///
+/// /// A world that stands still.
+/// struct Still(World);
+///
+/// impl Source for Still {
+///     fn name(&self) -> &str { "still" }
+///     fn world(&mut self) -> &World { &self.0 }
+///     fn hash(&self) -> StateHash { self.0.state_hash() }
+///     fn tick(&self) -> u64 { 0 }
+///     fn ticks(&self) -> Option<u64> { Some(0) }
+///     fn tick_rate(&self) -> u32 { 60 }
+///     fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
+///         if tick == 0 { Ok(()) } else { Err(SourceError(format!("there is no tick {tick}"))) }
+///     }
+/// }
+///
+/// let mut app = App::default();
+/// app.show(Box::new(Still(World::default())));
+/// assert_eq!(app.report().name, "still");
+/// ```
 pub trait Source {
     /// Name for display: of the file or the scene.
     fn name(&self) -> &str;
@@ -70,6 +94,11 @@ pub trait Source {
     /// of a game's player.
     fn handle(&mut self, _event: &Event) -> bool {
         false
+    }
+
+    /// The keys that [`Source::handle`] consumes: those of a game's players.
+    fn keys(&self) -> Vec<Key> {
+        Vec::new()
     }
 
     /// Advances a source that runs by its own clock, such as a network match. Returns `true` if the source does; then

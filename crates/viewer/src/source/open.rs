@@ -6,6 +6,13 @@ use lockstep2d::replay::Verdict;
 use lockstep2d::report::EvidenceError;
 
 /// Reason why a file cannot be shown.
+///
+/// ```
+/// use lockstep2d_viewer::{App, OpenError};
+///
+/// let error = App::default().show_file("notes.txt", b"not a replay".to_vec());
+/// assert!(matches!(error, Err(OpenError::File(_))));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OpenError {
     /// The file is a replay of which no tick can be played.

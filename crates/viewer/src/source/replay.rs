@@ -17,6 +17,25 @@ const INTERVAL: u32 = 60;
 const THINK_WORK: u64 = 100_000;
 
 /// Replay of a game that has a world. It is verified in the background while it is shown.
+///
+/// ```
+/// use lockstep2d::lockstep::{Sandbox, SandboxSetup};
+/// use lockstep2d::replay::{Limits, Recording};
+/// use lockstep2d_viewer::{Replay, Source};
+///
+/// let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60)?;
+/// for _ in 0..100 {
+///     recording.step(&[vec![]])?;
+/// }
+/// let file = recording.finish()?.leak();
+/// let mut replay =
+///     Replay::<Sandbox>::open("empty.replay", file, &Limits::default()).map_err(|verdict| verdict.to_string())?;
+/// replay.seek(50)?;
+/// assert_eq!((replay.tick(), replay.ticks()), (50, Some(100)));
+/// while replay.think() {}
+/// assert!(replay.status().contains("match"), "{}", replay.status());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Replay<G: Game> {
     name: String,
     timeline: Timeline<'static, G>,

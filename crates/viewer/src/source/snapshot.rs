@@ -15,6 +15,18 @@ const SAVES_MAX: usize = 256;
 /// World of a snapshot, which runs on without any input.
 ///
 /// *Tick t* is tick *t* of the world, so the first tick is that of the snapshot.
+///
+/// ```
+/// use lockstep2d::world::World;
+/// use lockstep2d_viewer::{Snapshot, Source};
+///
+/// let mut world = World::default();
+/// world.step();
+/// let mut snapshot = Snapshot::new("a world", world);
+/// snapshot.seek(10)?;
+/// assert_eq!((snapshot.first(), snapshot.tick()), (1, 10));
+/// # Ok::<(), lockstep2d_viewer::SourceError>(())
+/// ```
 pub struct Snapshot {
     name: String,
     world: World,

@@ -1,8 +1,9 @@
 //! The screen shows layers, the fields of a selected body, the followed body and the help.
 
 use lockstep2d::draw::Layers;
+use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 use lockstep2d_render::DrawList;
-use lockstep2d_viewer::{App, Button, Event, Key};
+use lockstep2d_viewer::{App, Button, Controls, Event, Key, Viewer};
 
 use super::common::{SIZE, app_of, click, frames, layer, press, replay, texts, wait_for};
 
@@ -131,4 +132,56 @@ fn help_is_there_when_asked_for() {
     assert!(!texts(&mut app).iter().any(|line| line.contains("play, pause")));
     press(&mut app, Key::Character('h'));
     assert!(texts(&mut app).iter().any(|line| line.contains("play, pause")));
+}
+
+/// A game with the arrows and the space bar as keys.
+fn played() -> App {
+    let keys = Controls::new().key(Key::Left, |_: &mut Vec<_>| ()).key(' ', |_| ());
+    let viewer = ["first", "second", "third"].into_iter().fold(Viewer::<Sandbox>::new(), |viewer, name| {
+        viewer.scene(name, "an empty world", |_| SandboxSetup::default())
+    });
+    let mut app = viewer.keys(keys).app();
+    assert!(app.show_scene("first", 0));
+    app
+}
+
+#[test]
+fn the_keys_of_a_game_are_not_in_the_help() {
+    let mut app = played();
+    press(&mut app, Key::Character('h'));
+    let lines = texts(&mut app);
+    let has = |text: &str| lines.iter().any(|line| line == text);
+    assert!(has("p") && has(", .") && has("up, down"), "{lines:?}");
+    assert!(!has("space") && !has("left, right"), "{lines:?}");
+    assert!(!has("right drag"), "nobody can draw bodies in it: {lines:?}");
+}
+
+#[test]
+fn layers_are_listed_while_a_game_is_paused() {
+    let mut app = played();
+    let is_listed = |app: &mut App| texts(app).iter().any(|line| line.ends_with("velocities"));
+    assert!(!is_listed(&mut app));
+    press(&mut app, Key::Character('p'));
+    assert!(is_listed(&mut app));
+}
+
+#[test]
+fn ticks_go_back_and_forth_when_the_arrows_are_those_of_the_game() {
+    let mut app = played();
+    frames(&mut app, 10);
+    press(&mut app, Key::Character('p'));
+    let tick = app.report().tick;
+    for (key, back) in [(',', 1), (',', 2), ('.', 1)] {
+        press(&mut app, Key::Character(key));
+        wait_for(&mut app, tick - back);
+    }
+}
+
+#[test]
+fn brackets_switch_to_the_scenes_beside() {
+    let mut app = played();
+    for (key, name) in [('[', "third"), ('[', "second"), (']', "third"), (']', "first")] {
+        press(&mut app, Key::Character(key));
+        assert_eq!(app.report().name, name);
+    }
 }
