@@ -1,9 +1,9 @@
 // lockstep2d/core: without replays and matches.
 export {
-    Angle, Commands, Fx, Lockstep2dError, Random, Snapshot, World, angleOf, box, capsule, chain, circle, cos, cross, degrees, dot, fx,
-    hashBytes, hull, hypot, init, loaded, normalize, objectCount, polygon, radians, rotate, segment, semantics, sin, sqrt, turns,
+    Angle, Commands, Fx, Lockstep2dError, Random, Snapshot, World, angleOf, box, capsule, chain, circle, cos, cross,
+    decodeMoverState, degrees, dot, encodeMoverState, fx, hashBytes, hull, hypot, init, loaded, moveCharacter, normalize, objectCount, polygon, radians, rotate, segment, semantics, sin, sqrt, turns,
 } from "./index.js";
 export type {
     AreaOptions, BodyId, BodyInfo, BodyOptions, BodyType, CastHit, ChainDef, ConfigOptions, ContactEvent, Events, Filter, InitOptions,
-    JointId, JointOptions, Mixing, Num, RayHit, Rotation, SensorEvent, ShapeDef, ShapeId, ShapeOptions, Spring, Vec, Vec2,
+    JointId, JointOptions, Mixing, Moved, MoverOptions, MoverPlane, MoverState, Num, RayHit, Rotation, SensorEvent, ShapeDef, ShapeId, ShapeOptions, Spring, Vec, Vec2,
 } from "./index.js";

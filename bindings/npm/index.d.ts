@@ -405,6 +405,57 @@ export class World extends Edits {
     closest(point: Vec, within: Num, filter?: Filter): { shape: ShapeId; body: BodyId; distance: Fx; point: Vec2; normal: Vec2 } | undefined;
 }
 
+/** Geometry and abilities of a character. It is upright, and y is up. */
+export interface MoverOptions {
+    shape: ShapeDef;
+    /** Steepest slope that is ground, measured from level; 45 degrees. */
+    slopeMax?: Rotation;
+    /** Height in metres of steps that it climbs without a jump; 0. */
+    stepHeight?: Num;
+    /** Distance in metres by which ground may fall within a tick while it still follows; 0.1. */
+    snapDistance?: Num;
+}
+/** A surface that a character has met. */
+export interface MoverPlane {
+    shape: ShapeId;
+    body: BodyId;
+    bodyPosition: Vec2;
+    bodyAngle: Angle;
+    /** Velocity of the surface in m/s. */
+    velocity: Vec2;
+    /** Outward normal. */
+    normal: Vec2;
+    /** Nearest point on the surface. */
+    point: Vec2;
+    separation: Fx;
+}
+/** State of a character, which belongs to the state of the game: save it, and hash it. */
+export interface MoverState {
+    position: Vec;
+    /** In m/s: relative to the ground while it stands on ground, otherwise in the world. */
+    velocity?: Vec;
+    ground?: MoverPlane;
+}
+export interface Moved {
+    state: {
+        position: Vec2;
+        velocity: Vec2;
+        ground: MoverPlane | undefined;
+        isOnGround: boolean;
+        /** It hangs between two slopes that are both too steep to stand on. */
+        isWedged: boolean;
+    };
+    /** The surfaces that it has met, in order. */
+    met: MoverPlane[];
+}
+/** Moves a character for one tick at its velocity: it slides along what it meets, climbs steps, and moving ground carries
+ * it. The game adds gravity to the velocity. The world does not change. */
+export function moveCharacter(world: World, mover: MoverOptions, state: MoverState, filter?: Filter): Moved;
+/** The state of a character as bytes, for saves and hashes. */
+export function encodeMoverState(state: MoverState): Uint8Array;
+/** The state of a character from bytes. */
+export function decodeMoverState(bytes: Uint8Array): Moved["state"];
+
 export interface Limits {
     fileBytes?: number;
     setupBytes?: number;

@@ -166,6 +166,10 @@ typedef uint64_t ls2d_joint;
 #define LS2D_SWEEP_BULLET 2
 /* `ls2d_body_def.continuous`: swept against fixed and kinematic bodies. */
 #define LS2D_SWEEP_KINEMATIC 3
+/* `ls2d_mover_state.flags`: it stands on ground. */
+#define LS2D_MOVER_ON_GROUND 1
+/* `ls2d_mover_state.flags`, a result: it hangs between two slopes that are both too steep to stand on. */
+#define LS2D_MOVER_WEDGED 2
 /* `ls2d_config.flags`: bodies at rest fall asleep. */
 #define LS2D_SLEEPING 1
 /* `ls2d_config.flags`: fast bodies are swept against shapes that they might pass through. */
@@ -770,6 +774,56 @@ typedef struct ls2d_probe {
     ls2d_shape_def shape;
 } ls2d_probe;
 
+/* Geometry and abilities of a character. `ls2d_mover_init` sets the defaults. */
+typedef struct ls2d_mover {
+    /* Size of this struct in bytes. */
+    uint32_t size;
+    /* Steepest slope that is ground, measured from level. */
+    ls2d_angle slope_max;
+    /* Height in metres of steps that it climbs without a jump. */
+    ls2d_fx step_height;
+    /* Distance in metres by which ground may fall within a tick while it still follows. */
+    ls2d_fx snap_distance;
+    /* Its geometry; other fields of the definition do not matter. */
+    ls2d_shape_def shape;
+} ls2d_mover;
+
+/* A surface that a character has met. */
+typedef struct ls2d_mover_plane {
+    /* The shape. */
+    ls2d_shape shape;
+    /* Its body. */
+    ls2d_body body;
+    /* Position of the body's origin at that time, in the world, in metres. */
+    ls2d_vec2 body_position;
+    /* Velocity of the surface in m/s. */
+    ls2d_vec2 velocity;
+    /* Outward normal of the surface. */
+    ls2d_vec2 normal;
+    /* Nearest point on the surface, in the world, in metres. */
+    ls2d_vec2 point;
+    /* Distance in metres, negative if they overlap. */
+    ls2d_fx separation;
+    /* Rotation of the body at that time. */
+    ls2d_angle body_angle;
+    /* 0. */
+    uint32_t reserved;
+} ls2d_mover_plane;
+
+/* State of a character, to be kept, saved and hashed by the game. `ls2d_mover_state_init` sets the first one. */
+typedef struct ls2d_mover_state {
+    /* Size of this struct in bytes. */
+    uint32_t size;
+    /* `LS2D_MOVER_` flags. */
+    uint32_t flags;
+    /* Position of its geometry's centre in the world, in metres. */
+    ls2d_vec2 position;
+    /* Velocity in m/s: relative to the ground while it stands on ground, otherwise in the world. */
+    ls2d_vec2 velocity;
+    /* The ground, with `LS2D_MOVER_ON_GROUND`; otherwise zeros. */
+    ls2d_mover_plane ground;
+} ls2d_mover_state;
+
 /* Two shapes that began or ceased to touch. Their handles may be stale if a shape was removed. */
 typedef struct ls2d_contact_event {
     /* The shape in the smaller slot. */
@@ -1245,6 +1299,21 @@ ls2d_status ls2d_closest(uint32_t world, ls2d_fx x, ls2d_fx y, ls2d_fx within, c
 
 /* Distance of two shapes in metres, negative if they overlap. `LS2D_NONE` if one is not in the world. */
 ls2d_status ls2d_shape_distance(uint32_t world, ls2d_shape a, ls2d_shape b, ls2d_fx *distance);
+
+/* ---- Characters ---- */
+
+/* Sets the defaults of a character: a shape of a kind, whose geometry has to be set. It stands on slopes up to 45
+ * degrees, climbs no steps, and follows ground that falls by up to 0.1 m in a tick. */
+ls2d_status ls2d_mover_init(uint32_t kind, ls2d_mover *mover);
+
+/* Sets the state of a character at rest in the air, at a position in metres. */
+ls2d_status ls2d_mover_state_init(ls2d_fx x, ls2d_fx y, ls2d_mover_state *state);
+
+/* Moves a character for one tick at its velocity, among the shapes that a filter sees. It slides along what it
+ * meets, and moving ground carries it. The game adds gravity to its velocity. The world does not change. `from` and
+ * `state` may be the same. `met` are the surfaces that it has met, in order; if the buffer is too short, the state is
+ * written nevertheless. */
+ls2d_status ls2d_move_character(uint32_t world, const ls2d_mover *mover, const ls2d_mover_state *from, const ls2d_query_filter *filter, ls2d_mover_state *state, ls2d_mover_plane *met, size_t capacity, size_t *count);
 
 /* ---- Snapshots ---- */
 

@@ -76,6 +76,12 @@ impl<'a, T: Plain> In<'a, T> {
         In(std::ptr::null(), PhantomData)
     }
 
+    /// Points to what a test has made.
+    #[cfg(any(test, feature = "fuzzing"))]
+    pub(crate) const fn to(pointer: *const T) -> Self {
+        In(pointer, PhantomData)
+    }
+
     pub(crate) const fn is_null(&self) -> bool {
         self.0.is_null()
     }
@@ -125,6 +131,12 @@ impl<'a, T: Plain> Out<'a, T> {
     #[must_use]
     pub const fn null() -> Self {
         Out(std::ptr::null_mut(), PhantomData)
+    }
+
+    /// Points to what a test has made.
+    #[cfg(any(test, feature = "fuzzing"))]
+    pub(crate) const fn to(pointer: *mut T) -> Self {
+        Out(pointer, PhantomData)
     }
 
     /// Checks the pointer before something is done whose result would be lost.

@@ -212,6 +212,13 @@ macro_rules! api {
             returns: $crate::describe::api!(@returns [$($value)?]),
             docs: &[$($doc),+],
         }),+];
+
+        /// All functions of this module, with arguments that are drawn.
+        #[cfg(any(test, feature = "fuzzing"))]
+        pub(crate) const DRAWN: &[$crate::fuzzing::DrawnCall] = &[$(|caller| {
+            $(let $argument = <$type as $crate::fuzzing::Drawn>::draw(caller, stringify!($argument));)*
+            $crate::fuzzing::Returned::check($name($($argument),*), caller, stringify!($name));
+        }),+];
     };
     (@define [$($doc:literal)+] $name:ident [$($argument:ident: $type:ty),*] [] $body:block) => {
         $(#[doc = $doc])+

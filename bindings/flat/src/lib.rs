@@ -14,6 +14,8 @@
 mod border;
 mod describe;
 mod functions;
+#[cfg(any(test, feature = "fuzzing"))]
+pub mod fuzzing;
 mod generate;
 mod numbers;
 mod records;

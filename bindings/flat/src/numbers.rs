@@ -3,7 +3,7 @@
 use lockstep2d::body::{BodyId, JointId, ShapeId};
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;
-use lockstep2d::math::{Angle, Fx, Unit, Vec2, widen};
+use lockstep2d::math::{Angle, Fx, Unit, Vec2, narrow, widen};
 
 use crate::describe::{aliases, records};
 use crate::status::{Failure, Outcome, Status};
@@ -90,6 +90,11 @@ impl RawVec2 {
 
     pub(crate) fn of_units(value: Vec2<Unit>) -> Self {
         RawVec2 { x: RawFx::of_unit(value.x), y: RawFx::of_unit(value.y) }
+    }
+
+    /// Components from -2 to 2, to which others are clamped.
+    pub(crate) fn units(self) -> Vec2<Unit> {
+        Vec2::new(narrow(self.x.fx()), narrow(self.y.fx()))
     }
 }
 

@@ -147,6 +147,7 @@ const WRITE = {
     int32_t: (at, value, what) => view.setInt32(at, integer(value, what), true),
     uint64_t: (at, value, what) => view.setBigUint64(at, typeof value === "bigint" ? value : BigInt(integer(value, what)), true),
     body: (at, value) => view.setBigUint64(at, id(value), true),
+    shape: (at, value) => view.setBigUint64(at, id(value, "a shape"), true),
     hash: writeHash,
 };
 const READ = {

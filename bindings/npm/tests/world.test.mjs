@@ -131,3 +131,27 @@ test("10 000 worlds that are disposed leak nothing", () => {
     assert.equal(L.objectCount(), before);
     assert.ok(memory() < after + 2_000_000, "the memory of the module does not grow");
 });
+
+test("a character walks, climbs a step, rides a lift and stops at a wall", () => {
+    const world = new L.World();
+    world.spawn({ type: "kinematic", position: [0, -1], velocity: [0, 1], shapes: [L.box(3, 1)] });
+    world.spawn({ type: "fixed", position: [6, 0], shapes: [L.box(3, "1.2")] });
+    world.spawn({ type: "fixed", position: ["9.5", 0], shapes: [L.box(1, 9)] });
+    const mover = { shape: L.circle("0.5"), stepHeight: "0.3", slopeMax: L.degrees(50) };
+    let [state, onGround, met] = [{ position: [0, "0.6"] }, 0, 0];
+    for (let tick = 0; tick < 240; tick++) {
+        world.step();
+        const velocity = [3, L.fx(state.velocity?.y ?? 0).sub("0.16")];
+        const moved = L.moveCharacter(world, mover, { ...state, velocity });
+        // What is saved goes on as what is kept.
+        state = tick % 2 === 0 ? L.decodeMoverState(L.encodeMoverState(moved.state)) : moved.state;
+        onGround += moved.state.isOnGround ? 1 : 0;
+        met += moved.met.length;
+    }
+    assert.deepEqual([state.position.x.toString().slice(0, 5), state.position.y.toString().slice(0, 4)], ["7.999", "1.70"]);
+    assert.ok(onGround > 200 && met > 0 && state.ground.normal.y.toString() === "1");
+    assert.throws(() => L.moveCharacter(world, { ...mover, height: 2 }, state), /no option height/);
+    assert.throws(() => L.moveCharacter(world, mover, { position: [0.5, 0] }), /text|string/);
+    assert.throws(() => L.decodeMoverState(new Uint8Array(3)), /bytes/);
+    world.dispose();
+});

@@ -1,5 +1,6 @@
 //! The functions of the API, by subject.
 
+mod character;
 mod drawing;
 mod edit;
 mod events;
@@ -16,6 +17,7 @@ mod snapshot;
 mod view;
 mod world;
 
+pub use character::*;
 pub use drawing::*;
 pub use edit::*;
 pub use events::*;
@@ -43,6 +45,7 @@ pub(crate) const FUNCTIONS: &[(&str, &[Function])] = &[
     ("Drawing", drawing::FUNCTIONS),
     ("Events of the last tick", events::FUNCTIONS),
     ("Queries", query::FUNCTIONS),
+    ("Characters", character::FUNCTIONS),
     ("Snapshots", snapshot::FUNCTIONS),
     #[cfg(feature = "lockstep")]
     ("Replays of worlds", replay::FUNCTIONS),
@@ -51,4 +54,25 @@ pub(crate) const FUNCTIONS: &[(&str, &[Function])] = &[
     #[cfg(feature = "lockstep")]
     ("Matches", matches::FUNCTIONS),
     ("Mathematics", maths::FUNCTIONS),
+];
+
+/// All functions, with arguments that are drawn.
+#[cfg(any(test, feature = "fuzzing"))]
+pub(crate) const DRAWN: &[&[crate::fuzzing::DrawnCall]] = &[
+    library::DRAWN,
+    world::DRAWN,
+    edit::DRAWN,
+    view::DRAWN,
+    drawing::DRAWN,
+    events::DRAWN,
+    query::DRAWN,
+    character::DRAWN,
+    snapshot::DRAWN,
+    #[cfg(feature = "lockstep")]
+    replay::DRAWN,
+    #[cfg(feature = "lockstep")]
+    host::DRAWN,
+    #[cfg(feature = "lockstep")]
+    matches::DRAWN,
+    maths::DRAWN,
 ];

@@ -4,6 +4,7 @@
 //! of the header is refused. `ls2d_*_init` functions set the size and the defaults.
 
 mod body;
+mod character;
 mod config;
 mod events;
 mod joint;
@@ -15,6 +16,7 @@ mod shape;
 
 pub use body::*;
 pub use body::{BodyInfo, RawBodyDef, RawExplosion, RawPose};
+pub use character::*;
 pub use config::*;
 pub use events::*;
 pub use joint::*;
@@ -28,6 +30,7 @@ use crate::status::{Failure, Outcome, Status, value};
 /// All constants of the structs.
 pub(crate) const CONSTANTS: &[&[Constant]] = &[
     body::CONSTANTS,
+    character::CONSTANTS,
     config::CONSTANTS,
     joint::CONSTANTS,
     matches::CONSTANTS,
@@ -43,6 +46,7 @@ pub(crate) const STRUCTS: &[&[Struct]] = &[
     shape::STRUCTS,
     joint::STRUCTS,
     query::STRUCTS,
+    character::STRUCTS,
     events::STRUCTS,
     matches::STRUCTS,
 ];

@@ -180,20 +180,6 @@ impl RawAabb {
 }
 
 impl RawRayHit {
-    /// A place for a hit.
-    #[cfg(test)]
-    pub(crate) fn default_hit() -> Self {
-        let (zero, origin) = (RawFx(0), RawVec2::ZERO);
-        RawRayHit {
-            shape: RawShape(0),
-            body: RawBody(0),
-            fraction: zero,
-            point: origin,
-            normal: origin,
-            starts_inside: 0,
-        }
-    }
-
     pub(crate) fn of(hit: &RayHit, body: RawBody) -> Self {
         RawRayHit {
             shape: RawShape::of(hit.shape),

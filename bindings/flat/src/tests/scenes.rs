@@ -130,3 +130,64 @@ fn definitions_survive_the_way_there_and_back() {
         }
     }
 }
+
+/// A character moves as in Rust: on a lift, against a wall and over a step.
+#[test]
+fn a_character_moves_as_in_rust() {
+    use lockstep2d::body::{BodyDef, Polygon, ShapeDef};
+    use lockstep2d::fx;
+    use lockstep2d::math::{Angle, Vec2};
+    use lockstep2d::world::{Mover, MoverState, QueryFilter, World};
+
+    let mut world = 0;
+    done(ls2d_world_new(In::null(), Out::of(&mut world)));
+    let mut same = World::default();
+    let rectangle = |x, y| ShapeDef::new(Polygon::rectangle(x, y).unwrap());
+    let lift = BodyDef::kinematic().position((fx!(0), fx!(-1))).velocity((fx!(0), fx!(1)));
+    for (body, shape) in [
+        (lift, rectangle(fx!(3), fx!(1))),
+        (BodyDef::fixed().position((fx!(6), fx!(0))), rectangle(fx!(3), fx!(1.2))),
+        (BodyDef::fixed().position((fx!(9.5), fx!(0))), rectangle(fx!(1), fx!(9))),
+    ] {
+        edit(world, &Command::Spawn { body, shapes: vec![shape] });
+        same.spawn(&body, &[shape]).unwrap();
+    }
+
+    let mut mover = RawMover::of_kind(CIRCLE);
+    mover.shape.radius = RawFx::of(fx!(0.5));
+    mover.step_height = RawFx::of(fx!(0.3));
+    mover.slope_max = RawAngle::of(Angle::from_degrees(fx!(50)));
+    let circle = lockstep2d::body::Geometry::circle(fx!(0.5)).unwrap();
+    let like = Mover::new(circle).unwrap().step_height(fx!(0.3)).slope_max(Angle::from_degrees(fx!(50)));
+    let mut state = RawMoverState::at(Vec2::ZERO);
+    done(ls2d_mover_state_init(RawFx(0), RawFx::of(fx!(0.6)), Out::of(&mut state)));
+    let mut expected = MoverState::at(Vec2::new(fx!(0), fx!(0.6)));
+    let (mut planes, mut most, mut on_ground) = ([RawMoverPlane::NONE; 16], 0, 0);
+    for _ in 0..240 {
+        done(ls2d_world_step(world));
+        same.step();
+        (state.velocity.x, state.velocity.y) =
+            (RawFx::of(fx!(3)), RawFx(state.velocity.y.0 - fx!(0.16).to_bits()));
+        expected.velocity = Vec2::new(fx!(3), expected.velocity.y - fx!(0.16));
+        let (from, mut count) = (state, 0);
+        let (planes, to) = (Out::all(&mut planes), Out::of(&mut state));
+        done(ls2d_move_character(
+            world,
+            In::of(&mover),
+            In::of(&from),
+            In::null(),
+            to,
+            planes,
+            16,
+            Out::of(&mut count),
+        ));
+        let moved = same.move_character(&like, &expected, QueryFilter::default());
+        expected = moved.state;
+        assert_eq!(state.state(), Ok(expected));
+        assert_eq!(count, moved.met.len());
+        most = most.max(count);
+        on_ground += u32::from(state.flags & MOVER_ON_GROUND != 0);
+    }
+    assert!(state.position.x.fx() > fx!(7.9) && most >= 1 && on_ground > 200, "{state:?}");
+    done(ls2d_free(world));
+}

@@ -1,0 +1,73 @@
+// Characters: shapes that a game moves by its own rules instead of forces.
+import { writeFilter, writeShape } from "./definitions.js";
+import { Lockstep2dError } from "./error.js";
+import { C } from "./layout.js";
+import { call, copy, fieldAt, give, library, list, read, scratch, sizeOf, write } from "./library.js";
+
+const MOVER_OPTIONS = ["shape", "slopeMax", "stepHeight", "snapDistance"];
+
+function writeMover(at, options) {
+    const unknown = Object.keys(options).find((key) => !MOVER_OPTIONS.includes(key));
+    if (unknown !== undefined) {
+        throw new Lockstep2dError("VALUE", `a mover has no option ${unknown}; there are ${MOVER_OPTIONS.join(", ")}`);
+    }
+    call("ls2d_mover_init", C.CIRCLE, at);
+    const { shape, ...abilities } = options;
+    write("mover", at, abilities);
+    writeShape(fieldAt("mover", at, "shape"), shape);
+}
+
+function writeState(at, { position, velocity = [0, 0], ground }) {
+    call("ls2d_mover_state_init", 0n, 0n, at);
+    write("mover_state", at, { position, velocity, flags: ground === undefined ? 0 : C.MOVER_ON_GROUND });
+    if (ground !== undefined) {
+        write("mover_plane", fieldAt("mover_state", at, "ground"), ground);
+    }
+}
+
+function readState(at) {
+    const { position, velocity, flags } = read("mover_state", at);
+    const isOnGround = (flags & C.MOVER_ON_GROUND) !== 0;
+    const ground = isOnGround ? readPlane(fieldAt("mover_state", at, "ground")) : undefined;
+    return { position, velocity, ground, isOnGround, isWedged: (flags & C.MOVER_WEDGED) !== 0 };
+}
+
+function readPlane(at) {
+    const { reserved: _, ...plane } = read("mover_plane", at);
+    return plane;
+}
+
+/** Moves a character for one tick at its velocity, among the shapes that a filter sees. Returns its new state, and the
+ * surfaces that it has met. The game adds gravity to the velocity; the world does not change. */
+export function moveCharacter(world, mover, state, filter = {}) {
+    const [abilities, pose, plane] = [sizeOf("mover"), sizeOf("mover_state"), sizeOf("mover_plane")];
+    const before = abilities + 2 * pose + sizeOf("query_filter");
+    let to;
+    const prepare = (at) => {
+        writeMover(at, mover);
+        writeState(at + abilities, state);
+        writeFilter(at + abilities + 2 * pose, filter);
+    };
+    const ask = (met, capacity, count, at) => {
+        const from = at + abilities;
+        to = from + pose;
+        return library().ls2d_move_character(world.handle, at, from, to + pose, to, met, capacity, count);
+    };
+    const { at, count } = list(plane, before, ask, prepare);
+    return { state: readState(to), met: Array.from({ length: count }, (_, index) => readPlane(at + index * plane)) };
+}
+
+/** The state of a character as bytes, for saves and hashes. */
+export function encodeMoverState(state) {
+    const at = scratch(sizeOf("mover_state"));
+    writeState(at, state);
+    return copy(at, sizeOf("mover_state"));
+}
+
+/** The state of a character from bytes. `moveCharacter` checks it. */
+export function decodeMoverState(bytes) {
+    if (bytes.length !== sizeOf("mover_state")) {
+        throw new Lockstep2dError("DECODE", `the state of a character has ${sizeOf("mover_state")} bytes, and not ${bytes.length}`);
+    }
+    return readState(give(bytes, 0));
+}
