@@ -33,7 +33,7 @@ struct Args {
     /// Lists the scenes.
     #[arg(long)]
     list: bool,
-    /// File that the replay of a live scene or match is saved to: at the end, and with the key `s`.
+    /// File that the replay of a live scene or match is saved to: at the end, and with the key `s`. It must not exist.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Runs a script instead of taking user input: see the docs of `lockstep2d_viewer::script`.
@@ -126,6 +126,9 @@ fn show<G: Game + 'static>(viewer: Viewer<G>, args: Args) -> Result<(), Trouble>
             }
             None => return Err(Trouble("there is no scene: name a replay to show".to_owned())),
         },
+    }
+    if let Some(path) = args.output.as_ref().filter(|path| path.is_file()) {
+        return Err(Trouble(format!("cannot write {}: it exists; name another file", path.display())));
     }
     #[cfg(target_os = "linux")]
     display::check().map_err(Trouble)?;

@@ -219,3 +219,16 @@ fn an_interrupted_process_leaves_and_its_replay_verifies() {
         assert!(pads(&replay).starts_with(&gone), "one match has one history");
     }
 }
+
+/// A replay that exists is not replaced, and the message says why.
+#[test]
+fn an_earlier_replay_is_not_replaced() {
+    let folder = Folder::new("earlier");
+    let earlier = folder.file("0");
+    fs::write(&earlier, b"an earlier match").unwrap();
+    let output = play(&["--host", &free_address()], &earlier).wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let said = text(&output) + &String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("it exists"), "{said}");
+    assert_eq!(fs::read(&earlier).unwrap(), b"an earlier match");
+}

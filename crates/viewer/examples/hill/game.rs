@@ -82,7 +82,7 @@ impl Hill {
 
     /// Planks that are held at both ends.
     pub(crate) fn planks_left(&self) -> usize {
-        self.named("plank").filter(|&plank| self.world.joints_of(plank).into_iter().count() == 2).count()
+        self.named("plank").filter(|&plank| self.world.joints_of(plank).len() == 2).count()
     }
 
     fn drive(&mut self, input: Drive) -> Result<(), WorldError> {

@@ -1,6 +1,8 @@
 //! [`Host`]: file access and frame pacing on a desktop.
 
-use std::path::PathBuf;
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use crate::{App, Event, Request};
@@ -36,10 +38,13 @@ impl Host {
 
     fn save(&self, app: &mut App) -> Result<(), WindowError> {
         for Request::Save { name, bytes } in app.take_requests() {
-            let path = self.output.clone().unwrap_or_else(|| free_path(&name));
-            std::fs::write(&path, bytes)
-                .map_err(|error| WindowError::File { path: path.display().to_string(), error })?;
-            eprintln!("{} written", path.display());
+            let named = self.output.clone().unwrap_or_else(|| name.clone().into());
+            let failed = |error| WindowError::File { path: named.display().to_string(), error };
+            let path = match &self.output {
+                Some(path) => replace(path, &bytes).map(|()| path.clone()),
+                None => save_as_new(&name, &bytes),
+            };
+            eprintln!("{} written", path.map_err(failed)?.display());
         }
         Ok(())
     }
@@ -59,10 +64,68 @@ impl Host {
     }
 }
 
-/// Returns a path in the current directory at which no file exists, so that no file is overwritten.
-fn free_path(name: &str) -> PathBuf {
+/// Writes a file as a whole: whatever happens, there is the old one or the new one. Pipes and devices are written
+/// directly.
+fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if path.exists() && !path.is_file() {
+        return fs::write(path, bytes);
+    }
+    let beside = write_beside(path, bytes)?;
+    fs::rename(beside, path)
+}
+
+/// Writes a file under the given name or, if there is one, with a number. No file is replaced.
+fn save_as_new(name: &str, bytes: &[u8]) -> io::Result<PathBuf> {
+    let beside = write_beside(Path::new(name), bytes)?;
     let (stem, ending) = name.rsplit_once('.').unwrap_or((name, "replay"));
-    let numbered = (2..).map(|number| format!("{stem}-{number}.{ending}"));
-    let mut paths = std::iter::once(name.to_owned()).chain(numbered).map(PathBuf::from);
-    paths.find(|path| !path.exists()).unwrap_or_else(|| name.into())
+    let numbered = (2..1000).map(|number| format!("{stem}-{number}.{ending}"));
+    let mut outcome = Err(io::ErrorKind::AlreadyExists.into());
+    for path in std::iter::once(name.to_owned()).chain(numbered).map(PathBuf::from) {
+        // Unlike a rename, a link never replaces a file.
+        outcome = fs::hard_link(&beside, &path).map(|()| path);
+        if !outcome.as_ref().is_err_and(|error| error.kind() == io::ErrorKind::AlreadyExists) {
+            break;
+        }
+    }
+    fs::remove_file(beside)?;
+    outcome
+}
+
+/// Writes bytes to a file of this process beside a path.
+fn write_beside(path: &Path, bytes: &[u8]) -> io::Result<PathBuf> {
+    let mut beside = path.to_path_buf().into_os_string();
+    beside.push(format!(".{}.unfinished", std::process::id()));
+    let beside = PathBuf::from(beside);
+    let written = File::create(&beside).and_then(|mut file| {
+        file.write_all(bytes)?;
+        file.sync_all()
+    });
+    match written {
+        Ok(()) => Ok(beside),
+        Err(error) => {
+            let _ = fs::remove_file(&beside);
+            Err(error)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_file_is_lost() {
+        let folder = std::env::temp_dir().join(format!("lockstep2d-viewer-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let first = folder.join("pile.replay");
+        let name = first.to_str().unwrap();
+        assert_eq!(save_as_new(name, b"one").unwrap(), first);
+        assert_eq!(save_as_new(name, b"two").unwrap(), folder.join("pile-2.replay"));
+        assert_eq!(fs::read(&first).unwrap(), b"one");
+        replace(&first, b"three").unwrap();
+        assert_eq!(fs::read(&first).unwrap(), b"three");
+        assert!(save_as_new(folder.join("none/a.replay").to_str().unwrap(), b"").is_err());
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 2, "no unfinished file is left");
+        fs::remove_dir_all(&folder).unwrap();
+    }
 }

@@ -62,10 +62,10 @@ pub(super) struct Arguments {
     /// Ends after this number of ticks; without it the match runs until all have left.
     #[arg(long)]
     pub(super) ticks: Option<u64>,
-    /// File for the replay.
+    /// File for the replay, which must not exist.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
-    /// File for a divergence report, written if states differ.
+    /// File for a divergence report, written if states differ. It must not exist.
     #[arg(long, value_name = "FILE")]
     pub(super) report: Option<PathBuf>,
     /// Prints a line of JSON for each event; the last one has the result.

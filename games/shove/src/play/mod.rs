@@ -6,6 +6,7 @@ mod log;
 use std::error::Error;
 use std::fs::File;
 use std::io::Write;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
@@ -47,9 +48,12 @@ pub(crate) fn run(matches: &ArgMatches) -> Exit {
 
 /// Plays the match and returns the first desync.
 fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
+    for path in arguments.output.iter().chain(&arguments.report) {
+        check_absent(path)?;
+    }
     let mut peer = arguments.enter()?;
     let interrupts = interrupts()?;
-    let mut file = arguments.output.as_ref().map(File::create).transpose()?;
+    let mut file = arguments.output.as_deref().map(create).transpose()?;
     let mut log = Log::new(arguments.json);
     log.say_bound(&mut peer)?;
     if let Some(ticks) = arguments.ticks {
@@ -67,6 +71,24 @@ fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
     }
     log.say_end(summary, &end);
     played
+}
+
+/// Creates a file to write while the match goes on: whoever is killed leaves a replay without its end. A file that
+/// exists is not replaced, and of two processes one is told.
+fn create(path: &Path) -> Result<File, Box<dyn Error>> {
+    check_absent(path)?;
+    let mut options = File::options();
+    options.write(true).create_new(true);
+    let file = if path.exists() { File::options().write(true).open(path) } else { options.open(path) };
+    file.map_err(|error| format!("cannot write {}: {error}", path.display()).into())
+}
+
+/// Fails if there is a file of this name. Pipes and devices may be there.
+fn check_absent(path: &Path) -> Result<(), Box<dyn Error>> {
+    if path.is_file() {
+        return Err(format!("cannot write {}: it exists; name another file", path.display()).into());
+    }
+    Ok(())
 }
 
 /// Plays until the match has ended or was left.
@@ -92,7 +114,7 @@ fn take_part(
             {
                 desync = Some(found);
                 if let Some(path) = &arguments.report {
-                    std::fs::write(path, peer.report(&found)?)?;
+                    create(path)?.write_all(&peer.report(&found)?)?;
                 }
             }
         }
