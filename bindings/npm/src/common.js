@@ -4,7 +4,8 @@ export { Angle, Fx, degrees, fx, radians, turns } from "./fx.js";
 export { loaded } from "./library.js";
 export { box, capsule, chain, circle, hull, polygon, segment } from "./definitions.js";
 export { decodeMoverState, encodeMoverState, moveCharacter } from "./character.js";
-export { Commands, Snapshot, World } from "./world.js";
+export { Commands } from "./edits.js";
+export { Snapshot, World } from "./world.js";
 export { Random, angleOf, cos, cross, dot, hashBytes, hypot, normalize, rotate, sin, sqrt } from "./maths.js";
 
 import { library } from "./library.js";

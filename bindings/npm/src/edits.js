@@ -1,0 +1,187 @@
+// Edits of a world, executed at once or collected in a list of commands.
+import { bodyKind, writeBody, writeBodyAndShapes, writeJoint, writeShape } from "./definitions.js";
+import { bitsOf, rawOf, vectorOf } from "./fx.js";
+import { Handle, call, give, giveText, id, idAt, putRaw, scratch, sizeOf, takeBytes, u32, u64, write } from "./library.js";
+
+const raws = (vector, what) => vectorOf(vector, what);
+
+/** Edits: executed by a world at once, or collected by a list of commands. */
+export class Edits extends Handle {
+    /** Adds a body with its shapes, and returns its handle; a list of commands returns undefined. */
+    spawn(options) {
+        const { id: at, body, shapes, count } = writeBodyAndShapes(options);
+        putRaw(at, -1n);
+        call("ls2d_spawn", this.handle, body, shapes, count, at);
+        return this.added(at);
+    }
+
+    added(at) {
+        return u64(at) === 0xffffffffffffffffn ? undefined : idAt(at);
+    }
+
+    despawn(body) {
+        call("ls2d_despawn", this.handle, id(body));
+    }
+
+    addShape(body, shape) {
+        const at = scratch(8 + sizeOf("shape_def"));
+        writeShape(at + 8, shape);
+        putRaw(at, -1n);
+        call("ls2d_add_shape", this.handle, id(body), at + 8, at);
+        return this.added(at);
+    }
+
+    removeShape(shape) {
+        call("ls2d_remove_shape", this.handle, id(shape, "a shape"));
+    }
+
+    setShape(shape, definition) {
+        const at = scratch(sizeOf("shape_def"));
+        writeShape(at, definition);
+        call("ls2d_set_shape", this.handle, id(shape, "a shape"), at);
+    }
+
+    /** Adds a joint, and returns its handle. `anchor` and `axis` are in the world, and need a world. */
+    addJoint(options) {
+        const size = sizeOf("joint_def");
+        const at = scratch(48 + size);
+        writeJoint(at + 48, options);
+        if (options.anchor !== undefined) {
+            this.place(at, options);
+        }
+        putRaw(at, -1n);
+        call("ls2d_add_joint", this.handle, at + 48, at);
+        return this.added(at);
+    }
+
+    place(at, { anchor, axis = [0, 0] }) {
+        const numbers = [...raws(anchor, "anchor"), ...raws(axis, "axis")];
+        numbers.forEach((raw, index) => putRaw(at + 8 + 8 * index, raw));
+        call("ls2d_joint_at", this.handle, at + 48, at + 8, at + 24, at + 48);
+    }
+
+    removeJoint(joint) {
+        call("ls2d_remove_joint", this.handle, id(joint, "a joint"));
+    }
+
+    setJoint(joint, options) {
+        const at = scratch(sizeOf("joint_def"));
+        writeJoint(at, options);
+        call("ls2d_set_joint", this.handle, id(joint, "a joint"), at);
+    }
+
+    enableJoint(joint) {
+        call("ls2d_enable_joint", this.handle, id(joint, "a joint"));
+    }
+
+    disableJoint(joint) {
+        call("ls2d_disable_joint", this.handle, id(joint, "a joint"));
+    }
+
+    applyForce(body, force, point) {
+        call("ls2d_apply_force", this.handle, id(body), ...raws(force, "force"), ...raws(point, "point"));
+    }
+
+    applyTorque(body, torque) {
+        call("ls2d_apply_torque", this.handle, id(body), rawOf(torque, "torque"));
+    }
+
+    applyImpulse(body, impulse, point) {
+        call("ls2d_apply_impulse", this.handle, id(body), ...raws(impulse, "impulse"), ...raws(point, "point"));
+    }
+
+    applyAngularImpulse(body, impulse) {
+        call("ls2d_apply_angular_impulse", this.handle, id(body), rawOf(impulse, "impulse"));
+    }
+
+    setVelocity(body, velocity, angular = 0) {
+        call("ls2d_set_velocity", this.handle, id(body), ...raws(velocity, "velocity"), rawOf(angular, "angular velocity"));
+    }
+
+    setTransform(body, position, angle = 0) {
+        call("ls2d_set_transform", this.handle, id(body), ...raws(position, "position"), bitsOf(angle));
+    }
+
+    moveTo(body, position, angle = 0) {
+        call("ls2d_move_to", this.handle, id(body), ...raws(position, "position"), bitsOf(angle));
+    }
+
+    /** Changes damping, gravity scale, locks, sweeps and sleep settings. */
+    setBody(body, options) {
+        const at = scratch(sizeOf("body_def"));
+        writeBody(at, options);
+        call("ls2d_set_body", this.handle, id(body), at);
+    }
+
+    setType(body, type) {
+        call("ls2d_set_kind", this.handle, id(body), bodyKind(type));
+    }
+
+    setUserData(body, data) {
+        call("ls2d_set_user_data", this.handle, id(body), BigInt(data));
+    }
+
+    setName(body, name) {
+        const [at, length] = giveText(name);
+        call("ls2d_set_name", this.handle, id(body), at + 64, length);
+    }
+
+    enable(body) {
+        call("ls2d_enable", this.handle, id(body));
+    }
+
+    disable(body) {
+        call("ls2d_disable", this.handle, id(body));
+    }
+
+    wake(body) {
+        call("ls2d_wake", this.handle, id(body));
+    }
+
+    sleep(body) {
+        call("ls2d_sleep", this.handle, id(body));
+    }
+
+    setGravity(gravity) {
+        call("ls2d_set_gravity", this.handle, ...raws(gravity, "gravity"));
+    }
+
+    explode({ centre, impulse, radius, falloff, mask }) {
+        const at = scratch(sizeOf("explosion"));
+        call("ls2d_explosion_init", ...raws(centre, "centre"), rawOf(impulse, "impulse"), at);
+        write("explosion", at, { radius, falloff, mask });
+        call("ls2d_explode", this.handle, at);
+    }
+}
+
+/** A list of edits, for replays and networks. */
+export class Commands extends Edits {
+    constructor() {
+        const at = scratch(8);
+        call("ls2d_commands_new", at);
+        super(u32(at));
+    }
+
+    get length() {
+        const at = scratch(8);
+        call("ls2d_commands_count", this.handle, at);
+        return u32(at);
+    }
+
+    clear() {
+        call("ls2d_commands_clear", this.handle);
+    }
+
+    toBytes() {
+        const at = scratch(8);
+        call("ls2d_commands_encode", this.handle, at);
+        return takeBytes(u32(at));
+    }
+
+    /** Replaces the list by an encoded one. */
+    fromBytes(bytes) {
+        const at = give(bytes);
+        call("ls2d_commands_decode", this.handle, at + 64, bytes.length);
+        return this;
+    }
+}
