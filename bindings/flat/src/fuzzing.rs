@@ -54,8 +54,7 @@ pub fn run(input: &[u8]) -> (Vec<i32>, Vec<u64>) {
     let calls: Vec<_> = DRAWN.iter().copied().flatten().collect();
     let (handles, ids, known, buffers, codes) = Default::default();
     let mut caller = Caller { input: input.iter(), handles, ids, known, buffers, items: 0, codes };
-    caller.begin();
-    let mut made = caller.harvest();
+    let mut made = caller.begin();
     while !caller.input.as_slice().is_empty() {
         let call = calls.get(caller.below(calls.len())).copied();
         call.into_iter().for_each(|call| call(&mut caller));
@@ -80,23 +79,13 @@ fn family(name: &str) -> Option<&'static str> {
 }
 
 impl Caller<'_> {
-    /// Makes a world and a list of commands, to begin with.
-    fn begin(&mut self) {
-        for name in ["world", "commands"] {
-            self.buffers.push(Buffer {
-                item: 4,
-                handle: Some(name),
-                is_output: true,
-                words: vec![0; 1].into(),
-            });
-        }
-        let mut handles = [0; 2];
-        let [world, commands] = &mut handles;
-        let _ = crate::ls2d_world_new(In::null(), Out::of(world));
-        let _ = crate::ls2d_commands_new(Out::of(commands));
-        for (buffer, handle) in self.buffers.iter_mut().zip(handles) {
-            buffer.words.iter_mut().for_each(|word| *word = handle.into());
-        }
+    /// Makes a world and a list of commands, to begin with, and returns their handles.
+    fn begin(&mut self) -> Vec<u32> {
+        let [mut world, mut commands] = [0; 2];
+        let _ = crate::ls2d_world_new(In::null(), Out::of(&mut world));
+        let _ = crate::ls2d_commands_new(Out::of(&mut commands));
+        self.handles.extend([("world", world), ("commands", commands)]);
+        vec![world, commands]
     }
 
     fn byte(&mut self) -> u8 {
