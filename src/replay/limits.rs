@@ -52,7 +52,7 @@ impl Default for Limits {
             ticks: 24 * 60 * 60 * 60,
             // Maximum number of bodies in a world.
             bodies: 1 << 20,
-            // A work unit of the sandbox takes about 25 ns, so these are a quarter of a second and eight minutes.
+            // A work unit of the sandbox takes 5 to 130 ns in honest games, at most a microsecond (docs/VERIFYING.md).
             tick_work: 10_000_000,
             total_work: 20_000_000_000,
         }
