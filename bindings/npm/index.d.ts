@@ -475,6 +475,22 @@ export interface Verdict {
     text: string;
 }
 /** Verifies a replay of a world from any source. */
+/** A replay of a world that goes to any of its ticks: tick t is the state after t ticks. */
+export class Timeline extends Handle {
+    /** Throws a Lockstep2dError with the code RECORD, and the `verdict`, if it cannot be played. */
+    constructor(bytes: Uint8Array, limits?: Limits);
+    readonly ticks: number;
+    readonly tick: number;
+    /** Goes to a tick. Ticks that were played before cost little. Checkpoints on the way are compared. */
+    seek(tick: number): void;
+    /** Goes forward by a tick. Returns false at the end. */
+    step(): boolean;
+    /** Goes back by a tick. Returns false at the start. */
+    stepBack(): boolean;
+    /** A copy of the world at the current tick, to draw and query it. Dispose of it. */
+    world(): World;
+}
+
 export function verifyReplay(bytes: Uint8Array, limits?: Limits): Verdict;
 
 /** A world that is recorded while it runs, and changed by lists of commands alone. */

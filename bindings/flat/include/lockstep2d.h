@@ -1361,6 +1361,29 @@ ls2d_status ls2d_recording_finish(uint32_t recording, uint32_t *bytes);
  * returns the verdict in words. */
 ls2d_status ls2d_replay_verify(const uint8_t *data, size_t size, const ls2d_limits *limits, ls2d_verdict *verdict);
 
+/* ---- Timelines of replays of worlds ---- */
+
+/* Opens a replay of a world from any source, to go to any of its ticks: tick t is the state after t ticks. A null
+ * pointer stands for the default limits. If it cannot be played, its verdict is written, and the result is
+ * `LS2D_RECORD`. */
+ls2d_status ls2d_timeline_open(const uint8_t *data, size_t size, const ls2d_limits *limits, uint32_t *timeline, ls2d_verdict *verdict);
+
+/* The current tick, and the number of ticks. Null pointers are not written. */
+ls2d_status ls2d_timeline_ticks(uint32_t timeline, uint64_t *tick, uint64_t *ticks);
+
+/* Goes to a tick. Ticks that were played before cost little. Checkpoints on the way are compared: if one differs,
+ * the result is `LS2D_RECORD`, and the timeline stays there. */
+ls2d_status ls2d_timeline_seek(uint32_t timeline, uint64_t tick);
+
+/* Goes forward by a tick. `LS2D_NONE` at the end. */
+ls2d_status ls2d_timeline_step(uint32_t timeline);
+
+/* Goes back by a tick. `LS2D_NONE` at the start. */
+ls2d_status ls2d_timeline_step_back(uint32_t timeline);
+
+/* Makes a copy of the world at the current tick, to draw and query it. */
+ls2d_status ls2d_timeline_world(uint32_t timeline, uint32_t *world);
+
 /* ---- Replays of games with rules of their own ---- */
 
 /* Starts a recorder for a game with rules of its own. `rules` is the name of the rules in UTF-8, `setup` what the

@@ -17,8 +17,19 @@ const BYTES: usize = 4096;
 const REMEMBERED: usize = 12;
 
 /// Names of parameters that are handles of objects. Handles that a parameter returns mostly go to parameters of its name.
-const HANDLES: [&str; 10] =
-    ["world", "target", "handle", "commands", "snapshot", "bytes", "recording", "recorder", "replay", "copy"];
+const HANDLES: [&str; 11] = [
+    "world",
+    "target",
+    "handle",
+    "commands",
+    "snapshot",
+    "bytes",
+    "recording",
+    "recorder",
+    "replay",
+    "timeline",
+    "copy",
+];
 
 /// Memory that a call reads and writes, aligned for all types.
 #[derive(Debug)]

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use lockstep2d::world::{Command, Snapshot, World};
 
 #[cfg(feature = "lockstep")]
-use crate::functions::{HostRecorder, HostReplay, Match, SandboxRecorder};
+use crate::functions::{HostRecorder, HostReplay, Match, SandboxRecorder, SandboxTimeline};
 use crate::status::{Failure, Outcome, Status};
 
 /// Bits of a handle that are the slot; the others are the generation, from 1 on, so that no handle is 0.
@@ -70,6 +70,8 @@ kinds! {
     Commands(Commands), "a list of commands";
     #[cfg(feature = "lockstep")]
     SandboxRecorder(SandboxRecorder), "a recording";
+    #[cfg(feature = "lockstep")]
+    SandboxTimeline(SandboxTimeline), "a timeline";
     #[cfg(feature = "lockstep")]
     HostRecorder(HostRecorder), "a recorder";
     #[cfg(feature = "lockstep")]

@@ -14,6 +14,20 @@ function verdictAt(at) {
     return { ...verdict, text: lastText() };
 }
 
+/** Opens a file, and returns the handle. */
+function openAt(name, bytes, limits) {
+    const verdict = 16;
+    const limit = verdict + sizeOf("verdict");
+    const before = limit + sizeOf("limits");
+    const at = give(bytes, before);
+    const status = library()[name](at + before, bytes.length, limitsAt(at + limit, limits), at, at + verdict);
+    if (status !== STATUS.OK) {
+        const found = verdictAt(at + verdict);
+        throw Object.assign(new Lockstep2dError("RECORD", found.text), { verdict: found });
+    }
+    return u32(at);
+}
+
 /** Writes limits at an address. */
 function limitsAt(at, limits) {
     if (limits === undefined) {
@@ -122,16 +136,7 @@ export class Replay extends Handle {
 
     /** Throws an error with the code RECORD, and the `verdict`, if it cannot be played. */
     constructor(bytes, limits) {
-        const verdict = 16;
-        const limit = verdict + sizeOf("verdict");
-        const before = limit + sizeOf("limits");
-        const at = give(bytes, before);
-        const status = library().ls2d_replay_open(at + before, bytes.length, limitsAt(at + limit, limits), at, at + verdict);
-        if (status !== STATUS.OK) {
-            const found = verdictAt(at + verdict);
-            throw Object.assign(new Lockstep2dError("RECORD", found.text), { verdict: found });
-        }
-        super(u32(at));
+        super(openAt("ls2d_replay_open", bytes, limits));
         this.#describe();
     }
 
@@ -167,5 +172,44 @@ export class Replay extends Handle {
         writeHash(at, hash);
         call("ls2d_replay_verdict", this.handle, at, at + 16);
         return verdictAt(at + 16);
+    }
+}
+
+/** A replay of a world that goes to any of its ticks: tick t is the state after t ticks. */
+export class Timeline extends Handle {
+    /** Throws an error with the code RECORD, and the `verdict`, if it cannot be played. */
+    constructor(bytes, limits) {
+        super(openAt("ls2d_timeline_open", bytes, limits));
+        const at = scratch(8);
+        call("ls2d_timeline_ticks", this.handle, 0, at);
+        this.ticks = Number(u64(at));
+    }
+
+    get tick() {
+        const at = scratch(8);
+        call("ls2d_timeline_ticks", this.handle, at, 0);
+        return Number(u64(at));
+    }
+
+    /** Goes to a tick. Ticks that were played before cost little. */
+    seek(tick) {
+        call("ls2d_timeline_seek", this.handle, BigInt(tick));
+    }
+
+    /** Goes forward by a tick. Returns false at the end. */
+    step() {
+        return call("ls2d_timeline_step", this.handle);
+    }
+
+    /** Goes back by a tick. Returns false at the start. */
+    stepBack() {
+        return call("ls2d_timeline_step_back", this.handle);
+    }
+
+    /** A copy of the world at the current tick, to draw and query it. */
+    world() {
+        const at = scratch(8);
+        call("ls2d_timeline_world", this.handle, at);
+        return new World(new Adopted(u32(at)));
     }
 }

@@ -30,6 +30,25 @@ test("a recorded world verifies, and a changed file does not", () => {
     assert.equal(limited.verdict, "limit_exceeded");
     assert.match(limited.text, /at most 100 are allowed/);
     assert.throws(() => recording.step(commands), { code: "RECORD" });
+
+    const timeline = new L.Timeline(replay);
+    assert.deepEqual([timeline.tick, timeline.ticks], [0, 150]);
+    const hashes = [];
+    do {
+        const world = timeline.world();
+        hashes.push(world.hash());
+        world.dispose();
+    } while (timeline.step());
+    assert.equal(hashes.length, 151);
+    for (const tick of [70, 69, 149, 0, 150]) {
+        timeline.seek(tick);
+        assert.deepEqual([timeline.tick, timeline.world().hash()], [tick, hashes[tick]]);
+    }
+    assert.ok(timeline.stepBack());
+    assert.equal(timeline.world().hash(), hashes[149]);
+    assert.throws(() => timeline.seek(151), { code: "VALUE" });
+    assert.throws(() => new L.Timeline(damaged), (error) => error.code === "RECORD" && error.verdict.verdict === "malformed");
+    timeline.dispose();
 });
 
 // A game: each player counts, and the sum is hashed.

@@ -14,6 +14,8 @@ mod query;
 #[cfg(feature = "lockstep")]
 mod replay;
 mod snapshot;
+#[cfg(feature = "lockstep")]
+mod timeline;
 mod view;
 mod world;
 
@@ -31,6 +33,8 @@ pub use query::*;
 #[cfg(feature = "lockstep")]
 pub use replay::*;
 pub use snapshot::*;
+#[cfg(feature = "lockstep")]
+pub use timeline::*;
 pub use view::*;
 pub use world::*;
 
@@ -49,6 +53,8 @@ pub(crate) const FUNCTIONS: &[(&str, &[Function])] = &[
     ("Snapshots", snapshot::FUNCTIONS),
     #[cfg(feature = "lockstep")]
     ("Replays of worlds", replay::FUNCTIONS),
+    #[cfg(feature = "lockstep")]
+    ("Timelines of replays of worlds", timeline::FUNCTIONS),
     #[cfg(feature = "lockstep")]
     ("Replays of games with rules of their own", host::FUNCTIONS),
     #[cfg(feature = "lockstep")]
@@ -70,6 +76,8 @@ pub(crate) const DRAWN: &[&[crate::fuzzing::DrawnCall]] = &[
     snapshot::DRAWN,
     #[cfg(feature = "lockstep")]
     replay::DRAWN,
+    #[cfg(feature = "lockstep")]
+    timeline::DRAWN,
     #[cfg(feature = "lockstep")]
     host::DRAWN,
     #[cfg(feature = "lockstep")]

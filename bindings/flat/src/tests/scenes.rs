@@ -109,9 +109,43 @@ fn a_recorded_scene_verifies_and_rolls_back() {
     done(ls2d_replay_verify(In::all(&file), file.len(), In::null(), Out::of(&mut verdict)));
     assert_eq!((verdict.kind, verdict.ticks, verdict.hash.hash()), (MATCH, TICKS, game.state_hash()));
 
+    seek(&file, &game);
     let mut world = 0;
     assert_eq!(ls2d_recording_world(recording, Out::of(&mut world)), Status::Record as i32, "it is finished");
     [recording, commands].into_iter().for_each(|handle| done(ls2d_free(handle)));
+}
+
+/// Goes to and fro in a replay that ends in the state of a game.
+fn seek(file: &[u8], end: &Sandbox) {
+    let (mut timeline, mut verdict) =
+        (0, RawVerdict { kind: 9, reserved: 0, ticks: 0, hash: RawHash { low: 0, high: 0 } });
+    let cut =
+        ls2d_timeline_open(In::all(file), 40, In::null(), Out::of(&mut timeline), Out::of(&mut verdict));
+    assert_eq!((cut, verdict.kind, timeline), (Status::Record as i32, MALFORMED, 0));
+    done(ls2d_timeline_open(In::all(file), file.len(), In::null(), Out::of(&mut timeline), Out::null()));
+    let state = || {
+        let mut world = 0;
+        done(ls2d_timeline_world(timeline, Out::of(&mut world)));
+        let hash = hash_of(world);
+        done(ls2d_free(world));
+        hash
+    };
+    let mut hashes = vec![state()];
+    while ls2d_timeline_step(timeline) == 0 {
+        hashes.push(state());
+    }
+    let (mut tick, mut ticks) = (0, 0);
+    done(ls2d_timeline_ticks(timeline, Out::of(&mut tick), Out::of(&mut ticks)));
+    assert_eq!((tick, ticks, state()), (TICKS, TICKS, end.world().state_hash()));
+    for (tick, hash) in hashes.iter().enumerate().rev().skip(1) {
+        done(ls2d_timeline_step_back(timeline));
+        assert_eq!(state(), *hash, "tick {tick}");
+    }
+    assert_eq!(ls2d_timeline_step_back(timeline), Status::None as i32);
+    done(ls2d_timeline_seek(timeline, TICKS / 2));
+    assert_eq!(state(), hashes[usize::try_from(TICKS / 2).unwrap()]);
+    assert_eq!(ls2d_timeline_seek(timeline, TICKS + 1), Status::Value as i32);
+    done(ls2d_free(timeline));
 }
 
 #[test]
