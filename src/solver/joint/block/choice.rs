@@ -114,24 +114,46 @@ impl Crowd {
     }
 }
 
+/// Largest number of rows of a joint.
+const JOINT_ROWS_MAX: usize = 6;
+
+/// The joints of a crowded body, by their number of rows, as ranges of `Choice::of_body`.
+#[derive(Clone, Copy, Debug, Default)]
+struct JointsOfBody {
+    /// The first joint of each number of rows that is in no block yet.
+    next: [u32; JOINT_ROWS_MAX],
+    ends: [u32; JOINT_ROWS_MAX],
+    /// The last walk that has visited the body.
+    walk: u32,
+}
+
 /// The choice, and its working memory.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Choice {
     crowds: Vec<Crowd>,
-    /// For each body, the end of its joints in `of_body`; only crowded bodies have any.
-    ends: Vec<u32>,
+    /// For each body, its place in `bodies`, or [`NOT_CROWDED`].
+    places: Vec<u32>,
+    bodies: Vec<JointsOfBody>,
     of_body: Vec<u32>,
-    /// For each candidate, whether it is in the order already.
+    /// For each candidate, whether the current walk or an earlier block has it.
     taken: Vec<bool>,
+    /// For each candidate, whether a block has it.
+    settled: Vec<bool>,
     queue: Vec<u32>,
+    /// Number of walks so far.
+    walks: u32,
     /// The chosen candidates, block by block, in the order in which they are eliminated.
     pub(super) order: Vec<u32>,
     /// The end of each block in `order`.
     pub(super) block_ends: Vec<usize>,
 }
 
+/// The place of a body without a list of joints.
+const NOT_CROWDED: u32 = u32::MAX;
+
 impl Choice {
-    /// Chooses among the joints of a tick. `body_count` is the number of bodies.
+    /// Chooses among the joints of a tick. `body_count` is the number of bodies. Takes time in proportion to the joints,
+    /// however many are at one body.
     pub(super) fn choose(&mut self, candidates: &[Candidate], body_count: usize) {
         self.order.clear();
         self.block_ends.clear();
@@ -140,12 +162,15 @@ impl Choice {
             return;
         }
         self.list(candidates);
-        self.taken.clear();
-        self.taken.resize(candidates.len(), false);
+        for flags in [&mut self.taken, &mut self.settled] {
+            flags.clear();
+            flags.resize(candidates.len(), false);
+        }
+        self.walks = 0;
         for first in 0..candidates.len() {
             let is_chosen = candidates[first].rows > 0
-                && candidates[first].bodies.iter().any(|&body| self.crowds[body as usize].is_crowded());
-            if !is_chosen || self.taken[first] {
+                && candidates[first].bodies.iter().any(|&body| self.places[body as usize] != NOT_CROWDED);
+            if !is_chosen || self.settled[first] {
                 continue;
             }
             // The first walk finds a joint at the rim of the block; the envelope is narrow from there.
@@ -156,6 +181,9 @@ impl Choice {
                 self.taken[joint as usize] = false;
             }
             self.walk(candidates, rim);
+            for &joint in &self.queue {
+                self.settled[joint as usize] = true;
+            }
             // The reverse of E. Cuthill's and J. McKee's order.
             self.order.extend(self.queue.iter().rev());
             self.block_ends.push(self.order.len());
@@ -174,50 +202,102 @@ impl Choice {
         self.crowds[GROUND as usize] = Crowd::default();
     }
 
-    /// Lists the joints of each crowded body.
+    /// Lists the joints of each crowded body by their number of rows, in ascending order.
     fn list(&mut self, candidates: &[Candidate]) {
-        let Choice { crowds, ends, of_body, .. } = self;
-        ends.clear();
-        let mut end = 0;
-        ends.extend(crowds.iter().map(|crowd| {
-            let start = end;
-            end += if crowd.is_crowded() { crowd.joints } else { 0 };
-            start
+        let Choice { crowds, places, bodies, of_body, .. } = self;
+        bodies.clear();
+        places.clear();
+        places.extend(crowds.iter().map(|crowd| {
+            if !crowd.is_crowded() {
+                return NOT_CROWDED;
+            }
+            bodies.push(JointsOfBody::default());
+            index(bodies.len() - 1)
         }));
+        let listed = |candidate: &Candidate, bodies: &mut Vec<JointsOfBody>| {
+            let places = candidate.bodies.map(|body| places[body as usize]);
+            let places = places.into_iter().filter(|&place| place != NOT_CROWDED && candidate.rows > 0);
+            let class = candidate.rows.saturating_sub(1) as usize;
+            let mut at = [None; 2];
+            for (at, place) in at.iter_mut().zip(places) {
+                let end = &mut bodies[place as usize].ends[class];
+                *at = Some(*end);
+                *end += 1;
+            }
+            at
+        };
+        for candidate in candidates {
+            listed(candidate, bodies);
+        }
+        let mut total = 0;
+        for JointsOfBody { next, ends, .. } in bodies.iter_mut() {
+            for (next, end) in next.iter_mut().zip(ends) {
+                let count = *end;
+                (*next, *end) = (total, total);
+                total += count;
+            }
+        }
         of_body.clear();
-        of_body.resize(end as usize, 0);
-        for (joint, candidate) in (0..).zip(candidates).filter(|(_, candidate)| candidate.rows > 0) {
-            for body in candidate.bodies.map(|body| body as usize) {
-                if crowds[body].is_crowded() {
-                    of_body[ends[body] as usize] = joint;
-                    ends[body] += 1;
-                }
+        of_body.resize(total as usize, 0);
+        for (joint, candidate) in (0..).zip(candidates) {
+            for at in listed(candidate, bodies).into_iter().flatten() {
+                of_body[at as usize] = joint;
             }
         }
     }
 
     /// Lists the joints that crowded bodies connect with one, breadth first, until a block is full.
     fn walk(&mut self, candidates: &[Candidate], start: u32) {
-        let Choice { crowds, ends, of_body, taken, queue, .. } = self;
-        queue.clear();
-        queue.push(start);
-        taken[start as usize] = true;
+        self.walks += 1;
+        self.queue.clear();
+        self.queue.push(start);
+        self.taken[start as usize] = true;
         let mut rows = candidates[start as usize].rows;
         let mut at = 0;
-        while at < queue.len() {
-            for body in candidates[queue[at] as usize].bodies.map(|body| body as usize) {
-                let count = if crowds[body].is_crowded() { crowds[body].joints } else { 0 };
-                let end = ends[body] as usize;
-                for &joint in &of_body[end - count as usize..end] {
-                    let more = candidates[joint as usize].rows;
-                    if !taken[joint as usize] && rows + more <= ROWS_MAX {
-                        taken[joint as usize] = true;
-                        rows += more;
-                        queue.push(joint);
-                    }
+        while at < self.queue.len() {
+            for body in candidates[self.queue[at] as usize].bodies {
+                let place = self.places[body as usize];
+                if place != NOT_CROWDED {
+                    rows = self.take_joints_of(place, rows);
                 }
             }
             at += 1;
+        }
+    }
+
+    /// Takes the joints of a body that fit beside a number of rows, in ascending order. Returns the rows with them. What
+    /// does not fit then never does, so that a second visit in the same walk would take nothing.
+    fn take_joints_of(&mut self, place: u32, mut rows: u32) -> u32 {
+        let Choice { bodies, of_body, taken, settled, queue, walks, .. } = self;
+        let JointsOfBody { next, ends, walk } = &mut bodies[place as usize];
+        if *walk == *walks {
+            return rows;
+        }
+        *walk = *walks;
+        for (next, &end) in next.iter_mut().zip(&*ends) {
+            while *next < end && settled[of_body[*next as usize] as usize] {
+                *next += 1;
+            }
+        }
+        let mut heads = *next;
+        loop {
+            let mut first: Option<(u32, u32)> = None;
+            for ((more, head), &end) in (1..).zip(&mut heads).zip(&*ends) {
+                if rows + more > ROWS_MAX {
+                    break;
+                }
+                while *head < end && taken[of_body[*head as usize] as usize] {
+                    *head += 1;
+                }
+                if *head < end {
+                    let joint = of_body[*head as usize];
+                    first = Some(first.map_or((joint, more), |first| first.min((joint, more))));
+                }
+            }
+            let Some((joint, more)) = first else { return rows };
+            taken[joint as usize] = true;
+            queue.push(joint);
+            rows += more;
         }
     }
 }

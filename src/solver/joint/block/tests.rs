@@ -139,3 +139,83 @@ fn no_block_grows_beyond_its_limit_and_no_joint_is_lost() {
     choice.order.sort_unstable();
     assert!(choice.order.iter().copied().eq(0..199));
 }
+
+/// The blocks by their definition: joint by joint, breadth first, with all joints of a body looked at.
+fn blocks_by_definition(candidates: &[Candidate], crowded: impl Fn(u32) -> bool) -> Vec<Vec<u32>> {
+    let mut taken = vec![false; candidates.len()];
+    let walk = |start: u32, taken: &mut Vec<bool>| {
+        let (mut queue, mut at) = (vec![start], 0);
+        taken[start as usize] = true;
+        let mut rows = candidates[start as usize].rows;
+        while at < queue.len() {
+            for body in candidates[queue[at] as usize].bodies.into_iter().filter(|&body| crowded(body)) {
+                for (joint, candidate) in (0..).zip(candidates) {
+                    let is_there = candidate.rows > 0 && candidate.bodies.contains(&body);
+                    if is_there && !taken[joint as usize] && rows + candidate.rows <= ROWS_MAX {
+                        taken[joint as usize] = true;
+                        rows += candidate.rows;
+                        queue.push(joint);
+                    }
+                }
+            }
+            at += 1;
+        }
+        queue
+    };
+    let mut blocks = Vec::new();
+    for (first, candidate) in (0..).zip(candidates) {
+        if candidate.rows > 0 && candidate.bodies.iter().any(|&body| crowded(body)) && !taken[first as usize]
+        {
+            let trial = walk(first, &mut taken);
+            trial.iter().for_each(|&joint| taken[joint as usize] = false);
+            let mut block = walk(*trial.last().expect("the first"), &mut taken);
+            block.reverse();
+            blocks.push(block);
+        }
+    }
+    blocks
+}
+
+#[test]
+fn blocks_are_those_of_their_definition() {
+    let mut rng = Rng::new(24);
+    for round in 0..300 {
+        let bodies = 2 + rng.below(40);
+        let candidates: Vec<Candidate> = (0..1 + rng.below(300))
+            .map(|_| {
+                let a = rng.below(bodies);
+                let b = (a + 1 + rng.below(bodies - 1)) % bodies;
+                // Many joints at few bodies, and bodies in a row.
+                let ends = if rng.chance(1, 3) { [1, 1 + b % 3] } else { [a, b] };
+                let ends = if ends[0] == ends[1] { [a, b] } else { ends };
+                Candidate { rows: rng.below(7), holds: true, ..weld(ends) }
+            })
+            .collect();
+        let mut choice = Choice::default();
+        choice.choose(&candidates, 300);
+        // A body is crowded by two welds. The ground never is.
+        let crowded = |body: u32| {
+            let held = candidates.iter().filter(|joint| joint.rows > 0 && joint.bodies.contains(&body));
+            body != 0 && held.count() >= 2
+        };
+        let mut start = 0;
+        let mut blocks = Vec::new();
+        for &end in &choice.block_ends {
+            blocks.push(choice.order[start..end].to_vec());
+            start = end;
+        }
+        assert_eq!(blocks, blocks_by_definition(&candidates, crowded), "round {round}");
+    }
+}
+
+/// A body with very many joints takes time in proportion to them, whatever the sizes of the joints.
+#[test]
+fn a_hundred_thousand_joints_at_one_body_are_chosen_at_once() {
+    for sizes in [&[3][..], &[5], &[5, 1], &[6, 4, 1, 2]] {
+        let rows = sizes.iter().copied().cycle();
+        let candidates: Vec<_> = rows.take(100_000).map(|rows| Candidate { rows, ..weld([1, 2]) }).collect();
+        let mut choice = Choice::default();
+        choice.choose(&candidates, 3);
+        assert_eq!(choice.order.len(), candidates.len());
+    }
+}
