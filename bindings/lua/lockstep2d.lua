@@ -45,7 +45,7 @@ local returns_status = {}
 for name in header:gmatch("\nls2d_status (ls2d_[%w_]+)%(") do
     returns_status[name] = true
 end
--- A struct that ends with its layout unknown to LuaJIT would be an error here.
+-- LuaJIT parses declarations: comments, macros and what is for C++ are removed.
 ffi.cdef((header:gsub("/%*.-%*/", ""):gsub("#ifdef __cplusplus.-#endif", ""):gsub("\n#[^\n]*", "")))
 local C = load_library()
 assert(C.ls2d_api_version() == ls.API_VERSION, "lockstep2d.h and the library have different versions")

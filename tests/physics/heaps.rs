@@ -64,7 +64,7 @@ fn settle(world: &mut World, seconds: u32) -> Fx {
     largest
 }
 
-/// What rolls on round ends without resistance may roll to and fro for ever. With resistance every heap comes to rest.
+/// Round bodies without rolling resistance may roll to and fro for ever. With resistance every heap comes to rest.
 #[test]
 fn every_heap_whose_bodies_resist_rolling_comes_to_rest() {
     sweep::for_each((0..sweep::size(2400, 60)).collect(), |seed: u64| {

@@ -1,6 +1,7 @@
 //! Keys, signature files and cache entries lose nothing either: with a full disk, a killed process and two writers.
 //! `outputs` tests the commands with one large output.
 #![cfg(unix)]
+#![expect(clippy::disallowed_types, reason = "kills come at moments of a run whose length is measured")]
 
 use std::fs;
 use std::io::Read;

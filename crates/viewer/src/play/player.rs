@@ -14,8 +14,8 @@ pub type Bot<G> = Box<dyn FnMut(&G) -> <G as Game>::Input>;
 /// Creates the bot of a seat, with the random seed of the scene.
 type MakeBot<G> = Rc<dyn Fn(u64, usize) -> Bot<G>>;
 
-/// Who controls a seat. [`Viewer::keys`](crate::Viewer::keys) and [`Viewer::bot`](crate::Viewer::bot) make them; tests
-/// give them to a [`LocalMatch`](crate::LocalMatch).
+/// Control of a seat: keys, a bot or nobody. [`Viewer::keys`](crate::Viewer::keys) and
+/// [`Viewer::bot`](crate::Viewer::bot) make them; tests give them to a [`LocalMatch`](crate::LocalMatch).
 ///
 /// ```
 /// use std::rc::Rc;

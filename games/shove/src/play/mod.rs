@@ -5,7 +5,7 @@ mod log;
 
 use std::error::Error;
 use std::fs::File;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -76,10 +76,13 @@ fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
 /// Creates a file to write while the match goes on: whoever is killed leaves a replay without its end. A file that
 /// exists is not replaced, and of two processes one is told.
 fn create(path: &Path) -> Result<File, Box<dyn Error>> {
-    check_absent(path)?;
-    let mut options = File::options();
-    options.write(true).create_new(true);
-    let file = if path.exists() { File::options().write(true).open(path) } else { options.open(path) };
+    let file = match File::create_new(path) {
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+            check_absent(path)?;
+            File::options().write(true).open(path)
+        }
+        created => created,
+    };
     file.map_err(|error| format!("cannot write {}: {error}", path.display()).into())
 }
 

@@ -114,7 +114,7 @@ impl Crowd {
     }
 }
 
-/// Largest number of rows of a joint.
+/// Largest number of rows of a joint: a slider with a spring, two limits and a motor.
 const JOINT_ROWS_MAX: usize = 6;
 
 /// The joints of a crowded body, by their number of rows, as ranges of `Choice::of_body`.
