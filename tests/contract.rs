@@ -59,10 +59,12 @@ fn undisturbed(scene: &Scene) -> &'static Trace {
     TRACES[place].get_or_init(|| trace(scene, scene.golden_ticks, |_, _| {}))
 }
 
-/// Every scene, for as long as its golden but at most [`TICKS_MAX`], with the trace of an undisturbed run.
+/// Every scene, for as long as its golden but at most [`TICKS_MAX`], with the trace of an undisturbed run. At the sampled
+/// size, large scenes run for 40 ticks.
 fn each_scene(hold: impl Fn(&Scene, u64, &Trace) + Sync) {
     sweep::for_each(ALL.iter().collect(), |scene| {
-        hold(scene, scene.golden_ticks.min(TICKS_MAX), undisturbed(scene));
+        let ticks_max = if shape_count(scene) > 2000 { sweep::size(TICKS_MAX, 40) } else { TICKS_MAX };
+        hold(scene, scene.golden_ticks.min(ticks_max), undisturbed(scene));
     });
 }
 

@@ -60,7 +60,7 @@ impl<G: Game, T: fmt::Debug> fmt::Debug for Peer<G, T> {
 }
 
 /// How a peer comes into a match.
-enum Way {
+enum Entry {
     Host,
     Join(Role, Address),
 }
@@ -77,7 +77,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         me: PeerIdentity,
         transport: T,
     ) -> Result<Self, PeerError> {
-        Self::new(setup, options, me, transport, Way::Host)
+        Self::new(setup, options, me, transport, Entry::Host)
     }
 
     /// Asks somebody who takes part for seats. It plays as soon as it has caught up and seats are free.
@@ -92,7 +92,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         contact: Address,
     ) -> Result<Self, PeerError> {
         let role = Role::Player { seats: options.seats.max(1) };
-        Self::new(setup, options, me, transport, Way::Join(role, contact))
+        Self::new(setup, options, me, transport, Entry::Join(role, contact))
     }
 
     /// Asks somebody who takes part to watch. Spectators may be asked, too.
@@ -106,7 +106,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         transport: T,
         contact: Address,
     ) -> Result<Self, PeerError> {
-        Self::new(setup, options, me, transport, Way::Join(Role::Spectator, contact))
+        Self::new(setup, options, me, transport, Entry::Join(Role::Spectator, contact))
     }
 
     fn new(
@@ -114,7 +114,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         options: PeerOptions,
         me: PeerIdentity,
         transport: T,
-        way: Way,
+        entry: Entry,
     ) -> Result<Self, PeerError> {
         let slot = InputSlot::of::<G::Input>(options.input_bytes)?;
         let mut simulation = Simulation::<G>::start(setup, options.checkpoint_interval, slot)?;
@@ -125,13 +125,13 @@ impl<G: Game, T: Transport> Peer<G, T> {
         let parameters = PeerParameters::of(&simulation.game, setup, &config);
         let identity =
             Identity { id: me.id, key: me.key, offer: codec::encode(&parameters), secret: me.secret };
-        let endpoint = match way {
-            Way::Host => {
+        let endpoint = match entry {
+            Entry::Host => {
                 let seats = 1_u64.checked_shl(options.seats.into()).map_or(u64::MAX, |above| above - 1);
                 let first = options.first_seat.unwrap_or(0);
                 Endpoint::host(config, identity, seats.checked_shl(first.into()).unwrap_or(0))?
             }
-            Way::Join(role, contact) => Endpoint::join(config, identity, role, contact)?,
+            Entry::Join(role, contact) => Endpoint::join(config, identity, role, contact)?,
         };
         let (inputs, events) = (Vec::new(), VecDeque::new());
         Ok(Peer { transport, endpoint, simulation, parameters, slot, now: 0, end: None, inputs, events })

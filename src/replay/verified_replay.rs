@@ -18,14 +18,14 @@ use crate::world::World;
 /// Simulates a replay and returns the verdict on it.
 #[must_use]
 pub fn verify<G: Game>(file: &[u8], limits: &Limits) -> Verdict {
-    let mut playback = match VerifiedReplay::<G>::open(file, limits) {
-        Ok(playback) => playback,
+    let mut replay = match VerifiedReplay::<G>::open(file, limits) {
+        Ok(replay) => replay,
         Err(verdict) => return verdict,
     };
     loop {
-        match playback.step() {
+        match replay.step() {
             Ok(Step::Ticked) => {}
-            Ok(Step::Ended) => return playback.conclude(),
+            Ok(Step::Ended) => return replay.conclude(),
             Err(verdict) => return verdict,
         }
     }

@@ -216,7 +216,7 @@ pub enum Fault {
     /// The own idea of the end counts, not the decided one.
     LocalEnd,
     /// Ballots start while a promise stands.
-    Duel,
+    CompetingBallots,
     /// A proposal drops voters without a promise, without patience.
     Accuse,
     /// A proposer forgets what others have accepted.

@@ -20,7 +20,7 @@ const CONTACTS_MAX: usize = 128;
 
 /// Somebody who is asked.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Asked {
+pub(super) struct PendingContact {
     pub(super) address: Address,
     pub(super) nonce: u64,
     pub(super) cookie: u64,
@@ -34,7 +34,7 @@ pub(super) struct Contacts {
     list: Vec<(PeerId, Address)>,
     turn: usize,
     silent_since: Option<u64>,
-    asked: Option<Asked>,
+    asked: Option<PendingContact>,
 }
 
 impl Contacts {
@@ -58,7 +58,7 @@ impl Contacts {
         now: u64,
         is_silent: bool,
         nonce: impl Fn(&Address) -> u64,
-    ) -> Option<Asked> {
+    ) -> Option<PendingContact> {
         if !is_silent {
             (self.silent_since, self.asked) = (None, None);
             return None;
@@ -71,7 +71,8 @@ impl Contacts {
             let (_, address) = *self.list.get(self.turn.checked_rem(self.list.len())?)?;
             self.turn = self.turn.wrapping_add(1);
             let until = now.saturating_add(ASK_TIME);
-            self.asked = Some(Asked { address, nonce: nonce(&address), cookie: 0, next_at: now, until });
+            self.asked =
+                Some(PendingContact { address, nonce: nonce(&address), cookie: 0, next_at: now, until });
         }
         let asked = self.asked.as_mut().filter(|asked| now >= asked.next_at)?;
         asked.next_at = now.saturating_add(HELLO_INTERVAL);

@@ -40,7 +40,7 @@ impl Session {
         let since = if wanted { Some(*self.agreement.wanted_since.get_or_insert(active)) } else { None };
         self.agreement.wanted_since = since;
         let Agreement { promised, promised_at, round, .. } = self.agreement;
-        let free = promised.is_none() || self.config.has(Fault::Duel);
+        let free = promised.is_none() || self.config.has(Fault::CompetingBallots);
         let waited = free && since.is_some_and(|since| active >= since + rank * ballot / 3);
         let stalled = free && self.is_stalled(rank);
         let stuck = promised.is_some() && active > promised_at + self.ballot_time() * (5 + rank) / 5;

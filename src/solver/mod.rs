@@ -158,7 +158,7 @@ impl Solver {
         let Solver { list, moving, joints, colouring, contacts: set, machine, threads, .. } = self;
         let source = ContactSource { pairs, manifolds, impacts, contacts, list };
         set.sort(&source, colouring, parts);
-        self.warm_starts = set.fill(&source, colouring, (threads, parts), *machine);
+        self.warm_starts = set.fill(&source, colouring, threads, parts, *machine);
         self.contact_velocities.resize_with(parts, ContactVelocities::default);
         for (part, velocities) in self.contact_velocities.iter_mut().enumerate() {
             let moving = &moving[part_of(moving.len(), WIDTH, part, parts)];
@@ -179,12 +179,7 @@ impl Solver {
 
     /// Performs `count` sub-steps, and stores the impulses for the next tick. `first` is the number of sub-steps since
     /// the world was created.
-    pub(crate) fn sub_steps(
-        &mut self,
-        (first, count): (u64, u32),
-        tuning: &Tuning,
-        contacts: &mut [Contact],
-    ) {
+    pub(crate) fn sub_steps(&mut self, first: u64, count: u32, tuning: &Tuning, contacts: &mut [Contact]) {
         let Solver { list, moving, joints, contacts: set, contact_velocities, machine, threads, .. } = self;
         let (machine, parts) = (*machine, contact_velocities.len());
         let bodies = Shared::new(&mut list.bodies);

@@ -18,7 +18,7 @@ const FAULTS: [(Fault, u64, u64); 13] = [
     (Fault::KeepComplete, 8, 10),
     (Fault::NoRelay, 0, 1),
     (Fault::LocalEnd, 7, 10),
-    (Fault::Duel, 8, 10),
+    (Fault::CompetingBallots, 8, 10),
     (Fault::Accuse, 8, 10),
     (Fault::ForgetAccepted, 8, 10),
     (Fault::AcceptBlind, 8, 10),

@@ -9,8 +9,8 @@ impl Match {
         if self.class.is_storm() {
             self.sim.late = 0;
             self.sim.assassin = 0;
-            for way in self.sim.ways.iter_mut().flatten() {
-                way.loss = way.loss.min(15);
+            for link in self.sim.links.iter_mut().flatten() {
+                link.loss = link.loss.min(15);
             }
         }
         let mut at = HEAL;

@@ -2,14 +2,14 @@
 
 use lockstep2d::session::{Config, Role, View};
 
-use super::sim::{MS, S, Sim, Us, Way, id, key};
+use super::sim::{LinkConditions, MS, S, Sim, Us, id, key};
 
 /// A match of players who look every millisecond.
-pub(crate) fn players(count: usize, way: Way, configure: impl Fn(&mut Config)) -> Sim {
-    let mut sim = Sim::new(count as u64 + way.latency, count);
+pub(crate) fn players(count: usize, link: LinkConditions, configure: impl Fn(&mut Config)) -> Sim {
+    let mut sim = Sim::new(count as u64 + link.latency, count);
     sim.look = MS;
     sim.doubled = 0;
-    sim.ways = vec![vec![way; count]; count];
+    sim.links = vec![vec![link; count]; count];
     let mut first = View::opened_by(id(0), key(0), 0, true);
     first.voters.clear();
     for index in 0..count {
@@ -25,8 +25,8 @@ pub(crate) fn players(count: usize, way: Way, configure: impl Fn(&mut Config)) -
     sim
 }
 
-pub(crate) fn way(latency: Us) -> Way {
-    Way { exists: true, latency, jitter: 0, loss: 0, cut_until: 0 }
+pub(crate) fn link(latency: Us) -> LinkConditions {
+    LinkConditions { exists: true, latency, jitter: 0, loss: 0, cut_until: 0 }
 }
 
 /// Ticks that all have played, in each of some seconds after a start of 5 s, in hundredths of a tick per second.
@@ -49,7 +49,7 @@ fn documented_delay(latency: Us) -> u16 {
 fn lockstep_plays_at_full_speed_at_any_latency() {
     for latency in [1, 5, 20, 40, 60, 100, 150].map(|latency| latency * MS) {
         for count in [2, 4] {
-            let mut sim = players(count, way(latency), |_| ());
+            let mut sim = players(count, link(latency), |_| ());
             let pace = pace(&mut sim, 20);
             assert!(pace >= 5950, "{latency} us: {pace} hundredths of a tick per second");
             for peer in &sim.peers {
@@ -68,7 +68,7 @@ fn a_fixed_delay_of_the_latency_and_a_tick_is_enough() {
     for latency in [20, 60, 150].map(|latency| latency * MS) {
         let delay = documented_delay(latency);
         let mut sim =
-            players(2, way(latency), |config| (config.delay_min, config.delay_max) = (delay, delay));
+            players(2, link(latency), |config| (config.delay_min, config.delay_max) = (delay, delay));
         let pace = pace(&mut sim, 20);
         assert!(pace >= 5950, "{latency} us: {pace} hundredths of a tick per second");
     }
@@ -76,14 +76,14 @@ fn a_fixed_delay_of_the_latency_and_a_tick_is_enough() {
 
 #[test]
 fn the_delay_follows_the_latency_within_its_bounds_and_without_a_stall() {
-    let mut sim = players(2, way(20 * MS), |config| (config.delay_min, config.delay_max) = (1, 12));
+    let mut sim = players(2, link(20 * MS), |config| (config.delay_min, config.delay_max) = (1, 12));
     assert!(pace(&mut sim, 5) >= 5950);
     assert!(sim.peers.iter().all(|peer| peer.session.delay() == 3));
-    sim.ways = vec![vec![way(90 * MS); 2]; 2];
+    sim.links = vec![vec![link(90 * MS); 2]; 2];
     sim.run(15 * S);
     assert!(sim.peers.iter().all(|peer| (7..=8).contains(&peer.session.delay())));
     sim.peers[0].session.set_delay(0, 5);
-    sim.ways = vec![vec![way(30 * MS); 2]; 2];
+    sim.links = vec![vec![link(30 * MS); 2]; 2];
     sim.run(25 * S);
     assert_eq!(sim.failure, None);
     assert!(sim.peers.iter().all(|peer| (3..=4).contains(&peer.session.delay())));
@@ -95,7 +95,7 @@ fn rollback_hides_latency_and_corrects_guesses() {
         (config.guess, config.save_interval) = (8, 1);
         (config.delay_min, config.delay_max) = (1, 1);
     };
-    let mut sim = players(4, Way { jitter: 20 * MS, loss: 5, ..way(60 * MS) }, configure);
+    let mut sim = players(4, LinkConditions { jitter: 20 * MS, loss: 5, ..link(60 * MS) }, configure);
     let pace = pace(&mut sim, 20);
     assert!(pace >= 5900, "{pace} hundredths of a tick per second");
     for peer in &sim.peers {
@@ -108,7 +108,7 @@ fn rollback_hides_latency_and_corrects_guesses() {
 /// Ping, jitter and loss are those of the links; bytes are counted.
 #[test]
 fn measurements_are_those_of_the_links() {
-    let mut sim = players(2, Way { jitter: 10 * MS, loss: 20, ..way(50 * MS) }, |_| ());
+    let mut sim = players(2, LinkConditions { jitter: 10 * MS, loss: 20, ..link(50 * MS) }, |_| ());
     pace(&mut sim, 20);
     let link = sim.peers[0].session.link(id(1)).expect("valid");
     assert!((100 * MS..130 * MS).contains(&link.round_trip), "{link:?}");
@@ -119,7 +119,7 @@ fn measurements_are_those_of_the_links() {
 
 #[test]
 fn a_slow_peer_slows_others_only_in_lockstep_and_is_named() {
-    let mut sim = players(3, way(20 * MS), |_| ());
+    let mut sim = players(3, link(20 * MS), |_| ());
     pace(&mut sim, 2);
     sim.peers[2].in_menu = true;
     sim.run(9 * S);

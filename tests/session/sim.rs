@@ -37,9 +37,9 @@ impl Rng {
     }
 }
 
-/// The way from a peer to another one.
+/// Conditions of the link from a peer to another one.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Way {
+pub(crate) struct LinkConditions {
     pub(crate) exists: bool,
     pub(crate) latency: Us,
     /// Largest addition to the latency.
@@ -98,7 +98,7 @@ pub(crate) struct Sim {
     packets: Vec<Option<(usize, Vec<u8>)>>,
     free: Vec<usize>,
     pub(crate) peers: Vec<Peer>,
-    pub(crate) ways: Vec<Vec<Way>>,
+    pub(crate) links: Vec<Vec<LinkConditions>>,
     /// Percentage of packets that are very late, that are doubled, and by which a new view kills somebody.
     pub(crate) late: u64,
     pub(crate) doubled: u64,
@@ -123,7 +123,7 @@ pub(crate) fn key(index: usize) -> Key {
 
 impl Sim {
     pub(crate) fn new(seed: u64, count: usize) -> Self {
-        let way = Way { exists: true, latency: 0, jitter: 0, loss: 0, cut_until: 0 };
+        let link = LinkConditions { exists: true, latency: 0, jitter: 0, loss: 0, cut_until: 0 };
         Sim {
             now: 0,
             rng: Rng(seed | 1),
@@ -132,7 +132,7 @@ impl Sim {
             packets: Vec::new(),
             free: Vec::new(),
             peers: Vec::new(),
-            ways: vec![vec![way; count]; count],
+            links: vec![vec![link; count]; count],
             late: 0,
             doubled: 2,
             assassin: 0,
@@ -299,20 +299,20 @@ impl Sim {
             self.sent += 1;
             self.bytes += bytes.len() as u64;
             self.peers[from].bytes += bytes.len() as u64;
-            let way = self.ways[from][to];
-            let lost = !way.exists || self.now < way.cut_until || self.rng.percent(way.loss);
+            let link = self.links[from][to];
+            let lost = !link.exists || self.now < link.cut_until || self.rng.percent(link.loss);
             if lost {
                 continue;
             }
             if self.doubled > 0 && self.rng.percent(self.doubled) {
-                self.carry(to, bytes.clone(), way);
+                self.carry(to, bytes.clone(), link);
             }
-            self.carry(to, bytes, way);
+            self.carry(to, bytes, link);
         }
     }
 
-    fn carry(&mut self, to: usize, bytes: Vec<u8>, way: Way) {
-        let mut at = self.now + way.latency + self.rng.range(0, way.jitter);
+    fn carry(&mut self, to: usize, bytes: Vec<u8>, link: LinkConditions) {
+        let mut at = self.now + link.latency + self.rng.range(0, link.jitter);
         if self.late > 0 && self.rng.percent(self.late) {
             at += self.rng.range(0, 2500) * MS;
         }
@@ -333,11 +333,11 @@ impl Sim {
     pub(crate) fn reach(&self, from: usize) -> u64 {
         let mut seen = 1_u64 << from;
         for _ in 0..self.peers.len() {
-            for (a, ways) in self.ways.iter().enumerate() {
-                for (b, way) in ways.iter().enumerate() {
+            for (a, links) in self.links.iter().enumerate() {
+                for (b, link) in links.iter().enumerate() {
                     let both =
                         self.peers.get(a).is_some_and(|a| a.on) && self.peers.get(b).is_some_and(|b| b.on);
-                    if both && way.exists && seen >> a & 1 == 1 {
+                    if both && link.exists && seen >> a & 1 == 1 {
                         seen |= 1 << b;
                     }
                 }

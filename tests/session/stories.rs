@@ -2,12 +2,12 @@
 
 use lockstep2d::session::{Config, Role, Status};
 
-use super::pace::{pace, players, way};
+use super::pace::{link, pace, players};
 use super::sim::{MS, S, Sim, id, key};
 
 fn cut(sim: &mut Sim, a: usize, b: usize, until: u64) {
-    sim.ways[a][b].cut_until = until;
-    sim.ways[b][a].cut_until = until;
+    sim.links[a][b].cut_until = until;
+    sim.links[b][a].cut_until = until;
 }
 
 fn played(sim: &Sim, index: usize) -> u32 {
@@ -22,7 +22,7 @@ fn status(sim: &Sim, index: usize) -> Status {
 /// have the same history.
 #[test]
 fn of_two_players_the_host_goes_on_and_the_guest_returns() {
-    let mut sim = players(2, way(30 * MS), |_| ());
+    let mut sim = players(2, link(30 * MS), |_| ());
     pace(&mut sim, 1);
     cut(&mut sim, 0, 1, 12 * S);
     sim.run(11 * S);
@@ -39,7 +39,7 @@ fn of_two_players_the_host_goes_on_and_the_guest_returns() {
 /// With infinite patience everybody waits, until the host goes on without the missing one.
 #[test]
 fn with_infinite_patience_somebody_has_to_ask() {
-    let mut sim = players(3, way(30 * MS), |config| config.timing.patience = u64::MAX);
+    let mut sim = players(3, link(30 * MS), |config| config.timing.patience = u64::MAX);
     pace(&mut sim, 1);
     for other in [0, 1] {
         cut(&mut sim, other, 2, 40 * S);
@@ -56,7 +56,7 @@ fn with_infinite_patience_somebody_has_to_ask() {
 
 #[test]
 fn an_outage_of_all_that_is_shorter_than_the_patience_costs_nobody_a_seat() {
-    let mut sim = players(4, way(60 * MS), |_| ());
+    let mut sim = players(4, link(60 * MS), |_| ());
     pace(&mut sim, 1);
     for a in 0..4 {
         (0..a).for_each(|b| cut(&mut sim, a, b, 7700 * MS));
@@ -70,7 +70,7 @@ fn an_outage_of_all_that_is_shorter_than_the_patience_costs_nobody_a_seat() {
 
 #[test]
 fn a_crash_of_the_host_ends_no_match() {
-    let mut sim = players(4, way(40 * MS), |_| ());
+    let mut sim = players(4, link(40 * MS), |_| ());
     pace(&mut sim, 1);
     sim.peers[0].on = false;
     sim.run(12 * S);
@@ -82,7 +82,7 @@ fn a_crash_of_the_host_ends_no_match() {
 
 #[test]
 fn somebody_who_is_kicked_does_not_return_and_knows_it() {
-    let mut sim = players(3, way(30 * MS), |_| ());
+    let mut sim = players(3, link(30 * MS), |_| ());
     pace(&mut sim, 1);
     sim.peers[0].session.kick(key(2));
     sim.run(10 * S);
@@ -94,7 +94,7 @@ fn somebody_who_is_kicked_does_not_return_and_knows_it() {
 /// Only the tie-holder decides alone; others need a quorum.
 #[test]
 fn one_vote_of_three_kicks_nobody_and_two_do() {
-    let mut sim = players(4, way(30 * MS), |_| ());
+    let mut sim = players(4, link(30 * MS), |_| ());
     pace(&mut sim, 1);
     sim.peers[1].session.kick(key(3));
     sim.run(9 * S);
@@ -108,7 +108,7 @@ fn one_vote_of_three_kicks_nobody_and_two_do() {
 
 #[test]
 fn all_finish_at_the_same_tick_also_whoever_asked_for_another_one() {
-    let mut sim = players(4, way(60 * MS), |_| ());
+    let mut sim = players(4, link(60 * MS), |_| ());
     pace(&mut sim, 1);
     sim.peers[1].session.end_at(500);
     sim.peers[2].session.end_at(520);
@@ -125,8 +125,8 @@ fn all_finish_at_the_same_tick_also_whoever_asked_for_another_one() {
 #[test]
 fn spectators_watch_through_one_another() {
     let count = 6;
-    let mut sim = players(2, way(30 * MS), |config| config.seats = 2);
-    sim.ways = vec![vec![way(30 * MS); count]; count];
+    let mut sim = players(2, link(30 * MS), |config| config.seats = 2);
+    sim.links = vec![vec![link(30 * MS); count]; count];
     let (first, config) = (sim.peers[0].session.view().clone(), Config::new(5, 2));
     for index in 2..count {
         sim.add(config.clone(), Role::Spectator, &first, 1000);
@@ -153,7 +153,7 @@ fn the_first_tick_waits_for_enough_players() {
     let configure = |config: &mut Config| (config.seats, config.start_with) = (4, 3);
     let mut sim = Sim::new(3, 3);
     sim.look = MS;
-    sim.ways = vec![vec![way(40 * MS); 3]; 3];
+    sim.links = vec![vec![link(40 * MS); 3]; 3];
     let mut config = Config::new(5, 4);
     configure(&mut config);
     let first = lockstep2d::session::View::opened_by(id(0), key(0), 1, false);
@@ -176,7 +176,7 @@ fn the_first_tick_waits_for_enough_players() {
 fn a_match_whose_end_is_known_waits_for_its_players() {
     let mut sim = Sim::new(2, 2);
     sim.look = MS;
-    sim.ways = vec![vec![way(40 * MS); 2]; 2];
+    sim.links = vec![vec![link(40 * MS); 2]; 2];
     let config = Config { start_with: 2, ..Config::new(5, 2) };
     let first = lockstep2d::session::View::opened_by(id(0), key(0), 1, false);
     for index in 0..2 {
@@ -196,7 +196,7 @@ fn a_match_whose_end_is_known_waits_for_its_players() {
 
 #[test]
 fn another_state_is_noticed_by_all_others() {
-    let mut sim = players(3, way(30 * MS), |_| ());
+    let mut sim = players(3, link(30 * MS), |_| ());
     sim.peers[1].game.mistake = Some(70);
     sim.run(5 * S);
     assert_eq!((sim.peers[0].desyncs, sim.peers[2].desyncs), (1, 1));
@@ -205,7 +205,7 @@ fn another_state_is_noticed_by_all_others() {
 
 #[test]
 fn somebody_who_leaves_costs_no_waiting() {
-    let mut sim = players(3, way(60 * MS), |_| ());
+    let mut sim = players(3, link(60 * MS), |_| ());
     let before = pace(&mut sim, 1);
     assert!(before >= 5900);
     let start = played(&sim, 0);
@@ -221,7 +221,7 @@ fn somebody_who_leaves_costs_no_waiting() {
 /// 64 peers, all of them players.
 #[test]
 fn sixty_four_peers_play() {
-    let mut sim = players(64, way(40 * MS), |config| config.tick_micros = 33_333);
+    let mut sim = players(64, link(40 * MS), |config| config.tick_micros = 33_333);
     sim.look = 5 * MS;
     sim.run(5 * S);
     let before = played(&sim, 0);

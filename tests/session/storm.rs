@@ -4,7 +4,7 @@
 use lockstep2d::session::{Config, Role, Timing, View};
 
 use super::game::mix;
-use super::sim::{MS, Rng, S, Sim, Us, Way, id, key};
+use super::sim::{LinkConditions, MS, Rng, S, Sim, Us, id, key};
 
 /// Kinds of matches; the last digit of the seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -161,8 +161,8 @@ impl Match {
             for to in 0..total {
                 let latency = (base + rng.range(0, 60)) * MS;
                 let jitter = latency / 4;
-                sim.ways[from][to] =
-                    Way { exists: true, latency, jitter, loss: rng.range(0, lossy), cut_until: 0 };
+                sim.links[from][to] =
+                    LinkConditions { exists: true, latency, jitter, loss: rng.range(0, lossy), cut_until: 0 };
             }
         }
         if rng.percent(30) && total > 2 {
@@ -360,8 +360,8 @@ impl Match {
         for from in 0..self.total {
             for to in (0..self.total).filter(|&to| to != from) {
                 if is_cut(&mut self.rng, from, to) {
-                    let way = &mut self.sim.ways[from][to];
-                    way.cut_until = way.cut_until.max(until);
+                    let link = &mut self.sim.links[from][to];
+                    link.cut_until = link.cut_until.max(until);
                 }
             }
         }
@@ -383,8 +383,8 @@ impl Match {
 /// A connected net of links instead of all.
 fn sparse(sim: &mut Sim, total: usize, rng: &mut Rng) {
     let mut set = |a: usize, b: usize, exists: bool| {
-        sim.ways[a][b].exists = exists;
-        sim.ways[b][a].exists = exists;
+        sim.links[a][b].exists = exists;
+        sim.links[b][a].exists = exists;
     };
     for a in 0..total {
         (0..a).for_each(|b| set(a, b, false));

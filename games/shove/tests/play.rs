@@ -113,7 +113,7 @@ fn four_processes_end_alike_and_their_replays_verify() {
     sweep::at_once([("lockstep", &["--lockstep"][..]), ("rollback", &[])], |(name, modes)| {
         let folder = Folder::new(name);
         let outputs: Vec<_> =
-            four(&folder, modes, "600").into_iter().map(|child| child.wait_with_output().unwrap()).collect();
+            four(&folder, modes, "400").into_iter().map(|child| child.wait_with_output().unwrap()).collect();
         for output in &outputs {
             assert!(output.status.success(), "{name}: {}", text(output));
             assert_eq!(hash_of(output), hash_of(&outputs[0]));
@@ -121,7 +121,7 @@ fn four_processes_end_alike_and_their_replays_verify() {
         let replays: Vec<_> = ["0", "1", "2", "3"].map(|at| fs::read(folder.file(at)).unwrap()).into();
         for replay in &replays {
             let verdict = verify::<Shove>(replay, &Limits::default());
-            let Verdict::Match { ticks: 600, hash } = verdict else { panic!("{name}: {verdict}") };
+            let Verdict::Match { ticks: 400, hash } = verdict else { panic!("{name}: {verdict}") };
             assert_eq!(hash.to_string(), hash_of(&outputs[0]));
             assert_eq!(pads(replay), pads(&replays[0]));
         }
@@ -132,7 +132,7 @@ fn four_processes_end_alike_and_their_replays_verify() {
 fn a_killed_process_leaves_a_valid_replay_and_the_others_agree_when() {
     sweep::at_once([("kill-lockstep", &["--lockstep"][..]), ("kill-rollback", &[])], |(name, modes)| {
         let folder = Folder::new(name);
-        let mut children = four(&folder, modes, "900");
+        let mut children = four(&folder, modes, "600");
         wait_for_ticks(&folder.file("2"), 120);
         let mut killed = children.remove(2);
         killed.kill().unwrap();
@@ -149,7 +149,7 @@ fn a_killed_process_leaves_a_valid_replay_and_the_others_agree_when() {
         let all = pads(&replays[0]);
         for replay in &replays {
             let verdict = verify::<Shove>(replay, &Limits::default());
-            assert!(matches!(verdict, Verdict::Match { ticks: 900, .. }), "{name}: {verdict}");
+            assert!(matches!(verdict, Verdict::Match { ticks: 600, .. }), "{name}: {verdict}");
             assert_eq!(pads(replay), all);
         }
         // The replay of the killed process is a prefix of the others' replays.
@@ -198,7 +198,7 @@ fn wrong_seats_are_refused() {
 #[test]
 fn an_interrupted_process_leaves_and_its_replay_verifies() {
     let folder = Folder::new("interrupt");
-    let mut children = four(&folder, &["--lockstep"], "900");
+    let mut children = four(&folder, &["--lockstep"], "600");
     wait_for_ticks(&folder.file("2"), 120);
     let leaver = children.remove(2);
     let pid = leaver.id().to_string();

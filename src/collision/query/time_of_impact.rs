@@ -182,8 +182,8 @@ fn swept_pair(
     if between.is_longer_than(reach.saturating_add(reach_a)) {
         return Err(Unswept::Apart);
     }
-    let mover_a = SweptShape::new(core_a, reach_a, sweep_a, -between);
-    mover_a.zip(SweptShape::new(*b, reach_b, sweep_b, Vec2::ZERO)).ok_or(Unswept::TooFast)
+    let swept_a = SweptShape::new(core_a, reach_a, sweep_a, -between);
+    swept_a.zip(SweptShape::new(*b, reach_b, sweep_b, Vec2::ZERO)).ok_or(Unswept::TooFast)
 }
 
 fn advance(a: &SweptShape, b: &SweptShape, mut target: Fx, policy: StartPolicy) -> TimeOfImpact {

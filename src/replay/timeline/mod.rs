@@ -145,7 +145,7 @@ impl core::error::Error for SeekError {}
 /// ```
 pub struct Timeline<'a, G: Game> {
     file: &'a [u8],
-    playback: VerifiedReplay<'a, G>,
+    replay: VerifiedReplay<'a, G>,
     keyframes: Keyframes<'a>,
     trail: Trail<'a, G::Save>,
     played: u64,
@@ -161,38 +161,38 @@ impl<'a, G: Game> Timeline<'a, G> {
     /// The [`Verdict`] when nothing can be played: the file is malformed, exceeds a limit, belongs to another game, or
     /// its setup leads to another start state.
     pub fn open(file: &'a [u8], options: &TimelineOptions, limits: &Limits) -> Result<Self, Verdict> {
-        let playback = VerifiedReplay::<G>::open(file, limits)?;
-        let place = playback.place().clone();
+        let replay = VerifiedReplay::<G>::open(file, limits)?;
+        let place = replay.place().clone();
         let block_ticks = u64::from(place.inputs.reader().header().checkpoint_interval).max(1);
         let interval = u64::from(options.interval).max(1);
         let interval = if interval > block_ticks { interval - interval % block_ticks } else { interval };
-        let start = Keyframe { place, save: codec::encode(&playback.game().save()) };
+        let start = Keyframe { place, save: codec::encode(&replay.game().save()) };
         let keyframes = Keyframes::new(start, interval, options.bytes.min(KEYFRAMES_BYTES_MAX));
         let (trail, failed) = (Trail::default(), None);
-        Ok(Timeline { file, playback, keyframes, trail, played: 0, simulated: 0, failed })
+        Ok(Timeline { file, replay, keyframes, trail, played: 0, simulated: 0, failed })
     }
 
     /// The game at the current tick.
     #[must_use]
     pub fn game(&self) -> &G {
-        self.playback.game()
+        self.replay.game()
     }
 
     /// The game's physics world at the current tick, if it has one, for inspection.
     pub fn world(&mut self) -> Option<&World> {
-        self.playback.world()
+        self.replay.world()
     }
 
     /// The current tick.
     #[must_use]
     pub fn tick(&self) -> u64 {
-        self.playback.tick()
+        self.replay.tick()
     }
 
     /// Number of ticks in the complete blocks of the file.
     #[must_use]
     pub fn ticks(&self) -> u64 {
-        self.playback.ticks()
+        self.replay.ticks()
     }
 
     /// The tick up to which the replay has been played without a gap, with all checkpoints equal.
@@ -329,7 +329,7 @@ impl<'a, G: Game> Timeline<'a, G> {
         }
         match kept.filter(|(place, _)| place.tick == from) {
             Some((place, save)) => {
-                self.playback.go(save, place.clone());
+                self.replay.go(save, place.clone());
                 Ok(())
             }
             None => self.go_to_keyframe(tick),
@@ -341,12 +341,12 @@ impl<'a, G: Game> Timeline<'a, G> {
         let tick = place.tick;
         let save: G::Save = codec::decode(save)
             .map_err(|error| SeekError::Keyframe { tick, why: alloc::format!("{error}") })?;
-        let (back, here) = (self.game().save(), self.playback.place().clone());
-        self.playback.go(&save, place.clone());
-        if self.playback.agrees() {
+        let (back, here) = (self.game().save(), self.replay.place().clone());
+        self.replay.go(&save, place.clone());
+        if self.replay.agrees() {
             return Ok(());
         }
-        self.playback.go(&back, here);
+        self.replay.go(&back, here);
         Err(SeekError::Keyframe { tick, why: "its state does not match the replay's checkpoint".into() })
     }
 
@@ -356,13 +356,13 @@ impl<'a, G: Game> Timeline<'a, G> {
         let length = u64::try_from(length).unwrap_or(u64::MAX).max(2);
         let spacing = self.interval().div_ceil(length);
         if self.tick().is_multiple_of(spacing) {
-            self.trail.keep(self.playback.place().clone(), self.playback.game().save(), length);
+            self.trail.keep(self.replay.place().clone(), self.replay.game().save(), length);
         }
     }
 
     fn play_tick(&mut self) -> Result<(), SeekError> {
         let before = self.tick();
-        let result = self.playback.step();
+        let result = self.replay.step();
         let now = self.tick();
         self.simulated += now - before;
         if let Err(verdict) = result {
@@ -377,7 +377,7 @@ impl<'a, G: Game> Timeline<'a, G> {
         }
         if self.keyframes.is_due(now) {
             let save = codec::encode(&self.game().save());
-            self.keyframes.insert(Keyframe { place: self.playback.place().clone(), save });
+            self.keyframes.insert(Keyframe { place: self.replay.place().clone(), save });
         }
         Ok(())
     }

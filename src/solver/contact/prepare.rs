@@ -35,7 +35,8 @@ impl ContactSet {
         &mut self,
         source: &ContactSource<'_>,
         colouring: &Colouring,
-        (threads, parts): (&Threads, usize),
+        threads: &Threads,
+        parts: usize,
         machine: Machine,
     ) -> WarmStarts {
         let ContactSet { warm, cold, prospects, warm_starts, features } = self;

@@ -90,8 +90,8 @@ pub(super) fn solve<L: Lanes<N>, const N: usize>(parts: BatchParts<'_, Contacts,
         // A batch that was out of bounds once is likely to be out of bounds again in this tick.
         batch.unchecked = false;
     }
-    let careful = &mut Saturating::<L, N>::new(faults);
-    let solved: Solved<L, N> = iterate(batch, extras.as_deref_mut(), settings, bodies, careful);
+    let saturating = &mut Saturating::<L, N>::new(faults);
+    let solved: Solved<L, N> = iterate(batch, extras.as_deref_mut(), settings, bodies, saturating);
     solved.store(batch, extras, bodies);
 }
 

@@ -43,6 +43,6 @@ impl MovingBody {
         let mut settings: BodySettings = *body.settings();
         settings.linear_damping = settings.linear_damping.saturating_add(linear_drag);
         settings.angular_damping = settings.angular_damping.saturating_add(angular_drag);
-        MovingBody::dynamic(index, (step, spin_step), &settings, tuning)
+        MovingBody::dynamic(index, step, spin_step, &settings, tuning)
     }
 }

@@ -50,12 +50,13 @@ impl MovingBody {
                 })
             }
             BodyKind::Dynamic if body.has_mass() => {
-                Some(Self::dynamic(index, body.acceleration_step(tuning.rate), &body.settings, tuning))
+                let (force_step, spin_step) = body.acceleration_step(tuning.rate);
+                Some(Self::dynamic(index, force_step, spin_step, &body.settings, tuning))
             }
             // Gravity is a force, which does not move a body without mass.
             BodyKind::Dynamic => {
                 let settings = BodySettings { gravity_scale: Fx::ZERO, ..body.settings };
-                Some(Self::dynamic(index, (Vec2::ZERO, Speed::ZERO), &settings, tuning))
+                Some(Self::dynamic(index, Vec2::ZERO, Speed::ZERO, &settings, tuning))
             }
         }
     }
@@ -64,7 +65,8 @@ impl MovingBody {
     #[inline(always)]
     fn dynamic(
         index: u32,
-        (force_step, spin_step): (Vec2<Speed>, Speed),
+        force_step: Vec2<Speed>,
+        spin_step: Speed,
         settings: &BodySettings,
         tuning: &Tuning,
     ) -> Self {

@@ -34,7 +34,8 @@ pub(super) fn swept_body(
     slot: u32,
     body: &Body,
     extents: &Extents,
-    (end, turn): (Pose, i64),
+    end: Pose,
+    turn: i64,
     may_have_kinematic: bool,
 ) -> Option<SweptBody> {
     if !body.is_dynamic() || body.settings.continuous == Continuous::Off {

@@ -157,7 +157,7 @@ impl Sources<'_> {
             return None;
         }
         let extents = &self.extents[slot as usize];
-        continuous::swept_body(slot, body, extents, (end.pose, end.turn), self.may_have_kinematic)
+        continuous::swept_body(slot, body, extents, end.pose, end.turn, self.may_have_kinematic)
     }
 }
 

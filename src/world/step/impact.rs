@@ -103,21 +103,21 @@ impl SpeculativePair<'_> {
 }
 
 /// A point of a manifold that closes, and by how much in a whole tick.
-struct Closing {
+struct ClosingPoint {
     separation: Step,
     distance: i64,
 }
 
 /// The point of a manifold that closes first.
-fn soonest([a, b]: [&PredictedMotion; 2], manifold: &Manifold) -> Option<Closing> {
+fn soonest([a, b]: [&PredictedMotion; 2], manifold: &Manifold) -> Option<ClosingPoint> {
     let closing_at = approach(a, b, manifold);
     let points = manifold
         .points()
         .iter()
-        .map(|point| Closing { separation: point.separation, distance: closing_at(point) });
+        .map(|point| ClosingPoint { separation: point.separation, distance: closing_at(point) });
     // s1 / d1 < s2 / d2 for positive d.
     points.filter(|point| point.distance > 0).reduce(|first, point| {
-        let time = |point: &Closing, other: &Closing| {
+        let time = |point: &ClosingPoint, other: &ClosingPoint| {
             i128::from(point.separation.to_bits()) * i128::from(other.distance)
         };
         if time(&point, &first) < time(&first, &point) { point } else { first }
@@ -126,7 +126,7 @@ fn soonest([a, b]: [&PredictedMotion; 2], manifold: &Manifold) -> Option<Closing
 
 /// The fraction of the tick at which a point has closed, in units of [`Unit`], from that at which its separation was
 /// measured. `None` after the end of the tick.
-fn time_of_touch(point: &Closing, from: i64) -> Option<i64> {
+fn time_of_touch(point: &ClosingPoint, from: i64) -> Option<i64> {
     let rest = (i64::from(point.separation.to_bits()) << Unit::FRAC_NBITS) / point.distance;
     let time = from.saturating_add(rest);
     (0..=Unit::ONE.to_bits().into()).contains(&time).then_some(time)

@@ -97,7 +97,7 @@ impl World {
         let first_sub_step = state.tick.wrapping_mul(settings.sub_steps.into());
         // Without the budget for it nobody looks at the result.
         let sub_steps = if can_solve { settings.sub_steps } else { 0 };
-        solver.sub_steps((first_sub_step, sub_steps), &tuning, &mut state.contacts);
+        solver.sub_steps(first_sub_step, sub_steps, &tuning, &mut state.contacts);
         solver.store_joints(&mut state.joints);
 
         begin(Phase::Finalise, PhaseView::of(state, scratch));

@@ -200,7 +200,7 @@ impl Unit {
                 hinges.blocked_wanted(number, pass, poses, context, faults).map(i64::from)
             }
             Source::HingeLimit(number, side) => {
-                [hinges.blocked_limit_wanted((number, side), pass, context, faults), 0, 0]
+                [hinges.blocked_limit_wanted(number, side, pass, context, faults), 0, 0]
             }
             Source::HingeDrive(number) => [hinges.blocked_drive_wanted(number, context, faults), 0, 0],
             Source::Part(ListPart::Row(at)) if self.is_limit() => {

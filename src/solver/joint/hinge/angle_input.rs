@@ -160,14 +160,14 @@ pub(super) struct LimitInput {
 }
 
 impl AngleInput {
-    /// The rows of a hinge, in a world with `rate` sub-steps per second. What it holds rigidly has the softness
-    /// `rigid`.
+    /// The rows of a hinge, in a world with `rate` sub-steps per second. Rigid rows have the softness `rigid`.
     pub(in super::super) fn new(
         parts: &AngleParts,
         ends: [&HingeBody; 2],
         impulses: &JointImpulses,
         memo: &mut Memo,
-        (rate, rigid): (u32, &Softness),
+        rate: u32,
+        rigid: &Softness,
     ) -> Self {
         let Angular { key: _, e, f, s, max, drive_max } = memo.angular(AngularKey {
             bodies: ends.map(|end| (end.inverse_gyration, end.mass)),

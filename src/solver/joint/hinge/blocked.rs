@@ -138,7 +138,8 @@ impl HingeSet {
     /// The change of the impulse of a limit that one iteration would make if the impulse were 0.
     pub(in super::super) fn blocked_limit_wanted(
         &self,
-        (number, side): (usize, usize),
+        number: usize,
+        side: usize,
         pass: Pass,
         context: &StepContext<'_>,
         faults: &mut Faults,

@@ -37,8 +37,8 @@ impl HingeSet {
         let angle = if parts.is_empty() { None } else { Some(count(angles)) };
         let input = Input::new(slot, joint, ends, angle, tuning);
         if angle.is_some() {
-            let rigid = (tuning.rate, &input.softness);
-            angles.push(AngleInput::new(parts, ends, &joint.impulses, memo, rigid));
+            let rows = AngleInput::new(parts, ends, &joint.impulses, memo, tuning.rate, &input.softness);
+            angles.push(rows);
         }
         inputs.push(input);
         count(inputs) - 1

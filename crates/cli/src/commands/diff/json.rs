@@ -41,12 +41,12 @@ pub(super) fn document([a, b]: [&Path; 2], found: &Comparison) -> String {
     document.to_string()
 }
 
-fn side(file: &Path, course: &Trajectory) -> Json {
+fn side(file: &Path, trajectory: &Trajectory) -> Json {
     json!({
         "file": file.display().to_string(),
-        "seats": course.seats,
-        "equal_until": course.equal_until,
-        "diverges": course.diverges,
+        "seats": trajectory.seats,
+        "equal_until": trajectory.equal_until,
+        "diverges": trajectory.diverges,
     })
 }
 

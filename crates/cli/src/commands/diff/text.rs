@@ -33,8 +33,8 @@ impl fmt::Display for Text<'_> {
 
 impl Text<'_> {
     fn heads(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (side, course) in Side::BOTH.into_iter().zip(&self.found.trajectories) {
-            writeln!(f, "{side}: {}{}", Shown(self.sides[side.index()]), Seats(course))?;
+        for (side, trajectory) in Side::BOTH.into_iter().zip(&self.found.trajectories) {
+            writeln!(f, "{side}: {}{}", Shown(self.sides[side.index()]), Seats(trajectory))?;
         }
         Ok(())
     }
@@ -69,9 +69,13 @@ impl Text<'_> {
                 write!(f, "\nplayed again up to tick {until}: both kept to the rules")?
             }
             (Some(until), Blame::Side(side)) => {
-                let course = &found.trajectories[side.index()];
-                write!(f, "\nplayed again up to tick {until}: {BAD}{side} diverged{BAD:#}{}", Seats(course))?;
-                course.diverges.map_or(Ok(()), |tick| write!(f, " at tick {tick}"))?;
+                let trajectory = &found.trajectories[side.index()];
+                write!(
+                    f,
+                    "\nplayed again up to tick {until}: {BAD}{side} diverged{BAD:#}{}",
+                    Seats(trajectory)
+                )?;
+                trajectory.diverges.map_or(Ok(()), |tick| write!(f, " at tick {tick}"))?;
             }
             (Some(until), Blame::Both) => {
                 let [a, b] = [0, 1].map(|side: usize| found.trajectories[side].diverges.unwrap_or_default());
