@@ -3,9 +3,9 @@
 //! A voter that sees a higher ballot promises it and freezes its acknowledgement. The proposer of a ballot that a
 //! quorum promised chooses the change: what the highest ballot among the promisers has accepted, or its own
 //! (`proposal.rs`). A voter accepts a change of the ballot that it promised, or of a higher one, if it holds all
-//! ticks before the cut. A change that a quorum of the old view accepted in one ballot is decided, whoever sees that
-//! installs it. As every final tick was acknowledged by a quorum before its members froze, the cut, the largest
-//! frozen acknowledgement of a quorum, lies at or above every final tick.
+//! ticks before the cut. A change is decided once a quorum of the old view has accepted it in one ballot. Every peer
+//! that sees this installs it. As every final tick was acknowledged by a quorum before its members froze, the cut, the
+//! largest frozen acknowledgement of a quorum, lies at or above every final tick.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -28,8 +28,9 @@ pub(super) struct Agreement {
     pub(super) proposal: Option<Proposal>,
     /// No own ballot starts before this time.
     pub(super) not_before: u64,
-    /// Highest round that was seen, and that at the start of the view.
+    /// Highest ballot round that was seen.
     pub(super) round: u32,
+    /// `round` at the start of the view.
     pub(super) base_round: u32,
     /// Since when somebody wants a change.
     pub(super) wanted_since: Option<u64>,

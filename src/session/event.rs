@@ -31,7 +31,7 @@ pub enum Status {
     Playing,
     /// Cannot hear a majority, which alone can go on. Somebody without a seat may ask another contact.
     Paused,
-    /// The others went on without it; it asks for its seat again.
+    /// The others went on without this peer, which asks for its seat again.
     Dropped,
     /// The others removed it for good.
     Kicked,

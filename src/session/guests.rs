@@ -145,7 +145,7 @@ impl Guests {
                 packets.push((guest.id, chunk));
             }
         }
-        // Another one comes first next time, so that all get their share.
+        // The next call begins with another guest, so that each gets a share.
         if !self.list.is_empty() {
             self.list.rotate_left(1);
         }

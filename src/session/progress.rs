@@ -1,4 +1,4 @@
-//! Ticks on their way to finality.
+//! How far the ticks are complete, acknowledged and final.
 //!
 //! A tick is *complete* when all inputs of the view's spans are here, also if nobody plays in it while somebody does
 //! later. It is *acknowledged* when it is complete and no promise stands, and *final* when a quorum of this view

@@ -184,7 +184,7 @@ impl Colouring {
         })
     }
 
-    /// All constraints in the last order: the overflow, then colour by colour.
+    /// All constraints in the order of the last sort: the overflow, then colour by colour.
     pub(super) fn order(&self) -> &[u32] {
         &self.order
     }
@@ -255,7 +255,7 @@ impl Ranks {
     }
 }
 
-/// Number of places of constraints that are not cold, and of cold ones.
+/// Number of places of warm constraints. Cold constraints have as many, after them.
 const PLACES: u8 = 1 + 2 * COLOURS_MAX;
 
 /// The place in the order of a single thread: the overflow comes first, then the large and the small constraints of each

@@ -228,7 +228,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_JOINT_ANGULAR_SPRING 8192
 /* Verdict: the setup and the inputs lead to every checkpoint and to the end of the file. */
 #define LS2D_MATCH 0
-/* Verdict: the trailer states something else about the end. */
+/* Verdict: a claim or the final hash in the trailer differs from that of the game. */
 #define LS2D_CLAIM_MISMATCH 1
 /* Verdict: the simulation diverges from the recorded game. */
 #define LS2D_DIVERGED 2

@@ -11,7 +11,7 @@ use crate::status::{Outcome, value};
 constants! {
     /// Verdict: the setup and the inputs lead to every checkpoint and to the end of the file.
     MATCH = 0, "LS2D_MATCH";
-    /// Verdict: the trailer states something else about the end.
+    /// Verdict: a claim or the final hash in the trailer differs from that of the game.
     CLAIM_MISMATCH = 1, "LS2D_CLAIM_MISMATCH";
     /// Verdict: the simulation diverges from the recorded game.
     DIVERGED = 2, "LS2D_DIVERGED";

@@ -356,7 +356,7 @@ impl Unit {
         [lower, upper].map(|bound| product(i64::from(bound.to_bits()) << EXTRA_BITS, self.stiffened))
     }
 
-    /// The impulse within the bounds that is nearest to one, or has its direction.
+    /// Limits an impulse to the bounds: clamps that of a row, shortens that of a point in its direction.
     pub(super) fn within_bounds(&self, impulse: [i64; 2], hinges: &HingeSet, list: &JointList) -> [i64; 2] {
         match self.source {
             Source::Part(ListPart::Point(at)) => {
