@@ -35,7 +35,7 @@ pub enum PeerError {
         /// Bytes that are possible.
         possible: usize,
     },
-    /// The number of inputs is not that of the own seats.
+    /// The number of inputs is not that of your own seats.
     InputCount {
         /// Number of own seats.
         seats: usize,

@@ -24,9 +24,9 @@ pub(super) struct Agreement {
     pub(super) promised: Option<Ballot>,
     pub(super) promised_at: u64,
     pub(super) accepted: Option<(Ballot, Arc<Change>)>,
-    /// The own ballot, if one is under way.
+    /// This peer's ballot, if one is under way.
     pub(super) proposal: Option<Proposal>,
-    /// No own ballot starts before this time.
+    /// This peer starts no ballot before this time.
     pub(super) not_before: u64,
     /// Highest ballot round that was seen.
     pub(super) round: u32,
@@ -166,7 +166,7 @@ impl Session {
         agreement.base_round = agreement.round;
         self.peers.follow(&self.view, self.clock.active);
         self.log.follow(&self.view.spans);
-        // Views may have been skipped: everything beyond the own final tick is determined again.
+        // Views may have been skipped: everything beyond this peer's final tick is determined again.
         let (complete, moved_at) = (self.progress.complete, self.progress.moved_at);
         if !self.config.has(Fault::KeepComplete) {
             self.progress.complete = self.progress.fin;

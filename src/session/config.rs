@@ -213,7 +213,7 @@ pub enum Fault {
     KeepComplete,
     /// No rows and inputs of others are passed on.
     NoRelay,
-    /// The own idea of the end counts, not the decided one.
+    /// The end that this peer wants counts, not the decided one.
     LocalEnd,
     /// Ballots start while a promise stands.
     Duel,

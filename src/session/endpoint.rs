@@ -187,7 +187,7 @@ impl Endpoint {
         }
     }
 
-    /// Opens a match. `seats` are the own seats, one bit for each; none for a dedicated server.
+    /// Opens a match. `seats` are your own seats, one bit for each; none for a dedicated server.
     ///
     /// # Errors
     /// A parameter that is out of its range.

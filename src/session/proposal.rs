@@ -187,7 +187,7 @@ impl Session {
         (count > 0 && chosen.count_ones() == u32::from(count)).then_some(chosen)
     }
 
-    /// Goes on with the own ballot. Returns whether another step may be possible.
+    /// Goes on with this peer's ballot. Returns whether another step may be possible.
     pub(super) fn conduct_ballot(&mut self) -> bool {
         let Some(mut proposal) = self.agreement.proposal.take() else { return false };
         let active = self.clock.active;

@@ -1,4 +1,4 @@
-//! What is sent: the own row to everybody, and to each receiver what it lacks.
+//! What is sent: this peer's row to every peer, and to each receiver what it lacks.
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
@@ -18,7 +18,7 @@ pub(super) struct Outbox {
     pub(super) packets: VecDeque<(PeerId, Vec<u8>)>,
     /// When packets are sent at the latest.
     next_at: u64,
-    /// Whether there are new own inputs.
+    /// Whether this peer has issued new inputs.
     pub(super) urgent: bool,
     version: u32,
 }
@@ -47,7 +47,7 @@ impl Session {
         many * u64::from(self.config.tick_micros).min(INTERVAL_MAX)
     }
 
-    /// Brings those parts of the own row up to date that the agreement reads.
+    /// Brings those parts of this peer's row up to date that the agreement reads.
     pub(super) fn refresh_row(&mut self) {
         let Some(own) = self.peers.list.first_mut() else { return };
         let row = own.row.get_or_insert_with(|| Row::new(0));
@@ -188,7 +188,8 @@ impl Session {
         }
     }
 
-    /// The inputs of a span that a peer lacks, oldest first: the own ones, and those of others whom it does not hear.
+    /// The inputs of a span that a peer lacks, oldest first: those of this peer, and those of others that the receiver
+    /// does not hear.
     fn run_for(&self, receiver: &Remote, index: usize) -> Option<(u16, Tick, &[u8])> {
         let span = self.view.spans.get(index)?;
         let start = self.lacks(receiver, index);

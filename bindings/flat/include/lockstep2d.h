@@ -1446,9 +1446,9 @@ ls2d_status ls2d_match_update(uint32_t handle, uint64_t now);
 /* Writes 1 if it is time for `ls2d_match_advance`, otherwise 0. */
 ls2d_status ls2d_match_is_due(uint32_t handle, uint64_t now, uint32_t *due);
 
-/* Issues the inputs of the own seats, in the order of the seats, and plays a tick if that is possible: the
+/* Issues the inputs of your own seats, in the order of the seats, and plays a tick if that is possible: the
  * requests that follow say so. Writes 1 to `issued` if the inputs were issued; otherwise they may be used again.
- * Without own seats there are no bytes. */
+ * Without seats of your own there are no bytes. */
 ls2d_status ls2d_match_advance(uint32_t handle, uint64_t now, const uint8_t *inputs, size_t size, uint32_t *issued);
 
 /* The next request. Requests have to be fulfilled in order, before the next call of `ls2d_match_advance`. For
