@@ -32,7 +32,7 @@ pub(super) struct Agreement {
     pub(super) round: u32,
     /// `round` at the start of the view.
     pub(super) base_round: u32,
-    /// Since when somebody wants a change.
+    /// Since when a peer wants a change.
     pub(super) wanted_since: Option<u64>,
 }
 
@@ -116,7 +116,7 @@ impl Session {
         ballot / 5 + self.random.below(ballot / 2)
     }
 
-    /// Accepts what somebody accepted in the highest ballot.
+    /// Accepts the change that another voter accepted in the highest ballot.
     fn accept(&mut self) -> bool {
         let rows = self.peers.rows(self.view.number);
         let accepted = rows.filter_map(|(_, _, row)| row.accepted.as_ref());

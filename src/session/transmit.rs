@@ -27,9 +27,9 @@ pub(super) struct Outbox {
 const PACKETS_MAX: usize = 4096;
 /// Peers without a vote are served for this many microseconds after their last packet.
 const SERVED: u64 = 5_000_000;
-/// If somebody lacks more ticks than this of a peer that it hears, others help.
+/// If a peer lacks more ticks than this of another one that it hears, the others help.
 const HELP_TICKS: Tick = 20;
-/// Whoever is lost tries all peers with every row whose version is a multiple of this.
+/// A peer that has lost contact tries all peers with every row whose version is a multiple of this.
 const TRY_ROWS: u32 = 8;
 /// Longest time between packets in microseconds.
 const INTERVAL_MAX: u64 = 100_000;
@@ -63,7 +63,7 @@ impl Session {
         own.contact = self.clock.active;
     }
 
-    /// Brings the whole own row up to date, as a new version.
+    /// Brings this peer's whole row up to date, as a new version.
     fn renew_row(&mut self) {
         self.refresh_row();
         let version = self.outbox.version.saturating_add(1);
@@ -96,7 +96,7 @@ impl Session {
         }
     }
 
-    /// Sends to everybody, if it is time.
+    /// Sends to every peer that is served, if it is time.
     pub(super) fn transmit(&mut self) {
         let now = self.clock.now;
         let interval = self.send_interval();
@@ -123,7 +123,7 @@ impl Session {
         }
     }
 
-    /// Whether packets go to a peer. Somebody who has lost contact, or its seat, tries everybody whom it knows from
+    /// Whether packets go to a peer. If this peer has lost contact, or its seat, it tries all peers that it knows from
     /// time to time.
     fn is_served(&self, remote: &Remote) -> bool {
         let tries = self.outbox.version.is_multiple_of(TRY_ROWS)
@@ -205,7 +205,7 @@ impl Session {
         Some((u16::try_from(index).ok()?, start, inputs))
     }
 
-    /// Rows of others whom the receiver does not hear, beginning with another one each time.
+    /// Rows of others that the receiver does not hear, beginning with another one each time.
     fn foreign_rows(&self, receiver: &Remote) -> Vec<&Remote> {
         if self.config.has(Fault::NoRelay) {
             return Vec::new();
