@@ -28,7 +28,8 @@ pub enum PeerError {
     Record(RecordError),
     /// An option is out of its range.
     Config(ConfigError),
-    /// An input takes another number of bytes than [`PeerOptions::input_bytes`](super::PeerOptions::input_bytes) allows.
+    /// An input takes another number of bytes than [`PeerOptions::input_bytes`](super::PeerOptions::input_bytes)
+    /// allows.
     InputLength {
         /// Bytes of the encoded input.
         bytes: usize,

@@ -5,8 +5,9 @@
 //! packets of IPv6 with its headers (1280).
 //!
 //! **A nonce must never be used twice with one key.** Within a process the counter sees to that. Across processes and
-//! restarts the sender does: it is a random number of 64 bits for each start of a process, so that among `n` starts with
-//! the same key two are equal with a probability of `n^2 / 2^65`: for 10 000 starts, 3 in 10^12. Nothing has to be stored.
+//! restarts the sender does: it is a random number of 64 bits for each start of a process, so that among `n` starts
+//! with the same key two are equal with a probability of `n^2 / 2^65`: for 10 000 starts, 3 in 10^12. Nothing has to be
+//! stored.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -124,8 +125,8 @@ fn nonce(sender: u64, counter: u64) -> XNonce {
 }
 
 impl<T> Sealed<T> {
-    /// Seals the packets of a transport. The key has to be random and the same for all members of the match; a new match
-    /// gets a new one.
+    /// Seals the packets of a transport. The key has to be random and the same for all members of the match; a new
+    /// match gets a new one.
     #[cfg(all(feature = "std", not(all(target_family = "wasm", target_os = "unknown"))))]
     pub fn new(inner: T, key: [u8; 32]) -> Self {
         let [sender] = super::options::random_numbers();

@@ -1310,9 +1310,9 @@ ls2d_status ls2d_mover_init(uint32_t kind, ls2d_mover *mover);
 ls2d_status ls2d_mover_state_init(ls2d_fx x, ls2d_fx y, ls2d_mover_state *state);
 
 /* Moves a character for one tick at its velocity, among the shapes that a filter sees. It slides along what it
- * meets, and moving ground carries it. The game adds gravity to its velocity. The world does not change. `from` and
- * `state` may be the same. `met` are the surfaces that it has met, in order; if the buffer is too short, the state is
- * written nevertheless. */
+ * meets, and moving ground carries it. The game adds gravity to its velocity. The world does not change. `from`
+ * and `state` may be the same. `met` are the surfaces that it has met, in order; if the buffer is too short, the
+ * state is written nevertheless. */
 ls2d_status ls2d_move_character(uint32_t world, const ls2d_mover *mover, const ls2d_mover_state *from, const ls2d_query_filter *filter, ls2d_mover_state *state, ls2d_mover_plane *met, size_t capacity, size_t *count);
 
 /* ---- Snapshots ---- */

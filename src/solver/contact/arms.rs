@@ -61,8 +61,8 @@ impl<L: Lanes<N>, const N: usize> Places<L, N> {
     }
 }
 
-/// Changes a place by as much as makes its arm equal that of the last tick, as far as the difference is below the bound.
-/// Returns whether both coordinates are. Stores the arm to be kept.
+/// Changes a place by as much as makes its arm equal that of the last tick, as far as the difference is below the
+/// bound. Returns whether both coordinates are. Stores the arm to be kept.
 #[inline(always)]
 fn keep<L: Lanes<N>, const N: usize>(
     last: L::Int,

@@ -99,7 +99,8 @@ fn shares_of_friction<L: Lanes<N>, const N: usize>(batch: &Batch<N>) -> [L::Int;
     [L::sub(whole, rest), rest]
 }
 
-/// Where impulses are stored: the contacts of the state, and for each of them whether its shapes have pushed each other.
+/// Where impulses are stored: the contacts of the state, and for each of them whether its shapes have pushed each
+/// other.
 #[derive(Clone, Copy)]
 pub(in crate::solver) struct ContactStore<'a> {
     contacts: Shared<'a, Contact>,

@@ -1,5 +1,5 @@
-//! `keygen`, `sign` and `verify --keys`: a signature holds for one game, however its replay is encoded, and nothing else
-//! is accepted.
+//! `keygen`, `sign` and `verify --keys`: a signature holds for one game, however its replay is encoded, and nothing
+//! else is accepted.
 
 use std::fs;
 
