@@ -28,12 +28,12 @@ const WINDOW: u64 = 2048;
 /// Senders that are remembered. The one that was silent for longest gives way.
 const SENDERS_MAX: usize = 1024;
 
-/// A transport whose packets only those can read and write who have the key of the match.
+/// A transport whose packets can be read and written only with the key of the match.
 ///
-/// Dropped are packets that were forged, changed or cut short, that arrive a second time, and that come back to their
-/// sender. Addresses and sizes are visible. All members have the same key: a member can pose as another one, and a
-/// packet that is redirected to another member is accepted there, as what a member said. A process that starts again
-/// does not know which packets arrived before; old ones do no harm to a session, whose rows have versions.
+/// Packets are dropped if they were forged, changed or cut short, arrive a second time, or come back to their sender.
+/// Addresses and sizes are visible. All members have the same key, so a member can pose as another one, and a member
+/// accepts a packet that was meant for another member. A process that starts again does not know which packets arrived
+/// before. Old ones do no harm to a session, whose rows have versions.
 ///
 /// ```
 /// use lockstep2d::peer::{LinkConditions, Network, Sealed, Transport};

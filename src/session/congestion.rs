@@ -72,7 +72,7 @@ impl Congestion {
         self.budget > 0
     }
 
-    /// Notes a chunk that is sent; `again` if it is taken for lost.
+    /// Notes that a chunk is sent. `again` if it was sent before and is taken for lost.
     pub(super) fn note_sent(&mut self, bytes: u64, again: bool) {
         self.budget = self.budget.saturating_sub(bytes);
         self.sent += 1;

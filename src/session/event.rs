@@ -25,7 +25,7 @@ pub enum Status {
     Joining,
     /// Follows the match and asks for no seat.
     Watching,
-    /// Has a seat, and too few seats are taken for the first tick.
+    /// Has a seat. The match has not begun, because too few seats are taken.
     Waiting,
     /// Plays.
     Playing,

@@ -862,7 +862,7 @@ typedef struct ls2d_joint_event {
     ls2d_joint joint;
     /* Force on body B in N. */
     ls2d_vec2 force;
-    /* Torque on body B about its anchor in N m. */
+    /* Torque in N m on body B about its anchor. */
     ls2d_fx torque;
     /* 1 if the joint broke, otherwise 0. */
     uint64_t broke;
@@ -1128,16 +1128,16 @@ ls2d_status ls2d_enable_joint(uint32_t target, ls2d_joint joint);
 /* Stops a joint from acting. */
 ls2d_status ls2d_disable_joint(uint32_t target, ls2d_joint joint);
 
-/* Pushes a body during the next tick: a force in N at a point of the world in metres. */
+/* Pushes a body during the next tick by a force in N at a point of the world, in metres. */
 ls2d_status ls2d_apply_force(uint32_t target, ls2d_body body, ls2d_fx force_x, ls2d_fx force_y, ls2d_fx x, ls2d_fx y);
 
-/* Turns a body during the next tick: a torque in N m. */
+/* Turns a body during the next tick by a torque in N m. */
 ls2d_status ls2d_apply_torque(uint32_t target, ls2d_body body, ls2d_fx torque);
 
-/* Changes the velocity of a body: an impulse in N s at a point of the world in metres. */
+/* Changes the velocity of a body by an impulse in N s at a point of the world, in metres. */
 ls2d_status ls2d_apply_impulse(uint32_t target, ls2d_body body, ls2d_fx impulse_x, ls2d_fx impulse_y, ls2d_fx x, ls2d_fx y);
 
-/* Changes the angular velocity of a body: an angular impulse in N m s. */
+/* Changes the angular velocity of a body by an angular impulse in N m s. */
 ls2d_status ls2d_apply_angular_impulse(uint32_t target, ls2d_body body, ls2d_fx impulse);
 
 /* Sets the velocity of a body's centre of mass in m/s, and its angular velocity in rad/s. */

@@ -162,7 +162,7 @@ impl<G: Game + 'static> Viewer<G> {
         self
     }
 
-    /// Sets the layers that are on at the start. Without it, outlines and joints are.
+    /// Sets the layers that are on at the start. The default is outlines and joints.
     #[must_use]
     pub fn layers(self, layers: Layers) -> Self {
         Viewer { layers, ..self }

@@ -46,8 +46,8 @@ impl World {
     /// Names a body for people who read reports, or takes its name away. No result of the simulation depends on it.
     ///
     /// # Errors
-    /// [`WorldError::StaleBody`] if it is not in the world, [`WorldError::NameInvalid`] if the name was decoded from
-    /// bytes and is none.
+    /// [`WorldError::StaleBody`] if the body is not in the world, [`WorldError::NameInvalid`] if the name was decoded
+    /// from bytes and is not a valid one.
     pub fn set_name(&mut self, id: BodyId, name: Option<Name>) -> Result<(), WorldError> {
         name.map_or(Ok(()), |name| name.validate())?;
         self.state.bodies.get_mut(id).ok_or(WorldError::StaleBody(id))?.name = name.map(Box::new);

@@ -307,7 +307,7 @@ impl Unit {
         }
     }
 
-    /// The body of a side and the root of its mass fraction, unless no impulse changes it.
+    /// The body of a side and the root of its mass fraction. `None` if no impulse changes the body.
     pub(super) fn moved(&self, side: usize) -> Option<(u32, i64)> {
         (self.bodies[side] != GROUND).then_some((self.bodies[side], self.mobility.roots[side]))
     }
