@@ -4,10 +4,10 @@
 //! sender, eight zero bytes and counter. Packets of at most 1200 bytes become at most 1232, which fit into the smallest
 //! packets of IPv6 with its headers (1280).
 //!
-//! **A nonce must never be used twice with one key.** Within a process the counter sees to that. Across processes and
-//! restarts the sender does: it is a random number of 64 bits for each start of a process, so that among `n` starts
-//! with the same key two are equal with a probability of `n^2 / 2^65`: for 10 000 starts, 3 in 10^12. Nothing has to be
-//! stored.
+//! **A nonce must never be used twice with one key.** Within a process the counter ensures it. Across processes and
+//! restarts the number of the sender does: it is a random number of 64 bits for each start of a process, so that among
+//! `n` starts with the same key two are equal with a probability of `n^2 / 2^65`: for 10 000 starts, 3 in 10^12.
+//! Nothing has to be stored.
 
 use alloc::vec::Vec;
 use core::fmt;

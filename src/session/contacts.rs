@@ -87,7 +87,7 @@ impl Contacts {
         true
     }
 
-    /// Takes a refusal: the next one is asked.
+    /// Takes a refusal: the next peer is asked.
     pub(super) fn take_refusal(&mut self, nonce: u64) {
         if self.asked.is_some_and(|asked| asked.nonce == nonce) {
             self.asked = None;
