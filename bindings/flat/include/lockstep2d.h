@@ -297,7 +297,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MATCH_PLAYING 3
 /* Status: cannot hear a majority. */
 #define LS2D_MATCH_PAUSED 4
-/* Status: the others went on without it; it asks for its seat again. */
+/* Status: the others went on without this peer, which asks for its seat again. */
 #define LS2D_MATCH_DROPPED 5
 /* Status: removed for good. */
 #define LS2D_MATCH_KICKED 6

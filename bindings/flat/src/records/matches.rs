@@ -80,7 +80,7 @@ constants! {
     MATCH_PLAYING = 3, "LS2D_MATCH_PLAYING";
     /// Status: cannot hear a majority.
     MATCH_PAUSED = 4, "LS2D_MATCH_PAUSED";
-    /// Status: the others went on without it; it asks for its seat again.
+    /// Status: the others went on without this peer, which asks for its seat again.
     MATCH_DROPPED = 5, "LS2D_MATCH_DROPPED";
     /// Status: removed for good.
     MATCH_KICKED = 6, "LS2D_MATCH_KICKED";
