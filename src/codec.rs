@@ -92,10 +92,10 @@ const SLACK: usize = 16;
 
 /// Decodes a value whose canonical encoding is all of `bytes`.
 ///
-/// A length prefix is not trusted. For a string, the allocation is at most 16 bytes more than the bytes given. For a list
-/// of values it is at most a small multiple of the number of bytes given, plus up to 1 MiB for each list that has begun,
-/// before its values are read. Two kinds of types defeat these limits and must not be decoded from untrusted bytes: lists
-/// of values that take no bytes, whose length is unbounded, and recursive types, whose depth is unbounded.
+/// A length prefix is not trusted. For a string, the allocation is at most 16 bytes more than the bytes given. For a
+/// list of values it is at most a small multiple of the number of bytes given, plus up to 1 MiB for each list that has
+/// begun, before its values are read. Two kinds of types defeat these limits and must not be decoded from untrusted
+/// bytes: lists of values that take no bytes, whose length is unbounded, and recursive types, whose depth is unbounded.
 ///
 /// # Errors
 /// [`DecodeError`] if the bytes are not exactly the encoding of one such value.
@@ -168,8 +168,8 @@ mod tests {
         }
     }
 
-    /// The allocation is limited by the number of bytes given: a length that exceeds it by more than the slack is rejected
-    /// because of its size, not because of the missing bytes.
+    /// The allocation is limited by the number of bytes given: a length that exceeds it by more than the slack is
+    /// rejected because of its size, not because of the missing bytes.
     #[test]
     fn an_announced_length_is_limited_by_how_much_there_is() {
         for count in [8, 4 << 10, (4 << 10) + 1, 1 << 20] {

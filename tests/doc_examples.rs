@@ -2,8 +2,8 @@
 //!
 //! A type is shown if Rust code in the documentation of its own top-level module uses its name: best in its own
 //! documentation, or where it is met, as the fields of an event are. A smaller crate counts as one module. Imports do
-//! not count, nor does what readers do not see: hidden lines, comments and literals. That the code compiles and is right
-//! is the matter of `cargo test --doc`.
+//! not count, nor does what readers do not see: hidden lines, comments and literals. That the code compiles and is
+//! right is the matter of `cargo test --doc`.
 //!
 //! All types that are declared `pub` count, because the lint `unreachable_pub` refuses those that no user can name.
 

@@ -180,7 +180,8 @@ pub trait Engine {
     /// Size of the saved world as a file, in bytes.
     fn saved_bytes(&self, slot: usize) -> usize;
 
-    /// Memory that one more save takes, in bytes: that of the save in a slot. The saves of Box2D and rapier2d are files.
+    /// Memory that one more save takes, in bytes: that of the save in a slot. The saves of Box2D and rapier2d are
+    /// files.
     fn held_bytes(&self, slot: usize) -> usize {
         self.saved_bytes(slot)
     }

@@ -59,8 +59,8 @@ function Driver:receive(now, from, packet)
     ls.match_receive(self.match, now * 1e6, from, #from, packet, #packet)
 end
 
---- Passes the time, in seconds, and plays what is due with the inputs that `read(seats)` returns: a string for the own
---- seats, of which there are so many. Returns what happened, as a list of tables.
+--- Passes the time, in seconds, and plays what is due with the inputs that `read(seats)` returns: a string for your
+--- own seats, of which there are so many. Returns what happened, as a list of tables.
 function Driver:update(now, read)
     ls.match_update(self.match, now * 1e6)
     local events = {}

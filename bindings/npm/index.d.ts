@@ -634,7 +634,7 @@ export class MatchDriver<Saved = unknown> {
     readonly match: Match;
     readonly tick: number;
     receive(now: number, from: Uint8Array, packet: Uint8Array): void;
-    /** Call it every few milliseconds. `readInputs` returns the inputs of the own seats, one after another. */
+    /** Call it every few milliseconds. `readInputs` returns the inputs of your own seats, one after another. */
     update(now: number, readInputs: (seats: number[]) => Uint8Array): MatchEvent[];
 }
 

@@ -314,7 +314,7 @@ impl Generator {
         Command::AddJointEach { joint, ends }
     }
 
-    /// A changed joint: rarely other bodies, which is refused.
+    /// A change of a joint. It rarely names other bodies, which the world refuses.
     fn altered_joint(&mut self, source: &mut Source<'_>, world: &World) -> Command {
         let joint = self.joint(source, world);
         let mut def = self.joint_def(source, world);

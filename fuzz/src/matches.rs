@@ -1,5 +1,5 @@
-//! Peers play a match while an attacker, who reads all packets, sends others: noise, and packets of the match truncated,
-//! repeated or changed, with the checksum as it is or repaired, from any address.
+//! Peers play a match while an attacker, who reads all packets, sends others: noise, and packets of the match
+//! truncated, repeated or changed, with the checksum as it is or repaired, from any address.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;

@@ -33,7 +33,7 @@ pub fn shape(source: &mut Source<'_>) -> ShapeDef {
     def
 }
 
-/// An area: each of its effects in a third of all, mostly moderate, sometimes beyond what is allowed.
+/// An area. Each effect occurs in a third or a half of all areas, mostly moderate, sometimes beyond what is allowed.
 pub fn area(source: &mut Source<'_>) -> Area {
     let mut area = Area::new();
     if source.one_in(3) {

@@ -1,5 +1,5 @@
-//! Work units are honest in random worlds, too: no setup and no tick takes more than a microsecond for each unit that it
-//! is charged. `tests/work_units` of the library has the worlds that are made to be expensive.
+//! Work units are honest in random worlds, too: no setup and no tick takes more than a microsecond for each unit that
+//! it is charged. `tests/work_units` of the library has the worlds that are made to be expensive.
 //!
 //! `WORLDS` is the number of worlds, 200 by default.
 

@@ -1,18 +1,17 @@
 //! Areas: what a sensor does to the bodies in it, as data.
 //!
-//! An area fills its shape with a medium. Two shares say how much of a body is in it: the area of the body's shapes that
-//! is in the shape of the area, in m², and the share of that in all of the body's area. A body without area is measured
-//! by the length of its lines. With the share `s`, the part `A` in the area, its centre of area `c` and the body's mass
-//! `M`:
+//! An area fills its shape with a medium. Two numbers say how much of a body is in it: `A`, the area in m² of the parts
+//! of the body's shapes that are inside, and `s`, their share of the body's whole area. A body without area is measured
+//! by the length of its lines. With the centre of area `c` of the parts inside and the body's mass `M`:
 //!
 //! ```text
 //! dv/dt = s acceleration + s attraction + A force / M - s linear_drag (v - u) - A density field / M
 //! dw/dt = A (c - x) x (force - density field) / (M k^2)  - s angular_drag (w - w_medium)
 //! ```
 //!
-//! `field` is the acceleration that the medium feels as well: gravity and the accelerations and attractions of all areas
-//! at the body. `u` is the velocity of the medium, `flow` and the velocity of the area's body. The effects of several
-//! areas add up.
+//! `field` is the acceleration that the medium feels as well: gravity and the accelerations and attractions of all
+//! areas at the body. `u` is the velocity of the medium, `flow` and the velocity of the area's body. The effects of
+//! several areas add up.
 
 use serde::{Deserialize, Serialize};
 

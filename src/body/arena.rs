@@ -301,8 +301,8 @@ impl<T, H: Handle> Arena<T, H> {
         self.slots[slot as usize].value.as_mut().expect("an occupied slot")
     }
 
-    /// Divides the values into ranges of slots, of which each but the last ends at one of the given slots, only for fields
-    /// that every step changes: see [`Arena::at_mut`].
+    /// Divides the values into ranges of slots. Each range but the last ends at one of the given slots. Only for
+    /// changes of fields that every step changes: see [`Arena::at_mut`].
     pub(crate) fn split(
         &mut self,
         ends: impl Iterator<Item = u32> + Clone,

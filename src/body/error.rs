@@ -129,8 +129,8 @@ pub enum WorldError {
         /// The density in kg/m².
         value: Fx,
     },
-    /// Friction is not within 0 to 16, restitution not within 0 to 1.5, rolling resistance not within 0 to 1, a threshold
-    /// is not within 0 to 400 m/s, or a surface speed is not within ±400 m/s.
+    /// Friction is not within 0 to 16, restitution not within 0 to 1.5, rolling resistance not within 0 to 1, a
+    /// threshold is not within 0 to 400 m/s, or a surface speed is not within ±400 m/s.
     MaterialOutOfRange,
     /// The mass of a dynamic body is not within 10 mg to 2^30 kg. From shapes it may also be 0.
     MassOutOfRange {

@@ -62,9 +62,9 @@ pub struct Material {
     pub friction: Fx,
     /// Rule that combines the friction of two shapes.
     pub friction_mixing: Mixing,
-    /// Fraction of the approach speed that is returned by a bounce, 0 to 1.5. Above 1 a bounce adds energy, as that of a
-    /// pinball bumper; a pair has at most 2, whatever its mixing rule. A bounce that would change a
-    /// velocity by more than 511 m/s is clamped, and counts as a fault. Shapes that approach more slowly than
+    /// Fraction of the approach speed that is returned by a bounce, 0 to 1.5. Above 1 a bounce adds energy, as that of
+    /// a pinball bumper; a pair has at most 2, whatever its mixing rule. A bounce that would change a velocity by more
+    /// than 511 m/s is clamped, and counts as a fault. Shapes that approach more slowly than
     /// [`Material::restitution_threshold`] do not bounce: by default that of the world, 1 m/s.
     pub restitution: Fx,
     /// Rule that combines the restitution of two shapes.

@@ -61,8 +61,8 @@ pub enum Continuous {
     Fixed,
     /// All bodies that are not bullets themselves.
     Bullet,
-    /// Fixed bodies, and kinematic bodies relative to which it is fast: not those that carry it along. Such a body costs
-    /// a little in every tick of a world with kinematic bodies, also while it is slow.
+    /// Fixed bodies, and kinematic bodies relative to which it is fast: not those that carry it along. Such a body
+    /// costs a little in every tick of a world with kinematic bodies, also while it is slow.
     Kinematic,
 }
 

@@ -1,8 +1,8 @@
 //! Transformation from the world to the picture: `p = (x - centre) pixels / metres`, with y flipped.
 //!
-//! Coordinates are integers in hundredths of a pixel: no screen shows less, and integers print alike everywhere. The
-//! scale is a fraction of two integers, because a single fixed-point number would have no digits left for a window as
-//! wide as the world.
+//! Coordinates are integers in hundredths of a pixel: no screen shows finer detail, and integers are printed alike
+//! everywhere. The scale is a fraction of two integers, because a single fixed-point number would have no digits left
+//! for a window as wide as the world.
 
 use core::fmt;
 

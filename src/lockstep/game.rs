@@ -159,9 +159,9 @@ pub trait Game: Sized {
     /// [`SetupError`] when the setup is not playable. It may come from an untrusted file.
     fn new(setup: &Self::Setup) -> Result<Self, SetupError>;
 
-    /// Creates the game before its first tick if that takes at most `work_max` work units, and returns it with the units
-    /// that it took. The default calls [`Game::new`] and counts nothing. Override it if a setup from an untrusted file
-    /// can make the start expensive: it must stop before the cost is paid.
+    /// Creates the game before its first tick if that takes at most `work_max` work units, and returns it with the
+    /// units that it took. The default calls [`Game::new`] and counts nothing. Override it if a setup from an untrusted
+    /// file can make the start expensive: it must stop before the cost is paid.
     ///
     /// # Errors
     /// [`StartError`] when the setup is not playable or takes more work.

@@ -182,7 +182,8 @@ impl Game for Sandbox {
 
     /// Bodies, shapes, pairs and joints, times the solver's sub-steps and iterations. Shapes that were just placed on
     /// top of each other make pairs that do not exist yet: in the worst case as many as the world allows, for which the
-    /// broad phase compares every shape with every other. The world itself counts what depends on the course of the tick.
+    /// broad phase compares every shape with every other. The world itself counts what depends on the course of the
+    /// tick.
     fn work(&self, inputs: &[Vec<Command>]) -> u64 {
         let mut costs = Costs::of(&self.world);
         inputs.iter().flatten().for_each(|command| costs.add(command));

@@ -28,14 +28,15 @@ pub enum PeerError {
     Record(RecordError),
     /// An option is out of its range.
     Config(ConfigError),
-    /// An input takes another number of bytes than [`PeerOptions::input_bytes`](super::PeerOptions::input_bytes) allows.
+    /// An input takes another number of bytes than [`PeerOptions::input_bytes`](super::PeerOptions::input_bytes)
+    /// allows.
     InputLength {
         /// Bytes of the encoded input.
         bytes: usize,
         /// Bytes that are possible.
         possible: usize,
     },
-    /// The number of inputs is not that of the own seats.
+    /// The number of inputs is not that of your own seats.
     InputCount {
         /// Number of own seats.
         seats: usize,

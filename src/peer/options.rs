@@ -125,8 +125,8 @@ pub(super) fn random_numbers<const N: usize>() -> [u64; N] {
 }
 
 impl PeerIdentity {
-    /// An identity from random numbers, which have to differ for every process: the id (its low 32 bits count), the key,
-    /// and the secret.
+    /// An identity from random numbers, which have to differ for every process: the id (its low 32 bits count), the
+    /// key, and the secret.
     #[must_use]
     pub fn new(random: [u64; 4]) -> Self {
         let [id, key, secret @ ..] = random;

@@ -221,8 +221,9 @@ impl<G: Game, T: Transport> Peer<G, T> {
         self.endpoint.session().is_some_and(|session| session.is_due(self.now))
     }
 
-    /// Issues the inputs of the own seats, in the order of the seats, and plays a tick if those of the others allow it.
-    /// Without own seats the list is empty. Returns whether the inputs were issued; otherwise they may be used again.
+    /// Issues the inputs of your own seats, in the order of the seats, and plays a tick if those of the others allow
+    /// it. Without seats of your own the list is empty. Returns whether the inputs were issued; otherwise they may be
+    /// used again.
     ///
     /// # Errors
     /// [`PeerError`] when the inputs cannot be issued, or the game or its replay cannot continue.
@@ -292,7 +293,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         self.endpoint.session().map(Session::status)
     }
 
-    /// The own seats, in ascending order.
+    /// Your own seats, in ascending order.
     #[must_use]
     pub fn seats(&self) -> Vec<u32> {
         self.endpoint.session().map_or_else(Vec::new, |session| self.seats_of(session.id()))
@@ -347,8 +348,8 @@ impl<G: Game, T: Transport> Peer<G, T> {
         &mut self.transport
     }
 
-    /// This peer's report of a desync, as bytes for a file. The reports of any two peers tell which one diverged, when and
-    /// where.
+    /// This peer's report of a desync, as bytes for a file. The reports of any two peers tell which one diverged, when
+    /// and where.
     ///
     /// # Errors
     /// [`PeerError`] when the states that it needs are not kept.
@@ -369,8 +370,8 @@ impl<G: Game, T: Transport> Peer<G, T> {
         if self.endpoint.session().is_some() { self.simulation.take_replay() } else { Vec::new() }
     }
 
-    /// Ends the replay after the last final tick, and returns the bytes that have not been taken yet, and the game after
-    /// that tick. Leave or end the match first, and call [`update`](Peer::update) until the status is
+    /// Ends the replay after the last final tick, and returns the bytes that have not been taken yet, and the game
+    /// after that tick. Leave or end the match first, and call [`update`](Peer::update) until the status is
     /// [`Status::Closed`].
     ///
     /// # Errors

@@ -4,9 +4,10 @@
 //! sender, eight zero bytes and counter. Packets of at most 1200 bytes become at most 1232, which fit into the smallest
 //! packets of IPv6 with its headers (1280).
 //!
-//! **A nonce must never be used twice with one key.** Within a process the counter sees to that. Across processes and
-//! restarts the sender does: it is a random number of 64 bits for each start of a process, so that among `n` starts with
-//! the same key two are equal with a probability of `n^2 / 2^65`: for 10 000 starts, 3 in 10^12. Nothing has to be stored.
+//! **A nonce must never be used twice with one key.** Within a process the counter ensures it. Across processes and
+//! restarts the number of the sender does: it is a random number of 64 bits for each start of a process, so that among
+//! `n` starts with the same key two are equal with a probability of `n^2 / 2^65`: for 10 000 starts, 3 in 10^12.
+//! Nothing has to be stored.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -27,12 +28,12 @@ const WINDOW: u64 = 2048;
 /// Senders that are remembered. The one that was silent for longest gives way.
 const SENDERS_MAX: usize = 1024;
 
-/// A transport whose packets only those can read and write who have the key of the match.
+/// A transport whose packets can be read and written only with the key of the match.
 ///
-/// Dropped are packets that were forged, changed or cut short, that arrive a second time, and that come back to their
-/// sender. Addresses and sizes are visible. All members have the same key: a member can pose as another one, and a
-/// packet that is redirected to another member is accepted there, as what a member said. A process that starts again
-/// does not know which packets arrived before; old ones do no harm to a session, whose rows have versions.
+/// Packets are dropped if they were forged, changed or cut short, arrive a second time, or come back to their sender.
+/// Addresses and sizes are visible. All members have the same key, so a member can pose as another one, and a member
+/// accepts a packet that was meant for another member. A process that starts again does not know which packets arrived
+/// before. Old ones do no harm to a session, whose rows have versions.
 ///
 /// ```
 /// use lockstep2d::peer::{LinkConditions, Network, Sealed, Transport};
@@ -124,8 +125,8 @@ fn nonce(sender: u64, counter: u64) -> XNonce {
 }
 
 impl<T> Sealed<T> {
-    /// Seals the packets of a transport. The key has to be random and the same for all members of the match; a new match
-    /// gets a new one.
+    /// Seals the packets of a transport. The key has to be random and the same for all members of the match; a new
+    /// match gets a new one.
     #[cfg(all(feature = "std", not(all(target_family = "wasm", target_os = "unknown"))))]
     pub fn new(inner: T, key: [u8; 32]) -> Self {
         let [sender] = super::options::random_numbers();

@@ -178,8 +178,8 @@ impl<G: Game> Simulation<G> {
         bytes
     }
 
-    /// Ends the replay after the last committed tick. Returns the game after that tick, and the bytes of the replay that
-    /// have not been taken yet.
+    /// Ends the replay after the last committed tick. Returns the game after that tick, and the bytes of the replay
+    /// that have not been taken yet.
     pub(super) fn finish(mut self) -> Result<(G, Vec<u8>), PeerError> {
         self.play_to(self.committed)?;
         let replay = match self.recorder.take() {

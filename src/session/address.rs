@@ -34,7 +34,7 @@ impl Address {
         Some(address)
     }
 
-    /// An address that reaches nobody.
+    /// An address that reaches no peer.
     #[must_use]
     pub const fn nowhere() -> Self {
         Address { length: 0, bytes: [0; ADDRESS_BYTES_MAX] }

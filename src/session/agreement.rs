@@ -3,9 +3,9 @@
 //! A voter that sees a higher ballot promises it and freezes its acknowledgement. The proposer of a ballot that a
 //! quorum promised chooses the change: what the highest ballot among the promisers has accepted, or its own
 //! (`proposal.rs`). A voter accepts a change of the ballot that it promised, or of a higher one, if it holds all
-//! ticks before the cut. A change that a quorum of the old view accepted in one ballot is decided, whoever sees that
-//! installs it. As every final tick was acknowledged by a quorum before its members froze, the cut, the largest
-//! frozen acknowledgement of a quorum, lies at or above every final tick.
+//! ticks before the cut. A change is decided once a quorum of the old view has accepted it in one ballot. Every peer
+//! that sees this installs it. As every final tick was acknowledged by a quorum before its members froze, the cut, the
+//! largest frozen acknowledgement of a quorum, lies at or above every final tick.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -24,14 +24,15 @@ pub(super) struct Agreement {
     pub(super) promised: Option<Ballot>,
     pub(super) promised_at: u64,
     pub(super) accepted: Option<(Ballot, Arc<Change>)>,
-    /// The own ballot, if one is under way.
+    /// This peer's ballot, if one is under way.
     pub(super) proposal: Option<Proposal>,
-    /// No own ballot starts before this time.
+    /// This peer starts no ballot before this time.
     pub(super) not_before: u64,
-    /// Highest round that was seen, and that at the start of the view.
+    /// Highest ballot round that was seen.
     pub(super) round: u32,
+    /// `round` at the start of the view.
     pub(super) base_round: u32,
-    /// Since when somebody wants a change.
+    /// Since when a peer wants a change.
     pub(super) wanted_since: Option<u64>,
 }
 
@@ -115,7 +116,7 @@ impl Session {
         ballot / 5 + self.random.below(ballot / 2)
     }
 
-    /// Accepts what somebody accepted in the highest ballot.
+    /// Accepts the change that another voter accepted in the highest ballot.
     fn accept(&mut self) -> bool {
         let rows = self.peers.rows(self.view.number);
         let accepted = rows.filter_map(|(_, _, row)| row.accepted.as_ref());
@@ -165,7 +166,7 @@ impl Session {
         agreement.base_round = agreement.round;
         self.peers.follow(&self.view, self.clock.active);
         self.log.follow(&self.view.spans);
-        // Views may have been skipped: everything beyond the own final tick is determined again.
+        // Views may have been skipped: everything beyond this peer's final tick is determined again.
         let (complete, moved_at) = (self.progress.complete, self.progress.moved_at);
         if !self.config.has(Fault::KeepComplete) {
             self.progress.complete = self.progress.fin;

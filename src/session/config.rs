@@ -18,15 +18,15 @@ pub const INPUT_BYTES_MAX: u16 = 512;
 ///
 /// ```
 /// use lockstep2d::session::{Config, Timing};
-/// // A board game: whoever is gone for a minute is waited for.
+/// // A board game: it waits a minute for a player who is gone.
 /// let timing = Timing { patience: 60_000_000, ..Timing::DEFAULT };
 /// let config = Config { timing, ..Config::new(0, 4) };
 /// assert!(config.validate().is_ok() && timing.patience > Timing::DEFAULT.patience);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
-    /// Time for which play stands still for a peer before the others go on without it. `u64::MAX`: for ever, until somebody
-    /// asks to go on.
+    /// Time for which play stands still for a peer before the others go on without it. `u64::MAX`: for ever, until a
+    /// peer asks to go on.
     pub patience: u64,
     /// A peer is heard while its last packet is younger than this.
     pub heard: u64,
@@ -36,7 +36,7 @@ pub struct Timing {
     pub promises: u64,
     /// After this time without a decision, another proposer tries.
     pub ballot: u64,
-    /// Shortest time for which somebody that has finished or left still answers.
+    /// Shortest time for which a peer that has finished or left still answers.
     pub linger: u64,
     /// Longest such time.
     pub linger_max: u64,
@@ -89,9 +89,9 @@ pub struct Config {
     pub delay_min: u16,
     /// Largest delay of inputs in ticks, at most [`DELAY_MAX`].
     pub delay_max: u16,
-    /// First tick of those who join, counted from the cut. It should be longer than two network delays.
+    /// First tick of the peers that join, counted from the cut. It should be longer than two network delays.
     pub seat_lead: u16,
-    /// Somebody who lags by at most this many ticks has caught up and may have a seat.
+    /// A peer that lags by at most this many ticks has caught up and may have a seat.
     pub seat_within: u16,
     /// Number of ticks that may be played beyond the last final one, at least 16.
     pub history: u16,
@@ -213,7 +213,7 @@ pub enum Fault {
     KeepComplete,
     /// No rows and inputs of others are passed on.
     NoRelay,
-    /// The own idea of the end counts, not the decided one.
+    /// The end that this peer wants counts, not the decided one.
     LocalEnd,
     /// Ballots start while a promise stands.
     CompetingBallots,

@@ -2,8 +2,8 @@
 //!
 //! Additive increase, multiplicative decrease (Chiu and Jain 1989), judged once a round trip. A period was too fast if
 //! more than an eighth of its chunks had been lost, or if the round trip has risen by more than 60 ms above the
-//! smallest one: then a queue fills up, through which the inputs of the match have to pass as well. Loss below an eighth is
-//! taken for that of the line. Until the first such period the rate doubles in two of them.
+//! smallest one: then a queue fills up, through which the inputs of the match have to pass as well. Loss below an
+//! eighth is taken for that of the line. Until the first such period the rate doubles in two of them.
 
 /// Rates in bytes a second: at first, the smallest, and the largest over all receivers together.
 const RATE_START: u64 = 1_000_000;
@@ -72,7 +72,7 @@ impl Congestion {
         self.budget > 0
     }
 
-    /// Notes a chunk that is sent; `again` if it is taken for lost.
+    /// Notes that a chunk is sent. `again` if it was sent before and is taken for lost.
     pub(super) fn note_sent(&mut self, bytes: u64, again: bool) {
         self.budget = self.budget.saturating_sub(bytes);
         self.sent += 1;
@@ -100,8 +100,8 @@ impl Congestion {
 mod tests {
     use super::*;
 
-    /// Sends over a line of `rate` bytes a second with a queue of 100 ms and a loss in percent; returns the bytes a second
-    /// that arrive after ten seconds.
+    /// Sends over a line of `rate` bytes a second with a queue of 100 ms and a loss in percent; returns the bytes a
+    /// second that arrive after ten seconds.
     fn run(rate: u64, loss: u64) -> u64 {
         let (mut control, mut queued, mut arrived, mut random) = (Congestion::new(), 0_u64, 0, 1_u64);
         let mut lost = 0;

@@ -1,8 +1,8 @@
-//! [`Contacts`]: other ways into a match, for somebody without a vote whose contact has gone.
+//! [`Contacts`]: other ways into a match, for a peer without a vote whose contact has gone.
 //!
 //! A spectator hears the match through the peer that it has asked. If it hears no majority any more, it asks the other
-//! peers whose addresses it was told, one after the other, with the same handshake as at first. Whoever admits it serves it
-//! from then on; its state and the ticks that it has played remain.
+//! peers whose addresses it was told, one after the other, with the same handshake as at first. The peer that admits it
+//! serves it from then on; its state and the ticks that it has played remain.
 
 use alloc::vec::Vec;
 
@@ -18,7 +18,7 @@ const HELLO_INTERVAL: u64 = 200_000;
 /// Addresses that are remembered.
 const CONTACTS_MAX: usize = 128;
 
-/// Somebody who is asked.
+/// A peer that is asked.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PendingContact {
     pub(super) address: Address,
@@ -28,7 +28,7 @@ pub(super) struct PendingContact {
     until: u64,
 }
 
-/// Addresses of those who take part, and who of them is asked.
+/// Addresses of the peers that take part, and which of them is asked.
 #[derive(Debug, Default)]
 pub(super) struct Contacts {
     list: Vec<(PeerId, Address)>,
@@ -51,8 +51,8 @@ impl Contacts {
         }
     }
 
-    /// Returns whom to send a hello, if somebody is to be asked now. `is_silent` says whether this peer hears no majority,
-    /// and `nonce` makes a number for a new handshake.
+    /// Returns where to send a hello, if a peer is to be asked now. `is_silent` says whether this peer hears no
+    /// majority, and `nonce` makes a number for a new handshake.
     pub(super) fn update(
         &mut self,
         now: u64,
@@ -88,7 +88,7 @@ impl Contacts {
         true
     }
 
-    /// Takes a refusal: the next one is asked.
+    /// Takes a refusal: the next peer is asked.
     pub(super) fn take_refusal(&mut self, nonce: u64) {
         if self.asked.is_some_and(|asked| asked.nonce == nonce) {
             self.asked = None;

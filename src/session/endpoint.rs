@@ -1,4 +1,4 @@
-//! [`Endpoint`]: a session with addresses. It opens a match or joins one, admits those who join, sends them a state,
+//! [`Endpoint`]: a session with addresses. It opens a match or joins one, admits peers that join, sends them a state,
 //! and finds addresses.
 
 use alloc::boxed::Box;
@@ -35,7 +35,7 @@ const PACKETS_MAX: usize = 8192;
 ///
 /// ```
 /// use lockstep2d::session::{JoinEvent, RefusalReason};
-/// /// A line for somebody who waits to be let in.
+/// /// A line for a player who waits to be let in.
 /// fn line(event: &JoinEvent) -> &'static str {
 ///     match event {
 ///         JoinEvent::Refused { reason: RefusalReason::Offer, .. } => "they play another version",
@@ -136,7 +136,7 @@ pub struct Endpoint {
     pub(super) events: VecDeque<JoinEvent>,
 }
 
-/// Who somebody is, and what it brings along.
+/// Who a peer is, and what it brings along.
 ///
 /// ```
 /// use lockstep2d::session::{Config, Endpoint, Identity, Key, PeerId};
@@ -160,7 +160,7 @@ pub struct Identity {
     pub key: Key,
     /// What has to be equal for all peers of a match: versions, rules, setup. At most [`OFFER_BYTES_MAX`] bytes count.
     pub offer: Vec<u8>,
-    /// 16 random bytes that nobody else knows, for cookies.
+    /// 16 random bytes that no other peer knows, for cookies.
     pub secret: [u64; 2],
 }
 
@@ -187,7 +187,7 @@ impl Endpoint {
         }
     }
 
-    /// Opens a match. `seats` are the own seats, one bit for each; none for a dedicated server.
+    /// Opens a match. `seats` are your own seats, one bit for each; none for a dedicated server.
     ///
     /// # Errors
     /// A parameter that is out of its range.
@@ -203,7 +203,7 @@ impl Endpoint {
         Ok(Endpoint::new(config, identity, role, Phase::InMatch(Box::new(session)), None))
     }
 
-    /// Asks somebody who takes part in a match.
+    /// Asks a peer that takes part in a match.
     ///
     /// # Errors
     /// A parameter that is out of its range.
@@ -219,7 +219,7 @@ impl Endpoint {
         Ok(endpoint)
     }
 
-    /// Asks somebody else, or again.
+    /// Asks another peer, or the same one again.
     pub fn ask(&mut self, contact: Address) {
         self.contact = Some(contact);
         let nonce = token(self.secret, self.me, &contact).wrapping_add(self.packets_seed());
@@ -280,13 +280,13 @@ impl Endpoint {
         self.packets.push_back((to, bytes));
     }
 
-    /// Whether somebody waits for a state. The game then calls [`offer_state`](Endpoint::offer_state).
+    /// Whether a peer waits for a state. The game then calls [`offer_state`](Endpoint::offer_state).
     #[must_use]
     pub fn wants_state(&self) -> bool {
         self.guests.anybody_waits()
     }
 
-    /// Offers the state after a number of final ticks. It is kept, and sent to all who wait, while play goes on.
+    /// Offers the state after a number of final ticks. It is kept, and sent to all peers that wait, while play goes on.
     pub fn offer_state(&mut self, tick: Tick, state: Vec<u8>) {
         let Phase::InMatch(session) = &self.phase else { return };
         if tick > session.final_tick() {

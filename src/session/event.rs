@@ -25,21 +25,21 @@ pub enum Status {
     Joining,
     /// Follows the match and asks for no seat.
     Watching,
-    /// Has a seat, and too few seats are taken for the first tick.
+    /// Has a seat. The match has not begun, because too few seats are taken.
     Waiting,
     /// Plays.
     Playing,
-    /// Cannot hear a majority, which alone can go on. Somebody without a seat may ask another contact.
+    /// Cannot hear a majority, which alone can go on. A peer without a seat may ask another contact.
     Paused,
-    /// The others went on without it; it asks for its seat again.
+    /// The others went on without this peer, which asks for its seat again.
     Dropped,
     /// The others removed it for good.
     Kicked,
     /// Tells the others that it leaves.
     Leaving,
-    /// Has left, and still answers those who do not know it.
+    /// Has left, and still answers the peers that do not know it.
     Left,
-    /// All ticks of the match are final; it still answers those who lack some.
+    /// All ticks of the match are final. This peer still answers those that lack some.
     Finished {
         /// Number of ticks of the match.
         ticks: Tick,
@@ -60,7 +60,7 @@ impl Status {
 ///
 /// ```
 /// use lockstep2d::session::{Event, PeerId};
-/// // For how long has somebody played? From the events of a match.
+/// // For how long has a peer played? From the events of a match.
 /// let peer = PeerId(5);
 /// let events = [Event::Seated { peer, seat: 1, from: 60 }, Event::Unseated { peer, seat: 1, from: 660 }];
 /// let (mut since, mut played) = (0, 0);

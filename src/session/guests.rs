@@ -1,5 +1,5 @@
 //! [`Guests`]: peers that follow the match without a vote, and the states that are sent to them. Nothing is kept about
-//! anybody whose address has not answered.
+//! a peer whose address has not answered.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -19,7 +19,7 @@ pub const GUESTS_MAX: usize = 64;
 const COOKIE_LIFE: u64 = 15_000_000;
 /// A guest that asks for nothing is forgotten after this time.
 const GUEST_PATIENCE: u64 = 5_000_000;
-/// Time between announcements of a state to somebody who has not asked for it yet, in microseconds.
+/// Time between announcements of a state to a guest that has not asked for it yet, in microseconds.
 const WELCOME_INTERVAL: u64 = 200_000;
 
 /// A peer that joins or watches.
@@ -45,7 +45,7 @@ pub(super) struct Guests {
 }
 
 impl Guests {
-    /// The cookies that are right for somebody who asks: the newest one, and the one before it.
+    /// The cookies that are right for a peer that asks: the newest one, and the one before it.
     pub(super) fn cookies(
         secret: Secret,
         now: u64,
@@ -67,7 +67,7 @@ impl Guests {
         })
     }
 
-    /// Admits somebody whose address has answered. Returns the reason if it is refused.
+    /// Admits a peer whose address has answered. Returns the reason if it is refused.
     pub(super) fn admit(
         &mut self,
         session: &mut Session,
@@ -97,7 +97,7 @@ impl Guests {
         self.list.iter().any(|guest| guest.upload.is_none())
     }
 
-    /// Sends a state to all who wait for one.
+    /// Sends a state to all guests that wait for one.
     pub(super) fn serve(&mut self, state: &Arc<Pinned>) {
         for guest in self.list.iter_mut().filter(|guest| guest.upload.is_none()) {
             guest.upload = Some(Upload::new(Arc::clone(state)));
@@ -120,7 +120,7 @@ impl Guests {
         upload.take(now, next, window, masks);
     }
 
-    /// Packets to guests. Forgets those who have begun to take part, or have gone.
+    /// Packets to guests. Forgets those that have begun to take part, or have gone.
     pub(super) fn update(&mut self, now: u64, session: &mut Session) -> Vec<(PeerId, JoinPacket)> {
         let passed = now.saturating_sub(self.budget_at).min(BURST);
         self.budget_at = now;
@@ -145,7 +145,7 @@ impl Guests {
                 packets.push((guest.id, chunk));
             }
         }
-        // Another one comes first next time, so that all get their share.
+        // The next call begins with another guest, so that each gets a share.
         if !self.list.is_empty() {
             self.list.rotate_left(1);
         }

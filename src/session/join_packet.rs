@@ -16,14 +16,14 @@ pub(super) const MASKS_MAX: usize = 16;
 /// Largest number of addresses in a packet.
 pub(super) const ROSTER_MAX: usize = 24;
 
-/// Reason why somebody may not join.
+/// Reason why a peer may not join.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RefusalReason {
     /// The offers differ: another game, setup or version.
     Offer,
     /// Too many peers follow the match.
     Full,
-    /// The incarnation is that of somebody else.
+    /// The incarnation is that of another peer.
     Taken,
     /// This peer is not in a match yet.
     NotReady,
@@ -32,7 +32,7 @@ pub enum RefusalReason {
 /// A packet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum JoinPacket {
-    /// Somebody asks to join; the cookie is 0 at first.
+    /// A peer asks to join; the cookie is 0 at first.
     Hello {
         nonce: u64,
         key: Key,

@@ -17,18 +17,18 @@ pub(super) struct Lifecycle {
     dropped: bool,
     kicked: bool,
     left: bool,
-    /// Whom play waits for, as the game was told.
+    /// The peer that play waits for, as the game was told.
     waiting_for: Option<PeerId>,
     too_far_behind: bool,
     /// Peers that ask for a pause, as the game was told.
     paused: alloc::vec::Vec<PeerId>,
 }
 
-/// Play stands still for this many ticks, and as long as a peer counts as heard, before the game is told whom it
-/// waits for.
+/// Play stands still for this many ticks, and as long as a peer counts as heard, before the game is told which peer
+/// play waits for.
 const WAITING_TICKS: u64 = 6;
 
-/// Microseconds before the end of a match from which it is asked for.
+/// How long before the end of a match a peer asks for it, in microseconds.
 const END_NOTICE: u64 = 2_000_000;
 
 impl Lifecycle {
@@ -70,7 +70,7 @@ impl Session {
             self.lifecycle.dropped = !self.wants.leave;
             self.lifecycle.since = None;
         }
-        // Somebody that play went on without may return.
+        // A peer that play went on without may return.
         let view = &self.view;
         self.wants.removals.retain(|removal| match *removal {
             Removal::Without(id) => view.voter(id).is_some(),
@@ -99,7 +99,7 @@ impl Session {
             Role::Spectator => 0,
         };
         let wants = seats > 0 && may_have && caught_up && self.is_connected();
-        // Who was dropped takes any seats when somebody else has its own.
+        // A peer that was dropped takes any seats: another peer may have its own.
         let which = if self.lifecycle.dropped { 0 } else { self.config.seats_wanted };
         self.wants.seats = wants.then_some(SeatWant { seats, key: self.key, which });
         let notice =
@@ -110,7 +110,7 @@ impl Session {
         }
     }
 
-    /// A seat that this peer asks for and that belongs to somebody else.
+    /// A seat that this peer asks for and that belongs to another peer.
     pub(crate) fn taken_seat(&self) -> Option<u8> {
         let want = self.wants.seats?;
         let others = self.view.spans.iter().filter(|span| span.is_open() && span.key != self.key);

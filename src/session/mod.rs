@@ -5,7 +5,7 @@
 //! neither reads a clock nor opens a socket, and given the same calls it does the same.
 //!
 //! - [`Session`]: takes packets and local inputs, returns packets, [`Request`]s to the game, and [`Event`]s.
-//! - [`Endpoint`]: a session with addresses, which opens or joins a match and sends states to those who join.
+//! - [`Endpoint`]: a session with addresses, which opens or joins a match and sends states to peers that join.
 //! - [`View`]: who plays and who decides. Views change by agreement of a majority.
 //! - [`Config`]: the parameters of a match and of a peer. Lockstep is a [`Config::guess`] of 0.
 //!

@@ -1,8 +1,8 @@
-//! [`Pace`]: when the next tick is due, and by how many ticks own inputs are delayed.
+//! [`Pace`]: when the next tick is due, and by how many ticks this peer's inputs are delayed.
 //!
 //! Ticks of the others are estimated: those of their newest row, plus half a round trip. A peer steers to the median of
 //! these: it stretches its ticks by up to 1/8 when it is ahead, and shortens them by up to 1/16 when it is behind. So
-//! nobody has to wait abruptly, and clocks that run differently do no harm.
+//! no peer has to wait abruptly, and clocks that run differently do no harm.
 
 use alloc::vec::Vec;
 
@@ -19,10 +19,10 @@ pub(super) struct Pace {
     next_at: Option<u64>,
     /// Duration of a tick now, in microseconds.
     length: u64,
-    /// Delay of own inputs in ticks.
+    /// Delay of this peer's inputs in ticks.
     pub(super) delay: u16,
     delay_at: u64,
-    /// Whether somebody is far behind.
+    /// Whether this peer plays no tick because another is far behind.
     held: bool,
     /// Number of ticks that may be made up at once.
     behind: Tick,
@@ -30,7 +30,7 @@ pub(super) struct Pace {
     hurries: bool,
 }
 
-/// Ticks by which nobody runs ahead of the slowest.
+/// Largest number of ticks by which a peer runs ahead of the slowest.
 const AHEAD_MAX: i64 = 6;
 /// Lateness that is made up, in ticks. What goes beyond is dropped.
 const LATE_MAX: u64 = 3;
@@ -38,7 +38,7 @@ const LATE_MAX: u64 = 3;
 const CATCH_UP: Tick = 12;
 /// Time between changes of the delay, in microseconds.
 const DELAY_INTERVAL: u64 = 500_000;
-/// Somebody without a seat plays this many ticks behind the final ones.
+/// A peer without a seat plays this many ticks behind the final ones.
 const FOLLOW: i64 = 2;
 /// Lateness is measured in 1/256 ticks.
 const PART: i64 = 256;
@@ -143,7 +143,7 @@ impl Session {
 
     fn adapt_delay(&mut self) {
         let now = self.clock.now;
-        // Inputs have to arrive in time when somebody else begins to play, too.
+        // Inputs have to arrive in time when another peer begins to play, too.
         let played = self.play.played;
         if self.view.spans.iter().any(|span| span.is_open() && span.from > played) {
             self.pace.delay = self.pace.delay.max(self.delay_aim());

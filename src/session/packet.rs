@@ -90,7 +90,7 @@ pub(super) struct Composer {
 
 /// Place of the flags: after the checksum and the sender.
 const FLAGS_AT: usize = 8;
-/// Bytes of the lengths of sections that may follow.
+/// Bytes kept free for the counts of the sections that may follow.
 const RESERVE: usize = 4;
 
 impl Composer {

@@ -1,4 +1,4 @@
-//! [`Peers`]: what a session knows of everybody, by the time at which it learned it.
+//! [`Peers`]: what a session knows of each peer, and when it learned it.
 
 use alloc::vec::Vec;
 
@@ -7,7 +7,7 @@ use super::link::Link;
 use super::row::Row;
 use super::view::{View, bit};
 
-/// Largest number of peers that are known at a time. Beyond it, who has been silent longest is forgotten.
+/// Largest number of peers that are known at a time. Beyond it, the peer that has been silent longest is forgotten.
 pub(super) const PEERS_MAX: usize = 192;
 
 /// What is known of a peer.

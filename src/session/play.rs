@@ -10,7 +10,7 @@ use super::request::{InputSize, Request, TickInputs};
 use super::state::Session;
 use super::view::{bit, bits, has_bit};
 
-/// Number of own hashes that are kept for comparison.
+/// Number of this peer's hashes that are kept for comparison.
 const HASHES_MAX: usize = 16;
 
 /// What the game was asked to play.
@@ -171,11 +171,11 @@ impl Session {
         now.saturating_add(Tick::from(self.pace.delay)).saturating_add(1).min(self.stop())
     }
 
-    /// Issues the inputs of the own seats, in the order of the seats, and plays a tick if that is possible. Call it
+    /// Issues the inputs of your own seats, in the order of the seats, and plays a tick if that is possible. Call it
     /// while [`is_due`](Session::is_due). Returns whether the inputs were issued: if not, they may be used again.
     ///
     /// # Errors
-    /// [`InputSize`] when the number of bytes is not that of the own seats. Nothing happens then.
+    /// [`InputSize`] when the number of bytes is not that of your own seats. Nothing happens then.
     pub fn advance(&mut self, now: u64, inputs: &[u8]) -> Result<bool, InputSize> {
         let expected = self.log.size() * usize::try_from(self.seats().count_ones()).unwrap_or(0);
         if inputs.len() != expected {
@@ -335,7 +335,7 @@ impl Session {
         }
     }
 
-    /// Compares the hash of another peer with the own one.
+    /// Compares the hash of another peer with that of this peer.
     pub(super) fn compare_hash(&mut self, peer: PeerId, tick: Tick, theirs: u128) {
         let own = self.play.hashes.iter().find(|(own, _)| *own == tick);
         let Some(&(_, ours)) = own.filter(|(_, ours)| *ours != theirs) else { return };

@@ -1,6 +1,6 @@
-//! Ticks on their way to finality.
+//! How far the ticks are complete, acknowledged and final.
 //!
-//! A tick is *complete* when all inputs of the view's spans are here, also if nobody plays in it while somebody does
+//! A tick is *complete* when all inputs of the view's spans are here, also if no peer plays in it while one does
 //! later. It is *acknowledged* when it is complete and no promise stands, and *final* when a quorum of this view
 //! acknowledges it, or when it lies before the view's cut; both only if it is held here. Complete ticks may be taken
 //! back when the view changes; final ones never.
@@ -106,7 +106,7 @@ impl Session {
         }
     }
 
-    /// Number of ticks that a quorum acknowledges in rows of this view, or that somebody in this view calls final.
+    /// Number of ticks that a quorum acknowledges in rows of this view, or that a voter in this view calls final.
     fn acknowledged(&self) -> Tick {
         let view = self.view.number;
         let mut acks = [(0, 0_u64); super::view::SEATS_MAX];

@@ -170,8 +170,8 @@ impl Session {
         self.is_quorum(set)
     }
 
-    /// Free seats for a newcomer: first those that its key had, then those that nobody had, then others. If it asks for
-    /// certain seats, only those.
+    /// Free seats for a newcomer: first those that its key had, then those that no peer had, then others. If it asks
+    /// for certain seats, only those.
     fn seats_for(&self, want: SeatWant, free: u64) -> Option<u64> {
         let SeatWant { seats: count, key, which } = want;
         let free = if which == 0 { free } else { free & which };
@@ -187,7 +187,7 @@ impl Session {
         (count > 0 && chosen.count_ones() == u32::from(count)).then_some(chosen)
     }
 
-    /// Goes on with the own ballot. Returns whether another step may be possible.
+    /// Goes on with this peer's ballot. Returns whether another step may be possible.
     pub(super) fn conduct_ballot(&mut self) -> bool {
         let Some(mut proposal) = self.agreement.proposal.take() else { return false };
         let active = self.clock.active;
@@ -266,8 +266,8 @@ impl Session {
         Change { cut, end, begun, leaves, tie_holder, joins, from: cut.saturating_add(lead) }
     }
 
-    /// Number of ticks from the cut to the first one of those who join. Until then promises and acceptances have to
-    /// travel to and fro, and the first inputs have to arrive.
+    /// Number of ticks from the cut to the first one of the peers that join. Until then promises and acceptances have
+    /// to travel to and fro, and the first inputs have to arrive.
     fn seat_lead(&self, joins: &[Join]) -> Tick {
         let matters = |remote: &&Remote| {
             self.view.voter(remote.id).is_some() || joins.iter().any(|join| join.id == remote.id)

@@ -9,7 +9,7 @@ use super::peers::PEERS_MAX;
 use super::row::Row;
 use super::state::Session;
 
-/// Inputs further ahead of the complete ticks than this are not kept, so that nobody fills the memory.
+/// Inputs further ahead of the complete ticks than this are not kept, so that no peer fills the memory.
 const INPUTS_AHEAD_MAX: Tick = 1024;
 
 impl Session {
@@ -20,8 +20,8 @@ impl Session {
         self.clock.now = self.clock.now.max(now);
     }
 
-    /// Takes a packet that arrived. Returns its sender, or nothing if it is not a packet of this match from somebody
-    /// who is known.
+    /// Takes a packet that arrived. Returns its sender, or nothing if it is not a packet of this match from a peer that
+    /// is known.
     pub fn receive(&mut self, now: u64, bytes: &[u8]) -> Option<PeerId> {
         self.look(now);
         if self.status().is_closed() {
@@ -80,7 +80,7 @@ impl Session {
         }
     }
 
-    /// A row that somebody passed on. It may be that of a peer that is not known: one that wants a seat.
+    /// A row that a peer passed on. It may be that of a peer that is not known: one that wants a seat.
     fn take_foreign_row(&mut self, id: PeerId, row: Row) {
         if id == self.me || self.config.has(Fault::NoRelay) {
             return;
@@ -97,7 +97,7 @@ impl Session {
     fn take_inputs(&mut self, index: usize, start: u32, inputs: &[u8]) {
         let Some(span) = self.view.spans.get(index) else { return };
         let owner = span.owner;
-        // Whoever is behind gets the inputs of a few hundred ticks at a time.
+        // A peer that is behind gets the inputs of a few hundred ticks at a time.
         let far = self.progress.complete.saturating_add(INPUTS_AHEAD_MAX);
         if owner == self.me || self.log.next(index) > far.max(span.from) {
             return;

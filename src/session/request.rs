@@ -13,7 +13,7 @@ pub enum InputStatus {
     Confirmed,
     /// Not here yet: the player's last known input.
     Guessed,
-    /// Nobody plays the seat.
+    /// No peer plays the seat.
     Absent,
 }
 
@@ -48,7 +48,7 @@ impl TickInputs {
         &self.bytes
     }
 
-    /// Bit for each seat that nobody plays.
+    /// Bit for each seat that no peer plays.
     #[must_use]
     pub fn absent(&self) -> u64 {
         self.absent

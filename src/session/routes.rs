@@ -1,6 +1,6 @@
 //! [`Routes`]: the addresses of peers. A packet counts for the peer whose incarnation it names, wherever it comes
 //! from; but traffic goes to an address only after that has answered a probe. So a peer whose address changes is
-//! found again, and nobody can direct traffic to somebody else.
+//! found again, and no peer can direct traffic to an address that is not its own.
 
 use alloc::vec::Vec;
 

@@ -17,7 +17,7 @@ pub(super) struct Ballot {
 /// What a peer wants of the others.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Wants {
-    /// Number of seats, for somebody who has caught up and wants to play.
+    /// Number of seats, for a peer that has caught up and wants to play.
     pub(super) seats: Option<SeatWant>,
     pub(super) leave: bool,
     /// Last tick of the match plus one.
@@ -61,9 +61,9 @@ pub(super) struct Row {
     pub(super) played: Tick,
     /// For spans that end after `fin`, ascending: index and first tick whose input is missing.
     pub(super) have: Vec<(u16, Tick)>,
-    /// Bit for each voter from whom a packet arrived lately.
+    /// Bit for each voter from which a packet arrived lately.
     pub(super) hears: u64,
-    /// Others from whom a packet arrived lately. At most [`STRANGERS_MAX`].
+    /// Others from which a packet arrived lately. At most [`STRANGERS_MAX`].
     pub(super) hears_others: Vec<PeerId>,
     /// Whether rows of a quorum arrived lately.
     pub(super) connected: bool,

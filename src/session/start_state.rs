@@ -1,4 +1,4 @@
-//! [`StartState`]: what somebody who joins needs besides the inputs since then: the view, addresses, and the game's
+//! [`StartState`]: what a peer that joins needs besides the inputs since then: the view, addresses, and the game's
 //! state.
 
 use alloc::vec::Vec;

@@ -26,7 +26,7 @@ use super::view::{Change, View};
 /// # use lockstep2d::session::{Identity, Key, PeerId};
 /// # let identity = Identity { id: PeerId(2), key: Key(2), offer: vec![], secret: [1, 2] };
 /// let host = Address::new(&[1]).expect("a byte");
-/// // Watches first. Whoever is watching may ask for a seat later, by `Session::set_role`.
+/// // Watches first. A spectator may ask for a seat later, by `Session::set_role`.
 /// let mut guest = Endpoint::join(Config::new(17, 2), identity, Role::Spectator, host)?;
 /// guest.update(0);
 /// // It asks at once, and has no session before there is an answer.
@@ -132,7 +132,7 @@ impl Random {
     }
 }
 
-/// The decided changes, for those who missed some.
+/// The decided changes, for peers that missed some.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Changes {
     /// Number of the view that the first change leads to.
@@ -149,7 +149,7 @@ impl Changes {
 }
 
 impl Session {
-    /// Takes part in a match whose first view is known: as one of its voters, or as somebody who follows from the first
+    /// Takes part in a match whose first view is known: as one of its voters, or as a peer that follows from the first
     /// tick on. `me` has to be random, different for each process, and `seed` may be anything.
     ///
     /// # Errors
@@ -218,8 +218,8 @@ impl Session {
         self.peers.find(id).is_some_and(|remote| remote.row.is_some())
     }
 
-    /// Serves a peer that has no vote: it receives what the match decides and plays. Somebody who joins does this with
-    /// those whom it knows, too.
+    /// Serves a peer that has no vote: it receives what the match decides and plays. A peer that joins does this with
+    /// the peers that it knows, too.
     pub fn attach(&mut self, id: PeerId, key: Option<Key>) {
         let active = self.clock.active;
         self.peers.add(id, key, active);
@@ -244,8 +244,8 @@ impl Session {
     }
 
     /// Asks for an end of the match after `ticks` ticks. If others do so as well, the largest such number counts. The
-    /// others hear of it two seconds before, and not before the match begins: until then peers can join, and once a
-    /// majority has decided on an end, nobody can and nothing changes it.
+    /// others hear of it two seconds before, and not before the match begins. Until then peers can join. Once a
+    /// majority has decided on an end, no peer can join, and nothing changes the end.
     pub fn end_at(&mut self, ticks: Tick) {
         self.end_at = Some(ticks);
     }
@@ -262,14 +262,14 @@ impl Session {
         }
     }
 
-    /// Votes for removing somebody for good. The vote of the tie-holder is enough.
+    /// Votes for removing a peer for good. The vote of the tie-holder is enough.
     pub fn kick(&mut self, key: Key) {
         self.remove(Removal::Kick(key));
     }
 
     fn remove(&mut self, removal: Removal) {
         if !self.wants.removals.contains(&removal) {
-            // The oldest request gives way: removals of those who have gone are kept only against their return.
+            // The oldest request gives way: removals of peers that have gone are kept only against their return.
             if self.wants.removals.len() == REMOVALS_MAX {
                 self.wants.removals.remove(0);
             }
@@ -282,7 +282,7 @@ impl Session {
         self.role = role;
     }
 
-    /// Sets the bounds of the delay of own inputs, in ticks.
+    /// Sets the bounds of the delay of this peer's inputs, in ticks.
     pub fn set_delay(&mut self, least: u16, most: u16) {
         self.config.delay_max = most.min(super::config::DELAY_MAX);
         self.config.delay_min = least.min(self.config.delay_max);
@@ -303,7 +303,7 @@ impl Session {
         self.play.requests.pop_front()
     }
 
-    /// Next packet to send, and to whom.
+    /// Next packet to send, and its receiver.
     pub fn next_packet(&mut self) -> Option<(PeerId, Vec<u8>)> {
         self.outbox.packets.pop_front()
     }
@@ -332,7 +332,7 @@ impl Session {
         self.progress.complete
     }
 
-    /// Number of final ticks: no rollback, departure or failure changes their inputs for anybody.
+    /// Number of final ticks: no rollback, departure or failure changes their inputs for any peer.
     #[must_use]
     pub fn final_tick(&self) -> Tick {
         self.progress.fin
@@ -356,7 +356,7 @@ impl Session {
         self.view.seats_of(self.me)
     }
 
-    /// The delay of own inputs in ticks.
+    /// The delay of this peer's inputs in ticks.
     #[must_use]
     pub fn delay(&self) -> u16 {
         self.pace.delay

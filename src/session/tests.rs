@@ -1,4 +1,4 @@
-//! Packets: what is written is read again, and no bytes do harm.
+//! Packets: reading returns what was written, and arbitrary bytes cause no panic.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;

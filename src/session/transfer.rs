@@ -30,7 +30,7 @@ fn chunk_count(length: u64) -> u32 {
     u32::try_from(length.div_ceil(chunk)).unwrap_or(u32::MAX)
 }
 
-/// A state that is kept as long as somebody downloads it.
+/// A state that is kept as long as a peer downloads it.
 #[derive(Debug)]
 pub(super) struct Pinned {
     pub(super) tick: Tick,
@@ -172,7 +172,7 @@ impl Download {
         let Ok(length) = usize::try_from(self.length) else { return };
         let start = place * CHUNK_BYTES;
         let end = (start + CHUNK_BYTES).min(length);
-        // Nobody asked for chunks beyond the window.
+        // This peer has not asked for chunks beyond the window.
         let is_wanted = index < self.next.saturating_add(WINDOW_MAX);
         if !is_wanted || end - start != bytes.len() {
             return;

@@ -1,4 +1,4 @@
-//! What is sent: the own row to everybody, and to each receiver what it lacks.
+//! What is sent: this peer's row to every peer, and to each receiver what it lacks.
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
@@ -18,7 +18,7 @@ pub(super) struct Outbox {
     pub(super) packets: VecDeque<(PeerId, Vec<u8>)>,
     /// When packets are sent at the latest.
     next_at: u64,
-    /// Whether there are new own inputs.
+    /// Whether this peer has issued new inputs.
     pub(super) urgent: bool,
     version: u32,
 }
@@ -27,9 +27,9 @@ pub(super) struct Outbox {
 const PACKETS_MAX: usize = 4096;
 /// Peers without a vote are served for this many microseconds after their last packet.
 const SERVED: u64 = 5_000_000;
-/// If somebody lacks more ticks than this of a peer that it hears, others help.
+/// If a peer lacks more ticks than this of another one that it hears, the others help.
 const HELP_TICKS: Tick = 20;
-/// Whoever is lost tries all peers with every row whose version is a multiple of this.
+/// A peer that has lost contact tries all peers with every row whose version is a multiple of this.
 const TRY_ROWS: u32 = 8;
 /// Longest time between packets in microseconds.
 const INTERVAL_MAX: u64 = 100_000;
@@ -47,7 +47,7 @@ impl Session {
         many * u64::from(self.config.tick_micros).min(INTERVAL_MAX)
     }
 
-    /// Brings those parts of the own row up to date that the agreement reads.
+    /// Brings those parts of this peer's row up to date that the agreement reads.
     pub(super) fn refresh_row(&mut self) {
         let Some(own) = self.peers.list.first_mut() else { return };
         let row = own.row.get_or_insert_with(|| Row::new(0));
@@ -63,7 +63,7 @@ impl Session {
         own.contact = self.clock.active;
     }
 
-    /// Brings the whole own row up to date, as a new version.
+    /// Brings this peer's whole row up to date, as a new version.
     fn renew_row(&mut self) {
         self.refresh_row();
         let version = self.outbox.version.saturating_add(1);
@@ -96,7 +96,7 @@ impl Session {
         }
     }
 
-    /// Sends to everybody, if it is time.
+    /// Sends to every peer that is served, if it is time.
     pub(super) fn transmit(&mut self) {
         let now = self.clock.now;
         let interval = self.send_interval();
@@ -123,7 +123,7 @@ impl Session {
         }
     }
 
-    /// Whether packets go to a peer. Somebody who has lost contact, or its seat, tries everybody whom it knows from
+    /// Whether packets go to a peer. If this peer has lost contact, or its seat, it tries all peers that it knows from
     /// time to time.
     fn is_served(&self, remote: &Remote) -> bool {
         let tries = self.outbox.version.is_multiple_of(TRY_ROWS)
@@ -188,7 +188,8 @@ impl Session {
         }
     }
 
-    /// The inputs of a span that a peer lacks, oldest first: the own ones, and those of others whom it does not hear.
+    /// The inputs of a span that a peer lacks, oldest first: those of this peer, and those of others that the receiver
+    /// does not hear.
     fn run_for(&self, receiver: &Remote, index: usize) -> Option<(u16, Tick, &[u8])> {
         let span = self.view.spans.get(index)?;
         let start = self.lacks(receiver, index);
@@ -204,7 +205,7 @@ impl Session {
         Some((u16::try_from(index).ok()?, start, inputs))
     }
 
-    /// Rows of others whom the receiver does not hear, beginning with another one each time.
+    /// Rows of others that the receiver does not hear, beginning with another one each time.
     fn foreign_rows(&self, receiver: &Remote) -> Vec<&Remote> {
         if self.config.has(Fault::NoRelay) {
             return Vec::new();

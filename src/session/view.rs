@@ -78,7 +78,7 @@ pub(super) struct Change {
     pub(super) leaves: u64,
     pub(super) tie_holder: PeerId,
     pub(super) joins: Vec<Join>,
-    /// First tick of those who join.
+    /// First tick of the peers that join.
     pub(super) from: Tick,
 }
 
@@ -174,7 +174,7 @@ impl View {
         self.end.unwrap_or(NEVER)
     }
 
-    /// Bit for each seat that nobody plays.
+    /// Bit for each seat that no peer plays.
     #[must_use]
     pub fn free_seats(&self) -> u64 {
         let taken = self.spans.iter().filter(|span| span.is_open());

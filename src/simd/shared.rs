@@ -6,10 +6,10 @@ use core::cell::Cell;
 /// A slice shared between the threads of a team, under the condition that no thread writes an element that another
 /// thread accesses between the same two barriers.
 ///
-/// There are two: the bodies of the solver (`Solver::sub_steps`), each of which is in one constraint of a colour and is
-/// integrated by one thread; and the contacts of the state (`ContactStore::new`), of which each thread stores its own.
-/// `new` is not an `unsafe` function, since each access, not the sharing, has to follow the condition. Tests compare
-/// the results of 1, 2, 4 and 8 threads.
+/// There are two such slices: the bodies of the solver (`Solver::sub_steps`), each of which is in one constraint of a
+/// colour and is integrated by one thread; and the contacts of the state (`ContactStore::new`), of which each thread
+/// stores its own. `new` is not an `unsafe` function, since each access, not the sharing, has to meet the condition.
+/// Tests compare the results of 1, 2, 4 and 8 threads.
 pub(crate) struct Shared<'a, T>(&'a [Cell<T>]);
 
 impl<T> Clone for Shared<'_, T> {
@@ -27,7 +27,7 @@ unsafe impl<T: Send> Send for Shared<'_, T> {}
 unsafe impl<T: Send> Sync for Shared<'_, T> {}
 
 impl<'a, T> Shared<'a, T> {
-    /// Shares a slice. Every access must follow the condition of the type.
+    /// Shares a slice. Every access must meet the condition in the documentation of the type.
     pub(crate) fn new(elements: &'a mut [T]) -> Self {
         Shared(Cell::from_mut(elements).as_slice_of_cells())
     }

@@ -2,7 +2,8 @@
 //!
 //! Contacts and hinges are solved in batches. No two constraints of a colour change the same body, so that the batches
 //! of a colour may be solved in any order and on several threads: each thread has batches of its own of every colour.
-//! Constraints that fit no colour are the overflow: they are solved one after the other, by the same code with one lane.
+//! Constraints that fit no colour are the overflow: they are solved one after the other, by the same code with one
+//! lane.
 //!
 //! Each kind of constraint defines the parts of its batches ([`BatchKind`]), and each stage of the solver an operation
 //! on one batch ([`Operation`]).

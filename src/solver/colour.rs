@@ -139,8 +139,8 @@ impl Colouring {
         self.nodes.iter_mut().for_each(|node| node.cold = is_cold(node.bodies));
     }
 
-    /// Sorts the constraints into colours, each of which is divided among `parts` threads. `body_count` is one more than
-    /// the largest index of a body.
+    /// Sorts the constraints into colours, each of which is divided among `parts` threads. `body_count` is one more
+    /// than the largest index of a body.
     pub(super) fn sort(&mut self, body_count: usize, parts: usize) {
         let Colouring { nodes, ordered, used, hashed, places, order, ends, colour_count, ranks } = self;
         let new_ranks = Ranks { parts: parts.max(1), body_count };
@@ -184,7 +184,7 @@ impl Colouring {
         })
     }
 
-    /// All constraints in the last order: the overflow, then colour by colour.
+    /// All constraints in the order of the last sort: the overflow, then colour by colour.
     pub(super) fn order(&self) -> &[u32] {
         &self.order
     }
@@ -255,11 +255,11 @@ impl Ranks {
     }
 }
 
-/// Number of places of constraints that are not cold, and of cold ones.
+/// Number of places of warm constraints. Cold constraints have as many, after them.
 const PLACES: u8 = 1 + 2 * COLOURS_MAX;
 
-/// The place in the order of a single thread: the overflow comes first, then the large and the small constraints of each
-/// colour.
+/// The place in the order of a single thread: the overflow comes first, then the large and the small constraints of
+/// each colour.
 #[expect(clippy::cast_possible_truncation, reason = "at most COLOURS_MAX")]
 fn place_of(colour: u32, size: Size) -> u8 {
     match colour as u8 {

@@ -40,7 +40,7 @@ impl<'a> StepContext<'a> {
         StepContext { machine, member: Member::ALONE, tuning, bodies, faults }
     }
 
-    /// Creates the context of a member of a team, to which the bodies belong.
+    /// Creates the context of a member of a team. All members share the bodies.
     pub(super) fn of_member(
         machine: Machine,
         member: Member<'a>,

@@ -15,15 +15,15 @@
 //! vA -= GA d,  uA -= fA.d,  vB += GB d,  uB += fB.d
 //! ```
 //!
-//! `p` is the impulse times `mA + mB`, the inverse masses. For a rigid block, `s = 1`, `L` is the change of the relative
-//! velocity of the anchors by the impulse.
+//! `p` is the impulse times `mA + mB`, the inverse masses. For a rigid block, `s = 1`, `L` is the change of the
+//! relative velocity of the anchors by the impulse.
 //!
-//! **A soft block is an isotropic spring.** Without arms it is that of `softness.rs`. With them, `(impulseScale I +
-//! massScale K1) p = -massScale v - push`, where `K1` is `K` of the rigid block, is the implicit step of a spring with
-//! the stiffness `omega^2 m` and the damping `2 zeta omega m` in all directions, `m = 1 / (mA + mB)`. Its force follows
-//! from the potential `omega^2 m |x|^2 / 2`. A spring that yields by `impulseScale L` instead has the stiffness
-//! `omega^2 m K1^-1`, which depends on the directions of the arms: it has no potential, and feeds energy into bodies that
-//! turn.
+//! **A soft block is an isotropic spring.** Without arms it is that of `softness.rs`. With them,
+//! `(impulseScale I + massScale K1) p = -massScale v - push`, where `K1` is `K` of the rigid block, is the implicit
+//! step of a spring with the stiffness `omega^2 m` and the damping `2 zeta omega m` in all directions,
+//! `m = 1 / (mA + mB)`. Its force follows from the potential `omega^2 m |x|^2 / 2`. A spring that yields by
+//! `impulseScale L` instead has the stiffness `omega^2 m K1^-1`, which depends on the directions of the arms: it has no
+//! potential, and feeds energy into bodies that turn.
 //!
 //! `L` is carried over from pose to pose: the
 //! new `G` removes the part of `L` that no longer acts along the arm. Carrying over the impulse `p = G L` instead would

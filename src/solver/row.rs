@@ -178,9 +178,9 @@ impl Row {
         Speed::from_bits(vn)
     }
 
-    /// `nB.vB - nA.vA + eB tB - eA tA` in the format of speeds. The linear part has 30 bits more; it is shifted by 6 bits
-    /// to the scale of the angular part, and the sum is rounded once. Speeds are below 2^30 units, so that their products
-    /// with vectors of up to 2 stay below 2^62.
+    /// `nB.vB - nA.vA + eB tB - eA tA` in the format of speeds. The linear part has 30 bits more; it is shifted by 6
+    /// bits to the scale of the angular part, and the sum is rounded once. Speeds are below 2^30 units, so that their
+    /// products with vectors of up to 2 stay below 2^62.
     #[inline]
     fn along(&self, linear: i64, turn_a: i32, turn_b: i32) -> i64 {
         let angular = i64::from(self.e_b.to_bits()) * i64::from(turn_b)

@@ -43,9 +43,9 @@ impl Softness {
         Softness { bias_rate: narrow(bias_rate), mass_scale: Unit::ONE - impulse_scale, impulse_scale }
     }
 
-    /// The softness of the same spring where it also turns bodies, so that an impulse changes the velocity along it by
-    /// `D` times as much, with 30 fraction bits: `a2` becomes `a2 D`, and `massScale' = massScale D / (impulseScale +
-    /// massScale D)`. Stiffness and damping in N/m and N s/m stay the same.
+    /// The softness of the same spring in a row that also turns bodies. An impulse then changes the velocity along the
+    /// row `D` times as much. `D` has 30 fraction bits. `a2` becomes `a2 D`, and `massScale' = massScale D /
+    /// (impulseScale + massScale D)`. Stiffness and damping in N/m and N s/m stay the same.
     pub(crate) fn at_mobility(&self, denominator: i64) -> Self {
         let [mass, impulse] = [self.mass_scale, self.impulse_scale].map(|scale| i128::from(scale.to_bits()));
         let mass = mass * i128::from(denominator);

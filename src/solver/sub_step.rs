@@ -1,7 +1,7 @@
 //! One sub-step: the stages of E. Catto's soft step (Solver2D, `solve_soft_step.c`).
 //!
-//! The threads of a tick run every stage at the same time, each on bodies and constraints of its own. A stage that reads
-//! bodies of other threads begins after a barrier: [`StepContext::wait`]. Stages over constraints end with one.
+//! The threads of a tick run every stage at the same time, each on bodies and constraints of its own. A stage that
+//! reads bodies of other threads begins after a barrier: [`StepContext::wait`]. Stages over constraints end with one.
 
 use super::COLD_ROUNDS;
 use super::contact::{self, Constants, ContactShare, Measure, ObserveApproach, PointOrder};

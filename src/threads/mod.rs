@@ -1,9 +1,9 @@
 //! Threads that share a tick. The number of threads changes the speed, never the result: they work on parts that do not
 //! read each other's results.
 //!
-//! A stage of a tick that is divided is run by a team: the calling thread and the threads of a pool, each with a part of
-//! its own. Members of a team wait for each other at barriers, of which the sub-steps need a hundred in a tick. A barrier
-//! costs 0.1 microseconds. A fork and join of tasks in its place would cost 1 to 50.
+//! A stage of a tick that is divided is run by a team: the calling thread and the threads of a pool, each with a part
+//! of its own. Members of a team wait for each other at barriers, of which the sub-steps need a hundred in a tick. A
+//! barrier costs 0.1 microseconds. A fork and join of tasks in its place would cost 1 to 50.
 
 #[cfg(feature = "parallel")]
 mod barrier;
@@ -164,8 +164,8 @@ impl Threads {
         tick(1)
     }
 
-    /// Runs `work` on every part at the same time, one thread for each of at most [`Self::count`] parts, and returns the
-    /// sum of the results. The calling thread takes the first part.
+    /// Runs `work` on every part at the same time, one thread for each of at most [`Self::count`] parts, and returns
+    /// the sum of the results. The calling thread takes the first part.
     #[cfg(feature = "parallel")]
     pub(crate) fn run_team<P: Send>(
         &self,

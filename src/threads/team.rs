@@ -20,8 +20,8 @@ const RETURN_SPINS: u32 = 100;
 pub(super) struct Team {
     /// All threads but the calling one.
     pool: rayon::ThreadPool,
-    /// Held during a tick: worlds that are clones of each other share a team. If two of them used it at once, each could
-    /// wait at its barrier for a thread that waits at the other's.
+    /// Held during a tick: worlds that are clones of each other share a team. If two of them used it at once, each
+    /// could wait at its barrier for a thread that waits at the other's.
     turn: Mutex<()>,
 }
 
@@ -61,8 +61,8 @@ impl Team {
         self.pool.current_num_threads() + 1
     }
 
-    /// Runs a tick with all threads, or with one while another tick uses them. The threads stay awake between its stages: a
-    /// thread that sleeps takes 50 microseconds to begin.
+    /// Runs a tick with all threads, or with one while another tick uses them. The threads stay awake between its
+    /// stages: a thread that sleeps takes 50 microseconds to begin.
     pub(super) fn run_tick<R>(&self, tick: impl FnOnce(usize) -> R) -> R {
         let _turn = match self.turn.try_lock() {
             Ok(turn) => turn,

@@ -147,8 +147,8 @@ impl Config {
         self
     }
 
-    /// The name of the first limit that differs in other settings. Limits bound memory, and are the same for the life of
-    /// a world.
+    /// The name of the first limit that differs in other settings. Limits bound memory, and are the same for the life
+    /// of a world.
     pub(crate) fn first_changed_limit(&self, other: &Config) -> Option<&'static str> {
         let limits = [
             (self.body_limit, other.body_limit, "body_limit"),

@@ -1,4 +1,4 @@
-//! Snapshots with a right hash of a world that cannot be.
+//! Snapshots with a correct hash, but of a world that cannot exist.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;

@@ -30,8 +30,8 @@ impl Transport for Tapped {
     }
 }
 
-/// Every packet of the match is sent again to both peers, as it is and changed, from another address. Nobody answers the
-/// stranger, and the match goes on as if it were not there.
+/// Every packet of the match is sent again to both peers, as it is and changed, from another address. Nobody answers
+/// the stranger, and the match goes on as if it were not there.
 #[test]
 fn a_sealed_match_ignores_strangers() {
     let network = Network::new(LinkConditions::latency(Duration::from_millis(20)), 1);

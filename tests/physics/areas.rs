@@ -27,7 +27,7 @@ fn spawn(world: &mut World, shape: ShapeDef, position: (Fx, Fx)) -> BodyId {
     world.spawn(&BodyDef::dynamic().position(position), &[shape]).expect("valid")
 }
 
-/// Spawns a body that does not sleep before it is at rest.
+/// Spawns a body that never sleeps, so that it cannot fall asleep before it is at rest.
 fn spawn_awake(world: &mut World, shape: ShapeDef, position: (Fx, Fx)) -> BodyId {
     world.spawn(&BodyDef::dynamic().position(position).never_sleeps(), &[shape]).expect("valid")
 }

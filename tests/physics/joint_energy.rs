@@ -77,8 +77,8 @@ fn assemblies_with_suspensions_gain_no_energy() {
     never_gain(Mix::Wheel, Start::Hit);
 }
 
-/// Before, hinges and welds pushed each body at its own anchor. Where the anchors were apart, angular momentum grew, and
-/// with it energy: in 9 % of these assemblies by up to 50 times.
+/// Before, hinges and welds pushed each body at its own anchor. Where the anchors were apart, angular momentum grew,
+/// and with it energy: in 9 % of these assemblies by up to 50 times.
 #[test]
 fn assemblies_of_welds_that_turn_or_hang_gain_no_energy() {
     never_gain(Mix::Weld, Start::Spin);
@@ -156,8 +156,8 @@ fn sliders_on_springs_that_pull_hard_gain_no_energy() {
 }
 
 /// Before, springs of motors and those of limited force were solved one after the other, before the blocks: 6 of 720
-/// assemblies of motors gained up to 40 times their energy, and 10 of 720 on springs that only pull, only push or have a
-/// largest force.
+/// assemblies of motors gained up to 40 times their energy, and 10 of 720 on springs that only pull, only push or have
+/// a largest force.
 #[test]
 fn assemblies_on_springs_of_motors_or_of_limited_force_gain_no_energy() {
     for mix in [Mix::MotorSpring, Mix::LimitedSpring] {

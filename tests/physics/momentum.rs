@@ -69,7 +69,7 @@ impl Choice {
         if self.one_in(4) { Fx::ZERO } else { self.0.range(fx!(0), fx!(2)) }
     }
 
-    /// A speed: 0, which is friction, in half of all cases.
+    /// A target speed: in half of all cases 0, which makes a motor act as friction.
     fn speed(&mut self) -> Fx {
         if self.one_in(2) { Fx::ZERO } else { self.within(fx!(2)) }
     }

@@ -203,8 +203,8 @@ fn slow_falls_bounce_with_a_threshold_of_zero() {
     }
 }
 
-/// A bumper without gravity: a ball or a flat box leaves it at `e` times its speed, as long as the change of velocity is
-/// below the 511 m/s of an impulse.
+/// A bumper without gravity: a ball or a flat box leaves it at `e` times its speed, as long as the change of velocity
+/// is below the 511 m/s of an impulse.
 #[test]
 fn a_bumper_returns_more_than_the_speed() {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid"));

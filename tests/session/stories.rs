@@ -36,7 +36,7 @@ fn of_two_players_the_host_goes_on_and_the_guest_returns() {
     assert_eq!(sim.failure, None);
 }
 
-/// With infinite patience everybody waits, until the host goes on without the missing one.
+/// With infinite patience every peer waits, until the host goes on without the missing one.
 #[test]
 fn with_infinite_patience_somebody_has_to_ask() {
     let mut sim = players(3, link(30 * MS), |config| config.timing.patience = u64::MAX);

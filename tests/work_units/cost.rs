@@ -6,7 +6,8 @@ use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 use lockstep2d::replay::{Limits, Recording, Step, VerifiedReplay, verify};
 use lockstep2d::world::{Command, Config};
 
-/// Nanoseconds for each unit that are allowed. Without optimisation for release and with its checks, three times as many.
+/// Nanoseconds for each unit that are allowed. Without optimisation for release and with its checks, three times as
+/// many.
 const MAX: u128 = if cfg!(debug_assertions) { 3000 } else { 1000 };
 
 /// Shortest time that is judged: below it, the overhead of a tick counts more than its work.
@@ -98,8 +99,8 @@ fn costs(file: &[u8]) -> [Cost; 2] {
 /// A case of some size: its setup, its number of ticks and its commands.
 pub(super) type Case<'a> = (SandboxSetup, u64, Script<'a>);
 
-/// Measures a case, prints its costs, and returns its name if it is too expensive. The size is doubled until a tick takes
-/// long enough to be judged. A case without such a tick is wrong, because it would show nothing.
+/// Measures a case, prints its costs, and returns its name if it is too expensive. The size is doubled until a tick
+/// takes long enough to be judged. A case without such a tick is wrong, because it would show nothing.
 pub(super) fn too_expensive<'a>(name: &str, size: i64, case: impl Fn(i64) -> Case<'a>) -> Option<String> {
     for doubled in 0..=DOUBLED_MAX {
         let size = size << doubled;

@@ -1,9 +1,9 @@
 //! Work units are honest: no tick and no setup takes more than a microsecond for each unit that it is charged, whatever
 //! the commands do. Otherwise the limits of a verifier would not protect it.
 //!
-//! Every case is recorded, then played by the verifier's player, which charges the units, and verified with a part of the
-//! work that it needs: the limit has to stop it within the time of its units. The time is that of the thread
-//! on its processor where the system tells it, and the shortest of several runs, so that a busy machine counts little.
+//! Every case is recorded, then played by the verifier's player, which charges the units, and verified with a part of
+//! the work that it needs: the limit has to stop it within the time of its units. The time is that of the thread on its
+//! processor where the system tells it, and the shortest of several runs, so that a busy machine counts little.
 #![expect(clippy::disallowed_types, reason = "the test measures time")]
 
 mod builders;

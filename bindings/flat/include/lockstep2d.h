@@ -228,7 +228,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_JOINT_ANGULAR_SPRING 8192
 /* Verdict: the setup and the inputs lead to every checkpoint and to the end of the file. */
 #define LS2D_MATCH 0
-/* Verdict: the trailer states something else about the end. */
+/* Verdict: a claim or the final hash in the trailer differs from that of the game. */
 #define LS2D_CLAIM_MISMATCH 1
 /* Verdict: the simulation diverges from the recorded game. */
 #define LS2D_DIVERGED 2
@@ -297,7 +297,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MATCH_PLAYING 3
 /* Status: cannot hear a majority. */
 #define LS2D_MATCH_PAUSED 4
-/* Status: the others went on without it; it asks for its seat again. */
+/* Status: the others went on without this peer, which asks for its seat again. */
 #define LS2D_MATCH_DROPPED 5
 /* Status: removed for good. */
 #define LS2D_MATCH_KICKED 6
@@ -862,7 +862,7 @@ typedef struct ls2d_joint_event {
     ls2d_joint joint;
     /* Force on body B in N. */
     ls2d_vec2 force;
-    /* Torque on body B about its anchor in N m. */
+    /* Torque in N m on body B about its anchor. */
     ls2d_fx torque;
     /* 1 if the joint broke, otherwise 0. */
     uint64_t broke;
@@ -1128,16 +1128,16 @@ ls2d_status ls2d_enable_joint(uint32_t target, ls2d_joint joint);
 /* Stops a joint from acting. */
 ls2d_status ls2d_disable_joint(uint32_t target, ls2d_joint joint);
 
-/* Pushes a body during the next tick: a force in N at a point of the world in metres. */
+/* Pushes a body during the next tick by a force in N at a point of the world, in metres. */
 ls2d_status ls2d_apply_force(uint32_t target, ls2d_body body, ls2d_fx force_x, ls2d_fx force_y, ls2d_fx x, ls2d_fx y);
 
-/* Turns a body during the next tick: a torque in N m. */
+/* Turns a body during the next tick by a torque in N m. */
 ls2d_status ls2d_apply_torque(uint32_t target, ls2d_body body, ls2d_fx torque);
 
-/* Changes the velocity of a body: an impulse in N s at a point of the world in metres. */
+/* Changes the velocity of a body by an impulse in N s at a point of the world, in metres. */
 ls2d_status ls2d_apply_impulse(uint32_t target, ls2d_body body, ls2d_fx impulse_x, ls2d_fx impulse_y, ls2d_fx x, ls2d_fx y);
 
-/* Changes the angular velocity of a body: an angular impulse in N m s. */
+/* Changes the angular velocity of a body by an angular impulse in N m s. */
 ls2d_status ls2d_apply_angular_impulse(uint32_t target, ls2d_body body, ls2d_fx impulse);
 
 /* Sets the velocity of a body's centre of mass in m/s, and its angular velocity in rad/s. */
@@ -1310,9 +1310,9 @@ ls2d_status ls2d_mover_init(uint32_t kind, ls2d_mover *mover);
 ls2d_status ls2d_mover_state_init(ls2d_fx x, ls2d_fx y, ls2d_mover_state *state);
 
 /* Moves a character for one tick at its velocity, among the shapes that a filter sees. It slides along what it
- * meets, and moving ground carries it. The game adds gravity to its velocity. The world does not change. `from` and
- * `state` may be the same. `met` are the surfaces that it has met, in order; if the buffer is too short, the state is
- * written nevertheless. */
+ * meets, and moving ground carries it. The game adds gravity to its velocity. The world does not change. `from`
+ * and `state` may be the same. `met` are the surfaces that it has met, in order; if the buffer is too short, the
+ * state is written nevertheless. */
 ls2d_status ls2d_move_character(uint32_t world, const ls2d_mover *mover, const ls2d_mover_state *from, const ls2d_query_filter *filter, ls2d_mover_state *state, ls2d_mover_plane *met, size_t capacity, size_t *count);
 
 /* ---- Snapshots ---- */
@@ -1446,9 +1446,9 @@ ls2d_status ls2d_match_update(uint32_t handle, uint64_t now);
 /* Writes 1 if it is time for `ls2d_match_advance`, otherwise 0. */
 ls2d_status ls2d_match_is_due(uint32_t handle, uint64_t now, uint32_t *due);
 
-/* Issues the inputs of the own seats, in the order of the seats, and plays a tick if that is possible: the
+/* Issues the inputs of your own seats, in the order of the seats, and plays a tick if that is possible: the
  * requests that follow say so. Writes 1 to `issued` if the inputs were issued; otherwise they may be used again.
- * Without own seats there are no bytes. */
+ * Without seats of your own there are no bytes. */
 ls2d_status ls2d_match_advance(uint32_t handle, uint64_t now, const uint8_t *inputs, size_t size, uint32_t *issued);
 
 /* The next request. Requests have to be fulfilled in order, before the next call of `ls2d_match_advance`. For

@@ -1,5 +1,5 @@
-//! Calls of every function of the API with arguments that are drawn from bytes, often wrong ones: for tests, and for the
-//! fuzz target `flat`. Every function is drawn as often, without being listed here.
+//! Calls of every function of the API with arguments that are drawn from bytes, often wrong ones: for tests, and for
+//! the fuzz target `flat`. Every function is drawn as often, without being listed here.
 
 use crate::border::{In, Out, Plain};
 use crate::functions::DRAWN;
@@ -16,7 +16,8 @@ const BYTES: usize = 4096;
 /// Objects and ids that a caller remembers. Of more, it forgets the first.
 const REMEMBERED: usize = 12;
 
-/// Names of parameters that are handles of objects. Handles that a parameter returns mostly go to parameters of its name.
+/// Names of parameters that are handles of objects. Handles that a parameter returns mostly go to parameters of its
+/// name.
 const HANDLES: [&str; 11] = [
     "world",
     "target",

@@ -78,7 +78,7 @@ export class Match extends Handle {
         return u32(at) === 1;
     }
 
-    /** Issues the inputs of the own seats. Returns whether they were issued; otherwise they may be used again. */
+    /** Issues the inputs of your own seats. Returns whether they were issued; otherwise they may be used again. */
     advance(now, inputs) {
         const at = give(inputs);
         call("ls2d_match_advance", this.handle, micros(now), at + 64, inputs.length, at);

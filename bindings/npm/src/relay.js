@@ -23,7 +23,7 @@ export class Relay {
     #timer;
     #closed = false;
     #ready;
-    /** The own address, and those of the others in the room in the order in which they came. */
+    /** This peer's own address, and those of the others in the room in the order in which they came. */
     own;
     others = [];
     /** Called with the sender and the bytes of each packet. */

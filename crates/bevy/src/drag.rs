@@ -98,7 +98,8 @@ pub(crate) fn pull(
         };
     }
     let Some(command) = hand.held.and_then(|held| pull_command(world, held, at)) else { return };
-    // The force of a frame without a tick is replaced. In a frame with two ticks only the first one has it.
+    // A frame without a tick leaves its force in the list: it is replaced. In a frame with two ticks only the first one
+    // applies the force.
     let once = inputs.once(0);
     once.retain(|other| !is_same_pull(other, &command));
     once.push(command);

@@ -44,7 +44,7 @@ const SEATS_MAX: u32 = 64;
 
 impl<G: LockstepGame> Inputs<G> {
     /// The input that a local player holds. Local players are counted from 0: in a local game they are the players, in
-    /// a match the own seats in ascending order. Players above 63 share an input that is never used.
+    /// a match your own seats in ascending order. Players above 63 share an input that is never used.
     pub fn held(&mut self, player: u32) -> &mut G::Input {
         &mut self.seat(player).held
     }

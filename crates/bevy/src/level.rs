@@ -52,7 +52,7 @@ pub struct SpawnJoint {
 }
 
 impl SpawnJoint {
-    /// A joint at a point of the world, along the x axis.
+    /// A joint at a point of the world. A slider or wheel moves along the x axis.
     #[must_use]
     pub fn new(
         [body_a, body_b]: [Entity; 2],

@@ -155,8 +155,8 @@ impl<G: LockstepGame> Lockstep<G> {
     }
 
     /// Stops the ticks. In a match the others are asked to stop, too ([`MatchEvent`](crate::MatchEvent)); whether they
-    /// do is the decision of their game. Those who do not wait, and after [`PeerOptions::patience`] go on without this
-    /// peer, which returns when it goes on.
+    /// do is the decision of their game. Peers that do not stop wait for this one, and after [`PeerOptions::patience`]
+    /// go on without it. It returns when it goes on.
     pub fn pause(&mut self) {
         self.set_paused(true);
     }
@@ -190,8 +190,8 @@ impl<G: LockstepGame> Lockstep<G> {
         self.has_failed
     }
 
-    /// Goes to a tick of a replay, forwards or backwards. There are no events of the ticks between. A replay that has
-    /// failed can go back.
+    /// Goes to a tick of a replay, forwards or backwards. The ticks between give no events. A replay that has
+    /// failed can still go back.
     ///
     /// # Errors
     /// [`LockstepError::Seek`] when there is no such tick or the replay cannot be played so far.

@@ -140,7 +140,7 @@ impl StepLog {
         for entry in self.pending.drain(..).filter(|entry| entry.announced) {
             self.withdrawn.push(entry.event);
         }
-        // Their ticks belong to another epoch: they count as those of its first tick.
+        // Their ticks are numbered in the previous epoch. In the new one they count as events of tick 0.
         self.withdrawn.iter_mut().for_each(|event| event.tick = 0);
         (self.shown, self.shown_again) = (None, None);
         0

@@ -26,8 +26,8 @@
 //! ```
 //!
 //! This gives `verify`, `diff`, `bisect`, `trace`, `stress-saves`, `inspect`, `seek`, `fork`, `trim`, `stats`,
-//! `export`, `keygen` and `sign`. [`Tool::with_scenes`] adds `scenes` and `record`; [`Tool::with_view`] sets how pictures
-//! show the game. With the feature `view`, `Tool::with_viewer` adds `view`, which opens a window.
+//! `export`, `keygen` and `sign`. [`Tool::with_scenes`] adds `scenes` and `record`; [`Tool::with_view`] sets how
+//! pictures show the game. With the feature `view`, `Tool::with_viewer` adds `view`, which opens a window.
 
 mod clock;
 mod commands;

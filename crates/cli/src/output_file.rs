@@ -207,7 +207,7 @@ fn open(temporary: &Path, readers: Readers) -> io::Result<File> {
     if readers == Readers::Owner {
         use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
         let file = options.mode(OWNER_ONLY).open(temporary)?;
-        // The file may be one that a killed process has left.
+        // A killed process may have left the file, with other permissions.
         file.set_permissions(fs::Permissions::from_mode(OWNER_ONLY))?;
         return Ok(file);
     }

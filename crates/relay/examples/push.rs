@@ -2,8 +2,9 @@
 //!
 //! `cargo run -p lockstep2d-relay --example push -- ws://127.0.0.1:7010 CODE [--ticks 3000] [-o FILE]`
 //!
-//! The first one in the room opens the match. A bot plays. The file is a replay of the sandbox, which `lockstep2d verify`
-//! verifies; pages write the same bytes. Prints a line of JSON when it is in the room, and one at the end. Exit codes: 0 the match has ended, 1 an error or a desync, 2 wrong arguments.
+//! The first one in the room opens the match. A bot plays. The file is a replay of the sandbox, which
+//! `lockstep2d verify` verifies; pages write the same bytes. Prints a line of JSON when it is in the room, and one at
+//! the end. Exit codes: 0 the match has ended, 1 an error or a desync, 2 wrong arguments.
 
 use std::error::Error;
 use std::path::PathBuf;

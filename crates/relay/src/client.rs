@@ -123,7 +123,7 @@ impl Relay {
         Ok(relay)
     }
 
-    /// The own address.
+    /// This peer's own address.
     #[must_use]
     pub const fn own(&self) -> &Address {
         &self.own

@@ -173,7 +173,7 @@ fn a_member_that_does_not_read_loses_the_oldest_datagrams() {
     // What is sent last arrives, though b has not read before.
     let mut numbers = Vec::new();
     until("the newest datagram", || {
-        // A datagram that finds the own buffer full is lost, too.
+        // A datagram that finds its sender's buffer full is lost, too.
         a.send(&u32::MAX.to_le_bytes(), &to);
         while let Some((_, bytes)) = b.receive() {
             numbers.push(u32::from_le_bytes(*bytes.first_chunk().unwrap()));

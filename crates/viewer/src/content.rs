@@ -55,7 +55,8 @@ impl Content {
     /// files for this to matter.
     ///
     /// # Errors
-    /// [`OpenError`] for other kinds of files, for files that are damaged from the start, and for replays of other games.
+    /// [`OpenError`] for other kinds of files, for files that are damaged from the start, and for replays of other
+    /// games.
     pub(crate) fn open(&self, name: &str, bytes: &'static [u8]) -> Result<Box<dyn Source>, OpenError> {
         match Evidence::read(bytes.to_vec(), &self.limits).map_err(OpenError::File)? {
             Evidence::Replay(_) => self.open_replay(name, bytes),

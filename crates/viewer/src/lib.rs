@@ -42,8 +42,8 @@
 //! }
 //! ```
 //!
-//! [`App`] is the viewer without its window: it takes [`Event`]s and elapsed time, and fills a [`DrawList`]. It does not
-//! depend on a window, a clock or files, so a window, a web page, a script and a test all drive it in the same way.
+//! [`App`] is the viewer without its window: it takes [`Event`]s and elapsed time, and fills a [`DrawList`]. It does
+//! not depend on a window, a clock or files, so a window, a web page, a script and a test all drive it in the same way.
 #![expect(clippy::disallowed_types, reason = "drawing uses floats")]
 
 mod app;

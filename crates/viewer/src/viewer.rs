@@ -162,7 +162,7 @@ impl<G: Game + 'static> Viewer<G> {
         self
     }
 
-    /// Sets the layers that are on at the start. Without it, outlines and joints are.
+    /// Sets the layers that are on at the start. The default is outlines and joints.
     #[must_use]
     pub fn layers(self, layers: Layers) -> Self {
         Viewer { layers, ..self }
@@ -174,8 +174,8 @@ impl<G: Game + 'static> Viewer<G> {
         Viewer { limits, ..self }
     }
 
-    /// Adds network matches over UDP, with the arguments `--host`, `--join` and `--watch`. They play the first scene that
-    /// has a setup. The options are those without `--lockstep`, `--rollback` and `--players`.
+    /// Adds network matches over UDP, with the arguments `--host`, `--join` and `--watch`. They play the first scene
+    /// that has a setup. The options are those without `--lockstep`, `--rollback` and `--players`.
     #[cfg(not(target_arch = "wasm32"))]
     #[must_use]
     pub fn online(self, options: PeerOptions) -> Self {

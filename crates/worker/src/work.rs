@@ -33,7 +33,7 @@ const LOST: Duration = Duration::from_secs(5);
 /// Pause before a file that cannot be read is tried again, for each delivery so far.
 const READ_AGAIN: Duration = Duration::from_secs(1);
 
-/// The verdict on a file for which workers have ended again and again without a result.
+/// The verdict on a file whose workers have ended several times without a result.
 const CRASHED: &str = "crashed";
 /// What metrics call the result of a file that cannot be read.
 const UNREAD: &str = "unread";

@@ -1,4 +1,5 @@
-//! Targets whose input is a file or packets. Most inputs are refused within microseconds, so that millions can be tried.
+//! Targets whose input is a file or packets. Most inputs are refused within microseconds, so that millions can be
+//! tried.
 //!
 //! The first byte of an input determines the meaning of the rest: a file, or changes to a valid file, with or without
 //! repaired checksums.

@@ -79,8 +79,8 @@ impl Trees {
         self.fixed.refill(those(true));
     }
 
-    /// Calls `found` with every pair of overlapping boxes once, except for pairs of fixed ones and for most pairs within
-    /// one collision class.
+    /// Calls `found` with every pair of overlapping boxes once, except for pairs of fixed ones and for most pairs
+    /// within one collision class.
     pub(super) fn each_pair(&mut self, found: impl FnMut(Pair)) {
         self.meet(|_| true, found);
     }

@@ -17,7 +17,8 @@ pub(crate) struct Distance {
     /// Distance between the surfaces in metres. Negative for overlapping shapes: the depth, the shortest translation
     /// that separates them. The error is at most 20 nm for separate cores and 1e-9 of the size for overlapping cores.
     pub(crate) distance: Fx,
-    /// Nearest point on the surface of A, or the deepest point of A inside B; relative to the origin of the cores.
+    /// Nearest point on the surface of A, or the deepest point of A inside B; relative to the origin of the support
+    /// shapes.
     pub(crate) point_a: Vec2<Fx>,
     /// Nearest point on the surface of B, or the deepest point of B inside A.
     pub(crate) point_b: Vec2<Fx>,
@@ -45,7 +46,7 @@ pub(crate) fn overlap(a: &SupportShape, b: &SupportShape) -> bool {
     }
 }
 
-/// Axis of largest separation, or of least overlap, of two cores without their radii.
+/// Axis of largest separation, or of least overlap, of two support shapes without their radii.
 struct Axis {
     separation: Grid,
     normal: Vec2<Unit>,
@@ -93,7 +94,7 @@ enum Nearest {
     Edge(Vertex, Vertex),
 }
 
-/// Nearest points of two cores; `None` if the cores share a point.
+/// Nearest points of two support shapes without their radii; `None` if these share a point.
 fn nearest(a: &SupportShape, b: &SupportShape) -> Option<Axis> {
     let (first_a, first_b) = (a.points()[0], b.points()[0]);
     let mut found = Nearest::Vertex(Vertex { a: first_a, b: first_b, w: first_b - first_a });
@@ -162,7 +163,7 @@ fn on_edge(p: Vertex, q: Vertex, to_origin: Vec2<Grid>) -> Axis {
     Axis { separation: length(point_b - point_a), normal, point_a, point_b }
 }
 
-/// Face of least depth of two overlapping or touching cores.
+/// Face of least depth of two support shapes that overlap or touch even without their radii.
 fn deepest(a: &SupportShape, b: &SupportShape) -> Axis {
     let shared = a.points()[0];
     let mut best: Option<Axis> = None;
@@ -202,7 +203,7 @@ mod tests {
     use crate::fx;
     use crate::math::{Rng, Rot, closest_point_on_segment, point_in_polygon, segment_intersection};
 
-    /// Distance of two cores without radii; `None` if they share a point.
+    /// Distance of two support shapes without their radii; `None` if they share a point.
     fn naive(a: &SupportShape, b: &SupportShape) -> Option<Fx> {
         let (a, b) = (samples::world_points(a), samples::world_points(b));
         if point_in_polygon(&a, b[0]) || point_in_polygon(&b, a[0]) {

@@ -1,8 +1,8 @@
 //! The part of a convex shape that is inside another one: its area and its centre of area.
 //!
-//! Shapes are convex rings of points, counter-clockwise, and a line is a ring of two points. A ring is cut by each edge of
-//! the other one in turn (I. Sutherland, G. Hodgman, 1974). Cuts are rounded to 2^-32 m; areas and centres are exact sums
-//! over the cut ring, each rounded once.
+//! Shapes are convex rings of points, counter-clockwise, and a line is a ring of two points. A ring is cut by each edge
+//! of the other one in turn (I. Sutherland, G. Hodgman, 1974). Cuts are rounded to 2^-32 m; areas and centres are exact
+//! sums over the cut ring, each rounded once.
 //!
 //! Rounded outlines become rings of 32 directions, whose corners are on a circle of the same area as a disc. Their
 //! outline is off by at most 0.5 % of the radius.

@@ -20,7 +20,7 @@ pub(crate) struct RayHit {
     pub(crate) fraction: Fx,
     /// The fraction with more bits, enough to order two hits.
     pub(crate) order: Fraction,
-    /// Hit point relative to the origin of the core: within 1 µm of the surface at any length of the ray.
+    /// Hit point relative to the origin of the support shape: within 1 µm of the surface at any length of the ray.
     pub(crate) point: Vec2<Fx>,
     /// Outward surface normal. Zero if the ray starts inside the shape or on its border.
     pub(crate) normal: Vec2<Unit>,

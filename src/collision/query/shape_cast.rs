@@ -33,7 +33,7 @@ pub(crate) struct ShapeHit {
     pub(crate) order: Fraction,
     /// Displacement up to the hit: exact, where the fraction of a long translation is not.
     pub(crate) travelled: Vec2<Fx>,
-    /// Nearest point on the surface of A, relative to the origin of the cores.
+    /// Nearest point on the surface of A, relative to the origin of the support shapes.
     pub(crate) point: Vec2<Fx>,
     /// Unit vector from A to B.
     pub(crate) normal: Vec2<Unit>,

@@ -86,8 +86,8 @@ pub(crate) enum StartPolicy {
     Report,
 }
 
-/// Time at which the surfaces of two shapes first come within `target` metres; a negative target is a depth. The cores
-/// are posed as at the start, each relative to its own body's centre of mass. B is the shape to protect.
+/// Time at which the surfaces of two shapes first come within `target` metres; a negative target is a depth. The
+/// support shapes are posed as at the start, each relative to its own body's centre of mass. B is the shape to protect.
 ///
 /// With a target of 0 or more a body that slides from one floor to the next, flush with it, stops at the seam. A depth
 /// such as a quarter of B's inner radius lets the body pass, and leaves the rest to the solver.
@@ -261,15 +261,15 @@ struct SweptShape {
     curvature: Fx,
 }
 
-/// The core at some time, relative to B's centre at the start.
+/// The support shape at some time, relative to B's centre at the start.
 struct Posed {
     core: SupportShape,
     centre: Vec2<Grid>,
 }
 
 impl SweptShape {
-    /// Creates a mover from a core whose furthest point is `reach` from its body's centre. `None` if it rotates too
-    /// far.
+    /// Creates a swept shape from a support shape whose furthest point is `reach` from its body's centre. `None` if it
+    /// rotates too far.
     fn new(core: SupportShape, reach: Fx, sweep: &Sweep, centre: Vec2<Fx>) -> Option<Self> {
         let turn = i128::from(sweep.turn) * i128::from(TAU.to_bits());
         let theta = Fx::from_bits(saturate_wide(round_shift_wide(turn, Fx::FRAC_NBITS)));

@@ -19,8 +19,8 @@ use crate::math::{Fx, Rot, Unit, Vec2, div_round, round_shift, round_shift_wide,
 /// A coordinate in metres with 28 fraction bits.
 pub(crate) type Grid = FixedI64<U28>;
 
-/// Largest radius of a core in metres, larger than that of any shape. Products of this radius and a cross product of
-/// world coordinates fit 128 bits.
+/// Largest radius of a support shape in metres, larger than that of any shape. Products of this radius and a cross
+/// product of world coordinates fit 128 bits.
 pub(crate) const RADIUS_MAX: Fx = fx!(512);
 
 /// Number of fraction bits of a world coordinate beyond those of the grid.
@@ -35,8 +35,8 @@ pub(crate) struct SupportShape {
 }
 
 impl SupportShape {
-    /// Creates the core of a shape in world axes relative to `origin`. A query needs two cores with the same origin; an
-    /// origin near both is best.
+    /// Creates the support shape of a shape in world axes relative to `origin`. A query needs two support shapes with
+    /// the same origin; an origin near both is best.
     pub(crate) fn of(shape: &PosedShape, origin: Vec2<Fx>) -> Self {
         let place = |offset| place(shape.centre, offset, origin);
         match &shape.outline {
@@ -53,7 +53,7 @@ impl SupportShape {
         }
     }
 
-    /// Creates a core of a single point, for queries such as the distance from a point.
+    /// Creates a support shape of a single point, for queries such as the distance from a point.
     pub(crate) fn point(at: Vec2<Fx>) -> Self {
         SupportShape::disc(at, Fx::ZERO)
     }
@@ -62,8 +62,8 @@ impl SupportShape {
         SupportShape::from_points([centre], radius)
     }
 
-    /// Creates a core from the vertices of a convex outline, counter-clockwise: 1 to 8; further vertices are ignored.
-    /// The radius is clamped to 0 to [`RADIUS_MAX`].
+    /// Creates a support shape from the vertices of a convex outline, counter-clockwise: 1 to 8; further vertices are
+    /// ignored. The radius is clamped to 0 to [`RADIUS_MAX`].
     pub(crate) fn from_points(points: impl IntoIterator<Item = Vec2<Fx>>, radius: Fx) -> Self {
         SupportShape::from_grid_points(points.into_iter().map(to_grid), radius)
     }
@@ -82,12 +82,12 @@ impl SupportShape {
         &self.points[..self.count]
     }
 
-    /// Returns the core translated by a vector.
+    /// Returns the support shape translated by a vector.
     pub(crate) fn moved(&self, by: Vec2<Grid>) -> Self {
         self.mapped(|point| point + by)
     }
 
-    /// Returns the core rotated about its origin.
+    /// Returns the support shape rotated about its origin.
     pub(crate) fn rotated(&self, rotation: Rot) -> Self {
         self.mapped(|point| from_raw(rotation.apply_wide(raw(point))))
     }

@@ -44,8 +44,8 @@ pub(super) struct Places<L: Lanes<N>, const N: usize> {
 }
 
 impl<L: Lanes<N>, const N: usize> Places<L, N> {
-    /// Moves the points, and B's centre of mass, to where the arms are as in the last tick. Each coordinate that has
-    /// changed too much takes on its current value.
+    /// Moves the points, and B's centre of mass, so that the arms are those of the last tick. A coordinate of an arm
+    /// that has changed too much keeps its current value.
     #[inline(always)]
     pub(super) fn keep_arms(&mut self, inputs: &[Input; N], count: usize, renewed: &mut RenewedArms<N>) {
         let [first, second, between, bound] = columns::<L, N>(inputs, |input| &input.last_arms);
@@ -61,8 +61,8 @@ impl<L: Lanes<N>, const N: usize> Places<L, N> {
     }
 }
 
-/// Changes a place by as much as makes its arm equal that of the last tick, as far as the difference is below the bound.
-/// Returns whether both coordinates are. Stores the arm to be kept.
+/// Moves a place so that its arm equals that of the last tick, in each coordinate whose difference is below the bound.
+/// Returns whether both are. Stores the arm to be kept.
 #[inline(always)]
 fn keep<L: Lanes<N>, const N: usize>(
     last: L::Int,

@@ -33,10 +33,10 @@ const UNCHECKED_FRICTION_RATIO: FrictionRatio = FrictionRatio::lit("3.5");
 /// Largest factor between a separation and a speed in unchecked contacts.
 const UNCHECKED_RATE: Rate = Rate::lit("512");
 
-/// Bound of speeds and impulses, 64 m/s, and of displacements, 2 m: a power of two.
+/// Base-2 logarithm of the bound of speeds and impulses, 64 m/s, and of displacements, 2 m, in units of their formats.
 const LARGE_BITS: u32 = 6 + Speed::FRAC_NBITS;
 const _: () = assert!(LARGE_BITS == 1 + Shift::FRAC_NBITS);
-/// Bound of changes of an impulse, 4 m/s, and of separations in a solve, 1/8 m: a power of two.
+/// The same for changes of an impulse, 4 m/s, and for separations in a solve, 1/8 m.
 const SMALL_BITS: u32 = 2 + Speed::FRAC_NBITS;
 const _: () = assert!(SMALL_BITS + 3 == Shift::FRAC_NBITS);
 

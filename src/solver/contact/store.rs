@@ -99,7 +99,8 @@ fn shares_of_friction<L: Lanes<N>, const N: usize>(batch: &Batch<N>) -> [L::Int;
     [L::sub(whole, rest), rest]
 }
 
-/// Where impulses are stored: the contacts of the state, and for each of them whether its shapes have pushed each other.
+/// Where impulses are stored: the contacts of the state, and for each of them whether its shapes have pushed each
+/// other.
 #[derive(Clone, Copy)]
 pub(in crate::solver) struct ContactStore<'a> {
     contacts: Shared<'a, Contact>,
@@ -174,8 +175,8 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
     }
 }
 
-/// The part of the impulse of a wedged body that is a load: at most the impulse of the last tick. In a narrow wedge
-/// friction would hold the impulse of the impact for ever as a stress between the walls.
+/// The part of a wedged body's impulse that carries a load: at most the impulse of the last tick. The rest comes from
+/// the impact. In a narrow wedge friction would keep it for ever as a stress between the walls.
 fn load_of(impulse: PointImpulse, old: &Contact) -> PointImpulse {
     let load = old.impulse_of(Feature(impulse.feature)).unwrap_or_default();
     let most = load.tangent.abs();

@@ -116,7 +116,7 @@ fn velocities<L: Lanes<N>, const N: usize>(
     true
 }
 
-/// A damped speed, rounded towards 0. The speed is never the smallest number, so that its magnitude fits.
+/// A damped speed, rounded towards 0. The speed is never the minimum of its format, so that its magnitude fits.
 #[inline(always)]
 fn towards_rest<L: Lanes<N>, const N: usize>(speed: L::Int, factor: L::Int) -> L::Int {
     let reversed = L::sub(L::splat(0), speed);

@@ -97,8 +97,8 @@ impl Coupling {
 }
 
 impl JointDef {
-    /// The definition, changed so that a gear, rack or pulley holds at the poses of its bodies. Other kinds stay as they
-    /// are.
+    /// The definition, changed so that a gear, rack or pulley holds at the poses of its bodies. Other kinds stay as
+    /// they are.
     pub(crate) fn fitted(mut self, a: &Body, b: &Body) -> Self {
         match self.kind {
             JointKind::Gear(gear) => {
@@ -135,8 +135,8 @@ impl JointDef {
 }
 
 impl Joint {
-    /// The distance in metres by which a gear, rack or pulley does not hold, along the pitch line or the rope; in radians
-    /// of a tooth for a gear without a pitch point. `None` for other kinds.
+    /// The distance in metres by which a gear, rack or pulley does not hold, along the pitch line or the rope; in
+    /// radians of a tooth for a gear without a pitch point. `None` for other kinds.
     pub(crate) fn coupling_error(&self, a: &Body, b: &Body) -> Option<Fx> {
         let def = &*self.def;
         Some(match &def.kind {

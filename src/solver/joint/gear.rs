@@ -30,8 +30,8 @@ const RADIUS_MAX: Fx = fx!(128);
 /// from the line between the anchors.
 ///
 /// The pitch radii follow from the distance of the anchors, in the ratio of the teeth. Wheels with teeth of the same
-/// sign are beside each other and turn in opposite directions. A wheel with a negative number is a ring around the other
-/// one, and both turn the same way, as two wheels with a belt do.
+/// sign are beside each other and turn in opposite directions. A wheel with a negative number is a ring around the
+/// other one, and both turn the same way, as two wheels with a belt do.
 ///
 /// The gear holds no distance: give each wheel a hinge, to the ground or to a common body. The angles of the frames say
 /// how the teeth meet: [`World::fit_joint`](crate::world::World::fit_joint) sets them to the current poses.

@@ -13,7 +13,7 @@ use crate::math::Fx;
 /// ```
 /// use lockstep2d::solver::Wheel;
 /// use lockstep2d::fx;
-/// // A soft suspension, and an engine of 40 N m at up to 50 rad/s. The axis of the suspension is the x axis of A's frame.
+/// // A soft suspension, and an engine of 40 N m at up to 50 rad/s. The suspension moves along the x axis of A's frame.
 /// let wheel = Wheel::new().spring(fx!(4), fx!(0.7), fx!(0)).limit(fx!(-0.2), fx!(0.2)).motor(fx!(50), fx!(40));
 /// assert!(wheel.motor.is_some_and(|motor| motor.max == fx!(40)));
 /// ```

@@ -74,7 +74,7 @@ pub(in crate::solver) fn angular_scale([a, b]: [Reciprocal; 2], fractions: MassF
     let top = if shift >= 0 { sum >> shift } else { sum << -shift };
     let root = ((1u64 << 62) / u64::try_from(top).unwrap_or(u64::MAX).max(1)).isqrt();
     let root = u128::from(root + (root >> 14) + 1);
-    // `2^(31 + shift/2) / sqrt(sum)`, and a length is `2^(22 + 36) / sqrt(sum)`.
+    // `root` is now `2^(31 + shift/2) / sqrt(sum)`. A length is `2^(22 + 36) / sqrt(sum)`.
     let up = 27 - shift / 2;
     let length = if up >= 0 { root << up } else { root >> -up };
     let most = (100u64 << 43) / u64::from(a.max(b).to_bits().unsigned_abs()).max(1);

@@ -81,8 +81,8 @@ impl AwakeSet {
         &self.bodies
     }
 
-    /// Divides the bodies among `count` threads, each with a range of slots of bodies and of shapes. The shapes of a body
-    /// may be outside of the range of its thread.
+    /// Divides the bodies among `count` threads, each with a range of slots of bodies and of shapes. The shapes of a
+    /// body may be outside of the range of its thread.
     pub(crate) fn shares(&self, state: &State, count: usize) -> SmallVec<[SlotShare<'_>; 1]> {
         let mut shape_end = 0;
         let mut share = |number: usize| {

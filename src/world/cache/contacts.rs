@@ -34,8 +34,8 @@ pub(crate) struct NarrowPhaseBuffers<'a> {
     pub(crate) touched: &'a [ActiveContact],
 }
 
-/// Output of the narrow phase, or of one of its threads, in the order of contacts. Aligned, so that no two threads write
-/// the same cache line.
+/// Output of the narrow phase, or of one of its threads, in the order of contacts. Aligned, so that no two threads
+/// write the same cache line.
 #[derive(Clone, Debug, Default)]
 #[repr(align(128))]
 pub(crate) struct NarrowPhaseOutput {

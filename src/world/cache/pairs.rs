@@ -109,8 +109,8 @@ impl NonCollidingPairs {
     }
 
     /// Whether two shapes may ever have a contact. They need different, enabled bodies and filters that accept each
-    /// other. Then either one of them is a sensor that may notice the other, or one body has mass and no joint keeps the
-    /// bodies from colliding.
+    /// other. Then either one of them is a sensor that may notice the other, or one body has mass and no joint keeps
+    /// the bodies from colliding.
     pub(crate) fn may_touch(&self, state: &State, (a, b): Pair) -> bool {
         let (shape_a, shape_b) = (state.shapes.at(a), state.shapes.at(b));
         let (slot_a, slot_b) = (shape_a.body().slot(), shape_b.body().slot());

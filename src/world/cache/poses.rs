@@ -77,7 +77,8 @@ impl Poses {
         self.extents[slot as usize] = Extents::of(state, body);
     }
 
-    /// Divides the shapes into ranges of slots, which end at the given slots. Returns the extents of all bodies as well.
+    /// Divides the shapes into ranges of slots, which end at the given slots. Returns the extents of all bodies as
+    /// well.
     pub(crate) fn split(
         &mut self,
         ends: impl Iterator<Item = u32> + Clone,

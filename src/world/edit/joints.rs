@@ -60,9 +60,9 @@ impl World {
         Ok(JointDef { frame_a, frame_b, ..JointDef::new(a, b, kind) })
     }
 
-    /// The definition of a gear, rack or pulley that holds at the current poses of its bodies: the angle of a gear's frame
-    /// on A is such that the teeth meet, the wheel of a rack is where it has rolled to, and the rope of a pulley is taut.
-    /// Returns definitions of other kinds as they are.
+    /// The definition of a gear, rack or pulley that holds at the current poses of its bodies: the angle of a gear's
+    /// frame on A is such that the teeth meet, the wheel of a rack is where it has rolled to, and the rope of a pulley
+    /// is taut. Returns definitions of other kinds as they are.
     ///
     /// # Errors
     /// [`WorldError::StaleBody`] if a body is not in the world.

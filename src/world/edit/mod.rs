@@ -48,8 +48,8 @@ impl World {
         let State { bodies, shapes, config, .. } = &mut *self.state;
         let body = bodies.at(slot);
         for shape in &body.shapes {
-            // Snapshots store the fat boxes of fixed bodies with the definition, and the body may have ceased to be
-            // fixed.
+            // `redefine`, not `at_mut`: snapshots store the fat box of a fixed body in its page, and this body may have
+            // been fixed until now.
             let shape = shapes.redefine(shape.slot());
             shape.fat = fat_box(&shape.def, body, config);
         }

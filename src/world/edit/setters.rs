@@ -46,8 +46,8 @@ impl World {
     /// Names a body for people who read reports, or takes its name away. No result of the simulation depends on it.
     ///
     /// # Errors
-    /// [`WorldError::StaleBody`] if it is not in the world, [`WorldError::NameInvalid`] if the name was decoded from
-    /// bytes and is none.
+    /// [`WorldError::StaleBody`] if the body is not in the world, [`WorldError::NameInvalid`] if the name was decoded
+    /// from bytes and is not a valid one.
     pub fn set_name(&mut self, id: BodyId, name: Option<Name>) -> Result<(), WorldError> {
         name.map_or(Ok(()), |name| name.validate())?;
         self.state.bodies.get_mut(id).ok_or(WorldError::StaleBody(id))?.name = name.map(Box::new);
@@ -78,8 +78,8 @@ impl World {
     /// joints stay, and rest as long as neither of their bodies is dynamic.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, the mass of a dynamic body would be out of range, a shape or the anchor of a joint
-    /// reaches too far for a body that moves, or the body rotates too fast for its mass.
+    /// [`WorldError`] if the handle is stale, the mass of a dynamic body would be out of range, a shape or the anchor
+    /// of a joint reaches too far for a body that moves, or the body rotates too fast for its mass.
     #[doc(alias = "static")]
     #[doc(alias = "body type")]
     pub fn set_kind(&mut self, id: BodyId, kind: BodyKind) -> Result<(), WorldError> {
@@ -258,8 +258,8 @@ impl World {
         self.change_shape(id, |def| def.filter = filter)
     }
 
-    /// Replaces the effect of a sensor on the bodies in it, such as a wind that turns or a tide that rises; `None` for a
-    /// sensor that only detects. Wakes what is in it, unless nothing changes: a game may set the wind in every tick.
+    /// Replaces the effect of a sensor on the bodies in it, such as a wind that turns or a tide that rises; `None` for
+    /// a sensor that only detects. Wakes what is in it, unless nothing changes: a game may set the wind in every tick.
     ///
     /// ```
     /// use lockstep2d::{body::{Area, BodyDef, Polygon, ShapeDef}, fx, world::World};
@@ -276,16 +276,16 @@ impl World {
     /// ```
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, or a value is out of range; [`WorldError::AreaOutOfRange`] also if there is
-    /// an effect and the shape is solid or has no inside.
+    /// [`WorldError`] if the handle is stale, or a value is out of range; [`WorldError::AreaOutOfRange`] also if there
+    /// is an effect and the shape is solid or has no inside.
     #[doc(alias = "wind")]
     pub fn set_area(&mut self, id: ShapeId, area: Option<Area>) -> Result<(), WorldError> {
         let shape = self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?;
         if shape.def.area == area { Ok(()) } else { self.change_shape(id, |def| def.area = area) }
     }
 
-    /// Lets pairs and joints follow a body that is about to gain its first mass or to lose all of it: two bodies without
-    /// mass have no contact and no joint that acts.
+    /// Lets pairs and joints follow a body that is about to gain its first mass or to lose all of it: two bodies
+    /// without mass have no contact and no joint that acts.
     pub(super) fn prepare_mass(&mut self, id: BodyId, mass: &MassProperties) {
         if self.state.bodies.at(id.slot()).has_mass() != (mass.mass > 0) {
             wake_overlapping(&mut self.state, &mut self.scratch, id.slot());

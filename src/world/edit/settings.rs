@@ -10,14 +10,14 @@ use crate::world::config::{Config, check_gravity};
 use crate::world::islands::wake_island;
 
 impl World {
-    /// Replaces the settings of the world: read [`World::config`], change a copy, and pass it here. The limits of bodies,
-    /// shapes, joints and pairs stay as they are.
+    /// Replaces the settings of the world: read [`World::config`], change a copy, and pass it here. The limits of
+    /// bodies, shapes, joints and pairs stay as they are.
     ///
     /// Wakes everything if a setting changes on which the balance of forces depends: gravity, the tick rate, sub-steps,
     /// iterations, the tuning of contacts and joints, and [`Config::sleeping`] when it is switched off. Impulses that
     /// contacts and joints keep for the next tick are converted to the new length of a sub-step, so that what rests
-    /// stays at rest. Bodies that are faster than a lower speed limit are slowed down by the next tick. A kinematic body
-    /// with a target still reaches it in the next tick, with the velocity that it had been given.
+    /// stays at rest. Bodies that are faster than a lower speed limit are slowed down by the next tick. A kinematic
+    /// body with a target still reaches it in the next tick, with the velocity that it had been given.
     ///
     /// A match over a network and a recording keep the tick rate with which they began.
     ///

@@ -51,7 +51,7 @@ const DEPTH_MAX: Fx = fx!(0.02);
 pub(super) struct Resting {
     /// The shape, relative to the position of the probe.
     shape: SupportShape,
-    /// Displacement in metres to where it rests.
+    /// Displacement in metres from the start of the cast to where the shape rests.
     pub(super) lift: Vec2<Fx>,
     pub(super) translation: Vec2<Fx>,
 }
@@ -100,7 +100,7 @@ impl World {
         // The broad phase finds them in no defined order.
         planes.sort_unstable_by_key(|plane| plane.shape);
         let out = solve_planes(Vec2::ZERO, &mut planes);
-        // Where the shape rests it may be further from what it meets.
+        // The shape may be further from what it meets where it rests. So the cast is longer by twice the displacement.
         let forwards = translation.normalized().unwrap_or(Vec2::ZERO).widen();
         let beyond = forwards.scale(out.length() * 2);
         (!planes.is_empty()).then(|| Resting {

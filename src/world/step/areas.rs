@@ -1,9 +1,9 @@
 //! Areas: what sensors with an [`Area`] do to the bodies in them within the tick.
 //!
 //! Forces are computed once per tick, at the poses that velocities predict for a fraction `(s - 1) / 2 s` of the tick
-//! ahead, with `s` sub-steps: the mean of the poses at which the sub-steps begin. With a force at the pose at the start of
-//! the tick, a spring such as a floating box would gain `h^2 omega^2 (s - 1) / 2 s` of its energy in each tick, because
-//! the sub-steps move it by less than the symplectic Euler method does.
+//! ahead, with `s` sub-steps: the mean of the poses at which the sub-steps begin. With a force at the pose at the start
+//! of the tick, a spring such as a floating box would gain `h^2 omega^2 (s - 1) / 2 s` of its energy in each tick,
+//! because the sub-steps move it by less than the symplectic Euler method does.
 
 use crate::body::{Area, Attraction, Body, Falloff, Geometry, Handle, Shape, area_of};
 use crate::collision::{Pair, Place, Ring, SupportShape, overlap};
@@ -12,7 +12,8 @@ use crate::solver::{AreaEffect, Tuning};
 use crate::world::cache::{Scratch, is_awake};
 use crate::world::state::State;
 
-/// A shape that may be in an area: the slots of its body, of the area and of the shape. Their order is that of the sums.
+/// A shape that may be in an area: the slots of its body, of the area and of the shape. Their order is that of the
+/// sums.
 type Visitor = [u32; 3];
 
 /// Lets every area act on the awake bodies in it, once the solver has their velocities.

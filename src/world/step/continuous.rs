@@ -7,7 +7,8 @@
 //!
 //! Bodies with [`Continuous::Kinematic`] are also swept against kinematic bodies, once these have been moved. Whether
 //! such a body is fast is judged relative to each of them, by the displacement from where its material would have taken
-//! it: what lies on a platform or in a drum is not held back. A body that is stopped is carried for the rest of the tick.
+//! it: what lies on a platform or in a drum is not held back. A body that is stopped is carried for the rest of the
+//! tick.
 
 use core::ops::ControlFlow;
 
@@ -194,7 +195,8 @@ fn first_impact(
         } else {
             shapes.broad_phase().each_fixed_overlap(area, visit);
         }
-        // Counting cannot end the search, but the budget of a world with so many shapes has paid for comparing them all.
+        // Counting cannot end the search, but the budget of a world with so many shapes has paid for comparing them
+        // all.
         meter.spend(1 + visited / VISITS_PER_WORK);
     }
     first

@@ -24,7 +24,8 @@ use crate::solver::Tuning;
 use crate::threads::Threads;
 use phases::PhaseView;
 
-/// Number of awake bodies from which on threads share a tick. With fewer, barriers cost more than a second thread gains.
+/// Number of awake bodies from which on threads share a tick. With fewer, barriers cost more than a second thread
+/// gains.
 const BODIES_MIN: usize = 256;
 
 impl World {

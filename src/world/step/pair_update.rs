@@ -27,8 +27,9 @@ pub(super) fn update_pairs(state: &mut State, scratch: &mut Scratch) {
     pairs.changes.clear(shapes.broad_phase(), state.shapes.slot_count());
 }
 
-/// Moves the sleeping contacts that have an active body again to the fresh contacts. Ends sleeping contacts whose boxes
-/// no longer overlap or which may not collide any more, as after a kinematic body with a sensor was moved by hand.
+/// Moves the sleeping contacts with a body that has become active to the fresh contacts. Ends sleeping contacts whose
+/// boxes no longer overlap or which may not collide any more, as after a kinematic body with a sensor was moved by
+/// hand.
 fn activate_sleeping_contacts(state: &mut State, scratch: &mut Scratch) {
     let pairs = &mut scratch.pairs;
     pairs.buffers.fresh.clear();

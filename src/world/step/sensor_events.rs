@@ -1,9 +1,9 @@
 //! Sensor events: which shapes overlap a sensor at the end of the tick, and which have crossed one within it.
 //!
-//! Every pair with a sensor is followed from the poses at the start of the tick to those at its end. The pairs are those
-//! of overlapping fat boxes, which cover the motion that the velocities at the start of the tick predict. A shape that
-//! has left its fat box, because it was deflected or accelerated within the tick, is compared with everything along its
-//! way in addition.
+//! Every pair with a sensor is followed from the poses at the start of the tick to those at its end. The pairs are
+//! those of overlapping fat boxes, which cover the motion that the velocities at the start of the tick predict. A shape
+//! that has left its fat box, because it was deflected or accelerated within the tick, is compared with everything
+//! along its way in addition.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -181,8 +181,8 @@ impl MovedShape {
     }
 }
 
-/// Reports the crossings of shapes that have left their fat box in this tick, with shapes of which they are no pair yet.
-/// If they overlap at the end of the tick, the pair becomes a contact at once.
+/// Reports the crossings of shapes that have left their fat box in this tick, with shapes of which they are no pair
+/// yet. If they overlap at the end of the tick, the pair becomes a contact at once.
 fn report_unforeseen(state: &mut State, scratch: &mut Scratch) {
     if scratch.sweeps.left_boxes.is_empty() {
         return;

@@ -52,8 +52,8 @@ fn list_pairs_with_sleepers(state: &State, scratch: &Scratch, pairs: &mut Vec<Pa
     pairs.extend(state.contacts.iter().filter(has_sleeper).map(|contact| contact.shapes));
 }
 
-/// Finds the pairs of solid shapes or areas between the bodies that have woken since change number `first_change` and sleeping
-/// bodies.
+/// Finds the pairs of solid shapes or areas between the bodies that have woken since change number `first_change` and
+/// sleeping bodies.
 fn find_pairs_of_woken(state: &State, scratch: &mut Scratch, first_change: usize, pairs: &mut Vec<Pair>) {
     let Scratch { shapes, pairs: cache, .. } = scratch;
     let woken = Moved::Slots(&cache.changes.shapes()[first_change..]);

@@ -50,8 +50,8 @@ impl World {
     }
 
     /// Returns the shapes that a sensor overlapped at the end of the last tick, in slot order: those that have begun to
-    /// overlap it by a [`SensorEvent`](crate::world::SensorEvent) and have not ended. Empty if the shape is no sensor or
-    /// is not in the world. It is part of the state, so that it is the same after a restore.
+    /// overlap it by a [`SensorEvent`](crate::world::SensorEvent) and have not ended. Empty if the shape is no sensor
+    /// or is not in the world. It is part of the state, so that it is the same after a restore.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, world::World};

@@ -16,11 +16,11 @@ pub(crate) struct AddedWork {
 }
 
 impl World {
-    /// Returns an upper bound of the cost of the next tick in work units, if at most `bodies` bodies with `shapes` shapes
-    /// altogether are added before it: a start for [`Game::work`](crate::lockstep::Game::work). It counts bodies, shapes,
-    /// pairs and joints, times the solver's sub-steps and iterations, 4 more for each pair, and 8 for the tick. Shapes may
-    /// be added on top of each other: it assumes as many new pairs as the world allows, for which every shape is compared
-    /// with every other.
+    /// Returns an upper bound of the cost of the next tick in work units, if at most `bodies` bodies with `shapes`
+    /// shapes altogether are added before it: a start for [`Game::work`](crate::lockstep::Game::work). It counts
+    /// bodies, shapes, pairs and joints, times the solver's sub-steps and iterations, 4 more for each pair, and 8 for
+    /// the tick. Shapes may be added on top of each other: it assumes as many new pairs as the world allows, for which
+    /// every shape is compared with every other.
     ///
     /// ```
     /// # use lockstep2d::world::World;

@@ -211,24 +211,24 @@ api! {
         edit(target, Command::DisableJoint { joint: joint.id()? }).map(|_| ())
     }
 
-    /// Pushes a body during the next tick: a force in N at a point of the world in metres.
+    /// Pushes a body during the next tick by a force in N at a point of the world, in metres.
     fn ls2d_apply_force(target: u32, body: RawBody, force_x: RawFx, force_y: RawFx, x: RawFx, y: RawFx) {
         let (force, point) = (vector(force_x, force_y), vector(x, y));
         edit(target, Command::ApplyForce { body: body.id()?, force, point }).map(|_| ())
     }
 
-    /// Turns a body during the next tick: a torque in N m.
+    /// Turns a body during the next tick by a torque in N m.
     fn ls2d_apply_torque(target: u32, body: RawBody, torque: RawFx) {
         edit(target, Command::ApplyTorque { body: body.id()?, torque: torque.fx() }).map(|_| ())
     }
 
-    /// Changes the velocity of a body: an impulse in N s at a point of the world in metres.
+    /// Changes the velocity of a body by an impulse in N s at a point of the world, in metres.
     fn ls2d_apply_impulse(target: u32, body: RawBody, impulse_x: RawFx, impulse_y: RawFx, x: RawFx, y: RawFx) {
         let (impulse, point) = (vector(impulse_x, impulse_y), vector(x, y));
         edit(target, Command::ApplyImpulse { body: body.id()?, impulse, point }).map(|_| ())
     }
 
-    /// Changes the angular velocity of a body: an angular impulse in N m s.
+    /// Changes the angular velocity of a body by an angular impulse in N m s.
     fn ls2d_apply_angular_impulse(target: u32, body: RawBody, impulse: RawFx) {
         edit(target, Command::ApplyAngularImpulse { body: body.id()?, impulse: impulse.fx() }).map(|_| ())
     }

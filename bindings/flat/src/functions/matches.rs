@@ -190,9 +190,9 @@ api! {
         })
     }
 
-    /// Issues the inputs of the own seats, in the order of the seats, and plays a tick if that is possible: the
+    /// Issues the inputs of your own seats, in the order of the seats, and plays a tick if that is possible: the
     /// requests that follow say so. Writes 1 to `issued` if the inputs were issued; otherwise they may be used again.
-    /// Without own seats there are no bytes.
+    /// Without seats of your own there are no bytes.
     fn ls2d_match_advance(handle: u32, now: u64, inputs: In<'_, u8>, size: usize, issued: Out<'_, u32>) {
         let mut issued = issued;
         with(handle, |game: &mut Match| {

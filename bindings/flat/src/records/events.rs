@@ -44,7 +44,7 @@ records! {
         joint: RawJoint,
         /// Force on body B in N.
         force: RawVec2,
-        /// Torque on body B about its anchor in N m.
+        /// Torque in N m on body B about its anchor.
         torque: RawFx,
         /// 1 if the joint broke, otherwise 0.
         broke: u64,

@@ -11,7 +11,7 @@ use crate::status::{Outcome, value};
 constants! {
     /// Verdict: the setup and the inputs lead to every checkpoint and to the end of the file.
     MATCH = 0, "LS2D_MATCH";
-    /// Verdict: the trailer states something else about the end.
+    /// Verdict: a claim or the final hash in the trailer differs from that of the game.
     CLAIM_MISMATCH = 1, "LS2D_CLAIM_MISMATCH";
     /// Verdict: the simulation diverges from the recorded game.
     DIVERGED = 2, "LS2D_DIVERGED";
@@ -80,7 +80,7 @@ constants! {
     MATCH_PLAYING = 3, "LS2D_MATCH_PLAYING";
     /// Status: cannot hear a majority.
     MATCH_PAUSED = 4, "LS2D_MATCH_PAUSED";
-    /// Status: the others went on without it; it asks for its seat again.
+    /// Status: the others went on without this peer, which asks for its seat again.
     MATCH_DROPPED = 5, "LS2D_MATCH_DROPPED";
     /// Status: removed for good.
     MATCH_KICKED = 6, "LS2D_MATCH_KICKED";

@@ -20,7 +20,7 @@ fn hash_of(world: u32) -> StateHash {
     hash.hash()
 }
 
-/// The bytes of a bytes object, which is freed.
+/// Copies the bytes of a bytes object, and frees the object.
 fn take(bytes: u32) -> Vec<u8> {
     let mut size = 0;
     done(crate::ls2d_bytes_size(bytes, Out::of(&mut size)));

@@ -1,5 +1,5 @@
-//! `keygen`, `sign` and `verify --keys`: a signature holds for one game, however its replay is encoded, and nothing else
-//! is accepted.
+//! `keygen`, `sign` and `verify --keys`: a signature holds for one game, however its replay is encoded, and nothing
+//! else is accepted.
 
 use std::fs;
 
@@ -37,7 +37,7 @@ fn check(folder: &Folder, path: &str, more: &[&str]) -> (Exit, Vec<Value>) {
     (checked.exit, checked.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect())
 }
 
-/// The exit code, and the state of the signatures and the names of one file.
+/// The exit code, and for one file the state of its signatures and the names of the signers.
 fn signers(folder: &Folder, file: &str, more: &[&str]) -> (Exit, String, Vec<String>) {
     let (exit, lines) = check(folder, file, more);
     let names = lines[0]["signed_by"].as_array().unwrap().iter().map(|name| name.as_str().unwrap().into());

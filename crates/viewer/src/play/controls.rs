@@ -10,8 +10,8 @@ type Change<I> = Rc<dyn Fn(&mut I)>;
 
 /// Keys of a player, and what each of them does to the player's input for a tick.
 ///
-/// The input of a tick starts as the default, and every key that is down changes it, in the order in which the keys were
-/// added. A key that goes down and up between two ticks counts for one tick.
+/// The input of a tick starts as the default, and every key that is down changes it, in the order in which the keys
+/// were added. A key that goes down and up between two ticks counts for one tick.
 ///
 /// ```
 /// use lockstep2d_viewer::{Controls, Event, Key};

@@ -38,7 +38,7 @@ pub(crate) struct Recording<G: Game> {
     end: Option<G::Save>,
 }
 
-/// Error of a tape.
+/// Error of a recording.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum RecordingError {
     /// The tick has not been recorded.

@@ -1,5 +1,5 @@
-//! The shove game with people: keys become pads, every match gives a replay that verifies, and the peers of a network
-//! match stay equal.
+//! Shove with human players: keys are converted to pad inputs, every match gives a replay that verifies, and the peers
+//! of a network match stay equal.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 #![expect(clippy::disallowed_types, reason = "drawing uses floats")]

@@ -1,4 +1,4 @@
-//! Random cores for the tests of queries.
+//! Random support shapes for the tests of queries.
 
 use super::*;
 use crate::body::Polygon;
@@ -33,14 +33,14 @@ pub(in crate::collision) fn core(rng: &mut Rng) -> SupportShape {
     }
 }
 
-/// A random core of the largest shape size: up to 110 m from the centre.
+/// A random support shape of the largest shape size: up to 110 m from the centre.
 pub(in crate::collision) fn large(rng: &mut Rng) -> SupportShape {
     let core = core(rng);
     let points: Vec<_> = world_points(&core).into_iter().map(|point| point.scale(fx!(75))).collect();
     SupportShape::from_points(points, to_fx(core.radius) * 75)
 }
 
-/// A random core with a random offset.
+/// A random support shape with a random offset.
 pub(in crate::collision) fn placed(rng: &mut Rng, spread: Fx) -> SupportShape {
     core(rng).moved(to_grid(vector(rng, spread)))
 }
@@ -70,7 +70,7 @@ pub(in crate::collision) fn extremes() -> impl Iterator<Item = Vec2<Fx>> {
     ends.into_iter().flat_map(move |x| ends.map(|y| Vec2::new(x, y)))
 }
 
-/// Points of a core as world vectors.
+/// Points of a support shape as world vectors.
 pub(in crate::collision) fn world_points(core: &SupportShape) -> Vec<Vec2<Fx>> {
     core.points().iter().map(|&point| from_grid(point)).collect()
 }

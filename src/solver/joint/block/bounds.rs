@@ -60,8 +60,8 @@ impl Block {
         }
     }
 
-    /// Activates all motors, and the limits and springs that would be within their bounds if nothing but their own bodies
-    /// were there. The other springs are held at a bound; in the relax pass, springs keep their impulses.
+    /// Activates all motors, and the limits and springs that would be within their bounds if nothing but their own
+    /// bodies were there. The other springs are held at a bound; in the relax pass, springs keep their impulses.
     fn activate(&mut self, pass: Pass, hinges: &HingeSet, list: &JointList) {
         let Block { bounded, units, impulses, wanted, .. } = self;
         for bounded in bounded.iter_mut() {
@@ -84,9 +84,9 @@ impl Block {
         }
     }
 
-    /// Deactivates units whose impulse would be beyond a bound: all limits and springs, and the motors that are furthest
-    /// beyond theirs, or all motors. A strong motor against a brake wants as much as the brake until the brake slips.
-    /// Returns whether there were any.
+    /// Deactivates units whose impulse would be beyond a bound: all limits and springs, and the motors that are
+    /// furthest beyond theirs, or all motors. A strong motor against a brake wants as much as the brake until the brake
+    /// slips. Returns whether there were any.
     fn deactivate(&mut self, furthest_only: bool, hinges: &HingeSet, list: &JointList) -> bool {
         let Block { bounded, units, impulses, x, .. } = self;
         let impulses_of = |unit: &Unit| {

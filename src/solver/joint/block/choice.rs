@@ -152,8 +152,8 @@ pub(super) struct Choice {
 const NOT_CROWDED: u32 = u32::MAX;
 
 impl Choice {
-    /// Chooses among the joints of a tick. `body_count` is the number of bodies. Takes time in proportion to the joints,
-    /// however many are at one body.
+    /// Chooses among the joints of a tick. `body_count` is the number of bodies. Takes time in proportion to the
+    /// joints, however many are at one body.
     pub(super) fn choose(&mut self, candidates: &[Candidate], body_count: usize) {
         self.order.clear();
         self.block_ends.clear();
@@ -265,8 +265,8 @@ impl Choice {
         }
     }
 
-    /// Takes the joints of a body that fit beside a number of rows, in ascending order. Returns the rows with them. What
-    /// does not fit then never does, so that a second visit in the same walk would take nothing.
+    /// Takes the joints of a body that fit beside a number of rows, in ascending order. Returns the rows with them.
+    /// What does not fit then never does, so that a second visit in the same walk would take nothing.
     fn take_joints_of(&mut self, place: u32, mut rows: u32) -> u32 {
         let Choice { bodies, of_body, taken, settled, queue, walks, .. } = self;
         let JointsOfBody { next, ends, walk } = &mut bodies[place as usize];

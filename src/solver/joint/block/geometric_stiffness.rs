@@ -30,9 +30,9 @@ pub(super) enum Leverage {
     /// the arms over the radii of gyration, turned by a right angle.
     AtPoint([Vec2<Ratio>; 2]),
     /// The force turns with A, and acts at a point of B. With `d` from A's centre to that point, `r` from B's, and the
-    /// position `n . d` on the axis `n`, the derivatives of the torques are `F n . d` and `F n . r` by the rotations of A
-    /// and B, and `F` by a translation across the axis. Each body takes its `|F| |r|`, which is at least the derivative
-    /// by its own rotation, whatever the direction. With the lengths of the lever ratios.
+    /// position `n . d` on the axis `n`, the derivatives of the torques are `F n . d` and `F n . r` by the rotations of
+    /// A and B, and `F` by a translation across the axis. Each body takes its `|F| |r|`, which is at least the
+    /// derivative by its own rotation, whatever the direction. With the lengths of the lever ratios.
     AlongAxis([Ratio; 2]),
 }
 

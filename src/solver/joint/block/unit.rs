@@ -307,7 +307,7 @@ impl Unit {
         }
     }
 
-    /// The body of a side and the root of its mass fraction, unless no impulse changes it.
+    /// The body of a side and the root of its mass fraction. `None` if no impulse changes the body.
     pub(super) fn moved(&self, side: usize) -> Option<(u32, i64)> {
         (self.bodies[side] != GROUND).then_some((self.bodies[side], self.mobility.roots[side]))
     }
@@ -356,7 +356,7 @@ impl Unit {
         [lower, upper].map(|bound| product(i64::from(bound.to_bits()) << EXTRA_BITS, self.stiffened))
     }
 
-    /// The impulse within the bounds that is nearest to one, or has its direction.
+    /// Limits an impulse to the bounds: clamps that of a row, shortens that of a point in its direction.
     pub(super) fn within_bounds(&self, impulse: [i64; 2], hinges: &HingeSet, list: &JointList) -> [i64; 2] {
         match self.source {
             Source::Part(ListPart::Point(at)) => {

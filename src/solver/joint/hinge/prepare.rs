@@ -54,9 +54,9 @@ impl HingeSet {
         }
     }
 
-    /// Adds batches for the hinges of a colour to a part, given by the indices of their inputs. Hinges with rows on the
-    /// angle and anchored hinges have separate batches. `is_alone` returns whether the body with an index has only one
-    /// joint.
+    /// Adds batches for the hinges of a colour to a part. `indices` are those of the inputs of the hinges. Hinges with
+    /// rows on the angle and anchored hinges have separate batches. `is_alone` returns whether the body with an index
+    /// has only one joint.
     pub(in super::super) fn push_colour(
         &mut self,
         part: &mut HingeShare,

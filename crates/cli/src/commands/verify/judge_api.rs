@@ -92,8 +92,8 @@ impl<G: Game> Judge<G> {
         self.shared.ticks.load(Ordering::Relaxed)
     }
 
-    /// Identifies everything that the verdict depends on, as 64 hexadecimal digits: the BLAKE3 of the bytes of the file,
-    /// the rules, the semantics of the engine, and the limits. It names the entries of `verify --cache`, too.
+    /// Identifies everything that the verdict depends on, as 64 hexadecimal digits: the BLAKE3 of the bytes of the
+    /// file, the rules, the semantics of the engine, and the limits. It names the entries of `verify --cache`, too.
     #[must_use]
     pub fn key(&self, blake3: &[u8; 32]) -> String {
         cache::key(&cache::context(G::RULES, &self.limits), blake3).to_string()

@@ -93,8 +93,8 @@ impl Report {
         matches!(self.verdict.as_str(), "incomplete" | "unverifiable")
     }
 
-    /// Whether every other run gives the same report. A panic may be the machine's fault, and its bug may be fixed
-    /// without a new version of the rules.
+    /// Whether every other run gives the same report. A panic is not final: the machine may have caused it, or a fix
+    /// may come without a new version of the rules.
     pub(super) fn is_final(&self) -> bool {
         self.verdict != PANICKED
     }
