@@ -7,30 +7,35 @@ use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::world::{Config, Snapshot, World};
+use serde::{Deserialize, Serialize};
 
-/// Values of `MISTAKE`.
-const NOTHING: u8 = 0;
-/// The step depends on the world's current contacts, of which there are none after a restore.
-const CONTACTS: u8 = 1;
-/// The wind is not saved.
-const WIND: u8 = 2;
+/// The planted fault of a [`Pit`], which is its setup: one type for all faults is compiled once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+enum Mistake {
+    None,
+    /// The step depends on the world's current contacts, of which there are none after a restore.
+    Contacts,
+    /// The wind is not saved.
+    Wind,
+}
 
 /// A ball that is kicked about in a pit.
-struct Pit<const MISTAKE: u8> {
+struct Pit {
+    mistake: Mistake,
     world: World,
     ball: BodyId,
     wind: Fx,
     score: u32,
 }
 
-impl<const MISTAKE: u8> Game for Pit<MISTAKE> {
-    type Setup = ();
+impl Game for Pit {
+    type Setup = Mistake;
     type Input = bool;
     type Save = (Snapshot, u32);
 
     const RULES: RulesId = RulesId { name: "pit", version: 1 };
 
-    fn new(_: &()) -> Result<Self, SetupError> {
+    fn new(&mistake: &Mistake) -> Result<Self, SetupError> {
         let refused = |why| SetupError { why };
         let mut world = World::new(Config::default()).map_err(|error| refused(error.to_string()))?;
         let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).map_err(|e| refused(e.to_string()))?);
@@ -39,7 +44,7 @@ impl<const MISTAKE: u8> Game for Pit<MISTAKE> {
             .spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor])
             .and_then(|_| world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(0.7))), &[ball]));
         let ball = spawned.map_err(|error| refused(error.to_string()))?;
-        Ok(Pit { world, ball, wind: fx!(0), score: 0 })
+        Ok(Pit { mistake, world, ball, wind: fx!(0), score: 0 })
     }
 
     fn players(&self) -> u32 {
@@ -54,10 +59,10 @@ impl<const MISTAKE: u8> Game for Pit<MISTAKE> {
         if kicks == [true] {
             self.wind += fx!(0.25);
         }
-        if MISTAKE == CONTACTS && self.world.contacts().count() > 0 {
+        if self.mistake == Mistake::Contacts && self.world.contacts().count() > 0 {
             self.score += 1;
         }
-        if MISTAKE == WIND {
+        if self.mistake == Mistake::Wind {
             let _ball_is_there = self.world.apply_impulse_to_centre(self.ball, Vec2::new(self.wind, fx!(0)));
         }
         self.world.step();
@@ -93,7 +98,7 @@ fn inputs() -> Vec<Vec<bool>> {
 #[test]
 fn a_good_game_with_a_world_passes() {
     let options = CheckOptions { depths: Depths::Each, phases: Phases::Compared, ..CheckOptions::default() };
-    let checked = check::<Pit<NOTHING>>(&(), &inputs(), &options).unwrap();
+    let checked = check::<Pit>(&Mistake::None, &inputs(), &options).unwrap();
     assert!(checked.variants.iter().any(|variant| matches!(variant, Variant::BroadPhase(_))));
     assert_eq!(
         checked.variants.iter().any(|variant| matches!(variant, Variant::Threads(_))),
@@ -105,8 +110,8 @@ fn a_good_game_with_a_world_passes() {
 #[test]
 fn who_reads_what_is_no_state_is_found() {
     for variant in [Variant::Reloaded, Variant::RolledBack, Variant::ClearedScratch] {
-        let error =
-            check::<Pit<CONTACTS>>(&(), &inputs(), &CheckOptions::default().only(&[variant])).unwrap_err();
+        let error = check::<Pit>(&Mistake::Contacts, &inputs(), &CheckOptions::default().only(&[variant]))
+            .unwrap_err();
         let failure = error.failure().unwrap();
         assert_eq!(
             (failure.minimised.variant, &failure.minimised.fault),
@@ -122,19 +127,19 @@ fn who_reads_what_is_no_state_is_found() {
 #[test]
 fn the_body_and_the_field_are_named() {
     let options = CheckOptions::default().only(&[Variant::Again, Variant::Reloaded]);
-    let error = check::<Pit<WIND>>(&(), &inputs(), &options).unwrap_err();
+    let error = check::<Pit>(&Mistake::Wind, &inputs(), &options).unwrap_err();
     let failure = error.failure().unwrap();
     assert_eq!((failure.finding.variant, failure.finding.tick), (Variant::Reloaded, 32), "{failure}");
     let paths = failure.finding.differences.iter().map(|difference| difference.field().path());
     assert!({ paths }.any(|path| path == "[0].bodies.body 1v0.velocity.x"), "{failure:?}");
     assert_eq!((failure.ticks, failure.minimised.tick), (2, 2));
-    assert!(check_replay::<Pit<WIND>>(&failure.replay, &CheckOptions::default()).is_err());
+    assert!(check_replay::<Pit>(&failure.replay, &CheckOptions::default()).is_err());
 }
 
 /// A game that is rolled back to before the kick keeps the wind.
 #[test]
 fn a_rollback_shows_before_it_has_happened() {
-    let error = check::<Pit<WIND>>(&(), &inputs(), &CheckOptions::default()).unwrap_err();
+    let error = check::<Pit>(&Mistake::Wind, &inputs(), &CheckOptions::default()).unwrap_err();
     let failure = error.failure().unwrap();
     assert_eq!((failure.finding.variant, failure.finding.played), (Variant::RolledBack, 31), "{failure}");
     assert!(failure.finding.tick < 31, "{failure}");
@@ -146,7 +151,7 @@ fn a_rollback_shows_before_it_has_happened() {
 fn phases_are_compared() {
     let options =
         CheckOptions { phases: Phases::Compared, ..CheckOptions::default() }.only(&[Variant::Reloaded]);
-    let error = check::<Pit<WIND>>(&(), &inputs(), &options).unwrap_err();
+    let error = check::<Pit>(&Mistake::Wind, &inputs(), &options).unwrap_err();
     let finding = &error.failure().unwrap().finding;
     assert_eq!((finding.tick, finding.phase), (32, None), "{finding}");
 }

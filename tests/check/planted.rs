@@ -6,20 +6,20 @@ use lockstep2d::check::{
 use lockstep2d::math::Rng;
 use lockstep2d::replay::Verdict;
 
-use super::toy::Toy;
+use super::toy::{Mistake, Toy};
 
 /// Returns the failure of a toy, whose replay must reproduce it.
-fn failure<const MISTAKE: usize>() -> Failure {
-    let inputs = random_inputs::<Toy<MISTAKE>>(2, 300, &mut Rng::new(1));
-    let failure = match check::<Toy<MISTAKE>>(&(), &inputs, &CheckOptions::default()) {
+fn failure(mistake: Mistake) -> Failure {
+    let inputs = random_inputs::<Toy>(2, 300, &mut Rng::new(1));
+    let failure = match check::<Toy>(&mistake, &inputs, &CheckOptions::default()) {
         Err(CheckError::Failed(failure)) => *failure,
-        other => panic!("mistake {MISTAKE}: {other:?}"),
+        other => panic!("{mistake:?}: {other:?}"),
     };
     assert!(failure.failed.0 >= 3 && failure.failed.1 == 4, "{failure}");
     let only =
         CheckOptions { depths: Depths::Each, ..CheckOptions::default().only(&[failure.minimised.variant]) };
     if failure.minimised.variant != Variant::Recorded {
-        let again = (0..8).find_map(|_| check_replay::<Toy<MISTAKE>>(&failure.replay, &only).err()).unwrap();
+        let again = (0..8).find_map(|_| check_replay::<Toy>(&failure.replay, &only).err()).unwrap();
         assert_eq!(again.failure().unwrap().minimised.variant, failure.minimised.variant, "{again}");
     }
     failure
@@ -36,10 +36,10 @@ fn found(failure: &Failure) -> (Variant, &Fault) {
 
 #[test]
 fn a_good_game_passes() {
-    let inputs = random_inputs::<Toy<0>>(2, 300, &mut Rng::new(1));
+    let inputs = random_inputs::<Toy>(2, 300, &mut Rng::new(1));
     for depths in [Depths::InTurn, Depths::Each] {
         let options = CheckOptions { depths, ..CheckOptions::default() };
-        let checked = check::<Toy<0>>(&(), &inputs, &options).unwrap();
+        let checked = check::<Toy>(&Mistake::None, &inputs, &options).unwrap();
         assert_eq!(checked.ticks, 300);
         assert_eq!(
             checked.variants,
@@ -58,7 +58,7 @@ fn a_good_game_passes() {
 
 #[test]
 fn a_field_that_the_save_lacks_is_found() {
-    let failure = failure::<1>();
+    let failure = failure(Mistake::SaveLacksField);
     assert_eq!(found(&failure), (Variant::Reloaded, &Fault::Loaded));
     // The minimised log has two players who walk up to each other, and one hit.
     assert!((3..=5).contains(&failure.ticks), "{failure}");
@@ -67,7 +67,7 @@ fn a_field_that_the_save_lacks_is_found() {
 
 #[test]
 fn a_field_that_save_and_hash_lack_is_found_when_it_tells() {
-    let failure = failure::<2>();
+    let failure = failure(Mistake::BothLackField);
     assert_eq!(found(&failure), (Variant::Reloaded, &Fault::Hash));
     assert!(fields(&failure)[0].starts_with("state.hits"), "{failure}");
     assert!((4..=8).contains(&failure.ticks), "{failure}");
@@ -75,44 +75,44 @@ fn a_field_that_save_and_hash_lack_is_found_when_it_tells() {
 
 #[test]
 fn a_field_that_the_hash_lacks_is_found() {
-    let failure = failure::<3>();
+    let failure = failure(Mistake::HashLacksField);
     assert_eq!(found(&failure), (Variant::ByteSwapped, &Fault::Unhashed));
     assert!(fields(&failure)[0].starts_with("state.cooldown"), "{failure}");
 }
 
 #[test]
 fn state_outside_of_the_game_is_found() {
-    let failure = failure::<4>();
+    let failure = failure(Mistake::Global);
     assert_eq!(found(&failure), (Variant::Again, &Fault::Hash));
     assert!(fields(&failure)[0].starts_with("state.hits"), "{failure}");
 }
 
 #[test]
 fn a_cache_that_load_leaves_is_found() {
-    let failure = failure::<5>();
+    let failure = failure(Mistake::LoadKeepsCache);
     assert!(matches!(found(&failure), (Variant::RolledBack | Variant::Reloaded, &Fault::Hash)), "{failure}");
 }
 
 #[test]
 fn a_memory_that_load_leaves_is_found() {
-    let failure = failure::<6>();
+    let failure = failure(Mistake::StaleMemory);
     assert!(matches!(found(&failure), (Variant::RolledBack | Variant::Reloaded, &Fault::Hash)), "{failure}");
     assert!(fields(&failure)[0].starts_with("state.hits"), "{failure}");
 }
 
 #[test]
 fn a_hash_that_changes_the_state_is_found() {
-    let counts = failure::<7>();
+    let counts = failure(Mistake::HashCounts);
     assert!(matches!(found(&counts).0, Variant::HashPolled | Variant::HashUnpolled), "{counts}");
     // The fault is invisible if the hash is polled after every tick.
-    let tidies = failure::<8>();
+    let tidies = failure(Mistake::HashTidies);
     assert_eq!(found(&tidies), (Variant::HashUnpolled, &Fault::Hash));
     assert_eq!(tidies.ticks, 8);
 }
 
 #[test]
 fn a_save_with_a_random_order_is_found() {
-    let failure = failure::<9>();
+    let failure = failure(Mistake::SaveIsUnordered);
     assert!(matches!(
         found(&failure),
         (Variant::HashPolled, Fault::Answers { of: "save" })
@@ -123,29 +123,35 @@ fn a_save_with_a_random_order_is_found() {
 
 #[test]
 fn answers_that_change_are_found() {
-    assert_eq!(found(&failure::<10>()), (Variant::HashPolled, &Fault::Answers { of: "claims" }));
-    assert_eq!(found(&failure::<11>()), (Variant::HashPolled, &Fault::Answers { of: "work" }));
+    assert_eq!(
+        found(&failure(Mistake::ClaimsCount)),
+        (Variant::HashPolled, &Fault::Answers { of: "claims" })
+    );
+    assert_eq!(found(&failure(Mistake::WorkCounts)), (Variant::HashPolled, &Fault::Answers { of: "work" }));
 }
 
 #[test]
 fn what_cannot_be_recorded_or_verified_is_found() {
-    assert!(matches!(found(&failure::<12>()), (Variant::Recorded, Fault::Unrecordable(_))));
-    assert!(matches!(found(&failure::<13>()), (Variant::Again, Fault::Answers { of: "claims" })));
-    let failure = failure::<15>();
+    assert!(matches!(found(&failure(Mistake::ClaimsTwice)), (Variant::Recorded, Fault::Unrecordable(_))));
+    assert!(matches!(
+        found(&failure(Mistake::ClaimsGlobal)),
+        (Variant::Again, Fault::Answers { of: "claims" })
+    ));
+    let failure = failure(Mistake::WorkIsHuge);
     assert!(matches!(found(&failure), (Variant::Recorded, Fault::Verdict(Verdict::LimitExceeded { .. }))));
 }
 
 #[test]
 fn a_save_that_is_not_read_is_found() {
-    let failure = failure::<14>();
+    let failure = failure(Mistake::Unreadable);
     assert!(matches!(found(&failure), (Variant::Reloaded, Fault::Unreadable { .. })), "{failure}");
     assert_eq!((failure.ticks, failure.minimised.tick), (9, 9));
 }
 
 #[test]
 fn a_log_that_is_none_is_no_failure_of_the_game() {
-    let error = check::<Toy<0>>(&(), &[vec![0; 3]], &CheckOptions::default()).unwrap_err();
+    let error = check::<Toy>(&Mistake::None, &[vec![0; 3]], &CheckOptions::default()).unwrap_err();
     assert!(matches!(error, CheckError::Record(_)), "{error}");
-    let error = check_replay::<Toy<0>>(b"none", &CheckOptions::default()).unwrap_err();
+    let error = check_replay::<Toy>(b"none", &CheckOptions::default()).unwrap_err();
     assert!(matches!(error, CheckError::Replay(_)), "{error}");
 }

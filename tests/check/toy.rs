@@ -7,8 +7,8 @@ use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use serde::{Deserialize, Serialize};
 
-/// The planted fault of a [`Toy`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The planted fault of a [`Toy`], which is its setup: one type for all faults is compiled once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Mistake {
     None,
     /// The save lacks the cooldowns.
@@ -44,7 +44,8 @@ pub(crate) enum Mistake {
 }
 
 /// Two players walk along a line and hit each other. A player needs time to cool down after a hit.
-pub(crate) struct Toy<const MISTAKE: usize> {
+pub(crate) struct Toy {
+    mistake: Mistake,
     state: State,
     /// Sum of the places: a cache.
     total: i64,
@@ -106,28 +107,9 @@ pub(crate) type Pad = u8;
 
 static SHARED: AtomicU32 = AtomicU32::new(0);
 
-const MISTAKES: [Mistake; 16] = [
-    Mistake::None,
-    Mistake::SaveLacksField,
-    Mistake::BothLackField,
-    Mistake::HashLacksField,
-    Mistake::Global,
-    Mistake::LoadKeepsCache,
-    Mistake::StaleMemory,
-    Mistake::HashCounts,
-    Mistake::HashTidies,
-    Mistake::SaveIsUnordered,
-    Mistake::ClaimsCount,
-    Mistake::WorkCounts,
-    Mistake::ClaimsTwice,
-    Mistake::ClaimsGlobal,
-    Mistake::Unreadable,
-    Mistake::WorkIsHuge,
-];
-
-impl<const MISTAKE: usize> Toy<MISTAKE> {
-    fn has(mistake: Mistake) -> bool {
-        MISTAKES[MISTAKE] == mistake
+impl Toy {
+    fn has(&self, mistake: Mistake) -> bool {
+        self.mistake == mistake
     }
 
     fn hit(&mut self, player: usize) {
@@ -138,30 +120,30 @@ impl<const MISTAKE: usize> Toy<MISTAKE> {
         }
         self.state.cooldown[player] = 20;
         let mut strength = 1 + u32::from(self.state.tick.is_multiple_of(3));
-        if Self::has(Mistake::StaleMemory) {
+        if self.has(Mistake::StaleMemory) {
             strength = match self.last_hit {
                 Some((last, strength)) if last == player => strength,
                 _ => strength,
             };
             self.last_hit = Some((player, strength));
         }
-        if Self::has(Mistake::Global) {
+        if self.has(Mistake::Global) {
             strength += SHARED.fetch_add(1, Ordering::Relaxed) % 7;
         }
         self.state.hits[player] += strength;
     }
 }
 
-impl<const MISTAKE: usize> Game for Toy<MISTAKE> {
-    type Setup = ();
+impl Game for Toy {
+    type Setup = Mistake;
     type Input = Pad;
     type Save = Save;
 
     const RULES: RulesId = RulesId { name: "toy", version: 1 };
 
-    fn new(_: &()) -> Result<Self, SetupError> {
+    fn new(&mistake: &Mistake) -> Result<Self, SetupError> {
         let state = State { places: [-3, 3], cooldown: [0; 2], hits: [0; 2], tick: 0 };
-        Ok(Toy { state, total: 0, last_hit: None, asked: Cell::new(0), tidy: Cell::new(false) })
+        Ok(Toy { mistake, state, total: 0, last_hit: None, asked: Cell::new(0), tidy: Cell::new(false) })
     }
 
     fn players(&self) -> u32 {
@@ -178,7 +160,7 @@ impl<const MISTAKE: usize> Game for Toy<MISTAKE> {
             let pad = pads.get(player).copied().unwrap_or_default();
             let variant = i64::from(pad & 1) - i64::from(pad >> 1 & 1);
             self.state.places[player] = (self.state.places[player] + variant).clamp(-9, 9);
-            self.total = match Self::has(Mistake::LoadKeepsCache) {
+            self.total = match self.has(Mistake::LoadKeepsCache) {
                 true => self.total + variant,
                 false => self.state.places.iter().sum(),
             };
@@ -189,10 +171,10 @@ impl<const MISTAKE: usize> Game for Toy<MISTAKE> {
         if self.total > 4 {
             self.state.hits[0] += 1;
         }
-        if Self::has(Mistake::HashCounts) {
+        if self.has(Mistake::HashCounts) {
             self.state.hits[1] += self.asked.replace(0) / 2;
         }
-        if Self::has(Mistake::HashTidies) && !self.tidy.get() {
+        if self.has(Mistake::HashTidies) && !self.tidy.get() {
             self.state.hits[0] += u32::from(self.state.tick == 7);
         }
         self.state.tick += 1;
@@ -202,7 +184,7 @@ impl<const MISTAKE: usize> Game for Toy<MISTAKE> {
         self.asked.set(self.asked.get() + 1);
         self.tidy.set(true);
         let State { places, cooldown, hits, tick } = &self.state;
-        let cooldown = match MISTAKES[MISTAKE] {
+        let cooldown = match self.mistake {
             Mistake::HashLacksField | Mistake::BothLackField => &[0; 2],
             _ => cooldown,
         };
@@ -211,24 +193,24 @@ impl<const MISTAKE: usize> Game for Toy<MISTAKE> {
 
     fn save(&self) -> Save {
         let mut state = self.state.clone();
-        if Self::has(Mistake::SaveLacksField) || Self::has(Mistake::BothLackField) {
+        if self.has(Mistake::SaveLacksField) || self.has(Mistake::BothLackField) {
             state.cooldown = [0; 2];
         }
-        let seen = if Self::has(Mistake::SaveIsUnordered) { 0..state.tick.min(6) } else { 0..0 };
-        let flag = Flag(if Self::has(Mistake::Unreadable) && state.tick == 9 { 2 } else { 0 });
+        let seen = if self.has(Mistake::SaveIsUnordered) { 0..state.tick.min(6) } else { 0..0 };
+        let flag = Flag(if self.has(Mistake::Unreadable) && state.tick == 9 { 2 } else { 0 });
         Save { state, seen: seen.collect(), flag }
     }
 
     fn load(&mut self, save: &Save) {
         self.state = save.state.clone();
-        if !Self::has(Mistake::LoadKeepsCache) {
+        if !self.has(Mistake::LoadKeepsCache) {
             self.total = self.state.places.iter().sum();
         }
     }
 
     fn work(&self, _: &[Pad]) -> u64 {
         self.asked.set(self.asked.get() + 1);
-        match MISTAKES[MISTAKE] {
+        match self.mistake {
             Mistake::WorkCounts => self.asked.get().into(),
             Mistake::WorkIsHuge => u64::MAX,
             _ => 1,
@@ -238,7 +220,7 @@ impl<const MISTAKE: usize> Game for Toy<MISTAKE> {
     fn claims(&self) -> Vec<(String, i64)> {
         self.asked.set(self.asked.get() + 1);
         let hits = self.state.hits.map(i64::from);
-        match MISTAKES[MISTAKE] {
+        match self.mistake {
             Mistake::ClaimsCount => vec![("asked".into(), self.asked.get().into())],
             Mistake::ClaimsTwice => hits.map(|hits| ("hits".into(), hits)).into(),
             Mistake::ClaimsGlobal => {

@@ -49,6 +49,9 @@ fn squares(places: impl Iterator<Item = (Fx, Fx)>) -> Vec<u8> {
     recording.finish().unwrap()
 }
 
+/// Memory in KB that the tool takes by itself without optimisation, because its code is larger.
+const UNOPTIMISED: u64 = if cfg!(debug_assertions) { 3_000 } else { 0 };
+
 /// A file of the table, and the memory in KB that its row allows `verify`. The other tools may take a multiple of it.
 #[test]
 fn no_tool_takes_more_memory_than_is_documented() {
@@ -74,7 +77,7 @@ fn no_tool_takes_more_memory_than_is_documented() {
         ] {
             let peak = peak(&[arguments, &[file]].concat()) * 1024 / 1000;
             println!("{peak} KB: {} {file}", arguments[0]);
-            if peak > times * most {
+            if peak > times * most + UNOPTIMISED {
                 wrong.push((arguments[0], file, peak, times * most));
             }
         }
