@@ -59,11 +59,11 @@ fn undisturbed(scene: &Scene) -> &'static Trace {
     TRACES[place].get_or_init(|| trace(scene, scene.golden_ticks, |_, _| {}))
 }
 
-/// Every scene, for as long as its golden but at most [`TICKS_MAX`], with the trace of an undisturbed run. At the sampled
-/// size, large scenes run for 40 ticks.
+/// Every scene, for as long as its golden but at most [`TICKS_MAX`], with the trace of an undisturbed run. The sample has
+/// a part of the ticks.
 fn each_scene(hold: impl Fn(&Scene, u64, &Trace) + Sync) {
     sweep::for_each(ALL.iter().collect(), |scene| {
-        let ticks_max = if shape_count(scene) > 2000 { sweep::size(TICKS_MAX, 40) } else { TICKS_MAX };
+        let ticks_max = sweep::size(TICKS_MAX, if shape_count(scene) > 2000 { 30 } else { 150 });
         hold(scene, scene.golden_ticks.min(ticks_max), undisturbed(scene));
     });
 }

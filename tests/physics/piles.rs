@@ -3,7 +3,7 @@
 use lockstep2d::fx;
 use lockstep2d::math::Fx;
 
-use crate::{deepest, open, run, speed_max, speed_mean};
+use crate::{deepest, open, run, speed_max, speed_mean, sweep};
 
 #[test]
 fn ten_boxes_stand_for_a_minute() {
@@ -36,7 +36,7 @@ fn a_pyramid_of_30_rows_comes_to_rest_and_loses_no_warm_start() {
 #[test]
 fn a_pyramid_of_5050_boxes_stands() {
     let mut game = open("large_pyramid");
-    run(&mut game, 500, |_, _| {});
+    run(&mut game, sweep::size(500, 200), |_, _| {});
     let world = game.world();
     let top = world.bodies().map(|(_, body)| body.position().y).max().expect("boxes");
     assert!(top >= fx!(98.76), "top at {top} m");

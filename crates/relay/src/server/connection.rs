@@ -4,7 +4,6 @@ use core::time::Duration;
 use std::sync::Arc;
 
 use futures_util::{SinkExt, StreamExt};
-use sha2::{Digest, Sha256};
 use tokio::net::TcpStream;
 use tokio::time::{Instant, interval, timeout};
 use tokio_tungstenite::tungstenite::handshake::server::{ErrorResponse, Request, Response};
@@ -104,7 +103,7 @@ async fn first_frame(socket: &mut Socket) -> Result<Option<Vec<u8>>, Error> {
 /// address outlives connections and the relay.
 fn member_of(secret: &[u8]) -> Option<Member> {
     let valid = secret.len() == SECRET_BYTES;
-    valid.then(|| Sha256::digest(secret).first_chunk().copied()).flatten()
+    valid.then(|| blake3::hash(secret).as_bytes().first_chunk().copied()).flatten()
 }
 
 async fn close(socket: &mut Socket, (code, reason): (u16, &'static str)) -> Result<(), Error> {
