@@ -4,11 +4,13 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 use std::{fs, thread};
 
-use lockstep2d::body::{BodyDef, Polygon, ShapeDef};
+use lockstep2d::body::{BodyDef, BodyId, Polygon, ShapeDef};
+use lockstep2d::codec;
 use lockstep2d::fx;
 use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::replay::Recording;
+use lockstep2d::solver::{JointDef, Weld};
 use lockstep2d::world::{BodyPose, Command as Edit, Config};
 
 use crate::{Folder, golden, sweep};
@@ -35,12 +37,36 @@ fn peak_so_far(pid: u32) -> Option<u64> {
     line.split_whitespace().nth(1)?.parse().ok()
 }
 
-/// A replay of ten ticks without commands of a world with one square at each place.
-fn squares(places: impl Iterator<Item = (Fx, Fx)>) -> Vec<u8> {
+/// Bodies with one square each.
+fn squares(places: impl Iterator<Item = (Fx, Fx)>) -> Vec<Edit> {
     let pose = |(x, y)| BodyPose { position: Vec2::new(x, y), angle: Angle::ZERO };
     let square = ShapeDef::new(Polygon::square(fx!(0.5)).unwrap());
     let body = BodyDef::dynamic();
-    let commands = vec![Edit::SpawnEach { body, shapes: vec![square], places: places.map(pose).collect() }];
+    vec![Edit::SpawnEach { body, shapes: vec![square], places: places.map(pose).collect() }]
+}
+
+/// A pile of squares on one spot, which all touch each other.
+fn pile(count: usize) -> Vec<Edit> {
+    squares(std::iter::repeat_n((fx!(0), fx!(0)), count))
+}
+
+/// Squares that do not touch.
+fn field(count: i64) -> Vec<Edit> {
+    squares((0..count).map(|at| (fx!(2) * (at % 1000), fx!(2) * (at / 1000))))
+}
+
+/// Two bodies with joints between them.
+fn joints(count: usize) -> Vec<Edit> {
+    let body = |slot: u32| codec::decode::<BodyId>(&u64::from(slot).to_le_bytes()).unwrap();
+    let ends = vec![(body(0), body(1)); count];
+    let joint = JointDef::new(body(0), body(1), Weld::rigid());
+    let mut commands = squares([(fx!(0), fx!(0)), (fx!(9), fx!(0))].into_iter());
+    commands.push(Edit::AddJointEach { joint, ends });
+    commands
+}
+
+/// A replay of ten ticks of a world. The ticks have no commands.
+fn replay_of(commands: Vec<Edit>) -> Vec<u8> {
     let setup = SandboxSetup { config: Config::default(), commands };
     let mut recording = Recording::<Sandbox>::start(&setup, 5).unwrap();
     for _ in 0..10 {
@@ -49,19 +75,43 @@ fn squares(places: impl Iterator<Item = (Fx, Fx)>) -> Vec<u8> {
     recording.finish().unwrap()
 }
 
+/// The rows of the table. The sample has the first of them.
+#[test]
+fn verify_takes_no_more_memory_than_is_documented() {
+    type Row = (&'static str, fn() -> Vec<Edit>, &'static str, u64);
+    const DEFAULT: &str = "10000000";
+    let rows: [Row; 7] = [
+        ("200 squares on one spot", || pile(200), "110000", 67_000),
+        ("50 000 separate bodies", || field(50_000), DEFAULT, 130_000),
+        ("400 squares on one spot", || pile(400), "500000", 250_000),
+        ("800 squares on one spot", || pile(800), "2000000", 1_000_000),
+        ("800 000 separate bodies", || field(800_000), DEFAULT, 1_400_000),
+        ("a million joints", || joints(1_000_000), DEFAULT, 1_800_000),
+        ("2800 squares on one spot", || pile(2800), DEFAULT, 2_300_000),
+    ];
+    let folder = Folder::new("memory-rows");
+    let file = folder.path("file.replay");
+    for (name, commands, tick_work, most) in &rows[..sweep::size(rows.len(), 1)] {
+        fs::write(&file, replay_of(commands())).unwrap();
+        let peak = peak(&["verify", "--max-tick-work", tick_work, &file]) * 1024 / 1000;
+        println!("{peak} KB of {most}: {name}");
+        assert!(peak <= most + UNOPTIMISED, "{name}: {peak} KB, more than {most}");
+    }
+}
+
 /// Memory in KB that the tool takes by itself without optimisation, because its code is larger.
 const UNOPTIMISED: u64 = if cfg!(debug_assertions) { 3_000 } else { 0 };
 
-/// A file of the table, and the memory in KB that its row allows `verify`. The other tools may take a multiple of it.
+/// Three files of the table, and the memory in KB that their rows allow `verify`. Some tools may take a multiple of it.
 #[test]
 fn no_tool_takes_more_memory_than_is_documented() {
     let folder = Folder::new("memory");
-    let [pile, field, output] = ["pile.replay", "field.replay", "output"].map(|name| folder.path(name));
-    fs::write(&pile, squares((0..400).map(|_| (fx!(0), fx!(0))))).unwrap();
-    fs::write(&field, squares((0..50_000).map(|at| (fx!(2) * (at % 200), fx!(2) * (at / 200))))).unwrap();
+    let [dense, wide, output] = ["pile.replay", "field.replay", "output"].map(|name| folder.path(name));
+    fs::write(&dense, replay_of(pile(400))).unwrap();
+    fs::write(&wide, replay_of(field(50_000))).unwrap();
     let (honest, mut wrong) = (golden("box_stack"), Vec::new());
     // Some tools take seconds for the field.
-    let files = sweep::sample([(&pile, 250_000), (&field, 130_000), (&honest, 10_000)], 2);
+    let files = sweep::sample([(&dense, 250_000), (&wide, 130_000), (&honest, 10_000)], 2);
     for (file, most) in files {
         for (times, arguments) in [
             (1, &["verify"][..]),
