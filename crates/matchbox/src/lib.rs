@@ -97,7 +97,7 @@ impl Transport for Matchbox {
         let Some(peer) = peer_of(to) else { return };
         let Ok(channel) = self.socket.get_channel_mut(CHANNEL) else { return };
         // An error says that the room is lost, which `update` finds as well. Packets may be lost in any case.
-        let _lost = channel.try_send(packet.into(), peer);
+        let _lost = channel.try_send(packet.to_vec().into(), peer);
     }
 
     fn receive(&mut self) -> Option<(Address, Vec<u8>)> {
@@ -105,7 +105,7 @@ impl Transport for Matchbox {
             self.update();
             let channel = self.socket.get_channel_mut(CHANNEL).ok()?;
             let packets = channel.receive().into_iter();
-            self.received.extend(packets.map(|(peer, packet)| (address_of(peer), packet.into_vec())));
+            self.received.extend(packets.map(|(peer, packet)| (address_of(peer), packet.to_vec())));
         }
         self.received.pop_front()
     }
