@@ -81,7 +81,7 @@ fn verify_takes_no_more_memory_than_is_documented() {
     type Row = (&'static str, fn() -> Vec<Edit>, &'static str, u64);
     const DEFAULT: &str = "10000000";
     let rows: [Row; 7] = [
-        ("200 squares on one spot", || pile(200), "110000", 67_000),
+        ("200 squares on one spot", || pile(200), "110000", 75_000),
         ("50 000 separate bodies", || field(50_000), DEFAULT, 130_000),
         ("400 squares on one spot", || pile(400), "500000", 250_000),
         ("800 squares on one spot", || pile(800), "2000000", 1_000_000),
