@@ -136,7 +136,7 @@ pub struct Endpoint {
     pub(super) events: VecDeque<JoinEvent>,
 }
 
-/// Who a peer is, and what it brings along.
+/// Identity of a peer, its key, and the parameters that it offers in the handshake.
 ///
 /// ```
 /// use lockstep2d::session::{Config, Endpoint, Identity, Key, PeerId};

@@ -28,7 +28,7 @@ pub(super) struct Lifecycle {
 /// play waits for.
 const WAITING_TICKS: u64 = 6;
 
-/// How long before the end of a match a peer asks for it, in microseconds.
+/// Time before the end of a match at which a peer proposes the end, in microseconds.
 const END_NOTICE: u64 = 2_000_000;
 
 impl Lifecycle {

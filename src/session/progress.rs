@@ -1,4 +1,4 @@
-//! How far the ticks are complete, acknowledged and final.
+//! Counts of complete, acknowledged and final ticks.
 //!
 //! A tick is *complete* when all inputs of the view's spans are here, also if no peer plays in it while one does
 //! later. It is *acknowledged* when it is complete and no promise stands, and *final* when a quorum of this view

@@ -1,4 +1,4 @@
-//! What is sent: this peer's row to every peer, and to each receiver what it lacks.
+//! Outgoing packets: this peer's row to every peer, and the inputs that each receiver lacks.
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;

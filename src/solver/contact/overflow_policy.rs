@@ -36,7 +36,7 @@ const UNCHECKED_RATE: Rate = Rate::lit("512");
 /// Base-2 logarithm of the bound of speeds and impulses, 64 m/s, and of displacements, 2 m, in units of their formats.
 const LARGE_BITS: u32 = 6 + Speed::FRAC_NBITS;
 const _: () = assert!(LARGE_BITS == 1 + Shift::FRAC_NBITS);
-/// The same for changes of an impulse, 4 m/s, and for separations in a solve, 1/8 m.
+/// Bits of the bound on changes of an impulse, 4 m/s, and on separations in a solve, 1/8 m.
 const SMALL_BITS: u32 = 2 + Speed::FRAC_NBITS;
 const _: () = assert!(SMALL_BITS + 3 == Shift::FRAC_NBITS);
 

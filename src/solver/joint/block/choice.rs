@@ -266,7 +266,7 @@ impl Choice {
     }
 
     /// Takes the joints of a body that fit beside a number of rows, in ascending order. Returns the rows with them.
-    /// What does not fit then never does, so that a second visit in the same walk would take nothing.
+    /// The number of rows only grows during a walk, so a joint that does not fit is not tried again in it.
     fn take_joints_of(&mut self, place: u32, mut rows: u32) -> u32 {
         let Choice { bodies, of_body, taken, settled, queue, walks, .. } = self;
         let JointsOfBody { next, ends, walk } = &mut bodies[place as usize];
