@@ -36,6 +36,7 @@ pub(super) struct ContactVelocities {
 
 /// Bodies that are processed together: as many as there are lanes.
 #[derive(Clone, Debug)]
+#[repr(align(32))]
 struct Group<const N: usize> {
     /// The indices of the bodies. Lanes without a body have the ground.
     at: [u32; N],

@@ -117,7 +117,8 @@ impl Solver {
         self.list.body(slot)
     }
 
-    /// Makes the constraints of the joints in the given slots, in the order in which they are solved.
+    /// Makes the constraints of the joints in the given slots, in the order in which they are solved. Those that are
+    /// solved in blocks are only counted.
     pub(crate) fn prepare_joints(
         &mut self,
         joints: &Arena<Joint, JointId>,
@@ -126,14 +127,21 @@ impl Solver {
         tuning: &Tuning,
     ) {
         let parts = self.parts;
-        let Solver { list, joints: set, colouring, machine, faults, .. } = self;
+        let Solver { list, joints: set, colouring, .. } = self;
         set.prepare(&JointSource { joints, slots, bodies, tuning }, list, colouring, parts);
-        set.refresh(&StepContext::new(*machine, tuning, &mut list.bodies, faults));
     }
 
     /// Number of joints that are solved in blocks in this tick.
     pub(crate) fn blocked_joint_count(&self) -> usize {
         self.joints.blocked_count()
+    }
+
+    /// Prepares the joints in blocks, and computes the arms of all joints. Blocks take more time and memory than all
+    /// else in the preparation, so that the caller counts them first.
+    pub(crate) fn prepare_blocks(&mut self, tuning: &Tuning) {
+        let Solver { list, joints: set, machine, faults, .. } = self;
+        set.prepare_blocks();
+        set.refresh(&StepContext::new(*machine, tuning, &mut list.bodies, faults));
     }
 
     /// [`Joint::reaction`] without allocations, after the joints of the tick have been solved.

@@ -128,14 +128,15 @@ struct Batch {
 
 /// Manifolds of eight pairs.
 #[derive(Clone, Debug)]
+#[repr(C, align(32))]
 struct Manifolds {
-    /// Bit mask of the pairs that are left to the scalar path.
-    open: u32,
     normal: [Ints<WIDTH>; 2],
     /// Number of points of each pair.
     count: Ints<WIDTH>,
     /// Contact points. Points beyond a pair's count are zero.
     points: [Points; 2],
+    /// Bit mask of the pairs that are left to the scalar path.
+    open: u32,
 }
 
 /// One contact point of each pair: anchor (x, y), separation and feature.

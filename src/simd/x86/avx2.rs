@@ -38,14 +38,14 @@ impl Lanes<WIDTH> for Avx2 {
 
     #[inline(always)]
     fn load(from: &Ints<WIDTH>) -> __m256i {
-        // SAFETY: see `Avx2`; loads 32 bytes, aligned to 32.
-        unsafe { _mm256_load_si256(from.0.as_ptr().cast()) }
+        // SAFETY: see `Avx2`; loads 32 bytes.
+        unsafe { _mm256_loadu_si256(from.0.as_ptr().cast()) }
     }
 
     #[inline(always)]
     fn store(value: __m256i, to: &mut Ints<WIDTH>) {
-        // SAFETY: see `Avx2`; stores 32 bytes, aligned to 32.
-        unsafe { _mm256_store_si256(to.0.as_mut_ptr().cast(), value) }
+        // SAFETY: see `Avx2`; stores 32 bytes.
+        unsafe { _mm256_storeu_si256(to.0.as_mut_ptr().cast(), value) }
     }
 
     #[inline(always)]

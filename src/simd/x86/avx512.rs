@@ -27,14 +27,14 @@ impl Lanes<WIDTH> for Avx512 {
 
     #[inline(always)]
     fn load(from: &Ints<WIDTH>) -> __m512i {
-        // SAFETY: see `Avx512`; loads 32 bytes, aligned to 32.
-        unsafe { _mm512_cvtepu32_epi64(_mm256_load_si256(from.0.as_ptr().cast())) }
+        // SAFETY: see `Avx512`; loads 32 bytes.
+        unsafe { _mm512_cvtepu32_epi64(_mm256_loadu_si256(from.0.as_ptr().cast())) }
     }
 
     #[inline(always)]
     fn store(value: __m512i, to: &mut Ints<WIDTH>) {
-        // SAFETY: see `Avx512`; stores 32 bytes, aligned to 32.
-        unsafe { _mm256_store_si256(to.0.as_mut_ptr().cast(), _mm512_cvtepi64_epi32(value)) }
+        // SAFETY: see `Avx512`; stores 32 bytes.
+        unsafe { _mm256_storeu_si256(to.0.as_mut_ptr().cast(), _mm512_cvtepi64_epi32(value)) }
     }
 
     #[inline(always)]

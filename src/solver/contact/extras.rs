@@ -9,6 +9,7 @@ use crate::simd::{Ints, Lanes};
 
 /// Additional data of a batch in which some surface has extras.
 #[derive(Clone, Debug)]
+#[repr(align(32))]
 pub(in crate::solver) struct ContactExtras<const N: usize> {
     pub(super) restitution: Ints<N>,
     /// Approach speed below which restitution is not applied.

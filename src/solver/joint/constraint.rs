@@ -122,6 +122,7 @@ impl JointSet {
     }
 
     /// Makes the constraints of all joints that are solved, in the order in which they are solved, for `parts` threads.
+    /// Those in blocks are only chosen.
     pub(in crate::solver) fn prepare(
         &mut self,
         source: &JointSource<'_>,
@@ -132,26 +133,20 @@ impl JointSet {
         let &JointSource { joints, slots, bodies, tuning } = source;
         let definitions =
             Definitions { joints: joints.revision(), bodies: bodies.revision(), tuning: *tuning, parts };
-        match self.cache_key.renew(definitions, joints.returns(), slots, list.slots()) {
-            Validity::All => self.resume(bodies, list),
-            Validity::Arrangement => {
+        let validity = self.cache_key.renew(definitions, joints.returns(), slots, list.slots());
+        if validity == Validity::Nothing || !self.blocks.is_arranged() {
+            self.parts.resize_with(parts, HingeShare::default);
+            self.clear();
+            self.arrange(source, list, colouring);
+            self.sort(colouring);
+        } else {
+            if validity == Validity::Arrangement {
                 self.hinges.reload(joints);
                 self.parts.iter_mut().for_each(|part| part.reload(joints));
-                self.resume(bodies, list);
             }
-            Validity::Nothing => {
-                self.parts.resize_with(parts, HingeShare::default);
-                self.clear();
-                self.arrange(source, list, colouring);
-                self.sort(colouring);
-                self.prepare_others(source, list);
-                self.arrange_blocks();
-                self.blocks.take_impulses(&mut self.hinges, &mut self.list);
-                return;
-            }
+            self.resume(bodies, list);
         }
         self.prepare_others(source, list);
-        self.blocks.take_impulses(&mut self.hinges, &mut self.list);
     }
 
     /// Reuses the hinges of the last tick, with the bodies at their current poses.
@@ -295,12 +290,16 @@ impl JointSet {
         self.blocks.chosen().len()
     }
 
-    /// Arranges the joints in blocks.
+    /// Prepares the joints in blocks, after [`Self::prepare`].
+    pub(in crate::solver) fn prepare_blocks(&mut self) {
+        if !self.blocks.is_arranged() {
+            self.arrange_blocks();
+        }
+        self.blocks.take_impulses(&mut self.hinges, &mut self.list);
+    }
+
     fn arrange_blocks(&mut self) {
         let JointSet { blocks, hinges, list, blocked_parts, entries, candidates, .. } = self;
-        if blocks.is_empty() {
-            return;
-        }
         list.blocked_parts(|slot, part| blocked_parts.push((slot, part)));
         blocked_parts.sort_by_key(|&(slot, _)| slot);
         let number = |&joint: &u32| match entries[joint as usize] {

@@ -92,6 +92,10 @@ impl World {
         solver.prepare_contacts(&found.touching, &found.manifolds, &found.impacts, &state.contacts);
         areas::apply_areas(state, scratch, &tuning);
         let can_solve = solver_work::spend(state, scratch, pairs_before);
+        let Scratch { solver, .. } = scratch;
+        if can_solve {
+            solver.prepare_blocks(&tuning);
+        }
 
         begin(Phase::Solve, PhaseView::of(state, scratch));
         let Scratch { solver, .. } = scratch;

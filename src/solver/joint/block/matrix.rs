@@ -11,7 +11,7 @@
 //! Each row is stored from its first entry that is not 0 up to the diagonal. The factor has the same envelope (A.
 //! George and J. Liu, "Computer Solution of Large Sparse Positive Definite Systems", 1981, chapter 4).
 
-use alloc::vec::Vec;
+use alloc::{vec, vec::Vec};
 
 use crate::math::{round_shift, round_shift_wide, saturate, saturate_wide};
 
@@ -34,12 +34,16 @@ pub(super) struct Matrix {
 }
 
 impl Matrix {
-    /// Adds a row whose first entry is in a column. All its entries are 0.
-    pub(super) fn push_row(&mut self, first: usize) {
-        let row = self.first.len();
-        self.starts.push(self.entries.len());
-        self.first.push(first.min(row));
-        self.entries.resize(self.entries.len() + row - first.min(row), 0);
+    /// A matrix of zeros, by the column of the first entry of each row. Takes no more memory than it needs: thousands of
+    /// blocks have one each.
+    pub(super) fn new(mut first: Vec<usize>) -> Self {
+        let (mut starts, mut count) = (Vec::with_capacity(first.len()), 0);
+        for (row, first) in first.iter_mut().enumerate() {
+            *first = row.min(*first);
+            starts.push(count);
+            count += row - *first;
+        }
+        Matrix { first, starts, entries: vec![0; count] }
     }
 
     /// Sets an entry within the envelope.

@@ -116,6 +116,11 @@ impl Blocks {
         self.choice.order.is_empty()
     }
 
+    /// Whether the chosen joints are arranged, if there are any.
+    pub(super) fn is_arranged(&self) -> bool {
+        self.blocks.is_empty() == self.choice.order.is_empty()
+    }
+
     /// Chooses the joints that are solved in blocks.
     pub(super) fn choose(&mut self, candidates: &[Candidate], body_count: usize) {
         self.choice.choose(candidates, body_count);
@@ -235,6 +240,7 @@ impl Block {
     /// Finds the pairs of units with a common body, and the envelope of the matrix.
     fn arrange(&mut self) {
         let Block { units, pairs, rows, matrix, x, bias, impulses, wanted, bodies, places, .. } = self;
+        let mut first_columns = Vec::with_capacity(bias.scales.len());
         for (at, unit) in (0..).zip(units.iter()) {
             let mut first = unit.row;
             for (earlier, other) in (0..=at).zip(units.iter()) {
@@ -246,8 +252,9 @@ impl Block {
                     }
                 }
             }
-            unit.rows().for_each(|_| matrix.push_row(first));
+            first_columns.extend(unit.rows().map(|_| first));
         }
+        *matrix = Matrix::new(first_columns);
         rows.resize(bias.scales.len(), ScaledRow::default());
         x.resize(bias.scales.len(), 0);
         impulses.resize(bias.scales.len(), 0);

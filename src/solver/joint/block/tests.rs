@@ -14,10 +14,9 @@ use crate::solver::row::MassFractions;
 /// A random matrix with a unit diagonal in a random envelope. The sum of the other entries of each row is below 1, so
 /// that the matrix is positive definite.
 fn random_matrix(rng: &mut Rng, size: usize) -> Matrix {
-    let mut matrix = Matrix::default();
-    for row in 0..size {
-        let first = rng.below(u32::try_from(row + 1).expect("small")) as usize;
-        matrix.push_row(first);
+    let first_columns: Vec<usize> = (1..).take(size).map(|count| rng.below(count) as usize).collect();
+    let mut matrix = Matrix::new(first_columns.clone());
+    for (row, first) in first_columns.into_iter().enumerate() {
         for column in first..row {
             let most = ONE / i64::try_from(2 * size).expect("small");
             let entry = i64::from(rng.below(u32::try_from(2 * most).expect("small"))) - most;

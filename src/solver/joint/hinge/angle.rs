@@ -24,11 +24,6 @@ use crate::simd::{Ints, Lanes};
 pub(in crate::solver) struct AngleRows<const N: usize> {
     e: [Ints<N>; 2],
     f: [Ints<N>; 2],
-    has_spring: bool,
-    has_drive: bool,
-    has_limit: bool,
-    /// Whether a row holds the angle in any lane. Only then are spring rows solved in the relax pass.
-    holds: bool,
     spring: SpringRow<N>,
     drive: DriveRow<N>,
     /// The lower and the upper limit. The row of the upper limit is reversed.
@@ -39,6 +34,11 @@ pub(in crate::solver) struct AngleRows<const N: usize> {
     stiffness: [Fx; N],
     closed: [Fx; N],
     open: [Fx; N],
+    has_spring: bool,
+    has_drive: bool,
+    has_limit: bool,
+    /// Whether a row holds the angle in any lane. Only then are spring rows solved in the relax pass.
+    holds: bool,
 }
 
 #[derive(Clone, Debug)]

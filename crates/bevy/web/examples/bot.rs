@@ -1,0 +1,53 @@
+//! A signalling server, and a player without a window in the room `bot`, for a match in a page: `index.html#bot`.
+//!
+//! `bot [PORT [TICKS]]`: the server listens on port 3536 of this machine, and the match ends after a number of ticks. Then
+//! its replay is verified, and the hash of its last state printed.
+
+use std::net::Ipv4Addr;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use bevy_lockstep2d_examples::versus::{Versus, bot_pad};
+use lockstep2d::lockstep::Game;
+use lockstep2d::peer::{Peer, PeerEvent, PeerIdentity, PeerOptions};
+use lockstep2d::replay::{Limits, verify};
+use lockstep2d::session::Status;
+use lockstep2d_matchbox::Matchbox;
+use matchbox_signaling::SignalingServer;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let port = arguments.next().map_or(Ok(3536), |port| port.parse())?;
+    let end: Option<u64> = arguments.next().map(|ticks| ticks.parse()).transpose()?;
+
+    let runtime = tokio::runtime::Runtime::new()?;
+    let guard = runtime.enter();
+    let mut server = SignalingServer::full_mesh_builder((Ipv4Addr::LOCALHOST, port)).build();
+    let address = server.bind()?;
+    runtime.spawn(server.serve());
+    drop(guard);
+    println!("ws://{address}, room bot");
+
+    let room = Matchbox::connect(&format!("ws://{address}/versus-bot"));
+    let mut peer = Peer::<Versus, _>::host(&(), PeerOptions::rollback(), PeerIdentity::random(), room)?;
+    if let Some(ticks) = end {
+        peer.end_at(ticks);
+    }
+    let start = Instant::now();
+    while peer.status() != Some(Status::Closed) {
+        sleep(Duration::from_millis(2));
+        peer.update(start.elapsed())?;
+        while peer.is_due() {
+            peer.advance(&[bot_pad(peer.tick())])?;
+        }
+        while let Some(event) = peer.next_event() {
+            if let PeerEvent::Desync(desync) = event {
+                return Err(format!("other states than theirs since tick {}", desync.tick).into());
+            }
+        }
+    }
+    let (tick, hash) = (peer.tick(), peer.game().state_hash());
+    let verified = verify::<Versus>(&peer.finish()?.replay, &Limits::default());
+    println!("tick {tick}, {hash}, {:?}", verified.verdict);
+    Ok(())
+}

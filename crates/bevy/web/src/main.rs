@@ -1,0 +1,105 @@
+//! `versus` over WebRTC: in web pages, natively, and between both. Arrow keys.
+//!
+//! A page without a room in its address makes one and opens a match. Whoever opens the page with `#ROOM` joins it.
+//! Natively: `bevy_lockstep2d_web [ROOM [SERVER]]`. Needs a signalling server of matchbox: `cargo run --example bot`
+//! has one, and a player.
+
+#[cfg_attr(target_arch = "wasm32", path = "page.rs")]
+#[cfg_attr(not(target_arch = "wasm32"), path = "native.rs")]
+mod platform;
+
+use bevy::{app::RunFixedMainLoop, prelude::*};
+use bevy_lockstep2d::prelude::*;
+use bevy_lockstep2d_examples::app;
+use bevy_lockstep2d_examples::versus::{Versus, press};
+use lockstep2d::lockstep::Game;
+use lockstep2d::peer::{PeerEvent, PeerIdentity, PeerOptions};
+use lockstep2d::session::Status;
+use lockstep2d_matchbox::Matchbox;
+
+/// Where a player goes.
+struct Arguments {
+    /// The signalling server: `ws://HOST:PORT`.
+    server: String,
+    /// The room of a match that somebody has opened.
+    room: Option<String>,
+    /// Who the player is. It gets its seat back if it is known already.
+    me: PeerIdentity,
+    /// The name for a room of one's own.
+    new_room: String,
+}
+
+#[derive(Resource)]
+struct Room(String);
+
+/// A room in which nobody is yet.
+#[derive(Resource)]
+struct Empty(Option<Matchbox>, PeerIdentity);
+
+/// Joins the match of whoever is in the room.
+fn join(mut commands: Commands, mut empty: ResMut<Empty>) -> Result {
+    let me = empty.1;
+    if let Some(mut matchbox) = empty.0.take() {
+        matchbox.update();
+        if let Some(&contact) = matchbox.others().first() {
+            commands.insert_resource(Lockstep::<Versus>::join(
+                &(),
+                PeerOptions::rollback(),
+                me,
+                matchbox,
+                contact,
+            )?);
+            commands.remove_resource::<Empty>();
+        } else {
+            empty.0 = Some(matchbox);
+        }
+    }
+    Ok(())
+}
+
+/// Tells in what state the match is.
+fn tell(lockstep: Option<Res<Lockstep<Versus>>>, room: Res<Room>, mut windows: Query<&mut Window>) {
+    let name = &room.0;
+    let peer = lockstep.as_ref().and_then(|lockstep| lockstep.peer());
+    let text = match peer.and_then(|peer| Some((peer.status()?, peer))) {
+        None => format!("{name}: connecting"),
+        Some((Status::Waiting, _)) => format!("{name}: waiting for another player"),
+        Some((Status::Finished { ticks }, peer)) if peer.confirmed() == u64::from(ticks) => {
+            format!("{name}: the end, tick {ticks}, {}", peer.game().state_hash())
+        }
+        Some((status, peer)) => {
+            let guessed = peer.tick().saturating_sub(peer.confirmed());
+            format!("{name}: {status:?}, tick {}, {guessed} of them guessed", peer.tick())
+        }
+    };
+    platform::show(&text, &mut windows);
+}
+
+/// Puts the room into the address of the page when the match begins, so that a page that is loaded again comes back.
+fn enter(mut events: MessageReader<MatchEvent>, room: Res<Room>) -> Result {
+    for MatchEvent(event) in events.read() {
+        if let PeerEvent::Desync(desync) = event {
+            return Err(format!("other states than theirs since tick {}", desync.tick).into());
+        }
+        platform::enter(&room.0);
+    }
+    Ok(())
+}
+
+fn main() -> Result {
+    let Arguments { server, room, me, new_room } = platform::arguments();
+    let name = room.clone().unwrap_or(new_room);
+    let matchbox = Matchbox::connect(&format!("{server}/versus-{name}"));
+    let mut app = app::<Versus>("versus", 18.0, Vec2::ZERO);
+    if room.is_some() {
+        app.insert_resource(Empty(Some(matchbox), me));
+    } else {
+        app.insert_resource(Lockstep::<Versus>::host(&(), PeerOptions::rollback(), me, matchbox)?);
+    }
+    app.insert_resource(Room(name))
+        .add_systems(PreUpdate, join.run_if(resource_exists::<Empty>))
+        .add_systems(RunFixedMainLoop, press.in_set(LockstepSystems::Inputs))
+        .add_systems(Update, (tell, enter))
+        .run();
+    Ok(())
+}

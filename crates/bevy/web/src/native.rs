@@ -1,0 +1,25 @@
+//! A window: arguments of the command line, and the title.
+
+use bevy::prelude::*;
+use lockstep2d::peer::PeerIdentity;
+
+use crate::Arguments;
+
+pub fn arguments() -> Arguments {
+    let mut arguments = std::env::args().skip(1);
+    let me = PeerIdentity::random();
+    let room = arguments.next();
+    let server = arguments.next().unwrap_or_else(|| "ws://127.0.0.1:3536".into());
+    Arguments { server, room, me, new_room: format!("{:x}", me.id.0) }
+}
+
+pub fn show(text: &str, windows: &mut Query<&mut Window>) {
+    for mut window in windows {
+        if window.title != text {
+            window.title = text.into();
+        }
+    }
+}
+
+/// A program that ends is not started again with the same room.
+pub const fn enter(_room: &str) {}
