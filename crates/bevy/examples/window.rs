@@ -1,7 +1,9 @@
 //! Shared by the examples: a window with a camera that draws the world as gizmos, and a simulated line.
 
-#[cfg(feature = "window")]
+#[cfg(all(feature = "window", not(target_arch = "wasm32")))]
 mod screenshot;
+#[path = "versus_game.rs"]
+pub mod versus;
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -31,7 +33,7 @@ pub fn app<G: LockstepGame>(title: &str, metres: f32, centre: Vec2) -> App {
     .add_systems(Startup, move |mut commands: Commands| {
         commands.spawn((Camera2d, Transform::from_translation((centre * scale).extend(0.0))));
     });
-    #[cfg(feature = "window")]
+    #[cfg(all(feature = "window", not(target_arch = "wasm32")))]
     screenshot::take_when_asked(&mut app);
     app
 }

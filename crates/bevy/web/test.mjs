@@ -33,7 +33,7 @@ try {
     await browser.until(STATUS, (status) => tickOf(status) > 400, "the match goes on");
     const end = await browser.until(STATUS, (status) => /the end/.test(status), "the end");
     const [, tick, hash] = /the end, tick (\d+), ([0-9a-f]{32})/.exec(end);
-    assert.equal((await lines.next()).value, `tick ${tick}, ${hash}, Match`);
+    assert.equal((await lines.next()).value, `tick ${tick}, ${hash}`);
     assert.equal(Number(tick), TICKS);
     assert.deepEqual(await ended, [0, null]);
     assert.deepEqual(browser.complaints, []);

@@ -1,7 +1,7 @@
 //! A signalling server, and a player without a window in the room `bot`, for a match in a page: `index.html#bot`.
 //!
-//! `bot [PORT [TICKS]]`: the server listens on port 3536 of this machine, and the match ends after a number of ticks. Then
-//! its replay is verified, and the hash of its last state printed.
+//! `bot [PORT [TICKS]]`: the server listens on port 3536 of this machine, and the match ends after a number of ticks.
+//! Then its replay is verified, and the hash of its last state printed.
 
 use std::net::Ipv4Addr;
 use std::thread::sleep;
@@ -47,7 +47,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     let (tick, hash) = (peer.tick(), peer.game().state_hash());
-    let verified = verify::<Versus>(&peer.finish()?.replay, &Limits::default());
-    println!("tick {tick}, {hash}, {:?}", verified.verdict);
+    let verdict = verify::<Versus>(&peer.finish()?.replay, &Limits::default());
+    if !verdict.is_match() {
+        return Err(format!("the replay does not verify: {verdict}").into());
+    }
+    println!("tick {tick}, {hash}");
     Ok(())
 }

@@ -64,8 +64,8 @@ fn tell(lockstep: Option<Res<Lockstep<Versus>>>, room: Res<Room>, mut windows: Q
     let text = match peer.and_then(|peer| Some((peer.status()?, peer))) {
         None => format!("{name}: connecting"),
         Some((Status::Waiting, _)) => format!("{name}: waiting for another player"),
-        Some((Status::Finished { ticks }, peer)) if peer.confirmed() == u64::from(ticks) => {
-            format!("{name}: the end, tick {ticks}, {}", peer.game().state_hash())
+        Some((Status::Finished { .. } | Status::Closed, peer)) if peer.tick() == peer.confirmed() => {
+            format!("{name}: the end, tick {}, {}", peer.tick(), peer.game().state_hash())
         }
         Some((status, peer)) => {
             let guessed = peer.tick().saturating_sub(peer.confirmed());
