@@ -25,7 +25,6 @@ pub(super) fn last_arms(memory: &Contact, manifold: &Manifold, tolerance: u16) -
 
 /// The arms of a batch's contacts that have changed.
 #[derive(Clone, Debug)]
-#[repr(align(32))]
 pub(super) struct RenewedArms<const N: usize> {
     /// Bit mask of the lanes in which an arm has changed.
     pub(super) lanes: u32,

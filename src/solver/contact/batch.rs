@@ -19,6 +19,11 @@ pub(in crate::solver) struct Batch<const N: usize> {
     /// -1 in lanes with two points. In the other lanes of a batch of two points, the second is a copy of the first
     /// without an impulse.
     pub(super) both: Ints<N>,
+    pub(super) points: [Point<N>; 2],
+    /// The friction row, half-way between the points. Both points would have the same row, because they lie on one line
+    /// along the tangent.
+    pub(super) tangent: Row<N>,
+    pub(super) tangent_lambda: Ints<N>,
     /// Number of points that have a contact in any lane. Points beyond it are stale and never read.
     pub(super) count: usize,
     /// Whether any surface in the batch bounces, moves or resists rolling. The batch then has a
@@ -28,16 +33,10 @@ pub(in crate::solver) struct Batch<const N: usize> {
     pub(super) unchecked: bool,
     /// For each point, a bit mask of the lanes in which the shapes have pushed each other in this tick.
     pub(super) pushed: [u32; 2],
-    pub(super) points: [Point<N>; 2],
-    /// The friction row, half-way between the points. Both points would have the same row, because they lie on one line
-    /// along the tangent.
-    pub(super) tangent: Row<N>,
-    pub(super) tangent_lambda: Ints<N>,
 }
 
 /// The same point of `N` contacts.
 #[derive(Clone, Debug)]
-#[repr(C, align(32))]
 pub(super) struct Point<const N: usize> {
     pub(super) normal: Row<N>,
     /// Separation at the start of the tick, in the format of a shift.
@@ -84,13 +83,13 @@ impl<const N: usize> Batch<N> {
         n_y: Ints::ZERO,
         immovable: Ints::ZERO,
         both: Ints::ZERO,
+        points: [Point::NONE; 2],
+        tangent: Row::NONE,
+        tangent_lambda: Ints::ZERO,
         count: 0,
         extras: false,
         unchecked: false,
         pushed: [0; 2],
-        points: [Point::NONE; 2],
-        tangent: Row::NONE,
-        tangent_lambda: Ints::ZERO,
     };
 
     /// Resets the fields that filling the batch does not overwrite.

@@ -38,7 +38,6 @@ struct ContactSide<L: Lanes<N>, const N: usize> {
 
 /// The reciprocals of the denominators of a batch's rows.
 #[derive(Clone, Debug)]
-#[repr(align(32))]
 pub(super) struct Inverses<const N: usize> {
     pub(super) normals: [Ints<N>; 2],
     pub(super) tangent: Ints<N>,
