@@ -10,9 +10,9 @@ use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::Limits;
 use lockstep2d_cli::{LimitArguments, with_defaults};
+use url::Url;
 
 use crate::error::WorkerError;
-use crate::job::Source;
 use crate::{results, submit, work};
 
 /// Stack size of a thread in bytes: that of a main thread, which a game may rely on.
@@ -80,6 +80,8 @@ impl<G: Game + 'static> Worker<G> {
             .mut_subcommand("work", |work| with_defaults(work, &self.limits));
         let arguments =
             Arguments::from_arg_matches(&command.get_matches()).unwrap_or_else(|usage| usage.exit());
+        // Of TLS, for S3. NATS would use the same. An error means that the program has chosen another.
+        let _ = rustls::crypto::ring::default_provider().install_default();
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(2)
             .thread_stack_size(STACK_BYTES)
@@ -89,10 +91,7 @@ impl<G: Game + 'static> Worker<G> {
         let result = runtime.block_on(async {
             match &arguments.command {
                 Command::Work(arguments) => work::run::<G>(arguments, &self.limits).await,
-                Command::Submit { connection, objects, paths } => {
-                    let source = if *objects { Source::Object } else { Source::Folder };
-                    submit::run(connection, rules, paths, source).await
-                }
+                Command::Submit(arguments) => submit::run(arguments, rules).await,
                 Command::Results { connection, follow } => results::run(connection, rules, *follow).await,
             }
         });
@@ -117,16 +116,7 @@ enum Command {
     /// Take jobs from the queue, one at a time, and add their results
     Work(WorkArguments),
     /// Add files to the queue, and print a line of JSON for each
-    Submit {
-        #[command(flatten)]
-        connection: Connection,
-        /// Store the files in the object store of the queue; otherwise workers read them from their folder
-        #[arg(long)]
-        objects: bool,
-        /// Replays, and folders that contain *.replay files at any depth
-        #[arg(required = true, value_name = "PATH")]
-        paths: Vec<PathBuf>,
-    },
+    Submit(SubmitArguments),
     /// Print the results: the lines of `verify --json`
     Results {
         #[command(flatten)]
@@ -154,6 +144,22 @@ pub(crate) struct Connection {
     pub(crate) replicas: u8,
 }
 
+/// Arguments of `submit`.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct SubmitArguments {
+    #[command(flatten)]
+    pub(crate) connection: Connection,
+    /// Store the files in the object store of the queue; otherwise workers read them from their folder
+    #[arg(long)]
+    pub(crate) objects: bool,
+    /// Submit the files of a bucket, or of a folder in it: s3://bucket/folder. PATHs are relative to it
+    #[arg(long, value_name = "URL", conflicts_with = "objects")]
+    pub(crate) bucket: Option<Url>,
+    /// Replays, and folders that contain *.replay files at any depth
+    #[arg(required_unless_present = "bucket", value_name = "PATH")]
+    pub(crate) paths: Vec<PathBuf>,
+}
+
 /// Arguments of `work`.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct WorkArguments {
@@ -162,6 +168,10 @@ pub(crate) struct WorkArguments {
     /// Folder that the paths of jobs are relative to
     #[arg(long, value_name = "DIR", default_value = ".")]
     pub(crate) folder: PathBuf,
+    /// Bucket, or folder in it, with the files of `submit --bucket`: s3://bucket/folder. AWS_* variables have the
+    /// credentials, the region and the endpoint
+    #[arg(long, value_name = "URL")]
+    pub(crate) bucket: Option<Url>,
     /// Deliveries of a job, each of which ended without a result, after which its result is `crashed`
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
     pub(crate) max_deliver: u16,

@@ -5,6 +5,8 @@ use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use url::Url;
+
 /// An error that stops a command.
 #[derive(Debug)]
 pub(crate) enum WorkerError {
@@ -12,6 +14,8 @@ pub(crate) enum WorkerError {
     Start { what: &'static str, error: io::Error },
     /// NATS refuses an operation, or does not answer.
     Nats { what: &'static str, why: String },
+    /// A bucket cannot be opened or read.
+    Bucket { url: Box<str>, error: Box<object_store::Error> },
     /// A file cannot be read.
     Read { path: PathBuf, error: io::Error },
     /// A job cannot name this path: it is not relative, leads out of the folder, or is not UTF-8.
@@ -28,6 +32,11 @@ impl WorkerError {
         move |error| WorkerError::Nats { what, why: error.to_string() }
     }
 
+    /// Returns a function that wraps an error of the bucket at `url`.
+    pub(crate) fn bucket(url: &Url) -> impl Fn(object_store::Error) -> Self {
+        move |error| WorkerError::Bucket { url: url.as_str().into(), error: error.into() }
+    }
+
     /// Returns a function that wraps an error of reading the file at `path`.
     pub(crate) fn read(path: &Path) -> impl Fn(io::Error) -> Self {
         move |error| WorkerError::Read { path: path.to_path_buf(), error }
@@ -39,6 +48,7 @@ impl fmt::Display for WorkerError {
         match self {
             WorkerError::Start { what, error } => write!(f, "cannot start {what}: {error}"),
             WorkerError::Nats { what, why } => write!(f, "cannot {what}: {why}"),
+            WorkerError::Bucket { url, error } => write!(f, "cannot read the bucket {url}: {error}"),
             WorkerError::Read { path, error } => write!(f, "cannot read {path:?}: {error}"),
             WorkerError::Path { path } => {
                 write!(f, "{path:?} is not a relative path inside the folder of the workers")

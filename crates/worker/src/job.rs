@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Job {
-    /// The name in the result, and the path if the file is in a folder.
+    /// The name in the result, and the path if the file is in a folder or bucket.
     pub(crate) file: String,
     pub(crate) source: Source,
     /// BLAKE3 of the file: 64 hexadecimal digits.
@@ -21,6 +21,8 @@ pub(crate) enum Source {
     Folder,
     /// In the object store of the queue, under its BLAKE3.
     Object,
+    /// In the bucket of the worker.
+    Bucket,
 }
 
 impl Job {

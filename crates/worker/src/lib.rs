@@ -18,6 +18,7 @@
 //! - A process has at most one file at work, so that a file that kills the process takes no other with it.
 
 mod app;
+mod bucket;
 mod error;
 mod files;
 mod job;

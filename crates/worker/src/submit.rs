@@ -5,12 +5,13 @@ use std::io::{BufReader, Write};
 use std::path::{Path, PathBuf};
 
 use async_nats::jetstream::object_store::ObjectStore;
-use futures_util::stream::{self, StreamExt, TryStreamExt};
+use futures_util::stream::{self, BoxStream, StreamExt, TryStreamExt};
 use lockstep2d::lockstep::RulesId;
 use lockstep2d_cli::Walk;
 use serde::Serialize;
 
-use crate::app::Connection;
+use crate::app::SubmitArguments;
+use crate::bucket::Bucket;
 use crate::error::WorkerError;
 use crate::files::inside;
 use crate::job::{Job, Source};
@@ -18,6 +19,9 @@ use crate::queue::{Added, Queue, json, retry};
 
 /// Files that are submitted at a time, so that the queue limits the speed.
 const AT_ONCE: usize = 16;
+
+/// Names of files, as their jobs and results have them.
+pub(crate) type Names<'a> = BoxStream<'a, Result<String, WorkerError>>;
 
 /// The line of a file that was submitted.
 #[derive(Serialize)]
@@ -28,21 +32,27 @@ struct Line<'a> {
     queued: bool,
 }
 
+/// Where the submitted files are, and workers find them.
+enum Files {
+    /// In the folder of the worker, at the same paths as here.
+    Folder,
+    /// Here; workers find them in the object store of the queue.
+    Objects(Box<ObjectStore>),
+    Bucket(Bucket),
+}
+
 /// Submits files, and the replays in folders. Prints a line for each.
-pub(crate) async fn run(
-    connection: &Connection,
-    rules: RulesId,
-    paths: &[PathBuf],
-    source: Source,
-) -> Result<(), WorkerError> {
-    let queue = Queue::open(connection, rules).await?;
-    let store = match source {
-        Source::Object => Some(queue.files().await?),
-        Source::Folder => None,
+pub(crate) async fn run(arguments: &SubmitArguments, rules: RulesId) -> Result<(), WorkerError> {
+    let queue = Queue::open(&arguments.connection, rules).await?;
+    let files = match &arguments.bucket {
+        Some(url) => Files::Bucket(Bucket::open(url)?),
+        None if arguments.objects => Files::Objects(Box::new(queue.files().await?)),
+        None => Files::Folder,
     };
-    let tasks = stream::iter(paths.iter().flat_map(|path| replays(path)));
-    let submit = |path: Result<PathBuf, WorkerError>| submit(&queue, store.as_ref(), path);
-    let lines = tasks.map(submit).buffered(AT_ONCE);
+    let whole = [PathBuf::new()];
+    let paths = if arguments.paths.is_empty() { &whole } else { arguments.paths.as_slice() };
+    let names = stream::iter(paths).then(|path| replays(&files, path)).try_flatten();
+    let lines = names.map(|name| submit(&queue, &files, name)).buffered(AT_ONCE);
     lines.try_for_each(|line| async move { print(&line) }).await
 }
 
@@ -50,44 +60,61 @@ fn print(line: &str) -> Result<(), WorkerError> {
     std::io::stdout().write_all(format!("{line}\n").as_bytes()).map_err(WorkerError::Output)
 }
 
-/// The file itself, or the replays in a folder.
-fn replays(path: &Path) -> Box<dyn Iterator<Item = Result<PathBuf, WorkerError>> + '_> {
+/// The names of the file at `path`, or of the replays in that folder.
+async fn replays<'a>(files: &'a Files, path: &'a Path) -> Result<Names<'a>, WorkerError> {
+    if let Files::Bucket(bucket) = files {
+        return bucket.replays(path.to_str().ok_or_else(|| no_name(path))?).await;
+    }
+    let name = |path: PathBuf| path.to_str().map(String::from).ok_or_else(|| no_name(&path));
     if !path.is_dir() {
-        return Box::new(std::iter::once(Ok(path.to_path_buf())));
+        return Ok(stream::iter([name(path.to_path_buf())]).boxed());
     }
     let mut walk = Walk::new(path)
-        .map(|found| found.map_err(|error| WorkerError::Read { path: error.path, error: error.error }));
-    match walk.next() {
-        Some(first) => Box::new(std::iter::once(first).chain(walk)),
-        None => Box::new(std::iter::once(Err(WorkerError::NothingToSubmit { path: path.to_path_buf() }))),
+        .map(move |found| match found {
+            Ok(path) => name(path),
+            Err(error) => Err(WorkerError::Read { path: error.path, error: error.error }),
+        })
+        .peekable();
+    if walk.peek().is_none() {
+        return Err(WorkerError::NothingToSubmit { path: path.to_path_buf() });
     }
+    Ok(stream::iter(walk).boxed())
+}
+
+fn no_name(path: &Path) -> WorkerError {
+    WorkerError::Path { path: path.to_path_buf() }
 }
 
 async fn submit(
     queue: &Queue,
-    store: Option<&ObjectStore>,
-    path: Result<PathBuf, WorkerError>,
+    files: &Files,
+    name: Result<String, WorkerError>,
 ) -> Result<String, WorkerError> {
-    let path = path?;
-    let no_name = || WorkerError::Path { path: path.clone() };
-    let name = path.to_str().ok_or_else(no_name)?;
-    let failed = WorkerError::read(&path);
-    let mut hasher = blake3::Hasher::new();
-    std::io::copy(&mut BufReader::new(File::open(&path).map_err(&failed)?), &mut hasher).map_err(&failed)?;
-    let blake3 = hasher.finalize().to_hex().to_string();
-    let source = match store {
-        Some(store) => {
-            upload(store, &path, &blake3).await?;
-            Source::Object
+    let name = name?;
+    let path = Path::new(&name);
+    let (source, blake3) = match files {
+        Files::Folder => {
+            inside(path).ok_or_else(|| no_name(path))?;
+            (Source::Folder, blake3_of(path)?)
         }
-        None => {
-            inside(&path).ok_or_else(no_name)?;
-            Source::Folder
+        Files::Objects(store) => {
+            let blake3 = blake3_of(path)?;
+            upload(store, path, &blake3).await?;
+            (Source::Object, blake3)
         }
+        Files::Bucket(bucket) => (Source::Bucket, bucket.blake3(&name).await?),
     };
-    let job = Job { file: name.into(), source, blake3 };
+    let job = Job { file: name, source, blake3 };
     let queued = queue.submit(&job).await? == Added::New;
-    Ok(json(&Line { file: name, blake3: &job.blake3, queued }))
+    Ok(json(&Line { file: &job.file, blake3: &job.blake3, queued }))
+}
+
+/// BLAKE3 of a file: 64 hexadecimal digits.
+fn blake3_of(path: &Path) -> Result<String, WorkerError> {
+    let failed = WorkerError::read(path);
+    let mut hasher = blake3::Hasher::new();
+    std::io::copy(&mut BufReader::new(File::open(path).map_err(&failed)?), &mut hasher).map_err(&failed)?;
+    Ok(hasher.finalize().to_hex().to_string())
 }
 
 /// Adds a file to the object store, unless it is there.

@@ -17,6 +17,7 @@ use serde::Serialize;
 use tokio::net::TcpListener;
 
 use crate::app::WorkArguments;
+use crate::bucket::Bucket;
 use crate::error::WorkerError;
 use crate::files;
 use crate::job::{Job, Source};
@@ -44,6 +45,7 @@ struct Work<G: Game + 'static> {
     judge: Arc<Judge<G>>,
     folder: PathBuf,
     store: ObjectStore,
+    bucket: Option<Bucket>,
     max_deliver: u64,
     /// Interval at which the server is told that a job is at work.
     progress: Duration,
@@ -65,6 +67,7 @@ pub(crate) async fn run<G: Game + 'static>(
 ) -> Result<(), WorkerError> {
     let mut shutdown = Shutdown::listen(arguments.grace_seconds)?;
     let judge = Arc::new(Judge::<G>::new(arguments.limits.over(limits)));
+    let bucket = arguments.bucket.as_ref().map(Bucket::open).transpose()?;
     let metrics = Arc::new(Metrics::default());
     if let Some(address) = arguments.metrics {
         let failed = |error| WorkerError::Start { what: "the metrics", error };
@@ -92,6 +95,7 @@ pub(crate) async fn run<G: Game + 'static>(
         judge,
         folder: arguments.folder.clone(),
         store,
+        bucket,
         max_deliver: arguments.max_deliver.into(),
         progress: arguments.ack_seconds / 3,
         metrics,
@@ -189,6 +193,10 @@ impl<G: Game + 'static> Work<G> {
         let bytes_max = self.judge.limits().file_bytes;
         let bytes = match job.source {
             Source::Object => files::read_object(&self.store, &job.blake3, bytes_max).await?,
+            Source::Bucket => {
+                let bucket = self.bucket.as_ref().ok_or(io::Error::other("the worker has no --bucket"))?;
+                bucket.read(&job.file, bytes_max).await.map_err(io::Error::other)?
+            }
             Source::Folder => {
                 let (folder, file) = (self.folder.clone(), job.file.clone());
                 let read = move || files::read_path(&folder, &file, bytes_max);

@@ -4,6 +4,7 @@
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "a failure in a helper fails the test")]
 
+mod bucket;
 mod server;
 
 use std::fs;
@@ -86,7 +87,7 @@ fn verified(folder: &Folder) -> Vec<String> {
 
 fn worker(server: &Server, folder: &Folder) -> Program {
     let path = PathBuf::from(env!("CARGO_BIN_EXE_lockstep2d-worker"));
-    Program { path, url: server.url(), folder: folder.0.clone() }
+    Program { path, url: server.url(), folder: folder.0.clone(), variables: Vec::new() }
 }
 
 fn files() -> u64 {

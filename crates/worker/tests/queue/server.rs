@@ -93,21 +93,27 @@ pub(crate) struct Program {
     pub(crate) path: PathBuf,
     pub(crate) url: String,
     pub(crate) folder: PathBuf,
+    /// Environment variables and their values.
+    pub(crate) variables: Vec<(String, String)>,
 }
 
 impl Program {
     /// Runs a command to its end.
     pub(crate) fn run(&self, arguments: &[&str]) -> Output {
-        let mut command = Command::new(&self.path);
-        let output = command.args(arguments).args(["--nats", &self.url]).current_dir(&self.folder).output();
-        output.unwrap()
+        self.command().args(arguments).args(["--nats", &self.url]).output().unwrap()
     }
 
     /// Starts a worker.
     pub(crate) fn work(&self, arguments: &[&str]) -> Child {
-        let mut command = Command::new(&self.path);
-        command.arg("work").args(["--nats", &self.url]).args(arguments).current_dir(&self.folder);
+        let mut command = self.command();
+        command.arg("work").args(["--nats", &self.url]).args(arguments);
         command.stderr(Stdio::null()).spawn().unwrap()
+    }
+
+    fn command(&self) -> Command {
+        let mut command = Command::new(&self.path);
+        command.current_dir(&self.folder).envs(self.variables.iter().cloned());
+        command
     }
 
     /// Adds files to the queue. Returns the lines about them.
