@@ -1,18 +1,17 @@
 //! Files in a bucket of a server with the protocol of S3 that checks signatures: `s3s-fs`, which has a folder for each
 //! bucket.
 
-use std::net::TcpStream;
-use std::process::{Child, Command, Stdio};
+use std::process::Command;
 
 use serde_json::Value;
 
 use super::{replay, verified, worker, write_files};
-use crate::server::{Folder, Program, Server, free_port, kill, terminate, wait_until};
+use crate::server::{Folder, Process, Program, Server, free_port, serve, wait_until};
 
-/// A server of buckets. It is killed when the value is dropped.
+/// A server of buckets.
 struct Buckets {
     port: u16,
-    child: Child,
+    _process: Process,
 }
 
 impl Buckets {
@@ -29,9 +28,7 @@ impl Buckets {
         let mut command = Command::new(program);
         command.args(["--host", "127.0.0.1", "--port", &port.to_string()]);
         command.args(["--access-key", "player", "--secret-key", "secret"]).arg(&folder.0);
-        let child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-        wait_until("the server listens", || TcpStream::connect(("127.0.0.1", port)).is_ok());
-        Some(Buckets { port, child })
+        Some(Buckets { port, _process: serve(&mut command, port) })
     }
 
     /// A program that has this key to the buckets.
@@ -45,12 +42,6 @@ impl Buckets {
             ("AWS_SECRET_ACCESS_KEY", key),
         ];
         Program { variables: variables.map(|(name, value)| (name.into(), value.into())).into(), ..program }
-    }
-}
-
-impl Drop for Buckets {
-    fn drop(&mut self) {
-        kill(&mut self.child);
     }
 }
 
@@ -77,7 +68,7 @@ fn files_of_a_bucket_have_the_results_of_files() {
 
     let mut child = program.work(&["--bucket", "s3://uploads"]);
     wait_until("all results are there", || program.results().len() == 30);
-    assert_eq!(terminate(&mut child), Some(0));
+    assert_eq!(child.terminate(), Some(0));
     // Names are relative to the bucket.
     let mut relative: Vec<String> = expected.iter().map(|line| line.replacen("\"in/", "\"", 1)).collect();
     relative.sort();
@@ -109,7 +100,7 @@ fn a_folder_of_a_bucket_holds_what_is_in_it() {
     // Files with the same bytes are one job, with the name that it had first.
     let mut child = program.work(&["--bucket", "s3://uploads"]);
     wait_until("all results are there", || program.results().len() == 2);
-    assert_eq!(terminate(&mut child), Some(0));
+    assert_eq!(child.terminate(), Some(0));
     for (line, name) in program.results().iter().zip(["day/b.replay", "day/night/c.replay"]) {
         let result: Value = serde_json::from_str(line).unwrap();
         assert_eq!((&result["file"], &result["verdict"]), (&name.into(), &"match".into()));
@@ -141,7 +132,7 @@ fn a_bucket_that_cannot_be_read_is_an_error() {
     allowed.submit(&["--bucket", "s3://uploads"]);
     let mut child = forged.work(&["--bucket", "s3://uploads", "--max-deliver", "1"]);
     wait_until("there is a result", || forged.results().len() == 1);
-    assert_eq!(terminate(&mut child), Some(0));
+    assert_eq!(child.terminate(), Some(0));
     let result: Value = serde_json::from_str(&forged.results()[0]).unwrap();
     assert_eq!(result["file"], "a.replay");
     assert!(result["error"].as_str().unwrap().contains("SignatureDoesNotMatch"), "{result}");

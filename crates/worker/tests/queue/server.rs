@@ -12,12 +12,35 @@ pub(crate) const PATIENCE: Duration = Duration::from_secs(300);
 /// Names of the program, the second for a shell whose search path lacks the folder of Debian's package.
 const PROGRAMS: [&str; 2] = ["nats-server", "/usr/sbin/nats-server"];
 
-/// A server with JetStream on a port of its own. It is killed when the value is dropped.
+/// A process that is killed when the value is dropped.
+pub(crate) struct Process(pub(crate) Child);
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        self.kill();
+    }
+}
+
+impl Process {
+    /// SIGKILL.
+    pub(crate) fn kill(&mut self) {
+        let _ = self.0.kill();
+        self.0.wait().unwrap();
+    }
+
+    /// SIGTERM. Returns the exit code.
+    pub(crate) fn terminate(&mut self) -> Option<i32> {
+        assert!(Command::new("kill").arg(self.0.id().to_string()).status().unwrap().success());
+        self.0.wait().unwrap().code()
+    }
+}
+
+/// A server with JetStream on a port of its own.
 pub(crate) struct Server {
     program: &'static str,
     port: u16,
     store: PathBuf,
-    child: Child,
+    process: Process,
 }
 
 impl Server {
@@ -32,14 +55,14 @@ impl Server {
         };
         let port = free_port();
         let store = folder.0.join("nats");
-        let child = spawn(program, port, &store);
-        Some(Server { program, port, store, child })
+        let process = spawn(program, port, &store);
+        Some(Server { program, port, store, process })
     }
 
     /// Kills the server without warning and starts it again.
     pub(crate) fn restart(&mut self) {
-        kill(&mut self.child);
-        self.child = spawn(self.program, self.port, &self.store);
+        self.process.kill();
+        self.process = spawn(self.program, self.port, &self.store);
     }
 
     pub(crate) fn url(&self) -> String {
@@ -47,36 +70,23 @@ impl Server {
     }
 }
 
-impl Drop for Server {
-    fn drop(&mut self) {
-        kill(&mut self.child);
-    }
-}
-
-fn spawn(program: &str, port: u16, store: &Path) -> Child {
+fn spawn(program: &str, port: u16, store: &Path) -> Process {
     let port_text = port.to_string();
     let mut command = Command::new(program);
     command.args(["--addr", "127.0.0.1", "--port", &port_text, "--jetstream", "--store_dir"]).arg(store);
+    serve(&mut command, port)
+}
+
+/// Starts a server, and waits until it listens.
+pub(crate) fn serve(command: &mut Command, port: u16) -> Process {
     let child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     wait_until("the server listens", || TcpStream::connect(("127.0.0.1", port)).is_ok());
-    child
+    Process(child)
 }
 
 /// A port that nobody listens on.
 pub(crate) fn free_port() -> u16 {
     TcpListener::bind(("127.0.0.1", 0)).unwrap().local_addr().unwrap().port()
-}
-
-/// SIGKILL.
-pub(crate) fn kill(child: &mut Child) {
-    let _ = child.kill();
-    child.wait().unwrap();
-}
-
-/// SIGTERM. Returns the exit code.
-pub(crate) fn terminate(child: &mut Child) -> Option<i32> {
-    assert!(Command::new("kill").arg(child.id().to_string()).status().unwrap().success());
-    child.wait().unwrap().code()
 }
 
 /// Asks again and again until something is so.
@@ -104,10 +114,10 @@ impl Program {
     }
 
     /// Starts a worker.
-    pub(crate) fn work(&self, arguments: &[&str]) -> Child {
+    pub(crate) fn work(&self, arguments: &[&str]) -> Process {
         let mut command = self.command();
         command.arg("work").args(["--nats", &self.url]).args(arguments);
-        command.stderr(Stdio::null()).spawn().unwrap()
+        Process(command.stderr(Stdio::null()).spawn().unwrap())
     }
 
     fn command(&self) -> Command {
