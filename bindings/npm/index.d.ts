@@ -537,39 +537,75 @@ export class Replay extends Handle {
 }
 
 export interface MatchOptions {
-    /** Number of seats of the match. */
+    /** Number of seats of the match, 1 to 64. */
     seats: number;
     /** Seats to play: 1 by default; 0 to watch, or to open a match as a server. */
     ownSeats?: number;
+    /** Seats that have to be taken before the first tick: 2 by default, or `seats` if that is less. */
     startWith?: number;
-    /** Bytes of an input: 1 by default. */
+    /** Bytes of an input, 1 to 512: 1 by default. */
     inputBytes?: number;
+    /** Ticks a second: 60 by default. */
     tickRate?: number;
-    /** Ticks that may be played with guessed inputs; 0, the default, is lockstep. */
+    /** Ticks that may be played with guessed inputs; 0, the default, is lockstep. Each peer chooses its own. */
     guess?: number;
+    /** Smallest delay of your own inputs in ticks. The match chooses a delay between the two, by the latency. */
     delayMin?: number;
+    /** Largest delay of your own inputs in ticks. */
     delayMax?: number;
+    /** Interval in ticks at which states are saved. */
     saveInterval?: number;
+    /** Interval in ticks at which states are compared: a multiple of `saveInterval`. */
     checkInterval?: number;
+    /** Ticks that may be played beyond the last final one, at least 16. */
     history?: number;
+    /** Final ticks whose inputs are kept for peers that come back. Longer absences need a state. */
     logTicks?: number;
+    /** Ticks from the decision that a peer joins to its first own input. */
     seatLead?: number;
+    /** A peer that lags by at most this many ticks may have a seat. */
     seatWithin?: number;
+    /** Distinguishes matches: packets with another tag are ignored. */
     matchTag?: bigint | number;
     /** Milliseconds for which play waits for a peer before the others go on. */
     patience?: number;
-    /** Random by default. Whoever returns with the same key gets its seat back. */
+    /** Number of this peer: random by default, and another one each time a page is loaded. */
     peer?: number;
+    /** Identity of the player: random by default. Whoever returns with the same key gets its seat back. */
     key?: bigint;
+    /** Random numbers that no one else knows: random by default. They protect from forged addresses. */
     secret?: readonly [bigint, bigint];
-    /** Has to be the same for all: versions, rules, setup. */
+    /** Has to be the same for all, or they are refused: versions, rules, setup. */
     offer?: Uint8Array;
-    /** Address of somebody who takes part. Without it, a match is opened. */
+    /** Address of a peer that takes part. Without it, a match is opened. */
     contact?: Uint8Array;
 }
+/**
+ * Where a match stands: `connecting` asks the contact; `joining` follows the match and asks for a seat; `watching` asks for
+ * none; `waiting` has a seat in a match that has not begun; `paused` cannot hear a majority, which alone goes on; `dropped`
+ * was left behind and asks for its seat again; `kicked` was removed for good; `leaving` tells the others; `left` and
+ * `finished` still answer those that lack something; `closed` sends nothing more.
+ */
 export type MatchStatus =
     | "joining" | "watching" | "waiting" | "playing" | "paused" | "dropped" | "kicked" | "leaving" | "left" | "finished" | "closed"
     | "connecting";
+/**
+ * Something that happened. Fields that a kind does not name are 0 or `""`.
+ *
+ * - `status`: the match stands somewhere else: `status`.
+ * - `view`: who has which seat has changed.
+ * - `seated`, `unseated`: from `tick` on, `peer` has or no longer has `seat`.
+ * - `waiting`: play stands still for inputs of `peer`; `value` is 1 if its packets arrive, so that its game is slow.
+ * - `resumed`: play goes on.
+ * - `pause`: `peer` asks all to stop (`value` 1), or no longer does (0).
+ * - `end`: the match will have `tick` ticks.
+ * - `desync`: after `tick` ticks, `peer` has the hash `theirs` instead of `ours`.
+ * - `conflict`: `peer` has issued two inputs for `tick`. It is not listened to any more.
+ * - `tooFarBehind`: the others no longer keep the inputs that are needed; this peer has to join again.
+ * - `refused`: the contact does not let this peer in, because of `reason`.
+ * - `state`: the encoded `state` after `tick` ticks. The game has to load it before further requests are fulfilled.
+ * - `badState`: a state that arrived is damaged; another one is asked for.
+ */
 export interface MatchEvent {
     kind:
         | "status" | "view" | "seated" | "unseated" | "waiting" | "resumed" | "pause" | "end" | "desync" | "conflict" | "tooFarBehind"
@@ -581,41 +617,75 @@ export interface MatchEvent {
     ours: string;
     theirs: string;
     status?: MatchStatus;
+    /** `offer`: the versions, rules or setup differ; `full`: too many peers follow the match; `taken`: another peer has this
+     * number; `notReady`: the contact is not in a match yet, and is asked again. */
     reason?: "offer" | "full" | "taken" | "notReady";
     state?: Uint8Array;
 }
+/**
+ * What the match asks of the game, in this order, before `advance` is called again:
+ *
+ * - `save`: keep a copy of the state before `tick`.
+ * - `load`: restore the copy of the state before `tick`.
+ * - `advance`: simulate `tick` with the `inputs` of all seats, one after another.
+ * - `checksum`: pass the hash of the copy of the state before `tick` to `reportHash`.
+ * - `forget`: copies of states before `tick` are no longer needed.
+ */
 export interface MatchRequest {
     kind: "save" | "load" | "advance" | "checksum" | "forget";
     tick: number;
     inputs: Uint8Array;
-    /** Bit for each seat that nobody plays, and whose input is guessed. */
+    /** Bit for each seat that nobody plays. Its input is zeros. */
     absent: bigint;
+    /** Bit for each seat whose input is guessed. */
     guessed: bigint;
 }
-/** One participant of a match: bytes in, bytes out, time in milliseconds as an argument. */
+/**
+ * One participant of a match: bytes in, bytes out. `now` is in milliseconds and never decreases, such as
+ * `performance.now()`. `MatchDriver` fulfils the requests for a game. Every misuse is a `Lockstep2dError`.
+ */
 export class Match extends Handle {
     constructor(options: MatchOptions);
+    /** Asks another participant for entry, or the same one again. */
     ask(contact: Uint8Array): void;
+    /** Takes a packet that arrived from an address. Packets of strangers are ignored. */
     receive(now: number, from: Uint8Array, packet: Uint8Array): void;
+    /** Lets time pass. Call it every few milliseconds, and after `receive`. */
     update(now: number): void;
+    /** Whether it is time for the next tick, and the match can take its inputs. */
     isDue(now: number): boolean;
+    /** Issues the inputs of your own seats, one after another. Returns whether they were taken; if not, they may be used again. */
     advance(now: number, inputs: Uint8Array): boolean;
+    /** The next request to the game. */
     nextRequest(): MatchRequest | undefined;
+    /** Answers `checksum`. */
     reportHash(tick: number, hash: string): void;
+    /** The next packet to send, and the address to send it to. */
     nextPacket(): { to: Uint8Array; packet: Uint8Array } | undefined;
+    /** The next event. */
     nextEvent(): MatchEvent | undefined;
+    /** Whether a peer that joins needs a state: answer with `offerState`. */
     readonly wantsState: boolean;
+    /** Offers the encoded state after `tick` final ticks to those that join. */
     offerState(tick: number, state: Uint8Array): void;
     readonly status: MatchStatus;
+    /** Numbers of ticks: played, final for the match, and played with final inputs here. */
     ticks(): { played: number; final: number; confirmed: number };
     /** The final inputs of all seats for a tick, while they are kept. */
     finalInputs(tick: number): Uint8Array | undefined;
+    /** Seats that this peer plays. */
     readonly seats: number[];
+    /** Leaves the match. Go on with `update` until the status is `closed`, so that the others notice. */
     leave(): void;
+    /** Asks for an end of the match after a number of ticks. It is decided two seconds before; until then others can join. */
     endAt(ticks: number): void;
+    /** Asks all others to stop for now, or to go on. */
     pause(paused: boolean): void;
+    /** Votes for going on without a peer that is missing. */
     goOnWithout(peer: number): void;
+    /** Votes for removing the player with this key for good. */
     kick(key: bigint): void;
+    /** Changes `guess` of the options. */
     setGuess(ticks: number): void;
 }
 /** A game that a `MatchDriver` plays. Its whole state is in what `save` returns and `hash` covers. */

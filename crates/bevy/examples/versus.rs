@@ -4,24 +4,29 @@
 //! over UDP.
 
 use std::net::ToSocketAddrs;
+use std::time::Duration;
 
 use bevy::prelude::*;
 use bevy_lockstep2d::prelude::*;
 use bevy_lockstep2d_examples::versus::{Versus, bot_pad, press};
-use bevy_lockstep2d_examples::{Line, LineEnd, app};
-use lockstep2d::peer::{Peer, PeerIdentity, PeerOptions, Udp, socket_address};
-use lockstep2d::session::Address;
+use bevy_lockstep2d_examples::app;
+use lockstep2d::peer::{
+    LinkConditions, Network, Peer, PeerIdentity, PeerOptions, Port, Udp, socket_address,
+};
 
 /// The bot is an ordinary peer without Bevy.
 #[derive(Resource)]
-struct Bot(Peer<Versus, LineEnd>);
+struct Bot {
+    peer: Peer<Versus, Port>,
+    network: Network,
+}
 
-fn play_bot(mut bot: ResMut<Bot>, line: Res<Line>, time: Res<Time<Real>>) -> Result {
-    line.set_time(time.elapsed());
-    bot.0.update(time.elapsed())?;
-    while bot.0.is_due() {
-        let pad = bot_pad(bot.0.tick());
-        bot.0.advance(&[pad])?;
+fn play_bot(mut bot: ResMut<Bot>, time: Res<Time<Real>>) -> Result {
+    bot.network.set_time(time.elapsed());
+    bot.peer.update(time.elapsed())?;
+    while bot.peer.is_due() {
+        let pad = bot_pad(bot.peer.tick());
+        bot.peer.advance(&[pad])?;
     }
     Ok(())
 }
@@ -37,10 +42,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             Lockstep::join(&(), options, me, Udp::bind("0.0.0.0:0")?, socket_address(host))?
         }
         _ => {
-            let (line, contact) = (Line::default(), Address::new(&[0]).ok_or("a byte is an address")?);
-            let bot = Peer::join(&(), options, PeerIdentity::random(), line.end(1), contact)?;
-            app.insert_resource(Bot(bot)).insert_resource(line.clone()).add_systems(PreUpdate, play_bot);
-            Lockstep::host(&(), options, me, line.end(0))?
+            let bad = LinkConditions { loss: 10, ..LinkConditions::latency(Duration::from_millis(100)) };
+            let network = Network::new(bad, 1);
+            let (host, guest) = (network.port(1), network.port(2));
+            let peer = Peer::join(&(), options, PeerIdentity::random(), guest, host.address())?;
+            app.insert_resource(Bot { peer, network }).add_systems(PreUpdate, play_bot);
+            Lockstep::host(&(), options, me, host)?
         }
     };
     app.insert_resource(lockstep)

@@ -4,19 +4,27 @@
 mod common;
 
 use std::collections::BTreeMap;
+use std::time::Duration;
 
 use bevy::prelude::*;
 use bevy_lockstep2d::*;
 use common::arena::{Arena, Setup};
-use common::network::{Network, address};
 use common::{Heard, TICK, app, check_views};
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::Game;
-use lockstep2d::peer::{PeerEvent, PeerIdentity, PeerOptions};
+use lockstep2d::peer::{LinkConditions, Network, PeerEvent, PeerIdentity, PeerOptions};
 use lockstep2d::replay::{Limits, Step, VerifiedReplay, verify};
 
 fn identity(number: u64) -> PeerIdentity {
     PeerIdentity::new([number, number * 77 + 1, number * 91 + 5, number * 13 + 7])
+}
+
+/// A network that loses, doubles, delays and reorders packets.
+fn bad_network() -> Network {
+    let ms = Duration::from_millis;
+    let conditions =
+        LinkConditions { latency: ms(20), jitter: ms(70), loss: 12, duplication: 6, reordering: 20 };
+    Network::new(conditions, 1)
 }
 
 /// An app and the hashes of its confirmed ticks.
@@ -73,19 +81,19 @@ fn count_desyncs(mut events: MessageReader<MatchEvent>, mut desyncs: ResMut<Desy
 
 #[test]
 fn two_apps_and_a_late_spectator_have_the_same_match() {
-    let network = Network::default();
+    let network = bad_network();
     let setup = Setup::default();
     let options = PeerOptions { delay: (1, 3), ..PeerOptions::rollback() };
-    let host = Lockstep::host(&setup, options, identity(1), network.socket(1)).unwrap();
-    let guest = Lockstep::join(&setup, options, identity(2), network.socket(2), address(1)).unwrap();
+    let host = Lockstep::host(&setup, options, identity(1), network.port(1)).unwrap();
+    let guest = Lockstep::join(&setup, options, identity(2), network.port(2), Network::address(1)).unwrap();
     let mut players = vec![Player::new(host, 11), Player::new(guest, 29)];
     let mut frames = 0;
     while players.iter().any(|player| player.confirmed() < 2000) {
-        network.pass(TICK);
+        network.set_time(network.time() + TICK);
         players.iter_mut().for_each(Player::update);
         frames += 1;
         if frames == 600 {
-            let watch = Lockstep::watch(&setup, options, identity(3), network.socket(3), address(1)).unwrap();
+            let watch = Lockstep::watch(&setup, options, identity(3), network.port(3), Network::address(1)).unwrap();
             players.push(Player::new(watch, 0));
         }
         assert!(frames < 5000, "the match stands still");
@@ -147,18 +155,18 @@ fn check_replay(mut players: Vec<Player>, end: u64) {
 
 /// Plays a match and returns the largest way of a player's view in one frame, in metres, once the match runs.
 fn largest_jump(settings: LockstepSettings) -> f32 {
-    let network = Network::default();
+    let network = bad_network();
     let setup = Setup::default();
     let options = PeerOptions { delay: (1, 1), ..PeerOptions::rollback() };
-    let host = Lockstep::host(&setup, options, identity(1), network.socket(1)).unwrap();
-    let guest = Lockstep::join(&setup, options, identity(2), network.socket(2), address(1)).unwrap();
+    let host = Lockstep::host(&setup, options, identity(1), network.port(1)).unwrap();
+    let guest = Lockstep::join(&setup, options, identity(2), network.port(2), Network::address(1)).unwrap();
     let mut apps = [app(host, 11, TICK), app(guest, 29, TICK)];
     for app in &mut apps {
         app.insert_resource(settings);
     }
     let (mut largest, mut last) = (0.0_f32, None);
     for _ in 0..1200 {
-        network.pass(TICK);
+        network.set_time(network.time() + TICK);
         apps.iter_mut().for_each(App::update);
         let world = apps[0].world();
         // The guest, whose inputs are guessed: the sixth body of the arena.

@@ -1,8 +1,7 @@
-//! What the tests share: a small game for two players, apps without a window, and a bad network.
+//! What the tests share: a small game for two players, and apps without a window.
 #![allow(dead_code, reason = "each test uses a part of it")]
 
 pub mod arena;
-pub mod network;
 
 use std::collections::BTreeMap;
 use std::time::Duration;
