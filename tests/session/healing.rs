@@ -62,12 +62,10 @@ impl Match {
         if self.class == Class::ShortOutages && lost > 0 {
             self.sim.fail(format!("S5 {lost} seats lost in short outages"));
         }
-        if self.class.ends_early() {
-            return;
-        }
         match self.all_seated() {
-            None => figures.no_quorum += 1,
+            None => figures.no_quorum = 1,
             Some(true) => {}
+            Some(false) if self.class.ends_early() => {}
             Some(false) => {
                 let what = self.describe();
                 self.sim.fail(format!("L1 not all are seated: {what}"));

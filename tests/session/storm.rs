@@ -92,6 +92,7 @@ pub(crate) struct Figures {
     pub(crate) lost_seats: u64,
     /// Time until all were seated again after the links healed.
     pub(crate) healed: Us,
+    /// 1 if no quorum of the newest view is alive and connected after the links healed, else 0.
     pub(crate) no_quorum: u64,
 }
 

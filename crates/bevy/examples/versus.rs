@@ -8,11 +8,9 @@ use std::time::Duration;
 
 use bevy::prelude::*;
 use bevy_lockstep2d::prelude::*;
-use bevy_lockstep2d_examples::versus::{Versus, bot_pad, press};
 use bevy_lockstep2d_examples::app;
-use lockstep2d::peer::{
-    LinkConditions, Network, Peer, PeerIdentity, PeerOptions, Port, Udp, socket_address,
-};
+use bevy_lockstep2d_examples::versus::{Versus, bot_pad, press};
+use lockstep2d::peer::{LinkConditions, Network, Peer, PeerIdentity, PeerOptions, Port, Udp, socket_address};
 
 /// The bot is an ordinary peer without Bevy.
 #[derive(Resource)]

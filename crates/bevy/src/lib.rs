@@ -82,7 +82,8 @@ pub use views::{BodyView, BodyViews};
 pub mod prelude {
     pub use crate::{
         BodyEvent, BodyView, BodyViews, ConfirmedEvent, Inputs, Lockstep, LockstepPlugin, LockstepSettings,
-        LockstepStatus, LockstepSystems, MatchEvent, PredictedEvent, WorldEvent,
+        LockstepStatus, LockstepSystems, MatchEvent, PredictedEvent, WorldEvent, has_lockstep,
+        has_rolled_back, has_stepped, is_running,
     };
 }
 

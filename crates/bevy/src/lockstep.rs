@@ -39,14 +39,15 @@ pub struct Lockstep<G: LockstepGame> {
     is_paused: bool,
     /// Ticks to be played although the game is paused.
     single_steps: u32,
-    has_failed: bool,
+    /// Reason for which the driver has stopped.
+    failure: Option<LockstepError>,
 }
 
 type AnyPeer<G> = Peer<Observed<G>, AnyTransport>;
 
 impl<G: LockstepGame> Lockstep<G> {
     fn new(driver: Driver<G>) -> Self {
-        Lockstep { driver, is_paused: false, single_steps: 0, has_failed: false }
+        Lockstep { driver, is_paused: false, single_steps: 0, failure: None }
     }
 
     /// A game whose players are all at this machine. It is recorded: see [`Lockstep::take_replay`].
@@ -184,10 +185,11 @@ impl<G: LockstepGame> Lockstep<G> {
         self.single_steps = self.single_steps.saturating_add(1);
     }
 
-    /// Whether the driver has stopped for good, with a [`LockstepFailed`](crate::LockstepFailed).
+    /// The reason why the driver has stopped for good, if it has. The message
+    /// [`LockstepFailed`](crate::LockstepFailed) was sent, and the log has it too.
     #[must_use]
-    pub const fn has_failed(&self) -> bool {
-        self.has_failed
+    pub const fn failure(&self) -> Option<&LockstepError> {
+        self.failure.as_ref()
     }
 
     /// Goes to a tick of a replay, forwards or backwards. The ticks between give no events. A replay that has
@@ -199,7 +201,7 @@ impl<G: LockstepGame> Lockstep<G> {
     pub fn seek(&mut self, tick: u64) -> Result<(), LockstepError> {
         let Driver::Replay(replay) = &mut self.driver else { return Err(LockstepError::Unsupported("seek")) };
         replay.seek(tick)?;
-        self.has_failed = false;
+        self.failure = None;
         Ok(())
     }
 
@@ -243,6 +245,18 @@ impl<G: LockstepGame> Lockstep<G> {
         }
     }
 
+    /// Numbers of the players at this machine, from 0: their places in the inputs of [`Game::step`]. All players in a
+    /// local game, none in a replay, for a spectator, and before a peer is seated. `Inputs::held(0)` is the input of the
+    /// first one of these.
+    #[must_use]
+    pub fn seats(&self) -> Vec<u32> {
+        match &self.driver {
+            Driver::Local(_) | Driver::SyncTest(_) => (0..self.driver.game().players()).collect(),
+            Driver::Replay(_) => Vec::new(),
+            Driver::Match(network) => network.peer().seats(),
+        }
+    }
+
     /// The participant of a match: its seats, links, status and session.
     #[must_use]
     pub fn peer(&self) -> Option<&AnyPeer<G>> {
@@ -275,11 +289,11 @@ impl<G: LockstepGame> Lockstep<G> {
 
     /// Plays the ticks of a frame.
     pub(crate) fn run(&mut self, time: FrameTime, inputs: &mut Inputs<G>) -> Result<(), LockstepError> {
-        if self.has_failed {
+        if self.failure.is_some() {
             return Ok(());
         }
         let result = self.run_singly(inputs).and_then(|()| self.driver.run(time, self.is_paused, inputs));
-        self.has_failed = result.is_err();
+        self.failure = result.clone().err();
         result
     }
 

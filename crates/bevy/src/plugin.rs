@@ -59,7 +59,8 @@ pub struct LockstepSettings {
     /// When a rollback moves a body, its view follows within a few of these times, in each of which half of the way is
     /// left. Zero: at once.
     pub smoothing_half_life: Duration,
-    /// Ways longer than this are jumps, in metres.
+    /// Ways longer than this are jumps, in metres: after a rollback, and in a tick if the body's velocity does not
+    /// explain them.
     pub smoothing_limit: f32,
 }
 
@@ -157,7 +158,7 @@ pub fn has_lockstep<G: LockstepGame>(lockstep: Option<Res<Lockstep<G>>>) -> bool
 
 /// Run condition: there is a game, and it is neither paused nor stopped by an error.
 pub fn is_running<G: LockstepGame>(lockstep: Option<Res<Lockstep<G>>>) -> bool {
-    lockstep.is_some_and(|lockstep| !lockstep.is_paused() && !lockstep.has_failed())
+    lockstep.is_some_and(|lockstep| !lockstep.is_paused() && lockstep.failure().is_none())
 }
 
 /// Run condition: ticks were played in this frame.

@@ -37,7 +37,7 @@ impl DrawnPose {
 }
 
 /// A vector as floats: the same as `draw::to_f32`, in a few instructions.
-fn metres(vector: FixedVec2<Fx>) -> Vec2 {
+pub(crate) fn metres(vector: FixedVec2<Fx>) -> Vec2 {
     const UNIT: f32 = 1.0 / (1_u64 << Fx::FRAC_NBITS) as f32;
     Vec2::new(vector.x.to_bits() as f32 * UNIT, vector.y.to_bits() as f32 * UNIT)
 }

@@ -17,7 +17,7 @@ use crate::inputs::Inputs;
 use crate::lockstep::Lockstep;
 use crate::plugin::{LockstepSettings, LockstepStatus};
 use crate::poses::Pose;
-use crate::smoothing::{DrawnPose, Offset};
+use crate::smoothing::{DrawnPose, Offset, metres};
 use crate::step_log::StepLog;
 use crate::views::{BodyView, BodyViews, View, identity_of};
 
@@ -35,6 +35,7 @@ pub(crate) fn step<G: LockstepGame>(
     let result = lockstep.run(time, &mut inputs);
     let step_time = start.elapsed();
     if let Err(error) = result {
+        bevy::log::error!("the game has stopped: {error}");
         failures.write(LockstepFailed(error));
     }
     while let Some(event) = lockstep.next_event() {
@@ -76,7 +77,7 @@ pub(crate) fn write_views<G: LockstepGame>(
         }
         replace_strangers(&mut commands, &mut views, &log, world);
         log.show(world);
-        follow(&mut commands, &mut views, &log, world, settings.pixels_per_metre, &prepared);
+        follow(&mut commands, &mut views, &log, world, &settings, &prepared);
     }
     let (fraction, redraw) = (lockstep.fraction(), settings.is_changed());
     let draw = |view: &View| {
@@ -118,22 +119,39 @@ fn follow(
     views: &mut BodyViews,
     log: &StepLog,
     world: Option<&World>,
-    scale: f32,
+    settings: &LockstepSettings,
     prepared: &HashMap<BodyId, Entity>,
 ) {
     views.begin_frame();
     for (body, current) in log.after.iter() {
-        let previous = log.before.get(body).unwrap_or(current);
+        let is_way = |previous: &Pose| !is_jump(world, body, *previous, current, settings.smoothing_limit);
+        let previous = log.before.get(body).filter(is_way).unwrap_or(current);
         if views.see(body, previous, current) {
             continue;
         }
-        let entity =
-            prepared.get(&body).copied().unwrap_or_else(|| spawn_view(commands, body, current, scale));
+        let entity = prepared
+            .get(&body)
+            .copied()
+            .unwrap_or_else(|| spawn_view(commands, body, current, settings.pixels_per_metre));
         if let Some(old) = views.insert(body, entity, current, identity_of(world, body)) {
             commands.entity(old).try_despawn();
         }
     }
     views.take_unseen().into_iter().for_each(|view| commands.entity(view).try_despawn());
+}
+
+/// Whether a body was moved to another place in a tick, rather than by its velocity: further than `limit` metres, and
+/// twice as far as it flies in a tick.
+fn is_jump(world: Option<&World>, body: BodyId, previous: Pose, current: Pose, limit: f32) -> bool {
+    if previous.position == current.position {
+        return false;
+    }
+    let way = metres(current.position - previous.position).length();
+    if way <= limit {
+        return false;
+    }
+    let Some((world, state)) = world.and_then(|world| Some((world, world.body(body)?))) else { return false };
+    way > 2.0 * metres(state.velocity()).length() / world.config().tick_rate as f32
 }
 
 fn spawn_view(commands: &mut Commands, body: BodyId, pose: Pose, scale: f32) -> Entity {

@@ -93,7 +93,8 @@ fn two_apps_and_a_late_spectator_have_the_same_match() {
         players.iter_mut().for_each(Player::update);
         frames += 1;
         if frames == 600 {
-            let watch = Lockstep::watch(&setup, options, identity(3), network.port(3), Network::address(1)).unwrap();
+            let watch =
+                Lockstep::watch(&setup, options, identity(3), network.port(3), Network::address(1)).unwrap();
             players.push(Player::new(watch, 0));
         }
         assert!(frames < 5000, "the match stands still");

@@ -1,0 +1,121 @@
+//! A `Sandbox` in an app: bodies that commands put elsewhere, and a game that forgets a part of its state.
+
+use std::time::Duration;
+
+use bevy::prelude::*;
+use bevy::time::TimeUpdateStrategy;
+use bevy_lockstep2d::*;
+use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
+use lockstep2d::fx;
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{Game, RulesId, Sandbox, SandboxSetup, SetupError};
+use lockstep2d::math::{Angle, Vec2 as FixedVec2};
+use lockstep2d::world::Command;
+use serde::{Deserialize, Serialize};
+
+const TICK: Duration = Duration::from_nanos(16_666_667);
+
+fn app<G: LockstepGame>(game: Lockstep<G>, frame: Duration) -> App {
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, LockstepPlugin::<G>::default().pixels_per_metre(1.0)))
+        .insert_resource(TimeUpdateStrategy::ManualDuration(frame))
+        .insert_resource(game);
+    app
+}
+
+/// Heights at which the only view is drawn in 80 frames of a quarter of a tick, after a command.
+fn heights(command: impl FnOnce(&BodyView) -> Command) -> Vec<f32> {
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
+    let spawn = Command::Spawn { body: BodyDef::dynamic(), shapes: vec![ball] };
+    let setup = SandboxSetup { commands: vec![spawn], ..SandboxSetup::default() };
+    let mut app = app(Lockstep::<Sandbox>::local(&setup).unwrap(), TICK / 4);
+    (0..20).for_each(|_| app.update());
+    let mut views = app.world_mut().query::<(&BodyView, &Transform)>();
+    let command = command(views.single(app.world()).unwrap().0);
+    app.world_mut().resource_mut::<Inputs<Sandbox>>().once(0).push(command);
+    let mut height = || {
+        app.update();
+        views.single(app.world()).unwrap().1.translation.y
+    };
+    (0..80).map(|_| height()).collect()
+}
+
+#[test]
+fn a_body_that_is_put_elsewhere_is_not_drawn_on_the_way() {
+    let place = FixedVec2::new(fx!(0), fx!(20));
+    let heights =
+        heights(|view| Command::SetTransform { body: view.body(), position: place, angle: Angle::default() });
+    assert!(heights.iter().any(|&y| y < 0.0) && heights.iter().any(|&y| y > 19.0), "{heights:?}");
+    assert!(heights.iter().all(|&y| y < 0.0 || y > 15.0), "{heights:?}");
+}
+
+#[test]
+fn a_fast_body_is_drawn_on_its_way() {
+    let velocity = FixedVec2::new(fx!(0), fx!(300));
+    let heights =
+        heights(|view| Command::SetVelocity { body: view.body(), velocity, angular_velocity: fx!(0) });
+    // 5 m in a tick, 1.25 m in a frame.
+    let steps = heights.windows(2).map(|pair| pair[1] - pair[0]);
+    let largest = steps.fold(0.0_f32, f32::max);
+    assert!((1.0..1.5).contains(&largest), "{largest}");
+}
+
+/// A game whose `load` forgets the score.
+struct Forgetful {
+    score: u32,
+    ticks: u32,
+}
+
+#[derive(Clone, Serialize, Deserialize)]
+struct Save {
+    ticks: u32,
+}
+
+impl Game for Forgetful {
+    type Setup = ();
+    type Input = bool;
+    type Save = Save;
+    const RULES: RulesId = RulesId { name: "forgetful", version: 1 };
+
+    fn new((): &()) -> Result<Self, SetupError> {
+        Ok(Forgetful { score: 0, ticks: 0 })
+    }
+    fn players(&self) -> u32 {
+        2
+    }
+    fn tick_rate(&self) -> u32 {
+        60
+    }
+    fn step(&mut self, inputs: &[bool]) {
+        self.ticks += 1;
+        self.score += u32::from(inputs[0]);
+    }
+    fn state_hash(&self) -> StateHash {
+        StateHash::of(&(self.ticks, self.score))
+    }
+    fn save(&self) -> Save {
+        Save { ticks: self.ticks }
+    }
+    fn load(&mut self, save: &Save) {
+        self.ticks = save.ticks;
+    }
+    fn work(&self, _: &[bool]) -> u64 {
+        1
+    }
+}
+
+#[test]
+fn a_sync_test_stops_at_state_that_is_not_saved_and_says_so() {
+    let mut app = app(Lockstep::<Forgetful>::sync_test(&(), 4).unwrap(), TICK);
+    assert_eq!(app.world().resource::<Lockstep<Forgetful>>().seats(), [0, 1]);
+    (0..30).for_each(|_| app.update());
+    let game = app.world().resource::<Lockstep<Forgetful>>();
+    assert!(game.failure().is_none() && game.tick() > 20, "nothing is lost before there is a score");
+    *app.world_mut().resource_mut::<Inputs<Forgetful>>().held(0) = true;
+    (0..30).for_each(|_| app.update());
+    let game = app.world().resource::<Lockstep<Forgetful>>();
+    assert!(matches!(game.failure(), Some(LockstepError::SyncTest { .. })), "{:?}", game.failure());
+    assert!(game.tick() < 40);
+    let failures: Vec<_> = app.world_mut().resource_mut::<Messages<LockstepFailed>>().drain().collect();
+    assert!(failures.len() <= 1, "it is sent once: {failures:?}");
+}
