@@ -28,11 +28,11 @@ impl Bucket {
     /// The bucket that `url` names, and the folder in it. Credentials, region and endpoint are those of the environment
     /// variables `AWS_*`.
     pub(crate) fn open(url: &Url) -> Result<Self, WorkerError> {
-        let failed = |error: object_store::Error| WorkerError::bucket(url)(error);
+        let failed = WorkerError::bucket(url);
         let (_, folder) = ObjectStoreScheme::parse(url).map_err(|error| failed(error.into()))?;
         let retry = RetryConfig { retry_timeout: RETRY, ..RetryConfig::default() };
         let builder = AmazonS3Builder::from_env().with_url(url.as_str()).with_retry(retry);
-        Ok(Bucket { url: url.clone(), store: PrefixStore::new(builder.build().map_err(failed)?, folder) })
+        Ok(Bucket { url: url.clone(), store: PrefixStore::new(builder.build().map_err(&failed)?, folder) })
     }
 
     /// The replays in the folder `name`, or else the object of that name. Without a name, all replays.
