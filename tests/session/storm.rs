@@ -296,7 +296,6 @@ impl Match {
     }
 
     fn cause(&mut self, trouble: Trouble, until: Us, random: u64) {
-        let total = self.total;
         let pick = (random % self.players as u64) as usize;
         match trouble {
             Halves => self.cut(until, |_, a, b| (random >> a ^ random >> b) & 1 == 1),
@@ -321,7 +320,7 @@ impl Match {
                 }
             }
             Trouble::Join(joiner) => {
-                for other in (0..total).filter(|&other| other != joiner) {
+                for other in (0..self.total).filter(|&other| other != joiner) {
                     self.sim.introduce(joiner, other);
                 }
                 let now = self.sim.now;
