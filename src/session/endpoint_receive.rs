@@ -33,7 +33,14 @@ impl Endpoint {
     fn take(&mut self, now: u64, from: Address, sender: PeerId, packet: JoinPacket) {
         match packet {
             JoinPacket::Hello { nonce, key, cookie, offer } => {
-                self.take_hello(now, from, sender, (nonce, key, cookie), &offer);
+                let right = Guests::cookies(self.secret, now, &from, sender, key, nonce);
+                if right.contains(&cookie) {
+                    // The sender does receive what is sent to its address.
+                    self.admit(now, from, sender, key, nonce, &offer);
+                } else {
+                    let [cookie, _] = right;
+                    self.send(from, &JoinPacket::Challenge { nonce, cookie });
+                }
             }
             JoinPacket::Challenge { nonce, cookie } => {
                 if let Phase::InMatch(session) = &mut self.phase {
@@ -103,20 +110,8 @@ impl Endpoint {
         self.session().is_some_and(|session| session.link(id).is_some())
     }
 
-    fn take_hello(
-        &mut self,
-        now: u64,
-        from: Address,
-        sender: PeerId,
-        (nonce, key, cookie): (u64, Key, u64),
-        offer: &[u8],
-    ) {
-        let right = Guests::cookies(self.secret, now, &from, sender, key, nonce);
-        if !right.contains(&cookie) {
-            let [cookie, _] = right;
-            return self.send(from, &JoinPacket::Challenge { nonce, cookie });
-        }
-        // The sender does receive what is sent to its address.
+    /// Lets a peer in, or tells it why not.
+    fn admit(&mut self, now: u64, from: Address, sender: PeerId, key: Key, nonce: u64, offer: &[u8]) {
         let reason = if offer != self.offer {
             Some(RefusalReason::Offer)
         } else if let Phase::InMatch(session) = &mut self.phase {
