@@ -80,7 +80,7 @@ impl<G: Game + 'static> Worker<G> {
             .mut_subcommand("work", |work| with_defaults(work, &self.limits));
         let arguments =
             Arguments::from_arg_matches(&command.get_matches()).unwrap_or_else(|usage| usage.exit());
-        // Of TLS, for S3. NATS would use the same. An error means that the program has chosen another.
+        // Cryptography of TLS connections. The program may have installed another provider, which is kept.
         let _ = rustls::crypto::ring::default_provider().install_default();
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(2)

@@ -1,4 +1,4 @@
-//! What the tests share: a small game for two players, and apps without a window.
+//! A small game for two players and apps without a window, shared by the tests.
 #![allow(dead_code, reason = "each test uses a part of it")]
 
 pub mod arena;
