@@ -348,7 +348,8 @@ export interface Events {
     moved: { body: BodyId; position: Vec2; angle: Angle; fellAsleep: boolean }[];
     contactBegin: ContactEvent[];
     contactEnd: ContactEvent[];
-    hits: (ContactEvent & { point: Vec2; normal: Vec2; approachSpeed: Fx })[];
+    /** `impulse` along the normal, over the whole tick, in N s. */
+    hits: (ContactEvent & { point: Vec2; normal: Vec2; approachSpeed: Fx; impulse: Fx })[];
     sensorBegin: SensorEvent[];
     sensorEnd: SensorEvent[];
     joints: { joint: JointId; force: Vec2; torque: Fx; broke: boolean }[];

@@ -34,7 +34,7 @@ pub(crate) use body::{SolverBody, turn_of};
 use body_list::BodyList;
 use colour::Colouring;
 pub use colour::SolverColour;
-pub(crate) use contact::{ActiveContact, Surface, SurfaceSide, WarmStarts};
+pub(crate) use contact::{ActiveContact, ContactResults, Surface, SurfaceSide, WarmStarts};
 use contact::{ContactSet, ContactSource, ContactStore};
 use contact_velocity::{ContactVelocities, PushedBody};
 use context::StepContext;
@@ -73,8 +73,7 @@ pub(crate) struct Solver {
     contacts: ContactSet,
     /// The velocity changes of the bodies that each thread integrates.
     contact_velocities: Vec<ContactVelocities>,
-    /// For each contact in the state, whether its shapes have pushed each other in this tick.
-    pub(crate) pushed: Vec<bool>,
+    pub(crate) results: ContactResults,
     colouring: Colouring,
     pub(crate) machine: Machine,
     pub(crate) threads: Threads,
@@ -191,7 +190,7 @@ impl Solver {
         let Solver { list, moving, joints, contacts: set, contact_velocities, machine, threads, .. } = self;
         let (machine, parts) = (*machine, contact_velocities.len());
         let bodies = Shared::new(&mut list.bodies);
-        let store = ContactStore::new(contacts, &mut self.pushed);
+        let store = ContactStore::new(contacts, &mut self.results, set.has_hits());
         let mut joints = joints.split();
         let moving = (0..parts).map(|part| &moving[part_of(moving.len(), WIDTH, part, parts)]);
         let shares = moving.zip(set.shares()).zip(contact_velocities).zip(joints.shares());

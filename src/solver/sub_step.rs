@@ -79,6 +79,7 @@ impl SolverShare<'_, '_> {
         }
         if contacts.has_extras() {
             velocities.exempt(context, || contacts.bounce(context));
+            contacts.add_hits(context);
         }
     }
 }

@@ -70,6 +70,10 @@ pub struct HitEvent {
     pub normal: Vec2<Unit>,
     /// Approach speed along the normal at the start of the tick, in m/s.
     pub approach_speed: Fx,
+    /// Impulse along the normal in N s, of all points and over the whole tick, with restitution. It changes the
+    /// velocity of a free body by `impulse / mass`. An impact that takes several ticks, as into a soft pile, goes on in
+    /// the [forces](super::ContactView::forces) of the next ones.
+    pub impulse: Fx,
 }
 
 /// A sensor that began or ceased to overlap a shape.

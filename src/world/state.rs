@@ -9,7 +9,8 @@ use super::events::ContactEvent;
 use super::snapshot::SleepingContacts;
 use crate::body::{Arena, Body, BodyId, Handle, IslandId, JointId, Shape, ShapeId};
 use crate::collision::{Contact, Pair};
-use crate::math::Rng;
+use crate::fx;
+use crate::math::{Fx, Rng, fx_div};
 use crate::solver::Joint;
 
 /// A sleeping island: bodies that fell asleep together and wake together.
@@ -89,6 +90,21 @@ impl State {
     /// The bodies of two shapes in occupied slots.
     pub(crate) fn bodies_of(&self, (a, b): Pair) -> (&Body, &Body) {
         (self.body_of(a), self.body_of(b))
+    }
+
+    /// The mass that a force between the bodies of two shapes accelerates: `mA mB / (mA + mB)` in kg.
+    pub(crate) fn reduced_mass(&self, shapes: Pair) -> Fx {
+        let (a, b) = self.bodies_of(shapes);
+        match (a.has_mass(), b.has_mass()) {
+            (true, true) => {
+                let (light, heavy) = (a.mass().min(b.mass()), a.mass().max(b.mass()));
+                let ratio = fx_div(light, heavy).unwrap_or_default();
+                fx_div(light, ratio + fx!(1)).unwrap_or_default()
+            }
+            (true, false) => a.mass(),
+            (false, true) => b.mass(),
+            (false, false) => Fx::ZERO,
+        }
     }
 
     /// The body of the shape in an occupied slot.

@@ -230,6 +230,26 @@ fn thin_tiles_stop_what_drops_on_them() {
     }
 }
 
+/// Safety Factor. A box that drops does not sink into the floor, from any height: contacts are made before the shapes
+/// meet, so that there is no speed below which a sweep would be needed.
+#[test]
+fn a_dropped_box_does_not_sink_in() {
+    for height in (1..=80).map(|step| num(step) / 40) {
+        for tilt in [Angle::ZERO, degrees(7), degrees(45)] {
+            let mut stage = Stage::with_floor();
+            let axis = tilt.direction().widen();
+            let lowest = (axis.x.abs() + axis.y.abs()) / 2;
+            let place = Vec2::new(Fx::ZERO, height + lowest);
+            stage.spawn(BodyDef::dynamic().position(place).angle(tilt), &[square(fx!(0.5))]);
+            stage.run_and(90, |stage| {
+                let overlap = stage.world.deepest_overlap();
+                // At rest it may overlap by the slop of 5 mm.
+                assert!(overlap < fx!(0.006), "{overlap} m after {height} m");
+            });
+        }
+    }
+}
+
 /// Pinball. Flippers throw the ball up; it stays in the cabinet.
 #[test]
 fn flippers_throw_the_ball_up() {

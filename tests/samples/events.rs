@@ -346,7 +346,8 @@ fn a_projectile_explodes_on_impact() {
     assert!(stage.place(stack[7]).y < fx!(7), "the top is at {}", stage.place(stack[7]).y);
 }
 
-/// Circle Impulse. A ball of 1 kg hits at 25 m/s: the event has the speed, and the bounce returns its fraction.
+/// Circle Impulse. A ball of 1 kg hits at 25 m/s: the event has the speed and the impulse, and the bounce returns its
+/// fraction.
 #[test]
 fn a_hit_reports_its_speed() {
     for (restitution, returned) in [(fx!(0), fx!(0)), (fx!(0.25), fx!(6.25))] {
@@ -361,6 +362,7 @@ fn a_hit_reports_its_speed() {
         stage.run_and(60, |stage| hits.extend(stage.world.events().hits.iter().copied()));
         assert_eq!(hits.len(), 1, "{hits:?}");
         near(hits[0].approach_speed, fx!(25), fx!(0.001));
+        near(hits[0].impulse, fx!(25) + returned, fx!(0.01));
         assert!(hits[0].point.length() < fx!(0.01), "{:?}", hits[0].point);
         near(stage.velocity(body).y, returned, fx!(0.01));
     }

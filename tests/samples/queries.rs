@@ -1,8 +1,9 @@
 //! Box2D's groups "Collision" and "Character", and its benchmarks of queries.
 
-use lockstep2d::body::{BodyDef, Chain, Geometry, Polygon, ShapeId};
+use lockstep2d::body::{BodyDef, Chain, Geometry, JointId, Polygon, ShapeId};
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Rng, Vec2};
+use lockstep2d::solver::{Distance, JointDef};
 use lockstep2d::world::{
     Displacement, Mover, MoverState, Probe, QueryFilter, TimeOfImpact, World, clip_velocity, solve_planes,
 };
@@ -294,6 +295,42 @@ fn a_body_on_a_spring_leg_keeps_its_height() {
             "{:?}",
             stage.place(body)
         );
+    }
+    assert!(stage.place(body).x > fx!(5));
+}
+
+/// Dynamic Mover, with its pogo: a spring between the body and what is under it, which pushes with at most three times
+/// the weight and pulls with half of it. As in the sample it is made anew in every tick.
+#[test]
+fn a_pogo_is_a_spring_to_the_ground() {
+    let mut stage = Stage::with_floor();
+    stage.fixed(at!(6, 0), rect(fx!(3), fx!(0.3)));
+    let def = BodyDef::dynamic().position(at!(0, 1.5)).lock_rotation().never_sleeps();
+    let body = stage.spawn(def, &[capsule(at!(0, -0.3), at!(0, 0.3), fx!(0.3))]);
+    let weight = stage.body(body).mass() * 10;
+    // At 5 Hz the weight compresses the spring by 10 / (10 pi)^2 m.
+    let rest = fx!(1.2);
+    let spring = Distance::new().spring(fx!(5), fx!(1), rest + fx!(0.01013));
+    let pogo = spring.spring_force(-weight / 2, weight * 3);
+    let mut leg: Option<JointId> = None;
+    for tick in 0..360 {
+        if let Some(leg) = leg.take() {
+            stage.world.remove_joint(leg).expect("there");
+        }
+        let (place, velocity) = (stage.place(body), stage.velocity(body));
+        let under = stage.world.cast_ray(place, at!(0, -2), QueryFilter::default().except(body));
+        if let Some(hit) = under {
+            let ground = stage.world.shape(hit.shape).expect("there").body();
+            let anchor = hit.point - stage.place(ground);
+            leg = Some(stage.join(JointDef::new(ground, body, pogo).anchor_a(anchor)));
+        }
+        let drive = Vec2::new((fx!(1) - velocity.x) * 20, Fx::ZERO).scale(stage.body(body).mass());
+        stage.world.apply_force_to_centre(body, drive).expect("valid");
+        stage.run(1);
+        let place = stage.place(body);
+        let ground = if place.x > fx!(3) { fx!(0.3) } else { Fx::ZERO };
+        let settled = tick > 90 && (place.x - fx!(3)).abs() > fx!(0.5);
+        assert!(!settled || (place.y - ground - rest).abs() < fx!(0.02), "{tick}: {place:?}");
     }
     assert!(stage.place(body).x > fx!(5));
 }

@@ -55,6 +55,41 @@ fn a_hit_on_a_moving_wall_counts_the_wall_and_only_the_normal() {
     );
 }
 
+/// A ball that hits another body at v gets an impulse of (1 + e) v times the reduced mass, whatever its place when the
+/// tick begins. A box that lands flat has it at two points.
+#[test]
+fn a_hit_tells_the_impulse_of_the_whole_tick() {
+    let wall = (BodyDef::fixed(), rectangle(fx!(50), fx!(0.5)), None);
+    let block = (BodyDef::dynamic(), square(fx!(0.5)).density(fx!(3)), Some(fx!(3)));
+    let cases = [fx!(2), fx!(25), fx!(100)]
+        .into_iter()
+        .flat_map(|speed| [fx!(0), fx!(0.25), fx!(1)].map(|restitution| (speed, restitution)));
+    for (speed, restitution) in cases {
+        for phase in 0..32 {
+            for ((target, area, heavy), shape) in [wall, block]
+                .into_iter()
+                .flat_map(|target| [square(fx!(0.5)), ball(fx!(0.5))].map(|s| (target, s)))
+            {
+                let mut world = weightless();
+                spawn(&mut world, target.position((fx!(0), fx!(-0.5))), area.restitution(fx!(0)));
+                let start = fx!(1) + speed / 60 * phase / 32;
+                let def = BodyDef::dynamic().position((fx!(0), start)).velocity((fx!(0), -speed));
+                let thrown = spawn(&mut world, def, hitting(shape).restitution(restitution).density(fx!(1)));
+                let mass = world.body(thrown).expect("there").mass();
+                let share = heavy.map_or(fx!(1), |heavy| heavy / (heavy + mass));
+                let told = hits(&mut world, 40);
+                let [hit] = told[..] else { panic!("{speed} m/s, phase {phase}: {told:?}") };
+                let impulse = hit.impulse / (mass * share * speed);
+                let wanted = fx!(1) + restitution;
+                assert!(
+                    (impulse - wanted).abs() < fx!(0.001),
+                    "{speed} m/s, {restitution}, {phase}: {impulse}"
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn slow_or_unwanted_hits_are_not_told() {
     let thrown = |speed: Fx, shape: ShapeDef, hit_speed: Fx| {

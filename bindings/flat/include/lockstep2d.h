@@ -844,6 +844,8 @@ typedef struct ls2d_hit_event {
     ls2d_vec2 normal;
     /* Approach speed in m/s. */
     ls2d_fx approach_speed;
+    /* Impulse along the normal over the whole tick, in N s. */
+    ls2d_fx impulse;
 } ls2d_hit_event;
 
 /* A sensor that began or ceased to overlap a shape. Their handles may be stale if one was removed. */

@@ -398,12 +398,13 @@ export const STRUCTS = {
         shape_a: [0, "shape"],
         shape_b: [8, "shape"],
     } },
-    hit_event: { bytes: 56, fields: {
+    hit_event: { bytes: 64, fields: {
         shape_a: [0, "shape"],
         shape_b: [8, "shape"],
         point: [16, "vec2"],
         normal: [32, "vec2"],
         approach_speed: [48, "fx"],
+        impulse: [56, "fx"],
     } },
     sensor_event: { bytes: 24, fields: {
         sensor: [0, "shape"],

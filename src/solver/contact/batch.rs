@@ -26,8 +26,7 @@ pub(in crate::solver) struct Batch<const N: usize> {
     pub(super) tangent_lambda: Ints<N>,
     /// Number of points that have a contact in any lane. Points beyond it are stale and never read.
     pub(super) count: usize,
-    /// Whether any surface in the batch bounces, moves or resists rolling. The batch then has a
-    /// [`super::extras::ContactExtras`].
+    /// Whether any contact in the batch has extras. The batch then has a [`super::extras::ContactExtras`].
     pub(super) extras: bool,
     /// Whether the rows and surfaces of the batch are within the bounds of [`super::overflow_policy::Unchecked`].
     pub(super) unchecked: bool,

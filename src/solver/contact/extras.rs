@@ -1,5 +1,5 @@
-//! Restitution, moving surfaces and rolling resistance. Few contacts have any of these. Their data is stored separately
-//! from the batches, so that it does not use cache space for all other contacts.
+//! Restitution, moving surfaces, rolling resistance and hit events. Few contacts have any of these. Their data is stored
+//! separately from the batches, so that it does not use cache space for all other contacts.
 
 use super::batch::Batch;
 use super::input::ContactSource;
@@ -7,7 +7,7 @@ use super::rolling::RollingRows;
 use crate::math::Unit;
 use crate::simd::{Ints, Lanes};
 
-/// Additional data of a batch in which some surface has extras.
+/// Additional data of a batch in which some contact has extras.
 #[derive(Clone, Debug)]
 #[repr(align(32))]
 pub(in crate::solver) struct ContactExtras<const N: usize> {
@@ -25,6 +25,10 @@ pub(in crate::solver) struct ContactExtras<const N: usize> {
     /// Whether any lane has rolling resistance.
     pub(super) rolls: bool,
     pub(super) rolling: RollingRows<N>,
+    /// Whether any lane has a hit event.
+    pub(super) hits: bool,
+    /// For each point, the sum of its normal impulses in the sub-steps of the tick.
+    pub(super) hit_lambda: [Ints<N>; 2],
 }
 
 impl<const N: usize> ContactExtras<N> {
@@ -38,6 +42,8 @@ impl<const N: usize> ContactExtras<N> {
         surface_speed: Ints::ZERO,
         rolls: false,
         rolling: RollingRows::NONE,
+        hits: false,
+        hit_lambda: [Ints::ZERO; 2],
     };
 
     /// Puts a contact into a lane. `inverse_normals` are the reciprocals of its points' denominators. The one of a
@@ -53,6 +59,7 @@ impl<const N: usize> ContactExtras<N> {
         self.restitution.0[lane] = pair.surface.restitution.to_bits();
         self.restitution_threshold.0[lane] = pair.surface.restitution_threshold.to_bits();
         self.surface_speed.0[lane] = pair.surface.surface_speed.to_bits();
+        self.hits |= pair.is_hit;
         if pair.surface.rolling_resistance > 0 {
             self.rolls = true;
             let carried = source.contacts[pair.contact as usize].rolling;

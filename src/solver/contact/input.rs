@@ -5,7 +5,7 @@ use super::super::colour::{Colouring, Node, Size};
 use super::super::row::MassFractions;
 use super::arms::last_arms;
 use super::restitution::ELASTIC;
-use super::{Surface, WarmStarts};
+use super::{Features, Surface, WarmStarts};
 use alloc::vec::Vec;
 
 use crate::collision::{Contact, Impact, Manifold, Pair, PointImpulse};
@@ -26,6 +26,15 @@ pub(crate) struct ActiveContact {
     /// Whether the shapes may approach each other so fast that the impulses of the last tick are no guess for those of
     /// this tick.
     pub(crate) is_impact: bool,
+    /// Whether the shapes approach each other fast enough for a hit event, which tells the impulse of the tick.
+    pub(crate) is_hit: bool,
+}
+
+impl ActiveContact {
+    /// Whether the contact needs more than rows along the normal and the tangent.
+    pub(super) fn has_extras(&self) -> bool {
+        self.surface.has_extras() || self.is_hit
+    }
 }
 
 /// Properties of a body that follow from all of its contacts: flags that each contact sets, and in the bits above them
@@ -134,9 +143,9 @@ impl Input {
 
 impl ContactSource<'_> {
     /// Adds a node for each touching pair to the graph that is coloured, and collects the properties of each body that
-    /// follow from its contacts. Returns whether any contact is elastic.
-    pub(super) fn add_nodes(&self, colouring: &mut Colouring, prospects: &mut Vec<Prospect>) -> bool {
-        let mut elastic = false;
+    /// follow from its contacts. Returns whether any contact is elastic, and whether any is a hit.
+    pub(super) fn add_nodes(&self, colouring: &mut Colouring, prospects: &mut Vec<Prospect>) -> Features {
+        let mut features = Features::default();
         prospects.clear();
         prospects.resize(self.list.len(), Prospect::default());
         for pair in self.pairs {
@@ -149,7 +158,8 @@ impl ContactSource<'_> {
             let flags = flag(self.contacts[pair.contact as usize].count > 0, Prospect::WARM)
                 | flag(pair.is_impact, Prospect::IMPACT)
                 | flag(pair.surface.restitution.is_positive(), Prospect::BOUNCES);
-            elastic |= pair.surface.restitution > ELASTIC;
+            features.elastic |= pair.surface.restitution > ELASTIC;
+            features.hits |= pair.is_hit;
             let walls = u32::from(bodies.contains(&GROUND));
             bodies.into_iter().for_each(|body| prospects[body as usize].add(flags, walls));
         }
@@ -158,7 +168,7 @@ impl ContactSource<'_> {
         if prospects.iter().any(|prospect| prospect.is_cold()) {
             colouring.set_cold(|bodies| bodies.iter().all(|&body| !prospects[body as usize].has_guess()));
         }
-        elastic
+        features
     }
 
     /// Prefetches the data that [`Self::gather`] reads of a pair. Contacts in the order of colours are random accesses.
@@ -206,7 +216,7 @@ impl ContactSource<'_> {
             features: [first.feature.0, second.feature.0],
             wedged: prospects[changed[0] as usize].is_wedged() || prospects[changed[1] as usize].is_wedged(),
             count: manifold.count(),
-            extras: pair.surface.has_extras(),
+            extras: pair.has_extras(),
             shares: Quad([n.x.to_bits(), n.y.to_bits(), fractions.a.to_bits(), fractions.b.to_bits()]),
             gyrations: Quad([inverse_a.0, inverse_b.0, inverse_a.1, inverse_b.1]),
             to_origin: Quad([to_a.x.to_bits(), to_a.y.to_bits(), to_b.x.to_bits(), to_b.y.to_bits()]),
@@ -309,6 +319,7 @@ mod tests {
             bodies: (0, 1),
             surface,
             is_impact: false,
+            is_hit: false,
         };
         let source = ContactSource {
             pairs: &[pair],

@@ -9,8 +9,8 @@
 //! vA -= gA d n,  uA -= fA d,  vB += gB d n,  uB += fB d
 //! ```
 //!
-//! Each operation on a batch has a file of its own: `warm_start`, `solve` (which has the equation above), `relax` and
-//! `restitution`. `prepare` fills the batches of a tick, `rows` computes their rows, and `store` returns the impulses
+//! Each operation on a batch has a file of its own: `warm_start`, `solve` (which has the equation above), `relax`,
+//! `restitution` and `hit`. `prepare` fills the batches of a tick, `rows` computes their rows, and `store` returns the impulses
 //! to the state. `overflow_policy` has the two ways to keep numbers within their formats.
 //!
 //! Differences of two velocities fit because each velocity is below 512 m/s. A sum that may not fit saturates. Lanes
@@ -20,6 +20,7 @@ mod arms;
 mod batch;
 mod constants;
 mod extras;
+mod hit;
 mod input;
 mod overflow_policy;
 mod pair;
@@ -41,6 +42,7 @@ use crate::math::Speed;
 use batch::Batch;
 pub(super) use constants::Constants;
 use extras::ContactExtras;
+use hit::AddHits;
 pub(crate) use input::ActiveContact;
 pub(super) use input::ContactSource;
 use input::Prospect;
@@ -48,6 +50,7 @@ pub(super) use relax::{Measure, Relax};
 use restitution::ApplyRestitution;
 pub(super) use restitution::ObserveApproach;
 pub(super) use solve::{PointOrder, Solve};
+pub(crate) use store::ContactResults;
 pub(super) use store::ContactStore;
 use store::Records;
 pub(crate) use surface::{Surface, SurfaceSide};
@@ -81,7 +84,9 @@ struct Features {
     elastic: bool,
     /// Whether any contact is cold.
     cold: bool,
-    /// Whether any surface bounces, moves or resists rolling.
+    /// Whether any contact has a hit event.
+    hits: bool,
+    /// Whether any contact has extras.
     extras: bool,
 }
 
@@ -98,6 +103,11 @@ impl ContactSet {
     pub(super) fn shares(&mut self) -> impl Iterator<Item = ContactShare<'_>> {
         let ContactSet { warm, cold, features, .. } = self;
         warm.shares().zip(cold.shares()).map(|(warm, cold)| ContactShare { warm, cold, features: *features })
+    }
+
+    /// Whether any contact has a hit event.
+    pub(super) fn has_hits(&self) -> bool {
+        self.features.hits
     }
 
     /// Whether a contact of a body of the tick may bounce, by index.
@@ -124,7 +134,7 @@ impl ContactShare<'_> {
         self.features.cold
     }
 
-    /// Whether any surface bounces, moves or resists rolling.
+    /// Whether any contact has extras.
     pub(super) fn has_extras(&self) -> bool {
         self.features.extras
     }
@@ -141,6 +151,14 @@ impl ContactShare<'_> {
             let restitution = ApplyRestitution { again: pass > 0 };
             self.run_overflow(restitution, context);
             self.run_coloured(restitution, context);
+        }
+    }
+
+    /// Adds the impulses of a sub-step to those of the tick, for contacts with a hit event.
+    pub(super) fn add_hits(&mut self, context: &StepContext<'_>) {
+        if self.features.hits {
+            self.run_overflow(AddHits, context);
+            self.run_coloured(AddHits, context);
         }
     }
 }

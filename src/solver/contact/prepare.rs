@@ -26,7 +26,7 @@ impl ContactSet {
         parts: usize,
     ) {
         colouring.begin();
-        self.features.elastic = source.add_nodes(colouring, &mut self.prospects);
+        self.features = source.add_nodes(colouring, &mut self.prospects);
         colouring.sort(source.list.len(), parts);
     }
 
@@ -82,7 +82,7 @@ impl<'a, I: Iterator<Item = Group<'a>>, const N: usize> Kernel<N> for Fill<'_, I
         let mut count = 0;
         for group in colours {
             let mut start = 0;
-            for indices in group.batches::<N>(|index| !source.pairs[index as usize].surface.has_extras()) {
+            for indices in group.batches::<N>(|index| !source.pairs[index as usize].has_extras()) {
                 for &index in group.indices.iter().skip(start + PAIRS_AHEAD * N).take(N) {
                     prefetch(&source.pairs[index as usize]);
                 }

@@ -1,12 +1,12 @@
 //! Returns the impulses of batches to the contacts of the state.
 
 use alloc::vec::Vec;
-use core::cell::Cell;
 
 use super::super::batches::Batches;
 use super::super::pair::{UNIT, clamp};
 use super::arms::RenewedArms;
 use super::batch::Batch;
+use super::extras::ContactExtras;
 use super::input::Input;
 use super::overflow_policy::FRICTION_RATIO;
 use super::rows::Inverses;
@@ -80,6 +80,17 @@ impl<const N: usize> Records<N> {
         }
         impulses
     }
+
+    /// The normal impulse of each point over the tick, `p = L / D`.
+    #[inline(always)]
+    fn hit_impulses<L: Lanes<N>>(&self, extras: &ContactExtras<N>) -> [Ints<N>; 2] {
+        let mut impulses = [Ints::ZERO; 2];
+        for (i, impulse) in impulses.iter_mut().enumerate() {
+            let lambda = L::load(&extras.hit_lambda[i]);
+            L::store(L::narrow::<UNIT>(L::mul(L::load(&self.inverses.normals[i]), lambda)), impulse);
+        }
+        impulses
+    }
 }
 
 /// The share of each point in the impulse along the tangent: one half, unless the friction limit of a point is lower.
@@ -99,32 +110,52 @@ fn shares_of_friction<L: Lanes<N>, const N: usize>(batch: &Batch<N>) -> [L::Int;
     [L::sub(whole, rest), rest]
 }
 
-/// Where impulses are stored: the contacts of the state, and for each of them whether its shapes have pushed each
-/// other.
+/// What the solver has found out about each contact of the state in a tick, by index.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ContactResults {
+    /// Whether the shapes have pushed each other.
+    pub(crate) pushed: Vec<bool>,
+    /// For contacts with a hit event, the normal impulse of the tick, as the relative velocity that it would give to
+    /// the centres of mass. Empty if there are none.
+    pub(crate) hit_impulses: Vec<Speed>,
+}
+
+/// Where impulses are stored: the contacts of the state, and the results of the tick.
 #[derive(Clone, Copy)]
 pub(in crate::solver) struct ContactStore<'a> {
     contacts: Shared<'a, Contact>,
     pushed: Shared<'a, bool>,
+    hit_impulses: Shared<'a, Speed>,
 }
 
 impl<'a> ContactStore<'a> {
     /// Each contact is in one batch, and so belongs to one thread.
-    pub(in crate::solver) fn new(contacts: &'a mut [Contact], pushed: &'a mut Vec<bool>) -> Self {
+    pub(in crate::solver) fn new(
+        contacts: &'a mut [Contact],
+        results: &'a mut ContactResults,
+        has_hits: bool,
+    ) -> Self {
+        let ContactResults { pushed, hit_impulses } = results;
         pushed.clear();
         pushed.resize(contacts.len(), false);
-        ContactStore { contacts: Shared::new(contacts), pushed: Shared::new(pushed) }
+        hit_impulses.clear();
+        hit_impulses.resize(if has_hits { contacts.len() } else { 0 }, Speed::ZERO);
+        ContactStore {
+            contacts: Shared::new(contacts),
+            pushed: Shared::new(pushed),
+            hit_impulses: Shared::new(hit_impulses),
+        }
     }
 }
 
 impl ContactShare<'_> {
     /// Stores the impulses for the next tick.
     pub(in crate::solver) fn store(&self, store: ContactStore<'_>, machine: Machine) {
-        let (contacts, pushed) = (store.contacts.cells(), store.pushed.cells());
         for share in [&self.warm, &self.cold] {
             if let Some(batches) = share.own_overflow() {
-                Store { batches, contacts, pushed }.run::<Scalar<1>>();
+                Store { batches, store }.run::<Scalar<1>>();
             }
-            machine.run(Store { batches: share.coloured(), contacts, pushed });
+            machine.run(Store { batches: share.coloured(), store });
         }
     }
 }
@@ -132,14 +163,15 @@ impl ContactShare<'_> {
 /// Stores the impulses of batches.
 struct Store<'a, const N: usize> {
     batches: &'a Batches<Contacts, N>,
-    contacts: &'a [Cell<Contact>],
-    pushed: &'a [Cell<bool>],
+    store: ContactStore<'a>,
 }
 
 impl<const N: usize> Kernel<N> for Store<'_, N> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
-        let Store { batches: Batches { batches, records, extras, .. }, contacts, pushed } = self;
+        let Store { batches: Batches { batches, records, extras, .. }, store } = self;
+        let (contacts, pushed) = (store.contacts.cells(), store.pushed.cells());
+        let hit_impulses = store.hit_impulses.cells();
         let mut extras = extras.iter();
         for (number, (batch, record)) in batches.iter().zip(records).enumerate() {
             for (_, index, _) in records.get(number + CONTACTS_AHEAD).into_iter().flat_map(Records::lanes) {
@@ -170,6 +202,13 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
                 contacts[index].set(contact);
                 let has_pushed = |point: usize| batch.pushed[point] >> lane & 1 != 0;
                 pushed[index].set(has_pushed(0) || count > 1 && has_pushed(1));
+            }
+            if let Some(extras) = extras.filter(|extras| extras.hits) {
+                let impulses = record.hit_impulses::<L>(extras);
+                for (lane, index, count) in record.lanes() {
+                    let second = if count > 1 { impulses[1].0[lane] } else { 0 };
+                    hit_impulses[index].set(Speed::from_bits(impulses[0].0[lane].saturating_add(second)));
+                }
             }
         }
     }

@@ -37,7 +37,7 @@ impl Surface {
         }
     }
 
-    /// Whether a contact needs more than rows along the normal and the tangent.
+    /// Whether the surface bounces, moves or resists rolling.
     pub(super) fn has_extras(&self) -> bool {
         self.restitution.is_positive()
             || self.surface_speed != Speed::ZERO

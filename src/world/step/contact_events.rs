@@ -3,9 +3,10 @@
 
 use super::sensor_events::push_sensor_events;
 use crate::collision::{Contact, Manifold};
-use crate::math::{Fx, widen};
+use crate::math::{Fx, fx_mul, widen};
+use crate::solver::ContactResults;
 use crate::world::cache::{MotionCache, Scratch};
-use crate::world::events::Events;
+use crate::world::events::{Events, HitEvent};
 use crate::world::state::{Reported, State};
 
 /// Updates whether each contact touches, and reports the changes as events. A pair touches if it is near at the start
@@ -14,6 +15,7 @@ use crate::world::state::{Reported, State};
 pub(super) fn report_contacts(state: &mut State, scratch: &mut Scratch) {
     let Scratch { results, pairs, shapes, contacts: cache, solver, .. } = scratch;
     let (events, motion, found) = (&mut results.events, shapes.motion(), cache.output());
+    let ContactResults { pushed, hit_impulses } = &solver.results;
     events.clear();
     for removed in state.removed_contacts.drain(..) {
         end(Some(removed), events);
@@ -35,7 +37,7 @@ pub(super) fn report_contacts(state: &mut State, scratch: &mut Scratch) {
         let points = manifold.map_or(&[][..], Manifold::points);
         let separation = points.iter().map(|point| widen(point.separation)).min();
         let within = |distance: Fx| separation.is_some_and(|separation| separation <= distance);
-        let touching = solver.pushed[index as usize] || within(if contact.touching { apart } else { near });
+        let touching = pushed[index as usize] || within(if contact.touching { apart } else { near });
         if touching != contact.touching {
             contact.touching = touching;
             let report = if touching { begin } else { end };
@@ -43,8 +45,12 @@ pub(super) fn report_contacts(state: &mut State, scratch: &mut Scratch) {
         }
     }
     state.contacts = contacts;
-    let hits = found.approaches.iter().filter(|hit| solver.pushed[hit.contact as usize]);
-    events.hits.extend(hits.map(|hit| hit.event));
+    let hits = found.approaches.iter().filter(|hit| pushed[hit.contact as usize]);
+    events.hits.extend(hits.map(|hit| {
+        let speed = widen(hit_impulses[hit.contact as usize]);
+        let mass = state.reduced_mass(state.contacts[hit.contact as usize].shapes);
+        HitEvent { impulse: fx_mul(speed, mass), ..hit.event }
+    }));
     events.contact_end.sort_unstable();
     events.sensor_end.sort_unstable();
 }

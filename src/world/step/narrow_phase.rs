@@ -5,7 +5,7 @@ use core::ops::Range;
 
 use super::speculative::{Side, SpeculativePair, approach};
 use crate::collision::{CachedAxis, Contact, Manifold, Pair, SatCounters, collide_near};
-use crate::math::{Step, saturate, widen};
+use crate::math::{Fx, Step, saturate, widen};
 use crate::simd::Machine;
 use crate::solver::{ActiveContact, Surface, SurfaceSide};
 use crate::world::cache::{
@@ -191,8 +191,12 @@ impl NarrowPhase<'_> {
                     manifold.impact = u32::try_from(impacts.len()).expect("fewer than 2^32 contacts");
                 }
             }
-            if shape_a.hit_events || shape_b.hit_events {
-                approaches.extend(fast_approach(state, motion, index, contact, manifold));
+            let mut is_hit = false;
+            if (shape_a.hit_events || shape_b.hit_events)
+                && let Some(approach) = fast_approach(state, motion, index, contact, manifold)
+            {
+                approaches.push(approach);
+                is_hit = true;
             }
             while touched.first().is_some_and(|touched| touched.shapes < contact.shapes) {
                 touched = &touched[1..];
@@ -208,6 +212,7 @@ impl NarrowPhase<'_> {
                 bodies: (shape_a.body, shape_b.body),
                 surface,
                 is_impact: closing.is_longer_than(margins.impact),
+                is_hit,
             });
         }
         touched
@@ -299,6 +304,8 @@ fn fast_approach(
     }
     let point = manifold.origin + point.anchor.widen();
     let ContactEvent { shape_a, shape_b } = state.contact_event(contact);
-    let event = HitEvent { shape_a, shape_b, point, normal: manifold.normal, approach_speed };
+    let normal = manifold.normal;
+    // The solver finds the impulse.
+    let event = HitEvent { shape_a, shape_b, point, normal, approach_speed, impulse: Fx::ZERO };
     Some(PendingHit { contact: index, event })
 }

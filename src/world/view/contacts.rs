@@ -4,8 +4,7 @@ use core::fmt;
 
 use crate::body::ShapeId;
 use crate::collision::{Contact, Manifold, ManifoldPoint};
-use crate::fx;
-use crate::math::{Fx, Speed, fx_div, fx_mul, widen};
+use crate::math::{Fx, Speed, fx_mul, widen};
 pub use crate::solver::SolverColour;
 use crate::world::World;
 
@@ -139,16 +138,6 @@ impl ContactView<'_> {
     /// dynamic, or has no mass, counts as infinitely heavy. 0 if both do.
     #[must_use]
     pub fn reduced_mass(&self) -> Fx {
-        let (a, b) = self.world.state.bodies_of(self.contact.shapes);
-        match (a.has_mass(), b.has_mass()) {
-            (true, true) => {
-                let (light, heavy) = (a.mass().min(b.mass()), a.mass().max(b.mass()));
-                let ratio = fx_div(light, heavy).unwrap_or_default();
-                fx_div(light, ratio + fx!(1)).unwrap_or_default()
-            }
-            (true, false) => a.mass(),
-            (false, true) => b.mass(),
-            (false, false) => Fx::ZERO,
-        }
+        self.world.state.reduced_mass(self.contact.shapes)
     }
 }

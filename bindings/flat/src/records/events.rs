@@ -26,6 +26,8 @@ records! {
         normal: RawVec2,
         /// Approach speed in m/s.
         approach_speed: RawFx,
+        /// Impulse along the normal over the whole tick, in N s.
+        impulse: RawFx,
     }
 
     /// A sensor that began or ceased to overlap a shape. Their handles may be stale if one was removed.
@@ -65,6 +67,7 @@ impl RawHitEvent {
             point: RawVec2::of(event.point),
             normal: RawVec2::of_units(event.normal),
             approach_speed: RawFx::of(event.approach_speed),
+            impulse: RawFx::of(event.impulse),
         }
     }
 }

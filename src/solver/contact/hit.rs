@@ -1,0 +1,31 @@
+//! Hit events: the normal impulse of a contact over a tick.
+//!
+//! ```text
+//! L_tick = sum of (L + L_restitution) over the sub-steps
+//! ```
+//!
+//! Every sub-step applies the whole accumulated impulse `L`: first the part that the warm start applies, then what the
+//! passes change of it.
+
+use super::super::batches::{BatchParts, Operation};
+use super::Contacts;
+use crate::simd::Lanes;
+
+/// Adds the impulses of a sub-step to those of the tick. A sum beyond the format of impulses saturates.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct AddHits;
+
+impl Operation<Contacts> for AddHits {
+    #[inline(always)]
+    fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
+        let BatchParts { batch, extra: Some(extras), .. } = parts else { return };
+        if !extras.hits {
+            return;
+        }
+        for (i, point) in batch.points[..batch.count].iter().enumerate() {
+            let lambda = L::add_saturating(L::load(&point.normal_lambda), L::load(&extras.bounce[i]));
+            let sum = L::add_saturating(L::load(&extras.hit_lambda[i]), lambda);
+            L::store(sum, &mut extras.hit_lambda[i]);
+        }
+    }
+}
