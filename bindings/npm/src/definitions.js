@@ -2,7 +2,7 @@
 import { Lockstep2dError } from "./error.js";
 import { vectorOf } from "./fx.js";
 import { C } from "./layout.js";
-import { call, copy as copyOf, fieldAt, library, list, putBytes, putRaw, scratch, sizeOf, struct, u32, write } from "./library.js";
+import { call, copy as copyOf, fieldAt, list, putBytes, putRaw, scratch, sizeOf, statusOf, struct, u32, write } from "./library.js";
 
 const BODY_KINDS = { fixed: C.FIXED, kinematic: C.KINEMATIC, dynamic: C.DYNAMIC };
 const SWEEPS = { off: C.SWEEP_OFF, fixed: C.SWEEP_FIXED, bullet: C.SWEEP_BULLET, kinematic: C.SWEEP_KINEMATIC };
@@ -143,12 +143,11 @@ function chainLinks({ points, closed, oneSided, options }) {
         });
     };
     const ask = (links, capacity, count, at) =>
-        callStatus("ls2d_chain_links", at, at + size, points.length, closed ? 1 : 0, oneSided ? 1 : 0, links, capacity, count);
+        statusOf("ls2d_chain_links", at, at + size, points.length, closed ? 1 : 0, oneSided ? 1 : 0, links, capacity, count);
     const { at, count } = list(size, before, ask, prepare);
     return Array.from({ length: count }, (_, index) => ({ bytes: copyOf(at + index * size, size) }));
 }
 
-const callStatus = (name, ...given) => library()[name](...given);
 const pair = (at, x, y) => {
     putRaw(at, x);
     putRaw(at + 8, y);

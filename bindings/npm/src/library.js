@@ -93,13 +93,19 @@ export function failure(status) {
     return new Lockstep2dError(NAMES[status] ?? `STATUS_${status}`, lastText());
 }
 
+/** Calls a function, and returns its status. */
+export function statusOf(name, ...given) {
+    const status = library()[name](...given);
+    memory();
+    return status;
+}
+
 /** Calls a function. Returns whether there was something to return; failures are thrown. */
 export function call(name, ...given) {
-    const status = library()[name](...given);
+    const status = statusOf(name, ...given);
     if (status > STATUS.NONE) {
         throw failure(status);
     }
-    memory();
     return status === STATUS.OK;
 }
 

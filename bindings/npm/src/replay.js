@@ -1,6 +1,6 @@
 // Replays: of worlds that commands change, and of games with rules of their own.
 import { writeConfig } from "./definitions.js";
-import { Handle, call, copy, fieldAt, give, lastText, scratch, sizeOf, takeBytes, text, u32, u64, hashAt, write, writeHash, library } from "./library.js";
+import { Handle, call, copy, fieldAt, give, hashAt, lastText, scratch, sizeOf, statusOf, takeBytes, text, u32, u64, write, writeHash } from "./library.js";
 import { Lockstep2dError } from "./error.js";
 import { STATUS } from "./layout.js";
 import { Adopted, World } from "./world.js";
@@ -20,7 +20,7 @@ function openAt(name, bytes, limits) {
     const limit = verdict + sizeOf("verdict");
     const before = limit + sizeOf("limits");
     const at = give(bytes, before);
-    const status = library()[name](at + before, bytes.length, limitsAt(at + limit, limits), at, at + verdict);
+    const status = statusOf(name, at + before, bytes.length, limitsAt(at + limit, limits), at, at + verdict);
     if (status !== STATUS.OK) {
         const found = verdictAt(at + verdict);
         throw Object.assign(new Lockstep2dError("RECORD", found.text), { verdict: found });

@@ -1,6 +1,7 @@
 // Replays: recorded, verified, limited; and those of games whose rules are in JavaScript.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { library } from "../src/library.js";
 import { L, file } from "./common.mjs";
 
 const join = (...parts) => Uint8Array.from(parts.flatMap((part) => [...part]));
@@ -97,4 +98,30 @@ test("a game with rules in JavaScript records, and its replay verifies", () => {
     assert.deepEqual([other.verdict, other.ticks], ["diverged", 120]);
     assert.throws(() => new L.Replay(bytes.slice(0, 30)), { code: "RECORD" });
     assert.throws(() => new L.Replay(file("replays/ragdoll.replay")), (error) => error.verdict.verdict === "unverifiable");
+});
+
+test("files are opened and refused, although reading them moves the memory", () => {
+    const setup = new L.Commands();
+    for (let x = 0; x < 2000; x++) {
+        setup.spawn({ position: [x, 0], shapes: [L.circle("0.25")] });
+    }
+    const recording = new L.Recording({ setup, interval: 1 });
+    for (let tick = 0; tick < 20; tick++) {
+        recording.step(setup);
+    }
+    const replay = recording.finish();
+    const damaged = replay.slice();
+    damaged[damaged.length - 10] ^= 1;
+    const kept = [];
+    let moved = 0;
+    for (let attempt = 0; attempt < 20; attempt++) {
+        const before = library().memory.buffer;
+        assert.throws(() => new L.Timeline(damaged), (error) => error.code === "RECORD" && error.verdict.verdict === "malformed");
+        // Takes the memory that was free, so that the next one needs more.
+        kept.push(new L.Timeline(replay));
+        assert.equal(kept.at(-1).ticks, 20);
+        moved += library().memory.buffer === before ? 0 : 1;
+    }
+    assert.ok(moved > 0, "the memory has not moved");
+    [...kept, recording, setup].forEach((object) => object.dispose());
 });

@@ -1,6 +1,7 @@
 // Worlds: definitions, queries, events, snapshots, errors, memory.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { library } from "../src/library.js";
 import { L, fallingBox } from "./common.mjs";
 
 test("a world that is restored goes on with the same bits", () => {
@@ -118,7 +119,7 @@ test("commands are edits as bytes", () => {
 
 test("10 000 worlds that are disposed leak nothing", () => {
     const before = L.objectCount();
-    const memory = () => process.memoryUsage().arrayBuffers + process.memoryUsage().external;
+    const memory = () => library().memory.buffer.byteLength;
     let after;
     for (let count = 0; count < 10_000; count++) {
         const { world } = fallingBox();
@@ -128,8 +129,9 @@ test("10 000 worlds that are disposed leak nothing", () => {
             after = memory();
         }
     }
-    assert.equal(L.objectCount(), before);
-    assert.ok(memory() < after + 2_000_000, "the memory of the module does not grow");
+    // The garbage collector may have freed what other tests left.
+    assert.ok(L.objectCount() <= before, `${L.objectCount() - before} objects more`);
+    assert.equal(memory(), after, "the memory of the module has grown");
 });
 
 test("a character walks, climbs a step, rides a lift and stops at a wall", () => {

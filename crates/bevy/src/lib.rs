@@ -87,6 +87,7 @@ pub mod prelude {
     };
 }
 
-#[cfg(doctest)]
+// Its examples use gizmos.
+#[cfg(all(doctest, feature = "gizmos"))]
 #[doc = include_str!("../README.md")]
 mod readme {}
