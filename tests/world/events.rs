@@ -1,11 +1,12 @@
 //! Hit, contact and move events, in the documented order, and equal when a tick is simulated again.
 
-use lockstep2d::body::{BodyDef, EventSwitches, ShapeDef};
+use lockstep2d::body::{Body, BodyDef, EventSwitches, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
+use lockstep2d::solver::Backend;
 use lockstep2d::world::{Config, ContactEvent, HitEvent, World};
 
-use super::{ball, rectangle, run, shape_of, spawn, square, weightless, world_with_floor};
+use super::{ball, capsule, rectangle, run, shape_of, spawn, square, weightless, world_with_floor};
 
 fn hitting(shape: ShapeDef) -> ShapeDef {
     shape.events(EventSwitches { hit: true, ..EventSwitches::default() })
@@ -184,4 +185,48 @@ fn lists_are_sorted_and_the_same_when_simulated_again() {
         run(&mut world, 1);
         assert_eq!((world.events(), world.state_hash()), (&told, after));
     }
+}
+
+/// A world in which everything reports its hits moves like one in which nothing does, and has the same events with
+/// every backend.
+#[test]
+fn hits_change_nothing_but_themselves() {
+    let fall = |wanted: bool| {
+        let (mut world, _) = world_with_floor();
+        for i in 0..60i32 {
+            let (x, y) = (Fx::from_num(i % 8) - fx!(4), Fx::from_num(i / 8) * fx!(1.3) + fx!(1));
+            let def = BodyDef::dynamic().position((x, y)).velocity((fx!(0), fx!(-9)));
+            let shape = match i % 3 {
+                0 => square(fx!(0.45)).restitution(fx!(0.3)),
+                1 => ball(fx!(0.45)),
+                _ => capsule(fx!(0.3), fx!(0.2)),
+            };
+            spawn(&mut world, def, if wanted { hitting(shape) } else { shape });
+        }
+        world
+    };
+    let (mut silent, mut telling) = (fall(false), fall(true));
+    let mut others: Vec<_> = Backend::available()
+        .map(|backend| {
+            let mut world = telling.clone();
+            assert!(world.set_backend(backend));
+            world
+        })
+        .collect();
+    let mut hits = 0;
+    for tick in 0..120 {
+        run(&mut silent, 1);
+        run(&mut telling, 1);
+        for ((_, silent), (_, telling)) in silent.bodies().zip(telling.bodies()) {
+            let motion = |body: &Body| (body.transform(), body.velocity(), body.angular_velocity());
+            assert_eq!(motion(silent), motion(telling), "tick {tick}");
+        }
+        for world in &mut others {
+            run(world, 1);
+            assert_eq!(world.events(), telling.events(), "{:?}, tick {tick}", world.backend());
+        }
+        hits += telling.events().hits.len();
+        assert!(telling.events().hits.iter().all(|hit| hit.impulse > fx!(0)));
+    }
+    assert!(hits > 100, "{hits} hits");
 }
