@@ -28,13 +28,9 @@ pub(crate) struct ActiveContact {
     pub(crate) is_impact: bool,
     /// Whether the shapes approach each other fast enough for a hit event, which tells the impulse of the tick.
     pub(crate) is_hit: bool,
-}
-
-impl ActiveContact {
-    /// Whether the contact needs more than rows along the normal and the tangent.
-    pub(super) fn has_extras(&self) -> bool {
-        self.surface.has_extras() || self.is_hit
-    }
+    /// Whether the contact needs more than rows along the normal and the tangent: if its surface has extras or it is a
+    /// hit.
+    pub(crate) extras: bool,
 }
 
 /// Properties of a body that follow from all of its contacts: flags that each contact sets, and in the bits above them
@@ -155,11 +151,13 @@ impl ContactSource<'_> {
             let size = if is_small { Size::Small } else { Size::Large };
             colouring.add(Node::new(u64::from(a) << 32 | u64::from(b), bodies, size));
             let flag = |is_set: bool, flag: u32| if is_set { flag } else { 0 };
-            let flags = flag(self.contacts[pair.contact as usize].count > 0, Prospect::WARM)
-                | flag(pair.is_impact, Prospect::IMPACT)
-                | flag(pair.surface.restitution.is_positive(), Prospect::BOUNCES);
-            features.elastic |= pair.surface.restitution > ELASTIC;
-            features.hits |= pair.is_hit;
+            let mut flags = flag(self.contacts[pair.contact as usize].count > 0, Prospect::WARM)
+                | flag(pair.is_impact, Prospect::IMPACT);
+            if pair.extras {
+                flags |= flag(pair.surface.restitution.is_positive(), Prospect::BOUNCES);
+                features.elastic |= pair.surface.restitution > ELASTIC;
+                features.hits |= pair.is_hit;
+            }
             let walls = u32::from(bodies.contains(&GROUND));
             bodies.into_iter().for_each(|body| prospects[body as usize].add(flags, walls));
         }
@@ -216,7 +214,7 @@ impl ContactSource<'_> {
             features: [first.feature.0, second.feature.0],
             wedged: prospects[changed[0] as usize].is_wedged() || prospects[changed[1] as usize].is_wedged(),
             count: manifold.count(),
-            extras: pair.has_extras(),
+            extras: pair.extras,
             shares: Quad([n.x.to_bits(), n.y.to_bits(), fractions.a.to_bits(), fractions.b.to_bits()]),
             gyrations: Quad([inverse_a.0, inverse_b.0, inverse_a.1, inverse_b.1]),
             to_origin: Quad([to_a.x.to_bits(), to_a.y.to_bits(), to_b.x.to_bits(), to_b.y.to_bits()]),
@@ -320,6 +318,7 @@ mod tests {
             surface,
             is_impact: false,
             is_hit: false,
+            extras: false,
         };
         let source = ContactSource {
             pairs: &[pair],

@@ -82,7 +82,7 @@ impl<'a, I: Iterator<Item = Group<'a>>, const N: usize> Kernel<N> for Fill<'_, I
         let mut count = 0;
         for group in colours {
             let mut start = 0;
-            for indices in group.batches::<N>(|index| !source.pairs[index as usize].has_extras()) {
+            for indices in group.batches::<N>(|index| !source.pairs[index as usize].extras) {
                 for &index in group.indices.iter().skip(start + PAIRS_AHEAD * N).take(N) {
                     prefetch(&source.pairs[index as usize]);
                 }

@@ -38,7 +38,7 @@ impl Surface {
     }
 
     /// Whether the surface bounces, moves or resists rolling.
-    pub(super) fn has_extras(&self) -> bool {
+    pub(crate) fn has_extras(&self) -> bool {
         self.restitution.is_positive()
             || self.surface_speed != Speed::ZERO
             || self.rolling_resistance.is_positive()

@@ -213,6 +213,7 @@ impl NarrowPhase<'_> {
                 surface,
                 is_impact: closing.is_longer_than(margins.impact),
                 is_hit,
+                extras: surface.has_extras() || is_hit,
             });
         }
         touched
