@@ -103,7 +103,7 @@ pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, DecodeError> {
     let unused = DECODE_BYTES_MAX.checked_sub(bytes.len());
     let unused = unused.ok_or(DecodeError::TooLong { count: bytes.len() as u64 })?;
     // bincode allocates the announced length of a string before it checks that the bytes are present, unless the length
-    // exceeds a limit. That limit is a constant, so the part of it that the bytes given do not need is used up first.
+    // exceeds a limit. The limit is a compile-time constant, so the part that these bytes do not need is claimed first.
     let layout = LAYOUT.with_limit::<{ DECODE_BYTES_MAX + SLACK }>();
     let mut decoder = DecoderImpl::new(Rest(bytes), layout, ());
     let decoded = decoder.claim_bytes_read(unused).and_then(|()| Compat::<T>::decode(&mut decoder));

@@ -82,7 +82,7 @@ fn every_backend_ends_in_the_same_hashes() {
     all_end_in_their_hashes(&backends, World::set_backend);
 }
 
-/// The test of the backends covers one thread.
+/// With 2, 4 and 8 threads; the test of the backends runs on one thread.
 #[test]
 #[cfg(feature = "parallel")]
 fn any_number_of_threads_ends_in_the_same_hashes() {

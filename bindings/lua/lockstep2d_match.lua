@@ -16,7 +16,7 @@ Driver.__index = Driver
 
 local ADDRESS_MAX, PACKET_MAX = 32, 2048
 
---- Opens a match, or joins one if there is a `contact`: the address of somebody who takes part, as a string. `settings`
+--- Opens a match, or joins one if there is a `contact`: the address of a participant, as a string. `settings`
 --- are fields of `ls2d_match_config`. All who play together need the same `offer`, a string with rules and version.
 function Driver.new(options)
     local config = ls.make("match_config", options.seats)

@@ -28,7 +28,7 @@ export interface InitOptions {
 export function init(options?: InitOptions): Promise<void>;
 /** The module that was loaded. */
 export function loaded(): "simd" | "plain" | "given" | undefined;
-/** Version of the engine's arithmetic: programs with different ones do not compute the same states. */
+/** Version of the engine's arithmetic: programs with different versions do not compute the same states. */
 export function semantics(): number;
 /** Number of objects that are not disposed. */
 export function objectCount(): number;
@@ -560,9 +560,9 @@ export interface MatchOptions {
     checkInterval?: number;
     /** Ticks that may be played beyond the last final one, at least 16. */
     history?: number;
-    /** Final ticks whose inputs are kept for peers that come back. Longer absences need a state. */
+    /** Final ticks whose inputs are kept for peers that come back. After a longer absence a peer downloads a state. */
     logTicks?: number;
-    /** Ticks from the decision that a peer joins to its first own input. */
+    /** Ticks from the cut, at which a change of the players takes effect, to the first own input of a peer that joins. */
     seatLead?: number;
     /** A peer that lags by at most this many ticks may have a seat. */
     seatWithin?: number;

@@ -26,9 +26,9 @@ use crate::session::{Event, PeerId};
 pub enum PeerEvent {
     /// An event of the session.
     Session(Event),
-    /// The state to begin with has arrived; the game goes on from it.
+    /// The initial state has arrived; the game goes on from it.
     Joined {
-        /// Number of ticks that lead to it.
+        /// Number of ticks that lead to this state.
         tick: u64,
     },
     /// Another peer has another state. Write [`Peer::report`](super::Peer::report) to a file.
@@ -70,7 +70,7 @@ pub struct PeerDesync {
     pub theirs: StateHash,
 }
 
-/// What remains of a peer that has finished.
+/// The result of a peer that has finished.
 ///
 /// ```
 /// # use core::time::Duration;

@@ -7,7 +7,7 @@ use serde::{Serialize, de::DeserializeOwned};
 use super::error::PeerError;
 use crate::codec;
 
-/// How inputs are carried.
+/// Encoding of inputs in the bytes of a session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum InputSlot {
     /// Every input has this many bytes.

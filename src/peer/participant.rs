@@ -59,7 +59,7 @@ impl<G: Game, T: fmt::Debug> fmt::Debug for Peer<G, T> {
     }
 }
 
-/// How a peer comes into a match.
+/// Entry of a peer into a match.
 enum Entry {
     Host,
     Join(Role, Address),
@@ -287,7 +287,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         self.endpoint.session_mut()
     }
 
-    /// Where the session stands; nothing before the state to begin with has arrived.
+    /// Status of the session; `None` before the initial state has arrived.
     #[must_use]
     pub fn status(&self) -> Option<Status> {
         self.endpoint.session().map(Session::status)
@@ -299,7 +299,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         self.endpoint.session().map_or_else(Vec::new, |session| self.seats_of(session.id()))
     }
 
-    /// Received and all bytes of the state to begin with, while it is downloaded.
+    /// Received and all bytes of the initial state, while it is downloaded.
     #[must_use]
     pub fn download(&self) -> Option<(u64, u64)> {
         self.endpoint.download()
@@ -324,7 +324,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
     }
 
     /// Leaves the match; the others go on at once. Call [`update`](Peer::update) until the status is
-    /// [`Status::Closed`]; before the state to begin with has arrived, there is nothing to wait for.
+    /// [`Status::Closed`]; before the initial state has arrived, there is nothing to wait for.
     pub fn leave(&mut self) {
         if let Some(session) = self.endpoint.session_mut() {
             session.leave();
@@ -366,7 +366,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
     /// joined after the first tick has no replay.
     #[must_use]
     pub fn take_replay(&mut self) -> Vec<u8> {
-        // Until the state to begin with is here, nobody knows whether it is that of tick 0.
+        // Until the initial state has arrived, it is unknown whether it is that of tick 0.
         if self.endpoint.session().is_some() { self.simulation.take_replay() } else { Vec::new() }
     }
 

@@ -3,20 +3,20 @@
 //! Additive increase, multiplicative decrease (Chiu and Jain 1989), judged once a round trip. A period was too fast if
 //! more than an eighth of its chunks had been lost, or if the round trip has risen by more than 60 ms above the
 //! smallest one: then a queue fills up, through which the inputs of the match have to pass as well. Loss below an
-//! eighth is taken for that of the line. Until the first such period the rate doubles in two of them.
+//! eighth is attributed to the line. Until the first period that was too fast, the rate grows by half in each period.
 
 /// Rates in bytes a second: at first, the smallest, and the largest over all receivers together.
 const RATE_START: u64 = 1_000_000;
 const RATE_MIN: u64 = 128_000;
 pub(super) const RATE_MAX: u64 = 16_000_000;
-/// Increase for each period.
+/// Increase of the rate in a period, in bytes a second.
 const RATE_STEP: u64 = 100_000;
-/// Rise of the round trip that is taken for a queue, in microseconds.
+/// Rise of the round trip from which on a queue is assumed, in microseconds.
 const QUEUE: u64 = 60_000;
 /// Bounds of a period in microseconds.
 const PERIOD_MIN: u64 = 40_000;
 const PERIOD_MAX: u64 = 500_000;
-/// Time whose bytes may be sent at once, in microseconds: a game may update once a frame.
+/// Largest burst, as the time in microseconds in which the rate sends it: a game may update only once a frame.
 pub(super) const BURST: u64 = 25_000;
 /// Loss is judged by at least this many chunks.
 const CHUNKS_MIN: u32 = 8;

@@ -31,7 +31,7 @@ const ROSTER_INTERVAL: u64 = 500_000;
 /// Packets that wait at most.
 const PACKETS_MAX: usize = 8192;
 
-/// What happened, besides the events of the session.
+/// An event of an endpoint, besides those of its session.
 ///
 /// ```
 /// use lockstep2d::session::{JoinEvent, RefusalReason};
@@ -56,14 +56,14 @@ pub enum JoinEvent {
         /// The offer of the contact.
         offer: Vec<u8>,
     },
-    /// The state to begin with is here: the game has to restore it, after which it follows the requests of the session.
+    /// The initial state has arrived: the game has to restore it, and then follows the requests of the session.
     State {
         /// Number of ticks that lead to it.
         tick: Tick,
         /// The bytes that [`Endpoint::offer_state`] was given on the other side.
         bytes: Vec<u8>,
     },
-    /// What was downloaded is not a state. The endpoint asks again.
+    /// The downloaded bytes are not a state. The endpoint asks again.
     BadState,
 }
 
@@ -158,7 +158,8 @@ pub struct Identity {
     pub id: PeerId,
     /// The identity that outlives processes.
     pub key: Key,
-    /// What has to be equal for all peers of a match: versions, rules, setup. At most [`OFFER_BYTES_MAX`] bytes count.
+    /// Handshake data that has to be equal for all peers of a match: versions, rules, setup. Only the first
+    /// [`OFFER_BYTES_MAX`] bytes count.
     pub offer: Vec<u8>,
     /// 16 random bytes that no other peer knows, for cookies.
     pub secret: [u64; 2],
@@ -219,7 +220,7 @@ impl Endpoint {
         Ok(endpoint)
     }
 
-    /// Asks another peer, or the same one again.
+    /// Sends the request to join to another peer, or again to the same one.
     pub fn ask(&mut self, contact: Address) {
         self.contact = Some(contact);
         let nonce = token(self.secret, self.me, &contact).wrapping_add(self.packets_seed());

@@ -1,4 +1,4 @@
-//! What an endpoint does with packets.
+//! Processing of the packets that arrive at an endpoint.
 
 use alloc::boxed::Box;
 

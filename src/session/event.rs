@@ -56,7 +56,7 @@ impl Status {
     }
 }
 
-/// What happened since the last look.
+/// An event of a session, returned by [`Session::next_event`](super::Session::next_event).
 ///
 /// ```
 /// use lockstep2d::session::{Event, PeerId};

@@ -1,4 +1,4 @@
-//! Who takes part: [`PeerId`] and [`Key`].
+//! Identities of participants: [`PeerId`] and [`Key`].
 
 use core::fmt;
 

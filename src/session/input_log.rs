@@ -22,7 +22,7 @@ pub(super) enum Added {
     Nothing,
     /// The inputs from this tick on are new.
     From(Tick),
-    /// The owner has issued another input for this tick before.
+    /// The owner has issued a different input for this tick before.
     Conflict(Tick),
 }
 

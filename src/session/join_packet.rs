@@ -49,7 +49,7 @@ pub(super) enum JoinPacket {
         reason: RefusalReason,
         offer: Vec<u8>,
     },
-    /// The state to begin with.
+    /// The initial state.
     Welcome {
         nonce: u64,
         tick: Tick,

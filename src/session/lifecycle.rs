@@ -84,7 +84,7 @@ impl Session {
         own.map_or(self.view.stop(), |own| own.min(self.view.stop()))
     }
 
-    /// What this peer wants of the others.
+    /// Updates the requests of this peer to the others.
     pub(super) fn update_wants(&mut self) {
         let lead = self.peers.voters().filter_map(|(_, remote)| remote.row.as_ref()).map(|row| row.ack).max();
         let within = Tick::from(self.config.seat_within);

@@ -53,7 +53,7 @@ pub(super) fn stamp(now: u64) -> u16 {
 }
 
 impl Link {
-    /// What the next packet to the peer echoes.
+    /// The timestamp that the next packet to the peer echoes.
     pub(super) fn echo(&self, now: u64) -> Option<u16> {
         let (sent, arrived) = self.last_sent?;
         let held = now.checked_sub(arrived).filter(|&held| held < ROUND_TRIP_MAX)?;

@@ -10,7 +10,7 @@ use super::view::{View, bit};
 /// Largest number of peers that are known at a time. Beyond it, the peer that has been silent longest is forgotten.
 pub(super) const PEERS_MAX: usize = 192;
 
-/// What is known of a peer.
+/// The data that a session keeps about another peer.
 #[derive(Clone, Debug)]
 pub(super) struct Remote {
     pub(super) id: PeerId,

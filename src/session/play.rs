@@ -13,7 +13,7 @@ use super::view::{bit, bits, has_bit};
 /// Number of this peer's hashes that are kept for comparison.
 const HASHES_MAX: usize = 16;
 
-/// What the game was asked to play.
+/// Ticks that the game was asked to play, and the inputs and states kept for rollback.
 #[derive(Clone, Debug)]
 pub(super) struct Play {
     pub(super) played: Tick,

@@ -12,7 +12,7 @@ use super::id::{NEVER, Tick};
 use super::state::Session;
 use super::view::{View, bit};
 
-/// How far the ticks have come.
+/// Numbers of ticks that are complete, acknowledged and final.
 #[derive(Clone, Debug)]
 pub(super) struct Progress {
     pub(super) complete: Tick,

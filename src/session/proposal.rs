@@ -16,14 +16,15 @@ use super::view::{Change, JOINS_MAX, Join, SEATS_MAX, SPANS_MAX, bit, bits, has_
 pub(super) struct Proposal {
     pub(super) ballot: Ballot,
     started_at: u64,
-    /// When a quorum had promised.
+    /// Time at which a quorum had promised.
     quorum_at: Option<u64>,
     /// The change that is proposed, once it is chosen.
     change: Option<Arc<Change>>,
 }
 
-/// Waiting times grow with the rounds that led to no decision: at first in proportion, up to this factor; beyond it
-/// only if they are shorter than `BALLOT_MAX` microseconds, and faster.
+/// The time of a ballot grows with the number of rounds that led to no decision: in proportion up to this number of
+/// rounds, then with its square. It is limited to `BALLOT_MAX` microseconds, or to this many times the initial time if
+/// that is longer.
 const ROUNDS_MAX: u64 = 4;
 const BALLOT_MAX: u64 = 6_000_000;
 

@@ -1,4 +1,4 @@
-//! What arrives: packets, and the time.
+//! Handles arriving packets and the passing of time.
 
 use super::config::Fault;
 use super::event::Event;

@@ -6,7 +6,7 @@ use core::fmt;
 use super::id::Tick;
 use super::view::has_bit;
 
-/// What is known of the input of a seat.
+/// Status of the input of a seat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InputStatus {
     /// Issued by the player.
@@ -68,7 +68,7 @@ impl TickInputs {
     }
 }
 
-/// What a session asks the game to do.
+/// A request of a session to the game.
 ///
 /// ```
 /// use lockstep2d::session::{Config, InputStatus, Request, Session, TickInputs, Tick};

@@ -14,7 +14,7 @@ pub(super) struct Ballot {
     pub(super) proposer: PeerId,
 }
 
-/// What a peer wants of the others.
+/// Requests of a peer to the others.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Wants {
     /// Number of seats, for a peer that has caught up and wants to play.

@@ -11,7 +11,7 @@ use super::view::{SEATS_MAX, SPANS_MAX, Span, View, Voter};
 /// Largest number of addresses in a state.
 const ADDRESSES_MAX: usize = 256;
 
-/// A state to begin with, as it is sent in chunks.
+/// The initial state of a joining peer, as it is sent in chunks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct StartState {
     pub(super) view: View,

@@ -19,7 +19,7 @@ use super::row::{REMOVALS_MAX, Removal, Wants};
 use super::transmit::Outbox;
 use super::view::{Change, View};
 
-/// What a peer is in a match.
+/// Role of a peer in a match.
 ///
 /// ```
 /// use lockstep2d::session::{Address, Config, Endpoint, Role};
@@ -379,7 +379,7 @@ impl Session {
         self.progress.live.iter().find_map(missing).map(|span| span.owner)
     }
 
-    /// What the session has done so far.
+    /// Statistics of the session so far.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
         Statistics {

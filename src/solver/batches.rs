@@ -77,9 +77,9 @@ enum Overflow<'a, K: BatchKind> {
 #[derive(Clone, Debug)]
 pub(super) struct Batches<K: BatchKind, const N: usize> {
     pub(super) batches: Vec<K::Batch<N>>,
-    /// One for each batch.
+    /// One record for each batch.
     pub(super) records: Vec<K::Record<N>>,
-    /// One for each batch that has an extra, in the order of the batches.
+    /// One extra for each batch that has one, in the order of the batches.
     pub(super) extras: Vec<K::Extra<N>>,
     /// The end of each colour. The overflow counts as one colour.
     colour_ends: Vec<ColourEnd>,

@@ -25,10 +25,9 @@
 //! `impulseScale L` instead has the stiffness `omega^2 m K1^-1`, which depends on the directions of the arms: it has no
 //! potential, and feeds energy into bodies that turn.
 //!
-//! `L` is carried over from pose to pose: the
-//! new `G` removes the part of `L` that no longer acts along the arm. Carrying over the impulse `p = G L` instead would
-//! multiply that part by up to `e^2` (1100 m/s on a rod 40 radii of gyration long). Two scalar rows instead of the
-//! block would gain energy in a swinging chain.
+//! `L` is carried over from pose to pose: the new `G` removes the part of `L` that no longer acts along the arm.
+//! Carrying over the impulse `p = G L` instead would multiply that part by up to `e^2` (1100 m/s on a rod 40 radii of
+//! gyration long). Two scalar rows instead of the block would gain energy in a swinging chain.
 //!
 //! **The bias pass measures along the chord.** Displacements are straight while arms turn. This opens the joint by
 //! about half the square of the rotation. To keep it closed, the velocity is measured with the arm averaged over the

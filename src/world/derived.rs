@@ -43,8 +43,8 @@ pub(crate) fn mass_of<'a>(
     Ok(if settings.locks.rotation { mass.without_rotation() } else { mass })
 }
 
-/// The fat box of a shape that was added or moved by hand. Shapes of fixed bodies get no margin, because no tick moves
-/// them.
+/// The fat box of a shape that was added or moved by an edit. Shapes of fixed bodies get no margin, because no tick
+/// moves them.
 pub(crate) fn fat_box(shape: &ShapeDef, body: &Body, config: &Config) -> Aabb {
     let bounds = PosedShape::new(shape, body, body.rotation()).bounds;
     match body.kind() {

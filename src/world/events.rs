@@ -205,7 +205,7 @@ pub struct JointEvent {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Events {
-    /// Bodies that moved within the tick or fell asleep, in slot order. Bodies that were moved by hand are not listed.
+    /// Bodies that moved within the tick or fell asleep, in slot order. Bodies that only an edit has moved are not listed.
     pub moved: Vec<MoveEvent>,
     /// Pairs that came within [`super::Config::touching_distance`] or pushed each other in the tick. Sorted by shape A,
     /// then by shape B, like all lists of pairs.

@@ -10,7 +10,7 @@
 //! | `islands` | waking and putting to sleep, for the step and for edits |
 //! | `cache` | caches, buffers and results of the last tick |
 //!
-//! `tests/layers.rs` has the direction in which these folders may use each other.
+//! `tests/layers.rs` lists which of these folders each folder may use.
 
 mod cache;
 mod config;

@@ -85,7 +85,7 @@ fn round_shapes_float_as_deep_as_their_density_says() {
         run(&mut world, 900);
         close(at(&world, body).y, fx!(0), fx!(0.002));
     }
-    // A disc up to half its radius above the water: r^2 (pi - acos(1/2) + sqrt(3) / 4) of pi r^2.
+    // The share under water of a disc that emerges by half its radius: r^2 (pi - acos(1/2) + sqrt(3) / 4) of pi r^2.
     let share = fx_div(PI - PI / 3 + fx!(0.433012701892), PI).expect("valid");
     let mut world = world(fx!(-10));
     pool(&mut world, fx!(0), fx!(20), water);
@@ -360,7 +360,7 @@ fn a_moving_magnet_wakes_what_it_passes() {
             woken_at = Some(at(&world, magnet).x);
         }
     }
-    // The circle reaches the box when it is within 3 m of its side.
+    // The circular area, 3 m in radius, reaches the side of the box at x = -0.3 when the magnet is at x = -3.3.
     close(woken_at.expect("it passes"), fx!(-3.3), fx!(0.1));
 }
 

@@ -14,7 +14,7 @@ use lockstep2d::solver::{
 };
 use lockstep2d::world::{Config, World};
 
-/// What hangs on what.
+/// Topology of the joints of an assembly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shape {
     /// A hub with 3 to 8 limbs.
@@ -49,7 +49,7 @@ pub(crate) enum Mix {
     LimitedSpring,
 }
 
-/// How the assembly moves at the start.
+/// Motion of the assembly at the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Start {
     /// One body is hit.
@@ -326,7 +326,7 @@ impl Scaled for Vec2<Fx> {
     }
 }
 
-/// How an assembly fared.
+/// Measured result of an assembly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outcome {
     /// Largest energy above that of the start, as a share of it.

@@ -154,7 +154,7 @@ fn balls_that_see_kinematic_bodies_do_not_pass_a_blade() {
     assert_eq!(seeing, 0, "{blind} pass without");
 }
 
-/// What rides on a fast platform or a turntable is not held back: it is where it is without the sweep, to the last bit.
+/// A body that rides on a fast platform or a turntable is not held back: the sweep changes no bit of its state.
 #[test]
 fn what_a_kinematic_body_carries_is_not_held_back() {
     let mut hashes = Vec::new();

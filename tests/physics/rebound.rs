@@ -64,7 +64,7 @@ fn a_rebound_returns_the_square_of_the_restitution() {
     }
 }
 
-/// How much higher the vertex of a rebound may be than its height at the nearest tick, in metres: `g dt^2 / 8`.
+/// Largest height in metres of the top of a rebound above the position at the nearest tick: `g dt^2 / 8`.
 const BETWEEN_TICKS: Fx = fx!(0.00035);
 
 #[test]

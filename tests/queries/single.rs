@@ -10,7 +10,7 @@ use lockstep2d::math::{
 };
 use lockstep2d::world::{Displacement, Probe, TimeOfImpact, World};
 
-/// A loose shape: corners in the world, and a radius.
+/// Outline of a shape: corners in world coordinates, and a radius.
 struct Outline {
     corners: Vec<Vec2<Fx>>,
     radius: Fx,

@@ -1,4 +1,4 @@
-//! Box2D's group "Events". Its sample Joint is with Breakable in `joints.rs`.
+//! Box2D's group "Events". Its sample Joint is tested together with Breakable in `joints.rs`.
 
 use lockstep2d::body::{BodyDef, Chain, EventSwitches, Filter, MassSource, ShapeDef};
 use lockstep2d::fx;

@@ -25,7 +25,7 @@ pub(crate) struct Game {
     saved: Vec<(Tick, u64)>,
     /// Number of ticks that were simulated, again or for the first time.
     pub(crate) simulated: u64,
-    /// The tick in which this game makes a mistake.
+    /// The tick in which this game computes a wrong state on purpose.
     pub(crate) mistake: Option<Tick>,
 }
 

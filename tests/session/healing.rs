@@ -1,4 +1,4 @@
-//! What must hold after the links of a random match have healed: all that are alive play, and finish.
+//! Liveness after the links of a random match have healed: all peers that are alive play, and finish.
 
 use super::sim::{MS, S, Sim, id};
 use super::storm::{Class, Figures, HEAL, Match, SEATED};

@@ -1,4 +1,4 @@
-//! What must always hold in a match: one history, equal states, and nobody dropped whom a majority can hear.
+//! Invariants of a match: one history, equal states, and nobody dropped whom a majority can hear.
 
 use lockstep2d::session::{Event, PeerId, Status, View};
 
@@ -136,7 +136,7 @@ impl Sim {
         self.peers[index].seen_final = fin;
     }
 
-    /// What the game has played and is confirmed is the one history; memory is bounded.
+    /// The confirmed ticks that the game has played are those of the one history; memory is bounded.
     fn check_played(&mut self, index: usize) {
         let peer = &self.peers[index];
         let confirmed = peer.session.confirmed();

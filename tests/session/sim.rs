@@ -81,7 +81,7 @@ pub(crate) struct Peer {
     input: u64,
 }
 
-/// What happens next.
+/// Kind of a simulated event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     Look(usize),

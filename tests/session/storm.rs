@@ -34,7 +34,7 @@ const CLASSES: [Class; 10] = [
     Class::StormWithEnd,
 ];
 
-/// What goes wrong, or what somebody does.
+/// A disturbance of a match: a fault of the network or of a process, or an action of a player.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Trouble {
     Halves,

@@ -27,7 +27,7 @@ pub(super) type Script<'a> = Box<dyn Fn(u64) -> Vec<Command> + 'a>;
 /// Most times that a pair of short commands fits into a block of a file.
 const COMMANDS_MAX: usize = 300_000;
 
-/// How often the size of a case is doubled until a tick takes long enough to be judged.
+/// Maximum number of times that the size of a case is doubled until a tick takes long enough to be judged.
 const DOUBLED_MAX: u32 = 7;
 
 /// The work units and the time of a part of a game.
@@ -126,7 +126,7 @@ pub(super) fn too_expensive_commands(name: &str, setup: &SandboxSetup, once: &[C
     let least = 2 * tick_of(1).0[1].time + JUDGED;
     for repeats in [10, 100, 1000, 10_000, 100_000, COMMANDS_MAX] {
         let (parts, file) = tick_of(repeats);
-        // Of cheap commands, no file has enough to take most of a tick: the tick with most of them is judged.
+        // A file cannot have enough cheap commands to take most of a tick: the tick with the most commands is judged.
         if parts[1].time >= least || (repeats == COMMANDS_MAX && parts[1].time >= JUDGED) {
             let name = format!("{name}, {repeats} times");
             return judge(&name, parts).or_else(|| stopped_late(&name, &file));

@@ -1,4 +1,4 @@
-//! What is far away changes no bit: a world by itself, and the same world beside another one a kilometre away.
+//! Distant bodies change no bit: a world by itself, and the same world beside another one a kilometre away.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;

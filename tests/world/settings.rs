@@ -44,7 +44,8 @@ fn a_stack_stays_at_rest_when_the_length_of_sub_steps_changes() {
             run(&mut world, 1);
             let speeds = boxes.iter().map(|&id| world.body(id).expect("there").velocity().y.abs());
             fastest = fastest.max(speeds.max().expect("eight"));
-            // At most 10.4 mm/s; 21 to 81 mm/s with impulses that are not converted, except from 4 to 16 sub-steps.
+            // Measured: at most 10.4 mm/s. Without the conversion of impulses: 21 to 81 mm/s, except for the change
+            // from 4 to 16 sub-steps.
             assert!(fastest < fx!(0.015), "from {from} to {to} at {tick_rate}: {fastest} m/s");
             for (now, then) in heights(&world).iter().zip(&before) {
                 // The contact stiffness of 30 Hz is the same in all, except for the limit of an eighth of the rate.

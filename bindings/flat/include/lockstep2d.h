@@ -156,7 +156,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_BODY_LOCK_ROTATION 16
 /* Flag of a body: may fall asleep. */
 #define LS2D_BODY_MAY_SLEEP 32
-/* Flag of a body: its mass is given and not that of its shapes. */
+/* Flag of a body: its mass is given, not computed from its shapes. */
 #define LS2D_BODY_GIVEN_MASS 64
 /* `ls2d_body_def.continuous`: swept against nothing. */
 #define LS2D_SWEEP_OFF 0
@@ -192,7 +192,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MOTOR 5
 /* Kind of a joint: the bodies do not collide with each other. */
 #define LS2D_FILTER 6
-/* Kind of a joint: two toothed wheels. */
+/* Kind of a joint: the wheels about the anchors turn in a fixed ratio, as gears. */
 #define LS2D_GEAR 7
 /* Kind of a joint: the wheel about A's anchor rolls along the x axis of B's frame. */
 #define LS2D_RACK 8
@@ -309,7 +309,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MATCH_FINISHED 9
 /* Status: nothing more is sent. */
 #define LS2D_MATCH_CLOSED 10
-/* Status: asks the contact, or downloads the state to begin with. */
+/* Status: asks the contact, or downloads the initial state. */
 #define LS2D_MATCH_CONNECTING 11
 /* `ls2d_query_filter.flags`: the query sees sensors. */
 #define LS2D_QUERY_SENSORS 1
@@ -682,7 +682,7 @@ typedef struct ls2d_joint_def {
     ls2d_vec2 wheel_a;
     /* Wheel of a pulley on B's side, in the world. */
     ls2d_vec2 wheel_b;
-    /* Number of times that B's side of a pulley counts. */
+    /* Factor by which the length on B's side of a pulley counts. */
     ls2d_fx ratio;
     /* A number for the game, part of the state. */
     uint64_t user_data;
@@ -936,9 +936,9 @@ typedef struct ls2d_match_config {
     uint32_t history;
     /* Number of final ticks whose inputs are kept for peers that return. */
     uint32_t log_ticks;
-    /* First tick of those who join, counted from the cut. */
+    /* First tick of a joining peer, counted from the cut (the tick at which the change takes effect). */
     uint32_t seat_lead;
-    /* Somebody who lags by at most this many ticks may have a seat. */
+    /* A peer that lags by at most this many ticks may have a seat. */
     uint32_t seat_within;
     /* Number of this peer: random, new for each process. */
     uint32_t peer;
@@ -952,7 +952,7 @@ typedef struct ls2d_match_config {
     uint64_t secret[2];
 } ls2d_match_config;
 
-/* What a match asks the game to do. */
+/* A request of a match to the game. */
 typedef struct ls2d_request {
     /* `LS2D_REQUEST_SAVE` and so on. */
     uint32_t kind;
@@ -964,7 +964,7 @@ typedef struct ls2d_request {
     uint64_t guessed;
 } ls2d_request;
 
-/* What happened in a match. */
+/* An event of a match. */
 typedef struct ls2d_match_event {
     /* `LS2D_EVENT_STATUS` and so on. */
     uint32_t kind;
@@ -1436,7 +1436,7 @@ ls2d_status ls2d_match_host(const ls2d_match_config *config, const uint8_t *offe
 /* Asks a participant of a match, whose address is known, to join or, without own seats, to watch. */
 ls2d_status ls2d_match_join(const ls2d_match_config *config, const uint8_t *offer, size_t offer_size, const uint8_t *contact, size_t contact_size, uint32_t *handle);
 
-/* Asks another participant to join, or the same one again. */
+/* Sends the request to join to another participant, or again to the same one. */
 ls2d_status ls2d_match_ask(uint32_t handle, const uint8_t *contact, size_t contact_size);
 
 /* Takes a packet that arrived from an address. `now` is a time in microseconds that never decreases. */
@@ -1467,7 +1467,7 @@ ls2d_status ls2d_match_next_packet(uint32_t handle, uint8_t *to, size_t to_capac
 /* The next event. `LS2D_NONE` if there is none. */
 ls2d_status ls2d_match_next_event(uint32_t handle, ls2d_match_event *event);
 
-/* Writes 1 if somebody waits for a state to begin with, otherwise 0. */
+/* Writes 1 if a joining peer waits for its initial state, otherwise 0. */
 ls2d_status ls2d_match_wants_state(uint32_t handle, uint32_t *wants);
 
 /* Offers the state after a number of final ticks to those who join. It is kept until it has been sent. */
@@ -1502,7 +1502,7 @@ ls2d_status ls2d_match_pause(uint32_t handle, uint32_t paused);
 /* Votes for going on without a peer that is missing. */
 ls2d_status ls2d_match_go_on_without(uint32_t handle, uint32_t peer);
 
-/* Votes for removing somebody for good. */
+/* Votes for removing a peer permanently. */
 ls2d_status ls2d_match_kick(uint32_t handle, uint64_t key);
 
 /* Sets how many ticks may be played with guessed inputs; 0 is lockstep. */

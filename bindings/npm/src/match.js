@@ -28,7 +28,7 @@ function identity({ peer, key, secret }) {
 export class Match extends Handle {
     #inputs;
 
-    /** Opens a match, or joins one if there is a `contact`: the address of somebody who takes part, as bytes. */
+    /** Opens a match, or joins one if there is a `contact`: the address of a participant, as bytes. */
     constructor({ contact, offer = new Uint8Array(), seats, peer, key, secret, ...config }) {
         const data = new Uint8Array(offer.length + (contact?.length ?? 0));
         data.set(offer);

@@ -13,19 +13,20 @@ use crate::inputs::Inputs;
 use crate::lockstep::Lockstep;
 use crate::plugin::{LockstepSettings, LockstepSystems};
 
-/// Drags the bodies of a [`Sandbox`] with a [`DragHand`]. The pull is a command, that is an input: it is recorded.
+/// Drags the bodies of a [`Sandbox`] with a [`DragHand`]. The pull is a command in the input of a player, so that it is
+/// recorded.
 ///
-/// It needs no window: a system of the game tells the hand where the pointer is, and when it presses. With the feature
-/// `picking`, `PointerDragPlugin` does so for mouse and touch.
+/// The plugin needs no window: a system of the game tells the hand where the pointer is, and when it is pressed and
+/// released. With the feature `picking`, `PointerDragPlugin` does so for mouse and touch.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DragPlugin;
 
-/// The hand. Positions are those of the views, in units of `Transform`, as from `Camera::viewport_to_world_2d`.
+/// The pointer that drags bodies. Positions are in units of `Transform`, as from `Camera::viewport_to_world_2d`.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default)]
 #[reflect(Resource)]
 pub struct DragHand {
     at: Option<FloatVec2>,
-    /// The body to hold. Without one it is the first at the position.
+    /// The body to hold; `None` for the first dynamic body at the position.
     #[reflect(ignore)]
     target: Option<BodyId>,
     #[reflect(ignore)]
@@ -40,22 +41,22 @@ struct Held {
 }
 
 impl DragHand {
-    /// The pointer is down at this position. What it meets first is held until [`DragHand::release`].
+    /// Presses the pointer at a position. The first dynamic body there is held until [`DragHand::release`].
     pub fn hold(&mut self, at: FloatVec2) {
         self.at = Some(at);
     }
 
-    /// The pointer is down at this position, on this body, which is held at this point until [`DragHand::release`].
+    /// Presses the pointer at a position on a body. The body is held at this point until [`DragHand::release`].
     pub fn hold_body(&mut self, body: BodyId, at: FloatVec2) {
         *self = DragHand { at: Some(at), target: Some(body), held: None };
     }
 
-    /// The pointer has moved. Nothing happens if it is up.
+    /// Moves the pressed pointer. Has no effect if the pointer is not pressed.
     pub fn move_to(&mut self, at: FloatVec2) {
         self.at = self.at.and(Some(at));
     }
 
-    /// The pointer is up.
+    /// Releases the pointer.
     pub fn release(&mut self) {
         *self = DragHand::default();
     }
@@ -76,7 +77,7 @@ impl Plugin for DragPlugin {
     }
 }
 
-/// A position of the views, in metres. Outside of the world's coordinates it is at their edge.
+/// Converts a position in units of `Transform` to metres, clamped to the range of world coordinates.
 pub fn to_metres(at: FloatVec2, settings: &LockstepSettings) -> Vec2<Fx> {
     let metres = |value: f32| Fx::saturating_from_num(if value.is_finite() { value } else { 0.0 });
     let at = at / settings.pixels_per_metre;
@@ -98,8 +99,8 @@ pub(crate) fn pull(
         };
     }
     let Some(command) = hand.held.and_then(|held| pull_command(world, held, at)) else { return };
-    // A frame without a tick leaves its force in the list: it is replaced. In a frame with two ticks only the first one
-    // applies the force.
+    // After a frame without a tick, its force is still in the list, and is replaced. In a frame with two ticks only the
+    // first tick applies the force.
     let once = inputs.once(0);
     once.retain(|other| !is_same_pull(other, &command));
     once.push(command);

@@ -1,9 +1,10 @@
 //! Events of the simulation as Bevy messages, and for observers.
 //!
-//! With rollback a tick may be played several times. [`ConfirmedEvent`]s are those of ticks that no rollback changes
-//! any more: every peer has the same ones, in the same order, each once. They come as late as the slowest input.
-//! [`PredictedEvent`]s come with the first time that a tick shows them, for sounds and particles; a
-//! [`RetractedEvent`] follows if they never happened. In a local game and in a replay both come at once.
+//! With rollback a tick may be played several times. A [`ConfirmedEvent`] belongs to a tick that no rollback changes
+//! any more, and is sent when the tick becomes final: every peer receives the same confirmed events, in the same order,
+//! each once. A [`PredictedEvent`] is sent when the event occurs in a played tick for the first time, for sounds and
+//! particles; a [`RetractedEvent`] follows if a rollback removes the event. In a local game and in a replay, the
+//! predicted and the confirmed event are sent in the same frame.
 
 use bevy::prelude::{Entity, EntityEvent, Message};
 use lockstep2d::body::{BodyId, ShapeId};
@@ -45,7 +46,8 @@ impl WorldEvent {
         }
     }
 
-    /// Whether both are the same kind of event between the same things, whatever the speed, place and fraction.
+    /// Whether both events are of the same kind and of the same shapes, joint or body. Speed, place and fraction may
+    /// differ.
     fn is_alike(&self, other: &Self) -> bool {
         match (self, other) {
             (WorldEvent::ContactBegin(a), WorldEvent::ContactBegin(b))
@@ -115,8 +117,8 @@ pub struct ConfirmedEvent {
     pub tick: u64,
     /// What happened.
     pub event: WorldEvent,
-    /// Views of the bodies: of shapes A and B, of the sensor and the visitor, of the joint, or of the sleeper. `None`
-    /// for a body that is gone.
+    /// Views of the bodies: of shapes A and B, of the sensor and the visitor, of the joint, or of the body that fell
+    /// asleep. `None` for a body that no longer exists.
     pub views: [Option<Entity>; 2],
 }
 

@@ -15,7 +15,7 @@ use crate::game::LockstepGame;
 use crate::inputs::Inputs;
 use crate::observed::Observed;
 
-/// What plays the ticks of a [`Lockstep`].
+/// Kind of the driver that plays the ticks of a [`Lockstep`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DriverKind {
     /// [`Lockstep::local`].
@@ -144,7 +144,7 @@ impl<G: LockstepGame> Lockstep<G> {
         self.driver.confirmed()
     }
 
-    /// What plays the game.
+    /// Kind of the driver of this game.
     #[must_use]
     pub const fn kind(&self) -> DriverKind {
         match &self.driver {

@@ -53,14 +53,14 @@ impl<G> LockstepPlugin<G> {
 pub struct LockstepSettings {
     /// Units of `Transform` per metre. A ball of half a metre has to be more than a pixel large.
     pub pixels_per_metre: f32,
-    /// Whether views are drawn between the last two ticks: smooth at every frame rate, and late by up to a tick.
-    /// Otherwise they are drawn where the bodies are.
+    /// Whether poses of views are interpolated between the last two ticks: motion is smooth at every frame rate, but
+    /// drawn up to a tick late. Otherwise views have the poses of the last tick.
     pub interpolate: bool,
-    /// When a rollback moves a body, its view follows within a few of these times, in each of which half of the way is
-    /// left. Zero: at once.
+    /// When a rollback moves a body, its view approaches the new pose gradually: the remaining displacement halves in
+    /// this time. Zero moves the view at once.
     pub smoothing_half_life: Duration,
-    /// Ways longer than this are jumps, in metres: after a rollback, and in a tick if the body's velocity does not
-    /// explain them.
+    /// Displacements longer than this, in metres, are shown as jumps, without smoothing or interpolation: after every
+    /// rollback, and in a tick if the body's velocity is too low for the displacement.
     pub smoothing_limit: f32,
 }
 
@@ -86,7 +86,7 @@ impl LockstepSettings {
     }
 }
 
-/// Where the game stands, renewed every frame: for run conditions, diagnostics and inspectors.
+/// Status of the game, updated every frame: for run conditions, diagnostics and inspectors.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Resource)]
 pub struct LockstepStatus {
@@ -96,7 +96,7 @@ pub struct LockstepStatus {
     pub confirmed: u64,
     /// Ticks played in this frame, including repeated ones.
     pub stepped: u32,
-    /// Ticks that a rollback of this frame went back.
+    /// Number of ticks by which a rollback in this frame went back.
     pub rolled_back: u32,
     /// Whether the game is paused.
     pub paused: bool,

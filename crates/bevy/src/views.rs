@@ -9,7 +9,7 @@ use crate::poses::Pose;
 use crate::smoothing::Offset;
 
 /// An entity that shows a body. The plugin spawns one for every body, with a [`Transform`], and despawns it with the
-/// body. Add what is to be seen to it, for example in an observer of `On<Add, BodyView>`, or as a child.
+/// body. Add components or children that draw the body, for example in an observer of `On<Add, BodyView>`.
 ///
 /// An entity that has the component already when its body appears becomes its view, instead of a new one.
 ///

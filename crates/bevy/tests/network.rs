@@ -125,8 +125,8 @@ fn check_events(players: &[Player], end: u64) {
     let retracted: usize = players.iter().map(|player| player.heard().retracted.len()).sum();
     assert!(retracted > 0, "no prediction was wrong");
     for player in &players[..2] {
-        // What was predicted and not retracted is what was confirmed, but for the last ticks, and for events that a
-        // rollback moves from one side of the end to the other.
+        // Predicted events that were not retracted are the confirmed ones, except in the last ticks, and for events
+        // that a rollback moves from one side of the end to the other.
         let heard = player.heard();
         let confirmed: usize = heard.confirmed.values().map(Vec::len).sum();
         let predicted = heard.predicted.len() - heard.retracted.len();

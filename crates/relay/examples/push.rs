@@ -32,7 +32,7 @@ struct Push {
     players: Vec<BodyId>,
 }
 
-/// What sets up the world: the ground, the players, the crates.
+/// Commands that set up the world: the ground, the players, the crates.
 fn setup() -> Result<Vec<Command>, WorldError> {
     let ground = ShapeDef::new(Polygon::rectangle(fx!(8), fx!(1))?).friction(fx!(0.8));
     let ball = ShapeDef::new(Geometry::circle(fx!(0.6))?).density(fx!(3));
@@ -48,7 +48,7 @@ fn setup() -> Result<Vec<Command>, WorldError> {
 }
 
 impl Push {
-    /// What the inputs of a tick do. Bits of an input: left, right, up.
+    /// Commands for the inputs of a tick. Bits of an input: left, right, up.
     fn commands(&self, inputs: &[u8]) -> Vec<Command> {
         let command = |(&body, &input): (&BodyId, &u8)| {
             let state = self.world.body(body)?;

@@ -170,7 +170,7 @@ fn a_member_that_does_not_read_loses_the_oldest_datagrams() {
             thread::sleep(STEP);
         }
     }
-    // What is sent last arrives, though b has not read before.
+    // The last datagram sent arrives, although b has not read any before.
     let mut numbers = Vec::new();
     until("the newest datagram", || {
         // A datagram that finds its sender's buffer full is lost, too.

@@ -8,7 +8,7 @@ use lockstep2d::report::Evidence;
 
 use crate::source::{OpenError, Snapshot, Source, SourceError};
 
-/// What an app can show.
+/// The scenes, replays and layers that an app can show.
 #[derive(Clone)]
 pub(crate) struct Content {
     pub(crate) scenes: Vec<Scene>,

@@ -6,7 +6,7 @@ use tokio::sync::watch;
 
 use crate::error::WorkerError;
 
-/// How far the process is in ending.
+/// Phase of the shutdown of the process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Phase {
     /// It takes jobs.

@@ -36,7 +36,7 @@ const READ_AGAIN: Duration = Duration::from_secs(1);
 
 /// The verdict on a file whose workers have ended several times without a result.
 const CRASHED: &str = "crashed";
-/// What metrics call the result of a file that cannot be read.
+/// Name in the metrics of the result of a file that cannot be read.
 const UNREAD: &str = "unread";
 
 /// A worker of the game `G`.
@@ -52,7 +52,7 @@ struct Work<G: Game + 'static> {
     metrics: Arc<Metrics>,
 }
 
-/// What becomes of a job.
+/// Outcome of a job.
 enum Done {
     /// It has a result, with this verdict.
     Result(Judged),

@@ -164,8 +164,8 @@ impl BroadPhase {
         }
     }
 
-    /// Replaces all boxes, without collision classes; cheaper than putting each. Each slot comes with its box, and with
-    /// whether its body is fixed. If a slot repeats, its last box is kept.
+    /// Replaces all boxes, without collision classes; cheaper than a [`Self::put`] for each box. An item is a slot, its
+    /// box, and whether its body is fixed. If a slot repeats, its last box is kept.
     pub(crate) fn refill(&mut self, boxes: impl IntoIterator<Item = (u32, Aabb, bool)>) {
         *self = BroadPhase::new(self.kind());
         let boxes = boxes.into_iter();

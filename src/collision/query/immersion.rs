@@ -21,7 +21,7 @@ const CORNER_RADIUS: Fx = fx!(1.003222080);
 /// Largest number of points of a ring: each edge of the other ring adds at most one.
 const POINTS: usize = 2 * CORNERS as usize;
 
-/// The place of a body, for the rings of its shapes.
+/// The pose of a body relative to the origin of the rings of its shapes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     /// Centre of mass from the origin of the rings, in metres.

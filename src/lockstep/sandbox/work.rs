@@ -87,7 +87,7 @@ impl<'a> Costs<'a> {
             Command::Sleep { .. } | Command::SetGravity { .. } | Command::SetConfig { .. } => {
                 1 + self.everything()
             }
-            // The world counts the shapes in reach.
+            // The world charges for each shape in reach when it executes the command.
             Command::Explode { .. } => VISIT_WORK,
             Command::Wake { body } if self.world.body(*body).is_none_or(|body| !body.is_dynamic()) => {
                 1 + self.everything()

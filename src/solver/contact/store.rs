@@ -110,7 +110,7 @@ fn shares_of_friction<L: Lanes<N>, const N: usize>(batch: &Batch<N>) -> [L::Int;
     [L::sub(whole, rest), rest]
 }
 
-/// What the solver has found out about each contact of the state in a tick, by index.
+/// Results of the solver for each contact of the state in a tick, by index.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ContactResults {
     /// Whether the shapes have pushed each other.

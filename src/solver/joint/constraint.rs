@@ -122,7 +122,7 @@ impl JointSet {
     }
 
     /// Makes the constraints of all joints that are solved, in the order in which they are solved, for `parts` threads.
-    /// Those in blocks are only chosen.
+    /// Joints in blocks are only selected here.
     pub(in crate::solver) fn prepare(
         &mut self,
         source: &JointSource<'_>,

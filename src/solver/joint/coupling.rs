@@ -1,4 +1,4 @@
-//! What gears, racks and pulleys measure: a row whose parts on A and B differ.
+//! Couplings of gears, racks and pulleys: a row whose parts on A and B differ.
 
 use core::cell::Cell;
 

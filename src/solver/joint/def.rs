@@ -184,7 +184,7 @@ impl JointFrame {
         }
     }
 
-    /// Whether the anchor is farther from the origin than arms can be. Only anchors on fixed bodies are.
+    /// Whether the anchor is farther from the origin than lever arms can be. Only anchors on fixed bodies can be far.
     pub(super) fn is_far(&self) -> bool {
         let Vec2 { x, y } = self.anchor;
         x.saturating_abs().max(y.saturating_abs()) > REACH_MAX

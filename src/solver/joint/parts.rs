@@ -33,7 +33,7 @@ pub(super) enum Direction {
     AcrossBalanced,
     /// The distance between the anchors.
     Apart,
-    /// What the coupling of the joint with this index measures.
+    /// The coordinate of the coupling of the joint with this index.
     Coupled(u32),
 }
 

@@ -43,7 +43,7 @@ pub struct Pulley {
     pub wheel_b: Vec2<Fx>,
     /// Length of the rope in metres, 0 to 2^20, without the part between the wheels.
     pub length: Fx,
-    /// Number of times that B's side counts, 0.25 to 4.
+    /// Factor by which the length on B's side counts, 0.25 to 4.
     pub ratio: Fx,
 }
 
@@ -54,7 +54,7 @@ impl Pulley {
         Pulley { wheel_a: wheel_a.into(), wheel_b: wheel_b.into(), length, ratio: Fx::ONE }
     }
 
-    /// Sets how many times B's side counts.
+    /// Sets the factor by which the length on B's side counts.
     #[must_use]
     pub const fn ratio(mut self, ratio: Fx) -> Self {
         self.ratio = ratio;

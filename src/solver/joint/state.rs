@@ -81,7 +81,7 @@ impl Joint {
         self.def.enabled && self.def.kind != JointKind::Filter
     }
 
-    /// The softness of what the joint holds rigidly.
+    /// The softness of the joint's rigid constraints.
     pub(super) fn softness(&self, tuning: &Tuning) -> Softness {
         self.def.softness.map_or(tuning.joint, |soft| tuning.own_softness(soft.hertz, soft.damping_ratio))
     }

@@ -105,7 +105,7 @@ impl Scratch {
         self.results.clear();
     }
 
-    /// Updates all caches after a body was added, enabled, redefined or moved by hand.
+    /// Updates all caches after a body was added, enabled, redefined or moved by an edit.
     pub(crate) fn update_body(&mut self, state: &State, slot: u32) {
         let body = state.bodies.at(slot);
         self.shapes.update_body(state, slot);

@@ -90,8 +90,8 @@ pub(crate) struct ShapeMotion {
     shift: Vec2<Travel>,
     /// Bound of the distance by which the body's rotation moves any point of the shape.
     pub(crate) turn: Travel,
-    /// Largest overlap with another shape at which the two may still pass by each other. The limit of a pair is at most
-    /// that of each of its shapes.
+    /// Largest overlap with another shape at which the ghost-collision filter may still find that the two pass by each
+    /// other. The limit of a pair is at most that of each of its shapes.
     pub(crate) slack: Step,
     /// Slot of the body.
     pub(crate) body: u32,
@@ -209,7 +209,7 @@ fn slack_of(bounds: Aabb) -> Step {
 pub(crate) struct Margins {
     pub(crate) speculative: Length,
     pub(crate) touching: Step,
-    /// Distance by which shapes approach each other in a tick in an impact.
+    /// Distance in metres by which shapes approach each other in a tick at [`IMPACT_SPEED`].
     pub(crate) impact: Step,
 }
 
@@ -235,7 +235,8 @@ pub(crate) struct ClosingBound {
     pub(crate) margin: Length,
 }
 
-/// Shapes that approach each other by less than this in a tick, in metres, do not pass by each other.
+/// Smallest approach in a tick, in metres, from which on the ghost-collision filter checks whether two shapes pass by
+/// each other.
 pub(crate) const GHOST_TRAVEL_MIN: Step = Step::lit("0.0001");
 
 impl ClosingBound {
@@ -245,7 +246,7 @@ impl ClosingBound {
         ClosingBound { distance, margin: margin_for(margins.speculative, distance) }
     }
 
-    /// Whether the shapes approach each other so fast that they may pass by each other.
+    /// Whether the shapes approach each other so fast that the ghost-collision filter may apply.
     #[inline]
     pub(crate) fn is_fast(self) -> bool {
         self.distance > GHOST_TRAVEL_MIN

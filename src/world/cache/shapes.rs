@@ -115,7 +115,7 @@ impl ShapeCache {
         self.poses.whole()
     }
 
-    /// Poses the shapes of a body that was added, changed or moved by hand, and takes over their fat boxes.
+    /// Poses the shapes of a body that was added, changed or moved by an edit, and takes over their fat boxes.
     pub(crate) fn update_body(&mut self, state: &State, slot: u32) {
         self.poses.pose_body(state, slot);
         let body = state.bodies.at(slot);

@@ -3,11 +3,11 @@
 //! A body is sleepy once it has been slower than its `sleep_speed` for half a second. An island is a set of dynamic
 //! bodies that contacts and joints connect. It falls asleep when all its bodies are sleepy. It wakes as a whole:
 //! - when an active body comes into contact with one of its bodies,
-//! - when a force, impulse, velocity, pose or property of one of its bodies is changed by hand,
+//! - when a force, impulse, velocity, pose or property of one of its bodies is changed by an edit,
 //! - when a joint is added to or removed from one of its bodies,
-//! - when a body or shape whose fat box overlaps one of theirs is moved by hand, changed or removed,
+//! - when a body or shape whose fat box overlaps one of theirs is moved, changed or removed by an edit,
 //! - when gravity or another setting of the world changes on which the balance of forces depends,
-//! - when a fixed or kinematic body that it touches or is joined to is woken by hand.
+//! - when a fixed or kinematic body that it touches or is joined to is woken by an edit.
 //!
 //! Bodies that touch, or are joined to, a moving kinematic body do not become sleepy.
 

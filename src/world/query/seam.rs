@@ -1,10 +1,11 @@
 //! Casts along a floor of many shapes do not stop at the seams.
 //!
 //! A body at rest lies a little lower than the surface, so that a cast along the floor would meet the side of the next
-//! tile, or the end of the next link of a chain. A cast that starts in contact is therefore confirmed by a second one
-//! from where the shape just rests on what it touches: an obstacle that this one does not meet is a seam.
+//! tile, or the end of the next link of a chain. A hit of a cast that starts in contact is therefore confirmed by a
+//! second cast, which starts where the shape just rests on the surfaces that it touches. An obstacle that the second
+//! cast does not meet is a seam.
 //!
-//! Only contacts that the cast leaves or slides along lift the shape. One that it goes against stops it.
+//! Only contacts that the cast leaves or slides along lift the shape. A contact that it goes against stops it.
 
 use smallvec::SmallVec;
 
@@ -18,13 +19,13 @@ use crate::fx;
 use crate::math::{Fx, Unit, Vec2};
 use crate::world::World;
 
-/// How a shape rests on what it touches.
+/// Tolerances of the position in which a shape rests on the surfaces that it touches.
 #[derive(Clone, Copy)]
 pub(super) struct Rest {
-    /// Distance in metres at which it is cast again. Ledges up to the difference to the gap of the cast, 5 µm, count as
-    /// seams: tiles of a ramp are flush to within a micrometre.
+    /// Distance in metres from these surfaces at which the second cast starts. Ledges up to the difference to the gap
+    /// of the first cast, 5 µm, count as seams: tiles of a ramp are flush to within a micrometre.
     gap: Fx,
-    /// Largest distance in metres by which the cast may approach what it slides along, besides.
+    /// Largest distance in metres by which the cast may in addition approach a surface that it slides along.
     grazing_max: Fx,
 }
 
@@ -47,7 +48,7 @@ impl Rest {
 /// Depth in metres up to which an overlap counts as a contact.
 const DEPTH_MAX: Fx = fx!(0.02);
 
-/// A cast from where the shape just rests on what it touches.
+/// The second cast, from the position where the shape just rests on the surfaces that it touches.
 pub(super) struct Resting {
     /// The shape, relative to the position of the probe.
     shape: SupportShape,

@@ -33,7 +33,7 @@ pub struct ProbeHit {
     pub starts_inside: bool,
 }
 
-/// How a shape moves from start to end of a search for the time of impact, at constant speed.
+/// Motion of a shape from start to end of a search for the time of impact, at constant speed.
 ///
 /// ```
 /// use lockstep2d::{body::{Geometry, Polygon}, fx, math::Vec2};

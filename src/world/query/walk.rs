@@ -65,7 +65,7 @@ pub(super) struct Walk<'a> {
     on_ground: bool,
     /// Normal of the ground that the character walks along.
     along: Option<Vec2<Unit>>,
-    /// Height in metres that it has gained by walking along ground.
+    /// Height in metres that the character has gained by walking along ground.
     climbed: Fx,
     /// Upward speed in m/s at which ground has pushed it.
     lifted: Fx,

@@ -93,7 +93,7 @@ impl Visit {
         let (begin, end) = match (was_inside, is_inside) {
             (true, true) => (None, None),
             (false, true) => (Some(first().unwrap_or(Fx::ONE)), None),
-            // Without an overlap on the way one of the bodies was moved by hand before the tick.
+            // If there is no overlap on the way, an edit has moved one of the bodies before the tick.
             (true, false) => (None, Some(last().unwrap_or(Fx::ZERO))),
             (false, false) => {
                 let begin = first();
@@ -181,8 +181,8 @@ impl MovedShape {
     }
 }
 
-/// Reports the crossings of shapes that have left their fat box in this tick, with shapes of which they are no pair
-/// yet. If they overlap at the end of the tick, the pair becomes a contact at once.
+/// Reports the crossings of shapes that have left their fat box in this tick with shapes with which they do not form a
+/// pair yet. If two such shapes overlap at the end of the tick, the pair becomes a contact at once.
 fn report_unforeseen(state: &mut State, scratch: &mut Scratch) {
     if scratch.sweeps.left_boxes.is_empty() {
         return;

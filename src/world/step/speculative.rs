@@ -142,8 +142,8 @@ impl SpeculativePair<'_> {
                 .is_some_and(|one_way| one_way.lets_pass(a.posed, &manifold.swapped(), was_passing, slack))
     }
 
-    /// Whether the shapes pass by each other, with the slack, although a contact point closes by `closing` metres in
-    /// the tick.
+    /// Whether the contact is a ghost collision: the shapes pass by each other, with an overlap of at most the slack,
+    /// although a contact point closes by `closing` metres in the tick.
     fn is_ghost_collision(
         &self,
         [motion_a, motion_b]: [&PredictedMotion; 2],

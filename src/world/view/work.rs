@@ -7,7 +7,7 @@ use crate::world::cache::{NARROW_PHASE_WORK, WorkMeter, pair_work};
 /// Work units of a tick of an empty world, which takes some microseconds.
 const TICK_WORK: u64 = 8;
 
-/// What the commands of a tick add to a world.
+/// Numbers of bodies, shapes and joints that the commands of a tick add to a world.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct AddedWork {
     pub(crate) bodies: u64,

@@ -148,7 +148,7 @@ api! {
         handle.set(table::add(Match::new(Endpoint::join(config, identity, role, contact)?))?)
     }
 
-    /// Asks another participant to join, or the same one again.
+    /// Sends the request to join to another participant, or again to the same one.
     fn ls2d_match_ask(handle: u32, contact: In<'_, u8>, contact_size: usize) {
         let contact = address(&contact, contact_size)?;
         with(handle, |game: &mut Match| {
@@ -268,7 +268,7 @@ api! {
         event.set(next.event)
     }
 
-    /// Writes 1 if somebody waits for a state to begin with, otherwise 0.
+    /// Writes 1 if a joining peer waits for its initial state, otherwise 0.
     fn ls2d_match_wants_state(handle: u32, wants: Out<'_, u32>) {
         let mut wants = wants;
         with(handle, |game: &mut Match| wants.set(game.endpoint.wants_state().into()))
@@ -378,7 +378,7 @@ api! {
         })
     }
 
-    /// Votes for removing somebody for good.
+    /// Votes for removing a peer permanently.
     fn ls2d_match_kick(handle: u32, key: u64) {
         with(handle, |game: &mut Match| {
             game.session()?.kick(Key(key));

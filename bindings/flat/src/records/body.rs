@@ -30,7 +30,7 @@ constants! {
     BODY_LOCK_ROTATION = 16, "LS2D_BODY_LOCK_ROTATION";
     /// Flag of a body: may fall asleep.
     BODY_MAY_SLEEP = 32, "LS2D_BODY_MAY_SLEEP";
-    /// Flag of a body: its mass is given and not that of its shapes.
+    /// Flag of a body: its mass is given, not computed from its shapes.
     BODY_GIVEN_MASS = 64, "LS2D_BODY_GIVEN_MASS";
     /// `ls2d_body_def.continuous`: swept against nothing.
     SWEEP_OFF = 0, "LS2D_SWEEP_OFF";

@@ -23,7 +23,7 @@ constants! {
     MOTOR = 5, "LS2D_MOTOR";
     /// Kind of a joint: the bodies do not collide with each other.
     FILTER = 6, "LS2D_FILTER";
-    /// Kind of a joint: two toothed wheels.
+    /// Kind of a joint: the wheels about the anchors turn in a fixed ratio, as gears.
     GEAR = 7, "LS2D_GEAR";
     /// Kind of a joint: the wheel about A's anchor rolls along the x axis of B's frame.
     RACK = 8, "LS2D_RACK";
@@ -136,7 +136,7 @@ records! {
         wheel_a: RawVec2,
         /// Wheel of a pulley on B's side, in the world.
         wheel_b: RawVec2,
-        /// Number of times that B's side of a pulley counts.
+        /// Factor by which the length on B's side of a pulley counts.
         ratio: RawFx,
         /// A number for the game, part of the state.
         user_data: u64,

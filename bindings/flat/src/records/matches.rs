@@ -92,7 +92,7 @@ constants! {
     MATCH_FINISHED = 9, "LS2D_MATCH_FINISHED";
     /// Status: nothing more is sent.
     MATCH_CLOSED = 10, "LS2D_MATCH_CLOSED";
-    /// Status: asks the contact, or downloads the state to begin with.
+    /// Status: asks the contact, or downloads the initial state.
     MATCH_CONNECTING = 11, "LS2D_MATCH_CONNECTING";
 }
 
@@ -163,9 +163,9 @@ records! {
         history: u32,
         /// Number of final ticks whose inputs are kept for peers that return.
         log_ticks: u32,
-        /// First tick of those who join, counted from the cut.
+        /// First tick of a joining peer, counted from the cut (the tick at which the change takes effect).
         seat_lead: u32,
-        /// Somebody who lags by at most this many ticks may have a seat.
+        /// A peer that lags by at most this many ticks may have a seat.
         seat_within: u32,
         /// Number of this peer: random, new for each process.
         peer: u32,
@@ -179,7 +179,7 @@ records! {
         secret: [u64; 2],
     }
 
-    /// What a match asks the game to do.
+    /// A request of a match to the game.
     struct RawRequest = "ls2d_request" {
         /// `LS2D_REQUEST_SAVE` and so on.
         kind: u32,
@@ -191,7 +191,7 @@ records! {
         guessed: u64,
     }
 
-    /// What happened in a match.
+    /// An event of a match.
     struct RawMatchEvent = "ls2d_match_event" {
         /// `LS2D_EVENT_STATUS` and so on.
         kind: u32,

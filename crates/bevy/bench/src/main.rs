@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for engine in &mut engines {
             engine.settle();
         }
-        // In turns, so that what else the machine does meets all of them.
+        // Interleaved, so that other load on the machine affects all engines alike.
         for _ in 0..ROLLBACKS {
             engines.iter_mut().for_each(Measured::roll_back);
         }

@@ -95,7 +95,7 @@ impl<G: LockstepGame> MatchDriver<G> {
 
     /// This peer's report of a desync.
     pub(crate) fn report(&mut self, desync: &PeerDesync) -> Result<Vec<u8>, LockstepError> {
-        // It plays the last ticks again, which are not new ones.
+        // The report plays the last ticks again. Their events are already in the log.
         self.peer.game().log().suspend();
         let report = self.peer.report(desync);
         self.peer.game().log().resume();

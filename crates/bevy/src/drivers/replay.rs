@@ -44,7 +44,7 @@ impl<G: LockstepGame> ReplayDriver<G> {
         Ok(())
     }
 
-    /// Plays one tick. Returns whether there was one.
+    /// Plays one tick. Returns `false` if the replay has ended.
     pub(crate) fn step(&mut self) -> Result<bool, LockstepError> {
         let step = self.film.with_timeline_mut(|timeline| timeline.step())?;
         Ok(matches!(step, Step::Ticked))

@@ -18,7 +18,7 @@ pub(crate) struct SyncTestDriver<G: LockstepGame> {
     game: Observed<G>,
     timestep: FixedTimestep,
     tick: u64,
-    /// Number of ticks that are played again.
+    /// Number of ticks that are played again after each tick.
     depth: u32,
     history: History<Observed<G>>,
     /// Inputs of the last `depth` ticks.
@@ -41,7 +41,7 @@ impl<G: LockstepGame> SyncTestDriver<G> {
         Ok(())
     }
 
-    /// Plays one tick, and the last ones again.
+    /// Plays one tick, and then the last `depth` ticks again.
     pub(crate) fn step(&mut self, inputs: &mut Inputs<G>) -> Result<(), LockstepError> {
         let players = self.game.players();
         let encoded = EncodedInputs::new(&inputs.next(players as usize), players)?;

@@ -23,7 +23,7 @@ struct Arguments {
     server: String,
     /// The room of a match that somebody has opened.
     room: Option<String>,
-    /// Who the player is. It gets its seat back if it is known already.
+    /// Identity of the player. A player whose identity the match already knows gets its seat back.
     me: PeerIdentity,
     /// The name for a room of one's own.
     new_room: String,

@@ -113,7 +113,8 @@ fn verify_takes_no_more_memory_than_is_documented() {
 /// Memory in KB that the tool takes by itself without optimisation, because its code is larger.
 const UNOPTIMISED: u64 = if cfg!(debug_assertions) { 3_000 } else { 0 };
 
-/// Three files of the table, and the memory in KB that their rows allow `verify`. Some tools may take a multiple of it.
+/// Runs all tools on three files. `verify` may take the memory in KB that the table states for such a file, and some
+/// tools a multiple of it.
 #[test]
 fn no_tool_takes_more_memory_than_is_documented() {
     let folder = Folder::new("memory");

@@ -179,7 +179,7 @@ fn a_replay_of_another_game_or_a_damaged_one_is_not_signed() {
     assert_eq!((exit, &lines[0]["signature"]), (Exit::Unsigned, &json!("malformed")));
     assert!(lines[0]["signature_error"].as_str().unwrap().contains("line 1: "), "{}", lines[0]);
 
-    // Of a key file, nothing is quoted in the message.
+    // The message quotes nothing of a key file.
     folder.write("secret", b"lockstep2d secret key 1 12345\n");
     let signed = run(&["sign", &folder.path("good.replay"), "--key", &folder.path("secret")]);
     assert!(signed.exit == Exit::Trouble && !signed.err.contains("12345"), "{}", signed.err);
@@ -200,7 +200,7 @@ fn a_secret_key_is_private_and_never_replaced_by_accident() {
         let mode = |path: &str| fs::metadata(path).unwrap().permissions().mode() & 0o777;
         assert_eq!(mode(&path), 0o600);
         fs::set_permissions(&path, fs::Permissions::from_mode(0o644)).unwrap();
-        // What a killed process has left may be readable.
+        // An unfinished file of a killed process may be readable by others.
         folder.write("alice.unfinished", b"");
         let forced = run(&["keygen", "--name", "alice", "-o", &path, "--force", "--json"]);
         assert_eq!((forced.exit, mode(&path)), (Exit::Success, 0o600));

@@ -22,7 +22,7 @@ struct State {
     replaced: bool,
 }
 
-/// What a member is sent next.
+/// The next message to a member.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Next {
     Frame(Vec<u8>),

@@ -74,7 +74,7 @@ impl Rooms {
         }
     }
 
-    /// Who is in a room, from the view of a member.
+    /// The members of a room, as told to one of them.
     pub(super) fn members(&self, code: &str, you: Member) -> Members {
         let rooms = self.rooms();
         let room = rooms.get(code).map_or(&[][..], Vec::as_slice);

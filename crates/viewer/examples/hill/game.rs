@@ -191,7 +191,7 @@ impl Game for Hill {
     }
 
     fn step(&mut self, inputs: &[Drive]) {
-        // What the world refuses is left out, in the same way on every machine.
+        // Commands that the world refuses have no effect, in the same way on every machine.
         let _driven = self.drive(inputs.first().copied().unwrap_or_default());
         self.world.step();
         let _judged = self.judge();

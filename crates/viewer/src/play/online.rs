@@ -153,7 +153,7 @@ impl<G: Game + 'static, T: Transport> Online<G, T> {
         recording.finish().map_err(SourceError::of)
     }
 
-    /// What the player has to know about the match.
+    /// A line about the match for the player: errors, a desync, the status.
     fn news(&self) -> String {
         match (&self.ended, &self.desync, self.peer.status()) {
             (Some(error), ..) => return error.to_string(),

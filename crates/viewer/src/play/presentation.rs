@@ -15,7 +15,7 @@ pub(crate) type Fields = Vec<(String, String)>;
 /// Draws over the world of a game.
 pub(crate) type Draw<G> = dyn Fn(&G, &mut Canvas<'_>);
 
-/// How a game is shown, apart from its world.
+/// Presentation of a game beside its world: drawing, status line, state of the rules.
 pub(crate) struct Presentation<G: Game> {
     /// Draws over the world.
     pub(crate) draw: Rc<Draw<G>>,

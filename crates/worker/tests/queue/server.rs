@@ -133,7 +133,7 @@ impl Program {
         lines(&output)
     }
 
-    /// The results so far, sorted. Not those that cannot be read because the server is restarting.
+    /// The results so far, sorted. Results that cannot be read because the server is restarting are missing.
     pub(crate) fn results(&self) -> Vec<String> {
         let mut lines = lines(&self.run(&["results"]));
         lines.sort();

@@ -1,4 +1,4 @@
-//! How easily impulses move and turn the two bodies of a unit.
+//! Mobility of the two bodies of a unit: the velocity changes that impulses cause.
 
 use super::ONE;
 use super::scaling::product;
@@ -14,7 +14,7 @@ pub(super) struct Mobility {
     /// The share of its own rotation that geometric stiffness leaves each body, `I / (I + h^2 F r)`, with 30 fraction
     /// bits.
     spins: [i64; 2],
-    /// The square roots of these.
+    /// The square roots of `spins`.
     pub(super) spin_roots: [i64; 2],
 }
 

@@ -274,7 +274,7 @@ impl Unit {
         self.mobility.is_stiffened()
     }
 
-    /// The roots of the shares of rotation.
+    /// The square root of the share of its rotation that geometric stiffness leaves a body.
     pub(super) fn spin_root(&self, side: usize) -> i64 {
         self.mobility.spin_roots[side]
     }

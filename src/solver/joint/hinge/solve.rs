@@ -99,7 +99,7 @@ pub(super) fn relative_velocity<L: Lanes<N>, const N: usize>(
     ]
 }
 
-/// `w`: the impulse along an axis that is to be taken away.
+/// `w = massScale (vr + bias) + impulseScale L` along an axis; in the relax pass `w = vr`.
 #[inline(always)]
 pub(super) fn wanted<L: Lanes<N>, const N: usize>(
     batch: &Batch<N>,

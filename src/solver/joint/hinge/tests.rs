@@ -32,7 +32,7 @@ struct Setting {
     fractions: Vec<MassFractions>,
 }
 
-/// The sizes of the random numbers of a setting.
+/// Largest magnitudes of the random numbers of a test case.
 #[derive(Clone, Copy)]
 struct Sizes {
     /// Size of the arms, in radii of gyration.
