@@ -1,6 +1,6 @@
 //! Canonical encoding of a value: its serde encoding with bincode 2, little-endian, fixed-width integers.
 //!
-//! `docs/FORMAT.md` specifies the layout, so that it can be read without bincode.
+//! `docs/FORMAT.md` specifies the layout, so that a reader needs no bincode.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -86,8 +86,8 @@ pub fn encode<T: Serialize + ?Sized>(value: &T) -> Vec<u8> {
 /// Largest number of bytes that [`decode`] accepts: 256 MiB.
 pub const DECODE_BYTES_MAX: usize = 256 << 20;
 
-/// Bytes by which the announced length of a string may exceed the bytes given before it counts as too long; below that,
-/// the error says how many bytes are missing. The longest number has as many.
+/// Number of bytes by which the announced length of a string may exceed the number of bytes given before the length is
+/// rejected as too large. A smaller excess is reported as missing bytes. 16 is the size of the largest number, a u128.
 const SLACK: usize = 16;
 
 /// Decodes a value whose canonical encoding is all of `bytes`.

@@ -41,7 +41,7 @@ fn end_of(name: &str, ticks: u64, choose: impl FnOnce(&mut World) -> bool) -> (S
     (game.state_hash().to_string(), *game.world().stats())
 }
 
-/// Runs all scenes in several ways, whose hashes have to be equal to each other and to those of the file.
+/// Runs all scenes with each variant, and expects the same hashes from all variants and from the file.
 fn all_end_in_their_hashes<Variant: Copy + Debug + Sync>(
     variants: &[Variant],
     choose: fn(&mut World, Variant) -> bool,
@@ -82,7 +82,7 @@ fn every_backend_ends_in_the_same_hashes() {
     all_end_in_their_hashes(&backends, World::set_backend);
 }
 
-/// With 2, 4 and 8 threads; the test of the backends runs on one thread.
+/// Runs with 2, 4 and 8 threads; the test of the backends runs on one thread.
 #[test]
 #[cfg(feature = "parallel")]
 fn any_number_of_threads_ends_in_the_same_hashes() {

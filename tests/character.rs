@@ -66,11 +66,11 @@ fn the_character_of_the_scene_enters_nothing() {
     }
     assert_eq!(game.refused(), 0);
     assert!(least > fx!(0.00005), "{least}");
-    // It has reached the left wall. It has passed the foot of the steep slope at 20 m only by a jump.
+    // The character has reached the left wall, and has passed the foot of the steep slope, at 20 m, only by a jump.
     assert!((way.0 - fx!(-9.7)).abs() < fx!(0.001), "{way:?}");
     assert!(way.1 > fx!(19.7) && way.1 < fx!(20.6), "{way:?}");
     assert!(trace[595].y < trace[560].y - fx!(0.1), "expected the character to slide down: {:?}", trace[595]);
-    // It is back on or beyond the plateau, so it has climbed the steps again.
+    // The character is back on or beyond the plateau, so it has climbed the steps again.
     assert!(trace[870].x < fx!(5), "{:?}", trace[870]);
 }
 
@@ -89,11 +89,11 @@ fn the_character_on_a_spring_leg_gets_about() {
         trace.push(game.world().body(ids[0]).expect("there").position());
     }
     assert_eq!(game.refused(), 0);
-    // Its centre of mass is 0.1 m above its origin, and 0.9 m above the ground.
+    // The centre of mass is 0.1 m above the body's origin and 0.9 m above the ground.
     let rest = trace[25];
     assert!((rest.y - fx!(0.8)).abs() < fx!(0.005), "at rest above the floor: {rest:?}");
     let jump = trace[30..60].iter().map(|place| place.y).max().expect("some");
-    // 5.5 m/s rise by 1.5 m, less the leg's last push.
+    // A jump at 5.5 m/s rises by 1.5 m, less the leg's last push.
     assert!((fx!(2.1)..fx!(2.5)).contains(&jump), "{jump}");
     assert!(pushed > fx!(10.5), "the first crate is pushed: {pushed}");
     let furthest = trace.iter().max_by_key(|place| place.x).expect("some");
@@ -115,18 +115,18 @@ fn slopes_up_to_the_limit_are_ground_and_steeper_ones_are_walls() {
         let end = states[179];
         assert!(end.is_on_ground(), "{degrees}: {end:?}");
         if degrees <= 45 {
-            // Nearly 6 m along the slope at full speed: the round foot cuts the corner.
+            // At full speed the character walks about 6 m along the slope: its round foot cuts the corner.
             let up = end.position.y - fx!(0.7);
             let expected = fx_mul(fx!(6), Fx::from_num(angle.sin()));
             assert!((up - expected).abs() < fx!(0.3), "{degrees}: {up} {expected}");
-            // It stands without sliding, and walks down without leaving the ground.
+            // The character stands without sliding, and walks down without leaving the ground.
             let still = walk(&world, &mover, end, fx!(0), 120)[119];
             assert!(still.position.distance(end.position) < fx!(0.0005), "{degrees}: {still:?} {end:?}");
             let down = walk(&world, &mover, still, fx!(-3), 120);
             assert!(down.iter().all(MoverState::is_on_ground), "{degrees}");
         } else {
             assert!(end.position.y < fx!(0.72), "{degrees}: {end:?}");
-            // Placed on the slope, it slides down.
+            // A character that is placed on the slope slides down.
             let middle = at(top.x / 2, top.y / 2) + Rot::from_angle(angle).apply_wide(at(fx!(0), fx!(0.71)));
             let mut state = MoverState::at(middle);
             for _ in 0..60 {
@@ -163,7 +163,7 @@ fn steps_are_taken_up_to_their_height() {
             assert!(end.position.y > fx!(3.19), "{what} at {speed}: {end:?}");
             let low = walk(&world, &mover.step_height(fx!(0.24)), start, speed, ticks);
             assert!(low[low.len() - 1].position.y < fx!(0.75), "{what} at {speed}: {:?}", low[low.len() - 1]);
-            // It walks down without leaving the ground; a box must leave a step before it can descend.
+            // The character walks down without leaving the ground; a box must leave a step before it can descend.
             let down =
                 walk(&world, &mover.step_height(fx!(0.26)).snap_distance(fx!(0.3)), end, -speed, ticks);
             assert!(down[down.len() - 1].position.y < fx!(0.71), "{what} at {speed}");

@@ -48,10 +48,11 @@ fn assert_same(scene: &Scene, what: &str, trace: &Trace, reference: &Trace) {
     assert_eq!(differing, None, "{}: {what} changes the events of this tick", scene.name);
 }
 
-/// Ticks that runs are compared for, at most.
+/// Largest number of ticks for which runs are compared.
 const TICKS_MAX: u64 = 300;
 
-/// The trace of an undisturbed run of a scene, up to its golden. Each scene is run once, by the test that comes first.
+/// The trace of an undisturbed run of a scene, up to the tick of its golden. The first test that needs a scene runs
+/// it, and later tests reuse the trace.
 fn undisturbed(scene: &Scene) -> &'static Trace {
     static TRACES: LazyLock<Vec<OnceLock<Trace>>> =
         LazyLock::new(|| ALL.iter().map(|_| OnceLock::new()).collect());
@@ -59,8 +60,8 @@ fn undisturbed(scene: &Scene) -> &'static Trace {
     TRACES[place].get_or_init(|| trace(scene, scene.golden_ticks, |_, _| {}))
 }
 
-/// Calls `hold` for every scene with a number of ticks and the trace of an undisturbed run. The number is that of the
-/// golden but at most [`TICKS_MAX`], and less outside of the long run.
+/// Calls `hold` for every scene, with a number of ticks and the trace of an undisturbed run. The number is that of the
+/// golden, at most [`TICKS_MAX`], and smaller outside of the long run.
 fn each_scene(hold: impl Fn(&Scene, u64, &Trace) + Sync) {
     sweep::for_each(ALL.iter().collect(), |scene| {
         let ticks_max = sweep::size(TICKS_MAX, if shape_count(scene) > 2000 { 30 } else { 150 });
@@ -80,8 +81,8 @@ fn two_runs_agree() {
     });
 }
 
-/// The world is replaced at every tick. At the sampled size, that of a large scene is replaced at every fifth tick and
-/// goes on from there.
+/// At every tick, the world is replaced by one that is decoded from its bytes. At the sampled size, the world of a
+/// large scene is replaced at every fifth tick only.
 #[test]
 fn restoring_from_bytes_continues_bit_identically() {
     each_scene(|scene, ticks, reference| {

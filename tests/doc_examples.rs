@@ -1,9 +1,9 @@
 //! Every public type is shown in use by an example of the documentation.
 //!
-//! A type is shown if Rust code in the documentation of its own top-level module uses its name: best in its own
-//! documentation, or where it is met, as the fields of an event are. A smaller crate counts as one module. Imports do
-//! not count, nor does what readers do not see: hidden lines, comments and literals. That the code compiles and is
-//! right is the matter of `cargo test --doc`.
+//! A type is shown if Rust code in the documentation of its own top-level module uses its name. The best place is the
+//! documentation of the type itself, or of the item through which users get the type. A smaller crate counts as one
+//! module. Imports do not count, nor does text that readers do not see as code: hidden lines, comments and literals.
+//! `cargo test --doc` checks that the code compiles and is correct.
 //!
 //! All types that are declared `pub` count, because the lint `unreachable_pub` refuses those that no user can name.
 
@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use source::{Source, files, tokens};
 
-/// The library, and crates that a game's author names types of.
+/// The library, and the crates whose types the author of a game names.
 const FOLDERS: &[&str] = &["src", "crates/cli/src", "crates/render/src", "crates/viewer/src"];
 
 /// Public types without an example, and why.

@@ -167,7 +167,7 @@ fn after_a_removal_the_contacts_of_all_other_bodies_stay() {
     world.despawn(boxes[2]).unwrap();
     assert_eq!(primitives(&world, layers), expected, "the same points, forces and colours");
 
-    // The tick after it is the one of a world without cached contacts.
+    // The next ticks equal those of a world without cached contacts.
     let mut restored = world.clone();
     restored.restore(&world.save());
     (0..30).for_each(|_| {
@@ -177,7 +177,7 @@ fn after_a_removal_the_contacts_of_all_other_bodies_stay() {
     });
 }
 
-/// Two balls, each with its joint to a fixed body 3 m away, and both in a sensor of 10 m.
+/// Two balls, each joined to a fixed body 3 m away, and both inside a sensor with a radius of 10 m.
 #[expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 fn figures_of(kind: impl Into<JointKind>) -> (World, String) {
     let mut world = World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).unwrap();

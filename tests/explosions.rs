@@ -65,8 +65,8 @@ fn a_ball_is_pushed_by_its_diameter_and_its_distance() {
 fn the_push_is_as_wide_as_the_shape_and_meets_the_nearest_point() {
     let mut world = weightless();
     let plank = Polygon::rectangle(fx!(0.1), fx!(1)).expect("valid");
-    // Its nearest point lies straight to the right of the centre of the explosion, half a metre below the plank's
-    // centre.
+    // The plank's nearest point lies straight to the right of the centre of the explosion, half a metre below the
+    // centre of the plank.
     let high = spawn(&mut world, plank, fx!(2.1), fx!(0.5));
     let capsule = Geometry::capsule(at(fx!(0), fx!(-1)), at(fx!(0), fx!(1)), fx!(0.25)).expect("valid");
     let pill = spawn(&mut world, capsule, fx!(-2.25), fx!(0));

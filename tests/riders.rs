@@ -85,7 +85,7 @@ impl Ride {
         Ride { world, bodies, platform, rng, velocity: Vec2::ZERO, size, turns }
     }
 
-    /// Sets what the bodies do in the next tick.
+    /// Sets the motion of the bodies in the next tick.
     fn drive(&mut self, tick: u32, tick_rate: u32) {
         let phase = Angle::from_turns(fx_mul(self.turns, Fx::from_num(tick) / i64::from(tick_rate)));
         if tick.is_multiple_of(tick_rate / 2) {
@@ -233,7 +233,7 @@ fn level(rng: &mut Rng) -> Vec<Vec2<Fx>> {
             y += fx_mul(fx_mul(slope, run), up);
             points.push(at(x, y));
         }
-        // Feet on a slope are below a step that begins at its end: a level stretch follows.
+        // A level stretch follows a slope: feet that are still on the slope would meet a higher step.
         x += rng.range(fx!(0.8), fx!(3));
         points.push(at(x, y));
     }
@@ -256,7 +256,7 @@ fn run((shape, tick_rate, speed, seed): ((&str, Geometry), u32, Fx, u64)) {
     let end = points[points.len() - 1].x;
     for (direction, wall) in [(fx!(1), end), (fx!(-1), fx!(-3))] {
         let way = fx_div(end + fx!(9), speed).expect("a speed");
-        // Steps are climbed at the speed of walking: they lengthen the way.
+        // Steps are climbed at walking speed, which lengthens the path.
         let ticks = (way * i64::from(tick_rate) * 2).to_num::<u32>();
         for tick in 0..ticks {
             state.velocity = at(fx_mul(direction, speed), state.velocity.y - fall(tick_rate));

@@ -6,11 +6,11 @@ local Game = {}
 Game.__index = Game
 
 Game.SEATS = 2
---- What all who play together have to agree on: the rules, and the arithmetic of the engine.
+--- Data that all peers have to agree on: the rules, and the arithmetic of the engine.
 Game.OFFER = "push the crates 1, semantics " .. ls.semantics()
 Game.LEFT, Game.RIGHT, Game.JUMP = 1, 2, 4
 
--- Where the players begin, and begin again when they have fallen.
+-- Start positions of the players, to which they return after a fall.
 local STARTS = { -5, 5 }
 
 local function shape(kind, x, y, radius)

@@ -1,8 +1,9 @@
-// Data channels of WebRTC between the members of a room, with the relay for signals and for whoever cannot connect.
+// WebRTC data channels between the members of a room. The relay carries the signals, and packets where no channel
+// opens.
 //
-// A channel is unordered and does not repeat lost packets, like UDP. The addresses stay those of the relay, so that a match
-// does not notice by which way a packet comes. Signals are JSON behind
-// a text that no packet of a match begins with; the relay does not look into either.
+// A channel is unordered and does not repeat lost packets, like UDP. The addresses stay those of the relay, so that a
+// match does not notice which way a packet takes. Signals are JSON after a prefix with which no packet of a match
+// begins; the relay does not look into either.
 const SIGNAL = new TextEncoder().encode("lockstep2d signal ");
 const DECODER = new TextDecoder();
 // Between networks, a STUN server is needed: { iceServers: [{ urls: "stun:HOST:PORT" }] }.
@@ -54,7 +55,7 @@ export class Direct {
         this.#links.clear();
     }
 
-    // Of two, the one with the smaller address calls, also when the other one wishes it.
+    // Of two members, the one with the smaller address calls, even if the other one asks for the connection.
     #connect() {
         const names = new Set(this.#relay.others.map(nameOf));
         [...this.#links.values()].filter(({ name }) => !names.has(name)).forEach(({ address }) => this.#drop(address));
@@ -88,7 +89,7 @@ export class Direct {
     }
 
     async #call(address) {
-        // The answer of whoever is called is a description, too.
+        // The answer of the called member is a description, too.
         const { connection } = this.#link(address);
         await connection.setLocalDescription();
         this.#signal(address, { description: connection.localDescription });

@@ -1,11 +1,11 @@
-// The rules: players push crates. The whole state is the world. `crates/relay/examples/push.rs` has the same in Rust, so
-// that pages and native programs play together.
+// The rules: players push crates. The whole state is the world. `crates/relay/examples/push.rs` has the same rules in
+// Rust, so that pages and native programs play together.
 import { World, box, circle, decodeNativeState, encodeNativeState, nativeOffer } from "lockstep2d";
 
 export const RULES = "push the crates";
 export const SEATS = 4;
 
-/** What all who play together have to agree on. */
+/** Data that all peers have to agree on. */
 export const offer = () => nativeOffer({ rules: RULES, seats: SEATS });
 
 /** Sets up a world, or a list of commands. */
@@ -26,7 +26,7 @@ export class Game {
         this.players = [...this.world.bodies()].slice(1, 1 + SEATS);
     }
 
-    // What the inputs of a tick do, to the world or to a list of commands. Bits of an input: left, right, up.
+    // Applies the inputs of a tick to the world or to a list of commands. Bits of an input: left, right, up.
     apply(inputs, edits) {
         this.players.forEach((player, seat) => {
             const input = inputs[seat];

@@ -10,7 +10,7 @@ export class Tape {
     #parts = [];
     /** Number of recorded ticks. */
     ticks = 0;
-    /** Whether a tick is missing: somebody who joins late does not know the first ones. */
+    /** Whether a tick is missing: a peer that joins late does not have the first ones. */
     broken = false;
 
     constructor() {

@@ -1,8 +1,9 @@
-//! Areas: what a sensor does to the bodies in it, as data.
+//! Areas: effects of a sensor on the bodies in it.
 //!
-//! An area fills its shape with a medium. Two numbers say how much of a body is in it: `A`, the area in m² of the parts
-//! of the body's shapes that are inside, and `s`, their share of the body's whole area. A body without area is measured
-//! by the length of its lines. With the centre of area `c` of the parts inside and the body's mass `M`:
+//! An area fills its shape with a medium. The effects on a body depend on two numbers: `A`, the area in m² of the parts
+//! of the body's shapes that are inside, and `s`, the share of `A` in the area of the whole body. For a body without
+//! area, lengths of lines take the place of areas. With the centre of area `c` of the parts inside and the body's mass
+//! `M`:
 //!
 //! ```text
 //! dv/dt = s acceleration + s attraction + A force / M - s linear_drag (v - u) - A density field / M
@@ -10,8 +11,8 @@
 //! ```
 //!
 //! `field` is the acceleration that the medium feels as well: gravity and the accelerations and attractions of all
-//! areas at the body. `u` is the velocity of the medium, `flow` and the velocity of the area's body. The effects of
-//! several areas add up.
+//! areas at the body. `u` is the velocity of the medium: the sum of `flow` and the velocity of the area's body. The
+//! effects of several areas add up.
 
 use serde::{Deserialize, Serialize};
 
@@ -34,10 +35,10 @@ const RADIUS: core::ops::RangeInclusive<Fx> = fx!(0.01)..=fx!(1048576);
 
 /// Effect of a sensor on the bodies in it: wind, water, a field of gravity.
 ///
-/// It acts on the solid shapes that the sensor detects, of dynamic bodies. Only the part of a shape that is inside
-/// counts, and rounded outlines are measured as polygons of 32 sides, to 0.4 % of their radius. Directions are those of
-/// the area's body, and the medium moves with that body. The body itself feels nothing: an area is an influence from
-/// outside, like gravity.
+/// The area acts on the solid shapes of dynamic bodies that the sensor detects, in proportion to the part of each shape
+/// that is inside. Rounded outlines are measured as polygons of 32 sides, with an error of at most 0.4 % of their
+/// radius. Directions are given in the frame of the area's body, and the medium moves with that body. The area's body
+/// itself feels no reaction: an area is an external influence, like gravity.
 ///
 /// ```
 /// use lockstep2d::{body::{Area, BodyDef, Polygon, ShapeDef}, fx, world::World};
@@ -61,13 +62,13 @@ const RADIUS: core::ops::RangeInclusive<Fx> = fx!(0.01)..=fx!(1048576);
 #[doc(alias = "buoyancy")]
 #[doc(alias = "wind")]
 pub struct Area {
-    /// Acceleration in m/s², along the axes of the area's body, within ±10 000. It adds to gravity, and does not depend
-    /// on the mass.
+    /// Acceleration in m/s², along the axes of the area's body, within ±10 000. It is added to gravity and does not
+    /// depend on the mass.
     pub acceleration: Vec2<Fx>,
     /// Acceleration towards the centre of the shape.
     pub attraction: Option<Attraction>,
-    /// Force in N on each m² in the area, along the axes of the area's body, within ±2^20: a wind that moves light
-    /// things more than heavy ones.
+    /// Force in N per m² of the part that is in the area, along the axes of the area's body, within ±2^20: a wind that
+    /// moves light bodies more than heavy ones.
     pub force: Vec2<Fx>,
     /// Velocity of the medium in m/s relative to the area's body, along that body's axes, within ±400 m/s. It acts
     /// by drag.
@@ -105,21 +106,21 @@ pub struct Area {
 pub struct Attraction {
     /// Acceleration in m/s² at the distance `radius`, within ±10 000. A negative one repels.
     pub acceleration: Fx,
-    /// Distance in metres, 0.01 to 2^20, at which the acceleration is the given one. Nearer it falls evenly to 0, as
-    /// inside a planet.
+    /// Distance in metres, 0.01 to 2^20, at which the acceleration has the given value. Nearer to the centre it
+    /// decreases linearly to 0, as inside a planet.
     pub radius: Fx,
-    /// How the acceleration falls beyond `radius`.
+    /// Falloff of the acceleration beyond `radius`.
     pub falloff: Falloff,
 }
 
-/// How an attraction falls with the distance.
+/// Falloff of an attraction with the distance, beyond its radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Falloff {
-    /// Not at all.
+    /// The acceleration is constant.
     Constant,
-    /// With the distance.
+    /// The acceleration is proportional to `1 / distance`.
     Inverse,
-    /// With the square of the distance, as gravity.
+    /// The acceleration is proportional to `1 / distance²`, as in Newton's law of gravitation.
     InverseSquare,
 }
 
@@ -143,8 +144,8 @@ impl Area {
         self
     }
 
-    /// Sets an acceleration in m/s² towards the centre of the shape at a distance of `radius` metres, and how it falls
-    /// beyond.
+    /// Sets an attraction to the centre of the shape: the acceleration in m/s² at a distance of `radius` metres, and
+    /// its falloff beyond that distance.
     #[must_use]
     pub fn attraction(mut self, acceleration: Fx, radius: Fx, falloff: Falloff) -> Self {
         self.attraction = Some(Attraction { acceleration, radius, falloff });
@@ -179,7 +180,7 @@ impl Area {
         self
     }
 
-    /// Checks the area of a shape with a geometry.
+    /// Validates the area for a shape with the given geometry.
     pub(crate) fn validate(&self, geometry: &Geometry) -> Result<(), WorldError> {
         let Area { acceleration, attraction, force, flow, linear_drag, angular_drag, density } = *self;
         let check = |holds: bool, what: &'static str| match holds {

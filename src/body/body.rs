@@ -228,7 +228,7 @@ impl Body {
         self.enabled
     }
 
-    /// Whether the body is asleep: at rest, and without cost until something wakes it.
+    /// Whether the body is asleep. A sleeping body is at rest, and ticks do not simulate it until something wakes it.
     #[must_use]
     pub const fn is_asleep(&self) -> bool {
         self.island.is_some()

@@ -68,9 +68,9 @@ pub struct BodyDef {
     pub enabled: bool,
     /// Whether the body starts asleep. Only dynamic bodies sleep.
     pub asleep: bool,
-    /// Not used by the engine, but part of the state and its hash.
+    /// Number for the game's own use. The engine does not read it, but it is part of the state and its hash.
     pub user_data: u64,
-    /// Name for people who read reports.
+    /// Name of the body, which is shown in reports.
     pub name: Option<Name>,
 }
 
@@ -225,7 +225,7 @@ impl BodyDef {
         self
     }
 
-    /// Starts the body asleep: it costs nothing until something touches it.
+    /// Starts the body asleep: ticks do not simulate it until something wakes it.
     #[must_use]
     pub const fn asleep(mut self) -> Self {
         self.asleep = true;
@@ -246,7 +246,7 @@ impl BodyDef {
         self
     }
 
-    /// Names the body, for people who read reports.
+    /// Sets the name of the body, which is shown in reports.
     #[must_use]
     pub const fn name(mut self, name: Name) -> Self {
         self.name = Some(name);

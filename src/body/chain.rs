@@ -44,9 +44,9 @@ impl<'a> Chain<'a> {
         self
     }
 
-    /// Makes the chain solid only from its right as seen along the points: a closed chain in counter-clockwise order is
-    /// solid from outside, and ground whose points run from right to left is solid from above. A shape whose centre is
-    /// on the other side passes through.
+    /// Makes the chain solid only from its right side, looking along the points in their order: a closed chain in
+    /// counter-clockwise order is solid from outside, and ground whose points run from right to left is solid from
+    /// above. A shape whose centre is on the other side passes through.
     #[must_use]
     pub fn one_sided(mut self) -> Self {
         self.sides = Sides::Right;

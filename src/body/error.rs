@@ -20,7 +20,7 @@ use crate::math::Fx;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GeometryError {
-    /// A polygon has 3 to 8 vertices.
+    /// The polygon does not have 3 to 8 vertices.
     VertexCount {
         /// Number of vertices given.
         count: u64,
@@ -35,12 +35,12 @@ pub enum GeometryError {
         /// First vertex of an edge that has another vertex on its outer side.
         vertex: u64,
     },
-    /// A chain has at least 2 points, 3 if it is closed, and at most 4096 links.
+    /// The chain has fewer than 2 points (3 if it is closed), or more than 4096 links.
     ChainLength {
         /// Number of points given.
         points: u64,
     },
-    /// A chain takes no materials, one for all links, or one per link.
+    /// The number of materials of a chain is neither 0 nor 1 nor the number of its links.
     MaterialCount {
         /// Number of links.
         links: u64,
@@ -113,7 +113,7 @@ pub enum WorldError {
         /// The coordinate in metres.
         value: Fx,
     },
-    /// A shape or anchor is further from its body's origin on some axis than 128 m, or than 2^30 m if the body is
+    /// A shape or anchor is more than 128 m from its body's origin on some axis, or more than 2^30 m if the body is
     /// fixed.
     OffsetOutOfRange {
         /// The coordinate in metres.
@@ -132,7 +132,7 @@ pub enum WorldError {
     /// Friction is not within 0 to 16, restitution not within 0 to 1.5, rolling resistance not within 0 to 1, a
     /// threshold is not within 0 to 400 m/s, or a surface speed is not within ±400 m/s.
     MaterialOutOfRange,
-    /// The mass of a dynamic body is not within 10 mg to 2^30 kg. From shapes it may also be 0.
+    /// The mass of a dynamic body is not within 10 mg to 2^30 kg. A mass computed from shapes may also be 0.
     MassOutOfRange {
         /// The mass in kg.
         value: Fx,
@@ -152,16 +152,16 @@ pub enum WorldError {
         /// The requested scale.
         value: Fx,
     },
-    /// A property of an area is out of range, or its shape is no sensor or has no inside.
+    /// A property of an area is out of range, or the shape of the area is not a sensor or has no interior.
     AreaOutOfRange {
         /// Name of the property.
         what: &'static str,
     },
     /// A joint connects a body to itself.
     JointToItself(BodyId),
-    /// The bodies of an existing joint cannot be changed.
+    /// The new definition of a joint has other bodies than the joint, which cannot be changed.
     JointOfOtherBodies(JointId),
-    /// A joint has no such part.
+    /// The joint does not have the part that the change addresses, such as a motor.
     JointWithout {
         /// The joint.
         joint: JointId,
@@ -178,7 +178,7 @@ pub enum WorldError {
         /// Name of the setting.
         name: &'static str,
     },
-    /// A limit of the world is the same for its whole life.
+    /// The change would alter a limit of the world, which is fixed when the world is created.
     FixedSetting {
         /// Name of the limit.
         name: &'static str,
@@ -187,9 +187,9 @@ pub enum WorldError {
     NameInvalid,
     /// The world already holds the largest number of bodies, shapes or joints.
     Full {
-        /// The kind of object of which there are too many.
+        /// Kind of object whose limit is reached.
         what: &'static str,
-        /// The largest number.
+        /// Largest number of such objects.
         limit: u32,
     },
     /// The kind of the body does not allow the change: only dynamic bodies take forces and impulses, and fixed bodies

@@ -22,13 +22,13 @@ use serde::{Deserialize, Serialize};
 pub struct EventSwitches {
     /// Begin and end of contacts. A pair reports them if either shape enables them.
     pub contact: bool,
-    /// Hit events: contacts that push after an approach faster than [`crate::world::Config::hit_speed`]. A pair reports
-    /// them if either shape enables them.
+    /// Hit events: contacts that push after an approach at [`crate::world::Config::hit_speed`] or faster. A pair
+    /// reports them if either shape enables them.
     pub hit: bool,
-    /// Detection by sensors.
+    /// Detection of the shape by sensors.
     #[doc(alias = "trigger")]
     pub sensor: bool,
-    /// Whether the shape, if it is a sensor, detects other sensors: those whose `sensor` switch is on.
+    /// Whether the shape, if it is a sensor, detects other sensors whose `sensor` switch is on.
     pub detect_sensors: bool,
 }
 

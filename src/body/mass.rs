@@ -46,9 +46,9 @@ const GYRATION: core::ops::RangeInclusive<Fx> = fx!(0.002)..=fx!(512);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MassSource {
-    /// Computed from the area and density of the shapes. If no shape has both, or there is none, the body is without
-    /// mass: it keeps its velocity but for its damping, and neither gravity nor forces, contacts or joints change it.
-    /// Other bodies it pushes as a kinematic body does.
+    /// Computed from the area and density of the shapes. If no shape has both, the body has no mass: only damping
+    /// changes its velocity, not gravity, forces, contacts or joints, and it pushes other bodies as a kinematic body
+    /// does.
     #[default]
     Shapes,
     /// Given explicitly; the shapes do not matter.
@@ -76,9 +76,9 @@ pub struct MassProperties {
 }
 
 impl MassProperties {
-    /// Properties of a body that nothing moves: fixed, kinematic, or without mass. Its `k` is arbitrary: 4 m allows a
-    /// rotation of 100 rad/s within a speed limit of 400 m/s, and keeps the ratio of the longest lever arm to `k` below
-    /// 91.
+    /// Properties of a body whose velocity no force changes: fixed, kinematic, or without mass. Its `k` is arbitrary: 4
+    /// m allows a rotation of 100 rad/s within a speed limit of 400 m/s, and keeps the ratio of the longest lever arm
+    /// to `k` below 91.
     pub(crate) fn immovable() -> Self {
         Self::new(Fx::ZERO, Vec2::ZERO, fx!(4))
     }

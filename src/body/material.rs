@@ -62,17 +62,17 @@ pub struct Material {
     pub friction: Fx,
     /// Rule that combines the friction of two shapes.
     pub friction_mixing: Mixing,
-    /// Fraction of the approach speed that is returned by a bounce, 0 to 1.5. Above 1 a bounce adds energy, as that of
-    /// a pinball bumper; a pair has at most 2, whatever its mixing rule. A bounce that would change a velocity by more
-    /// than 511 m/s is clamped, and counts as a fault. Shapes that approach more slowly than
-    /// [`Material::restitution_threshold`] do not bounce: by default that of the world, 1 m/s.
+    /// Fraction of the approach speed that a bounce returns, 0 to 1.5. Above 1 a bounce adds energy, as with the
+    /// bumpers of a pinball machine; the combined value of a pair is clamped to 2, whatever its mixing rule. A bounce
+    /// that would change a velocity by more than 511 m/s is clamped, and counts as a fault. Shapes that approach more
+    /// slowly than [`Material::restitution_threshold`] do not bounce; the default is the threshold of the world, 1 m/s.
     pub restitution: Fx,
     /// Rule that combines the restitution of two shapes.
     pub restitution_mixing: Mixing,
-    /// Approach speed in m/s below which the shape does not bounce, 0 to 400. `None` is that of the world,
-    /// [`SolverSettings::restitution_threshold`](crate::solver::SolverSettings::restitution_threshold). A pair uses the
-    /// smaller value of its two shapes, so that a ball with a threshold of 0 bounces on everything, however slowly.
-    /// Such a ball may take long to come to rest, and a pile of them does not become still.
+    /// Approach speed in m/s below which the shape does not bounce, 0 to 400. `None` stands for the threshold of the
+    /// world, [`SolverSettings::restitution_threshold`](crate::solver::SolverSettings::restitution_threshold). A pair
+    /// uses the smaller value of its two shapes, so that a ball with a threshold of 0 bounces on every shape at any
+    /// speed. Such a ball may take long to come to rest, and a pile of such balls does not come to rest.
     pub restitution_threshold: Option<Fx>,
     /// Rolling resistance of a round shape, 0 to 1: the offset of the ground reaction ahead of the axle, as a fraction
     /// of the radius. A pair uses the larger value and the larger radius of its two shapes, where the radius is that of
@@ -140,14 +140,14 @@ impl Material {
         self.friction_mixing.max(other.friction_mixing).mix(self.friction, other.friction)
     }
 
-    /// Combined restitution of two surfaces.
+    /// Combined restitution of two surfaces. The solver clamps it to 2.
     #[must_use]
     pub fn mixed_restitution(&self, other: &Material) -> Fx {
         self.restitution_mixing.max(other.restitution_mixing).mix(self.restitution, other.restitution)
     }
 
-    /// Combined restitution threshold of two surfaces in a world with the threshold `world`: the smaller one of the
-    /// two, each being that of the world if it is `None`.
+    /// Combined restitution threshold of two surfaces in a world with the threshold `world`: the smaller of the two
+    /// thresholds, where `None` stands for `world`.
     #[must_use]
     pub fn mixed_restitution_threshold(&self, other: &Material, world: Fx) -> Fx {
         let [a, b] = [self, other].map(|material| material.restitution_threshold.unwrap_or(world));

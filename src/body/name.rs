@@ -16,7 +16,7 @@ const LENGTH_MAX: usize = 16;
 /// Name of a body: 1 to 16 ASCII letters, digits, `-` and `_`. Reports, inspections, the viewer and pictures show it
 /// after the handle, as in `13v0 ball`.
 ///
-/// It is part of the state, so that a report from another machine has it too. No result of the simulation depends on
+/// The name is part of the state, so that reports from all machines contain it. No result of the simulation depends on
 /// it, and two bodies may have the same name.
 ///
 /// ```

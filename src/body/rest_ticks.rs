@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The number in the state that tells for how long a body has been at rest. Its meaning depends on the kind of body:
+/// Counter in the state of how long a body has been at rest. Its meaning depends on the kind of body:
 ///
 /// | kind | value |
 /// |---|---|
@@ -28,7 +28,7 @@ impl RestTicks {
         RestTicks(bits)
     }
 
-    /// Starts anew, for any kind of body.
+    /// Resets the counter to 0, for any kind of body.
     pub(crate) fn reset(&mut self) {
         self.0 = 0;
     }

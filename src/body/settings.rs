@@ -54,15 +54,16 @@ pub struct MotionLocks {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Continuous {
-    /// None: cheap, for debris.
+    /// No bodies: the cheapest choice, for debris.
     Off,
     /// Fixed bodies.
     #[default]
     Fixed,
     /// All bodies that are not bullets themselves.
     Bullet,
-    /// Fixed bodies, and kinematic bodies relative to which it is fast: not those that carry it along. Such a body
-    /// costs a little in every tick of a world with kinematic bodies, also while it is slow.
+    /// Fixed bodies, and kinematic bodies relative to which the body is fast. A kinematic body that carries it along,
+    /// such as a moving platform, does not stop it. The check has a small cost in every tick of a world with kinematic
+    /// bodies, even while the body is slow.
     Kinematic,
 }
 

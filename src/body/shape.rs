@@ -63,9 +63,9 @@ pub struct ShapeDef {
     /// come through except for a quarter of the world's speculative distance, so a shape that turns round half-way
     /// falls back. A pair that passes does not touch.
     pub one_way: Option<Angle>,
-    /// Whether the shape is a sensor, which detects overlaps and generates no contact response. It detects whatever
-    /// crosses it within a tick as well: see [`SensorEvent`](crate::world::SensorEvent). A sensor detects other sensors
-    /// only with [`EventSwitches::detect_sensors`], and sensors of fixed bodies do not detect fixed bodies.
+    /// Whether the shape is a sensor, which detects overlaps and generates no contact response. It also detects shapes
+    /// that cross it within a tick: see [`SensorEvent`](crate::world::SensorEvent). A sensor detects other sensors only
+    /// with [`EventSwitches::detect_sensors`], and sensors of fixed bodies do not detect fixed bodies.
     #[doc(alias = "trigger")]
     #[doc(alias = "is_trigger")]
     pub sensor: bool,
@@ -73,7 +73,7 @@ pub struct ShapeDef {
     pub area: Option<Area>,
     /// Events in which the shape takes part.
     pub events: EventSwitches,
-    /// Not used by the engine, but part of the state and its hash.
+    /// Number for the game's own use. The engine does not read it, but it is part of the state and its hash.
     pub user_data: u64,
 }
 

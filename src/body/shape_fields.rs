@@ -1,7 +1,7 @@
-//! Encoding of a shape definition: its fields in order, with the sensor and its area in one.
+//! Encoding of a shape definition: its fields in order, with the sensor flag and the area combined into one field.
 //!
-//! In binary formats the sensor is a byte of flags, 1 for a sensor and 2 for an area, and the area follows if it is
-//! there. A shape without an area is encoded as if there were no areas.
+//! In binary formats this field is a byte of flags, 1 for a sensor and 2 for an area, followed by the area if there is
+//! one. For a shape without an area the byte equals the encoding of a `bool`.
 
 use core::fmt;
 
@@ -40,7 +40,7 @@ struct Detection {
     area: Option<Area>,
 }
 
-/// A detection in a human-readable format.
+/// Form of a [`Detection`] in human-readable formats.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
 enum Readable {

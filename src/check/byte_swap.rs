@@ -1,7 +1,7 @@
 //! [`ByteSwaps`]: tests whether the hash covers all state that influences future ticks.
 //!
 //! One byte or a run of bytes in a save is replaced by the bytes of a save of another tick. If the state loaded from
-//! the changed save has the hash of the original, then its future must be the same, too.
+//! the changed save has the hash of the original state, both states must have the same future under the same inputs.
 
 use alloc::boxed::Box;
 use alloc::collections::VecDeque;
@@ -16,7 +16,7 @@ use crate::codec;
 use crate::hash::StateHash;
 use crate::lockstep::Game;
 
-/// Interval in ticks between kept saves, in addition to some at the start.
+/// Interval in ticks between kept saves. Some saves at the start are kept in addition.
 const INTERVAL: u64 = 16;
 /// Number of ticks for which the futures are compared.
 const FUTURE: usize = 48;
@@ -35,7 +35,7 @@ struct Moment<G: Game> {
     tick: u64,
     bytes: Vec<u8>,
     hash: StateHash,
-    /// The inputs of the ticks after it.
+    /// The inputs of the ticks after the saved one.
     inputs: Vec<Vec<G::Input>>,
 }
 

@@ -30,16 +30,16 @@ pub struct Checked {
     pub ticks: u64,
     /// Hash after the last tick.
     pub hash: StateHash,
-    /// The variants in which they were played, in addition to the reference run.
+    /// The variants in which the ticks were played, in addition to the reference run.
     pub variants: Vec<Variant>,
     /// Number of ticks simulated, in all variants together.
     pub simulated: u64,
 }
 
 /// A game that is checked while it is played, for callers that do not have all inputs beforehand. Supports all variants
-/// but [`Variant::Recorded`].
+/// except [`Variant::Recorded`].
 ///
-/// After the first finding it must not be used any more.
+/// A checker must not be used after its first finding.
 ///
 /// ```
 /// # use lockstep2d::{body::BodyDef, world::Command};

@@ -32,16 +32,16 @@ pub enum Fault {
     Phase,
     /// Loading a save leads to a state with another hash than the saved state.
     Loaded,
-    /// Encoding a decoded save leads to other bytes.
+    /// Decoding a save and encoding it again gives different bytes.
     Encoding,
-    /// Saving a loaded state leads to other bytes.
+    /// Saving a loaded state gives different bytes.
     SavedAgain,
     /// The bytes of a save cannot be decoded.
     Unreadable {
         /// Reason.
         why: String,
     },
-    /// The setup started a game the first time but not the next.
+    /// The setup started a game the first time, but was refused later.
     Refused {
         /// Reason.
         why: String,
@@ -64,7 +64,7 @@ pub enum Fault {
 pub enum Guess {
     /// The actual inputs.
     Right,
-    /// Nothing pressed.
+    /// The default input.
     Default,
     /// The inputs of the previous tick, held.
     Held,

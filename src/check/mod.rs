@@ -1,5 +1,5 @@
-//! Checks a game: plays a log of inputs in many variants that must not change the result, and reports the first that
-//! does.
+//! Checks a game: plays a log of inputs in many variants that must not change the result, and reports the first
+//! variant that changes it.
 //!
 //! [`check`] takes a [`Game`] and an input log. It plays the log in a reference run, and beside it in every variant
 //! ([`Variant`]) of [`CheckOptions::variants`]: again from the start, encoded and reloaded at every tick, rolled back

@@ -28,7 +28,7 @@ pub enum Variant {
     Again,
     /// Hash, work, claims and save are polled twice after every tick: polling must not change the state.
     HashPolled,
-    /// The hash is polled after the last tick only: skipping the poll must not change the state either.
+    /// The hash is polled after the last tick only: without polls in between, the final state must be the same.
     HashUnpolled,
     /// After every tick the state is saved, encoded, decoded and loaded into a new game, which continues.
     Reloaded,
@@ -113,11 +113,11 @@ impl fmt::Display for Variant {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Depths {
-    /// One depth with one prediction at a time, the next at the next tick: all combinations within 24 ticks, at a cost
-    /// of about eight steps per tick.
+    /// One combination of depth and prediction per tick, in turn. With the default depths, all combinations occur
+    /// within 24 ticks, at a cost of about eight steps per tick.
     #[default]
     InTurn,
-    /// All depths with all predictions every time: 180 steps per tick.
+    /// All combinations of depth and prediction at every tick, at a cost of 180 steps per tick.
     Each,
 }
 

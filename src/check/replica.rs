@@ -1,4 +1,4 @@
-//! [`Replica`]: a replica that plays one variant beside the reference run.
+//! [`Replica`]: a second instance of the game that plays one variant beside the reference run.
 
 use alloc::boxed::Box;
 use alloc::string::{String, ToString};
@@ -31,7 +31,7 @@ pub(super) struct Now<'a, G: Game> {
     pub(super) claims: Vec<(String, i64)>,
 }
 
-/// A replica that plays one variant beside the reference run.
+/// A second instance of the game that plays one variant beside the reference run.
 pub(super) struct Replica<G: Game> {
     pub(super) variant: Variant,
     game: G,

@@ -1,4 +1,4 @@
-//! Generates inputs of any game from bytes: for a fuzzer, and for plain tests with random numbers.
+//! Generates inputs of any game from bytes, for fuzzers and for tests with random numbers.
 
 use alloc::string::String;
 use alloc::vec;
@@ -65,7 +65,7 @@ where
 /// Maximum nesting depth of values.
 const DEPTH_MAX: u32 = 32;
 
-/// Bytes that answer all requests of a `Deserialize`; zeros after their end.
+/// A deserializer that generates any requested value from bytes. After the last byte, it reads zeros.
 struct Source<'a> {
     bytes: &'a [u8],
     depth: u32,

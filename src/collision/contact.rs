@@ -22,7 +22,7 @@ pub(crate) struct Contact {
     /// Number of points with accumulated impulses.
     pub(crate) count: u8,
     pub(crate) points: [PointImpulse; 2],
-    /// Where the points are, from the centres of mass.
+    /// Lever arms of the points, which are kept from tick to tick.
     pub(crate) arms: KeptArms,
     /// Accumulated angular impulse of rolling resistance, times `(mA + mB) / s`: see `solver/contact/rolling.rs`.
     pub(crate) rolling: Speed,
@@ -39,11 +39,12 @@ pub(crate) struct PointImpulse {
 }
 
 /// The lever arms of a contact, in world axes: the vectors from A's centre of mass to both points, and from B's centre
-/// to A's. Each coordinate is the low 16 bits of a [`Length`](crate::math::Length) in units of 2^-17 m, and each vector
-/// is `x + 2^16 y`, with the signs of both.
+/// of mass to A's. Of each coordinate, in units of 2^-17 m, only the low 16 bits are stored, as a signed number. A
+/// vector is stored as `x + 2^16 y`.
 ///
-/// They stay the same while the shapes hardly move against each other. Arms that follow every movement turn a stack
-/// that leans by itself: columns of more than 40 boxes fall. With kept arms those of 100 stand (`docs/DESIGN.md`).
+/// The arms are kept while the shapes hardly move relative to each other. With arms that follow every movement, a stack
+/// that leans would turn itself further: columns of more than 40 boxes fall. With kept arms, columns of 100 boxes stand
+/// (`docs/DESIGN.md`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct KeptArms(pub(crate) [i32; 3]);
 

@@ -1,4 +1,4 @@
-//! Vectors as floats, for programs that draw. Nothing in the simulation uses them.
+//! Conversion of vectors to floats, for programs that draw. The simulation does not use it.
 
 use crate::math::{Fx, Vec2};
 
@@ -11,8 +11,8 @@ use crate::math::{Fx, Vec2};
 /// assert_eq!(draw::to_f32(ball - camera), [0.25, -1.5]);
 /// ```
 ///
-/// With the feature `mint`, `Vec2<Fx>` converts into the vectors and points of that crate, and by them into those of
-/// `glam`, `nalgebra`, `cgmath` and others: `mint::Vector2::from(v)`.
+/// With the feature `mint`, `Vec2<Fx>` converts into the vectors and points of the crate `mint`, as in
+/// `mint::Vector2::from(v)`, and through them into the types of `glam`, `nalgebra`, `cgmath` and others.
 #[expect(clippy::disallowed_types, reason = "graphics libraries take floats")]
 #[must_use]
 pub fn to_f32(v: Vec2<Fx>) -> [f32; 2] {

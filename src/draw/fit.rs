@@ -10,18 +10,20 @@ use crate::world::World;
 
 /// Minimum radius of a scene in metres: bodies within four times this distance of the median belong to it.
 const SCENE_REACH_MIN: Fx = fx!(16);
-/// Ground is included within this many scene sizes of the scene, unless that is further than [`GROUND_REACH`].
+/// Maximum distance, in scene sizes, at which ground is included.
 const GROUND_SIZES: i64 = 12;
-/// Minimum search distance for ground, in metres, unless the scene is larger. A falling ball should be shown with the
-/// floor below it, but not with a floor so far away that the ball becomes invisible.
+/// Search distance for ground, in metres. For a scene larger than this, the distance is the size of the scene; for a
+/// small scene, [`GROUND_SIZES`] limits it. A falling ball should be shown with the floor below it, but not with a
+/// floor so far away that the ball becomes invisible.
 const GROUND_REACH: Fx = fx!(16);
 /// Maximum size, in metres, of a fixed shape that is shown if no body can move.
 const FIXED_SIZE_MAX: Fx = fx!(512);
 
 /// The window around all bodies that can move, their joints, and the ground near them, with a margin.
 ///
-/// A body far away from all others is left out, because it would make the rest too small to see. Of fixed shapes larger
-/// than the scene only the nearest part is shown. The current positions count, so the window moves with the bodies.
+/// A body far away from all others is left out, because it would make the rest too small to see. Of a fixed shape
+/// larger than the scene, only the nearest part is shown. The window depends on the current positions, so it moves with
+/// the bodies.
 #[must_use]
 pub fn fit(world: &World) -> Aabb {
     let moving = world.bodies().filter(|(_, body)| body.kind() != BodyKind::Fixed);

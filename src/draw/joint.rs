@@ -1,4 +1,5 @@
-//! Primitives of a joint. A distance between the anchors that the joint allows is drawn as the joint itself.
+//! Primitives of a joint. The part of the distance between the anchors that the joint allows is drawn as a joint arm,
+//! and the part that violates the joint as a gap.
 
 use alloc::format;
 
@@ -53,7 +54,7 @@ pub(super) fn add(world: &World, id: JointId, layers: Layers, found: Sink<'_>) {
     }
 }
 
-/// The place for B's anchor, nearest to where it is, at which the joint would hold without error.
+/// The position of B's anchor without joint error that is nearest to its actual position.
 fn nearest_allowed(joint: &Joint, world: &World, (anchor_a, anchor_b): (Vec2<Fx>, Vec2<Fx>)) -> Vec2<Fx> {
     let def = joint.def();
     match &def.kind {

@@ -28,8 +28,8 @@ pub struct Legend {
     pub figures: String,
     /// State hash of the world.
     pub hash: StateHash,
-    /// Names of the styles in the picture, each once, with its colour as `0xRRGGBB`. Styles in many hues have the
-    /// colour of text.
+    /// Names of the styles in the picture, each once, with the colour as `0xRRGGBB`. The name of a style with many hues
+    /// has the colour of text.
     pub names: Vec<(&'static str, u32)>,
 }
 

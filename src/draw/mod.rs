@@ -1,8 +1,8 @@
 //! Pictures of a world: plain primitives for any renderer, and an SVG of a tick.
 //!
-//! [`primitives`] describes the visible things in world coordinates, with a meaning ([`Style`]) instead of a colour, so
-//! that a window, a browser and the SVG output show the same picture. [`svg`] is one such renderer. Drawing reads a
-//! world and cannot change it.
+//! [`primitives`] describes the visible objects in world coordinates, with a meaning ([`Style`]) instead of a colour,
+//! so that a window, a browser and the SVG output show the same picture. [`svg`] is one of these renderers. Drawing
+//! reads a world and cannot change it.
 //!
 //! The contacts are those solved in the last tick. They were found before the bodies moved, so the contacts of a fast
 //! body lag behind its outline by the motion of one tick. Directly after [`World::restore`] or [`World::from_bytes`]

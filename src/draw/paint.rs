@@ -6,7 +6,7 @@ use super::primitive::{ContactProximity, Hue, Style};
 ///
 /// ```
 /// use lockstep2d::draw::{Fill, Paint, Style};
-/// // The colours of the pictures, for a renderer of one's own.
+/// // The colours of the pictures, for a custom renderer.
 /// let Paint { fill, stroke, .. } = Style::Dynamic.paint();
 /// let Some(Fill { opacity, .. }) = fill else { panic!("bodies are filled") };
 /// assert!(opacity < 100 && stroke != Style::Asleep.paint().stroke);

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use crate::body::{BodyId, JointId, ShapeId};
 use crate::math::{Aabb, Fx, Unit, Vec2};
 
-/// The kinds of things to draw.
+/// The layers of a picture: the kinds of objects to draw.
 ///
 /// ```
 /// use lockstep2d::draw::Layers;
@@ -105,7 +105,7 @@ impl Layers {
 }
 
 impl Default for Layers {
-    /// Outlines, fat boxes, contact points and normals, joints and centres of mass: they show most faults.
+    /// Outlines, fat boxes, contact points and normals, joints and centres of mass. These layers show most faults.
     fn default() -> Self {
         Layers {
             outlines: true,
@@ -196,7 +196,7 @@ pub enum Style {
     /// The part of the distance between the two anchors of a joint that violates it:
     /// [`World::joint_error`](crate::world::World::joint_error).
     JointGap,
-    /// The size of that error, as text.
+    /// The size of the joint error, as text.
     JointError,
     /// The direction in which a contact pushes its shape B.
     ContactNormal(ContactProximity),
@@ -215,7 +215,7 @@ pub enum Style {
     Id,
 }
 
-/// One of [`Hue::COUNT`] distinguishable colours, for things that have a number but no meaning.
+/// One of [`Hue::COUNT`] distinguishable colours, for numbered objects such as islands.
 ///
 /// ```
 /// use lockstep2d::draw::Hue;
@@ -232,7 +232,7 @@ impl Hue {
     /// Number of hues.
     pub const COUNT: u8 = 12;
 
-    /// The hue of a number. Hues repeat: 0 and 12 have the same.
+    /// The hue of a number. Hues repeat: 0 and 12 have the same hue.
     #[must_use]
     pub const fn of(number: usize) -> Self {
         #[expect(clippy::cast_possible_truncation, reason = "less than 12")]
@@ -249,7 +249,8 @@ impl Hue {
 /// Whether a contact point is touching or only speculative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ContactProximity {
-    /// Further apart: a speculative contact, which prevents fast shapes from tunnelling.
+    /// Further apart than [`ContactProximity::Touching`]: a speculative contact, which prevents fast shapes from
+    /// tunnelling.
     Speculative,
     /// At most a quarter of the speculative distance apart, the threshold that contact events use.
     Touching,

@@ -28,8 +28,8 @@ pub fn primitives(world: &World, layers: Layers) -> Vec<Primitive> {
     found
 }
 
-/// Like [`primitives`], but passes them to `found` one by one: a large world has a hundred thousand, which are not
-/// stored.
+/// Same as [`primitives`], but passes the primitives to `found` one by one instead of storing them. A large world has a
+/// hundred thousand.
 pub fn each_primitive(world: &World, layers: Layers, found: Sink<'_>) {
     if layers.broad_phase {
         for (aabb, _) in world.broad_phase_boxes() {

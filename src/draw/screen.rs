@@ -9,7 +9,7 @@ use core::fmt;
 use crate::fx;
 use crate::math::{Aabb, Fx, Vec2, div_round, saturate_wide, segment_intersection};
 
-/// Minimum width of the window in metres. In a narrower one the largest shapes (120 m) get coordinates of more than
+/// Minimum width of the window in metres. In a narrower window the largest shapes (120 m) have coordinates of more than
 /// 2^23 pixels, at which common renderers (cairo) overflow.
 const WINDOW_MIN: Fx = fx!(0.02);
 

@@ -40,7 +40,7 @@ impl Default for View {
 /// # use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, world::World};
 /// # let mut world = World::default();
 /// # world.spawn(&BodyDef::dynamic(), &[ShapeDef::new(Geometry::circle(fx!(1))?)])?;
-/// // The camera of the first picture stays where it is in the later ones.
+/// // The later pictures use the window of the first one.
 /// let camera = View { frame: Frame::Window(fit(&world)), ..View::default() };
 /// assert_eq!(svg(&world, &camera), svg(&world, &View::default()));
 /// world.step();
@@ -51,8 +51,8 @@ impl Default for View {
 pub enum Frame {
     /// The window chosen by [`fit`](super::fit()).
     Fit,
-    /// This window, centred, and more of the world on the longer side of the picture. Windows narrower than 2 cm are
-    /// shown as 2 cm.
+    /// This window, centred. If the picture has other proportions, it shows more of the world on its longer side. A
+    /// window narrower than 2 cm is shown as 2 cm wide.
     ///
     /// Use the same window for several ticks of one scene.
     Window(Aabb),

@@ -1,5 +1,5 @@
-//! The envelope of files that hold one value: magic, version of the layout, semantics, length of the body, body, and
-//! the hash of all bytes before it. `docs/FORMAT.md` has the layout.
+//! The envelope of files that hold one value: magic, version of the layout, semantics, length of the body, body, and a
+//! hash of all preceding bytes. `docs/FORMAT.md` gives the layout.
 
 use alloc::vec::Vec;
 
@@ -8,9 +8,9 @@ use serde::{Serialize, de::DeserializeOwned};
 use super::StateHash;
 use crate::codec::{self, DecodeError};
 
-/// Magic, format, semantics, length.
+/// Size of the header: magic, format, semantics, length.
 const HEADER_LEN: usize = 8 + 4 + 4 + 8;
-/// The hash at the end.
+/// Size of the hash at the end.
 const HASH_LEN: usize = 16;
 
 /// A kind of file.
@@ -22,22 +22,22 @@ pub(crate) struct Envelope {
     pub(crate) format: u32,
 }
 
-/// Bytes that are not an intact file of the kind.
+/// Reason why bytes are not an intact file of the expected kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum EnvelopeError {
-    /// They do not start with the magic, or are shorter than a header.
+    /// The bytes do not start with the magic, or are shorter than a header.
     Magic,
-    /// The layout is of another version.
+    /// The layout has another version.
     Format { found: u32 },
     /// The header announces another number of bytes.
     Length { announced: u64, found: u64 },
-    /// The hash at the end does not belong to the bytes before it.
+    /// The hash at the end does not match the bytes before it.
     Hash,
     /// The body does not decode.
     Decode(DecodeError),
 }
 
-/// Bytes with the header of the kind. Length, hash and body are not yet checked.
+/// A file whose header has been read. Length, hash and body are not checked yet.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Opened<'a> {
     bytes: &'a [u8],
@@ -48,7 +48,7 @@ pub(crate) struct Opened<'a> {
 }
 
 impl Envelope {
-    /// The bytes of a file with this body.
+    /// Returns the bytes of a file with this body.
     pub(crate) fn seal<T: Serialize>(&self, semantics: u32, body: &T) -> Vec<u8> {
         let mut bytes = self.magic.to_vec();
         bytes.extend_from_slice(&self.format.to_le_bytes());

@@ -11,7 +11,7 @@ use super::value::Value;
 /// A compound value whose parts are being collected.
 pub(super) struct Compound<'a> {
     collector: &'a mut Collector,
-    /// Name of the variant, if the value is one.
+    /// Name of the variant, if the value is an enum variant.
     variant: Option<&'static str>,
     /// `Some` for a fixed-point number, with its number of fraction bits if known. Its only part is the raw number.
     fixed: Option<Option<u32>>,

@@ -14,7 +14,7 @@ use super::value::{Field, Value};
 /// # use lockstep2d::{fx, math::Vec2, world::World};
 /// # let (mut a, mut b) = (World::default(), World::default());
 /// b.set_gravity(Vec2::new(fx!(0), fx!(-9.81)))?;
-/// // What is it that two machines disagree about?
+/// // The field in which the states of two machines differ.
 /// let [a, b] = [a.save(), b.save()].map(|save| fields(&save).expect("a world"));
 /// let found: Vec<Difference> = differences(&a, &b);
 /// assert_eq!(found.iter().map(|found| found.field().name()).collect::<Vec<_>>(), ["settings.gravity.y"]);

@@ -36,8 +36,8 @@ pub const DEPTH_MAX: u32 = 128;
 
 /// Returns all fields of a value, in serialization order.
 ///
-/// An `Option` gives its value or `none`, a variant its name and its fields, and an empty list or map a field of its
-/// own, so that two values with the same fields are equal.
+/// An `Option` results in the fields of its value or in `none`, a variant in its name and its fields, and an empty list
+/// or map in a field of its own. Therefore two values with the same fields are equal.
 ///
 /// # Errors
 /// [`InspectError`] if the value's `Serialize` returns an error or the value is nested deeper than [`DEPTH_MAX`].

@@ -28,7 +28,7 @@ use crate::math::Angle;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InspectError {
-    /// Message of the value's `Serialize`, or that the value is nested too deep.
+    /// Message of the value's `Serialize`, or the message that the value is nested too deep.
     pub why: String,
 }
 
@@ -93,7 +93,7 @@ impl Collector {
         self.within(|path| path.push_str(&format!("[{at}]")), value)
     }
 
-    /// Adds an entry of a map. The entries of the outermost map are the objects that a report names.
+    /// Adds an entry of a map. The entries of the outermost map are the objects that a report refers to.
     pub(super) fn entry<T: Serialize + ?Sized>(&mut self, key: &str, value: &T) -> Result<(), InspectError> {
         let (outer, section) = (self.thing, self.path.len());
         let length = section + usize::from(section > 0) + key.len();

@@ -120,7 +120,7 @@ impl fmt::Display for Value {
 /// # let mut world = World::default();
 /// world.spawn(&BodyDef::dynamic(), &[])?;
 /// let fields = fields(&world.save()).expect("a world");
-/// // An inspector of one's own: everything about one body.
+/// // A custom inspector, which lists all fields of one body.
 /// let of_body = |field: &&Field| field.thing().is_some_and(|thing| thing.ends_with("body 0v0"));
 /// let names: Vec<_> = fields.iter().filter(of_body).map(Field::name).collect();
 /// assert!(names.contains(&"velocity.x"), "{names:?}");
@@ -148,7 +148,8 @@ impl Field {
         self.thing.map(|(end, _)| &self.path[..end])
     }
 
-    /// Section that contains the field, such as `world.bodies`: the path of the outermost map, or else the first name.
+    /// Section that contains the field, such as `world.bodies`: the path of the outermost map, or the first name if
+    /// there is no map.
     #[must_use]
     pub fn section(&self) -> &str {
         let end = match self.thing {

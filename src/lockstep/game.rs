@@ -9,7 +9,8 @@ use serde::{Serialize, de::DeserializeOwned};
 use crate::hash::StateHash;
 use crate::world::World;
 
-/// Identifies the rules that a replay was made with. Bump `version` whenever the same inputs lead to another state.
+/// Identifies the rules that a replay was made with. Increment `version` whenever a change of the rules lets the same
+/// inputs lead to a different state.
 ///
 /// ```
 /// use lockstep2d::lockstep::RulesId;
@@ -63,7 +64,7 @@ impl fmt::Display for StartError {
 
 impl core::error::Error for StartError {}
 
-/// A setup that cannot start a game.
+/// Error: a setup cannot start a game.
 ///
 /// ```
 /// use lockstep2d::lockstep::SetupError;
@@ -145,9 +146,8 @@ pub trait Game: Sized {
     type Setup: Serialize + DeserializeOwned;
     /// Input of one player for one tick. `Default` is "nothing pressed".
     type Input: Clone + Default + PartialEq + Serialize + DeserializeOwned;
-    /// Complete copy of the state, which [`Game::load`] restores. It is complete, so that it can be sent to a late
-    /// joiner and compared with another machine's. In human-readable formats its field names are those shown in desync
-    /// reports.
+    /// Complete copy of the state, which [`Game::load`] restores. Saves are sent to late joiners and compared with
+    /// those of other machines. Desync reports show the field names of the human-readable serialization.
     type Save: Clone + Serialize + DeserializeOwned;
 
     /// The name and version of the rules.
@@ -156,12 +156,12 @@ pub trait Game: Sized {
     /// Creates the game before its first tick.
     ///
     /// # Errors
-    /// [`SetupError`] when the setup is not playable. It may come from an untrusted file.
+    /// [`SetupError`] when the setup is not playable. A setup may come from an untrusted file.
     fn new(setup: &Self::Setup) -> Result<Self, SetupError>;
 
-    /// Creates the game before its first tick if that takes at most `work_max` work units, and returns it with the
-    /// units that it took. The default calls [`Game::new`] and counts nothing. Override it if a setup from an untrusted
-    /// file can make the start expensive: it must stop before the cost is paid.
+    /// Creates the game before its first tick if this takes at most `work_max` work units, and returns the game with
+    /// the number of units used. The default calls [`Game::new`] and counts nothing. Override it if a setup from an
+    /// untrusted file can make the start expensive; the override must stop before it exceeds the budget.
     ///
     /// # Errors
     /// [`StartError`] when the setup is not playable or takes more work.
@@ -190,15 +190,15 @@ pub trait Game: Sized {
     /// Restores a saved state.
     fn load(&mut self, save: &Self::Save);
 
-    /// Upper bound of the cost of the next tick in work units, which lets a verifier limit what an untrusted file makes
-    /// it compute. The sandbox counts bodies, contacts and joints, times sub-steps.
+    /// Upper bound of the cost of the next tick in work units, with which a verifier limits the computing time of an
+    /// untrusted file. The sandbox counts bodies, contacts and joints, times sub-steps.
     fn work(&self, inputs: &[Self::Input]) -> u64;
 
-    /// Input of a seat without a player, in every tick before its player has joined and after they have left. The
-    /// default is "nothing pressed". A game that has to tell absence from idleness returns an input that no player can
-    /// send.
+    /// Input of a seat without a player, in every tick before a player has joined and after the player has left. The
+    /// default is "nothing pressed". A game that distinguishes absence from idleness returns an input that no player
+    /// can send.
     ///
-    /// It is an ordinary input and is recorded in the replay, so all peers agree on the tick at which a player left.
+    /// The replay records it like any other input, so all peers agree on the tick at which a player left.
     #[must_use]
     fn absent() -> Self::Input {
         Self::Input::default()
@@ -218,7 +218,8 @@ pub trait Game: Sized {
     /// Results that the game reports at the end of a replay, such as a score or a time: at most 256 values with
     /// different names of 1 to 64 bytes.
     ///
-    /// A replay stores them, so that they can be read without playing it. A verifier compares them with its own.
+    /// A replay stores the claims, so that they can be read without playing it. A verifier compares them with the
+    /// claims of its own simulation.
     fn claims(&self) -> Vec<(String, i64)> {
         Vec::new()
     }

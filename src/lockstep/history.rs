@@ -1,4 +1,4 @@
-//! [`History`]: saves of the last seconds of a game, so that a divergence that is detected late can be examined at its
+//! [`History`]: saves of the last seconds of a game, with which a divergence that is detected late is examined at its
 //! first tick.
 
 use alloc::collections::VecDeque;
@@ -32,8 +32,8 @@ pub struct Past<S> {
     pub save: S,
 }
 
-/// Ticks kept in addition to the promised two seconds: mispredicted ticks push out older ones, and a rollback may
-/// discard up to this many ticks.
+/// Number of ticks kept in addition to the guaranteed two seconds. Mispredicted ticks displace older ones, and a
+/// rollback discards up to this many ticks.
 const ROLLBACK_TICKS: u32 = 16;
 
 /// Saves and state hashes of the last ticks. Saves of a world share unchanged data, so a few seconds of them cost

@@ -69,8 +69,8 @@ impl<I: Serialize + DeserializeOwned> EncodedInputs<I> {
     /// Encodes the inputs of all players, then decodes the bytes.
     ///
     /// # Errors
-    /// [`InputError`] when there is not exactly one input per player, or when they do not survive encoding and
-    /// decoding.
+    /// [`InputError`] when there is not exactly one input per player, or when the encoded inputs do not decode to
+    /// inputs with the same encoding.
     pub fn new(inputs: &[I], players: u32) -> Result<Self, InputError> {
         Self::from_bytes(encode_checked(inputs, players)?, players)
     }
@@ -87,7 +87,7 @@ impl<I: Serialize + DeserializeOwned> EncodedInputs<I> {
     /// Encodes the inputs of all players. Returns `None` if the bytes equal those of `last`; otherwise decodes them.
     ///
     /// # Errors
-    /// As [`EncodedInputs::new`].
+    /// Same as [`EncodedInputs::new`].
     pub(crate) fn new_after(
         last: Option<&Self>,
         inputs: &[I],
@@ -192,7 +192,7 @@ impl<I: Serialize + DeserializeOwned> InputLog<I> {
     /// Logs the inputs of the next tick and returns the inputs to step the game with: encoded and decoded.
     ///
     /// # Errors
-    /// [`InputError`] when they cannot be logged; the log is then unchanged.
+    /// [`InputError`] when the inputs cannot be logged; the log is then unchanged.
     pub fn push(&mut self, inputs: &[I]) -> Result<&[I], InputError> {
         let last = self.runs.last().map(|run| &run.inputs);
         let new = EncodedInputs::new_after(last, inputs, self.players)?;
@@ -239,7 +239,7 @@ impl<I: Serialize + DeserializeOwned> InputLog<I> {
         self.runs.get(index).map(|run| &run.inputs)
     }
 
-    /// Removes all ticks but the first `ticks`.
+    /// Removes all ticks after the first `ticks` ones.
     pub fn truncate(&mut self, ticks: u64) {
         let keep = self.runs.partition_point(|run| run.end <= ticks);
         let start = keep.checked_sub(1).map_or(0, |before| self.runs[before].end);

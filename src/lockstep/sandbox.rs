@@ -84,8 +84,8 @@ impl Sandbox {
         &self.world
     }
 
-    /// Mutable access to the world, to configure what is not state: caches and the broad phase. Any other change is
-    /// missing from the input log, so a replay diverges.
+    /// Mutable access to the world, to configure caches and the broad phase, which are not state. Any other change is
+    /// missing from the input log, so a replay of the log diverges.
     pub fn world_mut(&mut self) -> &mut World {
         &mut self.world
     }
@@ -114,7 +114,7 @@ impl Game for Sandbox {
         }
     }
 
-    /// Every command counts as in a tick. What a setup may take is also limited to 100 million units.
+    /// Every command costs as many work units as in a tick. A setup is also limited to 100 million units.
     fn new_within(setup: &SandboxSetup, work_max: u64) -> Result<(Self, u64), StartError> {
         let max = work_max.min(SETUP_WORK_MAX);
         let refused = |why| StartError::Refused(SetupError { why });
@@ -181,8 +181,8 @@ impl Game for Sandbox {
     }
 
     /// Bodies, shapes, pairs and joints, times the solver's sub-steps and iterations. Shapes that were just placed on
-    /// top of each other make pairs that do not exist yet: in the worst case as many as the world allows, for which the
-    /// broad phase compares every shape with every other. The world itself counts what depends on the course of the
+    /// top of each other create new pairs in the tick: in the worst case as many as the world allows, for which the
+    /// broad phase compares every shape with every other. The world itself counts work that is known only during the
     /// tick.
     fn work(&self, inputs: &[Vec<Command>]) -> u64 {
         let mut costs = Costs::of(&self.world);

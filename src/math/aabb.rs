@@ -1,4 +1,4 @@
-//! Axis-aligned bounding boxes. Comparisons and unions are exact; sums saturate at the edge of the world.
+//! Axis-aligned bounding boxes. Comparisons and unions are exact; sums saturate at the limits of the number format.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,7 +24,7 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// An invalid box that overlaps no valid box.
+    /// An invalid box that overlaps no box within the world.
     pub(crate) const NOWHERE: Self =
         Aabb { lower: Vec2::new(Fx::MAX, Fx::MAX), upper: Vec2::new(Fx::MIN, Fx::MIN) };
 
@@ -104,8 +104,8 @@ impl Aabb {
         Aabb::new(self.lower - margin, self.upper + margin)
     }
 
-    /// Like [`Aabb::expanded`], for a box and a margin within the world: such a sum cannot overflow, so it does not
-    /// saturate.
+    /// Like [`Aabb::expanded`], for a box and a margin within the world: their sum cannot overflow, so it is not
+    /// saturated.
     #[inline]
     #[must_use]
     pub(crate) fn expanded_nearby(self, margin: Fx) -> Self {

@@ -62,7 +62,8 @@ impl Angle {
         self.0
     }
 
-    /// A fraction of a rotation given in units of 2^-32 turn, which may exceed a turn.
+    /// Creates an angle from `fraction` times a rotation of `turns` units of 2^-32 turn. The rotation may exceed a full
+    /// turn.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "angles wrap")]
     pub(crate) const fn from_wide_turns(turns: i64, fraction: Fx) -> Self {
         let part = super::formats::round_shift_wide(turns as i128 * fraction.to_bits() as i128, 32);

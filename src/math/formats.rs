@@ -1,8 +1,8 @@
 //! Number formats, one alias per quantity, and the operations that convert between them.
 //!
-//! Every operation here rounds once, to nearest (ties towards +infinity), and saturates instead of wrapping, in every
-//! build profile. The binary point of the result is inferred from its type, so the compiler checks the scales: `let s:
-//! Separation = mul(length, unit);` cannot be off by a shift.
+//! Every operation here rounds once, to nearest (ties towards +infinity; away from zero in divisions), and saturates
+//! instead of wrapping, in every build profile. The binary point of the result is inferred from its type, so the
+//! compiler checks the scales: `let s: Step = mul(length, unit);` cannot be off by a shift.
 //!
 //! The ranges were chosen with a floating-point probe over the benchmark scenes; `docs/DESIGN.md` has the largest value
 //! of each quantity.
@@ -14,7 +14,8 @@ use fixed::{FixedI32, FixedI64};
 pub type Fx = FixedI64<U32>;
 /// A vertex relative to its shape's centre, or a lever arm, in metres: ±512, resolution 0.24 µm.
 pub type Length = FixedI32<U22>;
-/// A speed in m/s: ±1024, resolution 4.8e-7. Used for linear velocity, `u = k w`, and the impulse of a row as a speed.
+/// A speed in m/s: ±1024, resolution 4.8e-7. Used for linear velocity, for angular velocity times the radius of
+/// gyration, `u = k w`, and for the impulse of a row as a speed.
 pub type Speed = FixedI32<U21>;
 /// Displacement within one step, or separation of a contact, in metres: ±16, resolution 7.5 nm.
 pub type Step = FixedI32<U27>;
@@ -23,7 +24,7 @@ pub type Step = FixedI32<U27>;
 pub type Shift = FixedI32<U26>;
 /// Component of a unit vector, sine, cosine, mass fraction or gain: ±2, resolution 9.3e-10.
 pub type Unit = FixedI32<U30>;
-/// Lever ratio `e = c / k`: ±128, resolution 6e-8.
+/// Lever ratio `e = c / k`, a lever arm divided by a radius of gyration: ±128, resolution 6e-8.
 pub type Ratio = FixedI32<U24>;
 /// Rate at which a constraint error is turned into speed, in 1/s: ±8192, resolution 3.8e-6.
 pub type Rate = FixedI32<U18>;
@@ -34,7 +35,8 @@ pub type FrictionRatio = FixedI32<U20>;
 #[inline]
 #[must_use]
 pub const fn round_shift(x: i64, shift: u32) -> i64 {
-    // All bits but one are dropped before one half is added, so that the sum cannot overflow.
+    // All bits to be dropped except the highest are shifted out before one half is added, so that the sum cannot
+    // overflow.
     if shift == 0 { x } else { ((x >> (shift - 1)) + 1) >> 1 }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! All are based on the sign of `(b - a) x (c - a)`, computed without rounding for any world coordinates, so that
 //! results for neighbouring inputs never contradict each other (J. R. Shewchuk, "Adaptive Precision Floating-Point
-//! Arithmetic and Fast Robust Geometric Predicates", 1997, describes the failures otherwise). Only points that are
+//! Arithmetic and Fast Robust Geometric Predicates", 1997, describes how rounded predicates fail). Only points that are
 //! returned are rounded: once, to nearest, ties towards +infinity.
 
 use super::formats::Fx;

@@ -13,7 +13,7 @@ use super::formats::{Fx, div_round, round_shift, round_shift_wide, saturate, sat
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Length, Reciprocal}};
-/// // A division for many values, paid once: shares of a prize among seven.
+/// // One division serves many products: shares of a prize among seven.
 /// let seventh = Reciprocal::of_integer(7);
 /// let share: Length = seventh.times(Length::from_num(21));
 /// assert_eq!(share, Length::from_num(3));
@@ -31,7 +31,7 @@ impl Reciprocal {
     /// Reciprocal of an infinite length, the radius of gyration of a body that does not rotate.
     pub const ZERO: Self = Reciprocal { mantissa: 0, shift: 0 };
 
-    /// `1 / x`, with a relative error of 2^-31. `x` must be at least 2^-30 and below 2^30.
+    /// `1 / x`, with a relative error of at most 2^-31. `x` must be at least 2^-30 and below 2^30.
     ///
     /// # Panics
     /// If `x` is not in that range.

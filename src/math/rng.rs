@@ -5,8 +5,8 @@
 //! bytes of state, period 2^64, and 2^63 independent streams. It was chosen over xoshiro256** because it has half the
 //! state to snapshot and hash. It is not cryptographically secure.
 //!
-//! Bounded numbers are unbiased (D. Lemire, "Fast Random Integer Generation in an Interval", 2019), so they may draw
-//! more than once; the number of draws depends on the state alone.
+//! Bounded numbers are unbiased (D. Lemire, "Fast Random Integer Generation in an Interval", 2019), so a bounded number
+//! may take several draws. The number of draws depends only on the state and the bound.
 
 use serde::{Deserialize, Serialize};
 
@@ -68,7 +68,8 @@ impl Rng {
     pub const fn below(&mut self, bound: u32) -> u32 {
         let mut product = self.next_u32() as u64 * bound as u64;
         if low_half(product) < bound {
-            // The lowest `2^32 mod bound` fractions would make some results likelier than others.
+            // Rejects the `2^32 mod bound` lowest values of the lower half, which would make some results likelier than
+            // others.
             let unfair = bound.wrapping_neg() % bound;
             while low_half(product) < unfair {
                 product = self.next_u32() as u64 * bound as u64;

@@ -79,7 +79,7 @@ impl Vec2<Fx> {
     #[must_use]
     pub const fn normalized(self) -> Option<Vec2<Unit>> {
         let (x, y) = (self.x.to_bits(), self.y.to_bits());
-        // A vector that fits 32 bits has the same direction there, bit for bit, because all shifts are exact.
+        // For a vector that fits 32 bits, the 32-bit computation gives the same bits, because all shifts are exact.
         if let (Some(x), Some(y)) = (narrowed(x), narrowed(y)) {
             return match polar(x, y) {
                 Some((direction, _)) => Some(direction),
@@ -246,7 +246,7 @@ const fn root_wide(n: u128) -> u128 {
         return 0;
     }
     // `m / sqrt(m)` for the upper half of `n 2^shift` has 32 bits. The rest of `n` extends it to 63 bits, as
-    // `(n - r^2) / (2 sqrt(n))`. Exact squares decide the last unit.
+    // `(n - r^2) / (2 sqrt(n))`. The loops below compare exact squares to correct the last unit.
     let shift = n.leading_zeros() & !1;
     let m = high_half(n << shift);
     let inverse = inverse_root(m); // 2^63 / sqrt(m)

@@ -1,9 +1,9 @@
 //! Sine, cosine and arc tangent in integer arithmetic.
 //!
 //! `sin(pi x / 2) = x (c0 - c1 z + c2 z^2 - ... - c5 z^5)` with `z = x^2`, for `x` in one quarter turn. The whole turn
-//! is folded to it by symmetry: the sine is exactly odd, the cosine exactly even, and both are exact at the quarter
-//! turns. `atan(t) = t (c0 - c1 z + ... + c6 z^6)` for `|t| <= tan(1/16 turn)`. The plane is folded at the diagonal and
-//! by `atan t = pi/4 - atan((1 - t) / (1 + t))`.
+//! is folded to this quarter by symmetry: the sine is exactly odd, the cosine exactly even, and both are exact at the
+//! quarter turns. `atan(t) = t (c0 - c1 z + ... + c6 z^6)` for `|t| <= tan(1/16 turn)`. The plane is folded at the
+//! diagonal and by `atan t = pi/4 - atan((1 - t) / (1 + t))`.
 //!
 //! The coefficients are minimax (Remez exchange with 50 digits, weighted by the absolute error of the result; those of
 //! the sine under the constraint that it is 1 at the quarter turn), then rounded to the scale given at each. The two
@@ -31,7 +31,7 @@ pub(super) const fn sine(angle: u32) -> i32 {
 #[inline]
 const fn sine_of_quarter_turn(angle: u32) -> i32 {
     /// In units of 2^-33, 2^-32, 2^-35, 2^-39, 2^-44 and 2^-48: each product below just fits 64 bits. All but the last
-    /// coefficient contain one half, so that dropping bits rounds.
+    /// coefficient contain the rounding constant of one half, so that dropping bits rounds to nearest.
     const C: [u64; 6] =
         [13_493_037_702, 2_774_394_650, 2_738_216_371, 2_573_744_741, 2_818_456_289, 961_408_605];
     let x = angle as u64;

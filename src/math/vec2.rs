@@ -91,7 +91,7 @@ impl<T: Fixed> SubAssign for Vec2<T> {
     }
 }
 
-/// [`Vec2::scale`]: rounded to nearest, saturated.
+/// Multiplication by a factor, like [`Vec2::scale`]: rounded to nearest, saturated.
 ///
 /// ```
 /// # use lockstep2d::{fx, math::Vec2};
@@ -169,13 +169,15 @@ impl<A: LeEqU32> Vec2<FixedI32<A>> {
 }
 
 impl Vec2<Fx> {
-    /// Sum that must not overflow, at a fraction of the cost. On overflow it wraps, in every build profile.
+    /// Sum without the cost of saturation, for operands whose sum does not overflow. An overflow wraps, in every build
+    /// profile.
     #[inline]
     pub(crate) fn wrapping_add(self, other: Self) -> Self {
         Vec2::new(self.x.wrapping_add(other.x), self.y.wrapping_add(other.y))
     }
 
-    /// Difference that must not overflow. On overflow it wraps, in every build profile.
+    /// Difference without the cost of saturation, for operands whose difference does not overflow. An overflow wraps,
+    /// in every build profile.
     #[inline]
     pub(crate) fn wrapping_sub(self, other: Self) -> Self {
         Vec2::new(self.x.wrapping_sub(other.x), self.y.wrapping_sub(other.y))

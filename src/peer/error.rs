@@ -14,7 +14,7 @@ use crate::session::ConfigError;
 /// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 /// use lockstep2d::peer::{LinkConditions, Network, Peer, PeerError, PeerIdentity, PeerOptions};
 /// # let network = Network::new(LinkConditions::default(), 1);
-/// // From a settings screen: the smallest delay is larger than the largest.
+/// // Invalid settings: the smallest delay is larger than the largest.
 /// let options = PeerOptions { delay: (9, 3), start_with: 1, ..PeerOptions::lockstep() };
 /// let me = PeerIdentity::new([1, 2, 3, 4]);
 /// match Peer::<Sandbox, _>::host(&SandboxSetup::default(), options, me, network.port(0)) {
@@ -28,34 +28,34 @@ pub enum PeerError {
     Record(RecordError),
     /// An option is out of its range.
     Config(ConfigError),
-    /// An input takes another number of bytes than [`PeerOptions::input_bytes`](super::PeerOptions::input_bytes)
-    /// allows.
+    /// An encoded input does not have the length that
+    /// [`PeerOptions::input_bytes`](super::PeerOptions::input_bytes) allows.
     InputLength {
         /// Bytes of the encoded input.
         bytes: usize,
-        /// Bytes that are possible.
+        /// Number of bytes available for an input.
         possible: usize,
     },
-    /// The number of inputs is not that of your own seats.
+    /// The number of inputs is not the number of this peer's own seats.
     InputCount {
         /// Number of own seats.
         seats: usize,
         /// Number of inputs.
         inputs: usize,
     },
-    /// The match does not have the seat that was asked for.
+    /// The match does not have the requested seat.
     Seat {
         /// The seat.
         seat: u8,
         /// Number of seats of the match.
         seats: u8,
     },
-    /// The seat that was asked for belongs to somebody else.
+    /// The requested seat belongs to another peer.
     SeatTaken {
         /// The seat.
         seat: u8,
     },
-    /// The parameters of the others differ.
+    /// The parameters of the contact differ from those of this peer.
     Parameters(Vec<ParameterDifference>),
     /// The contact refuses.
     Refused {
@@ -67,7 +67,7 @@ pub enum PeerError {
         /// Reason.
         why: String,
     },
-    /// The session asks for a state that is not kept.
+    /// A state is needed that is no longer kept.
     NoState {
         /// Number of ticks played.
         tick: u64,

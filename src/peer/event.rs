@@ -1,11 +1,11 @@
-//! [`PeerEvent`]: what happened in a match; [`PeerEnd`]: what remains of it.
+//! [`PeerEvent`]: an event of a match; [`PeerEnd`]: the result of a finished peer.
 
 use alloc::vec::Vec;
 
 use crate::hash::StateHash;
 use crate::session::{Event, PeerId};
 
-/// Something that happened in a match.
+/// An event of a match.
 ///
 /// ```
 /// use lockstep2d::peer::PeerEvent;
@@ -26,16 +26,16 @@ use crate::session::{Event, PeerId};
 pub enum PeerEvent {
     /// An event of the session.
     Session(Event),
-    /// The initial state has arrived; the game goes on from it.
+    /// The initial state has arrived; the game continues from it.
     Joined {
-        /// Number of ticks that lead to this state.
+        /// Number of ticks played before this state.
         tick: u64,
     },
-    /// Another peer has another state. Write [`Peer::report`](super::Peer::report) to a file.
+    /// Another peer has a different state. Write [`Peer::report`](super::Peer::report) to a file.
     Desync(PeerDesync),
 }
 
-/// Two peers had different states.
+/// A desync: this peer and another one had different states at a final tick.
 ///
 /// ```
 /// # use lockstep2d::lockstep::Game;
@@ -100,7 +100,7 @@ pub struct PeerDesync {
 pub struct PeerEnd<G> {
     /// Number of final ticks.
     pub ticks: u64,
-    /// The game after that tick.
+    /// The game after the last final tick.
     pub game: G,
     /// Last bytes of the replay. Empty for a peer that joined after the first tick.
     pub replay: Vec<u8>,

@@ -1,4 +1,4 @@
-//! [`InputSlot`]: inputs of a game in the fixed number of bytes that a session carries.
+//! [`InputSlot`]: encodes inputs of a game in the fixed number of bytes that a session transmits.
 
 use alloc::vec::Vec;
 
@@ -7,17 +7,17 @@ use serde::{Serialize, de::DeserializeOwned};
 use super::error::PeerError;
 use crate::codec;
 
-/// Encoding of inputs in the bytes of a session.
+/// Encoding of an input in a fixed number of bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum InputSlot {
     /// Every input has this many bytes.
     Fixed(u16),
-    /// Two bytes say how many bytes an input has, at most this many. The rest is zero.
+    /// Two bytes state the length of an input, which is at most this many bytes. Zeros fill the rest.
     Prefixed(u16),
 }
 
 impl InputSlot {
-    /// The slot for a game: as large as its default input, or for inputs of up to `bytes` bytes.
+    /// The slot for a game: as long as its default input, or for inputs of up to `bytes` bytes.
     pub(super) fn of<I: Serialize + Default>(bytes: Option<u16>) -> Result<Self, PeerError> {
         let default = codec::encode(&I::default()).len();
         match (bytes, u16::try_from(default)) {
@@ -30,7 +30,7 @@ impl InputSlot {
     /// Bytes that an input takes in the session.
     pub(super) fn bytes(self) -> u16 {
         match self {
-            // A session carries at least a byte.
+            // A session transmits at least one byte.
             InputSlot::Fixed(bytes) => bytes.max(1),
             InputSlot::Prefixed(bytes) => bytes.saturating_add(2),
         }
@@ -59,7 +59,7 @@ impl InputSlot {
         Ok(())
     }
 
-    /// The input in a slot. Bytes that are not one count as the default, for every peer.
+    /// Decodes the input in a slot. All peers decode invalid bytes as the default input.
     pub(super) fn take<I: Default + DeserializeOwned>(self, slot: &[u8]) -> I {
         let encoded = match self {
             InputSlot::Fixed(bytes) => slot.get(..usize::from(bytes)),

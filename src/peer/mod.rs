@@ -1,9 +1,9 @@
-//! A participant of a match of any [`Game`](crate::lockstep::Game): a [`session`](crate::session) with a game, its
-//! saved states and its replay.
+//! A participant in a match of any [`Game`](crate::lockstep::Game): a [`session`](crate::session) together with the
+//! game, its saved states and its replay.
 //!
-//! Everything works without a clock and without sockets: the time is passed to [`Peer::update`], and packets go through
-//! a [`Transport`]. Lockstep and rollback are one mechanism: [`PeerOptions::guess`] is how many ticks may be played
-//! with guessed inputs.
+//! A peer uses neither a clock nor a socket of its own: the time is passed to [`Peer::update`], and packets go through
+//! a [`Transport`]. Lockstep and rollback are one mechanism: [`PeerOptions::guess`] is the number of ticks that may be
+//! played with guessed inputs, and 0 is lockstep.
 //!
 //! ```no_run
 //! # use lockstep2d::lockstep::Game;

@@ -10,9 +10,9 @@ use super::transport::Transport;
 use crate::math::Rng;
 use crate::session::Address;
 
-/// Additional delay of a packet that later ones overtake.
+/// Additional delay of a reordered packet, which later packets overtake.
 const REORDER_DELAY: Duration = Duration::from_millis(20);
-/// Packets that wait for one receiver at most; further ones are lost, as in the buffer of a socket.
+/// Maximum number of packets waiting for one receiver. Further ones are lost, as when the buffer of a socket is full.
 const QUEUE_MAX: usize = 8192;
 
 /// Conditions of a link in one direction. The default is a link without delay or loss.
@@ -20,7 +20,7 @@ const QUEUE_MAX: usize = 8192;
 /// ```
 /// use core::time::Duration;
 /// use lockstep2d::peer::{LinkConditions, Network, Transport};
-/// // A train: how does the game feel there?
+/// // The conditions of a mobile connection in a train.
 /// let train = LinkConditions { jitter: Duration::from_millis(60), loss: 10, ..LinkConditions::default() };
 /// let network = Network::new(train, 1);
 /// let (mut phone, mut server) = (network.port(1), network.port(2));
@@ -39,12 +39,12 @@ pub struct LinkConditions {
     pub loss: u8,
     /// Packets in percent that arrive twice.
     pub duplication: u8,
-    /// Packets in percent that arrive 20 ms later than they would, so that later ones overtake them.
+    /// Packets in percent that are delayed by another 20 ms, so that later packets overtake them.
     pub reordering: u8,
 }
 
 impl LinkConditions {
-    /// A link with this latency and nothing else.
+    /// A link with this latency, without jitter, loss, duplication or reordering.
     #[must_use]
     pub const fn latency(latency: Duration) -> Self {
         LinkConditions { latency, jitter: Duration::ZERO, loss: 0, duplication: 0, reordering: 0 }
@@ -73,7 +73,7 @@ pub struct Network(Arc<Mutex<State>>);
 /// use lockstep2d::peer::{LinkConditions, Network, Port, Transport};
 /// let network = Network::new(LinkConditions::default(), 1);
 /// let [mut phone, mut server]: [Port; 2] = [1, 2].map(|number| network.port(number));
-/// // In the tunnel the phone hears the server, and not the other way round.
+/// // The phone receives packets of the server, but the server receives none of the phone.
 /// network.cut(1, 2);
 /// phone.send(b"lost", &server.address());
 /// server.send(b"heard", &phone.address());
@@ -89,16 +89,16 @@ pub struct Port {
 #[derive(Debug)]
 struct State {
     conditions: LinkConditions,
-    /// Conditions of single links, by sender and receiver.
+    /// Conditions of individual links, by sender and receiver.
     links: BTreeMap<(u32, u32), LinkConditions>,
     /// Links that lose all packets.
     cut: BTreeSet<(u32, u32)>,
     rng: Rng,
     now: Duration,
     sent: u64,
-    /// Time at which the last packet of a link arrives, as packets keep their order.
+    /// Time at which the last packet of a link arrives. Later packets arrive no earlier, so that the order is kept.
     last: BTreeMap<(u32, u32), Duration>,
-    /// Packets under way, by time of arrival and order of sending.
+    /// Packets in flight, by time of arrival and order of sending.
     flying: BTreeMap<(Duration, u64), Datagram>,
     arrived: BTreeMap<u32, VecDeque<(u32, Vec<u8>)>>,
 }
@@ -127,7 +127,7 @@ impl Network {
         })))
     }
 
-    /// The socket with this number. Several of the same number share what arrives.
+    /// The socket with this number. Sockets with the same number share one receive queue.
     #[must_use]
     pub fn port(&self, number: u32) -> Port {
         Port { network: self.clone(), number }
@@ -139,19 +139,19 @@ impl Network {
         Address::new(&number.to_le_bytes()).unwrap_or_else(Address::nowhere)
     }
 
-    /// Sets the time, which never decreases.
+    /// Sets the time. An earlier time than the current one has no effect.
     pub fn set_time(&self, now: Duration) {
         let state = &mut *self.state();
         state.now = state.now.max(now);
     }
 
-    /// The time that was set last.
+    /// The current time of the network.
     #[must_use]
     pub fn time(&self) -> Duration {
         self.state().now
     }
 
-    /// Changes the conditions of all links that have none of their own, for packets sent from now on.
+    /// Changes the conditions of all links without conditions of their own, for packets sent from now on.
     pub fn set_conditions(&self, conditions: LinkConditions) {
         self.state().conditions = conditions;
     }
@@ -161,12 +161,12 @@ impl Network {
         self.state().links.insert((from, to), conditions);
     }
 
-    /// Loses all packets from one socket to another, until [`mend`](Network::mend).
+    /// Drops all packets sent from one socket to another until [`mend`](Network::mend) is called.
     pub fn cut(&self, from: u32, to: u32) {
         self.state().cut.insert((from, to));
     }
 
-    /// Ends all cuts.
+    /// Restores all links that [`cut`](Network::cut) has interrupted.
     pub fn mend(&self) {
         self.state().cut.clear();
     }
@@ -221,7 +221,7 @@ impl State {
 }
 
 impl Port {
-    /// The address that others reach this socket at.
+    /// The address of this socket.
     #[must_use]
     pub fn address(&self) -> Address {
         Network::address(self.number)
@@ -249,7 +249,7 @@ mod tests {
 
     const MS: Duration = Duration::from_millis(1);
 
-    /// Sends 1000 numbered packets, one in each millisecond, and returns for each that arrives its number and delay.
+    /// Sends 1000 numbered packets, one per millisecond, and returns the number and delay of each packet that arrives.
     fn run(conditions: LinkConditions, seed: u64) -> Vec<(u32, u32)> {
         let network = Network::new(conditions, seed);
         let (mut a, mut b) = (network.port(1), network.port(2));

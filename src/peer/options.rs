@@ -14,7 +14,7 @@ use super::input_slot::InputSlot;
 /// ```
 /// use core::time::Duration;
 /// use lockstep2d::peer::PeerOptions;
-/// // Three players, of whom one that is gone for five seconds is not waited for any longer.
+/// // Three players, who wait at most five seconds for a missing one.
 /// let options = PeerOptions { start_with: 3, patience: Duration::from_secs(5), ..PeerOptions::rollback() };
 /// assert_eq!(options.guess, 8);
 /// ```
@@ -22,19 +22,21 @@ use super::input_slot::InputSlot;
 pub struct PeerOptions {
     /// Largest number of ticks that are played with guessed inputs; 0 is lockstep. Each peer chooses its own.
     pub guess: u16,
-    /// Bounds of the delay of own inputs in ticks. Within them it follows the latency.
+    /// Bounds of the delay of own inputs in ticks. Within these bounds the delay follows the latency.
     pub delay: (u16, u16),
-    /// Time for which all wait for a peer that cannot be heard before they go on without it. `Duration::MAX`: for ever.
+    /// Time for which all peers wait for a peer that sends nothing before they continue without it. `Duration::MAX`:
+    /// without a limit.
     pub patience: Duration,
     /// Number of seats that have to be taken before the first tick.
     pub start_with: u8,
     /// Number of own seats.
     pub seats: u8,
-    /// First own seat, if it has to be a certain one. `None`: any free seats.
+    /// First own seat, if this peer requests certain seats. `None`: any free seats.
     pub first_seat: Option<u8>,
-    /// Largest encoded input in bytes, for games whose inputs differ in length. `None`: all are as long as the default.
+    /// Largest encoded input in bytes, for games whose inputs differ in length. `None`: every input is as long as the
+    /// default input.
     pub input_bytes: Option<u16>,
-    /// Distinguishes matches of the same game.
+    /// Identifies a match among other matches of the same game.
     pub match_tag: u64,
     /// Number of ticks per block of the replay.
     pub checkpoint_interval: u32,
@@ -63,7 +65,7 @@ impl PeerOptions {
         PeerOptions { guess: 8, delay: (1, 20), ..Self::lockstep() }
     }
 
-    /// Bit for each seat that this peer asks for; 0 for any.
+    /// Bit for each seat that this peer requests; 0 for any.
     fn wanted_seats(&self, seats: u8) -> Result<u64, PeerError> {
         let Some(first) = self.first_seat else { return Ok(0) };
         let end = first.saturating_add(self.seats);
@@ -85,7 +87,7 @@ impl PeerOptions {
         (config.delay_min, config.delay_max) = self.delay;
         let patience = u64::try_from(self.patience.as_micros()).unwrap_or(u64::MAX);
         config.timing = Timing { patience, ..Timing::DEFAULT };
-        // Checkpoints of the replay need the hash of the state, so states are saved at those ticks, too.
+        // Checkpoints of the replay need the hash of the state, so the save interval has to divide their interval.
         let divides = |interval: &u16| self.checkpoint_interval.is_multiple_of(u32::from(*interval));
         let longest = if self.guess > 0 { 1 } else { 8 };
         config.save_interval = (1..=longest).rev().find(divides).unwrap_or(1);
@@ -99,24 +101,24 @@ impl PeerOptions {
 ///
 /// ```
 /// use lockstep2d::{peer::PeerIdentity, session::Key};
-/// // The lobby knows the account of a player, and the game crashes.
+/// // The lobby knows the account of a player, whose process crashes and is started again.
 /// let account = Key(1234);
 /// let before = PeerIdentity::random().with_key(account);
 /// let after = PeerIdentity::random().with_key(account);
-/// // Another process, which gets the seat of the first.
+/// // The new process has the same key, so it gets the seat of the old one.
 /// assert!(before.key == after.key && before.secret != after.secret);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PeerIdentity {
     /// A random number, new for each start of a process.
     pub id: PeerId,
-    /// The identity that outlives processes. Whoever returns with the same key gets its seat back.
+    /// The identity that outlives processes. A peer that returns with the same key gets its seat back, if it is free.
     pub key: Key,
-    /// Random numbers that nobody else knows, for the cookies of the handshake.
+    /// Random numbers that no other peer knows: the key of the handshake cookies.
     pub secret: [u64; 2],
 }
 
-/// Random numbers of the operating system. The standard library has them as keys of its hash function only.
+/// Random numbers of the operating system. The standard library exposes them only as the keys of its hash function.
 #[cfg(all(feature = "std", not(all(target_family = "wasm", target_os = "unknown"))))]
 pub(super) fn random_numbers<const N: usize>() -> [u64; N] {
     use std::hash::{BuildHasher, RandomState};
@@ -125,8 +127,8 @@ pub(super) fn random_numbers<const N: usize>() -> [u64; N] {
 }
 
 impl PeerIdentity {
-    /// An identity from random numbers, which have to differ for every process: the id (its low 32 bits count), the
-    /// key, and the secret.
+    /// An identity from random numbers, which have to differ for every process: the id (only its low 32 bits are used),
+    /// the key, and the two words of the secret.
     #[must_use]
     pub fn new(random: [u64; 4]) -> Self {
         let [id, key, secret @ ..] = random;
@@ -134,15 +136,15 @@ impl PeerIdentity {
         PeerIdentity { id: PeerId(u32::from_le_bytes([a, b, c, d])), key: Key(key), secret }
     }
 
-    /// An identity from random numbers of the operating system. The web has none in the standard library; use
-    /// [`PeerIdentity::new`] with those of the browser there.
+    /// An identity from random numbers of the operating system. The standard library provides none on the web; pass
+    /// random numbers of the browser to [`PeerIdentity::new`] there.
     #[cfg(all(feature = "std", not(all(target_family = "wasm", target_os = "unknown"))))]
     #[must_use]
     pub fn random() -> Self {
         PeerIdentity::new(random_numbers())
     }
 
-    /// Identity with a key that the lobby has assigned.
+    /// The same identity with a key that the lobby has assigned.
     #[must_use]
     pub fn with_key(self, key: Key) -> Self {
         PeerIdentity { key, ..self }

@@ -1,4 +1,4 @@
-//! [`PeerParameters`]: what has to be equal for all peers of a match.
+//! [`PeerParameters`]: the parameters that have to be equal for all peers of a match.
 
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -24,7 +24,7 @@ use crate::session::Config;
 ///     input_bytes: 1,
 ///     patience: 2_000_000,
 /// };
-/// // Why may a friend not join?
+/// // The reason why another peer cannot join.
 /// let theirs = PeerParameters { rules_version: 1, ..ours.clone() };
 /// let [ParameterDifference { what, ours, theirs }] = &ours.differences(&theirs)[..] else { panic!("one") };
 /// assert_eq!(format!("{what}: {theirs} there, {ours} here"), "rules version: 1 there, 2 here");

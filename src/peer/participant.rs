@@ -20,12 +20,12 @@ use crate::session::{
     Tick,
 };
 
-/// Packets that are read in one update, at most.
+/// Maximum number of packets read in one update.
 const PACKETS_PER_UPDATE: usize = 4096;
 
-/// One participant of a match: opens it, joins it, or watches it.
+/// One participant of a match, which opens, joins or watches the match.
 ///
-/// It owns the game and decides when a tick can be played; the caller owns the clock and the transport. Call
+/// The peer owns the game and the transport, and determines when a tick can be played; the caller owns the clock. Call
 /// [`update`](Peer::update) every few milliseconds, and [`advance`](Peer::advance) while [`is_due`](Peer::is_due).
 ///
 /// ```no_run
@@ -44,7 +44,7 @@ pub struct Peer<G: Game, T> {
     now: u64,
     /// Number of ticks after which this peer wants the match to end.
     end: Option<u64>,
-    /// Bytes of the inputs of a tick, reused.
+    /// Buffer for the bytes of a tick's inputs, reused in every tick.
     inputs: Vec<u8>,
     events: VecDeque<PeerEvent>,
 }
@@ -59,15 +59,15 @@ impl<G: Game, T: fmt::Debug> fmt::Debug for Peer<G, T> {
     }
 }
 
-/// Entry of a peer into a match.
+/// Way of entering a match.
 enum Entry {
     Host,
     Join(Role, Address),
 }
 
 impl<G: Game, T: Transport> Peer<G, T> {
-    /// Opens a match, and waits for [`PeerOptions::start_with`] seats to be taken. Without own seats
-    /// ([`PeerOptions::seats`] is 0) it is a dedicated server.
+    /// Opens a match, which starts once [`PeerOptions::start_with`] seats are taken. A host without own seats
+    /// ([`PeerOptions::seats`] is 0) is a dedicated server.
     ///
     /// # Errors
     /// [`PeerError`] when the setup or the options cannot start a game.
@@ -80,7 +80,8 @@ impl<G: Game, T: Transport> Peer<G, T> {
         Self::new(setup, options, me, transport, Entry::Host)
     }
 
-    /// Asks somebody who takes part for seats. It plays as soon as it has caught up and seats are free.
+    /// Joins a match as a player through a contact, which is any participant of the match. The peer plays as soon as it
+    /// has caught up and seats are free.
     ///
     /// # Errors
     /// As [`Peer::host`].
@@ -95,7 +96,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         Self::new(setup, options, me, transport, Entry::Join(role, contact))
     }
 
-    /// Asks somebody who takes part to watch. Spectators may be asked, too.
+    /// Joins a match as a spectator through a contact, which is any participant of the match, including a spectator.
     ///
     /// # Errors
     /// As [`Peer::host`].
@@ -137,7 +138,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         Ok(Peer { transport, endpoint, simulation, parameters, slot, now: 0, end: None, inputs, events })
     }
 
-    /// Reads all received packets and sends what is due. `now` is the time since a fixed moment in the past.
+    /// Processes received packets and sends packets that are due. `now` is the time since a fixed moment in the past.
     ///
     /// # Errors
     /// [`PeerError`] when this peer cannot continue.
@@ -181,7 +182,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
                     }
                     RefusalReason::Full => return Err(PeerError::Refused { why: "too many peers watch" }),
                     RefusalReason::Taken => return Err(PeerError::Refused { why: "the identity is taken" }),
-                    // It is asked again.
+                    // The request is sent again later.
                     RefusalReason::NotReady => {}
                 },
                 JoinEvent::BadState => {}
@@ -190,7 +191,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         Ok(())
     }
 
-    /// Fulfils the requests of the session, and takes its events.
+    /// Fulfils the requests of the session, and collects its events.
     fn fulfil(&mut self) -> Result<(), PeerError> {
         let Some(session) = self.endpoint.session_mut() else { return Ok(()) };
         self.simulation.fulfil(session)?;
@@ -221,16 +222,16 @@ impl<G: Game, T: Transport> Peer<G, T> {
         self.endpoint.session().is_some_and(|session| session.is_due(self.now))
     }
 
-    /// Issues the inputs of your own seats, in the order of the seats, and plays a tick if those of the others allow
-    /// it. Without seats of your own the list is empty. Returns whether the inputs were issued; otherwise they may be
-    /// used again.
+    /// Issues the inputs of this peer's own seats, in the order of the seats, and plays a tick if the inputs of the
+    /// other peers allow it. The list is empty for a peer without seats. Returns whether the inputs were issued;
+    /// otherwise they may be used again.
     ///
     /// # Errors
     /// [`PeerError`] when the inputs cannot be issued, or the game or its replay cannot continue.
     pub fn advance(&mut self, inputs: &[G::Input]) -> Result<bool, PeerError> {
         let Some(session) = self.endpoint.session_mut() else { return Ok(false) };
         let seats = usize::try_from(session.seats().count_ones()).unwrap_or(0);
-        // A peer whose seat is not decided yet may pass its input already.
+        // A peer that has no seat yet may already pass inputs, which are ignored.
         let inputs = if seats == 0 { &[] } else { inputs };
         if seats != inputs.len() {
             return Err(PeerError::InputCount { seats, inputs: inputs.len() });
@@ -282,7 +283,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         self.endpoint.session()
     }
 
-    /// The session, to leave, end, kick or pause.
+    /// The session, for calls such as [`Session::pause`] or [`Session::set_role`].
     pub fn session_mut(&mut self) -> Option<&mut Session> {
         self.endpoint.session_mut()
     }
@@ -293,45 +294,46 @@ impl<G: Game, T: Transport> Peer<G, T> {
         self.endpoint.session().map(Session::status)
     }
 
-    /// Your own seats, in ascending order.
+    /// The seats of this peer, in ascending order.
     #[must_use]
     pub fn seats(&self) -> Vec<u32> {
         self.endpoint.session().map_or_else(Vec::new, |session| self.seats_of(session.id()))
     }
 
-    /// Received and all bytes of the initial state, while it is downloaded.
+    /// Number of bytes received and total number of bytes of the initial state, while it is downloaded.
     #[must_use]
     pub fn download(&self) -> Option<(u64, u64)> {
         self.endpoint.download()
     }
 
-    /// Measurements of the way to another peer.
+    /// Measurements of the network path to another peer.
     #[must_use]
     pub fn link(&self, peer: PeerId) -> Option<Link> {
         self.endpoint.session().and_then(|session| session.link(peer))
     }
 
-    /// Removes somebody for good.
+    /// Votes for removing a peer permanently, as [`Session::kick`] does.
     pub fn kick(&mut self, key: Key) {
         if let Some(session) = self.endpoint.session_mut() {
             session.kick(key);
         }
     }
 
-    /// Asks somebody else to join, or the same one again, for example when no answer comes.
+    /// Sends the request to join to another contact, or again to the same one, for example after a time without an
+    /// answer.
     pub fn ask(&mut self, contact: Address) {
         self.endpoint.ask(contact);
     }
 
-    /// Leaves the match; the others go on at once. Call [`update`](Peer::update) until the status is
-    /// [`Status::Closed`]; before the initial state has arrived, there is nothing to wait for.
+    /// Leaves the match; the others continue at once. Call [`update`](Peer::update) until the status is
+    /// [`Status::Closed`]. Before the initial state has arrived, the peer can be dropped at once.
     pub fn leave(&mut self) {
         if let Some(session) = self.endpoint.session_mut() {
             session.leave();
         }
     }
 
-    /// Asks for an end of the match after a number of ticks, as [`Session::end_at`] does.
+    /// Requests an end of the match after a number of ticks, as [`Session::end_at`] does.
     pub const fn end_at(&mut self, ticks: u64) {
         self.end = Some(ticks);
     }
@@ -348,11 +350,11 @@ impl<G: Game, T: Transport> Peer<G, T> {
         &mut self.transport
     }
 
-    /// This peer's report of a desync, as bytes for a file. The reports of any two peers tell which one diverged, when
-    /// and where.
+    /// This peer's report of a desync, as the bytes of a file. The reports of any two peers together show which peer
+    /// diverged, at which tick, and in which part of the state.
     ///
     /// # Errors
-    /// [`PeerError`] when the states that it needs are not kept.
+    /// [`PeerError`] when the states that the report needs are not kept.
     pub fn report(&mut self, desync: &PeerDesync) -> Result<Vec<u8>, PeerError> {
         let theirs = self.endpoint.session().map_or(0, |session| session.view().seats_of(desync.peer));
         let players = self.simulation.game.players();
@@ -366,12 +368,12 @@ impl<G: Game, T: Transport> Peer<G, T> {
     /// joined after the first tick has no replay.
     #[must_use]
     pub fn take_replay(&mut self) -> Vec<u8> {
-        // Until the initial state has arrived, it is unknown whether it is that of tick 0.
+        // Before the initial state has arrived, it is unknown whether the state is that of tick 0.
         if self.endpoint.session().is_some() { self.simulation.take_replay() } else { Vec::new() }
     }
 
-    /// Ends the replay after the last final tick, and returns the bytes that have not been taken yet, and the game
-    /// after that tick. Leave or end the match first, and call [`update`](Peer::update) until the status is
+    /// Ends the replay after the last final tick. Returns the bytes of the replay that have not been taken yet, and the
+    /// game after that tick. Leave or end the match first, and call [`update`](Peer::update) until the status is
     /// [`Status::Closed`].
     ///
     /// # Errors

@@ -1,13 +1,13 @@
 //! [`Sealed`]: a transport that encrypts and authenticates packets with a key that only the members of a match have.
 //!
-//! A packet is sender (8 bytes), counter (8 bytes), ciphertext, tag (16 bytes): XChaCha20-Poly1305 with a nonce of
-//! sender, eight zero bytes and counter. Packets of at most 1200 bytes become at most 1232, which fit into the smallest
-//! packets of IPv6 with its headers (1280).
+//! A packet consists of sender (8 bytes), counter (8 bytes), ciphertext and tag (16 bytes). The cipher is
+//! XChaCha20-Poly1305; its nonce consists of sender, eight zero bytes and counter. Packets of at most 1200 bytes become
+//! at most 1232 bytes long, which with headers fit into 1280 bytes, the smallest maximum packet size of IPv6.
 //!
-//! **A nonce must never be used twice with one key.** Within a process the counter ensures it. Across processes and
-//! restarts the number of the sender does: it is a random number of 64 bits for each start of a process, so that among
-//! `n` starts with the same key two are equal with a probability of `n^2 / 2^65`: for 10 000 starts, 3 in 10^12.
-//! Nothing has to be stored.
+//! **A nonce must never be used twice with one key.** Within a process the counter prevents this. Across processes and
+//! restarts the sender number prevents it: each start of a process chooses a random number of 64 bits. Among `n` starts
+//! with the same key, two numbers are equal with a probability of `n^2 / 2^65`: for 10 000 starts, 3 in 10^12. Nothing
+//! has to be stored.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -18,22 +18,22 @@ use chacha20poly1305::{Key, Tag, XChaCha20Poly1305, XNonce};
 use super::transport::Transport;
 use crate::session::Address;
 
-/// Bytes by which a sealed packet is longer.
+/// Number of bytes that sealing adds to a packet.
 pub const SEALED_OVERHEAD: usize = HEADER + TAG;
 const HEADER: usize = 16;
 const TAG: usize = 16;
-/// Words of the replay window: a packet that 2048 later ones of its sender have overtaken is dropped.
+/// Words of the replay window: a packet that arrives after 2048 later packets of its sender is dropped.
 const WINDOW_WORDS: usize = 32;
 const WINDOW: u64 = 2048;
-/// Senders that are remembered. The one that was silent for longest gives way.
+/// Maximum number of senders with a replay window. Beyond it, the sender that was silent longest is removed.
 const SENDERS_MAX: usize = 1024;
 
 /// A transport whose packets can be read and written only with the key of the match.
 ///
-/// Packets are dropped if they were forged, changed or cut short, arrive a second time, or come back to their sender.
+/// Packets are dropped if they were forged, changed or truncated, arrive a second time, or come back to their sender.
 /// Addresses and sizes are visible. All members have the same key, so a member can pose as another one, and a member
-/// accepts a packet that was meant for another member. A process that starts again does not know which packets arrived
-/// before. Old ones do no harm to a session, whose rows have versions.
+/// accepts a packet that was addressed to another member. A restarted process does not know which packets arrived
+/// before the restart, so it accepts old packets again. They do no harm to a session, because its rows have versions.
 ///
 /// ```
 /// use lockstep2d::peer::{LinkConditions, Network, Sealed, Transport};
@@ -57,13 +57,13 @@ pub struct Sealed<T> {
     received: u64,
 }
 
-/// The packets of a sender that have arrived.
+/// Replay window of a sender: the packets that have arrived.
 #[derive(Clone, Debug)]
 struct Window {
     sender: u64,
     /// Counter after the newest packet.
     next: u64,
-    /// Bit for each of the last [`WINDOW`] counters, at its remainder.
+    /// Bit for each of the last [`WINDOW`] counters, at the index of the counter modulo `WINDOW`.
     seen: [u64; WINDOW_WORDS],
     heard: u64,
 }
@@ -84,17 +84,17 @@ impl Window {
         (usize::try_from(place / 64).unwrap_or(0), 1 << (place % 64))
     }
 
-    /// Whether a packet has not arrived yet, as far as that is known.
+    /// Whether a packet has not arrived yet. A packet older than the window counts as arrived.
     fn is_new(&self, counter: u64) -> bool {
         if counter >= self.next {
-            // The last counter is never sent: there is none after it.
+            // The largest counter is never sent, because `next` could not exceed it.
             return counter < u64::MAX;
         }
         let (word, bit) = Window::bit(counter);
         self.next - counter <= WINDOW && self.seen.get(word).is_some_and(|seen| seen & bit == 0)
     }
 
-    /// Notes a genuine packet.
+    /// Marks an authenticated packet as arrived.
     fn note(&mut self, counter: u64) {
         if counter >= self.next {
             if counter - self.next >= WINDOW {
@@ -133,20 +133,20 @@ impl<T> Sealed<T> {
         Sealed::with_sender(inner, key, sender)
     }
 
-    /// As [`Sealed::new`], with a number that has to be random and new for each call with this key.
+    /// Same as [`Sealed::new`] with a given sender number, which has to be random and new for each call with this key.
     pub fn with_sender(inner: T, key: [u8; 32], sender: u64) -> Self {
         let cipher = XChaCha20Poly1305::new(&Key::from(key));
         Sealed { inner, cipher, sender, sent: 0, windows: Vec::new(), received: 0 }
     }
 
-    /// The transport below.
+    /// The wrapped transport.
     pub const fn inner_mut(&mut self) -> &mut T {
         &mut self.inner
     }
 
     fn seal(&mut self, packet: &[u8]) -> Option<Vec<u8>> {
         let counter = self.sent;
-        // After 2^64 packets, which takes longer than a match, nothing is sent any more.
+        // After 2^64 packets, far more than any match sends, no further packet is sent.
         self.sent = counter.checked_add(1)?;
         let mut bytes = Vec::with_capacity(packet.len() + SEALED_OVERHEAD);
         bytes.extend_from_slice(&self.sender.to_le_bytes());
@@ -171,7 +171,7 @@ impl<T> Sealed<T> {
         let mut body = body.to_vec();
         let tag = Tag::from(*tag);
         self.cipher.decrypt_in_place_detached(&nonce(sender, counter), b"", &mut body, &tag).ok()?;
-        // Only genuine packets change anything here.
+        // The packet is authentic from here on: no other packet changes any state.
         self.received += 1;
         let at = known.unwrap_or_else(|| self.remember(sender));
         let window = self.windows.get_mut(at)?;
@@ -180,7 +180,7 @@ impl<T> Sealed<T> {
         Some(body)
     }
 
-    /// Adds a window for a sender and returns its place.
+    /// Adds a window for a sender and returns its index.
     fn remember(&mut self, sender: u64) -> usize {
         if self.windows.len() >= SENDERS_MAX {
             let silent = (0..).zip(&self.windows).min_by_key(|(_, window)| window.heard);
@@ -221,7 +221,7 @@ mod tests {
         Sealed::with_sender(network.port(number), KEY, u64::from(number))
     }
 
-    /// A network, two members, and the bytes of a packet from the first to the second on their way.
+    /// A network, two members, and the bytes of a packet in flight from the first to the second member.
     fn on_the_way() -> (Network, Sealed<Port>, Sealed<Port>, Vec<u8>) {
         let network = Network::new(LinkConditions::default(), 1);
         let (mut alice, bob) = (sealed(&network, 1), sealed(&network, 2));

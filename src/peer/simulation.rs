@@ -62,7 +62,7 @@ impl<G: Game> Simulation<G> {
         }
     }
 
-    /// Goes on from a state that others have played to. There is no replay: the earlier inputs are unknown.
+    /// Continues from a state received from another peer. There is no replay, because the earlier inputs are unknown.
     pub(super) fn resume(&mut self, tick: u64, bytes: &[u8]) -> Result<(), PeerError> {
         let wrong = |why: &dyn core::fmt::Display| PeerError::State { why: alloc::format!("{why}") };
         let (hash, save): (StateHash, G::Save) = codec::decode(bytes).map_err(|error| wrong(&error))?;
@@ -80,7 +80,7 @@ impl<G: Game> Simulation<G> {
         Ok(())
     }
 
-    /// The newest kept state of at most `tick` ticks, as bytes for somebody who joins.
+    /// The newest kept state at or before `tick`, as bytes for a joining peer.
     pub(super) fn state_for(&self, tick: u64) -> Option<(u64, Vec<u8>)> {
         let past = self.history.iter().rev().find(|past| past.tick <= tick)?;
         Some((past.tick, codec::encode(&(past.hash, &past.save))))
@@ -131,13 +131,13 @@ impl<G: Game> Simulation<G> {
         Ok(())
     }
 
-    /// Writes the ticks that no rollback changes any more to the replay.
+    /// Writes ticks to the replay once no rollback can change them.
     fn commit(&mut self, ticks: Tick) -> Result<(), PeerError> {
         while self.committed < u64::from(ticks).min(self.tick) {
             let tick = self.committed;
             if let Some(mut recorder) = self.recorder.take() {
                 let recorded = self.record(tick, &mut recorder);
-                // The ticks recorded so far are kept.
+                // On an error, the recorder keeps the ticks recorded so far.
                 self.recorder = Some(recorder);
                 if !recorded? {
                     break;
@@ -154,7 +154,7 @@ impl<G: Game> Simulation<G> {
         Ok(())
     }
 
-    /// Records a tick. Returns whether that was possible: at the end of a block the hash of the state has to be known.
+    /// Records a tick. Returns whether that was possible: the checkpoint at the end of a block needs the state's hash.
     fn record(&self, tick: u64, recorder: &mut Recorder<G>) -> Result<bool, PeerError> {
         let place = tick.checked_sub(self.first_input).and_then(|place| usize::try_from(place).ok());
         let inputs = place.and_then(|place| self.inputs.get(place)).ok_or(PeerError::NoState { tick })?;
@@ -171,7 +171,7 @@ impl<G: Game> Simulation<G> {
         Ok(true)
     }
 
-    /// Takes the finished bytes of the replay. Empty without one.
+    /// Takes the finished bytes of the replay; empty if there is no replay.
     pub(super) fn take_replay(&mut self) -> Vec<u8> {
         let bytes = self.recorder.as_mut().map(Recorder::take_bytes).unwrap_or_default();
         self.taken.extend_from_slice(&bytes);
@@ -209,7 +209,7 @@ impl<G: Game> Simulation<G> {
         Ok(())
     }
 
-    /// A report of a desync, in which `hashes` are those of the other seats.
+    /// A report of a desync. `hashes` are the hashes of the other seats.
     pub(super) fn report(
         &mut self,
         tick: u64,

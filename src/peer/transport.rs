@@ -1,16 +1,16 @@
-//! [`Transport`]: sends and receives packets. [`Udp`] is one.
+//! [`Transport`]: sends and receives packets. [`Udp`] implements it with a UDP socket.
 
 use alloc::vec::Vec;
 
 use crate::session::Address;
 
-/// Carries packets between peers. Packets may be lost, doubled, delayed and reordered, and may come from anybody.
+/// Carries packets between peers. Packets may be lost, duplicated, delayed and reordered, and may come from any sender.
 ///
 /// ```
 /// use lockstep2d::{peer::Transport, session::Address};
 /// use std::collections::VecDeque;
 ///
-/// /// Packets of a socket of one's own: here, those sent come back.
+/// /// A custom transport, which returns every sent packet to its sender.
 /// struct Echo(VecDeque<(Address, Vec<u8>)>);
 ///
 /// impl Transport for Echo {
@@ -24,8 +24,8 @@ use crate::session::Address;
 /// }
 /// ```
 pub trait Transport {
-    /// Sends a packet of at most [`PACKET_BYTES_MAX`](crate::session::PACKET_BYTES_MAX) bytes, or drops it. With
-    /// `Sealed` above it, packets are 32 bytes longer.
+    /// Sends a packet of at most [`PACKET_BYTES_MAX`](crate::session::PACKET_BYTES_MAX) bytes, or drops it. `Sealed`
+    /// passes packets that are 32 bytes longer to the transport inside it.
     fn send(&mut self, packet: &[u8], to: &Address);
 
     /// The next received packet and its sender. Does not block.
@@ -47,7 +47,7 @@ mod udp {
     use super::Transport;
     use crate::session::Address;
 
-    /// Payload of a packet of 1280 bytes, which every network carries, with the smallest headers of IP and UDP.
+    /// Payload of an IP packet of 1280 bytes, which every network carries, with the smallest IP and UDP headers.
     const PAYLOAD_MAX: usize = 1280 - 28;
 
     /// A UDP socket.
@@ -77,7 +77,7 @@ mod udp {
         }
     }
 
-    /// The address of a socket. IPv4 addresses that are mapped to IPv6 are IPv4 addresses.
+    /// The [`Address`] of a socket. IPv4 addresses that are mapped to IPv6 become IPv4 addresses.
     #[must_use]
     pub fn socket_address(address: SocketAddr) -> Address {
         let port = address.port().to_le_bytes();
@@ -85,11 +85,11 @@ mod udp {
             IpAddr::V4(ip) => [&ip.octets()[..], &port].concat(),
             IpAddr::V6(ip) => [&ip.octets()[..], &port].concat(),
         };
-        // At most 18 bytes, which fit into an address.
+        // There are at most 18 bytes, which fit into an address.
         Address::new(&bytes).unwrap_or_else(Address::nowhere)
     }
 
-    /// The socket address that [`socket_address`] made an address from.
+    /// The inverse of [`socket_address`].
     fn to_socket(address: &Address) -> Option<SocketAddr> {
         let (ip, port) = address.bytes().split_last_chunk::<2>()?;
         let ip = match ip.len() {
@@ -123,7 +123,7 @@ mod udp {
     impl Transport for Udp {
         fn send(&mut self, packet: &[u8], to: &Address) {
             let Some(mut to) = to_socket(to) else { return };
-            // A socket for IPv6 reaches IPv4 addresses in their mapped form only.
+            // An IPv6 socket reaches IPv4 addresses only in their mapped form.
             if let (true, IpAddr::V4(ip)) = (self.is_v6, to.ip()) {
                 to.set_ip(IpAddr::V6(ip.to_ipv6_mapped()));
             }
@@ -138,7 +138,7 @@ mod udp {
                         return Some((socket_address(from), self.buffer.get(..length)?.to_vec()));
                     }
                     Err(error) if error.kind() == io::ErrorKind::WouldBlock => return None,
-                    // The system reports unreachable receivers of earlier packets here.
+                    // The system reports unreachable receivers of earlier packets as errors of a later call.
                     Err(error)
                         if matches!(
                             error.kind(),

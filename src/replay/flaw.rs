@@ -9,7 +9,7 @@ use super::format::{CLAIM_NAME_BYTES_MAX, CLAIMS_MAX, PLAYERS_MAX, RULES_NAME_BY
 ///
 /// ```
 /// use lockstep2d::{lockstep::Sandbox, replay::{Flaw, Limits, Verdict, verify}};
-/// // What a website tells whoever uploads a file.
+/// // The message of a website for an uploaded file.
 /// let answer = |file: &[u8]| match verify::<Sandbox>(file, &Limits::default()) {
 ///     Verdict::Malformed { flaw: Flaw::Magic, .. } => "this is no replay",
 ///     Verdict::Malformed { .. } => "this replay is damaged",

@@ -3,9 +3,9 @@
 //! ```text
 //! link(d, bytes)  = XXH3-128(d | XXH3-128(bytes))
 //!
-//! chain           starts as XXH3-128(header), then link(chain, block)          what the file is
-//! inputs digest   starts as XXH3-128(header up to `start`), then link(.., runs) what was played
-//! checkpoint      XXH3-128(state hash | inputs digest)                          what came of it
+//! chain           starts as XXH3-128(header), then link(chain, block)           covers all bytes of the file
+//! inputs digest   starts as XXH3-128(header up to `start`), then link(.., runs) covers the setup and all inputs
+//! checkpoint      XXH3-128(state hash | inputs digest)                          covers the inputs and the state
 //! ```
 
 use crate::hash::StateHash;
@@ -25,7 +25,7 @@ pub const PLAYERS_MAX: u32 = 64;
 /// Maximum length of the name of a game's rules, in bytes.
 pub const RULES_NAME_BYTES_MAX: u32 = 64;
 
-/// Maximum number of claims in a trailer. Claims are meant for a scoreboard, not for a saved game.
+/// Maximum number of claims in a trailer, which are results such as those of a scoreboard.
 pub const CLAIMS_MAX: u32 = 256;
 
 /// Maximum length of the name of a claim, in bytes.

@@ -16,7 +16,7 @@ use crate::hash::StateHash;
 /// use lockstep2d::replay::{Header, Limits, Reader, Recording};
 /// # let recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
 /// # let file = recording.finish().expect("few claims");
-/// // A list of files: what belongs to which game? The header is read without playing anything.
+/// // A list of files shows the game of each. The header is read without playing any tick.
 /// let reader = Reader::open(&file, &Limits::default())?;
 /// let Header { rules_name, players, tick_rate, .. } = reader.header();
 /// assert_eq!((*rules_name, *players, *tick_rate), ("sandbox", 1, 60));

@@ -1,4 +1,4 @@
-//! [`RawReplay`]: a raw replay, which simulates recorded inputs without comparing checkpoints.
+//! [`RawReplay`]: simulates recorded inputs without comparing checkpoints.
 
 use alloc::vec::Vec;
 
@@ -10,8 +10,8 @@ use super::verified_replay::{Ending, Step, check_bodies, check_rules, decode_set
 use crate::lockstep::{Game, decode_inputs};
 use crate::world::World;
 
-/// A raw replay: simulates the inputs of a file. Unlike a [`VerifiedReplay`](super::VerifiedReplay) it compares
-/// nothing, so its states are those that the running engine computes from these inputs.
+/// Simulates the inputs of a replay file without comparing checkpoints, unlike a
+/// [`VerifiedReplay`](super::VerifiedReplay). Its states are those that the running engine computes from these inputs.
 ///
 /// ```
 /// # use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
@@ -19,7 +19,7 @@ use crate::world::World;
 /// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
 /// # (0..90).for_each(|_| recording.step(&[vec![]]).expect("one input"));
 /// # let file = recording.finish().expect("no claims");
-/// // What would the rules of today make of a replay of last year? Nothing is compared, so it plays to the end.
+/// // Plays an old replay with the current rules. Checkpoints are not compared, so it plays to the end.
 /// let mut replay = RawReplay::<Sandbox>::open(&file, &Limits::default())?;
 /// while replay.step()? == Step::Ticked {}
 /// assert_eq!((replay.tick(), replay.game().world().tick()), (90, 90));
@@ -54,7 +54,7 @@ impl<'a, G: Game> RawReplay<'a, G> {
         Self::open_to_end(file, limits).map(|(raw, _)| raw)
     }
 
-    /// Does the same as [`RawReplay::open`] and also returns the end of the file found by the scan.
+    /// Same as [`RawReplay::open`], and also returns the ending of the file that the scan found.
     pub(super) fn open_to_end(file: &'a [u8], limits: &Limits) -> Result<(Self, Ending), Verdict> {
         let inputs = TickInputs::open(file, limits)?;
         let ending = scan(inputs.reader().clone())?;
@@ -150,7 +150,7 @@ impl<'a, G: Game> RawReplay<'a, G> {
             world.start_work_meter(room);
         }
         let done = step(&mut self.game, &self.inputs);
-        // An exhausted world has a wrong state: this must be checked before anything looks at it.
+        // A world whose work budget is exhausted has a wrong state, so this check precedes any use of the state.
         let metered = self.game.world_mut().map_or(0, |world| world.metered_work());
         let work = work.saturating_add(metered);
         self.place.work = before.saturating_add(work);

@@ -1,7 +1,7 @@
 //! [`Reader`]: reads the structure of a replay, block by block, independently of the game.
 //!
-//! It checks everything that can be checked without stepping the game: lengths, checksums, the chain, run lengths, the
-//! order of the blocks, the trailer's counts.
+//! The reader checks all properties that do not require stepping the game: lengths, checksums, the chain, run lengths,
+//! the order of the blocks, the trailer's counts.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -73,7 +73,7 @@ impl core::error::Error for ReadError {}
 /// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
 /// # (0..90).for_each(|_| recording.step(&[vec![]]).expect("one input"));
 /// # let file = recording.finish().expect("no claims");
-/// // Has the recorder of a file ended it, or was it killed?
+/// // Finds out whether a file is complete, or its recorder was killed.
 /// let mut reader = Reader::open(&file[..file.len() - 1], &Limits::default())?;
 /// let mut is_complete = false;
 /// while let Some(part) = reader.next_part()? {
@@ -163,7 +163,7 @@ pub struct Trailer {
 /// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
 /// # (0..90).for_each(|_| recording.step(&[vec![]]).expect("one input"));
 /// # let file = recording.finish().expect("no claims");
-/// // How long is a replay? All blocks are checked, and none is played.
+/// // Determines the length of a replay. All blocks are checked, and none is played.
 /// let mut reader = Reader::open(&file, &Limits::default())?;
 /// while reader.next_part()?.is_some() {}
 /// assert_eq!(reader.ticks() / u64::from(reader.header().tick_rate), 1, "second");

@@ -23,7 +23,7 @@ pub const CHECKPOINT_INTERVAL: u32 = 60;
 /// Maximum length of a u32 in LEB128, in bytes.
 const VARINT_BYTES_MAX: usize = 5;
 
-/// Reason why something cannot be recorded. The recorder is then unchanged.
+/// Reason why a game or a tick cannot be recorded. The recorder is then unchanged.
 ///
 /// ```
 /// use lockstep2d::lockstep::{InputError, Sandbox, SandboxSetup};
@@ -53,7 +53,7 @@ pub enum RecordError {
         /// The interval in ticks.
         ticks: u32,
     },
-    /// The setup does not survive encoding and decoding.
+    /// The encoded setup does not decode, or decodes to a different setup.
     Setup,
     /// The game cannot start from the setup.
     SetupRefused {
@@ -202,7 +202,7 @@ impl<G: Game> Recorder<G> {
     /// verifier.
     ///
     /// # Errors
-    /// [`RecordError`] when they cannot be recorded; the tick must then not be played.
+    /// [`RecordError`] when the inputs cannot be recorded; the tick must then not be played.
     pub fn record(&mut self, inputs: &[G::Input]) -> Result<&[G::Input], RecordError> {
         if self.is_checkpoint_due() {
             return Err(RecordError::CheckpointDue);
@@ -215,7 +215,7 @@ impl<G: Game> Recorder<G> {
     /// Records the inputs of the next tick, which have been encoded already.
     ///
     /// # Errors
-    /// [`RecordError`] when they cannot be recorded.
+    /// [`RecordError`] when the inputs cannot be recorded.
     pub fn record_encoded(&mut self, inputs: &EncodedInputs<G::Input>) -> Result<(), RecordError> {
         if self.is_checkpoint_due() {
             return Err(RecordError::CheckpointDue);

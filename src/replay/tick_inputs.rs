@@ -24,11 +24,11 @@ use super::runs::{Run, Runs};
 #[derive(Clone, Debug)]
 pub struct TickInputs<'a> {
     reader: Reader<'a>,
-    /// The current block, and the number of its ticks that are still to come.
+    /// The current block, and the number of its remaining ticks.
     block: Option<InputBlock<'a>>,
     block_left: u32,
     runs: Runs<'a>,
-    /// The current run, with the number of its ticks that are still to come.
+    /// The current run, with the number of its remaining ticks.
     run: Option<Run<'a>>,
 }
 

@@ -43,7 +43,7 @@ pub enum Verdict {
         /// Tick of the first checkpoint that differs.
         first_different: u64,
     },
-    /// The file ends before its trailer. Everything before agrees.
+    /// The file ends before its trailer. All checkpoints before its end agree.
     Incomplete {
         /// Number of ticks in the complete blocks, all of which were played.
         ticks: u64,
@@ -110,7 +110,7 @@ pub enum ClaimDifference {
     },
 }
 
-/// Version of the format, engine or rules that the file needs and this program does not have.
+/// A version of the format, engine or rules that the file requires and this program does not have.
 ///
 /// ```
 /// use lockstep2d::replay::{Mismatch, Verdict};

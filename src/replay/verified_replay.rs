@@ -1,4 +1,4 @@
-//! [`VerifiedReplay`]: a verified replay, simulated tick by tick, and [`verify`], which runs it to its end.
+//! [`VerifiedReplay`]: simulates a replay tick by tick and compares its checkpoints; [`verify`] runs it to its end.
 
 use alloc::collections::BTreeMap;
 use alloc::string::String;
@@ -51,7 +51,7 @@ pub enum Step {
     Ended,
 }
 
-/// A verified replay: a [`RawReplay`] whose states are compared with the checkpoints of the file.
+/// A [`RawReplay`] whose states are compared with the checkpoints of the file.
 ///
 /// ```
 /// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};

@@ -10,16 +10,16 @@ use super::replayed::{self, Effort};
 use crate::lockstep::Game;
 use crate::replay::Limits;
 
-/// Finds the first tick at which two trajectories differ, the stage of that tick, and the differences, the probable
-/// origin first. Beyond playing the inputs once, this costs a save and a hash per tick. Including the search for a
-/// single bit flip that explains all differences, it costs less than playing everything three times.
+/// Finds the first tick at which two trajectories differ, the stage of that tick, and the differences, with the
+/// probable origin first. The search plays the inputs once, with a save and a hash per tick. The total cost, including
+/// the search for a single bit flip that explains all differences, is less than that of playing all ticks three times.
 ///
-/// Without `b`, the other trajectory is that of the running engine with the same inputs. A replay only tells between
-/// which of its checkpoints the trajectories diverge. The [`Trace`](super::Trace) of these ticks, made by the engine
-/// that wrote the replay, tells the tick. A desync report is such a trace of the last seconds.
+/// Without `b`, the other trajectory is that of the running engine with the same inputs. A replay shows only between
+/// which of its checkpoints the trajectories diverge. A [`Trace`](super::Trace) of these ticks, made by the engine that
+/// wrote the replay, shows the exact tick. A desync report is such a trace of the last seconds.
 ///
-/// With `b`, both files are the same match on two machines, or two replays of any setups and inputs, which are
-/// simulated until the states differ.
+/// With `b`, the files are recordings of the same match on two machines, or two replays of any setups and inputs. They
+/// are simulated until the states differ.
 ///
 /// # Errors
 /// [`CompareError`] when the files cannot be compared or played.

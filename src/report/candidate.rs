@@ -1,9 +1,9 @@
 //! Finds the body in which a difference originated, among many bodies that differ.
 //!
-//! A body with a wrong velocity affects all bodies it touches in the same tick: dozens of bodies differ, and the
-//! largest difference need not be at the origin. The list is therefore sorted by the difference in motion, and then
-//! single bit flips in the last correct state are tried. A flip that leads to exactly the wrong state is the
-//! explanation.
+//! A body with a wrong velocity affects all bodies that it touches in the same tick: dozens of bodies differ, and the
+//! largest difference need not be at the origin. Therefore the bodies are sorted by the difference in motion, and
+//! single bit flips in the last correct state are tried in this order. A flip that leads to exactly the wrong state is
+//! the explanation.
 
 use alloc::collections::BTreeMap;
 use alloc::format;
@@ -18,9 +18,9 @@ use crate::inspect::{Difference, InspectError, Value, differences, fields};
 use crate::lockstep::Game;
 use crate::world::BodyField;
 
-/// Maximum work units spent on trying bit flips, if the limits allow as many: about ten seconds.
+/// Maximum work units spent on trying bit flips, which take about ten seconds. The limits may allow fewer.
 pub(super) const WORK_MAX: u64 = 400_000_000;
-/// Minimum work units of a try, because the state is loaded and hashed.
+/// Minimum work units of one try, which cover loading and hashing the state.
 const TRY_WORK: u64 = 1000;
 
 /// A tick in which one side diverged.
@@ -91,7 +91,7 @@ pub(super) fn explain<G: Game>(
         && is_known
         && flipped_bit(only).is_some()
     {
-        // The differences already show the bit.
+        // The differences already show the flipped bit.
         return Ok(());
     }
     let mut candidates = if is_known { candidates(&found.subjects) } else { Vec::new() };
@@ -229,7 +229,7 @@ fn search<G: Game>(
 /// Slot and generation of a body, from its path.
 fn handle(path: &str) -> Option<(u32, u32)> {
     let (_, label) = path.rsplit_once("body ")?;
-    // A name may follow.
+    // A name may follow the handle.
     let handle = label.split(' ').next()?;
     let (slot, generation) = handle.split_once('v')?;
     Some((slot.parse().ok()?, generation.parse().ok()?))

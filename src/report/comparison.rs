@@ -15,7 +15,7 @@ use crate::inspect::Difference;
 /// use lockstep2d::report::{Evidence, Side, Trajectory, bisect};
 /// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60)?;
 /// # (0..120).try_for_each(|_| recording.step(&[vec![]]))?;
-/// // Does this machine still compute what the machine of the recording did?
+/// // Checks whether this machine computes the same states as the machine of the recording.
 /// let replay = Evidence::Replay(recording.finish()?);
 /// let found = bisect::<Sandbox>(&replay, None, &Limits::default()).expect("it can be played");
 /// let Trajectory { equal_until, diverges, .. } = &found.trajectories[Side::A.index()];
@@ -53,11 +53,11 @@ impl fmt::Display for Side {
     }
 }
 
-/// The side that diverged from the trajectory that the running engine computes from the setup and the inputs.
+/// The side that diverged from the trajectory computed by the running engine from the setup and the inputs.
 ///
 /// ```
 /// use lockstep2d::report::{Blame, Side};
-/// /// What a support team does next.
+/// /// The next step of a support team.
 /// fn next_step(blame: Blame) -> String {
 ///     match blame {
 ///         Blame::Nobody => "the files agree".into(),
@@ -94,7 +94,7 @@ pub struct Trajectory {
 /// The first input that differs between two replays.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InputDifference {
-    /// Number of ticks before the input: the input is that of the next tick.
+    /// Number of ticks before the one that the input belongs to.
     pub tick: u64,
     /// Seat of the input.
     pub seat: u32,
@@ -115,7 +115,7 @@ pub struct InputDifference {
 /// theirs.flip_bit(ball, BodyField::VelocityX, 3)?;
 /// let [a, b] = [ours, theirs].map(|world| Evidence::World(Box::new(world)));
 /// let found = compare::<Sandbox>(&a, &b, &Limits::default()).expect("two worlds");
-/// // What differs, and in which field?
+/// // The subject that differs, and its fields.
 /// let Subject { path, differences, .. } = &found.subjects[0];
 /// assert!(path.ends_with("body 0v0"), "{path}");
 /// assert_eq!(differences[0].field().name(), "velocity.x");
@@ -159,7 +159,8 @@ pub struct Explanation {
     pub path: String,
     /// Index of the bit, counted from the lowest.
     pub bit: u32,
-    /// The changes by the flip, first the number that contains the bit. A is before the flip, B is after it.
+    /// The changes caused by the flip, starting with the number that contains the bit. A is before the flip, B is after
+    /// it.
     pub differences: Vec<Difference>,
 }
 
@@ -182,8 +183,8 @@ pub struct Explanation {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Comparison {
-    /// The last tick before the first difference at which both states are known to be equal; without a difference, the
-    /// last of all.
+    /// The last tick before the first difference at which both states are known to be equal. If there is no difference,
+    /// the last tick at which they are known to be equal.
     pub last_equal: Option<u64>,
     /// The first tick at which the states are known to differ.
     pub first_different: Option<u64>,
@@ -199,8 +200,8 @@ pub struct Comparison {
     pub blame: Blame,
     /// The tick at which `subjects` were compared: the first different tick at which both states are available.
     pub tick: Option<u64>,
-    /// The subjects that differ. The origin of the differences is first, if it is known, then the bodies whose motion
-    /// differs most.
+    /// The subjects that differ. The origin of the differences is first, if it is known. The others are sorted by the
+    /// difference in motion, largest first.
     pub subjects: Vec<Subject>,
     /// The stage of the tick that led to `first_different` at which the states diverged.
     pub stage: Option<Stage>,

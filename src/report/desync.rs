@@ -53,7 +53,7 @@ pub struct Group {
 /// # }
 /// # let ours = history.get(30).expect("a tick of the last second").hash;
 /// # let replay = recording.take_bytes();
-/// // A netcode of one's own has found that the third player has another state than the first two.
+/// // A custom network layer has found that the state of the third player differs from that of the first two.
 /// let hashes = vec![None, Some(ours), Some(StateHash(7))];
 /// let found = Desync { players: 3, tick: 30, known: 30, seats: vec![0], hashes };
 /// let report = DesyncReport::new(&found, &history, replay);

@@ -1,4 +1,4 @@
-//! [`Evidence`]: a file that contains states or hashes of a game.
+//! [`Evidence`]: a file that contains states or state hashes of a game.
 
 use alloc::boxed::Box;
 use alloc::collections::BTreeMap;
@@ -90,7 +90,7 @@ impl Said {
     }
 }
 
-/// The data of one side about the trajectory of a game.
+/// The data that one side provides about the trajectory of a game.
 #[derive(Default)]
 pub(super) struct SideEvidence<'a> {
     pub(super) seats: &'a [u32],

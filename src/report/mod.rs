@@ -1,12 +1,12 @@
-//! Desync reports, and the comparison of two of them: which side diverged, when and where.
+//! Desync reports, and their comparison, which determines the side that diverged, the tick and the part of the state.
 //!
 //! A peer keeps a [`History`](crate::lockstep::History) of the last seconds. When it receives a hash that differs from
 //! its own, it writes a [`DesyncReport`]: hashes and saves of these ticks, and the replay so far. [`compare`] takes two
 //! reports, replays or snapshots and simulates the confirmed inputs again. A side whose states differ from this rerun
 //! has diverged from the rules. This works with two peers, too.
 //!
-//! [`bisect`] examines a single file: where does its trajectory diverge from that of the running engine? A [`Trace`]
-//! contains more data for this than a replay.
+//! [`bisect`] also examines a single file and finds the tick at which its trajectory diverges from that of the running
+//! engine. A [`Trace`] contains more data for this than a replay.
 //!
 //! In this module *tick t* is the state after *t* ticks, as in replays: tick 0 is the start.
 

@@ -39,8 +39,8 @@ fn flipped_bit<G: Game>(
     wrong: &WrongTick<G>,
     differences: &[Difference],
 ) -> Result<Option<Explanation>, InspectError> {
-    // Derived fields: the angular velocity is shown beside the spin, and a change of a body's motion may change the
-    // boxes of its shapes.
+    // Derived fields: the angular velocity is derived from the stored spin, and a change of a body's motion may change
+    // the bounding boxes of its shapes.
     let derived = ["angular_velocity", "fat.lower.x", "fat.lower.y", "fat.upper.x", "fat.upper.y"];
     let stored = |difference: &&Difference| !derived.contains(&difference.field().name());
     let mut stored = differences.iter().filter(stored);

@@ -145,7 +145,7 @@ struct Beside<'a, 'k, G: Game> {
     wrong: Option<WrongTick<G>>,
     /// The states at the first different tick at which both are available.
     states: Option<States<G::Save>>,
-    /// The same, if one of the states is only presumed.
+    /// The states at the first different tick at which one of them is only presumed.
     presumed: Option<States<G::Save>>,
     /// Reason why the states of an earlier tick could not be used.
     obstacle: Option<String>,
@@ -289,7 +289,7 @@ impl<G: Game> Beside<'_, '_, G> {
         if let Some(theirs) = &wrong.phases {
             origin::find(&wrong, theirs, &mut game, found)?;
         }
-        // Otherwise it is already known which bit flipped before the step, or that none did.
+        // In all other cases it is already known which bit flipped before the step, or that none did.
         if found.stage.is_none_or(|stage| stage == Stage::BeforeStep) && found.began.is_empty() {
             candidate::explain(&wrong, game, work.min(limits.total_work), found)?;
         }

@@ -1,4 +1,4 @@
-//! [`Address`]: where packets go, as bytes that only the transport understands.
+//! [`Address`]: the destination of packets, as bytes that only the transport interprets.
 
 use core::fmt;
 
@@ -7,12 +7,12 @@ use super::bytes::{Decoded, Malformed, Reader};
 /// Largest address in bytes.
 pub const ADDRESS_BYTES_MAX: usize = 32;
 
-/// An address of a transport, such as an IP address with a port. The transport has to give one address in one form
-/// only: IPv4 addresses mapped to IPv6 count as others than the IPv4 addresses.
+/// An address of a transport, such as an IP address with a port. Addresses are compared as bytes, so the transport must
+/// encode each address in one form only: an IPv4 address and its mapped form in IPv6 count as two addresses.
 ///
 /// ```
 /// use lockstep2d::session::{ADDRESS_BYTES_MAX, Address};
-/// // A transport of one's own: players in a chat service, by their numbers there.
+/// // A custom transport over a chat service, which identifies players by numbers.
 /// let player = 76_561_197_960_287_930_u64;
 /// let address = Address::new(&player.to_le_bytes()).expect("eight bytes");
 /// assert_eq!(address.bytes(), player.to_le_bytes());
@@ -25,7 +25,7 @@ pub struct Address {
 }
 
 impl Address {
-    /// The address with these bytes, of which there are at most [`ADDRESS_BYTES_MAX`].
+    /// The address with these bytes; `None` if there are more than [`ADDRESS_BYTES_MAX`].
     #[must_use]
     pub fn new(bytes: &[u8]) -> Option<Self> {
         let length = u8::try_from(bytes.len()).ok()?;

@@ -1,11 +1,12 @@
 //! Changes of the view: one instance of single-decree Paxos for each view number, with all of its state in rows.
 //!
-//! A voter that sees a higher ballot promises it and freezes its acknowledgement. The proposer of a ballot that a
-//! quorum promised chooses the change: what the highest ballot among the promisers has accepted, or its own
-//! (`proposal.rs`). A voter accepts a change of the ballot that it promised, or of a higher one, if it holds all
-//! ticks before the cut. A change is decided once a quorum of the old view has accepted it in one ballot. Every peer
-//! that sees this installs it. As every final tick was acknowledged by a quorum before its members froze, the cut, the
-//! largest frozen acknowledgement of a quorum, lies at or above every final tick.
+//! A voter that sees a higher ballot promises it and freezes its acknowledgement. Once a quorum has promised a ballot,
+//! its proposer chooses the change: the change that the promisers accepted in the highest ballot or, if they accepted
+//! none, one of its own (`proposal.rs`). A voter accepts a change in the ballot that it promised, or in a higher one,
+//! if it holds all ticks before the cut. A change is decided once a quorum of the old view has accepted it in one
+//! ballot. Every peer that sees the decision installs the change. The cut is the largest frozen acknowledgement of a
+//! quorum. It lies at or above every final tick, because a quorum acknowledged every final tick before its members
+//! froze.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -28,15 +29,15 @@ pub(super) struct Agreement {
     pub(super) proposal: Option<Proposal>,
     /// This peer starts no ballot before this time.
     pub(super) not_before: u64,
-    /// Highest ballot round that was seen.
+    /// Highest ballot round seen so far.
     pub(super) round: u32,
     /// `round` at the start of the view.
     pub(super) base_round: u32,
-    /// Since when a peer wants a change.
+    /// Time since which a peer has wanted a change.
     pub(super) wanted_since: Option<u64>,
 }
 
-/// Transitions after one packet, at most. Each view takes a few.
+/// Maximum number of transitions after one packet. Each view takes a few.
 const STEPS_MAX: usize = 64;
 
 impl Session {
@@ -110,7 +111,7 @@ impl Session {
         }
     }
 
-    /// A random time, so that proposers do not get in each other's way again.
+    /// A random time to wait before the next ballot, so that competing proposers do not collide again.
     pub(super) fn backoff(&mut self) -> u64 {
         let ballot = self.config.timing.ballot;
         ballot / 5 + self.random.below(ballot / 2)
@@ -166,7 +167,7 @@ impl Session {
         agreement.base_round = agreement.round;
         self.peers.follow(&self.view, self.clock.active);
         self.log.follow(&self.view.spans);
-        // Views may have been skipped: everything beyond this peer's final tick is determined again.
+        // Views may have been skipped, so the complete ticks are determined again from this peer's final tick on.
         let (complete, moved_at) = (self.progress.complete, self.progress.moved_at);
         if !self.config.has(Fault::KeepComplete) {
             self.progress.complete = self.progress.fin;
@@ -206,7 +207,7 @@ impl Session {
         self.is_quorum(set)
     }
 
-    /// Place of this voter among those that are alive, and the number of voters.
+    /// Number of alive voters before this one, which is its rank among the proposers; 0 for a peer without a vote.
     pub(super) fn rank(&self) -> u64 {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         let alive = self.peers.voters_that(|remote| within(remote.fresh, fresh, active));

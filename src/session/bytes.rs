@@ -8,7 +8,7 @@ pub(super) struct Malformed;
 
 pub(super) type Decoded<T> = Result<T, Malformed>;
 
-/// Reads fields from a slice. No length is believed before the bytes are there.
+/// Reads fields from a slice. Nothing is allocated for a stated length before its bytes are present.
 pub(super) struct Reader<'a> {
     rest: &'a [u8],
 }
@@ -28,7 +28,7 @@ impl<'a> Reader<'a> {
         Ok(taken)
     }
 
-    /// Everything that is left.
+    /// Takes all remaining bytes.
     pub(super) fn rest(&mut self) -> &'a [u8] {
         core::mem::take(&mut self.rest)
     }
@@ -80,7 +80,7 @@ impl<'a> Reader<'a> {
         u32::try_from(self.var64()?).map_err(|_| Malformed)
     }
 
-    /// A number that is written as its difference to another one.
+    /// A number encoded as its difference to `base`.
     pub(super) fn near(&mut self, base: u32) -> Decoded<u32> {
         let coded = self.var64()?;
         let size = i64::try_from(coded >> 1).map_err(|_| Malformed)?;
@@ -107,7 +107,7 @@ pub(super) trait Write {
     fn put_var(&mut self, value: u32) {
         self.put_var64(u64::from(value));
     }
-    /// The difference to `base`, the sign in the lowest bit.
+    /// Writes the difference to `base`, with the sign in the lowest bit.
     fn put_near(&mut self, value: u32, base: u32) {
         let above = u64::from(value.saturating_sub(base));
         let below = u64::from(base.saturating_sub(value));

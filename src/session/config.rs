@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::view::SEATS_MAX;
 
-/// Milliseconds, in the microseconds in which a session counts.
+/// One millisecond in microseconds, the time unit of a session.
 pub(super) const MS: u64 = 1000;
 
 /// Largest number of ticks that may be played with guessed inputs.
@@ -18,29 +18,30 @@ pub const INPUT_BYTES_MAX: u16 = 512;
 ///
 /// ```
 /// use lockstep2d::session::{Config, Timing};
-/// // A board game: it waits a minute for a player who is gone.
+/// // A board game waits a minute for a missing player.
 /// let timing = Timing { patience: 60_000_000, ..Timing::DEFAULT };
 /// let config = Config { timing, ..Config::new(0, 4) };
 /// assert!(config.validate().is_ok() && timing.patience > Timing::DEFAULT.patience);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
-    /// Time for which play stands still for a peer before the others go on without it. `u64::MAX`: for ever, until a
-    /// peer asks to go on.
+    /// Time for which play stalls because of a missing peer before the others go on without it. `u64::MAX`: without a
+    /// limit, until a peer calls [`Session::go_on_without`](super::Session::go_on_without).
     pub patience: u64,
-    /// A peer is heard while its last packet is younger than this.
+    /// A peer counts as heard if a packet from it arrived within this time.
     pub heard: u64,
-    /// A row is fresh while it is younger than this.
+    /// A peer's row (its latest status record) counts as fresh for this time after it arrived.
     pub fresh: u64,
-    /// Time for which a proposer with a quorum waits for further promises.
+    /// Time for which a proposer that has promises from a quorum waits for further promises.
     pub promises: u64,
-    /// After this time without a decision, another proposer tries.
+    /// Time without a decision after which another proposer starts a ballot.
     pub ballot: u64,
-    /// Shortest time for which a peer that has finished or left still answers.
+    /// Minimum time for which a peer that has finished or left still answers.
     pub linger: u64,
-    /// Longest such time.
+    /// Maximum time for which a peer that has finished or left still answers.
     pub linger_max: u64,
-    /// Between two calls not more than this counts: a process that was suspended does not blame the others.
+    /// Upper bound of the time counted between two calls, so that a process that was suspended does not take the other
+    /// peers for silent.
     pub step_max: u64,
 }
 
@@ -62,7 +63,7 @@ impl Timing {
 ///
 /// ```
 /// use lockstep2d::session::{Config, ConfigError, GUESS_MAX};
-/// // Four players at 30 ticks a second with pads of two bytes, of whom two may begin.
+/// // Four seats at 30 ticks a second with inputs of two bytes. The match begins with two players.
 /// let config = Config { input_bytes: 2, tick_micros: 33_333, start_with: 2, guess: 8, ..Config::new(17, 4) };
 /// assert_eq!(config.validate(), Ok(()));
 /// let config = Config { guess: GUESS_MAX + 1, ..config };
@@ -70,7 +71,7 @@ impl Timing {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Config {
-    /// Distinguishes matches: packets with another tag are ignored.
+    /// Identifies the match: packets with another tag are ignored.
     pub match_tag: u64,
     /// Number of seats, 1 to [`SEATS_MAX`].
     pub seats: u8,
@@ -89,13 +90,14 @@ pub struct Config {
     pub delay_min: u16,
     /// Largest delay of inputs in ticks, at most [`DELAY_MAX`].
     pub delay_max: u16,
-    /// First tick of the peers that join, counted from the cut. It should be longer than two network delays.
+    /// Number of ticks from the cut of a view change to the first tick of the peers that join. It should last longer
+    /// than two network delays.
     pub seat_lead: u16,
     /// A peer that lags by at most this many ticks has caught up and may have a seat.
     pub seat_within: u16,
     /// Number of ticks that may be played beyond the last final one, at least 16.
     pub history: u16,
-    /// Number of final ticks whose inputs are kept for peers that return.
+    /// Number of final ticks whose inputs are kept for peers that reconnect.
     pub log_ticks: u32,
     /// Interval in ticks at which states are saved, at least 1.
     pub save_interval: u16,
@@ -184,7 +186,7 @@ impl Config {
         if usize::from(self.seats) >= SEATS_MAX { u64::MAX } else { (1 << self.seats) - 1 }
     }
 
-    /// Whether a mistake is planted. Without the feature the answer is a constant.
+    /// Whether a deliberate mistake is active. Without the feature `__faults` the result is a constant.
     #[cfg(not(feature = "__faults"))]
     #[expect(clippy::unused_self, reason = "the other version needs it")]
     pub(super) const fn has(&self, _: Fault) -> bool {
@@ -197,13 +199,13 @@ impl Config {
     }
 }
 
-/// Mistakes in the protocol that tests plant, to show that they would be noticed.
+/// Deliberate mistakes in the protocol, which tests enable to show that they are detected.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// A promise does not freeze the acknowledgement.
     NoFreeze,
-    /// The cut is what the proposer alone has acknowledged.
+    /// The cut is the acknowledgement of the proposer alone.
     OwnCut,
     /// Complete ticks count as final.
     FinalComplete,
@@ -213,13 +215,13 @@ pub enum Fault {
     KeepComplete,
     /// No rows and inputs of others are passed on.
     NoRelay,
-    /// The end that this peer wants counts, not the decided one.
+    /// The match ends at the tick that this peer wants, not at the decided one.
     LocalEnd,
     /// Ballots start while a promise stands.
     CompetingBallots,
-    /// A proposal drops voters without a promise, without patience.
+    /// A proposal drops voters without a promise at once, without waiting for the time of patience.
     Accuse,
-    /// A proposer forgets what others have accepted.
+    /// A proposer ignores changes that others have accepted.
     ForgetAccepted,
     /// A change is accepted without the inputs before its cut.
     AcceptBlind,

@@ -1,9 +1,10 @@
-//! [`Congestion`]: how fast a state is sent to one receiver.
+//! [`Congestion`]: the rate at which a state is sent to one receiver.
 //!
-//! Additive increase, multiplicative decrease (Chiu and Jain 1989), judged once a round trip. A period was too fast if
-//! more than an eighth of its chunks had been lost, or if the round trip has risen by more than 60 ms above the
-//! smallest one: then a queue fills up, through which the inputs of the match have to pass as well. Loss below an
-//! eighth is attributed to the line. Until the first period that was too fast, the rate grows by half in each period.
+//! Additive increase, multiplicative decrease (Chiu and Jain 1989), evaluated once per round trip. The rate of a period
+//! was too high if more than an eighth of its chunks were lost, or if the round trip rose by more than 60 ms above the
+//! smallest one. Such a rise means that a queue fills up, and the inputs of the match pass through the same queue. Loss
+//! below an eighth is attributed to the link. Until the rate is too high for the first time, it grows by half in each
+//! period.
 
 /// Rates in bytes a second: at first, the smallest, and the largest over all receivers together.
 const RATE_START: u64 = 1_000_000;
@@ -11,21 +12,21 @@ const RATE_MIN: u64 = 128_000;
 pub(super) const RATE_MAX: u64 = 16_000_000;
 /// Increase of the rate in a period, in bytes a second.
 const RATE_STEP: u64 = 100_000;
-/// Rise of the round trip from which on a queue is assumed, in microseconds.
+/// Rise of the round trip above which a queue is assumed, in microseconds.
 const QUEUE: u64 = 60_000;
 /// Bounds of a period in microseconds.
 const PERIOD_MIN: u64 = 40_000;
 const PERIOD_MAX: u64 = 500_000;
-/// Largest burst, as the time in microseconds in which the rate sends it: a game may update only once a frame.
+/// Largest burst, as the time in microseconds that it takes at the current rate. A game may update only once a frame.
 pub(super) const BURST: u64 = 25_000;
-/// Loss is judged by at least this many chunks.
+/// Minimum number of chunks for an estimate of the loss.
 const CHUNKS_MIN: u32 = 8;
 
 /// The rate of one upload.
 #[derive(Clone, Debug)]
 pub(super) struct Congestion {
     rate: u64,
-    /// Whether no period has been too fast yet.
+    /// Whether the rate has not been too high in any period yet.
     is_starting: bool,
     /// Bytes that may be sent now, and when they were last counted.
     budget: u64,
@@ -33,7 +34,7 @@ pub(super) struct Congestion {
     /// Smallest round trip, and the last one.
     round_trip_min: u64,
     round_trip: u64,
-    /// Start of the period, chunks sent and lost in it, and whether the rate was what kept more from being sent.
+    /// Start of the period, chunks sent and lost in it, and whether the rate limited the number of chunks sent.
     since: u64,
     sent: u32,
     lost: u32,
@@ -72,7 +73,7 @@ impl Congestion {
         self.budget > 0
     }
 
-    /// Notes that a chunk is sent. `again` if it was sent before and is taken for lost.
+    /// Notes that a chunk is sent. `again` if it was sent before and is assumed lost.
     pub(super) fn note_sent(&mut self, bytes: u64, again: bool) {
         self.budget = self.budget.saturating_sub(bytes);
         self.sent += 1;

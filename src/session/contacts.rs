@@ -1,21 +1,22 @@
-//! [`Contacts`]: other ways into a match, for a peer without a vote whose contact has gone.
+//! [`Contacts`]: alternative contacts for a peer without a vote whose contact has gone.
 //!
-//! A spectator hears the match through the peer that it has asked. If it hears no majority any more, it asks the other
-//! peers whose addresses it was told, one after the other, with the same handshake as at first. The peer that admits it
-//! serves it from then on; its state and the ticks that it has played remain.
+//! A spectator receives the match through the peer that admitted it. When it no longer receives packets from a
+//! majority, it contacts the other peers whose addresses it has learned, one after the other, with the same handshake
+//! as when joining. The peer that admits it serves it from then on. The spectator keeps its state and continues at its
+//! current tick.
 
 use alloc::vec::Vec;
 
 use super::address::Address;
 use super::id::PeerId;
 
-/// Time without a majority after which others are asked, in microseconds.
+/// Time without a majority after which other peers are contacted, in microseconds.
 const SILENCE: u64 = 500_000;
-/// Time for which one of them is asked.
+/// Time after which an unanswered attempt is given up, in microseconds.
 const ASK_TIME: u64 = 1_500_000;
-/// Time between two hellos.
+/// Time between two hello packets, in microseconds.
 const HELLO_INTERVAL: u64 = 200_000;
-/// Addresses that are remembered.
+/// Maximum number of addresses kept.
 const CONTACTS_MAX: usize = 128;
 
 /// A peer that is asked.
@@ -51,8 +52,8 @@ impl Contacts {
         }
     }
 
-    /// Returns where to send a hello, if a peer is to be asked now. `is_silent` says whether this peer hears no
-    /// majority, and `nonce` makes a number for a new handshake.
+    /// Returns the contact to send a hello to, if one is due. `is_silent` says whether this peer receives no packets
+    /// from a majority, and `nonce` generates the number of a new handshake.
     pub(super) fn update(
         &mut self,
         now: u64,
@@ -79,7 +80,7 @@ impl Contacts {
         Some(*asked)
     }
 
-    /// Takes a challenge. Returns whether it answers a hello of this peer, so that the address is right.
+    /// Processes a challenge. Returns whether it answers a hello of this peer, which confirms the address.
     pub(super) fn take_challenge(&mut self, nonce: u64, cookie: u64) -> bool {
         let Some(asked) = self.asked.as_mut().filter(|asked| asked.nonce == nonce) else { return false };
         if asked.cookie != cookie {
@@ -88,7 +89,7 @@ impl Contacts {
         true
     }
 
-    /// Takes a refusal: the next peer is asked.
+    /// Processes a refusal: the next peer is contacted.
     pub(super) fn take_refusal(&mut self, nonce: u64) {
         if self.asked.is_some_and(|asked| asked.nonce == nonce) {
             self.asked = None;

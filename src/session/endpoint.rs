@@ -1,5 +1,5 @@
 //! [`Endpoint`]: a session with addresses. It opens a match or joins one, admits peers that join, sends them a state,
-//! and finds addresses.
+//! and tracks the addresses of peers.
 
 use alloc::boxed::Box;
 use alloc::collections::VecDeque;
@@ -24,18 +24,18 @@ use super::view::View;
 pub const STATE_BYTES_MAX: u64 = 256 << 20;
 /// Time between attempts to reach the contact, in microseconds.
 const HELLO_INTERVAL: u64 = 200_000;
-/// After this time without a new chunk a download starts again.
+/// Time without a new chunk after which a download starts again, in microseconds.
 const DOWNLOAD_PATIENCE: u64 = 3_000_000;
 /// Time between lists of addresses in microseconds.
 const ROSTER_INTERVAL: u64 = 500_000;
-/// Packets that wait at most.
+/// Maximum number of packets waiting to be sent.
 const PACKETS_MAX: usize = 8192;
 
-/// An event of an endpoint, besides those of its session.
+/// An event of an endpoint while it joins a match. The events of its session are [`Event`](super::Event)s.
 ///
 /// ```
 /// use lockstep2d::session::{JoinEvent, RefusalReason};
-/// /// A line for a player who waits to be let in.
+/// /// A line of text for a player who waits to be admitted.
 /// fn line(event: &JoinEvent) -> &'static str {
 ///     match event {
 ///         JoinEvent::Refused { reason: RefusalReason::Offer, .. } => "they play another version",
@@ -49,25 +49,25 @@ const PACKETS_MAX: usize = 8192;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JoinEvent {
-    /// The contact refuses; with the offer that it expects.
+    /// The contact refuses the request to join.
     Refused {
         /// The reason.
         reason: RefusalReason,
-        /// The offer of the contact.
+        /// The contact's own offer, with which the request has to agree.
         offer: Vec<u8>,
     },
-    /// The initial state has arrived: the game has to restore it, and then follows the requests of the session.
+    /// The initial state has arrived: the game has to restore it, and then fulfil the requests of the session.
     State {
-        /// Number of ticks that lead to it.
+        /// Number of ticks played before this state.
         tick: Tick,
         /// The bytes that [`Endpoint::offer_state`] was given on the other side.
         bytes: Vec<u8>,
     },
-    /// The downloaded bytes are not a state. The endpoint asks again.
+    /// The downloaded bytes are not a state. The endpoint requests it again.
     BadState,
 }
 
-/// The way into a match.
+/// Progress of joining a match.
 #[derive(Debug)]
 pub(super) enum Phase {
     /// Asks the contact.
@@ -136,7 +136,7 @@ pub struct Endpoint {
     pub(super) events: VecDeque<JoinEvent>,
 }
 
-/// Identity of a peer, its key, and the parameters that it offers in the handshake.
+/// Identifiers of a peer, its secret, and the parameters that it offers in the handshake.
 ///
 /// ```
 /// use lockstep2d::session::{Config, Endpoint, Identity, Key, PeerId};
@@ -145,7 +145,7 @@ pub struct Endpoint {
 /// let identity = Identity { id: PeerId(id as u32), key: Key(key), offer: b"pucks, version 2".to_vec(), secret };
 /// let server = Endpoint::host(Config::new(17, 4), identity, 0)?;
 /// assert_eq!(server.session().map(|session| session.seats()), Some(0));
-/// /// Numbers of the operating system.
+/// /// Random numbers of the operating system.
 /// fn random() -> [u64; 4] {
 /// #     [1, 2, 3, 4]
 ///     // ...
@@ -161,7 +161,7 @@ pub struct Identity {
     /// Handshake data that has to be equal for all peers of a match: versions, rules, setup. Only the first
     /// [`OFFER_BYTES_MAX`] bytes count.
     pub offer: Vec<u8>,
-    /// 16 random bytes that no other peer knows, for cookies.
+    /// 16 random bytes that no other peer knows: the key of the handshake cookies.
     pub secret: [u64; 2],
 }
 
@@ -204,7 +204,7 @@ impl Endpoint {
         Ok(Endpoint::new(config, identity, role, Phase::InMatch(Box::new(session)), None))
     }
 
-    /// Asks a peer that takes part in a match.
+    /// Joins a match through a contact, which is a peer that already takes part in it.
     ///
     /// # Errors
     /// A parameter that is out of its range.
@@ -251,7 +251,7 @@ impl Endpoint {
         }
     }
 
-    /// Received and all bytes of the state, while it is downloaded.
+    /// Number of bytes received and total number of bytes of the state, while it is downloaded.
     #[must_use]
     pub fn download(&self) -> Option<(u64, u64)> {
         match &self.phase {
@@ -260,7 +260,7 @@ impl Endpoint {
         }
     }
 
-    /// The address of a peer that has answered.
+    /// The address of a peer, once the peer has answered a probe from that address.
     #[must_use]
     pub fn address(&self, peer: PeerId) -> Option<Address> {
         self.routes.address(peer)
@@ -281,13 +281,14 @@ impl Endpoint {
         self.packets.push_back((to, bytes));
     }
 
-    /// Whether a peer waits for a state. The game then calls [`offer_state`](Endpoint::offer_state).
+    /// Whether a joining peer waits for a state. The game then calls [`offer_state`](Endpoint::offer_state).
     #[must_use]
     pub fn wants_state(&self) -> bool {
         self.guests.anybody_waits()
     }
 
-    /// Offers the state after a number of final ticks. It is kept, and sent to all peers that wait, while play goes on.
+    /// Offers the state after `tick` ticks, all of which must be final. While play continues, it is sent to all peers
+    /// that wait for a state.
     pub fn offer_state(&mut self, tick: Tick, state: Vec<u8>) {
         let Phase::InMatch(session) = &self.phase else { return };
         if tick > session.final_tick() {
@@ -300,7 +301,7 @@ impl Endpoint {
         self.pinned = Some(pinned);
     }
 
-    /// Passes the time.
+    /// Advances the endpoint to the time `now`, in microseconds: sends packets that are due and handles timeouts.
     pub fn update(&mut self, now: u64) {
         match &mut self.phase {
             Phase::Asking { nonce, cookie, next_at } => {
@@ -334,7 +335,7 @@ impl Endpoint {
         }
     }
 
-    /// Asks others to be served by them, if this peer has no vote and hears no majority.
+    /// Asks other peers to serve this peer, if it has no vote and receives no packets from a majority.
     fn search(&mut self, now: u64) {
         let Phase::InMatch(session) = &self.phase else { return };
         let is_silent = session.status() == Status::Paused && session.view().voter(self.me).is_none();

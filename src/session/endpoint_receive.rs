@@ -14,7 +14,7 @@ use super::state::Session;
 use super::transfer::Download;
 
 impl Endpoint {
-    /// Takes a packet that arrived.
+    /// Processes a received packet.
     pub fn receive(&mut self, now: u64, from: Address, bytes: &[u8]) {
         let Ok(body) = packet::open(self.config.match_tag, bytes) else { return };
         if is_join_packet(body) {
@@ -35,7 +35,7 @@ impl Endpoint {
             JoinPacket::Hello { nonce, key, cookie, offer } => {
                 let right = Guests::cookies(self.secret, now, &from, sender, key, nonce);
                 if right.contains(&cookie) {
-                    // The sender does receive what is sent to its address.
+                    // The cookie proves that the sender receives packets at its address.
                     self.admit(now, from, sender, key, nonce, &offer);
                 } else {
                     let [cookie, _] = right;
@@ -45,7 +45,7 @@ impl Endpoint {
             JoinPacket::Challenge { nonce, cookie } => {
                 if let Phase::InMatch(session) = &mut self.phase {
                     if self.contacts.take_challenge(nonce, cookie) {
-                        // It is going to serve this peer, so it receives what this peer says.
+                        // The sender is going to serve this peer, so this peer sends packets to it.
                         session.attach(sender, None);
                         self.routes.prove(sender, from, now);
                     }
@@ -110,7 +110,7 @@ impl Endpoint {
         self.session().is_some_and(|session| session.link(id).is_some())
     }
 
-    /// Lets a peer in, or tells it why not.
+    /// Admits a peer, or sends it a refusal with the reason.
     fn admit(&mut self, now: u64, from: Address, sender: PeerId, key: Key, nonce: u64, offer: &[u8]) {
         let reason = if offer != self.offer {
             Some(RefusalReason::Offer)

@@ -1,12 +1,12 @@
-//! [`Event`]: what happened, for the game; [`Status`]: where a session stands.
+//! [`Event`]: an event that a session reports to the game; [`Status`]: the status of a session.
 
 use super::id::{PeerId, Tick};
 
-/// Where a session stands.
+/// Status of a session.
 ///
 /// ```
 /// use lockstep2d::session::Status;
-/// /// What the screen shows over the game.
+/// /// The text that the screen shows over the game.
 /// fn banner(status: Status) -> &'static str {
 ///     match status {
 ///         Status::Playing => "",
@@ -29,17 +29,18 @@ pub enum Status {
     Waiting,
     /// Plays.
     Playing,
-    /// Cannot hear a majority, which alone can go on. A peer without a seat may ask another contact.
+    /// Receives no packets from a majority, and only a majority can continue the match. A peer without a seat may ask
+    /// another contact.
     Paused,
     /// The others went on without this peer, which asks for its seat again.
     Dropped,
     /// The others removed it for good.
     Kicked,
-    /// Tells the others that it leaves.
+    /// Announces its departure to the others.
     Leaving,
-    /// Has left, and still answers the peers that do not know it.
+    /// Has left, and still answers peers that do not know of its departure yet.
     Left,
-    /// All ticks of the match are final. This peer still answers those that lack some.
+    /// All ticks of the match are final. This peer still answers peers that lack some of them.
     Finished {
         /// Number of ticks of the match.
         ticks: Tick,
@@ -60,7 +61,7 @@ impl Status {
 ///
 /// ```
 /// use lockstep2d::session::{Event, PeerId};
-/// // For how long has a peer played? From the events of a match.
+/// // Computes from the events of a match for how many ticks a peer has played.
 /// let peer = PeerId(5);
 /// let events = [Event::Seated { peer, seat: 1, from: 60 }, Event::Unseated { peer, seat: 1, from: 660 }];
 /// let (mut since, mut played) = (0, 0);
@@ -75,14 +76,14 @@ impl Status {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// The session stands somewhere else.
+    /// The status of the session has changed.
     Status(Status),
     /// The seats change: a new view is in force.
     View {
         /// Number of the view.
         number: u32,
     },
-    /// A peer has a seat, from a tick on.
+    /// A peer occupies a seat from a tick on.
     Seated {
         /// Incarnation of the peer.
         peer: PeerId,
@@ -91,7 +92,7 @@ pub enum Event {
         /// First tick.
         from: Tick,
     },
-    /// A peer no longer has a seat, from a tick on.
+    /// A peer no longer occupies a seat from a tick on.
     Unseated {
         /// Incarnation of the peer.
         peer: PeerId,
@@ -100,20 +101,20 @@ pub enum Event {
         /// First tick without it.
         from: Tick,
     },
-    /// Play stands still because inputs of a peer are missing; once for each time it does.
+    /// Play stalls because inputs of a peer are missing. Reported once for each stall and peer.
     Waiting {
         /// Incarnation of the peer.
         peer: PeerId,
-        /// Whether its packets arrive. If so, its game does not advance.
+        /// Whether news of the peer arrives, directly or through other peers. If so, its game does not advance.
         heard: bool,
     },
-    /// Play goes on after [`Event::Waiting`].
+    /// Play continues after [`Event::Waiting`].
     Resumed,
-    /// A peer asks all others to stop for now, or no longer does.
+    /// A peer requests a pause, or withdraws its request.
     Pause {
         /// Incarnation of the peer.
         peer: PeerId,
-        /// Whether it asks.
+        /// Whether the peer requests a pause.
         paused: bool,
     },
     /// The end of the match is decided.
@@ -132,13 +133,13 @@ pub enum Event {
         /// Hash of the other peer.
         theirs: u128,
     },
-    /// A peer has issued two inputs for one tick. Its inputs are not accepted any more.
+    /// A peer has issued two different inputs for one tick. Its inputs are no longer accepted.
     Conflict {
         /// The peer.
         peer: PeerId,
         /// The tick.
         tick: Tick,
     },
-    /// The match has gone on for longer than the others keep inputs: a state is needed.
+    /// The other peers no longer keep the inputs that this peer lacks. It has to join again and download a state.
     TooFarBehind,
 }

@@ -1,5 +1,5 @@
-//! [`Guests`]: peers that follow the match without a vote, and the states that are sent to them. Nothing is kept about
-//! a peer whose address has not answered.
+//! [`Guests`]: peers that follow the match without a vote, and the states that are sent to them. Nothing is stored for
+//! a peer whose address has not been confirmed by the handshake.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -15,9 +15,9 @@ use super::transfer::{Pinned, Upload};
 
 /// Largest number of peers that follow the match without a vote.
 pub const GUESTS_MAX: usize = 64;
-/// A cookie holds for one to two of these, in microseconds.
+/// Period of the cookies in microseconds. A cookie is valid for one to two periods.
 const COOKIE_LIFE: u64 = 15_000_000;
-/// A guest that asks for nothing is forgotten after this time.
+/// A guest that sends no request for this time is removed, in microseconds.
 const GUEST_PATIENCE: u64 = 5_000_000;
 /// Time between announcements of a state to a guest that has not asked for it yet, in microseconds.
 const WELCOME_INTERVAL: u64 = 200_000;
@@ -45,7 +45,7 @@ pub(super) struct Guests {
 }
 
 impl Guests {
-    /// The cookies that are right for a peer that asks: the newest one, and the one before it.
+    /// The cookies that are valid for a joining peer: the newest one, and the one before it.
     pub(super) fn cookies(
         secret: Secret,
         now: u64,
@@ -67,7 +67,7 @@ impl Guests {
         })
     }
 
-    /// Admits a peer whose address has answered. Returns the reason if it is refused.
+    /// Admits a peer whose address is confirmed. Returns the reason if the peer is refused.
     pub(super) fn admit(
         &mut self,
         session: &mut Session,
@@ -77,7 +77,7 @@ impl Guests {
     ) -> Option<RefusalReason> {
         if let Some(guest) = self.list.iter_mut().find(|guest| guest.id == id) {
             if guest.nonce != nonce {
-                // It begins again.
+                // The guest starts its handshake again.
                 (guest.nonce, guest.upload, guest.asked, guest.heard_at) = (nonce, None, false, None);
             }
             return None;
@@ -120,7 +120,7 @@ impl Guests {
         upload.take(now, next, window, masks);
     }
 
-    /// Packets to guests. Forgets those that have begun to take part, or have gone.
+    /// Returns packets to guests. Removes guests that take part in the match by now, and guests that have gone.
     pub(super) fn update(&mut self, now: u64, session: &mut Session) -> Vec<(PeerId, JoinPacket)> {
         let passed = now.saturating_sub(self.budget_at).min(BURST);
         self.budget_at = now;

@@ -5,13 +5,13 @@ use core::fmt;
 /// Number of a tick: tick `t` leads from the state after `t` ticks to the state after `t + 1`.
 pub type Tick = u32;
 
-/// A tick that is never reached: the end of a span whose owner still plays, and of a match without an end.
+/// A tick that is never reached: the end of a span whose owner still plays, and of a match whose end is not decided.
 pub const NEVER: Tick = u32::MAX;
 
 /// Incarnation of a peer: a random number that a process chooses when it starts, unique in its match.
 ///
-/// A process that restarts must choose another number. The old one stands for promises that the new process does not
-/// remember.
+/// A process that restarts must choose another number, because it does not remember the promises that were made under
+/// the old one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PeerId(pub u32);
 

@@ -10,7 +10,7 @@ use super::view::Span;
 struct SpanLog {
     /// First tick in `bytes`. Earlier ones have been forgotten.
     first: Tick,
-    /// First tick that is missing.
+    /// First tick whose input is missing.
     next: Tick,
     bytes: Vec<u8>,
 }
@@ -18,7 +18,7 @@ struct SpanLog {
 /// Result of adding inputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Added {
-    /// Nothing new.
+    /// All inputs were known already, or they would have left a gap.
     Nothing,
     /// The inputs from this tick on are new.
     From(Tick),
@@ -70,7 +70,7 @@ impl InputLog {
         self.range(span, tick, tick.checked_add(1)?)
     }
 
-    /// The inputs for the ticks `from <= tick < until`, if all of them are here.
+    /// The inputs for the ticks `from <= tick < until`, if all of them are present.
     pub(super) fn range(&self, span: usize, from: Tick, until: Tick) -> Option<&[u8]> {
         let log = self.spans.get(span)?;
         let at = |tick: Tick| usize::try_from(tick.checked_sub(log.first)?).ok()?.checked_mul(self.size);
@@ -100,7 +100,7 @@ impl InputLog {
         if log.next > before { Added::From(before) } else { Added::Nothing }
     }
 
-    /// Forgets inputs before a tick, once that is worth moving the others.
+    /// Drops the inputs before a tick, once there are enough of them to justify moving the others.
     pub(super) fn forget_before(&mut self, tick: Tick) {
         for log in &mut self.spans {
             let until = tick.min(log.next);

@@ -1,4 +1,4 @@
-//! Packets besides those of the match: asking to join, states, and the search for addresses.
+//! Packets outside of the match itself: requests to join, transfer of states, and discovery of addresses.
 
 use alloc::vec::Vec;
 
@@ -9,9 +9,9 @@ use super::packet::{PACKET_BYTES_MAX, checksum};
 
 /// Largest length of an offer in bytes.
 pub const OFFER_BYTES_MAX: usize = 512;
-/// Bytes of a state in a packet.
+/// Bytes of a state per packet.
 pub(super) const CHUNK_BYTES: usize = 1152;
-/// Largest number of words of received chunks that a request lists.
+/// Largest number of words in a request's bit mask of received chunks.
 pub(super) const MASKS_MAX: usize = 16;
 /// Largest number of addresses in a packet.
 pub(super) const ROSTER_MAX: usize = 24;
@@ -23,9 +23,9 @@ pub enum RefusalReason {
     Offer,
     /// Too many peers follow the match.
     Full,
-    /// The incarnation is that of another peer.
+    /// The requested incarnation belongs to another peer.
     Taken,
-    /// This peer is not in a match yet.
+    /// The contact is not in a match yet.
     NotReady,
 }
 
@@ -39,7 +39,8 @@ pub(super) enum JoinPacket {
         cookie: u64,
         offer: Vec<u8>,
     },
-    /// Proves that the sender receives what is sent to its address. The receiver keeps nothing.
+    /// Carries a cookie to the address of a hello, which the next hello returns to prove that its sender receives
+    /// packets there. Whoever sends a challenge stores nothing for it.
     Challenge {
         nonce: u64,
         cookie: u64,
@@ -56,8 +57,8 @@ pub(super) enum JoinPacket {
         hash: u64,
         length: u64,
     },
-    /// Chunks before `next` are here, and those after it whose bit is set. Up to `window` chunks from `next` on may
-    /// be sent.
+    /// The receiver of a state has all chunks before `next` and those after it whose bit is set. Up to `window` chunks
+    /// from `next` on may be sent.
     Want {
         hash: u64,
         next: u32,
@@ -73,22 +74,22 @@ pub(super) enum JoinPacket {
     Probe {
         token: u64,
     },
-    /// Answers with the token.
+    /// Answers a probe with its token.
     Pong {
         token: u64,
     },
-    /// Addresses of others.
+    /// Addresses of other peers.
     Roster {
         addresses: Vec<(PeerId, Address)>,
     },
 }
 
-/// Place of the kind in the body of a packet, where packets of the match have their flags.
+/// Offset of the kind in the body of a packet. Packets of the match have their flags at this offset.
 const KIND_AT: usize = 4;
-/// Kinds start here; flags are smaller.
+/// Smallest value of a kind. Values of the flags of match packets are smaller.
 const KIND_FIRST: u8 = 0x80;
 
-/// Whether the body of a packet is not one of the match.
+/// Whether the body is that of a join packet and not of a packet of the match.
 pub(super) fn is_join_packet(body: &[u8]) -> bool {
     body.get(KIND_AT).is_some_and(|&kind| kind >= KIND_FIRST)
 }

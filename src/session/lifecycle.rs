@@ -1,4 +1,4 @@
-//! Where a session stands: [`Status`] is determined in one place, after each update.
+//! The [`Status`] of a session, determined in one place after each update.
 
 use super::config::Fault;
 use super::event::{Event, Status};
@@ -7,25 +7,25 @@ use super::row::{Removal, SeatWant};
 use super::state::{Role, Session};
 use super::view::{View, has_bit};
 
-/// The status and what it depends on besides the view.
+/// The status, and the data besides the view that it depends on.
 #[derive(Clone, Debug)]
 pub(super) struct Lifecycle {
     pub(super) status: Status,
-    /// When a leave was first wanted, decided, or the last tick became final.
+    /// Time at which this peer first wanted to leave, lost its vote, or held all ticks of the match as final.
     since: Option<u64>,
     /// Whether this peer had a seat and lost it against its will.
     dropped: bool,
     kicked: bool,
     left: bool,
-    /// The peer that play waits for, as the game was told.
+    /// The peer that play waits for, as last reported to the game.
     waiting_for: Option<PeerId>,
     too_far_behind: bool,
-    /// Peers that ask for a pause, as the game was told.
+    /// Peers that request a pause, as last reported to the game.
     paused: alloc::vec::Vec<PeerId>,
 }
 
-/// Play stands still for this many ticks, and as long as a peer counts as heard, before the game is told which peer
-/// play waits for.
+/// Play stalls for the time of this many ticks, and at least for [`Timing::heard`](super::Timing::heard), before the
+/// game is told which peer play waits for.
 const WAITING_TICKS: u64 = 6;
 
 /// Time before the end of a match at which a peer proposes the end, in microseconds.
@@ -70,7 +70,7 @@ impl Session {
             self.lifecycle.dropped = !self.wants.leave;
             self.lifecycle.since = None;
         }
-        // A peer that play went on without may return.
+        // A peer that was removed with `Removal::Without` may return.
         let view = &self.view;
         self.wants.removals.retain(|removal| match *removal {
             Removal::Without(id) => view.voter(id).is_some(),
@@ -78,7 +78,7 @@ impl Session {
         });
     }
 
-    /// First tick that is not played by this peer.
+    /// First tick after the end of the match for this peer.
     pub(super) fn stop(&self) -> Tick {
         let own = self.wants.end.filter(|_| self.config.has(Fault::LocalEnd));
         own.map_or(self.view.stop(), |own| own.min(self.view.stop()))
@@ -99,7 +99,7 @@ impl Session {
             Role::Spectator => 0,
         };
         let wants = seats > 0 && may_have && caught_up && self.is_connected();
-        // A peer that was dropped takes any seats: another peer may have its own.
+        // A peer that was dropped asks for any seats, because its own may be taken.
         let which = if self.lifecycle.dropped { 0 } else { self.config.seats_wanted };
         self.wants.seats = wants.then_some(SeatWant { seats, key: self.key, which });
         let notice =
@@ -110,14 +110,14 @@ impl Session {
         }
     }
 
-    /// A seat that this peer asks for and that belongs to another peer.
+    /// A seat that this peer requests and that belongs to another peer.
     pub(crate) fn taken_seat(&self) -> Option<u8> {
         let want = self.wants.seats?;
         let others = self.view.spans.iter().filter(|span| span.is_open() && span.key != self.key);
         others.map(|span| span.seat).find(|&seat| has_bit(want.which, usize::from(seat)))
     }
 
-    /// Determines the status, and tells the game if it is another one.
+    /// Determines the status, and reports a change to the game.
     pub(super) fn update_status(&mut self) {
         let status = self.determine_status();
         if status != self.lifecycle.status {
@@ -150,7 +150,7 @@ impl Session {
             return if self.lingered(since, known) { Status::Closed } else { Status::Left };
         }
         if self.wants.leave {
-            // A minority cannot decide: it goes without.
+            // A minority cannot decide on a departure, so the peer leaves without a decision after this time.
             let since = *self.lifecycle.since.get_or_insert(self.clock.active);
             let waited = self.clock.active > since.saturating_add(self.config.timing.linger_max);
             return if waited { Status::Closed } else { Status::Leaving };
@@ -161,14 +161,15 @@ impl Session {
             (true, _) => Status::Playing,
             (false, _) if self.lifecycle.kicked => Status::Kicked,
             (false, _) if self.lifecycle.dropped => Status::Dropped,
-            // The contact may have gone: another one can be asked.
+            // The contact may have gone: the peer can ask another one.
             (false, _) if self.view.begun && !self.is_connected() => Status::Paused,
             (false, Role::Player { .. }) => Status::Joining,
             (false, Role::Spectator) => Status::Watching,
         }
     }
 
-    /// Whether a peer that is done may stop answering: the others know all they need, or it has waited long enough.
+    /// Whether a peer that has finished or left may stop answering: no other peer needs its answers any more (`known`),
+    /// or the maximum time has passed.
     fn lingered(&self, since: u64, known: bool) -> bool {
         let timing = &self.config.timing;
         let hasty = self.config.has(Fault::HastyLeave);

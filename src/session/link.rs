@@ -1,17 +1,17 @@
-//! [`Link`]: measurements of the way to a peer.
+//! [`Link`]: measurements of the network path to a peer.
 
 /// Unit of times in packets, in microseconds: a power of two.
 const UNIT_SHIFT: u32 = 7;
-/// Longest round trip that is believed, in microseconds. Times in packets wrap after 8.4 s.
+/// Longest round trip that is accepted, in microseconds. Times in packets wrap after 8.4 s.
 const ROUND_TRIP_MAX: u64 = 4_000_000;
 /// Number of packets over which loss is counted.
 const LOSS_WINDOW: u32 = 64;
 
-/// Measurements of the way to a peer and back.
+/// Measurements of the network path to a peer and back.
 ///
 /// ```
 /// use lockstep2d::session::Link;
-/// /// The bars beside the name of a player.
+/// /// The number of signal bars beside the name of a player.
 /// fn bars(link: &Link) -> u32 {
 ///     let slow = link.round_trip > 150_000;
 ///     let lossy = link.loss_per_mille > 30;
@@ -28,7 +28,7 @@ pub struct Link {
     pub round_trip: u64,
     /// Smoothed deviation of the round trip, in microseconds.
     pub jitter: u64,
-    /// Packets of the last 64 or so that did not arrive, in thousandths.
+    /// Share of about the last 64 packets of the peer that did not arrive, in thousandths.
     pub loss_per_mille: u32,
     /// Bytes sent, without the headers of the transport.
     pub bytes_sent: u64,
@@ -39,14 +39,14 @@ pub struct Link {
     /// Packets received.
     pub packets_received: u64,
     pub(super) next_sequence: u16,
-    /// Last time of sending in a packet of the peer, and when that packet arrived.
+    /// Timestamp of the peer's newest packet, and the time of its arrival.
     last_sent: Option<(u16, u64)>,
     last_sequence: Option<u16>,
     expected: u32,
     arrived: u32,
 }
 
-/// A time in the units of packets.
+/// Converts a time to the units of packet timestamps.
 pub(super) fn stamp(now: u64) -> u16 {
     let [low, high, ..] = (now >> UNIT_SHIFT).to_le_bytes();
     u16::from_le_bytes([low, high])
@@ -60,7 +60,7 @@ impl Link {
         Some(sent.wrapping_add(stamp(held)))
     }
 
-    /// Notes a packet of the peer. Returns whether it is newer than all others.
+    /// Notes a packet from the peer, and updates loss, round trip and jitter.
     pub(super) fn arrived(&mut self, sequence: u16, sent: u16, echo: Option<u16>, bytes: usize, now: u64) {
         self.packets_received += 1;
         self.bytes_received += u64::try_from(bytes).unwrap_or(0);

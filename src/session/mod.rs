@@ -1,12 +1,12 @@
 //! A match between peers, without sockets, clocks or threads: bytes in, bytes out, time as an argument.
 //!
-//! All peers play the same ticks with the same inputs, and only inputs are sent. A [`Session`] agrees with those of the
-//! other peers on one history: who plays from which tick on, which inputs are final, and where the match ends. It
-//! neither reads a clock nor opens a socket, and given the same calls it does the same.
+//! All peers play the same ticks with the same inputs, and only inputs are sent. The [`Session`]s of all peers agree on
+//! one history: which peer plays which seat in which ticks, which inputs are final, and at which tick the match ends. A
+//! session neither reads a clock nor opens a socket, and the same calls give the same results.
 //!
 //! - [`Session`]: takes packets and local inputs, returns packets, [`Request`]s to the game, and [`Event`]s.
 //! - [`Endpoint`]: a session with addresses, which opens or joins a match and sends states to peers that join.
-//! - [`View`]: who plays and who decides. Views change by agreement of a majority.
+//! - [`View`]: the seats, players and voters of a match. Views change by agreement of a majority.
 //! - [`Config`]: the parameters of a match and of a peer. Lockstep is a [`Config::guess`] of 0.
 //!
 //! `docs/PROTOCOL.md` has the rules, the packets byte by byte, and the invariants that simulations check.

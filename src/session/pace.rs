@@ -1,8 +1,8 @@
-//! [`Pace`]: when the next tick is due, and by how many ticks this peer's inputs are delayed.
+//! [`Pace`]: the time at which the next tick is due, and the number of ticks by which this peer's inputs are delayed.
 //!
-//! Ticks of the others are estimated: those of their newest row, plus half a round trip. A peer steers to the median of
-//! these: it stretches its ticks by up to 1/8 when it is ahead, and shortens them by up to 1/16 when it is behind. So
-//! no peer has to wait abruptly, and clocks that run differently do no harm.
+//! The current tick of another peer is estimated from its newest row plus half a round trip. Each peer steers towards
+//! the median of these estimates: it lengthens its ticks by up to 1/8 when it is ahead, and shortens them by up to 1/16
+//! when it is behind. Therefore no peer stops abruptly, and clocks that run at different rates do no harm.
 
 use alloc::vec::Vec;
 
@@ -15,16 +15,16 @@ use super::state::Session;
 #[derive(Clone, Debug)]
 pub(super) struct Pace {
     tick_micros: u64,
-    /// When the next tick is due. Nothing before the first one.
+    /// Time at which the next tick is due; `None` before the first one.
     next_at: Option<u64>,
-    /// Duration of a tick now, in microseconds.
+    /// Current duration of a tick in microseconds.
     length: u64,
     /// Delay of this peer's inputs in ticks.
     pub(super) delay: u16,
     delay_at: u64,
-    /// Whether this peer plays no tick because another is far behind.
+    /// Whether this peer plays no tick because another peer is far behind.
     held: bool,
-    /// Number of ticks that may be made up at once.
+    /// Number of ticks that may be played at once to catch up.
     behind: Tick,
     /// Whether this peer has just got a seat, and plays all ticks that are complete at once.
     hurries: bool,
@@ -32,15 +32,15 @@ pub(super) struct Pace {
 
 /// Largest number of ticks by which a peer runs ahead of the slowest.
 const AHEAD_MAX: i64 = 6;
-/// Lateness that is made up, in ticks. What goes beyond is dropped.
+/// Largest lateness that is made up, in ticks. Any further lateness is dropped.
 const LATE_MAX: u64 = 3;
-/// From this many ticks behind what is complete, ticks are made up at once.
+/// Number of complete but unplayed ticks above which a peer catches up at once.
 const CATCH_UP: Tick = 12;
 /// Time between changes of the delay, in microseconds.
 const DELAY_INTERVAL: u64 = 500_000;
-/// A peer without a seat plays this many ticks behind the final ones.
+/// Number of ticks by which a peer without a seat stays behind the final ticks.
 const FOLLOW: i64 = 2;
-/// Lateness is measured in 1/256 ticks.
+/// Units per tick in which lateness is measured.
 const PART: i64 = 256;
 
 impl Pace {
@@ -102,7 +102,7 @@ impl Session {
         self.adapt_delay();
     }
 
-    /// By how much this peer is ahead of each of the others that play, in 1/256 ticks, ascending.
+    /// The lead of this peer over each other peer that plays, in 1/256 ticks, in ascending order.
     fn ticks_ahead(&self) -> Vec<i64> {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         let tick = self.pace.tick_micros.max(1);
@@ -128,13 +128,13 @@ impl Session {
         self.view.spans.iter().any(|span| span.owner == id && span.is_open() && span.from <= tick)
     }
 
-    /// Part of the current tick that has passed, in 1/256.
+    /// Elapsed part of the current tick, in 1/256 ticks.
     fn phase(&self) -> i64 {
         let left = self.pace.next_at.unwrap_or(0).saturating_sub(self.clock.now).min(self.pace.tick_micros);
         i64::try_from((self.pace.tick_micros - left) * 256 / self.pace.tick_micros.max(1)).unwrap_or(0)
     }
 
-    /// Catches up with those who play, after this peer got a seat. Its first inputs have to arrive in time.
+    /// Catches up with the other players after this peer got a seat. Its first inputs have to arrive in time.
     pub(super) fn hurry(&mut self) {
         self.pace.hurries = true;
         self.pace.delay = self.delay_aim();
@@ -143,7 +143,7 @@ impl Session {
 
     fn adapt_delay(&mut self) {
         let now = self.clock.now;
-        // Inputs have to arrive in time when another peer begins to play, too.
+        // When another peer begins to play, this peer's inputs have to reach it in time, too.
         let played = self.play.played;
         if self.view.spans.iter().any(|span| span.is_open() && span.from > played) {
             self.pace.delay = self.pace.delay.max(self.delay_aim());
@@ -158,7 +158,8 @@ impl Session {
         }
     }
 
-    /// The delay follows the slowest way to another peer: half a round trip, its jitter, and the interval of sending.
+    /// Target of the input delay, from the slowest link to another player: half a round trip, its jitter, and the send
+    /// interval.
     fn delay_aim(&self) -> u16 {
         let (least, most) = (self.config.delay_min, self.config.delay_max);
         let tick = self.pace.tick_micros.max(1);

@@ -1,7 +1,7 @@
 //! Packets between peers of a match. `docs/PROTOCOL.md` has their layout as tables.
 //!
-//! The decoder is strict: a packet with a wrong checksum, an unknown flag, a number that is not in its shortest form, a
-//! length beyond its bound or bytes after its end is dropped like one that the network has lost.
+//! The decoder is strict: it drops a packet with a wrong checksum, an unknown flag, a number that is not in its
+//! shortest form, a length beyond its bound, or bytes after its end. A dropped packet counts as lost.
 
 use alloc::vec::Vec;
 
@@ -11,9 +11,9 @@ use super::row::Row;
 use super::runs;
 use super::view::Change;
 
-/// Largest packet in bytes: most networks pass it in one piece.
+/// Largest packet in bytes. Most networks transmit it without fragmentation.
 pub const PACKET_BYTES_MAX: usize = 1200;
-/// Largest number of rows of others in a packet.
+/// Largest number of rows of other peers in a packet.
 pub(super) const FOREIGN_ROWS_MAX: usize = 3;
 /// Largest number of changes in a packet.
 pub(super) const CHANGES_MAX: usize = 16;
@@ -38,18 +38,18 @@ mod flag {
 pub(super) struct Run {
     pub(super) span: u16,
     pub(super) start: Tick,
-    /// Place of the inputs in [`Packet::inputs`].
+    /// Range of the inputs in [`Packet::inputs`].
     pub(super) bytes: core::ops::Range<usize>,
 }
 
-/// First part of a packet.
+/// Header of a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Header {
     pub(super) sender: PeerId,
     pub(super) sequence: u16,
     /// Time of sending in units of 128 us.
     pub(super) sent: u16,
-    /// The receiver's last time of sending, plus the time since its packet arrived.
+    /// Timestamp of the receiver's newest packet, plus the time since that packet arrived.
     pub(super) echo: Option<u16>,
 }
 
@@ -88,7 +88,7 @@ pub(super) struct Composer {
     flags: u8,
 }
 
-/// Place of the flags: after the checksum and the sender.
+/// Offset of the flags, which follow the checksum and the sender.
 const FLAGS_AT: usize = 8;
 /// Bytes kept free for the counts of the sections that may follow.
 const RESERVE: usize = 4;
@@ -167,7 +167,7 @@ impl Composer {
         });
     }
 
-    /// Appends rows of others.
+    /// Appends rows of other peers.
     pub(super) fn foreign<'a>(&mut self, rows: impl IntoIterator<Item = (PeerId, &'a Row)>) {
         self.section(flag::FOREIGN, FOREIGN_ROWS_MAX, rows, |(id, row), bytes| {
             bytes.put_u32(id.0);
@@ -246,7 +246,7 @@ impl Packet {
     }
 }
 
-/// A section that is announced is not empty.
+/// Reads the number of parts of a section. A section whose flag is set is not empty.
 fn section_count(reader: &mut Reader, most: usize) -> Decoded<usize> {
     let count = usize::from(reader.u8()?);
     if (1..=most).contains(&count) { Ok(count) } else { Err(Malformed) }

@@ -1,4 +1,4 @@
-//! [`Peers`]: what a session knows of each peer, and when it learned it.
+//! [`Peers`]: the data that a session keeps about each peer, with the times at which it arrived.
 
 use alloc::vec::Vec;
 
@@ -7,7 +7,7 @@ use super::link::Link;
 use super::row::Row;
 use super::view::{View, bit};
 
-/// Largest number of peers that are known at a time. Beyond it, the peer that has been silent longest is forgotten.
+/// Largest number of known peers. Beyond it, the peer without a vote that has been silent longest is removed.
 pub(super) const PEERS_MAX: usize = 192;
 
 /// The data that a session keeps about another peer.
@@ -16,15 +16,15 @@ pub(super) struct Remote {
     pub(super) id: PeerId,
     pub(super) key: Option<Key>,
     pub(super) row: Option<Row>,
-    /// When a newer row arrived, by whatever way.
+    /// Time at which a newer row of the peer arrived, directly or through another peer.
     pub(super) fresh: Option<u64>,
-    /// When a packet arrived from the peer itself.
+    /// Time at which a packet arrived from the peer itself.
     pub(super) heard: Option<u64>,
-    /// When a row arrived that said that the peer was connected to a quorum.
+    /// Time at which a row arrived in which the peer was connected to a quorum.
     pub(super) contact: u64,
     /// Whether the peer is served although it has no vote.
     pub(super) attached: bool,
-    /// Whether it issued two inputs for a tick, or has another state.
+    /// Whether the peer issued two different inputs for a tick, or has a different state.
     pub(super) faulty: bool,
     pub(super) link: Link,
 }
@@ -33,7 +33,7 @@ pub(super) struct Remote {
 #[derive(Clone, Debug)]
 pub(super) struct Peers {
     pub(super) list: Vec<Remote>,
-    /// Place in the list of each voter of the view.
+    /// Index in the list of each voter of the view.
     voters: Vec<Option<usize>>,
 }
 
@@ -84,7 +84,7 @@ impl Peers {
         self.voters = view.voters.iter().map(|voter| place(voter.id)).collect();
     }
 
-    /// Forgets peers without a vote while there are more than [`PEERS_MAX`].
+    /// Removes peers without a vote while there are more than [`PEERS_MAX`] peers.
     pub(super) fn bound(&mut self, view: &View) {
         while self.list.len() > PEERS_MAX {
             let silent = |(_, remote): &(usize, &Remote)| remote.fresh.max(remote.heard);

@@ -1,4 +1,4 @@
-//! Playing ticks: which inputs the game gets, and what happens when they turn out to be others.
+//! Playing ticks: the inputs that the game gets, and rollback when inputs differ from those that were played.
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
@@ -23,11 +23,11 @@ pub(super) struct Play {
     used_from: Tick,
     /// Ticks before which states are kept.
     saves: VecDeque<Tick>,
-    /// First tick whose inputs may differ from those that were used.
+    /// First tick whose inputs may differ from the ones it was played with.
     dirty: Tick,
     pub(super) requests: VecDeque<Request>,
     hashes: VecDeque<(Tick, u128)>,
-    /// Tick of the last hash that was asked for.
+    /// Tick of the last requested hash.
     checked: Tick,
     seats: usize,
     /// Ticks that were played again.
@@ -36,14 +36,14 @@ pub(super) struct Play {
     pub(super) replayed_max: Tick,
 }
 
-/// Figures of a session.
+/// Statistics of a session.
 ///
 /// ```
 /// # use lockstep2d::session::{Config, Key, PeerId, Role, Session, View};
 /// use lockstep2d::session::Statistics;
 /// # let view = View::opened_by(PeerId(1), Key(1), 0b01, true);
 /// # let session = Session::new(Config::new(17, 1), PeerId(1), Key(1), Role::Player { seats: 1 }, view, 7)?;
-/// // The corner of a debug screen.
+/// // The text in the corner of a debug screen.
 /// let Statistics { replayed, replayed_max, peers, .. } = session.statistics();
 /// let text = format!("{peers} peers, {replayed} ticks again, at most {replayed_max} at once");
 /// assert_eq!(text, "1 peers, 0 ticks again, at most 0 at once");
@@ -79,12 +79,12 @@ impl Play {
         }
     }
 
-    /// Notes that inputs from a tick on are others than before.
+    /// Notes that inputs from a tick on have changed.
     pub(super) fn note_change(&mut self, tick: Tick) {
         self.dirty = self.dirty.min(tick);
     }
 
-    /// First tick that may be played again.
+    /// First tick that a rollback may still play again.
     pub(super) fn needed_from(&self) -> Tick {
         self.saves.front().copied().unwrap_or(self.used_from).min(self.used_from)
     }
@@ -142,7 +142,7 @@ impl Session {
         limit.min(self.stop())
     }
 
-    /// Whether a tick can be played, or an own input can be issued, and it is time for it.
+    /// Whether the next tick is due and can be played, or an own input for it can be issued.
     #[must_use]
     pub fn is_due(&self, now: u64) -> bool {
         let open = !self.status().is_closed();
@@ -160,8 +160,8 @@ impl Session {
         spans.map(|(index, span)| (index, span.seat))
     }
 
-    /// First tick of an own span for which no input is issued yet. Those of the first ticks are issued at once, so that
-    /// the others need not wait for them.
+    /// First tick of an own span whose input is not issued yet. The inputs within the input delay after the start of a
+    /// span are issued at once, so that the others need not wait for them.
     fn issue_limit(&self, span: usize) -> Tick {
         if !self.view.begun {
             return 0;
@@ -171,11 +171,12 @@ impl Session {
         now.saturating_add(Tick::from(self.pace.delay)).saturating_add(1).min(self.stop())
     }
 
-    /// Issues the inputs of your own seats, in the order of the seats, and plays a tick if that is possible. Call it
-    /// while [`is_due`](Session::is_due). Returns whether the inputs were issued: if not, they may be used again.
+    /// Issues the inputs of this peer's own seats, in the order of the seats, and plays a tick if that is possible. To
+    /// be called while [`is_due`](Session::is_due). Returns whether the inputs were issued: if not, they may be used
+    /// again.
     ///
     /// # Errors
-    /// [`InputSize`] when the number of bytes is not that of your own seats. Nothing happens then.
+    /// [`InputSize`] when the number of bytes is not that of the own seats. Nothing is issued or played then.
     pub fn advance(&mut self, now: u64, inputs: &[u8]) -> Result<bool, InputSize> {
         let expected = self.log.size() * usize::try_from(self.seats().count_ones()).unwrap_or(0);
         if inputs.len() != expected {
@@ -222,7 +223,7 @@ impl Session {
         issued
     }
 
-    /// Corrects ticks that were played with other inputs, and notes how far the played ticks are confirmed.
+    /// Plays ticks again if their inputs differ from those used, and notes how far the played ticks are confirmed.
     pub(super) fn resolve(&mut self) {
         let mut tick = self.play.dirty.max(self.play.used_from);
         self.play.dirty = NEVER;
@@ -233,7 +234,7 @@ impl Session {
             if used.bytes == known.bytes && used.absent == known.absent {
                 used.guessed = known.guessed;
             } else if known.guessed != 0 && Self::differs_in_guesses_only(used, &known) {
-                // Another guess is no better than the one that was used.
+                // A changed guess is no reason to play the tick again.
                 used.guessed = known.guessed;
             } else {
                 self.rewind(tick);
@@ -253,7 +254,7 @@ impl Session {
                 .all(|(seat, (used, known_input))| used == known_input || has_bit(known.guessed, seat))
     }
 
-    /// Goes back to the last saved state at or before a tick, and plays from there with the inputs known now.
+    /// Loads the last saved state at or before a tick, and plays from there with the inputs known now.
     fn rewind(&mut self, tick: Tick) {
         let limit = self.play_limit().max(self.progress.fin.min(self.play.played));
         let target = self.play.played.min(limit);
@@ -288,7 +289,7 @@ impl Session {
         self.play.played = tick.saturating_add(1);
     }
 
-    /// Notes which played ticks are final, and drops what is needed for later corrections only.
+    /// Notes which played ticks are final, and drops the data that only a rollback before them would need.
     fn confirm(&mut self) {
         let play = &mut self.play;
         let confirmed = self.progress.fin.min(play.played);
@@ -315,7 +316,7 @@ impl Session {
         }
     }
 
-    /// Answers [`Request::Checksum`].
+    /// Passes the hash that [`Request::Checksum`] asks for.
     pub fn report_hash(&mut self, tick: Tick, hash: u128) {
         if self.play.hashes.len() == HASHES_MAX {
             self.play.hashes.pop_front();

@@ -1,9 +1,9 @@
 //! Counts of complete, acknowledged and final ticks.
 //!
-//! A tick is *complete* when all inputs of the view's spans are here, also if no peer plays in it while one does
-//! later. It is *acknowledged* when it is complete and no promise stands, and *final* when a quorum of this view
-//! acknowledges it, or when it lies before the view's cut; both only if it is held here. Complete ticks may be taken
-//! back when the view changes; final ones never.
+//! A tick is *complete* when this peer has all inputs of the view's spans for it. A tick that no peer plays is complete
+//! if a peer plays a later one. A complete tick is *acknowledged* unless this peer's promise of a ballot freezes the
+//! acknowledgement. A complete tick is *final* when a quorum of this view acknowledges it, or when it lies before the
+//! view's cut. A change of the view may revoke complete ticks, but never final ones.
 
 use alloc::vec::Vec;
 
@@ -18,7 +18,7 @@ pub(super) struct Progress {
     pub(super) complete: Tick,
     pub(super) ack: Tick,
     pub(super) fin: Tick,
-    /// When a tick last became complete that was not complete before.
+    /// Time at which a tick last became complete that had not been complete before.
     pub(super) moved_at: u64,
     /// Indices of the spans that do not end before `live_from`. Earlier ticks are not played again.
     pub(super) live: Vec<usize>,
@@ -68,7 +68,7 @@ impl Session {
     fn complete_ticks(&mut self) {
         while self.progress.complete < self.view.stop() && self.view.begun {
             let tick = self.progress.complete;
-            // Up to the next border of a span the same spans count.
+            // The same spans cover all ticks up to the next start or end of a span.
             let mut limit = self.view.stop();
             let mut somebody = false;
             for &index in &self.progress.live {
@@ -106,7 +106,7 @@ impl Session {
         }
     }
 
-    /// Number of ticks that a quorum acknowledges in rows of this view, or that a voter in this view calls final.
+    /// Number of ticks that a quorum acknowledges in rows of this view, or that the row of a voter states as final.
     fn acknowledged(&self) -> Tick {
         let view = self.view.number;
         let mut acks = [(0, 0_u64); super::view::SEATS_MAX];

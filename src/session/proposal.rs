@@ -1,4 +1,4 @@
-//! Ballots of this peer: when it starts one, and which change it proposes.
+//! Ballots of this peer: the reasons to start one, and the choice of the proposed change.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -16,15 +16,15 @@ use super::view::{Change, JOINS_MAX, Join, SEATS_MAX, SPANS_MAX, bit, bits, has_
 pub(super) struct Proposal {
     pub(super) ballot: Ballot,
     started_at: u64,
-    /// Time at which a quorum had promised.
+    /// Time at which a quorum had promised the ballot.
     quorum_at: Option<u64>,
     /// The change that is proposed, once it is chosen.
     change: Option<Arc<Change>>,
 }
 
-/// The time of a ballot grows with the number of rounds that led to no decision: in proportion up to this number of
-/// rounds, then with its square. It is limited to `BALLOT_MAX` microseconds, or to this many times the initial time if
-/// that is longer.
+/// The time limit of a ballot grows with the number of rounds that led to no decision: linearly up to `ROUNDS_MAX`
+/// rounds, quadratically after that. Its upper bound is `BALLOT_MAX` microseconds or `ROUNDS_MAX` times the initial
+/// time, whichever is longer.
 const ROUNDS_MAX: u64 = 4;
 const BALLOT_MAX: u64 = 6_000_000;
 
@@ -56,7 +56,7 @@ impl Session {
         self.agreement.not_before = active + self.backoff();
     }
 
-    /// Time that a ballot gets. It grows with the rounds of the view that led to no decision.
+    /// Time limit of a ballot. It grows with the number of rounds of the view that led to no decision.
     fn ballot_time(&self) -> u64 {
         let ballot = self.config.timing.ballot.max(1);
         let rounds = u64::from(self.agreement.round.saturating_sub(self.agreement.base_round));
@@ -64,7 +64,8 @@ impl Session {
         ballot.saturating_mul(factor).min((ballot * ROUNDS_MAX).max(BALLOT_MAX))
     }
 
-    /// Whether a voter has been out of contact for the time of patience, and play stands still or does not need it.
+    /// Whether a voter has been out of contact for the time of patience, and either play has stalled for that time or
+    /// the voter has no seat.
     fn is_stalled(&self, rank: u64) -> bool {
         let active = self.clock.active;
         let patience = self.config.timing.patience.saturating_add(rank * self.config.timing.ballot / 15);
@@ -80,7 +81,7 @@ impl Session {
         })
     }
 
-    /// Whether a fresh row wants a change that is possible.
+    /// Whether a fresh row requests a change that is possible.
     fn change_is_wanted(&self) -> bool {
         let (number, ends) = (self.view.number, self.view.end.is_some());
         let voters = self.fresh_rows().any(|(_, row)| row.wants.leave || row.wants.end.is_some() && !ends);
@@ -109,7 +110,7 @@ impl Session {
             .map(|(_, remote, row)| (remote, row))
     }
 
-    /// Peers without a vote that want seats and may have some.
+    /// Peers without a vote that request seats and may get them.
     fn seat_wants(&self, number: u32) -> impl Iterator<Item = (PeerId, SeatWant)> {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         self.peers.list.iter().filter_map(move |remote| {
@@ -129,7 +130,7 @@ impl Session {
         })
     }
 
-    /// Bit for each voter that was replaced: another incarnation with its key wants seats, and it is silent.
+    /// Bit for each voter that was replaced: the voter is silent, and another incarnation with its key requests seats.
     fn replaced(&self) -> u64 {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         let number = self.view.number;
@@ -144,7 +145,7 @@ impl Session {
         self.peers.voters_that(|remote| silent(remote) && remote.key.is_some_and(wanted))
     }
 
-    /// Seats that are free when some voters have left, one bit for each.
+    /// Bit for each seat that is free once the voters in `leaves` have left.
     fn free_after(&self, leaves: u64) -> u64 {
         let leaves = leaves | self.replaced();
         let voters = self.view.voters.iter().enumerate();
@@ -171,8 +172,8 @@ impl Session {
         self.is_quorum(set)
     }
 
-    /// Free seats for a newcomer: first those that its key had, then those that no peer had, then others. If it asks
-    /// for certain seats, only those.
+    /// Free seats for a joining peer: first those that its key had, then those that no peer has had, then others. If it
+    /// asks for certain seats, only those are considered.
     fn seats_for(&self, want: SeatWant, free: u64) -> Option<u64> {
         let SeatWant { seats: count, key, which } = want;
         let free = if which == 0 { free } else { free & which };
@@ -188,7 +189,7 @@ impl Session {
         (count > 0 && chosen.count_ones() == u32::from(count)).then_some(chosen)
     }
 
-    /// Goes on with this peer's ballot. Returns whether another step may be possible.
+    /// Advances this peer's ballot by one step. Returns whether another step may be possible.
     pub(super) fn conduct_ballot(&mut self) -> bool {
         let Some(mut proposal) = self.agreement.proposal.take() else { return false };
         let active = self.clock.active;
@@ -224,7 +225,8 @@ impl Session {
         rows.filter(|(_, _, row)| row.promised == Some(ballot)).fold(0, |set, (index, _, _)| set | bit(index))
     }
 
-    /// The change of a ballot that a quorum promised: what the promisers have accepted before, or a new one.
+    /// The change to propose in a ballot that a quorum promised: the one that promisers have accepted in an earlier
+    /// ballot, or a new one.
     fn choose_change(&self, ballot: Ballot) -> Arc<Change> {
         let promisers = self.promisers(ballot);
         let rows = || self.peers.rows(self.view.number).filter(|(index, _, _)| has_bit(promisers, *index));
@@ -267,8 +269,8 @@ impl Session {
         Change { cut, end, begun, leaves, tie_holder, joins, from: cut.saturating_add(lead) }
     }
 
-    /// Number of ticks from the cut to the first one of the peers that join. Until then promises and acceptances have
-    /// to travel to and fro, and the first inputs have to arrive.
+    /// Number of ticks from the cut to the first tick of the peers that join. This lead has to cover the round trips of
+    /// promises and acceptances, and the arrival of the first inputs.
     fn seat_lead(&self, joins: &[Join]) -> Tick {
         let matters = |remote: &&Remote| {
             self.view.voter(remote.id).is_some() || joins.iter().any(|join| join.id == remote.id)
@@ -280,8 +282,8 @@ impl Session {
             .min(Tick::from(self.config.history / 2).max(lead))
     }
 
-    /// Bit for each voter that is no longer one: it wants to leave, is removed, or has neither promised nor been in
-    /// contact for the time of patience.
+    /// Bit for each voter that the new view leaves out: it wants to leave, is removed, or has neither promised the
+    /// ballot nor been in contact for the time of patience.
     fn leaving(&self, promisers: u64) -> u64 {
         let active = self.clock.active;
         let number = self.view.number;

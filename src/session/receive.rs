@@ -1,4 +1,4 @@
-//! Handles arriving packets and the passing of time.
+//! Handles received packets and the passing of time.
 
 use super::config::Fault;
 use super::event::Event;
@@ -9,19 +9,19 @@ use super::peers::PEERS_MAX;
 use super::row::Row;
 use super::state::Session;
 
-/// Inputs further ahead of the complete ticks than this are not kept, so that no peer fills the memory.
+/// Inputs more than this many ticks ahead of the complete ticks are not kept, so that no peer exhausts the memory.
 const INPUTS_AHEAD_MAX: Tick = 1024;
 
 impl Session {
-    /// Notes the time. Of a long pause of the process only a part counts.
+    /// Advances the clocks. If the process was suspended for long, `active` advances by a limited time only.
     pub(super) fn look(&mut self, now: u64) {
         let passed = now.saturating_sub(self.clock.now);
         self.clock.active = self.clock.active.saturating_add(passed.min(self.config.timing.step_max));
         self.clock.now = self.clock.now.max(now);
     }
 
-    /// Takes a packet that arrived. Returns its sender, or nothing if it is not a packet of this match from a peer that
-    /// is known.
+    /// Processes a received packet. Returns its sender, or `None` if it is not a packet of this match from a known
+    /// peer.
     pub fn receive(&mut self, now: u64, bytes: &[u8]) -> Option<PeerId> {
         self.look(now);
         if self.status().is_closed() {
@@ -80,7 +80,7 @@ impl Session {
         }
     }
 
-    /// A row that a peer passed on. It may be that of a peer that is not known: one that wants a seat.
+    /// Processes a row relayed by another peer. It may belong to an unknown peer that requests a seat.
     fn take_foreign_row(&mut self, id: PeerId, row: Row) {
         if id == self.me || self.config.has(Fault::NoRelay) {
             return;
@@ -113,7 +113,7 @@ impl Session {
         }
     }
 
-    /// Passes the time. Call it often: every few milliseconds, and after packets have arrived.
+    /// Advances the session to the time `now`. Call it every few milliseconds, and after packets have arrived.
     pub fn update(&mut self, now: u64) {
         self.look(now);
         if self.status().is_closed() {

@@ -1,4 +1,4 @@
-//! [`Request`]: what a session asks the game to do, and the inputs of a tick.
+//! [`Request`]: a request of a session to the game; [`TickInputs`]: the inputs of a tick.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -11,7 +11,7 @@ use super::view::has_bit;
 pub enum InputStatus {
     /// Issued by the player.
     Confirmed,
-    /// Not here yet: the player's last known input.
+    /// Not received yet; the player's last known input is used instead.
     Guessed,
     /// No peer plays the seat.
     Absent,
@@ -27,7 +27,8 @@ pub struct TickInputs {
 }
 
 impl TickInputs {
-    /// The input of a seat and what is known of it. Nothing for a seat that does not exist; zeros for an absent player.
+    /// The input of a seat with its status; `None` for a seat that does not exist. The input of an absent player is all
+    /// zeros.
     #[must_use]
     pub fn seat(&self, seat: u8) -> Option<(&[u8], InputStatus)> {
         let index = usize::from(seat);
@@ -72,7 +73,7 @@ impl TickInputs {
 ///
 /// ```
 /// use lockstep2d::session::{Config, InputStatus, Request, Session, TickInputs, Tick};
-/// /// A game in a session: the sum of all inputs.
+/// /// A game in a session, whose state is the sum of all inputs.
 /// #[derive(Default)]
 /// struct Sum { now: u64, saved: Vec<(Tick, u64)> }
 /// impl Sum {
@@ -146,14 +147,14 @@ pub enum Request {
     },
 }
 
-/// Inputs that do not have the size that the session was configured for.
+/// Error: the inputs do not have the size that the session was configured for.
 ///
 /// ```
 /// # use lockstep2d::session::{Config, Key, PeerId, Role, Session, View};
 /// use lockstep2d::session::InputSize;
 /// # let view = View::opened_by(PeerId(1), Key(1), 0b11, true);
 /// # let mut session = Session::new(Config::new(17, 2), PeerId(1), Key(1), Role::Player { seats: 2 }, view, 7)?;
-/// // Two players at one machine, and the pad of one of them.
+/// // Two players share one machine, but only the input of one of them is given.
 /// assert_eq!(session.advance(0, &[0x10]), Err(InputSize { expected: 2, given: 1 }));
 /// # Ok::<(), lockstep2d::session::ConfigError>(())
 /// ```

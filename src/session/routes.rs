@@ -1,6 +1,6 @@
-//! [`Routes`]: the addresses of peers. A packet counts for the peer whose incarnation it names, wherever it comes
-//! from; but traffic goes to an address only after that has answered a probe. So a peer whose address changes is
-//! found again, and no peer can direct traffic to an address that is not its own.
+//! [`Routes`]: the addresses of peers. A packet is attributed to the peer whose incarnation it states, whatever address
+//! it comes from, but packets are sent to an address only after it has answered a probe. Therefore a peer whose address
+//! changes is found again, and no peer can direct traffic to an address that is not its own.
 
 use alloc::vec::Vec;
 
@@ -11,11 +11,11 @@ use super::siphash::Secret;
 
 /// Time between probes of an address in microseconds.
 const PROBE_INTERVAL: u64 = 250_000;
-/// Probes of an address that does not answer.
+/// Maximum number of probes of an address that does not answer.
 const PROBES_MAX: u8 = 40;
-/// Addresses of a peer that are tried at a time.
+/// Maximum number of addresses of a peer that are probed at a time.
 const CANDIDATES_MAX: usize = 4;
-/// An address that was heard within this time is not given up for another one.
+/// An address from which a packet arrived within this time, in microseconds, is not replaced by another one.
 const KEPT: u64 = 500_000;
 /// Largest number of peers with addresses.
 const ROUTES_MAX: usize = 192;
@@ -32,7 +32,7 @@ struct Candidate {
 #[derive(Clone, Debug)]
 struct Route {
     id: PeerId,
-    /// The one that has answered.
+    /// The address that has answered a probe.
     address: Option<Address>,
     heard_at: u64,
     candidates: Vec<Candidate>,
@@ -60,7 +60,7 @@ impl Routes {
         self.find(id)
     }
 
-    /// The address of a peer that has answered.
+    /// The address of a peer, if it has answered a probe.
     pub(super) fn address(&self, id: PeerId) -> Option<Address> {
         self.list.iter().find(|route| route.id == id).and_then(|route| route.address)
     }
@@ -110,12 +110,12 @@ impl Routes {
         probes
     }
 
-    /// Forgets peers that do not matter any more.
+    /// Removes the peers for which `matters` is false.
     pub(super) fn retain(&mut self, matters: impl Fn(PeerId) -> bool) {
         self.list.retain(|route| matters(route.id));
     }
 
-    /// Addresses to tell others, beginning with another one each time.
+    /// At most `most` known addresses to send to other peers. Each call starts at another address.
     pub(super) fn known(&mut self, most: usize) -> Vec<(PeerId, Address)> {
         let known: Vec<_> = self.list.iter().filter_map(|route| Some((route.id, route.address?))).collect();
         self.turn = self.turn.wrapping_add(most);

@@ -1,4 +1,4 @@
-//! [`Row`]: what a peer tells all others about itself. Rows are merged by version: the newest one counts, so that lost,
+//! [`Row`]: the status that a peer sends to all others. Only the row with the highest version counts, so that lost,
 //! duplicated and reordered packets do no harm.
 
 use alloc::sync::Arc;
@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 use super::id::{Key, PeerId, Tick};
 use super::view::Change;
 
-/// An attempt to change a view. Later attempts of a view have higher rounds; a peer makes one attempt a round.
+/// An attempt to change a view. Later attempts have higher rounds; a peer makes at most one attempt per round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Ballot {
     pub(super) round: u32,
@@ -17,10 +17,10 @@ pub(super) struct Ballot {
 /// Requests of a peer to the others.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Wants {
-    /// Number of seats, for a peer that has caught up and wants to play.
+    /// The seats requested by a peer that has caught up and wants to play.
     pub(super) seats: Option<SeatWant>,
     pub(super) leave: bool,
-    /// Last tick of the match plus one.
+    /// First tick after the end of the match.
     pub(super) end: Option<Tick>,
     /// Peers that should no longer play. At most [`REMOVALS_MAX`].
     pub(super) removals: Vec<Removal>,
@@ -34,26 +34,26 @@ pub(super) const REMOVALS_MAX: usize = 8;
 pub(super) struct SeatWant {
     pub(super) seats: u8,
     pub(super) key: Key,
-    /// Bit for each seat that is asked for; 0 for any.
+    /// Bit for each requested seat; 0 for any.
     pub(super) which: u64,
 }
 
 /// A vote against a peer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Removal {
-    /// Play goes on without this incarnation. It may return.
+    /// Play continues without this incarnation, which may return.
     Without(PeerId),
-    /// This identity does not get a seat any more.
+    /// This identity gets no seat any more.
     Kick(Key),
 }
 
-/// A row.
+/// The status of a peer, sent to all others.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Row {
     pub(super) version: u32,
-    /// Number of the view that the sender is in. All that follows refers to it.
+    /// Number of the view that the sender is in. The other fields refer to this view.
     pub(super) view: u32,
-    /// Number of ticks that the sender acknowledges: all their inputs are there.
+    /// Number of ticks that the sender acknowledges: it has all their inputs.
     pub(super) ack: Tick,
     /// Number of final ticks.
     pub(super) fin: Tick,
@@ -61,13 +61,13 @@ pub(super) struct Row {
     pub(super) played: Tick,
     /// For spans that end after `fin`, ascending: index and first tick whose input is missing.
     pub(super) have: Vec<(u16, Tick)>,
-    /// Bit for each voter from which a packet arrived lately.
+    /// Bit for each voter from which a packet arrived recently.
     pub(super) hears: u64,
-    /// Others from which a packet arrived lately. At most [`STRANGERS_MAX`].
+    /// Other peers from which a packet arrived recently. At most [`STRANGERS_MAX`].
     pub(super) hears_others: Vec<PeerId>,
-    /// Whether rows of a quorum arrived lately.
+    /// Whether rows of a quorum arrived recently.
     pub(super) connected: bool,
-    /// Whether the game asks the session to stop for now.
+    /// Whether the sender requests a pause.
     pub(super) paused: bool,
     pub(super) promised: Option<Ballot>,
     pub(super) accepted: Option<(Ballot, Arc<Change>)>,

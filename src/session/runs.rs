@@ -1,14 +1,14 @@
-//! Inputs of consecutive ticks in few bytes: each tick XOR the tick before it, then run-length coded. Inputs that are
-//! held for many ticks become zeros, and zeros take two bytes however many they are.
+//! Compression of the inputs of consecutive ticks: each tick is XORed with the tick before it, then run-length encoded.
+//! Inputs that are held for many ticks become one run of zeros, which takes few bytes whatever its length.
 //!
-//! The coded form is a list of runs, until all bytes are there. A run starts with a LEB128 number: its length times
-//! two, plus one if it is a run of zeros; otherwise the bytes follow.
+//! The encoding is a list of runs that together have the number of bytes that the decoder expects. A run starts with a
+//! LEB128 number: its length times two, plus one for a run of zeros. The bytes of any other run follow this number.
 
 use alloc::vec::Vec;
 
 use super::bytes::{Decoded, Malformed, Reader, Write};
 
-/// Zeros that are worth a run of their own within other bytes.
+/// Minimum number of zeros for a separate run between other bytes.
 const ZEROS_MIN: usize = 3;
 
 /// Appends the coded form of inputs of `size` bytes each.

@@ -1,4 +1,4 @@
-//! SipHash-2-4: a keyed hash whose results cannot be guessed without the key. It makes the cookies of the handshake.
+//! SipHash-2-4: a keyed hash whose results cannot be guessed without the key. It generates the handshake cookies.
 
 /// A secret key.
 #[derive(Clone, Copy)]
@@ -55,7 +55,7 @@ impl Secret {
 mod tests {
     use super::*;
 
-    /// The vectors of the paper by Aumasson and Bernstein, and of its reference implementation.
+    /// The test vectors of the paper by Aumasson and Bernstein, and of its reference implementation.
     #[test]
     fn it_is_siphash_2_4() {
         let secret = Secret([0x0706_0504_0302_0100, 0x0f0e_0d0c_0b0a_0908]);

@@ -1,5 +1,5 @@
-//! [`StartState`]: what a peer that joins needs besides the inputs since then: the view, addresses, and the game's
-//! state.
+//! [`StartState`]: the view, the addresses and the game's state that a joining peer receives. It receives the inputs of
+//! later ticks in packets of the match.
 
 use alloc::vec::Vec;
 
@@ -93,7 +93,7 @@ fn read_span(reader: &mut Reader) -> Decoded<Span> {
     if sound { Ok(span) } else { Err(Malformed) }
 }
 
-/// Whether a view that comes from outside is one that changes can lead to.
+/// Whether a received view is consistent: a view that a sequence of changes can produce.
 fn is_sound(view: &View) -> bool {
     let distinct = view.voters.iter().enumerate().all(|(at, voter)| view.voter(voter.id) == Some(at));
     let mut taken = 0;

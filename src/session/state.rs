@@ -1,4 +1,4 @@
-//! [`Session`]: its parts, its construction, and what the game may ask it to do.
+//! [`Session`]: its fields, its construction, and the calls available to the game.
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
@@ -26,36 +26,35 @@ use super::view::{Change, View};
 /// # use lockstep2d::session::{Identity, Key, PeerId};
 /// # let identity = Identity { id: PeerId(2), key: Key(2), offer: vec![], secret: [1, 2] };
 /// let host = Address::new(&[1]).expect("a byte");
-/// // Watches first. A spectator may ask for a seat later, by `Session::set_role`.
+/// // The peer joins as a spectator. It may ask for a seat later, by `Session::set_role`.
 /// let mut guest = Endpoint::join(Config::new(17, 2), identity, Role::Spectator, host)?;
 /// guest.update(0);
-/// // It asks at once, and has no session before there is an answer.
+/// // It sends its request at once, and has no session before the answer arrives.
 /// assert!(guest.next_packet().is_some_and(|(to, _)| to == host) && guest.session().is_none());
 /// # Ok::<(), lockstep2d::session::ConfigError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Plays a number of seats as soon as it may.
+    /// Requests a number of seats, and plays as soon as it has them.
     Player {
         /// Number of seats, at least 1.
         seats: u8,
     },
-    /// Follows the final ticks.
+    /// Follows the final ticks without a seat.
     Spectator,
 }
 
-/// The part of one peer in a match.
+/// One peer of a match: its inputs, its view of the match, and the packets that it exchanges with the other peers.
 ///
-/// In a loop: pass every packet that arrives to [`receive`](Session::receive), call [`update`](Session::update), call
-/// [`advance`](Session::advance) while [`is_due`](Session::is_due), and fulfil what
-/// [`next_request`](Session::next_request) returns in order; then send what [`next_packet`](Session::next_packet)
-/// returns.
+/// In a loop: pass every received packet to [`receive`](Session::receive), call [`update`](Session::update), and call
+/// [`advance`](Session::advance) while [`is_due`](Session::is_due). Fulfil all requests of
+/// [`next_request`](Session::next_request) in order, then send all packets of [`next_packet`](Session::next_packet).
 ///
 /// Times are microseconds since any fixed moment and never decrease.
 ///
 /// ```
 /// use lockstep2d::session::{Config, Key, PeerId, Role, Session, View};
-/// // A lobby has told both peers who they are; each has a seat from the first tick on.
+/// // A lobby has assigned an identity to both peers; each has a seat from the first tick on.
 /// let mut view = View::opened_by(PeerId(1), Key(1), 0b01, true);
 /// view.found(PeerId(2), Key(2), 1, 0b10);
 /// let peer = |number: u32| {
@@ -69,7 +68,7 @@ pub enum Role {
 ///         while peers[at].is_due(now) {
 ///             peers[at].advance(now, &[5]).expect("one byte");
 ///         }
-///         // `Request` has an example of what the game does with these.
+///         // A game fulfils these requests, as in the example of `Request`.
 ///         while peers[at].next_request().is_some() {}
 ///         while let Some((_, packet)) = peers[at].next_packet() {
 ///             peers[1 - at].receive(now, &packet);
@@ -104,16 +103,16 @@ pub struct Session {
     pub(super) events: VecDeque<Event>,
 }
 
-/// Two clocks.
+/// The clocks of a session, in microseconds.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Clock {
-    /// The last time that was passed.
+    /// The latest time passed by the caller.
     pub(super) now: u64,
     /// Time for which the process was running: between two calls at most [`Timing::step_max`](super::Timing) counts.
     pub(super) active: u64,
 }
 
-/// Pseudo-random numbers (SplitMix64). They only spread out attempts in time.
+/// Pseudo-random numbers (SplitMix64), used only to spread ballots in time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Random(u64);
 
@@ -132,7 +131,7 @@ impl Random {
     }
 }
 
-/// The decided changes, for peers that missed some.
+/// The decided changes, kept for peers that missed some of them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Changes {
     /// Number of the view that the first change leads to.
@@ -149,8 +148,8 @@ impl Changes {
 }
 
 impl Session {
-    /// Takes part in a match whose first view is known: as one of its voters, or as a peer that follows from the first
-    /// tick on. `me` has to be random, different for each process, and `seed` may be anything.
+    /// A session of a match whose first view is known. The peer is one of its voters, or follows the match from the
+    /// first tick on. `me` has to be a random number, different for each process; `seed` may be any number.
     ///
     /// # Errors
     /// A parameter that is out of its range.
@@ -195,7 +194,7 @@ impl Session {
         Ok(session)
     }
 
-    /// Follows a match from the state after `tick` ticks on, all of which are final.
+    /// A session that follows a match from the state after `tick` ticks, all of which are final.
     pub(super) fn resume(
         config: Config,
         me: PeerId,
@@ -218,8 +217,8 @@ impl Session {
         self.peers.find(id).is_some_and(|remote| remote.row.is_some())
     }
 
-    /// Serves a peer that has no vote: it receives what the match decides and plays. A peer that joins does this with
-    /// the peers that it knows, too.
+    /// Serves a peer that has no vote: sends it the decided changes and the inputs of the match. A joining peer also
+    /// calls this for the peers that it knows.
     pub fn attach(&mut self, id: PeerId, key: Option<Key>) {
         let active = self.clock.active;
         self.peers.add(id, key, active);
@@ -237,39 +236,40 @@ impl Session {
         }
     }
 
-    /// Leaves the match. The others go on without this peer from a tick that all agree on. Call
+    /// Leaves the match. The others continue without this peer from a tick on that all of them agree on. Call
     /// [`update`](Session::update) until the status is [`Status::Closed`].
     pub fn leave(&mut self) {
         self.wants.leave = true;
     }
 
-    /// Asks for an end of the match after `ticks` ticks. If others do so as well, the largest such number counts. The
-    /// others hear of it two seconds before, and not before the match begins. Until then peers can join. Once a
-    /// majority has decided on an end, no peer can join, and nothing changes the end.
+    /// Requests an end of the match after `ticks` ticks. If several peers request an end, the largest number counts.
+    /// The request is sent two seconds before the end, and not before the match begins. Until a majority has decided on
+    /// an end, peers can join. After that no peer can join, and the end does not change any more.
     pub fn end_at(&mut self, ticks: Tick) {
         self.end_at = Some(ticks);
     }
 
-    /// Asks all others to stop for now, or not to any longer. What a game does with [`Event::Pause`] is its decision.
+    /// Requests a pause from all others, or withdraws the request. Each game decides how to react to [`Event::Pause`];
+    /// the session itself does not stop.
     pub fn pause(&mut self, paused: bool) {
         self.paused = paused;
     }
 
-    /// Votes for going on without a peer that is missing. It may return. The vote of the tie-holder is enough.
+    /// Votes for continuing without a missing peer, which may return later. The vote of the tie-holder is sufficient.
     pub fn go_on_without(&mut self, peer: PeerId) {
         if self.view.voter(peer).is_some() {
             self.remove(Removal::Without(peer));
         }
     }
 
-    /// Votes for removing a peer for good. The vote of the tie-holder is enough.
+    /// Votes for removing a peer permanently. The vote of the tie-holder is sufficient.
     pub fn kick(&mut self, key: Key) {
         self.remove(Removal::Kick(key));
     }
 
     fn remove(&mut self, removal: Removal) {
         if !self.wants.removals.contains(&removal) {
-            // The oldest request gives way: removals of peers that have gone are kept only against their return.
+            // The oldest request is dropped: a removal of a peer that has gone only prevents its return.
             if self.wants.removals.len() == REMOVALS_MAX {
                 self.wants.removals.remove(0);
             }
@@ -277,7 +277,7 @@ impl Session {
         }
     }
 
-    /// Changes the role: a spectator asks for seats, or a player that has none no longer does.
+    /// Changes the role: a spectator starts to request seats, or a player without a seat stops requesting one.
     pub fn set_role(&mut self, role: Role) {
         self.role = role;
     }
@@ -314,25 +314,25 @@ impl Session {
         &self.view
     }
 
-    /// Where the session stands.
+    /// The status of the session.
     #[must_use]
     pub fn status(&self) -> Status {
         self.lifecycle.status
     }
 
-    /// This peer.
+    /// Incarnation of this peer.
     #[must_use]
     pub fn id(&self) -> PeerId {
         self.me
     }
 
-    /// Number of ticks whose inputs are all here. Ticks beyond [`final_tick`](Session::final_tick) may still change.
+    /// Number of ticks whose inputs are all known. Ticks beyond [`final_tick`](Session::final_tick) may still change.
     #[must_use]
     pub fn complete_tick(&self) -> Tick {
         self.progress.complete
     }
 
-    /// Number of final ticks: no rollback, departure or failure changes their inputs for any peer.
+    /// Number of final ticks. No rollback, departure or failure changes their inputs for any peer.
     #[must_use]
     pub fn final_tick(&self) -> Tick {
         self.progress.fin
@@ -344,7 +344,7 @@ impl Session {
         self.play.played
     }
 
-    /// Number of ticks that are final and that the game has been asked to play with their final inputs.
+    /// Number of final ticks that the game has been asked to play with their final inputs.
     #[must_use]
     pub fn confirmed(&self) -> Tick {
         self.play.confirmed
@@ -362,13 +362,13 @@ impl Session {
         self.pace.delay
     }
 
-    /// Measurements of the way to a peer.
+    /// Measurements of the network path to a peer.
     #[must_use]
     pub fn link(&self, peer: PeerId) -> Option<Link> {
         self.peers.find(peer).map(|remote| remote.link)
     }
 
-    /// Whose inputs are missing for the next tick that is not complete.
+    /// The peer whose inputs are missing for the next incomplete tick.
     #[must_use]
     pub fn waiting_for(&self) -> Option<PeerId> {
         let tick = self.progress.complete;

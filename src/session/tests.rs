@@ -1,4 +1,4 @@
-//! Packets: reading returns what was written, and arbitrary bytes cause no panic.
+//! Packets: decoding returns the encoded values, and arbitrary bytes cause no panic.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -65,7 +65,7 @@ fn what_is_written_is_read_again() {
     assert_eq!(&packet.inputs[..6], [1, 2, 1, 2, 3, 4]);
 }
 
-/// A row of eight players in the middle of a match, and a whole packet with their inputs, are small.
+/// A row in a match of eight players, and a whole packet with their inputs, take few bytes.
 #[test]
 fn a_packet_of_eight_players_is_small() {
     let mut row = Row::new(7);
@@ -81,8 +81,8 @@ fn a_packet_of_eight_players_is_small() {
     assert_eq!(composer.finish(5).len(), 45);
 }
 
-/// Every bit of a packet flipped, every prefix, and random bytes: nothing panics, and what is accepted has one
-/// encoding.
+/// Decoding a packet with any flipped bit, any prefix of a packet, or random bytes does not panic, and an accepted
+/// packet has one encoding.
 #[test]
 fn no_bytes_panic() {
     let bytes = packet_bytes();
@@ -103,7 +103,7 @@ fn no_bytes_panic() {
     assert!(Packet::read(&longer, 2).is_err(), "a byte after the end");
 }
 
-/// Packets with right checksums and flipped bits do not bring a session down, whatever they say.
+/// Packets with correct checksums and arbitrary flipped bits cause no panic in a session and no unbounded memory use.
 #[test]
 fn forged_packets_do_not_panic_and_do_not_fill_the_memory() {
     let mut random = random();
@@ -121,7 +121,7 @@ fn forged_packets_do_not_panic_and_do_not_fill_the_memory() {
                 let bit = usize::try_from(random.below(8 * bytes.len() as u64 - 32)).unwrap() + 32;
                 bytes[bit / 8] ^= 1 << (bit % 8);
             }
-            // The version and the view make rows count.
+            // The checksum is corrected after the flips, so that the session decodes the packet.
             let sum = checksum(5, &bytes[4..]);
             bytes[..4].copy_from_slice(&sum);
             session.receive(step * 16_000, &bytes);

@@ -1,5 +1,6 @@
-//! States in chunks: [`Upload`] and [`Download`]. The receiver says what it has and how much may be under way; the
-//! sender sends what is missing, and what may have been lost again, at a rate that the line bears.
+//! Transfer of states in chunks: [`Upload`] and [`Download`]. The receiver reports the chunks that it has and the
+//! window of chunks that may be in flight. The sender sends missing chunks, and resends chunks that may have been lost,
+//! at a rate set by congestion control.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -9,7 +10,7 @@ use super::id::Tick;
 use super::join_packet::{CHUNK_BYTES, JoinPacket, MASKS_MAX};
 use super::view::has_bit;
 
-/// Smallest and largest number of chunks under way.
+/// Smallest and largest number of chunks in flight.
 const WINDOW_MIN: u32 = 56;
 const WINDOW_MAX: u32 = 960;
 /// Time between two requests in microseconds, and number of chunks after which one is sent earlier.
@@ -18,7 +19,7 @@ const WANT_CHUNKS: u32 = 16;
 /// Round trip that is assumed before one is measured, in microseconds.
 const ROUND_TRIP: u64 = 250_000;
 
-/// Hash of a state that is sent.
+/// Hash that identifies a transferred state.
 pub(super) fn hash(bytes: &[u8]) -> u64 {
     let digest = twox_hash::XxHash3_128::oneshot(bytes).to_le_bytes();
     let [a, b, c, d, e, f, g, h, ..] = digest;
@@ -30,7 +31,7 @@ fn chunk_count(length: u64) -> u32 {
     u32::try_from(length.div_ceil(chunk)).unwrap_or(u32::MAX)
 }
 
-/// A state that is kept as long as a peer downloads it.
+/// A state that is kept while a peer downloads it.
 #[derive(Debug)]
 pub(super) struct Pinned {
     pub(super) tick: Tick,
@@ -44,7 +45,7 @@ impl Pinned {
     }
 }
 
-/// Whether a request with these contents says that a chunk is there.
+/// Whether a request with these fields reports that a chunk was received.
 fn in_masks(masks: &[u64], next: u32, index: u32) -> bool {
     let Some(after) = index.checked_sub(next) else { return true };
     let word = usize::try_from(after / 64).ok().and_then(|word| masks.get(word));
@@ -55,7 +56,7 @@ fn in_masks(masks: &[u64], next: u32, index: u32) -> bool {
 #[derive(Clone, Debug)]
 pub(super) struct Upload {
     pub(super) state: Arc<Pinned>,
-    /// For each chunk the time at which it was last sent, and how often.
+    /// For each chunk, the time at which it was last sent and the number of times it was sent.
     sent: Vec<(u64, u32)>,
     next: u32,
     window: u32,
@@ -78,7 +79,7 @@ impl Upload {
         in_masks(&self.masks, self.next, index)
     }
 
-    /// Takes a request of the receiver.
+    /// Processes a request of the receiver.
     pub(super) fn take(&mut self, now: u64, next: u32, window: u32, masks: Vec<u64>) {
         if next < self.next {
             return;
@@ -99,7 +100,7 @@ impl Upload {
         }
     }
 
-    /// The next chunk to send, if one is missing that is not under way.
+    /// The next chunk to send, if a chunk in the window is missing and not in flight.
     pub(super) fn next_chunk(&mut self, now: u64) -> Option<JoinPacket> {
         let again = self.round_trip + self.round_trip / 4 + 2 * WANT_INTERVAL;
         let end = self.next.saturating_add(self.window);
@@ -132,7 +133,7 @@ impl Upload {
 pub(super) struct Download {
     pub(super) hash: u64,
     length: u64,
-    /// The bytes up to the last chunk that has arrived: an announced length costs no memory.
+    /// The bytes up to the last chunk that has arrived. Nothing is allocated for an announced length.
     bytes: Vec<u8>,
     have: Vec<bool>,
     next: u32,
@@ -141,7 +142,7 @@ pub(super) struct Download {
     want_at: u64,
     grow_at: u64,
     arrived: u32,
-    /// When the last new chunk arrived.
+    /// Time at which the last new chunk arrived.
     pub(super) moved_at: u64,
 }
 
@@ -165,7 +166,7 @@ impl Download {
         })
     }
 
-    /// Takes a chunk. Chunks of a wrong length are ignored.
+    /// Stores a chunk. Chunks of a wrong length or beyond the window are ignored.
     pub(super) fn take(&mut self, now: u64, index: u32, bytes: &[u8]) {
         let Ok(place) = usize::try_from(index) else { return };
         let Some(have) = self.have.get_mut(place).filter(|have| !**have) else { return };
@@ -191,7 +192,7 @@ impl Download {
         }
     }
 
-    /// The next request, if it is time for one.
+    /// The next request, if one is due.
     pub(super) fn want(&mut self, now: u64) -> Option<JoinPacket> {
         if now < self.want_at && self.arrived < WANT_CHUNKS {
             return None;
@@ -218,17 +219,17 @@ impl Download {
         Some(JoinPacket::Want { hash: self.hash, next: self.next, window: self.window, masks })
     }
 
-    /// Whether all chunks are here.
+    /// Whether all chunks have arrived.
     pub(super) const fn is_complete(&self) -> bool {
         self.missing == 0
     }
 
-    /// The bytes, if they are the ones that were announced.
+    /// The bytes, if they are complete and match the announced hash.
     pub(super) fn finish(self) -> Option<Vec<u8>> {
         (self.missing == 0 && hash(&self.bytes) == self.hash).then_some(self.bytes)
     }
 
-    /// Received and all bytes.
+    /// Number of bytes received, and total number of bytes.
     pub(super) fn progress(&self) -> (u64, u64) {
         let here =
             u64::from(chunk_count(self.length) - self.missing) * u64::try_from(CHUNK_BYTES).unwrap_or(0);

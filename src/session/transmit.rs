@@ -16,20 +16,20 @@ use super::view::has_bit;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Outbox {
     pub(super) packets: VecDeque<(PeerId, Vec<u8>)>,
-    /// When packets are sent at the latest.
+    /// Latest time of the next transmission.
     next_at: u64,
     /// Whether this peer has issued new inputs.
     pub(super) urgent: bool,
     version: u32,
 }
 
-/// Packets that are kept at most; the oldest ones give way.
+/// Maximum number of packets waiting to be sent. Beyond it, the oldest ones are dropped.
 const PACKETS_MAX: usize = 4096;
 /// Peers without a vote are served for this many microseconds after their last packet.
 const SERVED: u64 = 5_000_000;
-/// If a peer lacks more ticks than this of another one that it hears, the others help.
+/// If a peer lacks more than this many ticks of another peer, third peers relay them even though it hears that peer.
 const HELP_TICKS: Tick = 20;
-/// A peer that has lost contact tries all peers with every row whose version is a multiple of this.
+/// A peer that has lost contact sends every row whose version is a multiple of this to all peers that it knows.
 const TRY_ROWS: u32 = 8;
 /// Longest time between packets in microseconds.
 const INTERVAL_MAX: u64 = 100_000;
@@ -37,7 +37,7 @@ const INTERVAL_MAX: u64 = 100_000;
 const HASH_ROWS: u32 = 4;
 
 impl Session {
-    /// Time between packets: that of a tick, and longer in large matches.
+    /// Time between packets: the duration of a tick, or longer in large matches.
     pub(super) fn send_interval(&self) -> u64 {
         let many = match self.peers.list.len() {
             0..=16 => 1,
@@ -47,7 +47,7 @@ impl Session {
         many * u64::from(self.config.tick_micros).min(INTERVAL_MAX)
     }
 
-    /// Brings those parts of this peer's row up to date that the agreement reads.
+    /// Updates the parts of this peer's row that the agreement reads.
     pub(super) fn refresh_row(&mut self) {
         let Some(own) = self.peers.list.first_mut() else { return };
         let row = own.row.get_or_insert_with(|| Row::new(0));
@@ -63,7 +63,7 @@ impl Session {
         own.contact = self.clock.active;
     }
 
-    /// Brings this peer's whole row up to date, as a new version.
+    /// Updates this peer's whole row and increments its version.
     fn renew_row(&mut self) {
         self.refresh_row();
         let version = self.outbox.version.saturating_add(1);
@@ -96,7 +96,7 @@ impl Session {
         }
     }
 
-    /// Sends to every peer that is served, if it is time.
+    /// Sends packets to all served peers, if they are due.
     pub(super) fn transmit(&mut self) {
         let now = self.clock.now;
         let interval = self.send_interval();
@@ -105,7 +105,7 @@ impl Session {
         if now < self.outbox.next_at && !early {
             return;
         }
-        // New inputs are about to be issued, unless the game does not advance: they go with this packet.
+        // The game is about to issue new inputs, so the packets wait for them, by at most one interval.
         if !early && self.is_due(now) && self.issues() && now < self.outbox.next_at.saturating_add(interval) {
             return;
         }
@@ -123,8 +123,8 @@ impl Session {
         }
     }
 
-    /// Whether packets go to a peer. If this peer has lost contact, or its seat, it tries all peers that it knows from
-    /// time to time.
+    /// Whether packets are sent to a peer. If this peer has lost contact to a quorum, or has no vote, it occasionally
+    /// sends to all peers that it knows.
     fn is_served(&self, remote: &Remote) -> bool {
         let tries = self.outbox.version.is_multiple_of(TRY_ROWS)
             && (self.view.voter(self.me).is_none() || !self.is_connected());
@@ -168,7 +168,7 @@ impl Session {
         self.outbox.packets.push_back((id, bytes));
     }
 
-    /// Whether a peer says that it hears another one. In an older view nothing is known of that.
+    /// Whether the row of `receiver` states that it hears another peer. The bits of voters are valid only in this view.
     fn hears(&self, receiver: &Remote, other: PeerId) -> bool {
         let Some(row) = receiver.row.as_ref() else { return false };
         let as_voter = self.view.voter(other).filter(|_| row.view == self.view.number);
@@ -182,14 +182,14 @@ impl Session {
         let listed = row.have.iter().find(|(number, _)| usize::from(*number) == index);
         match listed {
             Some(&(_, next)) => next.max(span.from),
-            // It does not know the span yet.
+            // The receiver does not know the span yet.
             None if span.since > row.view => span.from.max(row.fin),
             None => span.until,
         }
     }
 
-    /// The inputs of a span that a peer lacks, oldest first: those of this peer, and those of others that the receiver
-    /// does not hear.
+    /// The inputs of a span that the receiver lacks, oldest first: inputs of this peer, and inputs of other peers that
+    /// the receiver does not hear or that it lacks many ticks of.
     fn run_for(&self, receiver: &Remote, index: usize) -> Option<(u16, Tick, &[u8])> {
         let span = self.view.spans.get(index)?;
         let start = self.lacks(receiver, index);
@@ -205,7 +205,7 @@ impl Session {
         Some((u16::try_from(index).ok()?, start, inputs))
     }
 
-    /// Rows of others that the receiver does not hear, beginning with another one each time.
+    /// Rows of other peers that the receiver does not hear. Each call starts at another peer.
     fn foreign_rows(&self, receiver: &Remote) -> Vec<&Remote> {
         if self.config.has(Fault::NoRelay) {
             return Vec::new();

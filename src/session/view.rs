@@ -1,7 +1,7 @@
-//! [`View`]: who plays which seat in which ticks, and who decides about changes of it.
+//! [`View`]: the membership of a match: its voters, and which peer plays which seat in which ticks.
 //!
 //! Views are numbered. A [`Change`] leads from each view to the next one, and all peers apply the same changes
-//! (`agreement.rs`). Spans are never removed, so that the index of a span means the same in all later views.
+//! (`agreement.rs`). Spans are never removed, so that the index of a span remains valid in all later views.
 
 use alloc::vec::Vec;
 
@@ -11,17 +11,17 @@ use super::id::{Key, NEVER, PeerId, Tick};
 pub const SEATS_MAX: usize = 64;
 /// Largest number of spans of a match. Each join adds one for each of its seats.
 pub const SPANS_MAX: usize = 1 << 14;
-/// Largest number of peers that one change seats.
+/// Largest number of peers that join in one change.
 pub(super) const JOINS_MAX: usize = 8;
 
-/// A peer that takes part in decisions.
+/// A peer with a vote on changes of the view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Voter {
     /// Incarnation.
     pub id: PeerId,
     /// Identity.
     pub key: Key,
-    /// Share in decisions; 1 for players. A dedicated server that outweighs all others decides alone.
+    /// Weight of the vote; 1 for players. A dedicated server that outweighs all others decides alone.
     pub weight: u8,
 }
 
@@ -49,7 +49,7 @@ impl Span {
         self.from <= tick && tick < self.until
     }
 
-    /// Whether the owner plays, or is going to.
+    /// Whether no end of the span is decided: its owner plays, or is going to play.
     #[must_use]
     pub const fn is_open(&self) -> bool {
         self.until == NEVER
@@ -74,7 +74,7 @@ pub(super) struct Change {
     pub(super) end: Option<Tick>,
     /// Whether the first tick may be played.
     pub(super) begun: bool,
-    /// Bit for each voter of the old view that is no longer one.
+    /// Bit for each voter of the old view that has no vote in the new one.
     pub(super) leaves: u64,
     pub(super) tie_holder: PeerId,
     pub(super) joins: Vec<Join>,
@@ -89,10 +89,10 @@ pub(super) struct Change {
 /// let mut view = View::opened_by(PeerId(1), Key(10), 0b01, true);
 /// view.found(PeerId(2), Key(20), 1, 0b10);
 /// view.found(PeerId(3), Key(30), 1, 0b100);
-/// // Who decides: two of the three voters.
+/// // Two of the three voters are a quorum.
 /// assert!(view.is_quorum(0b011) && !view.is_quorum(0b100));
 /// assert!(view.voters.iter().all(|Voter { weight, .. }| *weight == 1));
-/// // Who plays the second seat?
+/// // The peer that plays the second seat.
 /// let player = view.spans.iter().find(|span: &&Span| span.seat == 1 && span.is_open());
 /// assert_eq!(player.map(|span| span.owner), Some(PeerId(2)));
 /// ```
@@ -115,7 +115,7 @@ pub struct View {
 }
 
 impl View {
-    /// The first view of a match that one peer opens, with some seats of its own (one bit for each).
+    /// The first view of a match opened by one peer. `seats` has a bit for each of its own seats.
     #[must_use]
     pub fn opened_by(id: PeerId, key: Key, seats: u64, begun: bool) -> Self {
         let mut view = View {
@@ -131,7 +131,7 @@ impl View {
         view
     }
 
-    /// Adds a voter to a view that is not in use yet. Seats that are taken are left out.
+    /// Adds a voter to a view that is not in use yet, with those of the given seats that are free.
     pub fn found(&mut self, id: PeerId, key: Key, weight: u8, seats: u64) {
         self.voters.push(Voter { id, key, weight });
         let seats = seats & self.free_seats();
@@ -151,24 +151,25 @@ impl View {
         self.voters.iter().position(|voter| voter.id == id)
     }
 
-    /// Doubled, so that the casting vote of the tie-holder is half a vote.
+    /// Doubled weight of a voter, to which the casting vote of the tie-holder adds half a vote.
     fn weight(&self, voter: &Voter) -> u32 {
         2 * u32::from(voter.weight) + u32::from(voter.id == self.tie_holder)
     }
 
-    /// Weight of the voters in a set: a bit for each index.
+    /// Doubled weight of the voters in a set, which has a bit for each index.
     pub(super) fn weight_of(&self, set: u64) -> u32 {
         let members = self.voters.iter().enumerate().filter(|(index, _)| has_bit(set, *index));
         members.map(|(_, voter)| self.weight(voter)).sum()
     }
 
-    /// Whether a set of voters is a quorum: more than half of the weight. There are no ties.
+    /// Whether a set of voters (a bit for each index) is a quorum, with more than half of the total weight. The casting
+    /// vote excludes ties.
     #[must_use]
     pub fn is_quorum(&self, set: u64) -> bool {
         2 * self.weight_of(set) > self.weight_of(u64::MAX)
     }
 
-    /// First tick that is not played: [`NEVER`] as long as no end is decided.
+    /// First tick that is not played; [`NEVER`] while no end is decided.
     #[must_use]
     pub fn stop(&self) -> Tick {
         self.end.unwrap_or(NEVER)
@@ -188,7 +189,7 @@ impl View {
         own.fold(0, |set, span| set | bit(usize::from(span.seat)))
     }
 
-    /// The view after a change, or nothing if the change does not fit this view.
+    /// The view after a change, or `None` if the change does not fit this view.
     pub(super) fn changed_by(&self, change: &Change) -> Option<View> {
         let mut next = self.clone();
         next.number = self.number.checked_add(1)?;

@@ -1,4 +1,4 @@
-//! The bytes of a [`Row`] and of a [`Change`]. `docs/PROTOCOL.md` has the same as tables.
+//! Encoding of a [`Row`] and of a [`Change`]. `docs/PROTOCOL.md` specifies the layout in tables.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;

@@ -4,11 +4,12 @@ use core::cell::Cell;
 
 use crate::math::{Shift, Speed, Vec2};
 
-/// Index of the body that stands for all bodies that nothing moves. Their mass fraction is 0, so it never changes.
+/// Index of the ground. This one body stands for all bodies that are not among the bodies of a tick. Where constraints
+/// write velocities, it also stands for each body that no impulse changes, because the kernels never write the ground.
 pub(crate) const GROUND: u32 = 0;
 
-/// A body in the solver. Bodies that nothing moves have mass fraction 0 in every row, so that kernels read and write
-/// them like the others and they never change.
+/// A body in the solver. A body that no impulse moves has mass fraction 0 in every row, so kernels process it like any
+/// other body and its velocity does not change.
 ///
 /// The layout is two halves of 16 bytes, each of which the SIMD kernels load as a whole.
 #[derive(Clone, Copy, Debug, Default)]

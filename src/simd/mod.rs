@@ -30,8 +30,8 @@ use core::cell::Cell;
 /// Number of rows that a wide kernel processes at a time, on every machine.
 pub(crate) const WIDTH: usize = 8;
 
-/// One number for each of `N` rows. Batches align it for the widest load, which is faster then. It is not aligned by
-/// itself, because a single row would then take as much memory as eight.
+/// One number for each of `N` rows. Batches align these arrays, so that the widest load is fast. The type itself has no
+/// larger alignment, because a single row would then take as much memory as eight.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(crate) struct Ints<const N: usize>(pub(crate) [i32; N]);
@@ -78,7 +78,7 @@ pub(crate) trait Lanes<const N: usize>: Copy {
     fn min(a: Self::Int, b: Self::Int) -> Self::Int;
     fn max(a: Self::Int, b: Self::Int) -> Self::Int;
     fn or(a: Self::Int, b: Self::Int) -> Self::Int;
-    /// The bits moved up by `SHIFT`, 1 to 31.
+    /// The bits shifted left by `SHIFT`, which is 1 to 31.
     fn shift_left<const SHIFT: i32>(a: Self::Int) -> Self::Int;
     /// `a / 2^SHIFT`, rounded down. `SHIFT` is 1 to 31.
     fn shift_right<const SHIFT: i32>(a: Self::Int) -> Self::Int;
@@ -122,7 +122,8 @@ pub(crate) trait Lanes<const N: usize>: Copy {
     /// `a / 2^SHIFT` of non-negative numbers, rounded down. `SHIFT` is 1 to 63.
     fn shift_down<const SHIFT: i32>(a: Self::Wide) -> Self::Wide;
 
-    /// `1 / d`, both with 30 fraction bits, rounded down. `d` is below 2^46, and clamped to at least 1.
+    /// `1 / d`, both with 30 fraction bits, rounded down. `d` is below 2^16, which is 2^46 as an integer, and is
+    /// clamped to at least 1.
     #[inline(always)]
     fn reciprocal(d: Self::Wide) -> Self::Int {
         let mut quotients = Ints::ZERO;
@@ -192,7 +193,7 @@ impl Machine {
         self.0
     }
 
-    /// Whether eight lanes are faster than one at a time.
+    /// Whether kernels are faster with eight lanes than with one.
     pub(crate) fn has_vectors(self) -> bool {
         (Native::IS_SOLE && Native::HAS_VECTORS) || self.0 != Backend::Scalar
     }
@@ -200,7 +201,7 @@ impl Machine {
     /// Runs a kernel with the backend.
     #[inline]
     pub(crate) fn run(self, kernel: impl Kernel<WIDTH>) {
-        // Kernels are large: without a choice between backends they are compiled once.
+        // Kernels are large. If `IS_SOLE` is true, there is only one backend, and each kernel is compiled only once.
         match self.0 {
             Backend::Scalar if !Native::IS_SOLE => kernel.run::<Scalar<WIDTH>>(),
             backend => Native::run(backend, kernel),
@@ -245,8 +246,8 @@ pub enum Backend {
 }
 
 impl Backend {
-    /// Every backend that this machine can run, the best one last. Without the feature `std` only backends whose target
-    /// features are enabled at compile time are listed.
+    /// Every backend that is compiled in and that this machine can run, the best one last. Without the feature `std`
+    /// only backends whose target features are enabled at compile time are listed.
     pub fn available() -> impl Iterator<Item = Backend> {
         let scalar = !(Native::IS_SOLE && Native::HAS_VECTORS);
         scalar.then_some(Backend::Scalar).into_iter().chain(Native::backends())

@@ -1,6 +1,7 @@
 //! Cache prefetch.
 
-/// Prefetches a value into the cache, which does not affect any result. Does nothing on other architectures.
+/// Prefetches a value into the cache, which does not affect any result. Does nothing on architectures other than
+/// x86-64.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 #[expect(unsafe_code, reason = "vendor intrinsics")]

@@ -6,10 +6,10 @@ use core::cell::Cell;
 /// A slice shared between the threads of a team, under the condition that no thread writes an element that another
 /// thread accesses between the same two barriers.
 ///
-/// There are two such slices: the bodies of the solver (`Solver::sub_steps`), each of which is in one constraint of a
-/// colour and is integrated by one thread; and the contacts of the state (`ContactStore::new`), of which each thread
-/// stores its own. `new` is not an `unsafe` function, since each access, not the sharing, has to meet the condition.
-/// Tests compare the results of 1, 2, 4 and 8 threads.
+/// The shared slices are the bodies of the solver (`Solver::sub_steps`), each of which is in at most one constraint of
+/// a colour and is integrated by one thread; and the contacts of the state with their results (`ContactStore::new`), of
+/// which each thread writes only the elements of the contacts that it solves. `new` is not an `unsafe` function, since
+/// each access, not the sharing, has to meet the condition. Tests compare the results of 1, 2, 4 and 8 threads.
 pub(crate) struct Shared<'a, T>(&'a [Cell<T>]);
 
 impl<T> Clone for Shared<'_, T> {

@@ -35,7 +35,7 @@ impl Native {
         avx2.into_iter().chain(wide.then_some(Backend::Avx512))
     }
 
-    /// Runs a kernel on a processor that has been detected to have this backend.
+    /// Runs a kernel with a backend that has been detected to be available on the processor.
     pub(super) fn run(backend: Backend, kernel: impl Kernel<WIDTH>) {
         #[target_feature(enable = "avx2")]
         unsafe fn with_avx2(kernel: impl Kernel<WIDTH>) {

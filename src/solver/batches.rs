@@ -1,4 +1,4 @@
-//! Batches of constraints of one kind, and how a stage of the solver runs over them.
+//! Batches of constraints of one kind, and the loops that run a stage of the solver over them.
 //!
 //! Contacts and hinges are solved in batches. No two constraints of a colour change the same body, so that the batches
 //! of a colour may be solved in any order and on several threads: each thread has batches of its own of every colour.
@@ -54,7 +54,7 @@ pub(super) struct BatchParts<'a, K: BatchKind, const N: usize> {
 pub(super) struct BatchList<K: BatchKind> {
     /// The overflow: the constraints that fit no colour, in the order in which they are solved.
     pub(super) overflow: Batches<K, 1>,
-    /// All other constraints, colour by colour: the batches of each thread.
+    /// For each thread, its batches of all other constraints, colour by colour.
     pub(super) coloured: Vec<Batches<K, WIDTH>>,
 }
 
@@ -111,7 +111,7 @@ impl<K: BatchKind, const N: usize> Batches<K, N> {
         self.records.clear();
     }
 
-    /// Clears the list for new contents of its batches and records.
+    /// Clears everything but the batches and records, which the caller overwrites.
     pub(super) fn clear_all_but_batches(&mut self) {
         self.extras.clear();
         self.colour_ends.clear();
@@ -134,7 +134,7 @@ impl<K: BatchKind> BatchList<K> {
         !self.overflow.extras.is_empty() || self.coloured.iter().any(|coloured| !coloured.extras.is_empty())
     }
 
-    /// The constraints that each thread solves.
+    /// Divides the constraints into one share for each thread.
     pub(super) fn shares(&mut self) -> impl Iterator<Item = BatchShare<'_, K>> {
         let has_overflow = !self.overflow.batches.is_empty();
         let mut own = Some(&mut self.overflow).filter(|_| has_overflow);

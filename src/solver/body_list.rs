@@ -10,7 +10,7 @@ use crate::body::{Body, Pose};
 use crate::math::{Angle, Fx, Length, Ratio, Reciprocal, Vec2, round_shift, saturate};
 pub(super) use crate::simd::GROUND;
 
-/// Bodies in the order of their slots, after the ground.
+/// The ground, then the active bodies in the order in which they were added, then the bodies that only joints need.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BodyList {
     pub(super) bodies: Vec<SolverBody>,
@@ -20,7 +20,7 @@ pub(crate) struct BodyList {
     facts: Vec<BodyFacts>,
     /// For each body slot, the index of its body in `bodies`, or 0 if the body is not among the bodies of the tick.
     indices: Vec<u32>,
-    /// The slots of all bodies except the ground, in order.
+    /// The slots of all bodies except the ground, in the order of `bodies`.
     slots: Vec<u32>,
 }
 
@@ -31,7 +31,7 @@ pub(super) struct BodyFacts {
     /// Mass in kg; 0 if no impulse moves the body.
     pub(super) mass: Fx,
     pub(super) inverse_gyration: Reciprocal,
-    /// Largest change of a lever arm that leaves a contact as it was: see [`arm_tolerance`].
+    /// Largest change of a lever arm for which a contact keeps the arm of the last tick: see [`arm_tolerance`].
     pub(super) arm_tolerance: u16,
 }
 
@@ -59,7 +59,7 @@ impl BodyFacts {
 
     /// Vector from the centre of mass to a position. For bodies that do not turn the result does not matter.
     pub(super) fn arm_to(&self, place: Vec2<Fx>) -> Vec2<Length> {
-        // Both are within the world, so that the difference fits.
+        // Both points are within the world, so that the difference fits.
         place.wrapping_sub(self.centre).narrow()
     }
 }
@@ -67,7 +67,8 @@ impl BodyFacts {
 /// Tolerance of bodies that contacts do not turn: a quarter of the range of a kept arm.
 const ARM_TOLERANCE_MAX: u16 = 1 << 14;
 
-/// Between a 32nd and a 16th of the radius of gyration, in units of 2^-17 m, at most [`ARM_TOLERANCE_MAX`].
+/// The arm tolerance of a body: between a 32nd and a 16th of its radius of gyration, in units of 2^-17 m, at most
+/// [`ARM_TOLERANCE_MAX`].
 fn arm_tolerance(inverse_gyration: Reciprocal) -> u16 {
     match inverse_gyration.parts() {
         (0, _) => ARM_TOLERANCE_MAX,
@@ -76,11 +77,11 @@ fn arm_tolerance(inverse_gyration: Reciprocal) -> u16 {
     }
 }
 
-/// `e = c / k` of an arm across a direction, at most [`RATIO_MAX`]. `1 / k` is `mantissa / 2^shift`, from the format of
-/// a length to that of a lever ratio.
+/// `e = c / k` of an arm across a direction, at most [`RATIO_MAX`]. `mantissa / 2^shift` is `1 / k`, including the
+/// conversion from the format of a length to that of a lever ratio.
 pub(super) fn lever_ratio([x, y]: [i32; 2], [n_x, n_y]: [i32; 2], mantissa: i32, shift: i32) -> Ratio {
     let wide = |a: i32| i64::from(a);
-    // An arm is below 2^31.5, so its product with a mantissa is below 2^63.
+    // `c` is below 2^31.5, so its product with a mantissa is below 2^63.
     let c = round_shift(wide(x) * wide(n_y) - wide(y) * wide(n_x), Ratio::FRAC_NBITS);
     let e = round_shift(c * wide(mantissa), shift.unsigned_abs());
     let limit = wide(RATIO_MAX.to_bits());

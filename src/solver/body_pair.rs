@@ -103,7 +103,7 @@ mod tests {
     use super::*;
     use crate::math::Rng;
 
-    /// However many small changes there are, the velocity is off by half a unit at most.
+    /// After any number of small changes, the error of the velocity is at most half a unit.
     #[test]
     fn the_sum_of_all_changes_is_rounded_once() {
         let mut rng = Rng::new(3);

@@ -24,7 +24,7 @@ pub(super) struct Node {
     bucket: u8,
     /// Constraints of one colour and one size are solved together.
     size: Size,
-    /// Cold constraints are listed separately.
+    /// Whether the constraint is cold: it gets more iterations (`COLD_ROUNDS`). Cold constraints are listed separately.
     cold: bool,
     /// The bodies that the constraint changes. [`GROUND`] replaces a body that it does not change.
     bodies: [u32; 2],
@@ -54,7 +54,7 @@ pub(super) enum Size {
 /// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-0.5))), &[square])?;
 /// # world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(0.5))), &[square])?;
 /// # world.step();
-/// // Many contacts without a colour would be slow: is a body touched by more than it should be?
+/// // Contacts without a colour are slow to solve. They show that a body has very many contacts.
 /// let colours: Vec<_> = world.contacts().map(|contact| contact.solver_colour()).collect();
 /// assert!(matches!(colours[..], [Some(SolverColour::Group(_))]));
 /// # Ok::<(), lockstep2d::body::WorldError>(())
@@ -78,13 +78,13 @@ pub(super) struct Group<'a> {
 }
 
 impl<'a> Group<'a> {
-    /// A group of constraints of any size, of which each is a batch.
+    /// A group for batches of one constraint each, where sizes do not matter.
     pub(super) fn of_singles(indices: &'a [u32]) -> Self {
         Group { indices, large: 0 }
     }
 
-    /// Splits into batches of up to `N` constraints. A batch has constraints of one size, or the last large ones and
-    /// small ones if all of them `mix`.
+    /// Splits into batches of up to `N` constraints. A batch has constraints of one size. Only the batch with the last
+    /// large constraints is filled up with small ones, if `mixes` holds for all of its constraints.
     pub(super) fn batches<const N: usize>(
         self,
         mixes: impl Fn(u32) -> bool,
@@ -134,7 +134,7 @@ impl Colouring {
         self.nodes.push(node);
     }
 
-    /// Makes those constraints cold for whose bodies `is_cold` holds.
+    /// Sets which constraints are cold: those for whose bodies `is_cold` holds.
     pub(super) fn set_cold(&mut self, is_cold: impl Fn([u32; 2]) -> bool) {
         self.nodes.iter_mut().for_each(|node| node.cold = is_cold(node.bodies));
     }
@@ -184,12 +184,14 @@ impl Colouring {
         })
     }
 
-    /// All constraints in the order of the last sort: the overflow, then colour by colour.
+    /// All constraints in the order of the last sort: the overflow, then colour by colour, and then the cold
+    /// constraints in the same way.
     pub(super) fn order(&self) -> &[u32] {
         &self.order
     }
 
-    /// The overflow of the last order: constraints that fit no colour and are solved one after the other.
+    /// The overflow of the last order: the cold or the other constraints that fit no colour and are solved one after
+    /// the other.
     pub(super) fn overflow(&self, cold: bool) -> &[u32] {
         let place = if cold { PLACES } else { 0 };
         &self.order[self.start(place, 0)..self.end(place, 0)]
@@ -233,8 +235,9 @@ impl Ranks {
         2 * (1 + 2 * usize::from(COLOURS_MAX) * self.parts)
     }
 
-    /// The thread that solves a constraint: that of one of its bodies. Every thread has as many bodies, in the order of
-    /// their indices. Always the first body would give most constraints of a mixed heap to the first thread.
+    /// The thread that solves a constraint: the thread of one of its bodies. The bodies are divided evenly among the
+    /// threads, in the order of their indices. If the first body always decided, the first thread would get most
+    /// constraints of a mixed heap.
     fn part_of(self, node: &Node) -> usize {
         let body = match node.bodies {
             [GROUND, body] | [body, GROUND] => body,
@@ -258,8 +261,8 @@ impl Ranks {
 /// Number of places of warm constraints. Cold constraints have as many, after them.
 const PLACES: u8 = 1 + 2 * COLOURS_MAX;
 
-/// The place in the order of a single thread: the overflow comes first, then the large and the small constraints of
-/// each colour.
+/// The place of a constraint in the order of a single thread: the overflow comes first, then the large and the small
+/// constraints of each colour.
 #[expect(clippy::cast_possible_truncation, reason = "at most COLOURS_MAX")]
 fn place_of(colour: u32, size: Size) -> u8 {
     match colour as u8 {

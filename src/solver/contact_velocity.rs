@@ -41,7 +41,8 @@ struct Group<const N: usize> {
     /// The indices of the bodies. Lanes without a body have the ground.
     at: [u32; N],
     /// Whether something other than contacts changes the velocity of one of these bodies between the warm start and the
-    /// end of a sub-step. The others keep their bits: `free - v + v` is exact, as both are below 512 m/s.
+    /// end of a sub-step. The velocities of the other bodies of a shared group stay exact: `free - v + v` does not
+    /// round or saturate, because both are below 512 m/s.
     shared: bool,
     free: VelocityW<Ints<N>>,
     push: VelocityW<Ints<N>>,
@@ -50,7 +51,9 @@ struct Group<const N: usize> {
 /// An operation on all groups, one after the other.
 #[derive(Clone, Copy, Debug)]
 enum Task {
+    /// Computes the velocity changes by contacts, `push`, from the velocities and `v_free`.
     Measure,
+    /// Records `v_free` and adds `push` to the velocities.
     Apply,
     /// Subtracts the velocity from `v_free`.
     Suspend,

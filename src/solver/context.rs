@@ -13,7 +13,7 @@ use crate::threads::Member;
 pub(super) enum Pass {
     /// Removes position errors by velocity.
     Bias,
-    /// Removes the velocity that removing position errors has left.
+    /// Removes the velocity that the bias pass has added to remove position errors.
     Relax,
 }
 

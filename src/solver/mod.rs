@@ -57,12 +57,13 @@ use crate::simd::{Shared, WIDTH};
 use crate::threads::{Threads, part_of};
 use sub_step::SolverShare;
 
-/// Factor on the iterations of cold contacts. New contacts have no impulse for the warm start, and one iteration in a
-/// sub-step is then not enough for piles: in their first ticks the 20 x 20 pyramids of 55 boxes move at 0.27 m/s and
-/// overlap by 5.8 mm, instead of 0.05 m/s and 1.5 mm.
+/// Factor on the iterations of cold contacts: those between bodies without a useful impulse for the warm start, such as
+/// bodies with new contacts only. One iteration in a sub-step is then not enough for piles: in their first ticks the
+/// 20 x 20 pyramids of 55 boxes move at 0.27 m/s and overlap by 5.8 mm, instead of 0.05 m/s and 1.5 mm.
 const COLD_ROUNDS: u32 = 8;
 
-/// The working memory of the solver. Only its allocations are reused in the next tick, not its contents.
+/// The working memory of the solver. It is not part of the state: contents of the last tick are reused only as caches,
+/// such as the order of the constraints, and never change a result.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Solver {
     list: BodyList,
@@ -89,7 +90,7 @@ impl Solver {
         Solver { machine: self.machine, threads: self.threads.clone(), ..Solver::default() }
     }
 
-    /// Copies what the solver needs of the bodies in the given slots out of the state.
+    /// Copies the properties that the solver needs from the bodies in the given slots.
     pub(crate) fn prepare_bodies(&mut self, bodies: &Arena<Body, BodyId>, slots: &[u32], tuning: &Tuning) {
         self.faults = 0;
         self.warm_starts = WarmStarts::default();
@@ -103,7 +104,7 @@ impl Solver {
         }
     }
 
-    /// Lets areas act on the dynamic body in a slot, one of those of the tick.
+    /// Applies the effect of areas to the dynamic body in a slot. The body must be among the bodies of the tick.
     pub(crate) fn apply_areas(&mut self, slot: u32, body: &Body, effect: &AreaEffect, tuning: &Tuning) {
         let index = self.list.index_of(slot);
         if let Ok(at) = self.moving.binary_search_by_key(&index, MovingBody::index) {
@@ -116,8 +117,8 @@ impl Solver {
         self.list.body(slot)
     }
 
-    /// Makes the constraints of the joints in the given slots, in the order in which they are solved. Those that are
-    /// solved in blocks are only counted.
+    /// Makes the constraints of the joints in the given slots, in the order in which they are solved. Joints that are
+    /// solved in blocks are only selected.
     pub(crate) fn prepare_joints(
         &mut self,
         joints: &Arena<Joint, JointId>,
@@ -135,8 +136,8 @@ impl Solver {
         self.joints.blocked_count()
     }
 
-    /// Prepares the joints in blocks, and computes the arms of all joints. Blocks take more time and memory than all
-    /// else in the preparation, so that the caller counts them first.
+    /// Prepares the joints in blocks, and computes the arms of all joints. Blocks take more time and memory than the
+    /// rest of the preparation, so that the caller checks [`Self::blocked_joint_count`] first.
     pub(crate) fn prepare_blocks(&mut self, tuning: &Tuning) {
         let Solver { list, joints: set, machine, faults, .. } = self;
         set.prepare_blocks();

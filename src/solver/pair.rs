@@ -11,7 +11,7 @@ use crate::simd::{Lanes, VelocityW};
 pub(super) const UNIT: i32 = shift(Unit::FRAC_NBITS);
 pub(super) const RATIO: i32 = shift(Ratio::FRAC_NBITS);
 
-/// 512 as a speed: half of what the format holds.
+/// 512 m/s in the format of speeds: half of its range.
 pub(super) const HALF: i32 = 1 << 30;
 
 /// The velocities of two bodies in each lane. Each kind of constraint defines how impulses change them.
@@ -21,13 +21,13 @@ pub(super) struct BodyPairW<L: Lanes<N>, const N: usize> {
 }
 
 impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
-    /// A copy of the velocities. A derived `Clone` would require it of the lanes type.
+    /// A copy of the velocities.
     #[inline(always)]
     pub(super) fn copy(&self) -> Self {
         BodyPairW { a: self.a, b: self.b }
     }
 
-    /// Takes on the velocities of another pair in the lanes of a mask.
+    /// Replaces the velocities by those of another pair in the lanes of a mask.
     #[inline(always)]
     pub(super) fn replace(&mut self, mask: L::Mask, other: &Self) {
         for (to, from) in [(&mut self.a, &other.a), (&mut self.b, &other.b)] {

@@ -18,7 +18,7 @@
 //! `p` is the impulse times `mA + mB`, the inverse masses. For a rigid block, `s = 1`, `L` is the change of the
 //! relative velocity of the anchors by the impulse.
 //!
-//! **A soft block is an isotropic spring.** Without arms it is that of `softness.rs`. With them,
+//! **A soft block is an isotropic spring.** Without arms it is the spring of `softness.rs`. With arms,
 //! `(impulseScale I + massScale K1) p = -massScale v - push`, where `K1` is `K` of the rigid block, is the implicit
 //! step of a spring with the stiffness `omega^2 m` and the damping `2 zeta omega m` in all directions,
 //! `m = 1 / (mA + mB)`. Its force follows from the potential `omega^2 m |x|^2 / 2`. A spring that yields by
@@ -101,7 +101,7 @@ pub(crate) struct PointBlock {
     e_b: Vec2<Ratio>,
     g_a: Symmetric<Unit>,
     g_b: Symmetric<Unit>,
-    /// With 30 fraction bits: a soft block turns light bodies by up to `e`.
+    /// `f` with 30 fraction bits, in 64 bits, because it may be as large as `e` in a soft block.
     f_a: Vec2<i64>,
     f_b: Vec2<i64>,
 }

@@ -80,7 +80,7 @@ pub(super) fn turning(fraction: Unit, e: Ratio, other: Ratio) -> i64 {
     saturate_wide(round_shift_wide(wide, 48))
 }
 
-/// The lever of a row or block on a body: where the impulse acts, and how easily the body turns.
+/// The lever of a row or block on a body: the point at which the impulse acts, and the inverse radius of gyration.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lever {
     /// Vector from the centre of mass to the point where the impulse acts.
@@ -111,8 +111,8 @@ pub(crate) struct Row {
     f_b: Unit,
 }
 
-/// Largest lever ratio. The products of two such ratios with the largest spins leave 2^57 of 64 bits for the linear
-/// part of [`Row::along`].
+/// Largest lever ratio. The products of two such ratios with the largest spins leave room for a linear part of 2^57 in
+/// the 64 bits of [`Row::along`].
 pub(super) const RATIO_MAX: Ratio = Ratio::lit("126");
 
 /// `D` of a row, 1 to 15 877, with 30 fraction bits.
@@ -164,7 +164,7 @@ impl Row {
         Row { n: -n, n_b: -n_b, e_a: -e_a, e_b: -e_b, g_a, g_b, f_a: -f_a, f_b: -f_b }
     }
 
-    /// Relative velocity of B from A along the row.
+    /// Velocity of B relative to A along the row.
     #[inline]
     pub(crate) fn velocity(&self, a: &SolverBody, b: &SolverBody, faults: &mut Faults) -> Speed {
         let along = |n: Vec2<Unit>, velocity: Vec2<Speed>| {

@@ -50,7 +50,8 @@ pub(crate) const SUB_STEPS_MAX: u32 = 64;
 /// Largest number of sub-steps in a second.
 pub(crate) const RATE_MAX: u32 = 4000;
 
-/// Largest displacement of a body in a tick along each axis, in metres.
+/// Largest displacement of a body in a tick at the speed limit, in metres. It lowers the limit at low tick rates: see
+/// [`SolverSettings::speed_max`].
 pub const DISTANCE_MAX: Fx = fx!(15);
 
 /// Settings of the solver.
@@ -74,7 +75,8 @@ pub struct SolverSettings {
     pub contact: ContactTuning,
     /// Stiffness in Hz of joints that have no [softness of their own](crate::solver::JointDef::softness), at most a
     /// quarter of the sub-step rate. It is doubled for the anchors of an anchored hinge or rigid weld: one between a
-    /// body that is not dynamic and a body without any other joint. No other joint has to yield there.
+    /// body that is not dynamic and a body without any other joint. In this case no other joint of the body has to
+    /// yield.
     pub joint_hertz: Fx,
     /// Damping ratio of joints, 0 to 100.
     pub joint_damping_ratio: Fx,

@@ -3,10 +3,10 @@
 use core::hint;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Number of times that a member looks again before it lets other threads of the machine run: tens of microseconds.
+/// Number of spins after which a waiting member yields to other threads of the machine: tens of microseconds.
 const SPINS: u32 = 2000;
 
-/// Lets `count` members wait for each other, as often as they want.
+/// Lets `count` members wait for each other, any number of times.
 #[derive(Debug)]
 pub(super) struct Barrier {
     count: usize,
@@ -28,7 +28,8 @@ impl Barrier {
         }
     }
 
-    /// Waits until all members have arrived. What they wrote before is then visible to all of them.
+    /// Waits until all members have arrived. Everything that a member wrote before its call is then visible to all
+    /// members.
     ///
     /// # Panics
     ///
@@ -53,7 +54,7 @@ impl Barrier {
     }
 }
 
-/// Breaks the barrier when it is dropped, as it is if the member that holds it panics.
+/// Breaks the barrier when it is dropped by a panic of its member. A member that finishes its work forgets its guard.
 pub(super) struct Guard<'a>(pub(super) &'a Barrier);
 
 impl Drop for Guard<'_> {
@@ -66,7 +67,7 @@ impl Drop for Guard<'_> {
 mod tests {
     use super::*;
 
-    /// Each member adds its number to a sum in turn, which no other member reads or writes between two barriers.
+    /// In each round one member stores the number of the round, and all members read it after a barrier.
     #[test]
     fn nobody_leaves_before_the_last_has_arrived() {
         const MEMBERS: usize = 4;

@@ -1,9 +1,9 @@
-//! Threads that share a tick. The number of threads changes the speed, never the result: they work on parts that do not
-//! read each other's results.
+//! Threads that share a tick. The number of threads changes the speed, never the result, because the threads work on
+//! parts that do not read each other's results.
 //!
 //! A stage of a tick that is divided is run by a team: the calling thread and the threads of a pool, each with a part
 //! of its own. Members of a team wait for each other at barriers, of which the sub-steps need a hundred in a tick. A
-//! barrier costs 0.1 microseconds. A fork and join of tasks in its place would cost 1 to 50.
+//! barrier costs 0.1 microseconds. A fork and join of tasks in its place would cost 1 to 50 microseconds.
 
 #[cfg(feature = "parallel")]
 mod barrier;
@@ -148,7 +148,7 @@ impl Threads {
         1
     }
 
-    /// Runs a tick whose stages call [`Self::run_team`], each with as many parts as the tick is told.
+    /// Runs a tick. Passes it the number of parts with which its stages call [`Self::run_team`].
     #[cfg(feature = "parallel")]
     pub(crate) fn run_tick<R>(&self, tick: impl FnOnce(usize) -> R) -> R {
         match &self.team {
@@ -157,7 +157,7 @@ impl Threads {
         }
     }
 
-    /// Runs a tick whose stages call [`Self::run_team`] with one part.
+    /// Runs a tick. Passes it the number of parts with which its stages call [`Self::run_team`]: one.
     #[cfg(not(feature = "parallel"))]
     #[expect(clippy::unused_self, reason = "same signature as with the feature")]
     pub(crate) fn run_tick<R>(&self, tick: impl FnOnce(usize) -> R) -> R {
@@ -230,8 +230,8 @@ mod team_tests {
 
     const MEMBERS: u64 = 4;
 
-    /// Every member adds its number to each of a row of sums, with a barrier in between, and reads the sum. Returns the
-    /// number of members.
+    /// Every member adds its number to each of 20 sums in turn, and reads each sum after a barrier. Returns the number
+    /// of members.
     fn add(threads: &Threads) -> u64 {
         let sums = [0; 20].map(AtomicU64::new);
         threads.run_tick(|parts| {

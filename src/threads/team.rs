@@ -8,7 +8,7 @@ use std::sync::{Mutex, PoisonError, TryLockError};
 use super::Member;
 use super::barrier::{Barrier, Guard};
 
-/// Number of times that a thread without work looks for it before it lets other threads of the machine run.
+/// Number of polls after which a thread without work yields to other threads of the machine.
 const LOOKS: u32 = 1000;
 
 /// Time for the other threads to return from the last barrier of a stage, in spins. The calling thread would otherwise
@@ -20,8 +20,8 @@ const RETURN_SPINS: u32 = 100;
 pub(super) struct Team {
     /// All threads but the calling one.
     pool: rayon::ThreadPool,
-    /// Held during a tick: worlds that are clones of each other share a team. If two of them used it at once, each
-    /// could wait at its barrier for a thread that waits at the other's.
+    /// Held during a tick: worlds that are clones of each other share a team. If two worlds used it at once, the
+    /// barrier of each could wait for a thread that waits at the barrier of the other.
     turn: Mutex<()>,
 }
 
@@ -34,7 +34,7 @@ impl Drop for TickEnd<'_> {
     }
 }
 
-/// Runs what the pool has for this thread until the tick is over.
+/// Runs the tasks that the pool has for this thread until the tick is over.
 fn run_stages(is_over: &AtomicBool) {
     let mut looks = 0;
     while !is_over.load(Ordering::Acquire) {
@@ -61,8 +61,8 @@ impl Team {
         self.pool.current_num_threads() + 1
     }
 
-    /// Runs a tick with all threads, or with one while another tick uses them. The threads stay awake between its
-    /// stages: a thread that sleeps takes 50 microseconds to begin.
+    /// Runs a tick with all threads, or with the calling thread alone while another tick uses the team. The threads
+    /// stay awake between the stages of the tick, because waking a thread takes 50 microseconds.
     pub(super) fn run_tick<R>(&self, tick: impl FnOnce(usize) -> R) -> R {
         let _turn = match self.turn.try_lock() {
             Ok(turn) => turn,

@@ -12,10 +12,10 @@ use crate::solver::{ContactTuning, RATE_MAX, SUB_STEPS_MAX, SolverSettings};
 ///
 /// # Small bodies
 ///
-/// Contacts are springs that yield by about `g / omega^2` for each body that they carry, whatever its size is. With the
-/// default 30 Hz a stack of 8 boxes on the ground sinks by 19.6 mm: 2 % of a box of 1 m, but 20 % of one of 10 cm, and
-/// it collapses with boxes of 1 cm. A contact cannot be stiffer than an eighth of the sub-step rate, so that smaller
-/// bodies need more sub-steps. [`Config::for_smallest`] sets them. With 60 ticks per second and 10 m/s² it gives:
+/// Contacts are springs that yield by about `g / omega^2` for each body that they carry, independent of its size. With
+/// the default 30 Hz a stack of 8 boxes on the ground sinks by 19.6 mm: 2 % of a box of 1 m, but 20 % of one of 10 cm,
+/// and a stack of boxes of 1 cm collapses. A contact cannot be stiffer than an eighth of the sub-step rate, so smaller
+/// bodies need more sub-steps. [`Config::for_smallest`] sets both. With 60 ticks per second and 10 m/s² it gives:
 ///
 /// | smallest box | sub-steps | contact stiffness | speculative distance | 8 boxes sink by |
 /// |---|---|---|---|---|
@@ -108,7 +108,7 @@ impl Config {
         (half.x.max(half.y) / 16).min(self.fat_margin)
     }
 
-    /// Number of ticks for which a body has to be slow before it may fall asleep: those of half a second.
+    /// Number of ticks for which a body has to be slow before it may fall asleep: half a second, rounded up.
     #[must_use]
     pub const fn ticks_to_sleep(&self) -> u32 {
         self.tick_rate.div_ceil(2)
@@ -116,8 +116,9 @@ impl Config {
 
     /// Returns these settings with as many sub-steps and as stiff contacts as a stack of 8 boxes of `size` metres needs
     /// to sink by less than 2.5 % of a box; see [`Config`] for a table. Call it after gravity and the tick rate are
-    /// set. Settings that are sufficient stay as they are. Sub-steps end at 64 in a tick and 4000 in a second: with 60
-    /// ticks per second and 10 m/s², that is sufficient down to 4 mm.
+    /// set. Also reduces the speculative distance to a fiftieth of `size`, but not below 1 mm. Settings that are
+    /// sufficient stay as they are. It sets at most 64 sub-steps per tick and 4000 per second: with 60 ticks per second
+    /// and 10 m/s², that is sufficient down to 4 mm.
     ///
     /// ```
     /// use lockstep2d::{fx, world::{Config, World}};
@@ -142,7 +143,7 @@ impl Config {
                 *hertz = Fx::from_num(self.tick_rate.saturating_mul(solver.sub_steps).min(RATE_MAX)) / 8;
             }
         }
-        // That of boxes of 1 m is a fiftieth of their size.
+        // The default distance, 2 cm, is a fiftieth of the size of boxes of 1 m.
         self.speculative_distance = self.speculative_distance.min((size / 50).max(SPECULATIVE_DISTANCE_MIN));
         self
     }

@@ -30,9 +30,9 @@ use crate::math::{Angle, Fx, Unit, Vec2};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct ContactEvent {
-    /// The shape in the smaller slot. Its handle is stale if the contact ended by its removal.
+    /// The shape in the smaller slot. Its handle is stale if the contact ended because the shape was removed.
     pub shape_a: ShapeId,
-    /// The shape in the larger slot. Its handle is stale if the contact ended by its removal.
+    /// The shape in the larger slot. Its handle is stale if the contact ended because the shape was removed.
     pub shape_b: ShapeId,
 }
 
@@ -70,19 +70,20 @@ pub struct HitEvent {
     pub normal: Vec2<Unit>,
     /// Approach speed along the normal at the start of the tick, in m/s.
     pub approach_speed: Fx,
-    /// Impulse along the normal in N s, of all points and over the whole tick, with restitution. It changes the
-    /// velocity of a free body by `impulse / mass`. An impact that takes several ticks, as into a soft pile, goes on in
-    /// the [forces](super::ContactView::forces) of the next ones.
+    /// Impulse along the normal in N s: the sum over all points and the whole tick, including restitution. It changes
+    /// the velocity of a free body by `impulse / mass`. An impact that takes several ticks, such as one into a soft
+    /// pile, continues in the [forces](super::ContactView::forces) of the following ticks.
     pub impulse: Fx,
 }
 
 /// A sensor that began or ceased to overlap a shape.
 ///
-/// Overlap is that of the end of the tick. A shape that crosses a sensor within a tick has both events in that tick,
-/// with the fraction of each, whatever its speed and its [`Continuous`](crate::body::Continuous) setting. Within a tick
-/// a body moves on a straight line from its old pose to its new one and rotates evenly: a ball that hits a wall and
-/// returns within the tick does not cross what was only on its way there, and a shape that leaves a sensor and returns
-/// has no events. Overlaps of less than 0.05 mm may be missed between two ticks.
+/// A sensor overlaps the shapes that it overlaps at the end of the tick. A shape that crosses a sensor within a tick
+/// has both events in that tick, each with its fraction, at any speed and with any
+/// [`Continuous`](crate::body::Continuous) setting. Within a tick a body is taken to move on a straight line from its
+/// old pose to its new one and to rotate evenly. Therefore a ball that hits a wall and returns within the tick has no
+/// events with the sensors that it met only on the way to the wall, and a shape that leaves a sensor and returns within
+/// the tick has no events. Overlaps of less than 0.05 mm may be missed between two ticks.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::World};
@@ -104,8 +105,8 @@ pub struct HitEvent {
 #[doc(alias = "trigger")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct SensorEvent {
-    /// Fraction of the tick at which the overlap began or ended, 0 to 1. Sorts the events of both lists in the order
-    /// of the crossings. 0 if the cause is a change between ticks.
+    /// Fraction of the tick at which the overlap began or ended, 0 to 1. Sorting the events of both lists by it gives
+    /// the order of the crossings. 0 if the cause is a change between ticks.
     pub fraction: Fx,
     /// The sensor. Its handle may be stale in an end event.
     pub sensor: ShapeId,
@@ -138,7 +139,7 @@ pub struct MoveEvent {
     pub position: Vec2<Fx>,
     /// Rotation after the tick.
     pub angle: Angle,
-    /// Whether it fell asleep. It then does not move until something wakes it.
+    /// Whether the body fell asleep. A sleeping body does not move until something wakes it.
     pub fell_asleep: bool,
 }
 

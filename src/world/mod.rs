@@ -57,8 +57,8 @@ use state::State;
 
 /// A physics world.
 ///
-/// Its state is everything that influences the future: what [`World::state_hash`], [`World::save`] and
-/// [`World::to_bytes`] cover. The same edits in the same order give the same hash after every tick on every machine.
+/// Its state is everything that influences the future, and is covered by [`World::state_hash`], [`World::save`] and
+/// [`World::to_bytes`]. The same edits in the same order give the same hash after every tick on every machine.
 ///
 /// ```
 /// use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, world::{Config, World}};
@@ -246,9 +246,10 @@ impl World {
     /// Sets the number of threads that share a tick, at least 1. Does not change any hash. Returns whether the threads
     /// could be created; if not, nothing changes.
     ///
-    /// Worth while for thousands of bodies; ticks with fewer than 256 awake bodies use the calling thread only. Threads
-    /// keep a processor busy until the tick is over, also where only one of them has work. Clones of the world use the
-    /// same threads: a tick during that of another clone uses its calling thread only.
+    /// Several threads pay off with thousands of bodies; a tick with fewer than 256 awake bodies uses the calling
+    /// thread only. Threads keep their processors busy until the tick is over, even while only one of them has work.
+    /// Clones of the world share its threads: a tick that runs during a tick of another clone uses its calling thread
+    /// only.
     #[cfg(feature = "parallel")]
     pub fn set_threads(&mut self, count: usize) -> bool {
         let threads = Threads::new(count);

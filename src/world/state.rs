@@ -24,7 +24,7 @@ pub(crate) struct Island {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Reported {
     pub(crate) shapes: ContactEvent,
-    /// Which of the shapes is a sensor that detects the other one, if any.
+    /// The shapes that are sensors and detect the other one; `None` if neither is a sensor.
     pub(crate) sensor: Option<Side>,
 }
 
@@ -112,7 +112,7 @@ impl State {
         self.bodies.at(self.shapes.at(shape).body().slot())
     }
 
-    /// Which shape of a pair is a sensor that detects the other one, if any shape is a sensor.
+    /// The shapes of a pair that are sensors and detect the other one; `None` if neither is a sensor.
     pub(crate) fn sensor_of(&self, (a, b): Pair) -> Option<Side> {
         let (a, b) = (self.shapes.at(a), self.shapes.at(b));
         match (a.is_sensor(), b.is_sensor()) {

@@ -66,7 +66,7 @@ pub struct StepStats {
     pub joints: u32,
     /// Number of pairs of shapes whose fat boxes overlap and of which one is active.
     pub pairs: u32,
-    /// Number of pairs with contact points, without sensors.
+    /// Number of pairs with contact points. Sensors do not count.
     pub contacts: u32,
     /// Number of contact points.
     pub points: u32,

@@ -31,7 +31,8 @@ impl FixedTimestep {
     }
 
     /// Sets the largest number of ticks that one call of [`FixedTimestep::advance`] returns. Time beyond them is
-    /// dropped, so that a machine that is too slow for real time slows down instead of falling behind for ever.
+    /// dropped, so that the game slows down on a machine that is too slow for real time, instead of falling behind
+    /// without limit.
     #[must_use]
     pub const fn ticks_max(mut self, ticks: u32) -> Self {
         self.ticks_max = ticks;
@@ -46,7 +47,7 @@ impl FixedTimestep {
         u32::try_from(ticks).unwrap_or(self.ticks_max)
     }
 
-    /// Returns the time since the last tick in billionths of a tick, for interpolation of what is drawn.
+    /// Returns the time since the last tick in billionths of a tick, for drawing poses interpolated between two ticks.
     #[must_use]
     pub const fn interpolation_billionths(&self) -> u32 {
         #[expect(clippy::cast_possible_truncation, reason = "the remainder is below 10^9")]

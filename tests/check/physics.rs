@@ -136,7 +136,7 @@ fn the_body_and_the_field_are_named() {
     assert!(check_replay::<Pit>(&failure.replay, &CheckOptions::default()).is_err());
 }
 
-/// A game that is rolled back to before the kick keeps the wind.
+/// A rollback to before the kick keeps the wind of the later state, so the states differ in a tick before the kick.
 #[test]
 fn a_rollback_shows_before_it_has_happened() {
     let error = check::<Pit>(&Mistake::Wind, &inputs(), &CheckOptions::default()).unwrap_err();

@@ -29,9 +29,9 @@ pub(crate) enum Mistake {
     HashTidies,
     /// The save contains an unordered set.
     SaveIsUnordered,
-    /// Claims count the calls.
+    /// The claims contain the number of calls.
     ClaimsCount,
-    /// Work counts the calls.
+    /// The work is the number of calls.
     WorkCounts,
     /// Two claims have the same name.
     ClaimsTwice,

@@ -252,7 +252,7 @@ fn a_shape_that_comes_wakes_who_lies_where_it_comes() {
 
 #[test]
 fn kinematic_bodies_that_start_to_move_are_work() {
-    // Each of them searches all joints for sleeping bodies to wake.
+    // Each of the commands below searches all joints of the body for sleeping bodies to wake.
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let mut setup = SandboxSetup { config: Config::default(), commands: Vec::new() };
     for kind in [BodyDef::kinematic(), BodyDef::dynamic().asleep()] {

@@ -1,5 +1,5 @@
 //! Mutated files: thousands of damaged or forged files, derived from valid ones. Their readers answer in bounded time
-//! and memory, and never accept a file as something else.
+//! and memory, and accept no replay whose setup, inputs or verdict differ from those of an original.
 //!
 //! `MUTATIONS=100000 cargo test --release --test mutated -- --nocapture` is the long run and prints figures.
 #![expect(clippy::unwrap_used, reason = "the files of this repository are valid")]
@@ -78,7 +78,7 @@ fn a_mutated_snapshot_is_refused_or_a_world() {
     assert!(figures.answers.len() >= 6, "{:?}", figures.answers);
 }
 
-/// A vacant slot takes only its generation in a file, but room for a whole body in memory.
+/// In a file, a vacant slot takes only its generation; in memory, it takes as much as a whole body.
 #[test]
 fn what_a_snapshot_takes_is_bounded_by_its_bytes() {
     let mut world = World::default();

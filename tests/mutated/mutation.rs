@@ -1,4 +1,4 @@
-//! Mutations of files: accidental damage, and edits by somebody who knows the format.
+//! Mutations of files: accidental damage, and edits that respect the format.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::math::Rng;
@@ -151,7 +151,7 @@ fn replay_header(file: &[u8]) -> Option<usize> {
     Some(56 + number(file, 32)? + number(file, 36)?)
 }
 
-/// Recomputes lengths, checksums and hashes, which a forger can do who knows the format but not the game.
+/// Recomputes lengths, checksums and hashes, as a forger can who knows the format but not the game.
 pub(crate) fn repair(file: &mut [u8]) {
     if is_snapshot(file) { repair_snapshot(file) } else { repair_replay(file).unwrap_or(()) }
 }

@@ -17,7 +17,7 @@ use lockstep2d::session::{Event, Status};
 use lockstep2d::world::BodyField;
 use pushers::{FAULT, Fault, Pushers, Setup, bot};
 
-/// Peers at one table.
+/// The peers of a match, with the network between them.
 struct Table {
     network: Network,
     peers: Vec<Option<Peer<Pushers, Port>>>,
@@ -180,7 +180,7 @@ fn late_joiners_and_spectators_follow() {
     }
 }
 
-/// Both go on after an outage, the guest with its old seat and its old replay.
+/// Both peers continue after an outage; the guest has its former seat again, and continues its replay.
 #[test]
 fn an_outage_costs_no_replay() {
     let options = PeerOptions::lockstep();
@@ -265,7 +265,7 @@ fn a_dedicated_server_plays_no_seat() {
     assert!(matches!(verify::<Pushers>(&replays[0], &Limits::default()), Verdict::Match { .. }));
 }
 
-/// Inputs that are longer than announced are an error, not silence.
+/// Passing more inputs than the peer has seats is an error.
 #[test]
 fn an_input_that_is_too_long_is_an_error() {
     let mut table = Table::new(1, 0);

@@ -1,4 +1,4 @@
-//! A sealed match, and somebody who reads all of its packets and sends them again.
+//! A sealed match, and an attacker that reads all of its packets and sends them again.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -13,7 +13,7 @@ use super::pushers::{Pushers, Setup, bot};
 /// Packets that were sent.
 type Heard = Rc<RefCell<Vec<Vec<u8>>>>;
 
-/// A port whose packets somebody reads.
+/// A port that records all packets that it sends.
 struct Tapped {
     port: Port,
     heard: Heard,
@@ -30,8 +30,8 @@ impl Transport for Tapped {
     }
 }
 
-/// Every packet of the match is sent again to both peers, as it is and changed, from another address. Nobody answers
-/// the stranger, and the match goes on as if it were not there.
+/// Every packet of the match is sent again from another address, unchanged and changed, to a random peer. No peer
+/// answers the attacker, and the match continues undisturbed.
 #[test]
 fn a_sealed_match_ignores_strangers() {
     let network = Network::new(LinkConditions::latency(Duration::from_millis(20)), 1);
@@ -67,12 +67,12 @@ fn a_sealed_match_ignores_strangers() {
             attacks += 1;
             let to = Network::address(rng.below(2));
             stranger.send(&packet, &to);
-            // Every packet is longer than its sender and counter.
+            // Every sealed packet has at least 32 bytes.
             let at = usize::try_from(rng.below(32)).expect("valid");
             packet[at] ^= 1 << rng.below(8);
             stranger.send(&packet, &to);
         }
-        // A packet that is redirected to its sender or a second time to its receiver gets no answer.
+        // A packet that is sent back to its sender, or a second time to its receiver, gets no answer.
         assert_eq!(stranger.receive(), None);
     }
     assert!(attacks > 500, "{attacks}");

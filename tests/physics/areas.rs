@@ -1,4 +1,5 @@
-//! Areas against theory: Archimedes, terminal velocity, Kepler, and what a field without drag must keep.
+//! Areas against theory: Archimedes, terminal velocity, Kepler, and the quantities that a field without drag
+//! conserves.
 //!
 //! ```text
 //! floating    submerged area * fluid density = area * density
@@ -139,7 +140,7 @@ fn a_falling_body_reaches_the_terminal_velocity() {
     }
 }
 
-/// A field without drag is gravity of another name, to the last bit.
+/// A uniform acceleration without drag equals gravity, bit for bit.
 #[test]
 fn a_uniform_acceleration_is_gravity() {
     let mut falls = Vec::new();
@@ -161,7 +162,7 @@ fn wind_moves_light_things_more_than_heavy_ones() {
     let mut world = world(fx!(0));
     let wind = Area::new().force((fx!(3), fx!(4)));
     let gust = ShapeDef::new(Polygon::square(fx!(100)).expect("valid")).area(wind);
-    // Directions are those of the area's body.
+    // Directions are in the frame of the area's body.
     world.spawn(&BodyDef::fixed().angle(Angle::QUARTER), &[gust]).expect("valid");
     let bodies = [fx!(1), fx!(10)]
         .map(|density| spawn(&mut world, square(fx!(0.5)).density(density), (fx!(0), density)));
@@ -174,7 +175,7 @@ fn wind_moves_light_things_more_than_heavy_ones() {
     }
 }
 
-/// Without drag a floating box bobs for ever, with the period of theory, whatever the number of sub-steps is.
+/// Without drag a floating box bobs with the theoretical period and without decay, for any number of sub-steps.
 #[test]
 fn bobbing_keeps_its_energy() {
     for sub_steps in [1, 2, 4, 8] {
@@ -246,7 +247,7 @@ fn a_tunnel_through_a_planet_is_an_oscillator() {
     world.spawn(&BodyDef::fixed(), &[planet]).expect("valid");
     let ball = ShapeDef::new(Geometry::circle(fx!(0.25)).expect("valid"));
     let ball = spawn(&mut world, ball, (fx!(8), fx!(0)));
-    // A period is 2 pi s, 377 ticks; after half of one it is at the other end.
+    // A period is 2 pi s, 377 ticks; after half a period the ball is at the other end.
     run(&mut world, 188);
     close(at(&world, ball).x, fx!(-8), fx!(0.01));
 }
@@ -278,7 +279,7 @@ fn bodies_without_area_are_measured_by_length() {
     let mass = MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(1) };
     let stick = ShapeDef::new(Geometry::segment(-end, end).expect("valid"));
     let stick = world.spawn(&BodyDef::dynamic().mass(mass).lock_rotation(), &[stick]).expect("valid");
-    // Half of it is inside, where the field is twice as strong as gravity.
+    // Half of the stick is inside, where the field is twice as strong as gravity.
     run(&mut world, 60);
     close(at(&world, stick).y, fx!(0), fx!(0.001));
 }
@@ -292,7 +293,7 @@ fn what_floats_sleeps_and_wakes() {
     run(&mut world, 600);
     let asleep = |world: &World| bodies.map(|body| world.body(body).expect("valid").is_asleep());
     assert_eq!(asleep(&world), [true, true]);
-    // A fan that comes by on a moving body wakes what is in it, and nothing else.
+    // An area on a moving body wakes the bodies inside it, and no others.
     let fan = Area::new().force((fx!(0), fx!(2)));
     let fan = ShapeDef::new(Polygon::square(fx!(1)).expect("valid")).area(fan);
     let carrier = BodyDef::kinematic().position((fx!(-6), fx!(0))).velocity((fx!(2), fx!(0)));
@@ -310,13 +311,14 @@ fn what_floats_sleeps_and_wakes() {
     assert_eq!(asleep(&world), [false, false]);
     run(&mut world, 600);
     assert_eq!(asleep(&world), [true, true]);
-    // Slow enough for half a second: it may be off by half a second at that speed.
+    // The box falls asleep after half a second below the sleep speed, so its height may be off by the way that it
+    // moves in half a second at that speed.
     close(at(&world, bodies[0]).y, fx!(0.15), fx!(0.025));
     world.despawn(sea).expect("valid");
     assert_eq!(asleep(&world), [false, false]);
 }
 
-/// A wind that a command sets acts for as long as it is set. The same wind again wakes nobody.
+/// A wind that a command sets acts until it is changed. Setting the same wind again wakes no body.
 #[test]
 fn a_command_sets_the_wind() {
     let mut world = world(fx!(0));
@@ -339,7 +341,7 @@ fn a_command_sets_the_wind() {
     assert!(!world.body(body).expect("valid").is_asleep());
 }
 
-/// A body in the area of a dynamic body is awake for as long as that moves.
+/// A body in the area of a dynamic body stays awake for as long as the dynamic body moves.
 #[test]
 fn a_moving_magnet_wakes_what_it_passes() {
     let mut world = world(fx!(-10));
@@ -386,7 +388,7 @@ fn areas_without_an_inside_or_out_of_range_are_refused() {
     assert_eq!(refused(too(Area::new().drag(fx!(0), fx!(-1)))), "angular drag");
     assert_eq!(refused(too(Area::fluid(fx!(1048577)))), "density");
     assert_eq!(refused(too(Area::new().attraction(fx!(1), fx!(0), Falloff::Inverse))), "attraction");
-    // A speed that the area gives does not leave the range of speeds.
+    // The speed that an area gives to a body does not exceed the speed limit.
     let strongest = Area::new().force((fx!(1048576), fx!(0))).acceleration((fx!(10000), fx!(0)));
     world.add_shape(body, &square(fx!(50)).area(strongest)).expect("valid");
     let leaf = spawn(&mut world, square(fx!(0.3)).density(fx!(0.001)), (fx!(-40), fx!(0)));

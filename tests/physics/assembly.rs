@@ -25,7 +25,7 @@ pub(crate) enum Shape {
     Chain,
     /// A chain whose ends are joined.
     Loop,
-    /// A tree with up to three joints more.
+    /// A tree with up to three additional joints.
     Mesh,
     /// Rows and columns.
     Grid,

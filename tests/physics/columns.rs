@@ -1,4 +1,4 @@
-//! Things that stand: columns, plates on discs, arches and a house of cards stand for ever, and fall asleep.
+//! Columns, plates on discs, arches and a house of cards stay standing, and fall asleep.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;

@@ -72,7 +72,7 @@ fn the_ratio_is_kept_under_load() {
         let axle_a = hinge(&mut world, ground, a, Revolute::new().motor(fx!(9), fx!(400)));
         let axle_b = hinge(&mut world, ground, b, Revolute::new().motor(fx!(0), fx!(20)));
         let gear = fitted(&mut world, a, b, Gear::new(teeth[0], teeth[1]));
-        // While the wheels spin up, and after that.
+        // Largest errors while the wheels spin up, and afterwards.
         let mut worst = [fx!(0); 2];
         for tick in 0..3600 {
             world.step();
@@ -89,7 +89,7 @@ fn the_ratio_is_kept_under_load() {
         let turned = [axle_a, axle_b].map(|axle| world.joint_angle(axle).expect("valid"));
         let apart = turned[0] * i64::from(teeth[0]) + turned[1] * i64::from(teeth[1]);
         assert!(turned[0] > fx!(500));
-        // In radians of a tooth, of which none is skipped.
+        // The difference is in radians of a tooth, of which a skipped tooth would be 2 pi.
         close(apart, fx!(0), fx!(1));
     }
 }
@@ -174,7 +174,7 @@ fn a_planet_turns_as_its_arm_takes_it_around_the_sun() {
     close(omega(&world, planet), fx!(3), fx!(0.01));
 }
 
-/// Two wheels in gear on a bar in free space: neither momentum nor angular momentum comes from nowhere.
+/// Two wheels in gear on a bar in free space conserve momentum and angular momentum.
 #[test]
 fn free_wheels_on_a_bar_keep_their_momentum() {
     let mut rng = Rng::new(3);
@@ -221,7 +221,7 @@ fn a_rack_moves_as_its_wheel_rolls() {
         .joint_along(ground, rack, Prismatic::new(), (fx!(0.5), fx!(0)), (fx!(0), fx!(1)))
         .expect("valid");
     world.add_joint(&slide).expect("valid");
-    // The axis points up, so that the wheel, to its left, touches it on its own right.
+    // The axis points up. The wheel is to the left of the rack, and touches it with its right side.
     let def = JointDef::new(pinion, rack, Rack::new(fx!(0.5))).angle_b(Angle::QUARTER);
     let def = world.fit_joint(&def).expect("valid");
     let joint = world.add_joint(&def).expect("valid");
@@ -309,7 +309,7 @@ fn weights_on_a_rope_accelerate_as_theory_says() {
 #[test]
 fn a_rope_in_balance_rests_and_a_loose_one_does_not_pull() {
     let mut world = world(fx!(-10));
-    // On twice the length half the mass holds the other.
+    // With a ratio of 2, half the mass balances the other weight.
     let (weights, rope) = atwood(&mut world, [fx!(3), fx!(6)], fx!(2));
     run(&mut world, 600);
     for body in weights {
@@ -320,12 +320,12 @@ fn a_rope_in_balance_rests_and_a_loose_one_does_not_pull() {
     let JointKind::Pulley(pulley) = &mut longer.kind else { panic!("a pulley") };
     pulley.length += fx!(3);
     world.set_joint(rope, &longer).expect("valid");
-    // Both fall by a metre before it is taut again, after 0.45 s.
+    // Both weights fall by a metre before the rope is taut again, after 0.45 s.
     run(&mut world, 24);
     for body in weights {
         close(world.body(body).expect("valid").velocity().y, fx!(-4), fx!(0.001));
     }
-    // When it is taut again they hang.
+    // Once the rope is taut again, the weights hang.
     run(&mut world, 600);
     let lengths = weights.map(|body| fx!(10) - at(&world, body).y);
     close(lengths[0] + lengths[1] * 2, pulley_length(&world, rope), fx!(0.01));

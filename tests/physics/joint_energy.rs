@@ -86,14 +86,14 @@ fn assemblies_of_welds_that_turn_or_hang_gain_no_energy() {
 }
 
 /// Before, bodies answered hard pulls at long arms with their inertia alone, and an assembly that hangs gained up to
-/// 934 446 times its energy. Now the worst of those left out gains 23 %.
+/// 934 446 times its energy. Now the worst of the assemblies left out gains 23 %.
 #[test]
 fn assemblies_of_hinges_that_turn_or_hang_gain_no_energy() {
     never_gain(Mix::Hinge, Start::Spin);
     never_gain(Mix::Hinge, Start::Hang);
 }
 
-/// Assemblies that are beyond the engine do not explode.
+/// The assemblies of [`BEYOND`] stay together.
 #[test]
 fn assemblies_beyond_the_engine_stay_together() {
     sweep::for_each(BEYOND.to_vec(), |case| {

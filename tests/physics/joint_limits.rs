@@ -113,9 +113,9 @@ fn the_angle_of_a_hinge_counts_turns() {
         ticks += 1;
         assert!(ticks < 200);
     }
-    // It starts a quarter turn behind, and turns 0.5 rad in a tick.
+    // The joint's angle starts at minus a quarter turn, and grows by 0.5 rad in a tick.
     close(fx!(0.5) * ticks, turns + TAU / 4, fx!(1), "rad");
-    // It turns back, to a limit 9 turns away.
+    // The spring turns a joint to its lower limit, which is 9 turns away.
     let mut bench = Bench::new(Ground::Fixed, fx!(0), Vec2::ZERO, fx!(0));
     let nine = TAU * 9;
     let kind = Revolute::new().limit(-nine, nine).spring(fx!(0.5), fx!(1), -nine * 2);

@@ -183,8 +183,8 @@ fn a_slow_ball_with_a_threshold_of_zero_keeps_its_speed() {
     }
 }
 
-/// A ball that falls at 0.3 to 2 m/s bounces. No rebound in 100 s is higher than the one before, and none is lower than
-/// by what the error of the time of impact costs.
+/// A ball that falls at 0.3 to 2 m/s bounces. No rebound in 100 s is higher than the one before, and each is lower by
+/// at most the loss that the error of the time of impact causes.
 #[test]
 fn slow_falls_bounce_with_a_threshold_of_zero() {
     for speed in [fx!(0.05), fx!(0.1), fx!(0.3), fx!(0.5), fx!(0.9), fx!(1.1), fx!(2)] {

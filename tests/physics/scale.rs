@@ -114,7 +114,7 @@ fn stacks_of_any_size_sink_by_at_most_a_fortieth_of_a_box() {
     }
 }
 
-/// Gravity per size counts, and sub-steps may be ticks.
+/// The settings depend on the ratio of gravity to size, and on the number of sub-steps per second.
 #[test]
 fn settings_for_small_bodies_follow_gravity_and_tick_rate() {
     let moon = Config { gravity: Vec2::new(fx!(0), fx!(-1.62)), ..Config::default() };

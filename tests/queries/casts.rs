@@ -34,8 +34,8 @@ fn floor(tiles: bool, slope: Angle, world: &mut World) {
     }
 }
 
-/// A shape that rests on a floor, up to 5 mm deep in it as bodies do, is not stopped by a seam, but by a wall that is
-/// as high as a step of 1 cm.
+/// A shape that rests on a floor, up to 5 mm deep in it as bodies do, is cast along the floor: the cast passes the
+/// seams, and stops at a ledge of 1 cm.
 #[test]
 fn casts_along_a_floor_pass_its_seams_and_stop_at_a_ledge() {
     let mut rng = Rng::new(1);
@@ -91,13 +91,13 @@ fn a_cast_says_when_it_starts_inside_or_ignores_it() {
             true => world.cast_shape(&probe, way, filter),
             false => world.cast_turning(&probe, way, turns, filter),
         };
-        // Out of the near wall and to the far one.
+        // The cast leaves the near wall, and stops at the far one.
         let hit = cast(way, resist).expect("the far wall");
         assert!(hit.shape == far && !hit.starts_inside && (hit.travelled.x - fx!(3.3)).abs() < fx!(0.0002));
         let hit = cast(way, report).expect("the near wall");
         assert!(hit.shape == near && hit.starts_inside && hit.fraction == 0 && hit.normal.x == 1);
         assert_eq!(cast(way, ignore).expect("the far wall").shape, far);
-        // Into the near wall.
+        // The cast would go deeper into the near wall, which it hits at once.
         let hit = cast(-way, resist).expect("the near wall");
         assert!(hit.shape == near && hit.travelled.length() < fx!(0.0002), "{hit:?}");
         assert_eq!(cast(-way, ignore), None);

@@ -95,7 +95,7 @@ fn twins(world: &World) -> Vec<World> {
     ]
 }
 
-/// Counts of the queries and of those that the oracle could check.
+/// Numbers of queries, of non-empty results, and of rays and casts that were checked against the oracle.
 #[derive(Default, Debug)]
 struct Tally {
     queries: u32,

@@ -66,7 +66,7 @@ impl Outline {
     }
 }
 
-/// A random probe with what it is made of.
+/// A random probe, with its geometry, position and angle.
 struct Sample {
     geometry: Geometry,
     position: Vec2<Fx>,

@@ -1,4 +1,5 @@
-//! Keyframe files: they save the way to a tick, and no file that is invalid or of another replay is used.
+//! Keyframe files: a seek starts from a stored state instead of the first tick, and no file that is invalid or belongs
+//! to another replay is used.
 
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;

@@ -84,7 +84,7 @@ fn a_chain_hash_that_is_wrong_is_named_where_it_stands() {
     let mut forged = Forged::take_apart(&file);
     let ticks = forged.trailer()[..8].to_vec();
     assert_eq!(file[payload..payload + 8], ticks, "expected the trailer here");
-    // The block's checksum covers the chain hash, so the checksum is repaired by hand.
+    // The block's checksum covers the chain hash, so the test repairs the checksum.
     file[payload + CHAIN.start] ^= 1;
     let start = payload - 5;
     let end = file.len() - 8;

@@ -118,7 +118,7 @@ fn many_bodies_in_one_command_are_work() {
     assert_eq!(verdict.name(), "limit_exceeded", "{verdict}");
 }
 
-/// Overlapping bodies are far more work than the same bodies side by side, so that limits apply to them.
+/// Overlapping bodies are charged far more work than the same bodies side by side, so that limits apply to them.
 #[test]
 fn a_heap_in_one_place_is_dear() {
     let work = |apart: i32| {

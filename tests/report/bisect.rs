@@ -207,7 +207,7 @@ fn checkpoints_of_every_tick_tell_the_tick() {
         let found = bisect::<Sound>(&replay, None, &Limits::default()).unwrap();
         assert!(STEPS.get() < 3 * TICKS);
         assert_eq!(found.first_different, Some(flip.tick), "{found:?}");
-        // The bits are too many to try them all, but a blamed body must be the right one.
+        // There are too many bits to try them all, but a blamed body must be the right one.
         let told = found.explanation.map(|told| told.path);
         assert!(told.as_ref().is_none_or(|told| *told == path), "blamed {told:?} instead of {path}");
     }

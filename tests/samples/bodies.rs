@@ -131,7 +131,7 @@ fn a_body_without_mass_coasts() {
     near(stage.place(good).y, fx!(2), fx!(0.02));
 }
 
-/// Pivot. The angular velocity that goes with a velocity so that the lower end of a bar rests at first.
+/// Pivot. The angular velocity is chosen for the velocity so that the lower end of a bar is at rest at first.
 #[test]
 fn a_bar_starts_to_turn_about_its_lower_end() {
     let mut stage = Stage::weightless();
@@ -165,7 +165,7 @@ fn a_kinematic_body_follows_a_figure_of_eight() {
     }
 }
 
-/// Mixed Locks. What is locked does not move at all, whatever falls on it.
+/// Mixed Locks. A locked degree of freedom does not move at all, whatever falls on the body.
 #[test]
 fn locks_hold_exactly() {
     let mut stage = Stage::with_floor();
@@ -198,7 +198,7 @@ fn a_box_that_is_pushed_down_does_not_sink() {
     });
 }
 
-/// Wake Touching. To wake a fixed body wakes everything that lies on it.
+/// Wake Touching. Waking a fixed body wakes everything that lies on it.
 #[test]
 fn waking_the_ground_wakes_what_lies_on_it() {
     let mut stage = Stage::new();

@@ -41,7 +41,7 @@ fn a_bullet_bounces_in_a_room() {
     }
 }
 
-/// Bounce Humans. Ragdolls in a room whose walls return more than they get, under turning gravity, stay in it.
+/// Bounce Humans. Ragdolls stay in a room whose walls have a restitution above 1, under turning gravity.
 #[test]
 fn ragdolls_stay_in_a_room_of_bumpers() {
     let mut stage = Stage::of_scene("ragdoll");
@@ -147,7 +147,7 @@ fn seams_do_not_bump() {
     }
 }
 
-/// Speculative Fallback and Sliver. Thin things that are thrown at thin things stay above.
+/// Speculative Fallback and Sliver. Thin shapes that are thrown at thin shapes stay above them.
 #[test]
 fn slivers_stay_above() {
     let mut stage = Stage::new();
@@ -165,7 +165,8 @@ fn slivers_stay_above() {
     assert!(stage.body(sliver).is_asleep());
 }
 
-/// Speculative Ghost and Pixel Imperfect. What passes a corner at a few millimetres or centimetres is not touched.
+/// Speculative Ghost and Pixel Imperfect. A body that passes a corner at a distance of a few millimetres or
+/// centimetres is not touched.
 #[test]
 fn what_passes_by_is_not_touched() {
     let mut stage = Stage::new();
@@ -175,7 +176,7 @@ fn what_passes_by_is_not_touched() {
     );
     let def = BodyDef::dynamic().position(at!(0.015, 2.515)).velocity(at!(7.5, -7.5)).gravity_scale(fx!(0));
     let body = stage.spawn(def, &[square(fx!(0.25))]);
-    // It is level with the edge after 0.169 s, 3 cm beside it, and at the floor after 0.302 s.
+    // The body is level with the edge after 0.169 s, 3 cm beside it, and at the floor after 0.302 s.
     stage.run_and(17, |stage| assert_eq!(stage.velocity(body), at!(7.5, -7.5)));
     near(stage.place(body).y, fx!(0.39), fx!(0.00001));
 
@@ -212,7 +213,7 @@ fn a_slow_graze_is_reflected() {
     );
 }
 
-/// Drop. Fast things of every kind stop at thin tiles.
+/// Drop. Fast bodies of every kind stop at thin tiles.
 #[test]
 fn thin_tiles_stop_what_drops_on_them() {
     let tiles: Vec<_> =

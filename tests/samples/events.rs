@@ -8,7 +8,8 @@ use lockstep2d::world::{Explosion, SensorChange};
 
 use super::{Stage, ball, capsule, line, near, num, rect, rounded, square};
 
-/// Sensor Funnel. What falls through a funnel with paddles is reported once by the sensor at its bottom and removed.
+/// Sensor Funnel. Bodies that fall through a funnel with paddles are reported once by the sensor at its bottom, and
+/// removed.
 #[test]
 fn a_funnel_empties_into_its_sensor() {
     let mut stage = Stage::new();
@@ -128,7 +129,7 @@ fn a_foot_sensor_knows_the_ground() {
     let player = stage.spawn(BodyDef::dynamic().position(at!(0.5, 1)).lock_rotation(), &[body, sole]);
     let sole = *stage.world.shapes_of(player).last().expect("two shapes");
     stage.run(60);
-    // It is 1 m wide, half a metre to each side of the middle of a link.
+    // The sensor is 1 m wide, half a metre to each side of the middle of a link.
     let under = stage.world.sensor_overlaps(sole).len();
     assert!((1..=3).contains(&under), "{under} links");
     stage.world.set_velocity(player, at!(0, 5), fx!(0)).expect("valid");

@@ -1,4 +1,4 @@
-//! Box2D's group "Joints": one kind of joint each. `machines.rs` has what is built of several.
+//! Box2D's group "Joints": samples of one kind of joint each. `machines.rs` has the samples with several joints.
 
 use lockstep2d::body::{BodyDef, BodyId};
 use lockstep2d::fx;
@@ -67,8 +67,8 @@ fn a_distance_joint_is_a_spring_with_limits() {
     // The ball weighs 39.3 N. A spring that only pushes does not hold it: free fall, h = g t^2 / 2.
     let fallen = hang(Distance::new().spring(fx!(5), fx!(0), fx!(1)).spring_force(fx!(0), fx!(100)), 60);
     near(fallen, fx!(6), fx!(0.1));
-    // One that pulls with half the weight leaves 5 m/s², once it is stretched by half its sag, which takes a sixth of
-    // its period: then the ball has (g / w) sin(60 degrees) = 0.276 m/s.
+    // A spring that pulls with half the weight leaves 5 m/s², once it is stretched by half its sag, which takes a
+    // sixth of its period: then the ball has (g / w) sin(60 degrees) = 0.276 m/s.
     let fallen =
         hang(Distance::new().spring(fx!(5), fx!(0), fx!(1)).spring_force(fx!(-19.635), fx!(100)), 60);
     near(fallen, fx!(3.61), fx!(0.03));
@@ -225,7 +225,7 @@ fn a_wheel_turns_on_its_spring() {
     near(stage.body(wheel).angular_velocity(), fx!(2), fx!(0.001));
 }
 
-/// A box of 4 kg that each kind of joint holds at the ground, and the point of the joint.
+/// Adds a box of 4 kg for each kind of joint, which holds the box at the ground. Returns the boxes.
 fn held_boxes(stage: &mut Stage, locks: BodyDef, change: impl Fn(JointDef) -> JointDef) -> Vec<BodyId> {
     let ground = stage.spawn(BodyDef::fixed(), &[]);
     let wheel = Wheel::new().spring(fx!(1), fx!(0.7), fx!(0)).limit(fx!(-1), fx!(1)).motor(fx!(1), fx!(10));
@@ -313,7 +313,7 @@ fn joints_close_after_a_blow() {
     }
 }
 
-/// User Constraint. Two ropes that are impulses between the ticks hold a box, as the sample has them.
+/// User Constraint. Two ropes, applied as impulses between the ticks as in the sample, hold a box.
 #[test]
 fn a_constraint_of_ones_own_holds_a_box() {
     let mut stage = Stage::new();

@@ -1,4 +1,4 @@
-//! Box2D's group "Joints": what is built of several joints.
+//! Box2D's group "Joints": samples with several joints.
 
 use lockstep2d::body::{BodyDef, BodyId, Chain, Filter, JointId, ShapeDef};
 use lockstep2d::fx;
@@ -111,7 +111,7 @@ fn a_car_drives_over_hills_and_a_teeter() {
     points.extend((0..).zip(heights).map(|(i, y)| Vec2::new(num(25 + 5 * i), y)));
     points.extend([at!(130, 0), at!(130, 20)]);
     let ground = stage.spawn(BodyDef::fixed(), &Chain::new(&points).links().expect("valid"));
-    // It turns at first, so that its near end is down.
+    // The teeter turns at first, so that its near end is down.
     let teeter = BodyDef::dynamic().position(at!(95, 1)).angular_velocity(fx!(1));
     let teeter = stage.spawn(teeter, &[rect(fx!(10), fx!(0.25))]);
     let hinge = Revolute::new().limit(fx!(-0.14), fx!(0.14));

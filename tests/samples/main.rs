@@ -1,5 +1,5 @@
-//! The samples of Box2D and the examples of rapier, each as a small world with what it is there to show. The table in
-//! `docs/SAMPLES.md` names the test of each sample. What a test expects follows from mechanics or from the purpose of
+//! The samples of Box2D and the examples of rapier, each as a small world that shows what the sample shows. The table
+//! in `docs/SAMPLES.md` names the test of each sample. Expected values follow from mechanics or from the purpose of
 //! the sample.
 
 /// A vector of two literals.
@@ -32,7 +32,7 @@ use lockstep2d::solver::{JointDef, JointKind};
 use lockstep2d::world::{Config, World};
 use lockstep2d_scenes::Scene;
 
-/// A world, and short names for what the samples do with it.
+/// A world, with short methods for the operations of the samples.
 struct Stage {
     world: World,
 }

@@ -53,7 +53,7 @@ fn rays_meet_single_shapes() {
         (Geometry::circle(fx!(2)).expect("valid"), fx!(2), at!(0, 1)),
         (Geometry::capsule(-end, end, fx!(0.5)).expect("valid"), fx!(0.5), at!(0, 1)),
         (Polygon::square(fx!(2)).expect("valid").into(), fx!(2), at!(0, 1)),
-        // Its upper side goes from (-2, 0) to (2, 3).
+        // The triangle's upper side goes from (-2, 0) to (2, 3).
         (triangle.into(), fx!(1.5), at!(-0.6, 0.8)),
         (Geometry::segment(at!(-2, 0), at!(2, 0)).expect("valid"), fx!(0), at!(0, 1)),
     ];
@@ -109,7 +109,7 @@ fn casts_through_a_world() {
     }
 }
 
-/// Overlap World. Boxes, balls and points find what is there, in slot order.
+/// Overlap World. Boxes, balls and points find the shapes that they overlap, in slot order.
 #[test]
 fn overlaps_of_a_world() {
     let (stage, shapes) = row(10);
@@ -206,8 +206,8 @@ fn casts_and_times_of_impact_of_loose_shapes() {
     near(fraction, fx!(0.5878), fx!(0.0005));
 }
 
-/// The benchmarks Cast and Sensor: casts among thousands of boxes agree with a walk over all, and a sensor that sweeps
-/// over them and a ball begins to see each once.
+/// The benchmarks Cast and Sensor: casts among thousands of boxes agree with a linear search, and a sensor that sweeps
+/// over the boxes and a ball reports the begin of each overlap once.
 #[test]
 fn casts_among_many_boxes_agree_with_a_walk_over_all() {
     let mut stage = Stage::new();
@@ -237,8 +237,8 @@ fn casts_among_many_boxes_agree_with_a_walk_over_all() {
     assert!(stage.place(sweeper).y > fx!(60) && seen == 2001, "seen {seen}, {:?}", stage.place(crossing));
 }
 
-/// Geometric Mover. A character by hand, of planes and clipping as the sample has it, walks to a wall and stops
-/// there, above the floor; `move_character` does the same.
+/// Geometric Mover. A character that the test moves with planes and clipping, as the sample does, walks to a wall and
+/// stops there, above the floor; `move_character` does the same.
 #[test]
 fn a_mover_of_planes_walks_to_a_wall() {
     let mut stage = Stage::with_floor();
@@ -299,8 +299,8 @@ fn a_body_on_a_spring_leg_keeps_its_height() {
     assert!(stage.place(body).x > fx!(5));
 }
 
-/// Dynamic Mover, with its pogo: a spring between the body and what is under it, which pushes with at most three times
-/// the weight and pulls with half of it. As in the sample it is made anew in every tick.
+/// Dynamic Mover, with its pogo: a spring between the body and the ground under it, which pushes with at most three
+/// times the weight and pulls with half of it. As in the sample, the spring is created again in every tick.
 #[test]
 fn a_pogo_is_a_spring_to_the_ground() {
     let mut stage = Stage::with_floor();

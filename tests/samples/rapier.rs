@@ -200,7 +200,7 @@ fn bodies_of_hundreds_of_parts_stack() {
     }
 }
 
-/// debug_total_overlap2. A hundred boxes at one place come apart; nothing is pushed that has no partner.
+/// debug_total_overlap2. Fifty boxes at one place come apart, and their total momentum stays zero.
 #[test]
 fn boxes_in_one_place_come_apart() {
     let mut stage = Stage::weightless();
@@ -237,7 +237,7 @@ fn an_inverted_pyramid_stands() {
 }
 
 /// one_way_platforms2. A belt that is solid from above and one, upside down, that is solid from below: a body rides
-/// one, falls through the other's back, and is pulled up to its lower side.
+/// the first, falls through the second, and is pulled up to its lower side by reversed gravity.
 #[test]
 fn one_way_belts_pass_bodies_on() {
     let mut stage = Stage::new();
@@ -259,7 +259,7 @@ fn one_way_belts_pass_bodies_on() {
         stage.world.set_body(body, &settings).expect("valid");
         stage.run(1);
         rode |= (stage.place(body).y - fx!(4.5)).abs() < fx!(0.05) && stage.velocity(body).x < fx!(-11);
-        // It may have turned on its side.
+        // The body may have turned on its side.
         let depth = -stage.place(body).y;
         let touches = (depth - fx!(4.5)).abs() < fx!(0.05) || (depth - fx!(4)).abs() < fx!(0.05);
         hung |= touches && stage.velocity(body).x > fx!(11);

@@ -122,7 +122,7 @@ fn pendulums_of_bars_gain_no_energy() {
             before = bar;
         }
         let start = stage.energy();
-        // A hundredth of what the bars can lose from level to hanging.
+        // A hundredth of the energy that the bars can lose from level to hanging.
         let allowed = fx!(0.1) * i64::from(bars * bars);
         stage.run_and(600, |stage| assert!(stage.energy() < start + allowed, "{bars}: {} J", stage.energy()));
         assert!(stage.world.widest_joint_gap() < fx!(0.01));
@@ -147,7 +147,8 @@ fn a_cube_slides_and_turns_in_a_slot() {
     near(stage.world.joint_translation(slot).expect("there").x, fx!(-1), fx!(0.02));
 }
 
-/// rope_joints2. A ball on a rope follows what it is tied to and is never farther away than the rope is long.
+/// rope_joints2. A ball on a rope follows the body that it is tied to, and is never farther away than the length of
+/// the rope.
 #[test]
 fn a_rope_tows() {
     let mut stage = Stage::with_floor();

@@ -172,8 +172,9 @@ fn jointed_bodies_bear_every_change() {
     assert!(stage.world.widest_joint_gap() < fx!(0.01));
 }
 
-/// StaticVsBulletBug. A body that was dynamic and is now fixed stops a bullet of 300 m/s. It returns 0.9 of its normal
-/// speed; but a bounce changes a velocity by at most 511 m/s, and says so.
+/// StaticVsBulletBug. A body that was dynamic and is now fixed stops a bullet of 300 m/s. The bullet bounces back at
+/// 0.9 of its normal speed; a bounce changes a velocity by at most 511 m/s, and a larger change is clamped and counts
+/// as a fault.
 #[test]
 fn a_body_that_became_fixed_stops_a_bullet() {
     let corners = [

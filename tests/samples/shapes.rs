@@ -50,7 +50,7 @@ fn links_of_ones_own_are_smooth_and_can_change() {
         near(stage.velocity(body).x, fx!(5), fx!(0.001));
         near(stage.place(body).y, fx!(0.5), fx!(0.01));
     });
-    // At -8 m. The next link goes away from under it: it falls.
+    // The body is at -8 m. The links under it are moved away, and it falls.
     let shapes = stage.world.shapes_of(ground).to_vec();
     for &id in &shapes[5..8] {
         stage
@@ -62,8 +62,8 @@ fn links_of_ones_own_are_smooth_and_can_change() {
     assert!(stage.place(body).y < fx!(0.3), "{:?}", stage.place(body));
 }
 
-/// Compound Shapes. Tables stand on their legs; the mass of a body is that of its parts; what is spawned inside does
-/// not blow up.
+/// Compound Shapes. Tables stand on their legs; the mass of a body is that of its parts; a body that is spawned inside
+/// another does not blow up.
 #[test]
 fn compounds_stand_and_bear_an_intruder() {
     let mut stage = Stage::with_floor();

@@ -89,7 +89,7 @@ fn lying_capsules_stack() {
     }
 }
 
-/// Cliff. Things that slide over an edge go on without a kick.
+/// Cliff. Bodies that slide over an edge go on without a kick.
 #[test]
 fn an_edge_does_not_kick() {
     for direction in [1, -1] {

@@ -63,9 +63,9 @@ fn heap(origin: Vec2<Fx>) -> Vec<(Vec2<Fx>, Angle)> {
     dynamic.map(|(_, body)| (body.position() - origin, body.angle())).collect()
 }
 
-/// Far Pyramid and Far Ragdolls. Up to a million kilometres from the origin nothing is lost. The arms of contacts with
-/// fixed bodies are rounded from the origin, up to 512 m: beyond, to the right and above, the last bits are others, the
-/// same ones everywhere.
+/// Far Pyramid and Far Ragdolls. Up to a million kilometres from the origin no precision is lost. The lever arms of
+/// contacts with fixed bodies are rounded relative to the origin, up to 512 m. Beyond that, to the right and above,
+/// the last bits differ from those at the origin, but are the same everywhere.
 #[test]
 fn the_world_is_the_same_everywhere() {
     let (here, there) = (heap(Vec2::ZERO), heap(at!(1000, 1000)));
@@ -110,7 +110,8 @@ fn until_asleep(world: &mut World) -> (u64, lockstep2d::hash::StateHash) {
     (world.tick(), world.state_hash())
 }
 
-/// Falling Hinges and Rollback. The same tick of sleep and the same hash in every run, from every saved state.
+/// Falling Hinges and Rollback. All bodies sleep in the same tick with the same hash in every run, and from every
+/// saved state.
 #[test]
 fn falling_hinges_end_alike_from_every_saved_state() {
     let mut world = falling_hinges();

@@ -1,12 +1,13 @@
-//! Mistakes that are planted in the protocol break an invariant in some match: the simulation can find such mistakes.
+//! Faults that are planted in the protocol break an invariant in some match, which proves that the simulation finds
+//! them.
 
 use lockstep2d::session::Fault;
 
 use super::{storm, sweep};
 
-/// Matches with a fault until one breaks an invariant, at most.
+/// Largest number of matches that are played with a fault until one breaks an invariant.
 const MATCHES: u64 = 300;
-/// Faults that show in one of a thousand storms: they are searched for in the long run only.
+/// The same for a fault that shows in about one of a thousand storms, and is searched for in the long run only.
 const MATCHES_RARE: u64 = 2000;
 
 /// Each fault, the first seed, and the step to the next one: rare faults are searched for in storms only.

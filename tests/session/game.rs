@@ -18,12 +18,12 @@ pub(crate) fn mix_inputs(hash: u64, inputs: &TickInputs) -> u64 {
 /// The state before the first tick.
 pub(crate) const START: u64 = 1;
 
-/// The states that a peer has played: `states[t]` is the one before tick `t`.
+/// The states that a peer has played: `states[t]` is the state before tick `t`.
 #[derive(Debug)]
 pub(crate) struct Game {
     pub(crate) states: Vec<u64>,
     saved: Vec<(Tick, u64)>,
-    /// Number of ticks that were simulated, again or for the first time.
+    /// Number of simulated ticks, including repeated ones.
     pub(crate) simulated: u64,
     /// The tick in which this game computes a wrong state on purpose.
     pub(crate) mistake: Option<Tick>,

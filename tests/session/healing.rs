@@ -4,7 +4,7 @@ use super::sim::{MS, S, Sim, id};
 use super::storm::{Class, Figures, HEAL, Match, SEATED};
 
 impl Match {
-    /// Lets storms subside, and measures how long it takes until all are seated.
+    /// Ends the disturbances of a storm, and measures the time until all peers have their seats.
     pub(super) fn heal(&mut self, figures: &mut Figures) {
         if self.class.is_storm() {
             self.sim.late = 0;
@@ -26,7 +26,7 @@ impl Match {
         figures.healed = at - HEAL;
     }
 
-    /// Peers that should play on.
+    /// Peers that run, do not leave and were not kicked: these should play on.
     pub(super) fn alive(&self) -> Vec<usize> {
         let alive = |&index: &usize| {
             let peer = &self.sim.peers[index];
@@ -35,12 +35,12 @@ impl Match {
         (0..self.total).filter(alive).collect()
     }
 
-    /// Whether all that are alive have their seats in the newest view. Nothing if no quorum of it is alive and
-    /// connected.
+    /// Whether all living peers have their seats in the newest view. `None` if they cannot all reach each other, or
+    /// are no quorum of that view.
     pub(super) fn all_seated(&self) -> Option<bool> {
         let alive = self.alive();
         let first = *alive.first()?;
-        // A view that only the dead have installed is not known to anybody.
+        // A view that only crashed peers have installed does not count, because no living peer knows it.
         let views = alive.iter().map(|&index| self.sim.peers[index].session.view());
         let view = views.max_by_key(|view| view.number)?;
         let reach = self.sim.reach(first);
@@ -90,7 +90,7 @@ impl Match {
         (0..self.total).map(line).collect::<Vec<_>>().join(" | ")
     }
 
-    /// Somebody who should have played some ticks since then, and has not.
+    /// A peer that should have played two ticks since `before`, and has not.
     pub(super) fn stands_still(&self, before: &[u32]) -> Option<usize> {
         if self.class.ends_early() || self.all_seated() != Some(true) {
             return None;

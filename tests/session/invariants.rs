@@ -1,4 +1,4 @@
-//! Invariants of a match: one history, equal states, and nobody dropped whom a majority can hear.
+//! Invariants of a match: one history, equal states, and no peer dropped that a majority can hear.
 
 use lockstep2d::session::{Event, PeerId, Status, View};
 
@@ -43,12 +43,12 @@ impl Sim {
         (0..self.peers.len()).any(|index| id(index) == peer && self.peers[index].game.is_broken())
     }
 
-    /// Somebody who has left stops answering only when all others know it, or after a long time.
+    /// A peer that has left stops answering only when all others know that it has left, or after a long time.
     pub(super) fn check_goodbye(&mut self, index: usize) {
         let leaver = &self.peers[index];
         let view = leaver.session.view();
         let left = leaver.was_leaving && view.voter(id(index)).is_none() && leaver.finished.is_none();
-        // Later changes of the view do not make it wait longer.
+        // The wait is limited: later changes of the view do not extend it.
         if !left || self.now > leaver.left_at + 11 * S {
             return;
         }
@@ -92,7 +92,7 @@ impl Sim {
         self.peers[index].seen_view = self.peers[index].session.view().number;
     }
 
-    /// A quorum of the view before holds all ticks before the cut.
+    /// A quorum of the previous view holds all ticks before the cut.
     fn check_cut_is_held(&mut self, view: &View) {
         let Some(before) = view.number.checked_sub(1).and_then(|number| self.views.get(&number)) else {
             return;

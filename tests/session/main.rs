@@ -27,9 +27,9 @@ const SEEDS: u64 = 100_000;
 /// Seeds of a sampled run.
 const SAMPLE: u64 = 100;
 
-/// Ticks that a match plays in which enough peers survive and are connected.
+/// A match in which enough peers survive and are connected plays more ticks than this.
 const TICKS_MIN: u64 = 20;
-/// Ticks that almost all matches play: the first end that is planned is after 4 s.
+/// Almost all matches play at least this many ticks: the first planned end is after 4 s.
 const TICKS_USUAL: u64 = 40;
 
 #[test]

@@ -8,7 +8,7 @@ use lockstep2d::session::{Address, Config, Endpoint, Identity, JoinEvent, Reques
 use super::game::{START, mix_inputs};
 use super::sim::{MS, Rng, S, Us, id, key};
 
-/// An endpoint with a game whose state is a hash and a number of bytes without a meaning.
+/// An endpoint with a game whose state is a hash, followed by bytes without a meaning.
 pub(super) struct Node {
     pub(super) endpoint: Endpoint,
     pub(super) address: u8,
@@ -19,7 +19,7 @@ pub(super) struct Node {
     pub(super) events: Vec<JoinEvent>,
     pub(super) joined_at: Option<Us>,
     pub(super) desynced: bool,
-    /// Longest time between two ticks since it began to play, and when the last one was.
+    /// Longest time between two ticks since the endpoint began to play, and the time of the last tick.
     pub(super) stall: Us,
     pub(super) last_tick: Us,
 }

@@ -4,7 +4,7 @@ use lockstep2d::session::{Config, Role, View};
 
 use super::sim::{LinkConditions, MS, S, Sim, Us, id, key};
 
-/// A match of players who look every millisecond.
+/// A match of players that call their sessions every millisecond.
 pub(crate) fn players(count: usize, link: LinkConditions, configure: impl Fn(&mut Config)) -> Sim {
     let mut sim = Sim::new(count as u64 + link.latency, count);
     sim.look = MS;
@@ -29,7 +29,7 @@ pub(crate) fn link(latency: Us) -> LinkConditions {
     LinkConditions { exists: true, latency, jitter: 0, loss: 0, cut_until: 0 }
 }
 
-/// Ticks that all have played, in each of some seconds after a start of 5 s, in hundredths of a tick per second.
+/// Confirmed ticks of the slowest peer over some seconds after a start of 5 s, in hundredths of a tick per second.
 pub(crate) fn pace(sim: &mut Sim, seconds: u64) -> u64 {
     let played =
         |sim: &Sim| sim.peers.iter().map(|peer| u64::from(peer.session.confirmed())).min().unwrap_or(0);
@@ -40,7 +40,7 @@ pub(crate) fn pace(sim: &mut Sim, seconds: u64) -> u64 {
     (played(sim) - before) * 100 / seconds
 }
 
-/// The documented delay: the latency and a tick. A millisecond is for the interval of the calls.
+/// The documented delay: the latency and a tick. The interval of the calls adds a millisecond.
 fn documented_delay(latency: Us) -> u16 {
     ((latency + MS) * 60).div_ceil(S) as u16 + 1
 }

@@ -37,7 +37,7 @@ impl Rng {
     }
 }
 
-/// Conditions of the link from a peer to another one.
+/// Conditions of the link from one peer to another.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LinkConditions {
     pub(crate) exists: bool,
@@ -66,14 +66,14 @@ pub(crate) struct Peer {
     pub(crate) lost_seats: u32,
     /// Whether its game does not advance.
     pub(crate) in_menu: bool,
-    /// Whom it was said to wait for, and whether that peer was heard.
+    /// The peers that its session reported to wait for, each with whether packets of that peer arrive.
     pub(crate) waiting: Vec<(PeerId, bool)>,
     pub(crate) desyncs: u32,
     bytes: u64,
     pub(crate) finished: Option<(Tick, u64)>,
     /// Whether it was a voter when it asked to leave.
     pub(crate) was_leaving: bool,
-    /// When it had left, as it was told.
+    /// Time at which its session reported that it has left.
     pub(crate) left_at: Us,
     pub(crate) seen_view: u32,
     pub(crate) seen_final: Tick,
@@ -99,7 +99,7 @@ pub(crate) struct Sim {
     free: Vec<usize>,
     pub(crate) peers: Vec<Peer>,
     pub(crate) links: Vec<Vec<LinkConditions>>,
-    /// Percentage of packets that are very late, that are doubled, and by which a new view kills somebody.
+    /// Percentages of packets that are very late, of packets that are doubled, and of new views that kill a peer.
     pub(crate) late: u64,
     pub(crate) doubled: u64,
     pub(crate) assassin: u64,
@@ -329,7 +329,7 @@ impl Sim {
         self.peers[index].bytes
     }
 
-    /// Whether all peers that are on can reach each other, over others if need be.
+    /// Bit set of the running peers that `from` can reach, directly or through others.
     pub(crate) fn reach(&self, from: usize) -> u64 {
         let mut seen = 1_u64 << from;
         for _ in 0..self.peers.len() {
@@ -346,12 +346,12 @@ impl Sim {
         seen
     }
 
-    /// The newest view that anybody has installed.
+    /// The newest view that any peer has installed.
     pub(crate) fn newest_view(&self) -> &View {
         self.views.last_key_value().expect("the first view").1
     }
 
-    /// Index of a peer's place among the voters of a view, for quorums.
+    /// Bit set of the places of peers among the voters of a view, for quorums.
     pub(crate) fn voters_among(view: &View, peers: impl Iterator<Item = usize>) -> u64 {
         peers.filter_map(|index| view.voter(id(index))).fold(0, |set, index| set | 1 << index)
     }

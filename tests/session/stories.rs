@@ -1,4 +1,4 @@
-//! Single courses of events: outages of two players, kicks, ends, returns, spectators, mistakes of the game.
+//! Single scenarios: outages of two players, kicks, ends, returns, spectators, mistakes of the game.
 
 use lockstep2d::session::{Config, Role, Status};
 
@@ -18,8 +18,8 @@ fn status(sim: &Sim, index: usize) -> Status {
     sim.peers[index].session.status()
 }
 
-/// With two players the host goes on and the guest waits; when the line is back the guest has its seat again, and both
-/// have the same history.
+/// With two players the host goes on and the guest waits. When the link is back, the guest has its seat again, and
+/// both have the same history.
 #[test]
 fn of_two_players_the_host_goes_on_and_the_guest_returns() {
     let mut sim = players(2, link(30 * MS), |_| ());
@@ -36,7 +36,7 @@ fn of_two_players_the_host_goes_on_and_the_guest_returns() {
     assert_eq!(sim.failure, None);
 }
 
-/// With infinite patience every peer waits, until the host goes on without the missing one.
+/// With infinite patience every peer waits, until the host votes to go on without the missing one.
 #[test]
 fn with_infinite_patience_somebody_has_to_ask() {
     let mut sim = players(3, link(30 * MS), |config| config.timing.patience = u64::MAX);
@@ -121,7 +121,7 @@ fn all_finish_at_the_same_tick_also_whoever_asked_for_another_one() {
     assert_eq!(sim.failure, None);
 }
 
-/// A spectator that knows one peer only follows the match, and keeps no player out.
+/// A spectator that knows only one peer follows the match, and keeps no player out.
 #[test]
 fn spectators_watch_through_one_another() {
     let count = 6;
@@ -171,7 +171,7 @@ fn the_first_tick_waits_for_enough_players() {
     assert_eq!(sim.failure, None);
 }
 
-/// An end that is asked for at once neither begins the match nor shuts out whoever has not joined yet.
+/// An end that is requested at once neither starts the match nor shuts out players that have not joined yet.
 #[test]
 fn a_match_whose_end_is_known_waits_for_its_players() {
     let mut sim = Sim::new(2, 2);

@@ -97,7 +97,7 @@ pub(crate) struct Figures {
 }
 
 pub(super) const HEAL: Us = 20 * S;
-/// Time in which all have to be seated after that, and time after which all must have moved.
+/// Time after `HEAL` in which all peers have to be seated, and time after which all must have advanced.
 pub(super) const SEATED: Us = 12 * S;
 const MOVED: Us = 3 * S;
 
@@ -221,7 +221,7 @@ impl Match {
         self.check_healed(figures);
         let now = self.sim.now;
         let finals: Vec<u32> = self.sim.peers.iter().map(|peer| peer.session.confirmed()).collect();
-        // Somebody may have crashed just before: that takes the time of patience and a change.
+        // A peer may have crashed just before, which stops play for the time of patience and a change of the view.
         for wait in [MOVED, 3 * MOVED, 5 * MOVED] {
             if !self.run(now + wait) {
                 return;
@@ -380,7 +380,7 @@ impl Match {
     }
 }
 
-/// A connected net of links instead of all.
+/// Replaces the complete set of links by a random connected one.
 fn sparse(sim: &mut Sim, total: usize, rng: &mut Rng) {
     let mut set = |a: usize, b: usize, exists: bool| {
         sim.links[a][b].exists = exists;

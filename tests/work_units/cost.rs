@@ -6,14 +6,13 @@ use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 use lockstep2d::replay::{Limits, Recording, Step, VerifiedReplay, verify};
 use lockstep2d::world::{Command, Config};
 
-/// Nanoseconds for each unit that are allowed. Without optimisation for release and with its checks, three times as
-/// many.
+/// Largest number of nanoseconds per unit. Builds with debug assertions are allowed three times as many.
 const MAX: u128 = if cfg!(debug_assertions) { 3000 } else { 1000 };
 
 /// Shortest time that is judged: below it, the overhead of a tick counts more than its work.
 const JUDGED: Duration = Duration::from_millis(10);
 
-/// Time that this thread has computed, or elsewhere than on Linux the time of the clock.
+/// Processor time of this thread; where the system does not tell it, as outside of Linux, the time of the clock.
 pub(super) fn computed() -> Duration {
     let known = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let nanoseconds = known.as_deref().and_then(|text| text.split(' ').next()?.parse().ok());
@@ -24,7 +23,7 @@ pub(super) fn computed() -> Duration {
 /// The commands of a tick, by its number.
 pub(super) type Script<'a> = Box<dyn Fn(u64) -> Vec<Command> + 'a>;
 
-/// Most times that a pair of short commands fits into a block of a file.
+/// Largest number of repetitions of a pair of short commands that fits into a block of a file.
 const COMMANDS_MAX: usize = 300_000;
 
 /// Maximum number of times that the size of a case is doubled until a tick takes long enough to be judged.
@@ -122,7 +121,7 @@ pub(super) fn too_expensive_commands(name: &str, setup: &SandboxSetup, once: &[C
         let file = record(setup, 1, &(Box::new(script) as Script<'_>));
         (costs(&file), file)
     };
-    // A tick without commands takes no more than one with them once.
+    // A tick without commands takes no longer than a tick with the commands once.
     let least = 2 * tick_of(1).0[1].time + JUDGED;
     for repeats in [10, 100, 1000, 10_000, 100_000, COMMANDS_MAX] {
         let (parts, file) = tick_of(repeats);
@@ -147,8 +146,8 @@ fn judge(name: &str, parts: [Cost; 2]) -> Option<String> {
     wrong
 }
 
-/// Verifies a file with a part of the work that it needs, and returns its name if the limit has stopped it later than
-/// the allowed time for the units of the limit. For limits so small that the setup exceeds them, too.
+/// Verifies a file with parts of the work that it needs as the limit, some of which the setup already exceeds. Returns
+/// its name if the limit stops it later than the limit's units allow.
 fn stopped_late(name: &str, file: &[u8]) -> Option<String> {
     let needed = {
         let limits = limits(u64::MAX);

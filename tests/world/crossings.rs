@@ -10,7 +10,7 @@ use lockstep2d::world::{Probe, QueryFilter, SensorEvent, World};
 
 use super::{run, shape_of, spawn, sweep, weightless};
 
-/// The way of a visitor: its position in metres at time 0, its velocity in m/s and its angular velocity in rad/s.
+/// The path of a visitor: its position in metres at time 0, its velocity in m/s and its angular velocity in rad/s.
 struct Path {
     start: Vec2<Fx>,
     velocity: Vec2<Fx>,
@@ -27,7 +27,7 @@ impl Path {
     }
 }
 
-/// One of the sensors of a course, about its centre.
+/// A random shape of a sensor, about its centre.
 fn gate(rng: &mut Rng) -> Geometry {
     let turned = |half: Fx, rng: &mut Rng| {
         Rot::from_angle(Angle::from_radians(rng.range(fx!(-0.5), fx!(0.5))))
@@ -97,7 +97,7 @@ fn a_thousand_crossings_are_noticed_in_order() {
     sweep::for_each(cases, check_course);
 }
 
-/// A visitor flies through three sensors, or they fly over it.
+/// A visitor flies through three sensors, or the sensors fly over it.
 fn check_course(case: u64) {
     let mut rng = Rng::new(case);
     let speed = rng.range(fx!(3), fx!(399));
@@ -185,7 +185,7 @@ fn a_deflected_visitor_is_noticed_in_the_same_tick() {
         let start = Vec2::new(rng.range(fx!(-6), fx!(-2)), fx!(0));
         let def = BodyDef::dynamic().position(start).velocity((speed, fx!(0)));
         let flying = spawn(&mut world, def, super::ball(fx!(0.2)).restitution(fx!(1)).friction(fx!(0)));
-        // Out of the fat box of the first tick, which is as long as its flight.
+        // The sensor lies outside of the ball's fat box of the first tick, which is as long as the ball's flight.
         let height = rng.range(fx!(1), fx!(3));
         let gate = super::rectangle(fx!(8), rng.range(fx!(0.01), fx!(0.5))).sensor();
         let gate = spawn(&mut world, BodyDef::fixed().position((fx!(-2), height)), gate);

@@ -186,7 +186,7 @@ fn churn_each(seeds: Vec<u64>) -> Seen {
     total.into_inner().expect("no check holds the lock")
 }
 
-/// The same test for a chosen range of seeds: `SEEDS=1000..3000 cargo test --test world -- --ignored many`.
+/// To run a chosen range of seeds: `SEEDS=1000..3000 cargo test --test world -- --ignored many`.
 #[test]
 fn nothing_that_is_done_to_the_caches_is_seen() {
     let seeds = sweep::sample(0..30, 4);

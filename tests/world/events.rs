@@ -56,8 +56,8 @@ fn a_hit_on_a_moving_wall_counts_the_wall_and_only_the_normal() {
     );
 }
 
-/// A ball that hits another body at v gets an impulse of (1 + e) v times the reduced mass, whatever its place when the
-/// tick begins. A box that lands flat has it at two points.
+/// A ball that hits another body at speed v reports an impulse of (1 + e) v times the reduced mass, whatever its
+/// position when the tick begins. For a box that lands flat, the impulse is the sum over two contact points.
 #[test]
 fn a_hit_tells_the_impulse_of_the_whole_tick() {
     let wall = (BodyDef::fixed(), rectangle(fx!(50), fx!(0.5)), None);

@@ -1,6 +1,5 @@
-//! Changes of joints between ticks: kinds of their bodies, switching them off, motors, springs and
-//! limits, their own softness; anchors anywhere on fixed bodies; the force of one part; definitions at a point of the
-//! world.
+//! Changes of joints between ticks: the kinds of their bodies, disabling, motors, springs and limits, softness of a
+//! joint; anchors anywhere on fixed bodies; the force of one part; definitions at a point of the world.
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, JointId, MassSource, WorldError};
 use lockstep2d::fx;
@@ -72,7 +71,7 @@ fn an_anchor_far_away_on_a_fixed_body_holds_like_a_near_one() {
                 (near.joint_force(joint).expect("there"), far.joint_force(far_joint).expect("there"));
             let within = fx!(0.02) + force.length() / 100;
             assert!((force - far_force).length() < within, "{kind:?}: {force:?} N, {far_force:?} N");
-            // A's end of the lever is not the same where the anchors gape.
+            // The lever arm at A differs where the anchors are apart.
             assert!((torque - far_torque).abs() < within, "{kind:?}: {torque} N m, {far_torque} N m");
         }
     }

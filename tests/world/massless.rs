@@ -66,7 +66,7 @@ fn damping_slows_a_body_without_mass_until_it_sleeps() {
 fn a_box_rests_on_a_platform_without_mass() {
     let mut world = World::default();
     let platform = world.spawn(&BodyDef::dynamic(), &[square(fx!(2)).density(fx!(0))]).expect("valid");
-    // It meets nothing that it could not push.
+    // A body without mass has no contact with fixed bodies, such as this wall.
     let wall = BodyDef::fixed().position((fx!(3), fx!(0)));
     world.spawn(&wall, &[square(fx!(1.5))]).expect("valid");
     let load = BodyDef::dynamic().position((fx!(0), fx!(4)));
@@ -75,7 +75,7 @@ fn a_box_rests_on_a_platform_without_mass() {
     assert_eq!(world.body(platform).expect("there").position(), Vec2::ZERO);
     assert!((height(&world, load) - fx!(2.5)).abs() < fx!(0.002), "{}", height(&world, load));
     assert!(world.body(load).expect("there").is_asleep() && world.body(platform).expect("there").is_asleep());
-    // It lifts what lies on it.
+    // The platform lifts the box that lies on it.
     world.set_velocity(platform, Vec2::new(fx!(0), fx!(1)), fx!(0)).expect("dynamic");
     run(&mut world, 60);
     assert!((height(&world, platform) - fx!(1)).abs() < fx!(0.0001));
@@ -91,7 +91,8 @@ fn joints_hold_on_to_bodies_without_mass() {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.3)).expect("valid"));
     let bob = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(3))), &[ball]).expect("valid");
     world.add_joint(&JointDef::new(hook, bob, Revolute::new()).anchor_b((fx!(0), fx!(2)))).expect("valid");
-    // Nothing moves these joints, whether they are apart or not.
+    // These joints connect bodies without mass and fixed bodies only, so they have no effect, even if their anchors
+    // are apart.
     let idle = [
         JointDef::new(hook, other, Revolute::new()),
         JointDef::new(other, ground, Weld::rigid()),
@@ -122,7 +123,7 @@ fn a_body_gains_and_loses_its_mass_with_its_shapes() {
     assert_eq!(world.body(body).expect("there").velocity(), falling);
 }
 
-/// Contacts and joints of a body follow its mass, also where they sleep.
+/// When a body loses or gains mass, its contacts and joints cease or begin to act, also while it sleeps.
 #[test]
 fn a_body_that_loses_its_mass_lets_go_of_what_it_rests_on() {
     let mut world = World::default();
@@ -142,13 +143,13 @@ fn a_body_that_loses_its_mass_lets_go_of_what_it_rests_on() {
     world.set_shape(shape, &weightless).expect("valid");
     run(&mut world, 60);
     assert_eq!(contacts(&world), 0);
-    // Asleep by itself while the other end is awake: the joint between them does not act.
+    // The box sleeps while the hook is awake: a joint between two bodies without mass does not act.
     world.set_velocity(hook, Vec2::new(fx!(0), fx!(1)), fx!(0)).expect("dynamic");
     run(&mut world, 60);
     assert!(world.body(body).expect("there").is_asleep() && !world.body(hook).expect("there").is_asleep());
     world.set_shape(shape, &square(fx!(0.5))).expect("valid");
     run(&mut world, 60);
-    // It hangs on the hook that rises.
+    // The box hangs on the rising hook.
     assert_eq!(contacts(&world), 0);
     assert!((height(&world, hook) - height(&world, body) - fx!(2.6)).abs() < fx!(0.01));
 }

@@ -113,7 +113,7 @@ fn a_new_threshold_of_restitution_applies_to_shapes_in_contact() {
         if changed {
             set(&mut world, |config| config.solver.restitution_threshold = fx!(0.1));
         }
-        // Within the tick it hits the floor, which it touches.
+        // The ball, which touches the floor, hits it within this tick.
         world.set_velocity(resting, Vec2::new(fx!(0), fx!(-0.7)), fx!(0)).expect("valid");
         run(&mut world, 1);
         world.body(resting).expect("there").velocity().y

@@ -84,7 +84,7 @@ fn regular(corners: u32) -> Result<Geometry, WorldError> {
     Ok(Polygon::hull(&corners)?.into())
 }
 
-/// A pit of the width `2 isqrt(n) / 2 + 1`, filled with rows that are shifted by 0.1 and -0.13 m in turn.
+/// A pit with `isqrt(n)` columns, but at least two, filled with rows that are shifted by 0.1 and -0.13 m in turn.
 fn pit(bodies: u32, shape: impl Fn(u32) -> Result<Geometry, WorldError>) -> Setup {
     let mut scene = Builder::new(config());
     let columns = (2 * bodies.isqrt() / 2).max(2);

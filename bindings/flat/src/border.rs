@@ -10,10 +10,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::status::{Failure, Outcome, Status, note};
 
-/// Types of which any bytes are a value and that have no padding, so that foreign memory may be read as them.
+/// Types for which every byte pattern is a value and that have no padding, so that foreign memory may be read as them.
 ///
 /// # Safety
-/// Both have to hold.
+/// Both conditions above have to hold for the type.
 pub unsafe trait Plain: Copy + 'static {}
 
 // SAFETY: integers have neither padding nor invalid bytes.
@@ -51,7 +51,7 @@ fn check<T>(pointer: *const T) -> Outcome {
     Ok(())
 }
 
-/// Checks that a slice of so many items can exist.
+/// Checks that a slice with this number of items can exist.
 fn check_count<T>(count: usize) -> Outcome {
     let bytes = count.checked_mul(size_of::<T>()).and_then(|bytes| isize::try_from(bytes).ok());
     bytes.map(|_| ()).ok_or_else(|| Failure::new(Status::Value, "a count exceeds the memory"))
@@ -76,7 +76,7 @@ impl<'a, T: Plain> In<'a, T> {
         In(std::ptr::null(), PhantomData)
     }
 
-    /// Points to what a test has made.
+    /// Wraps a raw pointer, for tests and fuzzing.
     #[cfg(any(test, feature = "fuzzing"))]
     pub(crate) const fn to(pointer: *const T) -> Self {
         In(pointer, PhantomData)
@@ -89,11 +89,12 @@ impl<'a, T: Plain> In<'a, T> {
     /// Copies the value.
     pub(crate) fn get(&self) -> Outcome<T> {
         check(self.0)?;
-        // SAFETY: not null and aligned; the caller promises that it points to an item, and any bytes are one.
+        // SAFETY: not null and aligned; the caller promises that it points to an item, and every byte pattern is an
+        // item.
         Ok(unsafe { self.0.read() })
     }
 
-    /// The items. No items need no pointer.
+    /// The items. For no items, the pointer may be null.
     pub(crate) fn slice(&self, count: usize) -> Outcome<&[T]> {
         if count == 0 {
             return Ok(&[]);
@@ -101,7 +102,7 @@ impl<'a, T: Plain> In<'a, T> {
         check(self.0)?;
         check_count::<T>(count)?;
         // SAFETY: not null, aligned, and of a possible size; the caller promises that it points to `count` items that
-        // nothing changes during the call, and any bytes are items.
+        // nothing changes during the call, and every byte pattern is an item.
         Ok(unsafe { std::slice::from_raw_parts(self.0, count) })
     }
 }
@@ -133,13 +134,13 @@ impl<'a, T: Plain> Out<'a, T> {
         Out(std::ptr::null_mut(), PhantomData)
     }
 
-    /// Points to what a test has made.
+    /// Wraps a raw pointer, for tests and fuzzing.
     #[cfg(any(test, feature = "fuzzing"))]
     pub(crate) const fn to(pointer: *mut T) -> Self {
         Out(pointer, PhantomData)
     }
 
-    /// Checks the pointer before something is done whose result would be lost.
+    /// Checks the pointer before an operation whose result would otherwise be lost.
     pub(crate) fn check(&self) -> Outcome {
         check(self.0)
     }
@@ -171,16 +172,16 @@ impl<'a, T: Plain> Out<'a, T> {
             return Ok(());
         }
         check(self.0)?;
-        // SAFETY: not null and aligned; the caller promises memory for `capacity` items, which are not fewer than those
-        // written, and that it is no memory of this library.
+        // SAFETY: not null and aligned; the caller promises memory for `capacity` items, which are at least as many as
+        // are written, and that it is not memory of this library.
         unsafe { std::ptr::copy_nonoverlapping(items.as_ptr(), self.0, items.len()) };
         Ok(())
     }
 }
 
-/// Runs the body of a function: failures become codes, and panics do, too.
+/// Runs the body of a function, and converts failures and panics to status codes.
 pub(crate) fn guard(body: impl FnOnce() -> Outcome) -> i32 {
-    // Objects that a panic has left in an unknown state are behind mutexes, which remember it.
+    // Objects that a panic has left in an unknown state are behind mutexes, which are poisoned then.
     let result = catch_unwind(AssertUnwindSafe(body));
     let status = match result {
         Ok(Ok(())) => Status::Ok,

@@ -114,7 +114,7 @@ impl<T: CType, const N: usize> CType for [T; N] {
     const COUNT: Option<usize> = Some(N);
 }
 
-/// Type of a parameter with what is around it.
+/// Description of a parameter of type `T`.
 pub(crate) const fn parameter<T: CType>(name: &'static str) -> Parameter {
     Parameter { name, kind: [T::AROUND[0], T::BASE, T::AROUND[1]] }
 }
@@ -199,8 +199,8 @@ macro_rules! records {
     };
 }
 
-/// Defines functions of the API. The body of a function without a result type returns `Outcome`, and the function a
-/// status code; that of others returns the value.
+/// Defines functions of the API. The body of a function without a result type returns `Outcome`, and the function
+/// returns a status code. The body of any other function returns its value.
 macro_rules! api {
     ($($(#[doc = $doc:literal])+ fn $name:ident($($argument:ident: $type:ty),* $(,)?) $(-> $value:ty)? $body:block)+) => {
         $($crate::describe::api!(@define [$($doc)+] $name [$($argument: $type),*] [$($value)?] $body);)+
@@ -213,7 +213,7 @@ macro_rules! api {
             docs: &[$($doc),+],
         }),+];
 
-        /// All functions of this module, with arguments that are drawn.
+        /// Calls of all functions of this module with drawn arguments.
         #[cfg(any(test, feature = "fuzzing"))]
         pub(crate) const DRAWN: &[$crate::fuzzing::DrawnCall] = &[$(|caller| {
             $(let $argument = <$type as $crate::fuzzing::Drawn>::draw(caller, stringify!($argument));)*

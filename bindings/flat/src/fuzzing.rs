@@ -1,23 +1,23 @@
 //! Calls of every function of the API with arguments that are drawn from bytes, often wrong ones: for tests, and for
-//! the fuzz target `flat`. Every function is drawn as often, without being listed here.
+//! the fuzz target `flat`. All functions are drawn equally often, and need not be listed here.
 
 use crate::border::{In, Out, Plain};
 use crate::functions::DRAWN;
 use crate::numbers::{RawAngle, RawBody, RawFx, RawHash, RawJoint, RawShape};
 use crate::status::Status;
 
-/// A function, called with arguments that are drawn.
+/// A call of a function with drawn arguments.
 pub(crate) type DrawnCall = fn(&mut Caller<'_>);
 
-/// Items of a buffer, and bytes of one of bytes: counts that follow a pointer are at most these.
+/// Largest number of items of a buffer, and of bytes of a byte buffer: counts that follow a pointer are at most these.
 const ITEMS: usize = 64;
 const BYTES: usize = 4096;
 
-/// Objects and ids that a caller remembers. Of more, it forgets the first.
+/// Number of objects, and of ids, that a caller remembers. It forgets the oldest first.
 const REMEMBERED: usize = 12;
 
-/// Names of parameters that are handles of objects. Handles that a parameter returns mostly go to parameters of its
-/// name.
+/// Names of parameters that are handles of objects. A handle that an output parameter returns is mostly passed to
+/// parameters of the same name.
 const HANDLES: [&str; 11] = [
     "world",
     "target",
@@ -48,10 +48,10 @@ pub struct Caller<'a> {
     input: std::slice::Iter<'a, u8>,
     handles: Vec<(&'static str, u32)>,
     ids: Vec<u64>,
-    /// The last contents of a buffer for each size of items: definitions that an `_init` function made, packets.
+    /// The last contents of a buffer for each item size, such as definitions made by an `_init` function, or packets.
     known: Vec<(usize, Box<[u64]>)>,
     buffers: Vec<Buffer>,
-    /// Items of the last pointer.
+    /// Number of items of the last pointer.
     items: usize,
     codes: Vec<i32>,
 }
@@ -162,7 +162,7 @@ impl Caller<'_> {
         address.map(|address| (address, usize::from(kind == 1)))
     }
 
-    /// Remembers what the call has written. Returns the handles.
+    /// Remembers the values that the call has written. Returns the handles.
     fn harvest(&mut self) -> Vec<u32> {
         let mut made = Vec::new();
         for Buffer { item, handle, is_output, words } in std::mem::take(&mut self.buffers) {
@@ -202,7 +202,7 @@ impl Drawn for u32 {
             return caller.handle(name);
         }
         match byte {
-            // Every tick takes time.
+            // Few ticks, because every tick takes time.
             _ if name == "ticks" => u32::from(byte % 8),
             0..16 => u32::try_from(caller.word() >> 32).unwrap_or(0),
             _ => u32::from(byte % 16),

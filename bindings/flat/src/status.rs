@@ -113,7 +113,7 @@ statuses! {
     NotInMatch = 62, "LS2D_NOT_IN_MATCH";
 }
 
-/// The reason why a function did not do what it was asked for.
+/// Reason for which a function has failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Failure {
     pub(crate) status: Status,

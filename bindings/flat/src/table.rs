@@ -11,7 +11,7 @@ use lockstep2d::world::{Command, Snapshot, World};
 use crate::functions::{HostRecorder, HostReplay, Match, SandboxRecorder, SandboxTimeline};
 use crate::status::{Failure, Outcome, Status};
 
-/// Bits of a handle that are the slot; the others are the generation, from 1 on, so that no handle is 0.
+/// Bits of a handle for the slot. The other bits are the generation, which starts at 1, so that no handle is 0.
 const SLOT_BITS: u32 = 20;
 const SLOTS_MAX: usize = 1 << SLOT_BITS;
 const GENERATION_MAX: u32 = (1 << (32 - SLOT_BITS)) - 1;
@@ -19,7 +19,7 @@ const GENERATION_MAX: u32 = (1 << (32 - SLOT_BITS)) - 1;
 /// Defines the kinds of objects.
 macro_rules! kinds {
     ($($(#[$condition:meta])* $variant:ident($type:ty), $name:literal;)+) => {
-        /// Something that a handle stands for.
+        /// An object that a handle refers to.
         pub(crate) enum Object {
             $($(#[$condition])* $variant(Box<$type>),)+
         }
@@ -49,7 +49,7 @@ macro_rules! kinds {
     };
 }
 
-/// A type of which objects are.
+/// A type of object.
 pub(crate) trait Kind: Sized {
     const NAME: &'static str;
 
@@ -166,7 +166,7 @@ pub(crate) fn with_two<A: Kind, B: Kind, R>(
             "two objects are expected, and both handles are the same",
         ));
     }
-    // Always in the same order, so that two threads cannot wait for each other.
+    // Locks are always taken in the same order, so that two threads cannot wait for each other.
     let (mut first, mut second);
     let (lock_a, lock_b) = if a < b {
         first = lock(&object_a)?;
@@ -200,9 +200,9 @@ fn remove(handle: u32) -> Outcome<Shared> {
     Ok(object)
 }
 
-/// Frees an object. A call on another thread that uses it ends first.
+/// Frees an object. A call on another thread that uses the object is completed first.
 pub(crate) fn free(handle: u32) -> Outcome {
-    // Dropped after the table is unlocked.
+    // The object is dropped after the table is unlocked.
     remove(handle).map(drop)
 }
 

@@ -9,14 +9,14 @@ use bevy::time::TimeUpdateStrategy;
 use bevy_lockstep2d::prelude::LockstepStatus;
 use lockstep2d::draw::{PAPER, Style};
 
-/// File for the picture.
+/// Environment variable with the file for the picture.
 const FILE: &str = "LOCKSTEP2D_SCREENSHOT";
-/// Number of frames before it is taken.
+/// Environment variable with the number of frames before the picture is taken.
 const FRAMES: &str = "LOCKSTEP2D_FRAMES";
-/// Minimum number of pixels of each style, as in `fixed=1400 dynamic=400`.
+/// Environment variable with the minimum number of pixels of each style, as in `fixed=1400 dynamic=400`.
 const SHOWS: &str = "LOCKSTEP2D_SHOWS";
 
-/// A colour value may differ by so much, as it is converted to a linear float and back.
+/// Largest difference of a colour value, which is converted to a linear float and back.
 const TOLERANCE: u8 = 2;
 
 #[derive(Resource)]

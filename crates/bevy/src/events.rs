@@ -115,7 +115,7 @@ pub(crate) fn each_event(world: &World, tick: u64, found: &mut impl FnMut(Logged
 pub struct ConfirmedEvent {
     /// Number of ticks played, with the one of the event.
     pub tick: u64,
-    /// What happened.
+    /// The event.
     pub event: WorldEvent,
     /// Views of the bodies: of shapes A and B, of the sensor and the visitor, of the joint, or of the body that fell
     /// asleep. `None` for a body that no longer exists.
@@ -128,7 +128,7 @@ pub struct ConfirmedEvent {
 pub struct PredictedEvent {
     /// Number of ticks played, with the one of the event.
     pub tick: u64,
-    /// What happened.
+    /// The event.
     pub event: WorldEvent,
     /// As in [`ConfirmedEvent`].
     pub views: [Option<Entity>; 2],
@@ -139,7 +139,7 @@ pub struct PredictedEvent {
 pub struct RetractedEvent {
     /// Tick that had been predicted.
     pub tick: u64,
-    /// What did not happen.
+    /// The event that was predicted.
     pub event: WorldEvent,
 }
 
@@ -153,13 +153,13 @@ pub struct BodyEvent {
     pub other: Option<Entity>,
     /// Number of ticks played, with the one of the event.
     pub tick: u64,
-    /// What happened.
+    /// The event.
     pub event: WorldEvent,
 }
 
 /// An event of a match: peers that join, leave or are waited for, and desyncs.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MatchEvent(
-    /// What happened.
+    /// The event.
     pub PeerEvent,
 );

@@ -15,8 +15,8 @@ use crate::game::LockstepGame;
 use crate::lockstep::Lockstep;
 use crate::plugin::LockstepSettings;
 
-/// Draws what the engine knows of the world: outlines, contacts, forces, joints, islands. Nothing is interpolated: it
-/// shows the bodies, not their views.
+/// Draws the state of the world: outlines, contacts, forces, joints, islands. Nothing is interpolated: the gizmos show
+/// the bodies, not their views.
 #[derive(Clone, Copy, Debug)]
 pub struct LockstepGizmosPlugin<G>(PhantomData<fn() -> G>);
 

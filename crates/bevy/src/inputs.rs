@@ -6,10 +6,9 @@ use crate::game::LockstepGame;
 
 /// Inputs of the local players for the coming ticks. Write them in [`LockstepSystems::Inputs`](crate::LockstepSystems).
 ///
-/// A frame plays no tick, one, or several. What is *held* is the input of every tick until it changes: directions,
-/// buttons that are down. What is given *once* replaces it for exactly one tick, the next one that is played, whenever
-/// that is: a jump, a list of commands. So no press is lost in a frame without a tick, and none counts twice in a frame
-/// with two.
+/// A frame plays no tick, one, or several. A *held* input is the input of every tick until it changes: directions,
+/// buttons that are down. A *once* input replaces the held one for exactly one tick, the next that is played: a jump,
+/// a list of commands. So no press is lost in a frame without a tick, and none counts twice in a frame with two.
 ///
 /// ```
 /// # use bevy_lockstep2d::Inputs;

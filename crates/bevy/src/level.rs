@@ -45,7 +45,7 @@ pub struct SpawnJoint {
     pub body_b: Entity,
     /// The joint.
     pub kind: JointKind,
-    /// Where the bodies are joined, in metres in the world.
+    /// Point at which the bodies are joined, in metres in the world.
     pub anchor: Vec2<Fx>,
     /// Direction of a slider or wheel in the world; other joints ignore it.
     pub axis: Vec2<Fx>,

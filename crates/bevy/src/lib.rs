@@ -29,7 +29,7 @@
 //! ```
 //!
 //! Systems of the plugin run in the schedule `RunFixedMainLoop`, after `PreUpdate` and before `Update`, in the sets of
-//! [`LockstepSystems`]. Systems that read input and fill [`Inputs`] belong into [`LockstepSystems::Inputs`].
+//! [`LockstepSystems`]. Systems that read input and fill [`Inputs`] belong in [`LockstepSystems::Inputs`].
 
 // The library's ban on floats does not apply here: views are floats, and nothing of them gets back into a game except
 // as an input.

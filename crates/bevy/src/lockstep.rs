@@ -28,11 +28,11 @@ pub enum DriverKind {
     Match,
 }
 
-/// A game and what plays it. Insert it as a resource to start, replace it to restart, and remove it to stop: the views
-/// of its bodies follow.
+/// A game and its driver. Insert it as a resource to start, replace it to restart, and remove it to stop: the views of
+/// its bodies follow.
 ///
-/// Nothing of it can be changed from outside except through [`Inputs`]: a change that is not an input would be missing
-/// on other machines and in the replay.
+/// The game can be changed only through [`Inputs`]: a change that is not an input would be missing on other machines
+/// and in the replay.
 #[derive(Resource)]
 pub struct Lockstep<G: LockstepGame> {
     driver: Driver<G>,
@@ -156,8 +156,8 @@ impl<G: LockstepGame> Lockstep<G> {
     }
 
     /// Stops the ticks. In a match the others are asked to stop, too ([`MatchEvent`](crate::MatchEvent)); whether they
-    /// do is the decision of their game. Peers that do not stop wait for this one, and after [`PeerOptions::patience`]
-    /// go on without it. It returns when it goes on.
+    /// do is the decision of their game. Peers that do not stop wait for this one, and go on without it after
+    /// [`PeerOptions::patience`]. This peer returns to the match when it resumes.
     pub fn pause(&mut self) {
         self.set_paused(true);
     }
@@ -180,7 +180,7 @@ impl<G: LockstepGame> Lockstep<G> {
         self.is_paused
     }
 
-    /// Plays one tick in the next frame although the game is paused. Not in a match.
+    /// Plays one tick in the next frame although the game is paused. Has no effect in a match.
     pub fn step_once(&mut self) {
         self.single_steps = self.single_steps.saturating_add(1);
     }
@@ -246,8 +246,8 @@ impl<G: LockstepGame> Lockstep<G> {
     }
 
     /// Numbers of the players at this machine, from 0: their places in the inputs of [`Game::step`]. All players in a
-    /// local game, none in a replay, for a spectator, and before a peer is seated. `Inputs::held(0)` is the input of the
-    /// first one of these.
+    /// local game, none in a replay, for a spectator, and before a peer is seated. `Inputs::held(0)` is the input of
+    /// the first one of these.
     #[must_use]
     pub fn seats(&self) -> Vec<u32> {
         match &self.driver {

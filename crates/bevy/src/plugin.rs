@@ -47,7 +47,7 @@ impl<G> LockstepPlugin<G> {
     }
 }
 
-/// How views are drawn. It can be changed at any time.
+/// Settings of the drawing of views. They can be changed at any time.
 #[derive(Resource, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Resource)]
 pub struct LockstepSettings {

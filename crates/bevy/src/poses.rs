@@ -1,4 +1,4 @@
-//! [`Pose`] and [`Poses`]: where all bodies are, after one tick.
+//! [`Pose`] and [`Poses`]: the poses of all bodies after one tick.
 
 use lockstep2d::body::BodyId;
 use lockstep2d::math::{Angle, Fx, Vec2};
@@ -16,7 +16,7 @@ pub struct Pose {
 /// Poses of all bodies, by slot.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Poses {
-    /// Number of the last capture: entries with another one are of bodies that are gone.
+    /// Number of the last capture: an entry with another number belongs to a body that no longer exists.
     capture: u32,
     entries: Vec<Option<Entry>>,
 }

@@ -1,4 +1,5 @@
-//! Where a view is drawn: between two ticks, and beside the body for a moment after a rollback has moved it.
+//! Poses of views: interpolated between two ticks, and displaced from the body for a moment after a rollback has moved
+//! it.
 
 use core::f32::consts::TAU;
 use core::time::Duration;
@@ -16,7 +17,7 @@ pub(crate) struct DrawnPose {
 }
 
 impl DrawnPose {
-    /// A pose as it is.
+    /// Converts a pose without interpolation.
     pub(crate) fn at(pose: Pose) -> Self {
         DrawnPose { position: metres(pose.position), angle: radians(pose.angle) }
     }
@@ -62,8 +63,8 @@ const ANGLE_MIN: f32 = 1e-3;
 impl Offset {
     pub(crate) const ZERO: Self = Offset { position: Vec2::ZERO, angle: 0.0 };
 
-    /// The way from one pose to another, with the rotation on the shorter way. The difference is computed in fixed
-    /// point: far from the origin floats have no digits left for it.
+    /// The displacement from one pose to another, with the rotation along the shorter arc. The difference is computed
+    /// in fixed point, because floats are too coarse for it far from the origin.
     pub(crate) fn between(from: Pose, to: Pose) -> Self {
         Offset { position: metres(to.position - from.position), angle: radians(to.angle - from.angle) }
     }

@@ -1,4 +1,4 @@
-//! [`StepLog`]: what the steps of a game have done, for its views and events.
+//! [`StepLog`]: a record of the steps of a game, from which its views and events are made.
 //!
 //! A driver may load states and play ticks again in any order. The log follows it from inside the game, so that all
 //! drivers have the same views and events.
@@ -11,8 +11,8 @@ use lockstep2d::world::World;
 use crate::events::{LoggedEvent, each_event};
 use crate::poses::Poses;
 
-/// A tick, as a number of ticks since the start of an epoch. An epoch begins with a state of which only the driver
-/// knows the tick: one that another peer has sent, or one that was read from bytes.
+/// A tick, as a number of ticks since the start of an epoch. An epoch begins with a state whose tick only the driver
+/// knows: one that another peer has sent, or one that was read from bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Stamp {
     epoch: u32,
@@ -26,7 +26,7 @@ struct Entry {
     announced: bool,
 }
 
-/// A rollback may move an event by so many ticks without it being another one.
+/// Largest number of ticks by which a rollback may move an event that still counts as the same one.
 const SAME_EVENT_TICKS: u64 = 16;
 
 #[derive(Debug, Default)]
@@ -49,10 +49,10 @@ pub(crate) struct StepLog {
     pub(crate) shown_again: Option<Poses>,
     /// Bodies that were missing in a loaded state: a body with the same id may be another one now.
     pub(crate) missing: Vec<BodyId>,
-    /// Ticks played since the last frame, and how many of them again.
+    /// Number of ticks played since the last frame, and number of those that were played again.
     pub(crate) stepped: u32,
     pub(crate) replayed: u32,
-    /// While the driver simulates something that is not part of the game's course: the tick to return to.
+    /// The tick to return to, while the driver simulates ticks that are not part of the game's course.
     suspended_at: Option<Stamp>,
     /// Tick of the world before the step.
     world_tick: Option<u64>,
@@ -129,7 +129,7 @@ impl StepLog {
         self.is_after_stale = true;
     }
 
-    /// Begins an epoch. Nothing is known of what came before it.
+    /// Begins an epoch. The ticks before it are unknown to the epoch.
     fn begin_epoch(&mut self, stamp: Option<Stamp>) -> u64 {
         let base = stamp.and_then(|stamp| Some(self.base_of(stamp.epoch)? + stamp.ticks));
         self.bases.push(base);
@@ -140,7 +140,8 @@ impl StepLog {
         for entry in self.pending.drain(..).filter(|entry| entry.announced) {
             self.withdrawn.push(entry.event);
         }
-        // Their ticks are numbered in the previous epoch. In the new one they count as events of tick 0.
+        // The ticks of withdrawn events are numbered in the previous epoch. In the new one they count as events of
+        // tick 0.
         self.withdrawn.iter_mut().for_each(|event| event.tick = 0);
         (self.shown, self.shown_again) = (None, None);
         0

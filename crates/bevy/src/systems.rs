@@ -62,7 +62,7 @@ pub(crate) fn write_views<G: LockstepGame>(
     let prepared: HashMap<BodyId, Entity> =
         fresh.iter().filter(is_foreign).map(|(entity, view)| (view.body(), entity)).collect();
     if lockstep.is_added() {
-        // Another game. Views that were prepared for it are not in the table.
+        // The game was replaced. Views that were prepared for the new game are not in the table.
         views.take_all().into_iter().for_each(|view| commands.entity(view).try_despawn());
     }
     let world = lockstep.world();
@@ -140,8 +140,8 @@ fn follow(
     views.take_unseen().into_iter().for_each(|view| commands.entity(view).try_despawn());
 }
 
-/// Whether a body was moved to another place in a tick, rather than by its velocity: further than `limit` metres, and
-/// twice as far as it flies in a tick.
+/// Whether a body was placed elsewhere in a tick instead of moving by its velocity: further than `limit` metres, and
+/// further than twice the way of its velocity in a tick.
 fn is_jump(world: Option<&World>, body: BodyId, previous: Pose, current: Pose, limit: f32) -> bool {
     if previous.position == current.position {
         return false;
@@ -160,7 +160,7 @@ fn spawn_view(commands: &mut Commands, body: BodyId, pose: Pose, scale: f32) -> 
     commands.spawn((BodyView::new(body), transform)).id()
 }
 
-/// Writes what belongs to the body. Z and scale belong to the game.
+/// Writes x, y and rotation, which belong to the body. Z and scale belong to the game.
 fn write_transform(transform: &mut Transform, pose: DrawnPose, scale: f32) {
     (transform.translation.x, transform.translation.y) = (pose.position * scale).into();
     transform.rotation = Quat::from_rotation_z(pose.angle);
@@ -171,7 +171,7 @@ pub(crate) fn remove_views(mut commands: Commands, mut views: ResMut<BodyViews>)
     views.take_all().into_iter().for_each(|view| commands.entity(view).try_despawn());
 }
 
-/// Sends the events of the frame: what was predicted, what did not happen, and what is final.
+/// Sends the events of the frame: predicted, retracted and confirmed ones.
 pub(crate) fn send_events<G: LockstepGame>(
     mut commands: Commands,
     lockstep: Res<Lockstep<G>>,

@@ -48,7 +48,7 @@ pub struct BodyViews {
     frame: u32,
 }
 
-/// A view and what it is drawn from.
+/// A view and the poses from which it is drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     pub(crate) body: BodyId,

@@ -23,7 +23,7 @@ fn tick(app: &App) -> u64 {
 
 #[test]
 fn ticks_come_at_the_rate_of_the_game() {
-    // 1000 frames of 7 ms are 420 ticks. The first frame has no time.
+    // 1000 frames of 7 ms are 420 ticks. The first frame has a duration of zero.
     let mut app = app(local(), 1, Duration::from_millis(7));
     let first = tick(&app);
     (0..1001).for_each(|_| app.update());
@@ -153,7 +153,7 @@ fn views_are_drawn_between_two_ticks() {
     // The player's positions by tick.
     let mut places = std::collections::BTreeMap::new();
     let mut moved = 0.0_f32;
-    // The first frame has no time.
+    // The first frame has a duration of zero.
     let mut clock = FixedTimestep::new(60);
     app.update();
     for _ in 0..200 {

@@ -115,7 +115,7 @@ fn a_click_finds_the_body_below_the_pointer() {
 fn the_view_with_the_larger_z_is_in_front() {
     let mut screen = Screen::new();
     for (z, front) in [(1.0, 1), (-1.0, 0)] {
-        // The ball is pulled into the platform by hand: only z decides.
+        // A command moves the ball into the platform, so that only z decides which view is in front.
         let ball = screen.app.world().resource::<BodyViews>().entity(screen.bodies[1]).unwrap();
         screen.app.world_mut().get_mut::<Transform>(ball).unwrap().translation.z = z;
         screen.app.world_mut().resource_mut::<Lockstep<Sandbox>>().resume();

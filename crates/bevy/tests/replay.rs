@@ -59,7 +59,7 @@ fn other_bytes_are_refused() {
 
 #[test]
 fn a_setup_may_not_cost_more_than_its_budget() {
-    // The budget is checked by the game itself: the observer has to hand it on.
+    // The game itself checks the budget, so the observer has to pass it on.
     let setup = SandboxSetup::default();
     let (_, work) = Sandbox::new_within(&setup, u64::MAX).unwrap();
     assert_eq!(Observed::<Sandbox>::new_within(&setup, u64::MAX).map(|(_, work)| work), Ok(work));

@@ -19,7 +19,7 @@ pub(crate) struct Console<'a> {
     pub(crate) err: &'a mut dyn Write,
     /// Whether messages go to a terminal, so that progress can be shown there.
     pub(crate) is_terminal: bool,
-    /// Whether the command is all that this process does, so that signals to the process are for the command.
+    /// Whether the process runs only this command, so that the command handles signals to the process.
     pub(crate) owns_process: bool,
 }
 
@@ -36,11 +36,11 @@ impl Console<'_> {
 
     /// Writes a line to the message stream, such as a summary beside machine-readable output.
     pub(crate) fn note(&mut self, note: impl fmt::Display) {
-        // There is no stream left to report a failure of the message stream.
+        // A failure of the message stream cannot be reported anywhere.
         let _ = writeln!(self.err, "{note}");
     }
 
-    /// Writes a warning: a problem that changes no result.
+    /// Writes a warning about a problem that does not change any result.
     pub(crate) fn warning(&mut self, warning: impl fmt::Display) {
         self.note(format_args!("{DOUBTFUL}warning:{DOUBTFUL:#} {warning}"));
     }

@@ -1,4 +1,4 @@
-//! [`Context`]: what every command is given besides its arguments.
+//! [`Context`]: the tool and the console, which every command receives besides its arguments.
 
 use std::path::Path;
 
@@ -22,15 +22,15 @@ pub(crate) struct Context<'a, G: Game> {
 }
 
 impl<'a, G: Game> Context<'a, G> {
-    /// Limits of what a replay may cost.
+    /// The limits for replays.
     pub(crate) fn limits(&self) -> &'a Limits {
         &self.tool.limits
     }
 
-    /// Reads a file that the command cannot do without, as far as the limits allow: see [`files::read`].
+    /// Reads a file that the command requires, up to the size limit: see [`files::read`].
     ///
     /// # Errors
-    /// [`CommandError::Read`] when it cannot be read.
+    /// [`CommandError::Read`] when the file cannot be read.
     pub(crate) fn load(&self, path: &Path) -> Result<Vec<u8>, CommandError> {
         files::read(path, self.limits().file_bytes).map_err(CommandError::read(path))
     }
@@ -38,7 +38,7 @@ impl<'a, G: Game> Context<'a, G> {
     /// The scenes of the game.
     ///
     /// # Panics
-    /// In a command that the table lists for games without scenes, too.
+    /// If the game has no scenes. Only commands that the table omits for such games may call this.
     pub(crate) fn catalogue(&self) -> &'a dyn Catalogue<G> {
         self.tool.catalogue.as_deref().expect("the command is listed only where there are scenes")
     }

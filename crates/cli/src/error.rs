@@ -25,7 +25,7 @@ pub(crate) enum CommandError {
     InputTwice,
     /// A file cannot be written.
     Write { path: PathBuf, error: io::Error },
-    /// The output file exists, and the user did not say that it is to be replaced.
+    /// The output file exists, and the option `--force` is not given.
     Exists { path: PathBuf },
     /// Another process is writing the output file.
     Busy { path: PathBuf },
@@ -67,7 +67,7 @@ pub(crate) enum CommandError {
     NoText { path: PathBuf },
     /// The system has no random numbers for a key.
     Random(RandomError),
-    /// A name that is not allowed for a key.
+    /// A name is not allowed for a key.
     KeyName { name: String },
     /// More signatures are required than there are names.
     Require { required: usize, names: usize },

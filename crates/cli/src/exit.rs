@@ -2,7 +2,8 @@
 
 use std::process::ExitCode;
 
-/// The outcome of a command, as scripts see it. Of several, the last in this order counts.
+/// The outcome of a command, which scripts receive as the exit code. The outcome of several files is the last of their
+/// outcomes in this order.
 ///
 /// ```
 /// use lockstep2d_cli::Exit;

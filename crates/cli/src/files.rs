@@ -8,17 +8,17 @@ use std::path::Path;
 /// The extension of replay files in folders.
 pub(crate) const EXTENSION: &str = "replay";
 
-/// Reads a file, but at most `bytes_max + 1` bytes, which is enough to see that it is too large.
+/// Reads at most `bytes_max + 1` bytes of a file. The additional byte shows that the file is too large.
 pub(crate) fn read(path: &Path, bytes_max: u64) -> io::Result<Vec<u8>> {
     let file = File::open(path)?;
     let expected = file.metadata()?.len();
     read_from(file, expected, bytes_max)
 }
 
-/// Reads a stream, but at most `bytes_max + 1` bytes. `expected` is an estimate of its length.
+/// Reads at most `bytes_max + 1` bytes of a stream. `expected` is an estimate of its length.
 pub(crate) fn read_from(stream: impl Read, expected: u64, bytes_max: u64) -> io::Result<Vec<u8>> {
     let end = bytes_max.saturating_add(1);
-    // One extra byte of capacity: finding the end would otherwise double the capacity.
+    // One byte of capacity more than expected: without it, the read that finds the end would double the capacity.
     let expected = expected.min(bytes_max).saturating_add(1);
     let mut bytes = Vec::new();
     if usize::try_from(expected).map_or(true, |expected| bytes.try_reserve_exact(expected).is_err()) {
@@ -37,8 +37,8 @@ impl fmt::Display for Shown<'_> {
     }
 }
 
-/// Shows untrusted text on one line: line breaks and other control characters are escaped, and so are those that change
-/// the direction of text or are invisible, which could make one name look like another.
+/// Shows untrusted text on one line. Line breaks and other control characters are escaped, and so are characters that
+/// change the direction of text or are invisible, because they could make one name look like another.
 pub(crate) struct OneLine<'a>(pub(crate) &'a str);
 
 impl fmt::Display for OneLine<'_> {

@@ -7,14 +7,15 @@ use lockstep2d::SEMANTICS;
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::{Limits, Mismatch, Part, ReadError, Reader, Verdict};
 
-/// Precedes everything that is hashed, so that no other use of BLAKE3 gives the same digest.
+/// Prefix of the hashed data, so that no other use of BLAKE3 gives the same digest.
 const DOMAIN: &[u8] = b"lockstep2d game 1";
 
-/// The BLAKE3 of the rules, setup and inputs of a game, as FORMAT.md defines it: what `verify --json` prints as `game`.
+/// The BLAKE3 digest of the rules, setup and inputs of a game, defined in FORMAT.md. `verify --json` prints it as
+/// `game`.
 ///
-/// Blocks, checkpoints and the trailer do not count. The inputs are those of the complete blocks, so a file that ends
-/// before its trailer has the digest of the game up to there. [`Signatures`](crate::signature::Signatures) has an
-/// example.
+/// The digest does not depend on block boundaries, checkpoints or the trailer. It covers the inputs of the complete
+/// blocks, so a file that ends before its trailer has the digest of the game up to its last complete block.
+/// [`Signatures`](crate::signature::Signatures) has an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GameDigest(blake3::Hash);
 
@@ -23,7 +24,7 @@ impl GameDigest {
     ///
     /// # Errors
     /// [`Verdict::Malformed`] and [`Verdict::LimitExceeded`] for a file that is damaged or too large, and
-    /// [`Verdict::Unverifiable`] for one of another game, other rules or other semantics.
+    /// [`Verdict::Unverifiable`] for a file of another game, other rules or other semantics.
     pub fn of_replay<G: Game>(replay: &[u8], limits: &Limits) -> Result<Self, Verdict> {
         let reader = Reader::open(replay, limits)?;
         let header = reader.header();
@@ -46,7 +47,7 @@ impl GameDigest {
         hasher.update(&header.rules_version.to_le_bytes());
         add_bytes(&mut hasher, header.rules_name.as_bytes());
         add_bytes(&mut hasher, header.setup);
-        // Runs that a block has split are joined again.
+        // Runs that were split at the end of a block are joined again.
         let mut run: Option<(u64, &[u8])> = None;
         while let Some(part) = reader.next_part()? {
             let Part::Inputs(block) = part else { break };
@@ -73,14 +74,14 @@ impl GameDigest {
     }
 }
 
-/// 64 hexadecimal digits in lower case.
+/// Shows the digest as 64 hexadecimal digits in lower case.
 impl fmt::Display for GameDigest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.fmt(f)
     }
 }
 
-/// Why a program for the game `G` cannot verify a file with this semantics id and these rules.
+/// Reason why a program for the game `G` cannot verify a file with these semantics and rules; `None` if it can.
 pub(crate) fn mismatch<G: Game>(semantics: u32, name: &str, version: u32) -> Option<Mismatch> {
     if semantics != SEMANTICS {
         return Some(Mismatch::Semantics { file: semantics, here: SEMANTICS });
@@ -96,7 +97,7 @@ fn add_run(hasher: &mut Hasher, run: Option<(u64, &[u8])>) {
     }
 }
 
-/// Adds bytes with their length, so that no two sequences of parts are the same bytes.
+/// Hashes bytes preceded by their length, so that two different sequences of parts never hash the same bytes.
 fn add_bytes(hasher: &mut Hasher, bytes: &[u8]) {
     let length = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
     hasher.update(&length.to_le_bytes()).update(bytes);

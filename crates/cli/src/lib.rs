@@ -1,4 +1,4 @@
-//! The command-line tools for replays as a library: a game gets them for its own rules with one line in `main`.
+//! The command-line tools for replays as a library: one line in `main` provides them for the rules of a game.
 //!
 //! ```no_run
 //! # mod my_game {

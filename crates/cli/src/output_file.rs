@@ -2,7 +2,7 @@
 //!
 //! Invariants, for a target that is a regular file or does not exist:
 //! - The target has either its old contents or all of the new ones, also after a full disk, a panic or a kill.
-//! - An existing file is replaced only if the user said so.
+//! - An existing file is replaced only with `--force` or [`Overwrite::ALWAYS`].
 //! - At most one process writes a target at a time. The others fail before they change anything.
 //!
 //! - A private file can be read only by its owner, from its first byte on.
@@ -25,7 +25,7 @@ const SUFFIX: &str = ".unfinished";
 #[cfg(unix)]
 const OWNER_ONLY: u32 = 0o600;
 
-/// Attempts to lock a temporary file that other processes keep renaming.
+/// Maximum number of attempts to lock a temporary file that other processes keep renaming.
 const ATTEMPTS_MAX: u32 = 100;
 
 /// What happens to a file that exists already.
@@ -64,7 +64,8 @@ pub(crate) struct OutputFile {
 }
 
 impl OutputFile {
-    /// Creates the temporary file of the target at `path`. Call it before long work, so that the errors come first.
+    /// Creates the temporary file of the target at `path`. Call it before long computations, so that errors are
+    /// reported early.
     ///
     /// A target that is not a regular file, such as `/dev/stdout` or a pipe, is written directly.
     ///
@@ -75,10 +76,10 @@ impl OutputFile {
         Self::create_for(path, overwrite, Readers::Default)
     }
 
-    /// As [`OutputFile::create`], with a file that only its owner can read, where the system has such files.
+    /// Same as [`OutputFile::create`], with a file that only its owner can read, on systems that support this.
     ///
     /// # Errors
-    /// As [`OutputFile::create`].
+    /// Same as [`OutputFile::create`].
     pub(crate) fn create_private(path: &Path, overwrite: Overwrite) -> Result<Self, CommandError> {
         Self::create_for(path, overwrite, Readers::Owner)
     }
@@ -87,7 +88,7 @@ impl OutputFile {
         let failed = CommandError::write(path);
         check(path, overwrite)?;
         let name = path.to_path_buf();
-        // A link stays a link: the file behind it is replaced.
+        // A link is preserved: the file that it refers to is replaced.
         let target = fs::canonicalize(path).unwrap_or_else(|_| name.clone());
         match fs::metadata(&target) {
             Ok(metadata) if !metadata.is_file() => {
@@ -129,13 +130,13 @@ impl OutputFile {
         };
         self.file.sync_all().map_err(&failed)?;
         if !self.overwrite.force {
-            // Unlike a rename, a link never replaces a file. Dropping `self` deletes the other name.
+            // Unlike a rename, a hard link never replaces a file. Dropping `self` deletes the temporary name.
             match fs::hard_link(temporary, &self.target) {
                 Ok(()) => return Ok(()),
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
                     return Err(CommandError::Exists { path: self.name.clone() });
                 }
-                // A file system without hard links.
+                // The file system may not support hard links.
                 Err(_) => {}
             }
         }
@@ -157,7 +158,7 @@ impl Write for OutputFile {
 
 impl Drop for OutputFile {
     fn drop(&mut self) {
-        // Deleted while it is still locked: no other process can have begun to write it.
+        // The file is deleted while it is still locked, so no other process can have begun to write it.
         if let Some(temporary) = &self.temporary {
             let _ = fs::remove_file(temporary);
         }
@@ -187,11 +188,11 @@ fn lock(temporary: &Path, name: &Path, readers: Readers) -> Result<File, Command
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Err(CommandError::Busy { path: name.to_path_buf() }),
-            // A file system without locks: two writers are not told there.
+            // The file system does not support locks: two writers of one target are not detected.
             Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {}
             Err(TryLockError::Error(error)) => return Err(failed(error)),
         }
-        // Its last writer may have renamed or deleted it between the opening and the lock.
+        // The previous writer may have renamed or deleted the file after it was opened and before it was locked.
         if is_at(&file, temporary) {
             return Ok(file);
         }
@@ -222,7 +223,7 @@ fn is_at(file: &File, path: &Path) -> bool {
     (open.dev(), open.ino()) == (named.dev(), named.ino())
 }
 
-/// Elsewhere an open file cannot be renamed or deleted.
+/// On systems other than Unix, an open file cannot be renamed or deleted.
 #[cfg(not(unix))]
 fn is_at(_: &File, _: &Path) -> bool {
     true
@@ -231,7 +232,7 @@ fn is_at(_: &File, _: &Path) -> bool {
 /// Writes a whole file.
 ///
 /// # Errors
-/// Those of [`OutputFile::create`], [`OutputFile::append`] and [`OutputFile::publish`].
+/// The errors of [`OutputFile::create`], [`OutputFile::append`] and [`OutputFile::publish`].
 pub(crate) fn save(path: &Path, bytes: &[u8], overwrite: Overwrite) -> Result<(), CommandError> {
     let mut output = OutputFile::create(path, overwrite)?;
     output.append(bytes)?;

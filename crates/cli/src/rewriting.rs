@@ -15,11 +15,11 @@ pub(crate) struct Copy<G: Game> {
     recorder: Recorder<G>,
 }
 
-/// Why a replay cannot be copied.
+/// Reason why a replay cannot be copied.
 pub(crate) enum CopyError {
     /// The replay can be played for `ticks` ticks, and no further.
     Replay { ticks: u64, verdict: Verdict },
-    /// Its setup or inputs cannot be recorded.
+    /// The setup or the inputs of the replay cannot be recorded.
     Record(RecordError),
 }
 
@@ -72,8 +72,8 @@ impl<G: Game> Copy<G> {
         Ok(())
     }
 
-    /// Completes and verifies the replay. Returns its bytes and the hash of its last state. `output` is the path that
-    /// errors name.
+    /// Completes and verifies the replay. Returns its bytes and the hash of its last state. `output` is the path for
+    /// error messages.
     pub(crate) fn finish(self, output: &Path, limits: &Limits) -> Result<(Vec<u8>, StateHash), CommandError> {
         let bytes = self.recorder.finish(&self.game)?;
         match verify::<G>(&bytes, limits) {

@@ -22,7 +22,7 @@ use crate::view;
 /// ```
 /// use lockstep2d::lockstep::Sandbox;
 /// use lockstep2d_cli::{Exit, Tool, clap::Command};
-/// // A command of one's own beside those that every game has.
+/// // Adds a command to those that every game has.
 /// let credits = Command::new("credits").about("Names everybody");
 /// let tool = Tool::<Sandbox>::new().with_command(credits, |_| {
 ///     println!("thanks to everybody");
@@ -39,11 +39,11 @@ pub struct Tool<G: Game> {
     pub(crate) limits: Limits,
     pub(crate) catalogue: Option<Box<dyn Catalogue<G>>>,
     pub(crate) view: Option<fn(&G) -> View>,
-    /// Commands that the game has added.
+    /// Commands added by the game.
     own: Vec<(Command, OwnCommand)>,
 }
 
-/// Runs a command that the game has added.
+/// Function that runs a command added by the game.
 type OwnCommand = Box<dyn Fn(&ArgMatches) -> Exit>;
 
 impl<G: Game> Default for Tool<G> {
@@ -60,7 +60,7 @@ impl<G: Game> Tool<G> {
         Tool { limits: Limits::default(), catalogue: None, view: None, own: Vec::new() }
     }
 
-    /// Sets the limits of what a replay may cost.
+    /// Sets the limits for replays.
     #[must_use]
     pub fn with_limits(self, limits: Limits) -> Self {
         Tool { limits, ..self }
@@ -79,7 +79,7 @@ impl<G: Game> Tool<G> {
         Tool { view: Some(view), ..self }
     }
 
-    /// Adds a command of the game's own. `run` gets its arguments and prints its own output.
+    /// Adds a command of the game's own. `run` receives the arguments of the command and prints its output.
     #[must_use]
     pub fn with_command(mut self, command: Command, run: fn(&ArgMatches) -> Exit) -> Self {
         self.own.push((command, Box::new(run)));
@@ -110,7 +110,7 @@ impl<G: Game> Tool<G> {
     /// Runs the command that the arguments of this process select, with colours on terminals.
     #[must_use]
     pub fn run(&self) -> ExitCode {
-        // The streams stay unlocked: a game that prints or panics on another thread would deadlock.
+        // The streams are not locked, because a game that prints or panics on another thread would deadlock.
         let (mut out, mut err) = (anstream::stdout(), anstream::stderr());
         let is_terminal = std::io::stderr().is_terminal();
         let console = Console { out: &mut out, err: &mut err, is_terminal, owns_process: true };

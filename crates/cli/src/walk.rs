@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 
 use crate::files::EXTENSION;
 
-/// Most names of one folder that are held at a time. A larger folder is listed again for each batch of this size.
+/// Maximum number of names of one folder that are held at a time. A larger folder is listed again for each batch of
+/// this size.
 const NAMES_MAX: usize = 4096;
 
 /// The replays in a folder and its subfolders, in the order of their paths, compared component by component.
@@ -36,7 +37,7 @@ const NAMES_MAX: usize = 4096;
 /// # Ok::<(), std::io::Error>(())
 /// ```
 pub struct Walk {
-    /// The current folder, last, and its ancestors.
+    /// The ancestors of the current folder, followed by the current folder.
     folders: Vec<Folder>,
     names_max: usize,
 }
@@ -55,7 +56,7 @@ struct Folder {
 /// A folder that cannot be listed, or an entry whose metadata cannot be read.
 #[derive(Debug)]
 pub struct WalkError {
-    /// Its path.
+    /// Path of the folder or entry.
     pub path: PathBuf,
     /// The error of the system.
     pub error: io::Error,

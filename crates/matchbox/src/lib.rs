@@ -40,7 +40,7 @@ impl Matchbox {
         Self::with_builder(WebRtcSocket::builder(room_url))
     }
 
-    /// Enters a room with settings of one's own: ICE servers, attempts, intervals. The channel is added here.
+    /// Enters a room with custom settings: ICE servers, attempts, intervals. The channel is added here.
     ///
     /// ```no_run
     /// use lockstep2d_matchbox::Matchbox;
@@ -57,13 +57,13 @@ impl Matchbox {
         Matchbox { socket, received: VecDeque::new(), others: Vec::new(), is_closed: false }
     }
 
-    /// Notes who has come and gone. [`Transport::receive`] does so as well.
+    /// Updates the members that have come and gone. [`Transport::receive`] does so as well.
     pub fn update(&mut self) {
         match self.socket.try_update_peers() {
             Ok(changes) if changes.is_empty() => {}
             Ok(_) => {
                 self.others = self.socket.connected_peers().map(address_of).collect();
-                // The socket has no order of its own.
+                // The socket returns peers in no particular order.
                 self.others.sort_unstable_by(|a, b| a.bytes().cmp(b.bytes()));
             }
             Err(_) => {

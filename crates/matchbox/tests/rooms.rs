@@ -95,7 +95,7 @@ fn packets_reach_the_member_they_are_for_and_name_their_sender() {
     });
     assert_eq!(found, (addresses[0], b"to b".to_vec()));
     assert_eq!(c.receive(), None, "a packet for b");
-    // Members of other rooms and addresses that are none get nothing.
+    // Members of other rooms, and addresses without a member, get nothing.
     stranger.send(b"from outside", &addresses[2]);
     a.send(b"nowhere", &Address::nowhere());
     a.send(b"nowhere", &Address::new(&[1, 2, 3]).expect("a short address"));

@@ -2,9 +2,9 @@
 //!
 //! `cargo run -p lockstep2d-relay --example push -- ws://127.0.0.1:7010 CODE [--ticks 3000] [-o FILE]`
 //!
-//! The first one in the room opens the match. A bot plays. The file is a replay of the sandbox, which
-//! `lockstep2d verify` verifies; pages write the same bytes. Prints a line of JSON when it is in the room, and one at
-//! the end. Exit codes: 0 the match has ended, 1 an error or a desync, 2 wrong arguments.
+//! The first player in the room opens the match. A bot provides the inputs. FILE is a replay of the sandbox, which
+//! `lockstep2d verify` verifies; web pages write the same bytes. The program prints a line of JSON when it is in the
+//! room, and one at the end. Exit codes: 0 the match has ended, 1 an error or a desync, 2 wrong arguments.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -86,7 +86,7 @@ impl Game for Push {
     }
     fn step(&mut self, inputs: &[u8]) {
         for command in self.commands(inputs) {
-            // The players are never removed, so that nothing is refused.
+            // The players are never removed, so no command is refused.
             let _ = self.world.execute(&command);
         }
         self.world.step();
@@ -129,7 +129,7 @@ fn secret(me: &PeerIdentity) -> [u8; 16] {
     bytes
 }
 
-/// Opens the match, or joins it if somebody is in the room.
+/// Opens the match, or joins it if another member is in the room.
 fn enter(arguments: &Arguments) -> Result<Peer<Push, Relay>, Box<dyn Error>> {
     let me = PeerIdentity::random();
     // The relay must not know the secret of the handshake.
@@ -141,7 +141,8 @@ fn enter(arguments: &Arguments) -> Result<Peer<Push, Relay>, Box<dyn Error>> {
     })
 }
 
-/// The inputs of a replay as the commands that they are, in a replay that needs no rules.
+/// Converts a replay of `Push` to a replay of the sandbox, which needs no rules: its inputs are the commands of each
+/// tick.
 fn as_sandbox(file: &[u8]) -> Result<Vec<u8>, Box<dyn Error>> {
     let refused = |verdict: lockstep2d::replay::Verdict| verdict.to_string();
     let mut inputs = RawReplay::<Push>::open(file, &Limits::default()).map_err(refused)?;

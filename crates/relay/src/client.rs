@@ -16,17 +16,17 @@ use crate::frame::{ADDRESS_BYTES, Members, SECRET_BYTES, frame, of_text, unframe
 
 /// Time for connecting and for each step of the handshake.
 const CONNECT_MAX: Duration = Duration::from_secs(5);
-/// Pauses before connecting again: the first one, and the longest.
+/// First and longest pause before connecting again.
 const PAUSE_MIN: Duration = Duration::from_millis(250);
 const PAUSE_MAX: Duration = Duration::from_secs(8);
 /// Largest frame from the relay.
 const FRAME_MAX: usize = 64 * 1024;
-/// Close code: another connection of the same member has taken the place of this one.
+/// Close code: another connection of the same member has replaced this one.
 const REPLACED: u16 = 4003;
 /// Bytes that wait to be sent. Further datagrams are dropped, as in the buffer of a socket.
 const WRITE_MAX: usize = 512 * 1024;
 
-/// Why a relay cannot be used.
+/// Reason why a relay cannot be used.
 #[derive(Debug)]
 pub enum RelayError {
     /// The URL is not `ws://HOST:PORT`.
@@ -54,7 +54,7 @@ impl core::error::Error for RelayError {}
 
 type Socket = WebSocket<TcpStream>;
 
-/// Where to connect to.
+/// The relay and room to connect to.
 #[derive(Clone)]
 struct Target {
     /// URL with the code of the room.
@@ -66,9 +66,9 @@ struct Target {
 
 enum State {
     Open(Box<Socket>),
-    /// Another thread connects.
+    /// A background thread is connecting.
     Connecting(Receiver<Socket>),
-    /// Another connection has the place of this one.
+    /// Another connection has replaced this one.
     Closed,
 }
 
@@ -80,7 +80,7 @@ enum State {
 /// use lockstep2d_relay::Relay;
 ///
 /// let mut relay = Relay::connect("ws://127.0.0.1:7010", "ABCD", rand_bytes())?;
-/// // Whoever is in the room already is asked; the first one opens the match.
+/// // A member that is in the room already is asked to join; the first member opens the match.
 /// let (options, me) = (PeerOptions { input_bytes: Some(64), ..PeerOptions::lockstep() }, PeerIdentity::random());
 /// let setup = SandboxSetup::default();
 /// let peer = match relay.others().first().cloned() {
@@ -104,9 +104,9 @@ impl fmt::Debug for Relay {
 }
 
 impl Relay {
-    /// Enters a room, which exists from then on. `url` is `ws://HOST:PORT`, `code` 1 to 32 letters, digits and `-`, and
-    /// `secret` 16 random bytes. Whoever comes again with the same secret has the same address. Blocks until the relay
-    /// has answered, at most for some seconds.
+    /// Enters a room, which is created if it does not exist. `url` is `ws://HOST:PORT`, `code` 1 to 32 letters, digits
+    /// and `-`, and `secret` 16 random bytes. A member that returns with the same secret has the same address. Blocks
+    /// until the relay has answered, at most for some seconds.
     ///
     /// # Errors
     /// [`RelayError`] when the relay cannot be reached or refuses.
@@ -129,7 +129,7 @@ impl Relay {
         &self.own
     }
 
-    /// Addresses of the other members, in the order in which they came.
+    /// Addresses of the other members, in order of arrival.
     #[must_use]
     pub fn others(&self) -> &[Address] {
         &self.others
@@ -141,7 +141,7 @@ impl Relay {
         matches!(self.state, State::Open(_))
     }
 
-    /// Whether somebody else has connected with the same secret. This one does not connect again.
+    /// Whether another connection with the same secret has replaced this one, which then does not connect again.
     #[must_use]
     pub const fn is_closed(&self) -> bool {
         matches!(self.state, State::Closed)
@@ -169,7 +169,7 @@ impl Relay {
                 thread::sleep(pause);
                 let opened = open(&target);
                 if let Ok((socket, _)) = opened {
-                    // Without a receiver the member is gone, and the socket is closed.
+                    // If there is no receiver, the member was dropped, and the socket is closed.
                     let _ = sender.send(socket);
                     return;
                 }
@@ -238,7 +238,7 @@ fn connect(host: &str) -> io::Result<TcpStream> {
     Err(last)
 }
 
-/// Whether an error leaves the connection as it is.
+/// Whether the connection can be used after an error.
 fn is_passing(error: &tungstenite::Error) -> bool {
     match error {
         tungstenite::Error::Io(error) => {

@@ -24,12 +24,12 @@ pub(crate) fn unframe(bytes: &[u8]) -> Option<(Member, &[u8])> {
     bytes.split_first_chunk::<ADDRESS_BYTES>().map(|(member, datagram)| (*member, datagram))
 }
 
-/// The text frame of the relay: who is in the room. It is sent at the beginning and after every change.
+/// The text frame of the relay: the members of the room. It is sent at the beginning and after every change.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Members {
     /// Address of the receiver of this frame.
     pub(crate) you: String,
-    /// Addresses of the others, in the order in which they came.
+    /// Addresses of the others, in order of arrival.
     pub(crate) others: Vec<String>,
 }
 

@@ -70,7 +70,7 @@ fn receive(relay: &mut Relay) -> (Address, Vec<u8>) {
     until("a datagram", || relay.receive())
 }
 
-/// Reads what the relay sends, until the others in the room are these.
+/// Reads messages of the relay until the other members of the room are `others`.
 fn until_others(relay: &mut Relay, others: &[Address]) {
     until("the members", || {
         assert_eq!(relay.receive(), None);
@@ -94,7 +94,7 @@ fn datagrams_reach_the_member_they_are_for_and_name_their_sender() {
     let mut found = [receive(&mut b), receive(&mut b)];
     found.sort_by_key(|(_, bytes)| bytes.clone());
     assert_eq!(found, [(*c.own(), b"also".to_vec()), (*a.own(), b"to b".to_vec())]);
-    // Members of other rooms, and addresses that are none, get nothing.
+    // Members of other rooms, and addresses without a member, get nothing.
     stranger.send(b"from outside", &to);
     a.send(b"nowhere", &Address::new(&[1, 2, 3]).unwrap());
     a.send(b"last", &to);
@@ -119,7 +119,7 @@ fn a_member_that_connects_again_has_its_address() {
     until_others(&mut a, std::slice::from_ref(&address));
     a.send(b"hello", &address);
     assert_eq!(receive(&mut new), (*a.own(), b"hello".to_vec()));
-    // The old one does not take the place of the new one in turn.
+    // The old connection does not replace the new one in turn.
     let mut old = old;
     until("the end", || {
         assert_eq!(old.receive(), None);
@@ -232,7 +232,7 @@ fn limits_close_connections() {
 fn a_silent_member_is_disconnected_and_one_that_answers_pings_is_not() {
     let server = Running::start(Limits { idle: Duration::from_millis(300), ..Limits::default() });
     let mut a = server.enter("room", 1);
-    // This one does not read, so it answers no ping.
+    // This member does not read, so it answers no ping.
     let silent = server.enter("room", 2);
     until_others(&mut a, std::slice::from_ref(silent.own()));
     until_others(&mut a, &[]);

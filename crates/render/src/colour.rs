@@ -4,7 +4,7 @@
 ///
 /// ```
 /// use lockstep2d_render::Colour;
-/// // The shadow of a team's colour.
+/// // A translucent shadow in a team's colour.
 /// let team = Colour::hex(0xd62728);
 /// let shadow = team.with_opacity(64);
 /// assert_eq!((shadow.rgb, shadow.opacity), ([0xd6, 0x27, 0x28], 64));

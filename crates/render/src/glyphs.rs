@@ -32,7 +32,8 @@ pub fn glyph(character: char) -> Glyph {
     glyph
 }
 
-/// Returns the most similar character of the font for a character that it lacks, or else the character itself.
+/// Returns a substitute from the font for a character that the font lacks, if there is a similar one; otherwise the
+/// character itself.
 fn nearest(character: char) -> char {
     match character {
         '\u{2010}'..='\u{2015}' | '\u{2212}' => '-',

@@ -4,7 +4,7 @@
 //! ([`Camera`]) and a colour ([`paint`]), and turns them into polygons, lines and text ([`DrawList`]). A window, a
 //! web page and a picture file show the same list.
 //!
-//! This crate uses floating-point numbers: nothing that is drawn flows back into a simulation.
+//! This crate uses floating-point numbers. No result of drawing flows back into a simulation.
 #![expect(clippy::disallowed_types, reason = "drawing uses floats")]
 
 mod camera;

@@ -9,7 +9,7 @@ use crate::colour::Colour;
 /// let mut list = DrawList::default();
 /// list.line([[0.0, 0.0], [5.0, 5.0]], Colour::hex(0), 1.0);
 /// list.polygon([[0.0, 0.0], [9.0, 0.0], [0.0, 9.0]], Colour::hex(0), Colour::NONE, 0.0);
-/// // The corners of all items are one array, as a buffer of vertices is.
+/// // The corners of all items are stored in one array, like a vertex buffer.
 /// assert_eq!(list.items()[1].points, Points { first: 2, count: 3 });
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -50,17 +50,18 @@ pub struct Text {
     pub text: String,
 }
 
-/// List of items and texts to draw, in pixels from the upper left corner with y pointing down. Later ones lie on top.
+/// List of items and texts to draw, in pixels from the upper left corner with y pointing down. Later entries are drawn
+/// on top of earlier ones.
 ///
 /// [`DrawList::clear`] keeps the memory, so that one list can be filled again in each frame.
 ///
 /// ```
 /// use lockstep2d_render::{Colour, DrawList, Item, Text};
-/// // A health bar with a number, over everything that is in the list already.
+/// // A health bar with a number, drawn on top of all earlier entries.
 /// let mut list = DrawList::default();
 /// list.rectangle([10.0, 10.0], [80.0, 8.0], Colour::hex(0x2ca02c));
 /// list.text([10.0, 20.0], 1.0, Colour::hex(0x222222), "80");
-/// // What a renderer of one's own does with it.
+/// // A custom renderer reads the list.
 /// let [bar]: &[Item] = list.items() else { panic!("one rectangle") };
 /// assert_eq!(list.points(bar)[2], [90.0, 18.0]);
 /// let [Text { after, text, .. }] = list.texts() else { panic!("one text") };

@@ -12,7 +12,7 @@ use crate::list::DrawList;
 
 /// Length of a direction, in pixels.
 const DIRECTION_LENGTH: f32 = 18.0;
-/// Body size, in pixels, from which on marks have their full size. Marks on smaller bodies shrink, so that a mark stays
+/// Body size, in pixels, above which marks have their full size. Marks on smaller bodies shrink, so that a mark stays
 /// smaller than the body.
 const LARGE: f32 = 24.0;
 /// Smallest scale factor of marks.
@@ -99,7 +99,7 @@ pub fn paint(list: &mut DrawList, primitive: &Primitive, camera: &Camera, brush:
     painted(list, primitive, camera, brush, Look::of(primitive.style, brush));
 }
 
-/// Draws one primitive in colours of one's own, if it is visible: its inside, if its style has one, and its lines.
+/// Draws one primitive in the given colours, if it is visible: its inside, if its style has one, and its lines.
 pub fn filled(list: &mut DrawList, primitive: &Primitive, camera: &Camera, inside: Colour, lines: Colour) {
     let brush = Brush::default();
     let look = Look::of(primitive.style, &brush);
@@ -172,7 +172,7 @@ impl Look {
     fn of(style: Style, brush: &Brush) -> Self {
         let Paint { stroke, fill, width, .. } = style.paint();
         let width = f32::from(width) / 100.0;
-        // Ground is as long as ever when the bodies on it are small: a thin line of it would hardly be seen.
+        // The outline of ground stays at least one pixel wide beside small bodies. A thinner line would be hard to see.
         let width_min = if style == Style::Fixed { 1.0 } else { 0.4 };
         let width = (width * brush.marks).max(width.min(width_min));
         let fill = fill.map_or(Colour::NONE, |Fill { colour, opacity }| {

@@ -107,8 +107,8 @@ impl Builder {
     }
 }
 
-/// Builds a scene of this crate. They are valid: a failure is a programming error, found by the test that builds all of
-/// them.
+/// Builds a scene of this crate. All these scenes are valid: a failure is a programming error, found by the test that
+/// builds all of them.
 pub(super) fn build(
     config: Config,
     fill: impl FnOnce(&mut Builder) -> Result<(), WorldError>,

@@ -34,8 +34,8 @@ pub(super) const DRUM: Scene =
     })
     .golden(300);
 
-/// A ring of 36 plates between 10 and 11 m, 11 degrees each, of which one overlaps the next plate, and 4 paddles
-/// inside.
+/// A ring of 36 plates between 10 and 11 m, and 4 paddles inside. Each plate spans 11 degrees and overlaps the next
+/// one by one degree.
 fn drum_shapes() -> Result<Vec<ShapeDef>, WorldError> {
     let mut shapes = Vec::new();
     for i in 0..36 {

@@ -1,6 +1,6 @@
 //! Scenes of [`lockstep2d`] as plain data, built once and shared by tests, replays, tools and benchmarks.
 //!
-//! [`ALL`] lists them, [`Scene::find`] finds one by name, and [`Builder`] builds a setup of one's own.
+//! [`ALL`] lists them, [`Scene::find`] finds one by name, and [`Builder`] builds custom setups.
 #![no_std]
 
 extern crate alloc;

@@ -103,7 +103,7 @@ pub(super) const HUNDRED_POLYGONS: Scene =
     })
     .golden(400);
 
-/// A convex polygon of 3 to 8 corners between 0.3 and 0.9 m from its centre, one in three rounded.
+/// The convex hull of 3 to 8 points between 0.3 and 0.9 m from the origin, rounded in one of three cases.
 pub(super) fn random_polygon(rng: &mut Rng) -> Polygon {
     loop {
         let corners = rng.below(6) + 3;

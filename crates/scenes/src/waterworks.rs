@@ -28,12 +28,13 @@ pub(super) const WATERWORKS: Scene = Scene {
     script: |tick, game| play(tick, game.world()).unwrap_or_default(),
 };
 
-/// Fills of the pools: still water, and a current to the right.
+/// Water without a current, which fills the pools.
 fn water() -> Area {
     Area::fluid(fx!(1)).drag(fx!(2), fx!(2))
 }
 
-/// A basin of two pools that touch, with the surface at height 0, and wind above the right one. The first body.
+/// A basin of two pools that touch, with the surface at height 0. The right pool has a current to the right, and wind
+/// above it. The basin is the first body.
 fn basin(scene: &mut Builder) -> Result<BodyId, WorldError> {
     let wall = |x| Ok::<_, WorldError>(rectangle(fx!(0.5), fx!(4))?.offset((x, fx!(-1))));
     let floor = rectangle(fx!(12), fx!(0.5))?.offset((fx!(0), fx!(-4.5)));

@@ -1,4 +1,4 @@
-//! [`Canvas`]: what a game draws with, over its world.
+//! [`Canvas`]: the drawing interface with which a game draws over its world.
 
 use std::f32::consts::TAU;
 
@@ -19,7 +19,7 @@ const INSIDE: u8 = 150;
 ///
 /// [`Canvas::list`] and [`Canvas::camera`] give access to pixels.
 ///
-/// A game gets it from [`Viewer::draw`](crate::Viewer::draw). Elsewhere it draws into any list:
+/// [`Viewer::draw`](crate::Viewer::draw) passes a canvas to the game. A canvas can also draw into any other list:
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Aabb, Vec2}};
@@ -39,13 +39,13 @@ pub struct Canvas<'a> {
 }
 
 impl<'a> Canvas<'a> {
-    /// Draws into a list, as this camera sees the world.
+    /// Creates a canvas that draws into a list, with the transformation of this camera.
     #[must_use]
     pub fn new(list: &'a mut DrawList, camera: &'a Camera) -> Self {
         Canvas { list, camera }
     }
 
-    /// The list that is drawn into, in pixels.
+    /// The list that the canvas draws into, in pixels.
     pub fn list(&mut self) -> &mut DrawList {
         self.list
     }
@@ -56,7 +56,7 @@ impl<'a> Canvas<'a> {
         self.camera
     }
 
-    /// Fills a circle; a radius in metres.
+    /// Fills a circle with a radius in metres.
     pub fn circle(&mut self, centre: Vec2<Fx>, radius: Fx, fill: Colour) {
         let ([x, y], radius) = (self.camera.place(centre), self.camera.length(radius));
         if self.camera.sees([x, y], radius) {
@@ -86,14 +86,14 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Writes a line of text, centred at a place of the world.
+    /// Writes a line of text, centred at a world position.
     pub fn text(&mut self, at: Vec2<Fx>, colour: Colour, text: impl Into<String>) {
         let (text, [x, y]) = (text.into(), self.camera.place(at));
         let corner = [x - width_of(&text, 1.0) / 2.0, y - CELL_HEIGHT / 2.0];
         self.list.text(corner, 1.0, colour, text);
     }
 
-    /// Writes a line of text at the top of the picture: a score, a time.
+    /// Writes a line of text at the top of the picture, such as a score or a time.
     pub fn headline(&mut self, colour: Colour, text: impl Into<String>) {
         let text = text.into();
         let (width, middle) = (width_of(&text, 1.0), self.camera.middle[0] as f32);
@@ -107,13 +107,13 @@ impl<'a> Canvas<'a> {
         self.list.text(corner, 1.0, colour, text);
     }
 
-    /// Paints the shapes of a body in a colour. Nothing if the body is not in the world.
+    /// Paints the shapes of a body in a colour. Has no effect if the body is not in the world.
     pub fn body(&mut self, world: &World, id: BodyId, colour: Colour) {
         self.bodies(world, |other| (other == id).then_some(colour));
     }
 
-    /// Paints the shapes of all bodies for which `colour` returns one. Reads the world only once, unlike many calls of
-    /// [`Canvas::body`].
+    /// Paints the shapes of all bodies for which `colour` returns a colour. This is faster than repeated calls of
+    /// [`Canvas::body`], because it reads the world only once.
     pub fn bodies(&mut self, world: &World, colour: impl Fn(BodyId) -> Option<Colour>) {
         let outlines = Layers { outlines: true, ..Layers::NONE };
         for primitive in primitives(world, outlines) {

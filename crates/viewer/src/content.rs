@@ -12,7 +12,7 @@ use crate::source::{OpenError, Snapshot, Source, SourceError};
 #[derive(Clone)]
 pub(crate) struct Content {
     pub(crate) scenes: Vec<Scene>,
-    /// Name of the scene that is shown at first; the first of the list without it.
+    /// Name of the scene that is shown at the start; `None` for the first scene of the list.
     pub(crate) first: Option<String>,
     /// Name of the rules of the game.
     pub(crate) rules: &'static str,
@@ -33,7 +33,7 @@ pub(crate) struct Scene {
 /// Opens a scene with a random seed.
 pub(crate) type OpenScene = Rc<dyn Fn(u64) -> Result<Box<dyn Source>, SourceError>>;
 
-/// Opens a replay of the game with this name.
+/// Opens a replay of the game; the first argument is the name for display.
 pub(crate) type OpenReplay = Rc<dyn Fn(&str, &'static [u8], &Limits) -> Result<Box<dyn Source>, Verdict>>;
 
 impl Content {

@@ -29,7 +29,7 @@ pub enum Event {
 /// Key of the keyboard: letters and digits as lower-case characters, other keys by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
-    /// Letter, digit or other printed character that the key gives without Shift.
+    /// Letter, digit or other printed character that the key produces without Shift.
     Character(char),
     /// The space bar.
     Space,

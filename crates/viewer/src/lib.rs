@@ -1,7 +1,7 @@
-//! A viewer for any game on lockstep2d: live play, replays, two replays over each other, and the state of bodies and of
-//! the game itself, in a window or on a web page.
+//! A viewer for any game on lockstep2d, in a window or on a web page: live play, replays, two replays drawn over each
+//! other, and the state of bodies and of the game itself.
 //!
-//! [`Viewer`] makes the program, with one line per thing that the game adds:
+//! [`Viewer`] builds the program, with one line for each scene, player or drawing that the game adds:
 //!
 //! ```no_run
 //! use lockstep2d_viewer::{Colour, Controls, Key, Viewer};
@@ -42,7 +42,7 @@
 //! }
 //! ```
 //!
-//! [`App`] is the viewer without its window: it takes [`Event`]s and elapsed time, and fills a [`DrawList`]. It does
+//! [`App`] is the viewer without its window: it receives [`Event`]s and elapsed time, and fills a [`DrawList`]. It does
 //! not depend on a window, a clock or files, so a window, a web page, a script and a test all drive it in the same way.
 #![expect(clippy::disallowed_types, reason = "drawing uses floats")]
 

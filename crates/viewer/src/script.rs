@@ -28,7 +28,7 @@ use crate::event::{Button, Event, Key};
 /// Duration of a frame in a script: 1/60 s.
 pub const FRAME: Duration = Duration::from_nanos(16_666_667);
 
-/// Most frames of one instruction: an hour.
+/// Maximum number of frames of one instruction: an hour.
 const FRAMES_MAX: u32 = 216_000;
 
 /// List of instructions that replaces user input.

@@ -21,14 +21,14 @@ use crate::source::{Replay, Source, SourceError};
 #[cfg(target_arch = "wasm32")]
 use crate::window;
 
-/// The viewer program of a game: a window, or a web page, with live play, replays and the state of everything.
+/// The viewer program of a game: a window, or a web page, with live play, replays, and the state of bodies and rules.
 ///
 /// ```text
 /// Viewer::<MyGame>::new().scene("hill", "a car on a hill", |seed| seed).keys(keys).run()
 /// ```
 ///
-/// Without any more than `Viewer::<MyGame>::new().run()` it shows replays, divergence reports and snapshots. The scenes
-/// are what can be played live; the players take the seats of a scene in the order in which they are added.
+/// `Viewer::<MyGame>::new().run()` alone shows replays, divergence reports and snapshots. Scenes can be played live;
+/// players take the seats of a scene in the order in which they are added.
 pub struct Viewer<G: Game> {
     pub(crate) name: String,
     pub(crate) about: String,
@@ -52,7 +52,7 @@ pub(crate) struct SceneOf<G: Game> {
 pub(crate) enum SceneKind<G: Game> {
     /// A setup of the game, made from a random seed.
     Setup(Rc<dyn Fn(u64) -> G::Setup>),
-    /// A source of the game's own.
+    /// A [`Source`] implemented by the game.
     Source(OpenScene),
 }
 
@@ -63,7 +63,7 @@ impl<G: Game + 'static> Default for Viewer<G> {
 }
 
 impl<G: Game + 'static> Viewer<G> {
-    /// A viewer of files, with the name of the rules.
+    /// Creates a viewer without scenes. The name of the program is the name of the rules.
     #[must_use]
     pub fn new() -> Self {
         Viewer {
@@ -86,7 +86,7 @@ impl<G: Game + 'static> Viewer<G> {
         Viewer { name: name.into(), ..self }
     }
 
-    /// Sets the line that `--help` begins with.
+    /// Sets the first line of the `--help` text.
     #[must_use]
     pub fn about(self, about: impl Into<String>) -> Self {
         Viewer { about: about.into(), ..self }
@@ -106,7 +106,7 @@ impl<G: Game + 'static> Viewer<G> {
         self
     }
 
-    /// Adds a scene that is not a game with players: a [`Source`] of one's own.
+    /// Adds a scene that is shown through a custom [`Source`], without the players of the viewer.
     #[must_use]
     pub fn source(
         mut self,
@@ -132,29 +132,29 @@ impl<G: Game + 'static> Viewer<G> {
         self
     }
 
-    /// Adds a bot: `bot` gets the random seed of the scene and the number of its seat, counted from 0.
+    /// Adds a bot: `bot` receives the random seed of the scene and the number of the bot's seat, counted from 0.
     #[must_use]
     pub fn bot(mut self, bot: impl Fn(u64, usize) -> Bot<G> + 'static) -> Self {
         self.players.push(Player::Bot(Rc::new(bot)));
         self
     }
 
-    /// Sets what is drawn over the world: colours of players, scores, goals.
+    /// Sets a function that draws over the world, such as colours of players, scores and goals.
     #[must_use]
     pub fn draw(mut self, draw: impl Fn(&G, &mut Canvas<'_>) + 'static) -> Self {
         self.presentation.draw = Rc::new(draw);
         self
     }
 
-    /// Sets a line of text about the game, such as its score.
+    /// Sets a function that returns a line of text about the game, such as its score.
     #[must_use]
     pub fn status(mut self, status: impl Fn(&G) -> String + 'static) -> Self {
         self.presentation.status = Rc::new(status);
         self
     }
 
-    /// Sets what the inspector shows as the game's own state. Without it, all fields of [`Game::Save`] that are not the
-    /// world are shown, for which every frame makes a save.
+    /// Sets a function that returns the game's own state for the inspector. By default the inspector makes a save in
+    /// every frame and shows all fields of [`Game::Save`] except those of the world.
     #[must_use]
     pub fn state<S: Serialize>(mut self, state: impl Fn(&G) -> S + 'static) -> Self {
         let list = move |game: &G| listed(&fields(&state(game)).unwrap_or_default());
@@ -168,14 +168,14 @@ impl<G: Game + 'static> Viewer<G> {
         Viewer { layers, ..self }
     }
 
-    /// Sets the limits of replays that are opened.
+    /// Sets the limits for opened replays.
     #[must_use]
     pub fn limits(self, limits: Limits) -> Self {
         Viewer { limits, ..self }
     }
 
     /// Adds network matches over UDP, with the arguments `--host`, `--join` and `--watch`. They play the first scene
-    /// that has a setup. The options are those without `--lockstep`, `--rollback` and `--players`.
+    /// that has a setup. `options` are the defaults, which `--lockstep`, `--rollback` and `--players` override.
     #[cfg(not(target_arch = "wasm32"))]
     #[must_use]
     pub fn online(self, options: PeerOptions) -> Self {
@@ -220,7 +220,7 @@ impl<G: Game + 'static> Viewer<G> {
         }
     }
 
-    /// Returns the viewer without a window, with nothing shown yet, for tests and for windows of one's own.
+    /// Returns the viewer without a window and without a source, for tests and for custom windows.
     #[must_use]
     pub fn app(&self) -> App {
         App::new(self.content())

@@ -1,4 +1,4 @@
-//! The example `hill`: who drives to the right reaches both goals, and the game is deterministic.
+//! The example `hill`: a car that drives to the right reaches both goals, and the game is deterministic.
 
 #[path = "../examples/hill/game.rs"]
 mod game;

@@ -50,7 +50,7 @@ impl<G: Game + 'static> Worker<G> {
         Worker { limits: Limits::default(), game: PhantomData }
     }
 
-    /// Sets the limits of what a replay may cost. Arguments override them.
+    /// Sets the limits of the cost of a replay. Arguments override them.
     #[must_use]
     pub fn with_limits(self, limits: Limits) -> Self {
         Worker { limits, ..self }
@@ -95,7 +95,7 @@ impl<G: Game + 'static> Worker<G> {
                 Command::Results { connection, follow } => results::run(connection, rules, *follow).await,
             }
         });
-        // A file that is read from a hanging file system does not hold up the end.
+        // A file that is being read from a hanging file system must not delay the end of the process.
         runtime.shutdown_background();
         result
     }

@@ -1,4 +1,4 @@
-//! [`Job`]: a file to verify, as the queue has it.
+//! [`Job`]: a file to verify, as it is encoded in the queue.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +13,7 @@ pub(crate) struct Job {
     pub(crate) blake3: String,
 }
 
-/// Where a worker finds the bytes.
+/// Location of the bytes for a worker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Source {

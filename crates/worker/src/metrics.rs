@@ -17,11 +17,11 @@ const REQUEST_MAX: Duration = Duration::from_secs(5);
 pub(crate) struct Metrics {
     /// Results that were added, by verdict.
     results: Mutex<BTreeMap<String, u64>>,
-    /// Jobs whose result was known.
+    /// Jobs that already had a result.
     pub(crate) known: AtomicU64,
     /// Jobs that had been delivered before.
     pub(crate) redelivered: AtomicU64,
-    /// Whether a file is at work.
+    /// Whether a file is being verified.
     pub(crate) is_busy: AtomicBool,
 }
 
@@ -54,7 +54,7 @@ impl Metrics {
     pub(crate) async fn serve(self: Arc<Self>, listener: TcpListener, ticks: impl Fn() -> u64) {
         loop {
             let Ok((stream, _)) = listener.accept().await else {
-                // Too many open files, for example.
+                // The error may be temporary, such as too many open files.
                 tokio::time::sleep(Duration::from_millis(100)).await;
                 continue;
             };

@@ -95,7 +95,7 @@ impl Queue {
         Ok(Queue { context, name, results, replicas })
     }
 
-    /// Adds a job. One with the same bytes that was added within the last hour is known.
+    /// Adds a job. A job with the same bytes as one that was added within the last hour is known, and not added again.
     pub(crate) async fn submit(&self, job: &Job) -> Result<Added, WorkerError> {
         let payload = json(job);
         let publish = || async {
@@ -116,7 +116,7 @@ impl Queue {
             ack_wait,
             // A worker counts the deliveries, so that a file that kills workers has a result.
             max_deliver: -1,
-            // As many as there are workers.
+            // No limit, because there are as many unacknowledged jobs as workers.
             max_ack_pending: -1,
             ..Default::default()
         };

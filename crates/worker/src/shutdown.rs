@@ -9,11 +9,11 @@ use crate::error::WorkerError;
 /// Phase of the shutdown of the process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Phase {
-    /// It takes jobs.
+    /// The process takes jobs.
     Running,
-    /// It completes its file and takes no other.
+    /// The process completes its file and takes no other.
     Draining,
-    /// It gives its file back to the queue.
+    /// The process gives its file back to the queue.
     Stopping,
 }
 
@@ -22,7 +22,8 @@ pub(crate) enum Phase {
 pub(crate) struct Shutdown(watch::Receiver<Phase>);
 
 impl Shutdown {
-    /// Listens for signals. The first begins to drain; a second one, or `grace` after the first, stops.
+    /// Listens for signals. The first signal starts `Draining`; a second signal, or `grace` after the first, starts
+    /// `Stopping`.
     pub(crate) fn listen(grace: Duration) -> Result<Self, WorkerError> {
         let (phase, shutdown) = watch::channel(Phase::Running);
         let mut signals = Signals::new().map_err(|error| WorkerError::Start { what: "signals", error })?;

@@ -28,15 +28,15 @@ pub(crate) type Names<'a> = BoxStream<'a, Result<String, WorkerError>>;
 struct Line<'a> {
     file: &'a str,
     blake3: &'a str,
-    /// Whether it is new: files with the same bytes are one job.
+    /// Whether the job is new: files with the same bytes are one job.
     queued: bool,
 }
 
-/// Where the submitted files are, and workers find them.
+/// Location of the submitted files, for this command and for the workers.
 enum Files {
     /// In the folder of the worker, at the same paths as here.
     Folder,
-    /// Here; workers find them in the object store of the queue.
+    /// On this machine; workers find them in the object store of the queue.
     Objects(Box<ObjectStore>),
     Bucket(Bucket),
 }

@@ -31,7 +31,7 @@ const EXPIRES: Duration = Duration::from_secs(2);
 /// Time after which a request counts as lost, because the server has gone.
 const LOST: Duration = Duration::from_secs(5);
 
-/// Pause before a file that cannot be read is tried again, for each delivery so far.
+/// Pause before a file that cannot be read is tried again, times the number of deliveries so far.
 const READ_AGAIN: Duration = Duration::from_secs(1);
 
 /// The verdict on a file whose workers have ended several times without a result.
@@ -47,14 +47,14 @@ struct Work<G: Game + 'static> {
     store: ObjectStore,
     bucket: Option<Bucket>,
     max_deliver: u64,
-    /// Interval at which the server is told that a job is at work.
+    /// Interval at which the server is told that work on a job continues.
     progress: Duration,
     metrics: Arc<Metrics>,
 }
 
 /// Outcome of a job.
 enum Done {
-    /// It has a result, with this verdict.
+    /// The job has a result, with this verdict.
     Result(Judged),
     /// Another worker has to try again, after a pause.
     Again(Duration),
@@ -117,7 +117,7 @@ async fn next(jobs: &PullConsumer) -> Option<Message> {
         match batch.next().await? {
             Ok(message) => Some(message),
             Err(_) => {
-                // Not every error takes time.
+                // Some errors are returned at once, and the pause avoids a busy loop.
                 tokio::time::sleep(Duration::from_millis(100)).await;
                 None
             }
@@ -159,7 +159,7 @@ impl<G: Game + 'static> Work<G> {
         Ok(())
     }
 
-    /// Verifies the file of a job, and tells the server meanwhile that it is at work.
+    /// Verifies the file of a job, and meanwhile tells the server that work on the job continues.
     async fn done(&self, message: &Message, job: &Job, delivered: u64) -> Done {
         if delivered > self.max_deliver {
             return Done::Result(crashed(job, self.max_deliver));
@@ -207,8 +207,8 @@ impl<G: Game + 'static> Work<G> {
     }
 }
 
-/// Answers for a job and waits until the server has noticed. If it does not, the job is delivered again, and its result
-/// is known then.
+/// Acknowledges a job and waits until the server has confirmed it. Without a confirmation, the job is delivered again,
+/// and its result is known then.
 async fn acknowledge(message: &Message, kind: AckKind) {
     let _ = message.double_ack_with(kind).await;
 }

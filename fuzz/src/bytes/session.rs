@@ -10,7 +10,7 @@ use crate::source::Source;
 
 /// The tag of the match.
 const TAG: u64 = 5;
-/// Attacks of an input, at most.
+/// Largest number of attacks of an input.
 const ATTACKS: usize = 24;
 /// Number of endpoints.
 const COUNT: usize = 3;
@@ -41,7 +41,7 @@ impl Match {
         Match { endpoints, now: 0, seen: Vec::new() }
     }
 
-    /// Passes a tick, and delivers all packets at its end.
+    /// Simulates a tick, and delivers all packets at its end.
     fn step(&mut self, active: usize) {
         self.now += 16_667;
         let mut sent = Vec::new();

@@ -28,7 +28,7 @@ impl Questions<'_> {
         hit.is_some()
     }
 
-    /// Queries of single shapes, of the world and loose, against those of the world.
+    /// Compares queries of single shapes, both of the world and loose, with queries of the world.
     pub(super) fn singles(&self, source: &mut Source<'_>) -> bool {
         let Some(loose) = self.probe(source) else { return false };
         let nth = source.below(self.world.shape_count());

@@ -1,7 +1,7 @@
 //! Builds the arena: platform, mill, bumpers, plates and crates, and places the players in it.
 //!
 //! Distances from the centre, in metres: the mill's flails reach to 4.4, bumpers stand at 5.4, the inner crates lie
-//! at 6.2, plates at 7.2, players start at 8.1, the outer crates lie at 10. The platform ends at 12 at first; when it
+//! at 6.2, plates at 7.2, players start at 8.1, the outer crates lie at 10. The platform initially ends at 12. When it
 //! has crumbled completely, its edge is within the reach of the mill.
 
 use lockstep2d::body::{
@@ -33,7 +33,7 @@ const MILL_TORQUE: Fx = fx!(400);
 /// Role of a body in the game, stored in its user data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// The floor: only drawn, collides with nothing.
+    /// The floor, which is drawn but collides with nothing.
     Platform,
     /// A player on the seat of this index.
     Player(u8),

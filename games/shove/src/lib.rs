@@ -5,7 +5,7 @@
 //! players that enter them, and crates lie around. A player whose centre leaves the platform has fallen, and each
 //! player still standing gets a point. The last player standing wins the round, unless the time runs out first.
 //!
-//! The game is small on purpose. It is the example for lockstep, rollback, late join and the viewer.
+//! The game is deliberately small. It is the example for lockstep, rollback, late join and the viewer.
 //!
 //! ```
 //! use lockstep2d::lockstep::Game;
@@ -39,5 +39,5 @@ pub use rules::Phase;
 pub use setup::{Setup, UnplayableSetup};
 pub use view::Player;
 
-/// Most players of a match.
+/// Maximum number of players of a match.
 pub const SEATS_MAX: usize = 4;

@@ -1,4 +1,4 @@
-//! Network matches: entering a match, and what `shove play` and the viewer share while one runs.
+//! Network matches: entering a match, and the functions for a running match that `shove play` and the viewer share.
 
 use std::fmt;
 use std::io;
@@ -83,7 +83,7 @@ impl Participation<Address> {
 }
 
 impl Participation<&str> {
-    /// Enters a match over UDP. The socket is bound to the address `bind`, or to any free port without it.
+    /// Enters a match over UDP. The socket is bound to the address `bind`, or to any free port if it is `None`.
     ///
     /// # Errors
     /// [`OnlineError`] if an address cannot be resolved, the socket cannot be opened, or the setup or an option is

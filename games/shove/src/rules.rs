@@ -8,13 +8,13 @@ use serde::{Deserialize, Serialize};
 use crate::SEATS_MAX;
 use crate::arena;
 
-/// Ticks before a round in which nobody can move.
+/// Number of ticks before a round, in which players cannot move.
 const READY: u16 = 60;
-/// Most ticks of a round.
+/// Maximum number of ticks of a round.
 const FIGHT: u16 = 1200;
-/// Ticks after a round.
+/// Number of ticks after a round.
 const PAUSE: u16 = 75;
-/// Ticks into a round until the first ring of the platform crumbles.
+/// Number of ticks from the start of a round until the first ring of the platform crumbles.
 const FIRST_RING: u16 = 180;
 /// Ticks between two rings.
 const RING: u16 = 60;

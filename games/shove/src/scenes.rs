@@ -3,7 +3,7 @@
 use lockstep2d_cli::{Catalogue, Scene, SceneInfo};
 use lockstep2d_shove::{Bot, Pad, Setup, Shove};
 
-/// Catalogue of the matches that `record` can record.
+/// Catalogue of the matches for the command `record`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Matches;
 

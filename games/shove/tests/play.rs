@@ -1,6 +1,6 @@
 //! Matches between processes, over UDP on the loopback interface: all peers end in the same state, and their replays
-//! verify. Whole matches take their real time and need a machine that keeps up, so `cargo test` leaves them out; `.ci/run`
-//! runs them.
+//! verify. Whole matches take their real time and need a machine that keeps up, so `cargo test` leaves them out;
+//! `.ci/run` runs them.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -17,7 +17,7 @@ use std::time::Duration;
 use lockstep2d::replay::{Limits, Part, Reader, Verdict, verify};
 use lockstep2d_shove::{Pad, Shove};
 
-/// Seconds for which all wait for a silent player, long enough for a process that gets no CPU time on a busy machine.
+/// Seconds for which all peers wait for a silent player: long enough for a process without CPU time on a busy machine.
 const PATIENCE: &str = "8";
 
 /// Temporary folder of a test, removed on drop.
@@ -177,7 +177,7 @@ fn another_seed_is_another_match() {
     assert!(text(&output).contains("number of seats 2 here and 4 there"), "{}", text(&output));
 }
 
-/// A seat that does not exist or is taken is refused, as is a number of players that no match can have.
+/// A seat that does not exist or is taken is refused, and so is a number of players that no match can have.
 #[test]
 fn wrong_seats_are_refused() {
     let folder = Folder::new("seats");
@@ -196,7 +196,7 @@ fn wrong_seats_are_refused() {
     host.wait().unwrap();
 }
 
-/// Whoever is interrupted leaves: the others go on without waiting for it, and its replay has an end.
+/// An interrupted process leaves the match: the others continue without waiting for it, and its replay has an end.
 #[cfg(unix)]
 #[test]
 #[ignore = "plays in real time: run by .ci/run"]

@@ -113,7 +113,7 @@ impl BroadPhase {
         self.boxes[slot as usize] = fat;
     }
 
-    /// Inserts or moves the box of a slot. `fixed` tells whether its body is.
+    /// Inserts or moves the box of a slot. `fixed` tells whether its body is fixed.
     pub(crate) fn put(&mut self, slot: u32, fat: Aabb, fixed: bool) {
         self.record_box(slot, fat);
         self.fixed[slot as usize] = fixed;
@@ -216,7 +216,7 @@ impl BroadPhase {
                     }
                 };
                 match structure {
-                    // Marking more than half of what moves costs more than it saves.
+                    // Marking costs more than it saves if it concerns more than half of the boxes that are not fixed.
                     Structure::Trees(trees) if set.slots.len() < trees.moving_len() / 2 => {
                         trees.each_pair_of(&set.slots, found);
                     }

@@ -1,5 +1,5 @@
-//! The boxes in two trees, one for fixed bodies and one for all others. Pairs of fixed bodies are never wanted. Terrain
-//! keeps its tree, whatever moves over it, and the tree of what moves is small.
+//! The boxes in two trees, one for fixed bodies and one for all others. Pairs of fixed bodies are never wanted. The
+//! tree of the terrain does not change while bodies move over it, and the other tree stays small.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;

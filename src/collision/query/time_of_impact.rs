@@ -69,7 +69,7 @@ pub(crate) enum TimeOfImpact {
     Separated,
     /// The shapes first come within the target after this fraction of the tick.
     Hit { fraction: Fx },
-    /// The shapes start so deep in each other that no side is the right one.
+    /// The shapes overlap so deeply at the start that no direction of separation is reliable.
     Overlapped,
     /// The search gave up: the shapes do not come within the target before this fraction of the tick.
     Failed { fraction: Fx },
@@ -82,7 +82,7 @@ pub(crate) enum StartPolicy {
     Protect,
     /// They may slide, roll and separate, but go no more than [`TOLERANCE`] deeper.
     Resist,
-    /// They hit at once, or overlap.
+    /// The result is a hit at fraction 0, or that the shapes overlap.
     Report,
 }
 

@@ -1,7 +1,7 @@
 //! [`Costs`]: work units of the commands of a tick or of a setup.
 //!
-//! All commands of a tick are charged before the first is executed, and each may refer to what an earlier one adds. So
-//! what the tick adds counts as if it were there from the start.
+//! All commands of a tick are charged before the first one is executed, and a command may refer to objects that an
+//! earlier command adds. Therefore all objects added in the tick count as existing from its start.
 
 use crate::body::{BodyId, BodyKind};
 use crate::solver::SolverSettings;
@@ -16,7 +16,7 @@ const VISIT_WORK: u64 = 4;
 pub(super) struct Costs<'a> {
     world: &'a World,
     pub(super) added: AddedWork,
-    /// Shapes that the tick adds to bodies that exist.
+    /// Number of shapes that the tick adds to existing bodies.
     grown: u64,
     /// Largest number of passes of the solver in a tick.
     pub(super) rounds: u64,
@@ -29,7 +29,7 @@ impl<'a> Costs<'a> {
         Costs { world, added: AddedWork::default(), grown: 0, rounds }
     }
 
-    /// Counts what a command of the tick adds.
+    /// Counts the objects that a command of the tick adds.
     pub(super) fn add(&mut self, command: &Command) {
         self.added.bodies = self.added.bodies.saturating_add(bodies_added(command));
         self.added.shapes = self.added.shapes.saturating_add(shapes_added(command));
@@ -63,7 +63,7 @@ impl<'a> Costs<'a> {
             | Command::EnableJoint { joint }
             | Command::DisableJoint { joint } => {
                 let bodies = self.world.joint(*joint).map(|joint| joint.def().bodies());
-                // A joint that is added in this tick may be between any bodies.
+                // A joint added in this tick may connect any two bodies.
                 let joined = bodies.map_or(self.shapes(), |(a, b)| self.joined(&[a, b]));
                 VISIT_WORK.saturating_add(joined)
             }
@@ -104,7 +104,7 @@ impl<'a> Costs<'a> {
         count(self.world.shape_count()).saturating_add(self.added.shapes)
     }
 
-    /// A removal visits all contacts and joints.
+    /// Work units of a removal, which visits all contacts and joints.
     fn removal(&self) -> u64 {
         count(self.world.pair_count()).saturating_add(self.joints())
     }
@@ -114,7 +114,7 @@ impl<'a> Costs<'a> {
         bodies.saturating_add(self.shapes()).saturating_add(self.removal())
     }
 
-    /// Work units of visiting the shapes of a body. A body that is added in this tick may have all that are added.
+    /// Work units of visiting the shapes of a body. A body added in this tick may have all shapes added in this tick.
     fn shapes_of(&self, body: BodyId) -> u64 {
         let shapes = match self.world.body(body) {
             Some(body) => count(body.shapes().len()).saturating_add(self.grown),
@@ -130,7 +130,7 @@ impl<'a> Costs<'a> {
         }
     }
 
-    /// Work units of a change of a joint: the shapes of its bodies are compared anew.
+    /// Work units of a change of a joint, after which the shapes of its bodies are compared again.
     fn joined(&self, bodies: &[BodyId; 2]) -> u64 {
         bodies.iter().map(|body| self.shapes_of(*body) / VISIT_WORK).fold(0, u64::saturating_add)
     }

@@ -1,4 +1,4 @@
-//! The file of keyframes, stored beside a replay. `docs/FORMAT.md` gives the layout.
+//! Encoding of the keyframe file that is stored beside a replay. `docs/FORMAT.md` gives the layout.
 
 use alloc::string::String;
 use alloc::vec::Vec;

@@ -100,7 +100,8 @@ pub enum SeekError {
         /// Reason.
         why: String,
     },
-    /// After seeking backwards, the game computed another state than the first time: saving and loading it loses state.
+    /// After seeking backwards, the game computed a state different from the first time: saving and loading the game
+    /// loses state.
     Forgetful {
         /// Tick of the first checkpoint that no longer matches.
         tick: u64,
@@ -224,7 +225,7 @@ impl<'a, G: Game> Timeline<'a, G> {
     /// Every checkpoint on the way is compared.
     ///
     /// # Errors
-    /// [`SeekError`]. If the replay cannot be played up to `tick`, the game stays at the tick where that was found, and
+    /// [`SeekError`]. If the replay cannot be played up to `tick`, the game stays at the last tick that was played, and
     /// all earlier ticks remain reachable. If there is no such tick or its keyframe is wrong, the current tick does not
     /// change.
     pub fn seek(&mut self, tick: u64) -> Result<(), SeekError> {

@@ -1,5 +1,6 @@
 //! AVX-512 backend: eight lanes in vectors of 512 bits. Each number is the lower half of 64 bits, and the upper half is
-//! undefined. Eight products are then one vector, factors need no shuffling, and a shifted product is a number again.
+//! undefined. Eight products then fit one vector, factors need no shuffle, and a shifted product already has the format
+//! of a number.
 #![expect(unsafe_code, reason = "vendor intrinsics")]
 
 #[path = "avx512/division.rs"]

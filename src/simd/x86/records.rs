@@ -13,7 +13,7 @@ pub(super) struct Records<'a, T> {
 }
 
 impl<'a, T> Records<'a, T> {
-    /// Checks all eight indices at once: a check per index took as long as processing the record.
+    /// Checks all eight indices at once, because a check of each index took as long as processing the record.
     #[inline(always)]
     #[expect(clippy::cast_possible_wrap, reason = "compared as unsigned")]
     pub(super) fn new(all: &'a [T], at: &'a [u32; WIDTH]) -> Self {

@@ -14,7 +14,7 @@ use crate::math::{Fx, Speed, Vec2, fx_mul, narrow};
 /// The sum of the effects of all areas on a body.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct AreaEffect {
-    /// Acceleration in m/s², in addition to gravity, with that by which drag carries the body along: `c u`.
+    /// Acceleration in m/s², in addition to gravity. It includes the part by which drag carries the body along, `c u`.
     pub(crate) acceleration: Vec2<Fx>,
     /// Angular acceleration in rad/s² by which drag turns the body along.
     pub(crate) angular_acceleration: Fx,

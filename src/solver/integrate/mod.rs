@@ -122,7 +122,7 @@ impl MovingBody {
         body.spin = body.spin.clamp(-speed_max, speed_max);
     }
 
-    /// Removes the velocity along locked axes. Rotation is locked by a reciprocal gyration of 0.
+    /// Removes the velocity along locked axes. Rotation is locked by a reciprocal radius of gyration of 0.
     fn hold_locked_axes(&self, body: &mut SolverBody) {
         if self.locks.x {
             body.velocity.x = Speed::ZERO;
@@ -136,7 +136,8 @@ impl MovingBody {
     fn integrate_displacement(&self, body: &mut SolverBody, sub_step: SubStep, faults: &mut Faults) {
         self.hold_locked_axes(body);
         let mut advance = |sum: &mut Shift, speed: Speed| {
-            // Each summand is below 32 m. So is the sum, unless impulses exceed the speed limit at less than 32 Hz.
+            // Both summands are within ±16 m, so the sum does not saturate. It is clamped only if impulses exceed the
+            // speed limit of the world at fewer than 32 ticks per second.
             let wanted = sum.saturating_add(sub_step.distance(speed));
             *sum = wanted.clamp(-SHIFT_MAX, SHIFT_MAX);
             *faults += u64::from(*sum != wanted);

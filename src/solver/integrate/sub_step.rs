@@ -29,8 +29,8 @@ impl SubStep {
     }
 
     /// `v / rate`, rounded to nearest, ties towards +infinity, by a product instead of a division (T. Granlund,
-    /// P. Montgomery, 1994). The dividend is below 2^48, so that the product is too large by less than `2^48 d`, which
-    /// does not reach the next multiple of `2^64`.
+    /// P. Montgomery, 1994). The dividend is below 2^48, so that `d` times the product is too large by less than
+    /// `2^48 d`. This is below 2^64, so that the quotient does not reach the next integer.
     #[inline]
     #[expect(
         clippy::cast_possible_truncation,

@@ -17,7 +17,7 @@ pub(super) struct CacheKey {
     bodies: Vec<u32>,
 }
 
-/// Which parts of the last arrangement are still valid.
+/// The parts of the last arrangement that are still valid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Validity {
     /// Everything.
@@ -33,7 +33,7 @@ pub(super) struct Definitions {
     pub(super) joints: u64,
     pub(super) bodies: u64,
     pub(super) tuning: Tuning,
-    /// Number of threads that solve them.
+    /// Number of threads that solve the joints.
     pub(super) parts: usize,
 }
 

@@ -24,7 +24,8 @@ use crate::threads::TeamLock;
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct JointSet {
     cache_key: CacheKey,
-    /// Bodies with joints that are not among the bodies of the tick: their slots, and for a far anchor its frame.
+    /// Bodies that have joints but are not among the active bodies of the tick, and far anchors: the slot of each, and
+    /// the frame of a far anchor.
     anchors: Vec<(u32, Option<JointFrame>)>,
     /// For each body of the tick, its place in `bodies`, counted from 1; 0 if the body has no joint.
     places: Vec<u32>,
@@ -47,7 +48,7 @@ pub(in crate::solver) struct JointSet {
     /// block.
     others: Vec<(u32, bool)>,
     list: JointList,
-    /// For each joint in the order of the state, what the choice of blocks depends on.
+    /// For each joint in the order of the state, the properties on which the choice of blocks depends.
     candidates: Vec<Candidate>,
     /// For each joint in the order of the state, whether it is solved in a block.
     is_blocked: Vec<bool>,

@@ -13,8 +13,8 @@ use crate::body::Body;
 use crate::fx;
 use crate::math::{Angle, Fx, Length, Reciprocal, Rot, Unit, Vec2, fx_div, fx_mul, narrow, widen};
 
-/// Smallest distance in metres of the anchors of a gear that has a pitch point. The axles of nearer wheels are one: the
-/// gear then couples angles only, and turns against the ground.
+/// Smallest distance in metres between the anchors of a gear that has a pitch point. Nearer wheels count as coaxial:
+/// the gear then couples angles only, and the ground takes up its reaction torque.
 const DISTANCE_MIN: Fx = fx!(0.001);
 
 /// Largest length of a direction, so that it fits [`Unit`].
@@ -135,8 +135,8 @@ impl JointDef {
 }
 
 impl Joint {
-    /// The distance in metres by which a gear, rack or pulley does not hold, along the pitch line or the rope; in
-    /// radians of a tooth for a gear without a pitch point. `None` for other kinds.
+    /// The position error of a gear, rack or pulley in metres, along the pitch line or the rope. For a gear without a
+    /// pitch point, the error is in radians, where one tooth is a full turn. `None` for other kinds.
     pub(crate) fn coupling_error(&self, a: &Body, b: &Body) -> Option<Fx> {
         let def = &*self.def;
         Some(match &def.kind {
@@ -159,11 +159,11 @@ impl Joint {
     }
 }
 
-/// The teeth by which two wheels are out of mesh, as a fraction of a tooth, which is a turn here.
+/// The error of the mesh of two wheels, up to whole teeth. One tooth is a full turn of the returned angle.
 fn teeth_apart(gear: &Gear, [a, b]: [Angle; 2], gap: Vec2<Fx>) -> Angle {
     let line = Angle::of(gap).to_bits();
     let teeth = |teeth: i32, angle: Angle| {
-        // Whole turns are whole teeth, and drop out.
+        // Whole turns of a wheel are whole numbers of teeth, and drop out.
         angle.to_bits().wrapping_sub(line).wrapping_mul(teeth.cast_unsigned())
     };
     Angle::from_bits(teeth(gear.teeth_a, a).wrapping_add(teeth(gear.teeth_b, b)))
@@ -176,8 +176,9 @@ fn pitch_per_tooth(gear: &Gear, gap: Vec2<Fx>) -> Option<Fx> {
     (teeth != 0 && distance >= DISTANCE_MIN).then(|| distance / teeth.abs())
 }
 
-/// With the units `s` of the row for each tooth and radian, its part along the tangent is `(NA + NB) s / distance`.
-/// `s` is the length of a tooth on the pitch line, unless that is so long that the row hardly moves the wheels.
+/// `s` is the length of the row for each tooth and radian. The direction of the row then has the length
+/// `(NA + NB) s / distance` along the tangent. `s` is the length on the pitch line, or that of a row on the angle if it
+/// is shorter: with a longer `s` the row would hardly move the wheels.
 fn gear_measure(gear: &Gear, angles: [Angle; 2], inverse: [Reciprocal; 2], pose: &JointPose) -> Measure {
     let Gear { teeth_a, teeth_b } = *gear;
     let turning = widen(angular_scale(inverse, pose.fractions));
@@ -200,7 +201,7 @@ fn gear_measure(gear: &Gear, angles: [Angle; 2], inverse: [Reciprocal; 2], pose:
     measured([n, n], arms, pose, -fx_mul(scale, apart), Fx::ONE)
 }
 
-/// `rolled` is the length that the wheel has rolled back by its angle.
+/// `rolled` is the radius times the angle of the rack relative to the wheel.
 fn rack_measure(radius: Fx, along: Vec2<Unit>, rolled: Fx, pose: &JointPose) -> Measure {
     let direction = along.widen();
     let across = |arm: Vec2<Fx>| arm.cross(direction);
@@ -210,11 +211,11 @@ fn rack_measure(radius: Fx, along: Vec2<Unit>, rolled: Fx, pose: &JointPose) -> 
     measured([along, along], arms, pose, position, Fx::ONE)
 }
 
-/// `ropes` lead from the wheels to the anchors. The row is divided by the root of its mobility, as far as the longer
-/// direction fits.
+/// `ropes` lead from the wheels to the anchors. Both directions are scaled by one factor of at most 1, so that the
+/// direction on B, which is `ratio` times as long, fits [`Unit`].
 fn pulley_measure(ratio: Fx, ropes: [Vec2<Fx>; 2], pose: &JointPose) -> Measure {
     let [(to_a, length_a), (to_b, length_b)] = ropes
-        // An anchor on its wheel hangs below it.
+        // If an anchor coincides with its wheel, the rope counts as hanging down.
         .map(|rope| rope.normalized_with_length().unwrap_or((-Vec2::Y, Fx::ZERO)));
     let scale = fx_div(LONGEST, ratio).unwrap_or(Fx::ONE).min(Fx::ONE);
     let n_a: Vec2<Unit> = -to_a.widen().scale(scale).narrow();

@@ -24,9 +24,9 @@ use crate::math::{Angle, Fx, Vec2};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct JointDef {
-    /// One body.
+    /// The first body, A.
     pub body_a: BodyId,
-    /// The other body.
+    /// The second body, B.
     pub body_b: BodyId,
     /// The joint's frame in A's frame.
     pub frame_a: JointFrame,
@@ -109,7 +109,8 @@ pub enum JointKind {
     Wheel(Wheel),
     /// The frames are driven with limited force: top-down friction, dragging with a pointer.
     Motor(Motor),
-    /// The frames are free. The joint only keeps the bodies from colliding, unless [`JointDef::colliding`].
+    /// The frames are free. The joint only keeps the bodies from colliding, unless [`JointDef::collide_connected`] is
+    /// set.
     Filter,
     /// The wheels about the anchors turn in a ratio: toothed wheels, a wheel in a ring.
     Gear(Gear),
@@ -152,9 +153,9 @@ pub struct Threshold {
 /// The action on a joint whose load exceeds its [`Threshold`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ThresholdAction {
-    /// The world reports it.
+    /// The world reports the joint.
     Event,
-    /// The world reports it and removes the joint.
+    /// The world reports the joint and removes it.
     Break,
 }
 
@@ -190,8 +191,8 @@ impl JointFrame {
         x.saturating_abs().max(y.saturating_abs()) > REACH_MAX
     }
 
-    /// The centre of a body and the vector from there to the anchor, in the frame of the body. The centre of a fixed
-    /// body is arbitrary: if the anchor is far from the origin, it is the anchor itself.
+    /// The centre of mass of a body in the world, and the vector from it to the anchor in the frame of the body. The
+    /// centre of a fixed body is arbitrary: if the anchor is far from the origin, the anchor itself is the centre.
     pub(super) fn centre_and_arm(&self, body: &Body) -> (Vec2<Fx>, Vec2<Fx>) {
         if self.is_far() {
             (self.far_pose(body).centre, Vec2::ZERO)
@@ -269,7 +270,7 @@ impl JointDef {
         self
     }
 
-    /// Makes the joint one that is disabled at first: see [`World::enable_joint`](crate::world::World::enable_joint).
+    /// Makes the joint disabled at first: see [`World::enable_joint`](crate::world::World::enable_joint).
     #[must_use]
     pub const fn disabled(mut self) -> Self {
         self.enabled = false;

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! is known up to whole teeth from the pose alone, because whole turns are whole teeth. There is no state that could
-//! drift, and wheels that are forced apart by more than half a tooth skip it, as gears do.
+//! drift, and wheels that are forced out of mesh by more than half a tooth skip a tooth, as real gears do.
 
 use serde::{Deserialize, Serialize};
 
@@ -26,15 +26,15 @@ const TEETH_MAX: i32 = 1000;
 const RADIUS_MIN: Fx = fx!(0.001);
 const RADIUS_MAX: Fx = fx!(128);
 
-/// A gear: two wheels about the anchors, whose teeth mesh. B turns by `-teeth_a / teeth_b` of the turn of A, both seen
-/// from the line between the anchors.
+/// A gear: two wheels about the anchors, whose teeth mesh. B turns by `-teeth_a / teeth_b` of the turn of A, both
+/// relative to the line between the anchors.
 ///
 /// The pitch radii follow from the distance of the anchors, in the ratio of the teeth. Wheels with teeth of the same
 /// sign are beside each other and turn in opposite directions. A wheel with a negative number is a ring around the
 /// other one, and both turn the same way, as two wheels with a belt do.
 ///
-/// The gear holds no distance: give each wheel a hinge, to the ground or to a common body. The angles of the frames say
-/// how the teeth meet: [`World::fit_joint`](crate::world::World::fit_joint) sets them to the current poses.
+/// The gear holds no distance: give each wheel a hinge, to the ground or to a common body. The angles of the frames
+/// define how the teeth mesh: [`World::fit_joint`](crate::world::World::fit_joint) sets them to the current poses.
 ///
 /// ```
 /// use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, solver::{Gear, JointDef, Revolute}, world::World};
@@ -84,11 +84,12 @@ impl Gear {
     }
 }
 
-/// A wheel on a rack: A is a wheel of a radius about its anchor, and rolls along the x axis of B's frame.
+/// A wheel on a rack: A is a wheel about its anchor, and rolls along the x axis of B's frame.
 ///
-/// The wheel touches its pitch line at the distance `radius` to the right of that axis, below it if the axis points to
-/// the right. The joint holds no distance: give the wheel a hinge and the rack a slider, or the wheel both.
-/// [`World::fit_joint`](crate::world::World::fit_joint) moves B's anchor so that the joint holds at the current poses.
+/// The anchor of the wheel moves along that axis. The pitch line, on which the wheel rolls, is at the distance `radius`
+/// to the right of the axis: below the axis if it points to the right. The joint holds no distance: give the wheel a
+/// hinge and the rack a slider, or the wheel both. [`World::fit_joint`](crate::world::World::fit_joint) moves B's
+/// anchor so that the joint holds at the current poses.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, world::World};

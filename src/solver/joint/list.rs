@@ -238,7 +238,7 @@ impl JointList {
         }
     }
 
-    /// The rows and points in blocks of the joint in a slot. The list is in the order of `slots`.
+    /// Calls `each` with every row and point in a block, and with the slot of its joint.
     pub(super) fn blocked_parts(&self, mut each: impl FnMut(u32, BlockedPart)) {
         let (mut row, mut point) = (0, 0);
         for (joint, link) in self.joints.iter().zip(&self.links) {

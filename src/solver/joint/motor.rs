@@ -1,6 +1,6 @@
 //! The motor joint: motors and springs with limited force on the angle and on the anchors. It has no rigid parts.
 //!
-//! A limit of the force in any direction is a bound of the length of a point block's impulse `p = G L`.
+//! A limit of the force that is the same in all directions bounds the length of the impulse `p = G L` of a point block.
 
 use serde::{Deserialize, Serialize};
 
@@ -38,10 +38,9 @@ use crate::math::{Fx, Vec2};
 #[doc(alias = "target joint")]
 #[doc(alias = "MotorJoint")]
 pub struct Motor {
-    /// Drives B's anchor to a velocity relative to A's frame: to the velocity of the point of A, or of its extension,
-    /// at which B's anchor is. That is what
-    /// [`World::joint_velocity`](crate::world::World::joint_velocity) measures. If A rotates, B is driven around with
-    /// it.
+    /// Drives B's anchor to a velocity relative to A's frame: relative to the point of A, or of its extension, at which
+    /// B's anchor is. [`World::joint_velocity`](crate::world::World::joint_velocity) measures this velocity. If A
+    /// rotates, B is driven around with it.
     pub linear: Option<LinearDrive>,
     /// Drives B to an angular velocity relative to A in rad/s, with limited torque in N m.
     pub angular: Option<Drive>,

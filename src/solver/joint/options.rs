@@ -14,8 +14,9 @@ const DAMPING_RATIO_MAX: Fx = fx!(100);
 
 /// The range of a joint's position, in radians or metres, within ±2^20. The lower end is not above the upper one.
 ///
-/// A limit is as stiff as joints are: a steady acceleration `a` against it exceeds it by `a / (2 pi f)^2`, with the
-/// [joint stiffness](crate::solver::SolverSettings::joint_hertz) `f`, at most a quarter of the sub-step rate.
+/// A limit is as stiff as joints are: under a steady acceleration `a` against the limit, the position exceeds it by
+/// `a / (2 pi f)^2`, with the [joint stiffness](crate::solver::SolverSettings::joint_hertz) `f`, at most a quarter of
+/// the sub-step rate.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, math::Vec2, world::World};
@@ -40,7 +41,7 @@ pub struct JointLimit {
     pub upper: Fx,
 }
 
-/// A motor: drives the joint to a speed with limited force or torque. At speed 0 it is friction.
+/// A motor: drives the joint to a speed with limited force or torque. At speed 0 it acts as friction.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, world::World};
@@ -104,10 +105,12 @@ pub struct Spring {
 /// points of mass: the stiffness is `(2 pi hertz)^2 m` N/m in all directions, with `m = mA mB / (mA + mB)`, or the mass
 /// of the one that moves if the other does not. A body that hangs on a fixed one sags by `g / (2 pi hertz)^2`, wherever
 /// its anchor is. With an anchor at a distance `r` from its centre of mass, across the pull, it also turns: it swings
-/// `sqrt(1 + r^2 / k^2)` times as fast, with `k` its radius of gyration, and is damped as many times as much.
+/// `sqrt(1 + r^2 / k^2)` times as fast, with `k` its radius of gyration, and its damping ratio is larger by the same
+/// factor.
 ///
-/// A spring between anchors that is stretched by `x` turns a body of mass `M` too fast for the time step if `(2 pi
-/// hertz / rate)^2 m x r / (M k^2)` is above about 1, with the sub-step rate. Then the body gains energy.
+/// A spring between anchors that is stretched by `x` turns a body of mass `M` too fast for the time step if
+/// `(2 pi hertz / rate)^2 m x r / (M k^2)` is above about 1, where `rate` is the sub-step rate. Then the body gains
+/// energy.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};

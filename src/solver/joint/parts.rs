@@ -62,7 +62,7 @@ impl Parts<'_> {
     pub(super) fn spring_within(&mut self, direction: Direction, spring: Option<Spring>, force: JointLimit) {
         if let Some(Spring { hertz, damping_ratio, target }) = spring {
             let softness = Softness::spring(hertz, damping_ratio, self.rate);
-            // An unlimited force stays one.
+            // An unlimited force stays unlimited.
             let unlimited = force == JointLimit { lower: Fx::MIN, upper: Fx::MAX };
             let impulse = |force| if unlimited { force } else { self.impulse(force) };
             let (lower, upper) = (impulse(force.lower), impulse(force.upper));

@@ -119,7 +119,7 @@ impl Ends {
         }
     }
 
-    /// Measures along a direction. A coupling measures by itself.
+    /// Measures along a direction. `Coupling::measure` does this for couplings.
     pub(super) fn measure(
         &self,
         direction: Direction,
@@ -202,7 +202,7 @@ impl JointPose {
 
     /// The levers of A and B to one point. An impulse that is not along the gap keeps angular momentum only if it acts
     /// on both bodies at one point. This is B's anchor if it is within reach of A, otherwise the point within reach of
-    /// A that is nearest to it. `None` if that is not within reach of B.
+    /// A that is nearest to it. `None` if that point is not within reach of B.
     fn levers_at_one_point(&self) -> Option<[Lever; 2]> {
         let a = self.reach_of_a();
         let longest = longest_ratio(a);

@@ -70,7 +70,7 @@ impl Revolute {
         check_options(self.limit, self.motor, self.spring)
     }
 
-    /// Its rows on the angle.
+    /// The rows on the angle of the joint.
     pub(super) fn angle_parts(&self) -> AngleParts {
         AngleParts { spring: self.spring, held: false, drive: self.motor, limit: self.limit }
     }

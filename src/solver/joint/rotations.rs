@@ -8,7 +8,7 @@ use super::pose::BodyRotation;
 use crate::math::{Angle, Fx, Rot};
 use crate::simd::{Kernel, Lanes, Quad};
 
-/// Number of bodies in a loop.
+/// Number of bodies that one vectorised loop processes.
 const BLOCK: usize = 32;
 
 /// Computes the rotations of bodies at their current poses.

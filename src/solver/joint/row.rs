@@ -82,7 +82,7 @@ pub(super) struct JointRow {
     open: bool,
     bounds: (Speed, Speed),
     denominator: Denominator,
-    /// That of the [`Measure`] at the last refresh.
+    /// [`Measure::reach`] at the last refresh.
     pub(super) reach: [Ratio; 2],
     /// Whether a block computes the impulse.
     pub(super) is_blocked: bool,
@@ -168,7 +168,8 @@ impl JointRow {
         self.denominator
     }
 
-    /// The softness in the bias pass of a row without limits, at the pose of the last refresh.
+    /// The softness of the row in the bias pass, at the pose of the last refresh. A limit that is not reached is solved
+    /// without softness.
     pub(super) fn softness(&self) -> &Softness {
         &self.softness
     }

@@ -12,7 +12,7 @@ use crate::math::{Unit, mul};
 use crate::simd::Quad;
 use crate::threads::TeamLock;
 
-/// All joints of a tick, divided.
+/// All joints of a tick, divided among the threads.
 pub(in crate::solver) struct JointSplit<'a> {
     pub(super) is_empty: bool,
     pub(super) own: OwnJoints<'a>,
@@ -29,7 +29,7 @@ pub(in crate::solver) struct JointShare<'a, 'set> {
     rotations: &'a TeamLock<BodyRotations<'set>>,
 }
 
-/// The joints that a single thread solves.
+/// The joints that only one of the threads solves: all joints except coloured hinges.
 pub(super) struct OwnJoints<'a> {
     pub(super) hinges: &'a mut HingeSet,
     pub(super) list: &'a mut JointList,

@@ -131,7 +131,7 @@ impl Joint {
     }
 }
 
-/// A part of a joint whose force can be asked for: see
+/// A part of a joint whose force can be queried: see
 /// [`World::joint_part_force`](crate::world::World::joint_part_force).
 ///
 /// ```
@@ -141,7 +141,7 @@ impl Joint {
 /// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
 /// # let wall = world.spawn(&BodyDef::fixed(), &[])?;
 /// # let weight = world.spawn(&BodyDef::dynamic().position((fx!(2), fx!(0))), &[square])?;
-/// // An arm of 2 m holds 10 N up: how hard does its motor work?
+/// // An arm of 2 m holds 10 N up: its motor exerts 20 N m.
 /// let motor = Revolute::new().motor(fx!(0), fx!(100));
 /// let hinge = world.add_joint(&world.joint_at(wall, weight, motor, (fx!(0), fx!(0)))?)?;
 /// (0..60).for_each(|_| world.step());
@@ -155,7 +155,7 @@ pub enum JointPart {
     Motor,
     /// The limits.
     Limit,
-    /// The springs; of a weld what is soft.
+    /// The springs; of a weld its soft parts.
     Spring,
 }
 

@@ -5,8 +5,8 @@
 //! D  = aA (nA^2 + eA^2) + aB (nB^2 + eB^2)
 //! ```
 //!
-//! `D` should be about 1, so that gains `a / D` are small. They are at most 2: a smaller `D` is replaced, so that one
-//! update removes only a part of the velocity.
+//! `D` should be about 1, so that gains `a / D` are small. Gains are at most 2: a `D` that is too small is replaced by
+//! a larger one, and one update then removes only a part of the velocity.
 
 use super::{Denominator, MassFractions, RATIO_MAX, Row, turning};
 use crate::math::{Length, Ratio, Reciprocal, Unit, Vec2, mul, saturate};

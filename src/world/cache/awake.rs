@@ -16,7 +16,7 @@ pub(crate) struct AwakeSet {
     bodies: Vec<u32>,
     /// Joints with at least one awake dynamic body that has mass.
     joints: Vec<u32>,
-    /// The joints among them that have a force or torque threshold.
+    /// Slots of the joints in `joints` that have a force or torque threshold.
     with_threshold: Vec<u32>,
     is_current: bool,
     /// Whether the world may have kinematic bodies. Never false while there is one.
@@ -28,7 +28,7 @@ pub(crate) struct AwakeSet {
 pub(crate) struct SlotShare<'a> {
     /// Slots of the bodies.
     pub(crate) bodies: &'a [u32],
-    /// The ends of the ranges of slots of bodies and of shapes.
+    /// Ends of the thread's slot ranges: that of bodies and that of shapes.
     pub(crate) ends: [u32; 2],
 }
 

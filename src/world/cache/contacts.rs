@@ -45,7 +45,7 @@ pub(crate) struct NarrowPhaseOutput {
     pub(crate) impacts: Vec<Impact>,
     /// For each manifold, the index of its contact in the state.
     pub(crate) contacts: Vec<u32>,
-    /// The contacts among these that the solver has to solve.
+    /// Contacts with a manifold that the solver has to solve.
     pub(crate) touching: Vec<ActiveContact>,
     /// Fast approaches, which become hit events if the shapes push each other in this tick.
     pub(crate) approaches: Vec<PendingHit>,

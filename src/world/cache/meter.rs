@@ -1,4 +1,4 @@
-//! Work units: [`WorkMeter`] counts work whose amount is known only when it is done, with a bound.
+//! Work units: [`WorkMeter`] counts work whose amount is known only when it is done, up to a budget.
 
 /// Pairs per body that are assumed to be solved in SIMD batches of eight. A heap that is not forced together has up to
 /// six pairs per body.
@@ -7,14 +7,15 @@ const PAIRS_PER_BODY: u64 = 32;
 /// Cost of a pair beyond [`PAIRS_PER_BODY`], in ordinary pairs: measured on a thousand squares at the same position.
 const CROWDED_WORK: u64 = 64;
 
-/// Cost of comparing the shapes of a pair in a tick, whatever the solver does: measured on shapes of extreme sizes.
+/// Cost of comparing the shapes of a pair in a tick, independent of the solver settings: measured on shapes of extreme
+/// sizes.
 pub(crate) const NARROW_PHASE_WORK: u64 = 4;
 
 /// Cost of a new pair, whose axis of separation is not known: measured on a hundred octagons at the same position.
 pub(crate) const NEW_PAIR_WORK: u64 = 8;
 
-/// Counts work units and ends what costs too much. It is no part of the state: a world whose meter is exhausted has a
-/// wrong state, which whoever set the budget must not use.
+/// Counts work units against a budget. Work beyond the budget is skipped. The meter is not part of the state. The state
+/// of a world whose meter is exhausted is wrong, and the caller that set the budget must discard it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WorkMeter {
     spent: u64,
@@ -29,19 +30,19 @@ impl Default for WorkMeter {
 }
 
 impl WorkMeter {
-    /// Starts at 0 with a budget in work units.
+    /// Creates a meter that starts at 0, with a budget in work units.
     pub(crate) fn start(max: u64) -> Self {
         WorkMeter { spent: 0, max }
     }
 
-    /// Counts units. Returns whether the budget covers them; if it does not, the work need not be done.
+    /// Counts units. Returns whether the budget covers them; if it does not, the caller may skip the work.
     #[inline]
     pub(crate) fn spend(&mut self, units: u64) -> bool {
         self.spent = self.spent.saturating_add(units);
         self.spent <= self.max
     }
 
-    /// Whether more was spent than the budget.
+    /// Whether more than the budget was spent.
     pub(crate) fn is_exhausted(&self) -> bool {
         self.spent > self.max
     }
@@ -52,7 +53,7 @@ impl WorkMeter {
     }
 }
 
-/// Work units of one pass of the solver over pairs of so many bodies.
+/// Work units of one pass of the solver over `pairs` pairs of shapes on `bodies` bodies.
 pub(crate) fn pair_work(pairs: u64, bodies: u64) -> u64 {
     // In a heap of overlapping bodies, many contacts find no free place in a SIMD batch.
     let crowded = pairs.saturating_sub(bodies.saturating_mul(PAIRS_PER_BODY));

@@ -67,7 +67,7 @@ pub(crate) struct Scratch {
     pub(crate) sweeps: Sweeps,
     pub(crate) solver: Solver,
     pub(crate) results: TickResults,
-    /// Work that is counted while it is done.
+    /// Meter of work whose amount is known only when it is done.
     pub(crate) meter: WorkMeter,
 }
 

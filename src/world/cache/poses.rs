@@ -29,8 +29,8 @@ pub(crate) struct Poses {
 pub(crate) struct Extents {
     /// Radius of a disc inside the thinnest solid shape of the body; [`Fx::MAX`] if it has no solid shape.
     pub(crate) core: Fx,
-    /// Largest distance of a point that moves when the body rotates. Of a disc only the centre counts, because rotation
-    /// does not change the area that the disc covers.
+    /// Largest distance of a point that moves when the body rotates. For a disc only its centre counts, because
+    /// rotation does not change the area that the disc covers.
     pub(crate) reach: Fx,
     /// Largest distance of any point.
     pub(crate) radius: Fx,

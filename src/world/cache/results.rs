@@ -109,6 +109,6 @@ pub(crate) struct SweptBody {
     pub(crate) sweep: Sweep,
     /// The pose to which the solver has moved it.
     pub(crate) end: Pose,
-    /// Whether it is fast, not only perhaps relative to a kinematic body.
+    /// Whether its own displacement makes it fast. If not, it may still be fast relative to a kinematic body.
     pub(crate) is_fast: bool,
 }

@@ -256,7 +256,7 @@ pub enum Command {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// Nothing.
+    /// The command adds nothing.
     Done,
     /// A body.
     Body(BodyId),

@@ -42,7 +42,7 @@ impl World {
     /// Adds a body with its shapes.
     ///
     /// # Errors
-    /// [`WorldError`] if a value is out of range, also the mass of a dynamic body, or the world is full.
+    /// [`WorldError`] if a value, including the mass of a dynamic body, is out of range, or the world is full.
     #[doc(alias = "create_body")]
     #[doc(alias = "rigid body")]
     pub fn spawn(&mut self, body: &BodyDef, shapes: &[ShapeDef]) -> Result<BodyId, WorldError> {
@@ -76,7 +76,8 @@ impl World {
         Ok(id)
     }
 
-    /// Adds a body with the same definition at every place. Shorter to record than a [`World::spawn`] for each.
+    /// Adds a body with the same definition at every place. A recording stores the definition only once, unlike with a
+    /// [`World::spawn`] for each place.
     ///
     /// # Errors
     /// The errors of [`World::spawn`]. No body is then added.
@@ -126,7 +127,7 @@ impl World {
         Ok(id)
     }
 
-    /// Connects two bodies by a joint. While neither of them is dynamic, the joint rests.
+    /// Connects two bodies by a joint. The joint has no effect while neither body is dynamic.
     ///
     /// # Errors
     /// [`WorldError`] if a handle is stale, both bodies are the same, a value is out of range, or the world is full.
@@ -138,8 +139,8 @@ impl World {
         Ok(self.insert_joint(*def))
     }
 
-    /// Adds a joint with the same definition between every pair of bodies. Shorter to record than a
-    /// [`World::add_joint`] for each.
+    /// Adds a joint with the same definition between every pair of bodies. A recording stores the definition only once,
+    /// unlike with a [`World::add_joint`] for each pair.
     ///
     /// # Errors
     /// The errors of [`World::add_joint`]. No joint is then added.

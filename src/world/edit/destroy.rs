@@ -89,7 +89,7 @@ impl World {
         self.state.removed_contacts.extend(removed);
         self.state.sleeping_contacts.retain(|contact| !ends(contact.shapes));
         if is_listed {
-            // The manifolds of all other contacts stay: a picture of the tick still shows them.
+            // The manifolds of all other contacts stay, so that `World::contacts` still returns them.
             let contacts = &mut self.state.contacts;
             self.scratch.contacts.split_off(contacts, &mut Vec::new(), |contact| !ends(contact.shapes));
         }

@@ -74,8 +74,8 @@ impl BodyField {
 }
 
 impl World {
-    /// Flips one bit of a number of an awake dynamic body, as failing memory would. Used to test the detection of
-    /// divergence. The lowest bit of a speed counts 2^-21 m/s, that of a coordinate 2^-32 m, that of the angle 2^-32
+    /// Flips one bit of a field of an awake dynamic body, as a memory error would. Used to test the detection of
+    /// divergence. The lowest bit of a speed is worth 2^-21 m/s, that of a coordinate 2^-32 m, that of the angle 2^-32
     /// turns; see [`BodyField::bits`].
     ///
     /// # Errors

@@ -96,8 +96,8 @@ impl World {
     }
 
     /// Sets the pose that a kinematic body has after the next tick: the position of its origin in metres, and its
-    /// rotation. The body gets the velocity that takes it there, pushes what it meets, and stops at the target unless
-    /// it is given another one. It rotates by the shorter way.
+    /// rotation. The body gets the velocity that takes it there, and pushes dynamic bodies on its way. It stops at the
+    /// target unless it is given another one. It rotates in the direction of the smaller angle.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the body is not kinematic, the position is out of range, or it cannot be
@@ -125,7 +125,7 @@ impl World {
         Ok(())
     }
 
-    /// Moves a body's origin at once to a position in metres, with a rotation, regardless of what is in between.
+    /// Moves a body's origin at once to a position in metres, with a rotation, regardless of shapes in between.
     /// Contacts and joints that persist keep their impulses.
     ///
     /// # Errors

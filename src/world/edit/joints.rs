@@ -1,6 +1,7 @@
 //! Changing joints.
 //!
-//! A change that changes nothing does nothing: a machine that sets its motors in every tick falls asleep when it stops.
+//! Setting a value that a joint already has changes nothing and does not wake its bodies. A machine whose motors are
+//! set in every tick can therefore fall asleep once it stops.
 
 use crate::body::{BodyId, JointId, WorldError};
 use crate::math::{Angle, Fx, Vec2};
@@ -104,8 +105,8 @@ impl World {
         Ok(())
     }
 
-    /// Lets a disabled joint act again. Wakes its bodies, unless it is enabled already. It begins without impulses, and
-    /// its angle is the one within half a turn of the last.
+    /// Enables a disabled joint and wakes its bodies. Does nothing if the joint is enabled already. The joint starts
+    /// without impulses, and its angle is the one within half a turn of the last.
     ///
     /// # Errors
     /// [`WorldError::StaleJoint`] if it is not in the world.
@@ -116,8 +117,9 @@ impl World {
         })
     }
 
-    /// Takes a joint out of the simulation until [`World::enable_joint`]: it keeps its handle, exerts nothing, and lets
-    /// its bodies collide and sleep as if it were absent. Wakes its bodies, unless it is disabled already.
+    /// Takes a joint out of the simulation until [`World::enable_joint`], and wakes its bodies. The joint keeps its
+    /// handle, exerts no force, and lets its bodies collide and sleep as if it were absent. Does nothing if the joint
+    /// is disabled already.
     ///
     /// # Errors
     /// [`WorldError::StaleJoint`] if it is not in the world.
@@ -128,8 +130,8 @@ impl World {
         })
     }
 
-    /// Sets the target speed of a joint's motor in rad/s or m/s; that of the angular motor of a motor joint. Wakes its
-    /// bodies, unless the speed is the same.
+    /// Sets the target speed of a joint's motor in rad/s or m/s. For a motor joint this is the angular motor. Wakes the
+    /// bodies of the joint, unless the speed is the same.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the joint has no motor, or the speed is out of range.
@@ -141,8 +143,8 @@ impl World {
         })
     }
 
-    /// Sets the largest force in N or torque in N m of a joint's motor; that of the angular motor of a motor joint.
-    /// Wakes its bodies, unless it is the same.
+    /// Sets the largest force in N or torque in N m of a joint's motor. For a motor joint this is the angular motor.
+    /// Wakes the bodies of the joint, unless the value is the same.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the joint has no motor, or the value is negative.
@@ -154,8 +156,8 @@ impl World {
         })
     }
 
-    /// Sets the target velocity of a motor joint in m/s, along the axes of the world. Wakes its bodies, unless it is
-    /// the same.
+    /// Sets the target velocity of a motor joint in m/s, along the axes of the world. Wakes its bodies, unless the
+    /// velocity is the same.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the joint has no linear motor, or the velocity is out of range.
@@ -174,7 +176,7 @@ impl World {
         })
     }
 
-    /// Sets the target of a joint's spring in rad or m. Wakes its bodies, unless it is the same.
+    /// Sets the target of a joint's spring in rad or m. Wakes the bodies of the joint, unless the target is the same.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the joint has no spring with a target, or the target is out of range.
@@ -187,8 +189,8 @@ impl World {
         })
     }
 
-    /// Sets the range of a joint's angle, translation or length in rad or m; `None` for no limit. Wakes its bodies,
-    /// unless it is the same.
+    /// Sets the range of a joint's angle, translation or length in rad or m; `None` for no limit. Wakes the bodies of
+    /// the joint, unless the range is the same.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the kind of joint has no limit, or the range is out of range.

@@ -43,7 +43,7 @@ impl World {
         Ok(())
     }
 
-    /// Names a body for people who read reports, or takes its name away. No result of the simulation depends on it.
+    /// Sets or removes the name of a body, which is shown in reports. No result of the simulation depends on it.
     ///
     /// # Errors
     /// [`WorldError::StaleBody`] if the body is not in the world, [`WorldError::NameInvalid`] if the name was decoded
@@ -54,8 +54,8 @@ impl World {
         Ok(())
     }
 
-    /// Replaces the source of a body's mass. Keeps its pose, its angular velocity and the velocity of its material.
-    /// Wakes the body.
+    /// Replaces the source of a body's mass. Keeps the pose, the angular velocity and the velocity of every material
+    /// point of the body. Wakes the body.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the mass is out of range, or the body rotates too fast for the new mass.
@@ -75,11 +75,11 @@ impl World {
     }
 
     /// Makes a body fixed, kinematic or dynamic. A body that becomes fixed stops, any other keeps its velocity. Its
-    /// joints stay, and rest as long as neither of their bodies is dynamic.
+    /// joints stay, but have no effect while neither of their bodies is dynamic.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the mass of a dynamic body would be out of range, a shape or the anchor
-    /// of a joint reaches too far for a body that moves, or the body rotates too fast for its mass.
+    /// of a joint is too far from the origin of a body that moves, or the body rotates too fast for its mass.
     #[doc(alias = "static")]
     #[doc(alias = "body type")]
     pub fn set_kind(&mut self, id: BodyId, kind: BodyKind) -> Result<(), WorldError> {
@@ -201,7 +201,7 @@ impl World {
     /// solid shape, or switches its contact events, its contacts end; otherwise they last as long as the shapes touch.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, or a value is out of range, also the mass of a dynamic body.
+    /// [`WorldError`] if the handle is stale, or a value, including the mass of a dynamic body, is out of range.
     #[doc(alias = "sensor")]
     #[doc(alias = "trigger")]
     pub fn set_shape(&mut self, id: ShapeId, def: &ShapeDef) -> Result<(), WorldError> {
@@ -215,7 +215,7 @@ impl World {
             .map(|other| if *other == id { def } else { &self.state.shapes.at(other.slot()).def });
         let mass = mass_of(owner.kind(), *owner.mass_source, &owner.settings, with)?;
         self.check_spin(owner, &mass)?;
-        // Every reported beginning of a contact needs its end.
+        // Every contact whose beginning was reported must have its end reported.
         let roles = |def: &ShapeDef| {
             let EventSwitches { contact, hit: _, sensor, detect_sensors } = def.events;
             (def.sensor, contact, def.sensor && sensor, def.sensor && detect_sensors)
@@ -259,7 +259,8 @@ impl World {
     }
 
     /// Replaces the effect of a sensor on the bodies in it, such as a wind that turns or a tide that rises; `None` for
-    /// a sensor that only detects. Wakes what is in it, unless nothing changes: a game may set the wind in every tick.
+    /// a sensor that only detects. Wakes the bodies in the area, unless the effect is the same, so that a game may set
+    /// it in every tick.
     ///
     /// ```
     /// use lockstep2d::{body::{Area, BodyDef, Polygon, ShapeDef}, fx, world::World};
@@ -284,8 +285,8 @@ impl World {
         if shape.def.area == area { Ok(()) } else { self.change_shape(id, |def| def.area = area) }
     }
 
-    /// Lets pairs and joints follow a body that is about to gain its first mass or to lose all of it: two bodies
-    /// without mass have no contact and no joint that acts.
+    /// Wakes the bodies that overlap or are joined to a body that is about to gain its first mass or to lose all of it,
+    /// and has pairs checked again: two bodies without mass have no contact and no joint that acts.
     pub(super) fn prepare_mass(&mut self, id: BodyId, mass: &MassProperties) {
         if self.state.bodies.at(id.slot()).has_mass() != (mass.mass > 0) {
             wake_overlapping(&mut self.state, &mut self.scratch, id.slot());

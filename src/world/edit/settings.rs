@@ -13,13 +13,13 @@ impl World {
     /// Replaces the settings of the world: read [`World::config`], change a copy, and pass it here. The limits of
     /// bodies, shapes, joints and pairs stay as they are.
     ///
-    /// Wakes everything if a setting changes on which the balance of forces depends: gravity, the tick rate, sub-steps,
+    /// Wakes all bodies if a setting changes on which the balance of forces depends: gravity, the tick rate, sub-steps,
     /// iterations, the tuning of contacts and joints, and [`Config::sleeping`] when it is switched off. Impulses that
-    /// contacts and joints keep for the next tick are converted to the new length of a sub-step, so that what rests
-    /// stays at rest. Bodies that are faster than a lower speed limit are slowed down by the next tick. A kinematic
-    /// body with a target still reaches it in the next tick, with the velocity that it had been given.
+    /// contacts and joints keep for the next tick are converted to the new length of a sub-step, so that bodies at rest
+    /// stay at rest. Bodies that are faster than a lower speed limit are slowed down by the next tick. A kinematic body
+    /// with a target still reaches it in the next tick, with the velocity that it was given.
     ///
-    /// A match over a network and a recording keep the tick rate with which they began.
+    /// In a match over a network and in a recording the tick rate must stay the same.
     ///
     /// ```
     /// use lockstep2d::{fx, world::{Config, World}};
@@ -49,12 +49,12 @@ impl World {
         let rate = |config: &Config| config.tick_rate.saturating_mul(config.solver.sub_steps);
         self.convert_impulses(rate(&old), rate(config));
         self.state.config = *config;
-        // The threshold of restitution is part of the surface of a pair.
+        // The restitution threshold of the world is part of the cached surface of a pair.
         self.scratch.contacts.invalidate_surfaces();
         Ok(())
     }
 
-    /// Replaces the world's gravity, in m/s². Wakes everything.
+    /// Replaces the world's gravity, in m/s². Wakes all bodies.
     ///
     /// # Errors
     /// [`WorldError::Setting`] if a component is not within ±100 000.
@@ -105,7 +105,7 @@ impl World {
 
 /// Whether bodies at rest may move with the new settings.
 fn is_disturbed(old: &Config, new: &Config) -> bool {
-    // A new setting does not compile until it is decided whether it wakes.
+    // Destructured, so that a new setting does not compile until it is decided whether it wakes bodies.
     let Config {
         tick_rate,
         gravity,

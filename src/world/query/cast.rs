@@ -72,7 +72,7 @@ pub struct CastHit {
 
 impl World {
     /// Returns the first shape that a ray meets, from a point along a translation in metres. Chain links that are solid
-    /// from one side let rays from the other side pass. One-way shapes let none pass.
+    /// from one side let rays from the other side pass. One-way platforms stop rays from every side.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, math::Vec2, world::World};
@@ -124,10 +124,10 @@ impl World {
     }
 
     /// Returns the first shape that a probe meets as it moves along a translation in metres without rotation. The probe
-    /// stops 0.1 mm before it touches. A shape that it touches at the start stops it only if it moves into that shape,
-    /// and so it slides along floors of chains and flush tiles. [`QueryFilter::initial_overlap`] has other choices for
-    /// shapes that it overlaps at the start. [`World::cast_turning`] also turns the probe.
-    /// A chain link that is solid from one side is met only by probes whose middle is on that side.
+    /// stops 0.1 mm before it touches. A shape that it touches at the start stops it only if the probe moves into that
+    /// shape, so that a probe slides along chains and flush tiles. [`QueryFilter::initial_overlap`] selects another
+    /// treatment of shapes that the probe overlaps at the start. [`World::cast_turning`] also rotates the probe. A
+    /// chain link that is solid from one side is met only by probes whose middle is on that side.
     #[must_use]
     #[doc(alias = "shapecast")]
     #[doc(alias = "sweep test")]
@@ -136,8 +136,8 @@ impl World {
     }
 
     /// Returns the first shape that a probe meets among those for which `accept` holds. `accept` gets the shape, the
-    /// normal of the hit, and the two shapes at the start of the cast about the probe's position, the other shape
-    /// first.
+    /// normal of the hit, and the two shapes as they are at the start of the cast, relative to the probe's position,
+    /// the other shape first.
     pub(super) fn first_along(
         &self,
         probe: &Probe,
@@ -207,7 +207,7 @@ impl World {
     }
 }
 
-/// The first touch of a moving shape B with a shape A that is not a seam of what B rests on.
+/// The first touch of a moving shape B with a shape A. `None` also if A is only a seam of the surfaces that B rests on.
 fn first_touch<'r>(
     [a, b]: [&SupportShape; 2],
     resting: impl FnOnce() -> Option<&'r Resting>,

@@ -6,8 +6,9 @@
 //! Box2D's `b2SolvePlanes`, are used only to push the character out of shapes that have moved over it: sliding along
 //! planes instead of casting would stop it at corners that it just misses.
 //!
-//! Ground and wall differ by the slope alone. On ground a character stands without sliding, and walks at the same speed
-//! as on level ground. Along any other surface it slides, and never upwards; what is left of a walk at a wall is lost.
+//! Only the slope distinguishes ground from walls. On ground a character stands without sliding, and walks at the same
+//! speed as on level ground. Along any other surface it slides, and never upwards; the rest of a walk into a wall is
+//! dropped.
 //!
 //! Ground carries the character. A character knows the pose that the body of its ground had at its last move, so that
 //! the next move starts with the displacement of the point under its feet: exact for lifts, turning platforms and
@@ -85,7 +86,7 @@ impl Mover {
         self
     }
 
-    /// Sets the height in metres of steps that it climbs without a jump, clamped to 0 to 100.
+    /// Sets the largest height in metres of steps that the character climbs without a jump, clamped to 0 to 100.
     #[must_use]
     pub fn step_height(mut self, height: Fx) -> Self {
         self.step_height = height.clamp(Fx::ZERO, HEIGHT_MAX);
@@ -186,7 +187,7 @@ impl MoverState {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Moved {
-    /// The new state. Its velocity is what the surfaces have left of the old one; ground only stops a fall.
+    /// The new state. Its velocity is the old one as limited by the surfaces met; ground only stops a fall.
     pub state: MoverState,
     /// The surfaces that the character has met, in order.
     pub met: Vec<MoverPlane>,
@@ -210,9 +211,9 @@ impl World {
     /// world does not change. To let the character push bodies or be seen by queries, give it a kinematic body, leave
     /// that body out by [`QueryFilter::except`], and let it follow by [`World::move_to`].
     ///
-    /// The game adds gravity. Moving ground carries the character by itself: by as much as its body has moved since the
-    /// character's last move, and by the surface speed of a belt. Move characters after [`World::step`] to have them on
-    /// their lifts; moved before it, they are one tick behind.
+    /// The game adds gravity. Moving ground carries the character without further code: by the movement of its body
+    /// since the character's last move, and by the surface speed of a belt. Move characters after [`World::step`]: a
+    /// character that is moved before it is one tick behind its lift.
     ///
     /// Between slopes that are both too steep a character rests without ground: see [`Moved::is_wedged`].
     ///

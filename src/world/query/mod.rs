@@ -30,7 +30,7 @@ use crate::math::Fx;
 /// Largest distance in metres by which a shape can be found outside of its box, because queries round to a grid.
 const SLACK: Fx = fx!(0.000001);
 
-/// Which shapes a query sees: those whose filter accepts that of the query and is accepted by it.
+/// Selects the shapes that a query sees: those whose collision filter accepts that of the query and is accepted by it.
 ///
 /// ```
 /// use lockstep2d::world::QueryFilter;
@@ -53,7 +53,7 @@ pub struct QueryFilter {
     pub initial_overlap: InitialOverlap,
 }
 
-/// Treatment of shapes inside of which a ray or a cast starts. Hits say whether it starts inside.
+/// Treatment of shapes inside of which a ray or a cast starts. The field `starts_inside` of a hit marks such a shape.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
@@ -71,13 +71,13 @@ pub struct QueryFilter {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum InitialOverlap {
-    /// A ray reports them, at fraction 0. A cast reports those into which it would go deeper, so that a shape that
-    /// overlaps others a little can leave them.
+    /// A ray reports such shapes, at fraction 0. A cast reports only those into which it would move deeper, so that a
+    /// probe that overlaps a shape slightly can leave it.
     #[default]
     Resist,
-    /// Rays and casts report them, at fraction 0.
+    /// Rays and casts report such shapes, at fraction 0.
     Report,
-    /// Rays and casts do not see them. That is also the floor into which a resting body has sunk by a millimetre.
+    /// Rays and casts do not see such shapes. This includes a floor into which a resting body has sunk by a millimetre.
     Ignore,
 }
 
@@ -99,8 +99,8 @@ impl QueryFilter {
     /// Largest number of bodies in [`QueryFilter::except_also`].
     pub const EXCEPT_ALSO_MAX: usize = 8;
 
-    /// Leaves out all bodies of a list, instead of those of [`QueryFilter::except_also`] so far. `None` if there are
-    /// more than [`QueryFilter::EXCEPT_ALSO_MAX`]: a ragdoll of many bodies is left out by its category.
+    /// Replaces [`QueryFilter::except_also`] by the bodies of a list. `None` if there are more than
+    /// [`QueryFilter::EXCEPT_ALSO_MAX`]: a ragdoll of many bodies is left out by its category.
     #[must_use]
     pub fn except_all(mut self, bodies: &[BodyId]) -> Option<Self> {
         self.except_also = [None; Self::EXCEPT_ALSO_MAX];
@@ -110,7 +110,7 @@ impl QueryFilter {
         Some(self)
     }
 
-    /// Sets what a ray or a cast does with shapes that it starts inside of.
+    /// Sets the treatment of shapes inside of which a ray or a cast starts.
     #[must_use]
     pub const fn initial_overlap(mut self, overlap: InitialOverlap) -> Self {
         self.initial_overlap = overlap;

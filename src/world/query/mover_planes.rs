@@ -1,14 +1,13 @@
-//! Movement against planes: the surfaces near a shape that the game moves, as half-planes, and the translation that
-//! they allow.
+//! Movement of a shape by the game: the surfaces near the shape as half-planes, and the translation that they allow.
 //!
 //! ```text
 //! minimise |x - target|²   subject to   s_i + n_i . x >= 0
 //! ```
 //!
-//! In two dimensions this takes few divisions. A plane with a limited push is soft: the mover may enter it. With soft
-//! planes the planes push along their normals in turn until nothing moves any more. A later push of a plane may reduce
-//! its accumulated push, but not below 0 (C. Hildreth, "A Quadratic Programming Procedure", 1957), as in Box2D v3's
-//! `b2SolvePlanes`.
+//! In two dimensions this takes few divisions. A plane with a limited push is soft: the mover may enter it. If there
+//! are soft planes, the planes push along their normals in turn until nothing moves any more. A later push of a plane
+//! may reduce its accumulated push, but not below 0 (C. Hildreth, "A Quadratic Programming Procedure", 1957), as in
+//! Box2D v3's `b2SolvePlanes`.
 
 use alloc::vec::Vec;
 

@@ -25,8 +25,8 @@ use crate::world::World;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClosestPoints {
-    /// Distance between the surfaces in metres. If the shapes overlap it is negative: the displacement that separates
-    /// them.
+    /// Distance between the surfaces in metres. If the shapes overlap, it is negative: the length of the shortest
+    /// displacement that separates them, negated.
     pub distance: Fx,
     /// Point on the first surface, in the world, in metres.
     pub point_a: Vec2<Fx>,

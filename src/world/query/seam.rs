@@ -67,7 +67,8 @@ impl Resting {
 }
 
 impl World {
-    /// The cast of a probe along a translation, from where it rests on what it touches. `None` if it touches nothing.
+    /// The cast of a probe along a translation, from the position where it rests on the shapes that it touches. `None`
+    /// if it touches nothing.
     pub(super) fn resting(
         &self,
         probe: &Probe,
@@ -101,7 +102,7 @@ impl World {
         // The broad phase finds them in no defined order.
         planes.sort_unstable_by_key(|plane| plane.shape);
         let out = solve_planes(Vec2::ZERO, &mut planes);
-        // The shape may be further from what it meets where it rests. So the cast is longer by twice the displacement.
+        // From the resting position an obstacle may be further away, so the cast is longer by twice the displacement.
         let forwards = translation.normalized().unwrap_or(Vec2::ZERO).widen();
         let beyond = forwards.scale(out.length() * 2);
         (!planes.is_empty()).then(|| Resting {

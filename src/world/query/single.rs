@@ -1,5 +1,6 @@
 //! Queries of single shapes: a ray, a point, a distance, a manifold or a time of impact of one shape or of two, without
-//! a world. A [`Probe`] is a loose shape with a pose; [`World::probe_of`] makes one of a shape of the world.
+//! a world. A [`Probe`] is a shape outside of a world, with a pose; [`World::probe_of`] copies a shape of the world to
+//! one.
 
 use super::Probe;
 use super::overlap::{ClosestPoints, proximity};
@@ -33,7 +34,7 @@ pub struct ProbeHit {
     pub starts_inside: bool,
 }
 
-/// Motion of a shape from start to end of a search for the time of impact, at constant speed.
+/// Motion of a shape for [`Probe::time_of_impact`]: a translation and a rotation, both at constant speed.
 ///
 /// ```
 /// use lockstep2d::{body::{Geometry, Polygon}, fx, math::Vec2};
@@ -62,8 +63,8 @@ pub struct Displacement {
 pub enum TimeOfImpact {
     /// The shapes do not touch.
     Separated,
-    /// The shapes first come within 0.15 mm of each other at this fraction of their displacements. They start apart, or
-    /// touch at the start, at fraction 0.
+    /// The shapes first come within 0.15 mm of each other at this fraction of their displacements. The fraction is 0 if
+    /// they touch at the start without overlapping.
     Hit {
         /// Fraction, 0 to 1.
         fraction: Fx,
@@ -162,8 +163,9 @@ impl Probe {
         overlap(&self.core(origin), &other.core(origin))
     }
 
-    /// Returns the contact manifold with another shape, as the solver gets it for two shapes that are at rest: empty if
-    /// their surfaces are more than a margin apart, in metres, 0 to 15. Segments and links have none with each other.
+    /// Returns the contact manifold with another shape, as the solver gets it for two shapes that are at rest. It is
+    /// empty if the surfaces are more than `margin` metres apart, 0 to 15, and for two shapes that are segments or
+    /// links.
     #[must_use]
     #[doc(alias = "collide")]
     pub fn manifold(&self, other: &Probe, margin: Fx) -> Manifold {

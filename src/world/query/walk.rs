@@ -1,4 +1,4 @@
-//! A character's move in a tick: carried by its ground, pushed out of what has moved over it, walked or thrown along
+//! A character's move in a tick: it is carried by its ground, pushed out of shapes that have moved over it, moved along
 //! its velocity, and put down on the ground.
 
 use alloc::vec::Vec;
@@ -42,8 +42,8 @@ enum Surface {
 enum Overlaps {
     /// They stop a cast that goes deeper.
     Stop,
-    /// All but those of fixed bodies let it pass: they have moved over the character in this tick, as the other
-    /// platforms of a train do, and it is pushed out of them after it has been carried.
+    /// Only shapes of fixed bodies stop a cast that goes deeper. All others have moved over the character in this tick,
+    /// as the other platforms of a train do, and let it pass; it is pushed out of them after it has been carried.
     Pass,
 }
 
@@ -96,8 +96,8 @@ impl<'a> Walk<'a> {
         self.surfaces.into_iter().map(|(_, plane)| plane).collect()
     }
 
-    /// Moves the character by the displacement of the point under its feet since its last move, as far as nothing but
-    /// the body of the ground is in the way.
+    /// Moves the character by the displacement of the point under its feet since its last move, or until it meets a
+    /// shape of a body other than that of the ground.
     pub(super) fn carry(&mut self, ground: &MoverPlane) -> Option<Carrier> {
         let body = self.world.body(ground.body).filter(|body| body.is_enabled())?;
         let turned = body.angle() - ground.body_angle;
@@ -118,7 +118,7 @@ impl<'a> Walk<'a> {
         Some(Carrier { body: ground.body, velocity })
     }
 
-    /// Moves the character out of shapes that overlap it, as far as nothing is in the way.
+    /// Moves the character out of shapes that overlap it, or until it meets another shape on the way out.
     pub(super) fn push_out(&mut self) {
         let rate = i64::from(self.world.state.config.tick_rate);
         for _ in 0..TURNS_MAX {
@@ -224,7 +224,7 @@ impl<'a> Walk<'a> {
                 Surface::Ground | Surface::Step => {
                     self.on_ground = true;
                     if !self.rises() {
-                        // Walking along ground keeps the length of the way, whatever the slope.
+                        // Walking along ground keeps the length of the translation at any slope.
                         let length =
                             self.along.map_or(left.x, |normal| along_surface(normal, Fx::ONE).dot(left));
                         left = along_surface(n, length);
@@ -252,8 +252,8 @@ impl<'a> Walk<'a> {
         if self.surfaces.iter().any(against) { Vec2::new(Fx::ZERO, v.y) } else { v }
     }
 
-    /// The normals that limit a translation, with ground, or a velocity, without ground. While the character walks only
-    /// the ground that it walks along counts.
+    /// Normals of the surfaces that limit a translation (with ground) or a velocity (without ground). Of several
+    /// grounds, a character that walks is limited only by the one that it walks along.
     fn limits(&self, ground_too: bool) -> impl Iterator<Item = Vec2<Unit>> + Clone {
         let all_ground = ground_too && self.along.is_none();
         let walls = self.surfaces.iter().flat_map(move |(surface, plane)| {
@@ -288,8 +288,8 @@ impl<'a> Walk<'a> {
         most_level.or_else(|| of_kind(Surface::Step).next()).copied()
     }
 
-    /// Moves down to ground within the snap distance, along whatever is in the way. Ground that has risen under the
-    /// walk may fall again by as much. Without ground the character stays where it is.
+    /// Moves down to ground within the snap distance, sliding along other surfaces in the way. The distance is larger
+    /// by the height that the character has climbed in this walk. Without ground the character stays where it is.
     fn snap(&mut self) -> Option<MoverPlane> {
         let start = self.probe;
         let reach = self.mover.snap_max().saturating_add(self.climbed).max(SKIN + SKIN);

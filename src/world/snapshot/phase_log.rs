@@ -34,7 +34,7 @@ pub struct PhaseDigest {
     pub digest: StateHash,
 }
 
-/// Recorded digests of a world since [`World::log_phases`](crate::world::World::note_phases).
+/// Recorded digests of a world since [`World::log_phases`](crate::world::World::log_phases).
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PhaseLog {
     pub(crate) digests: Vec<PhaseDigest>,

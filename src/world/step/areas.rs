@@ -1,4 +1,4 @@
-//! Areas: what sensors with an [`Area`] do to the bodies in them within the tick.
+//! Areas: the effects of sensors with an [`Area`] on the bodies in them, for one tick.
 //!
 //! Forces are computed once per tick, at the poses that velocities predict for a fraction `(s - 1) / 2 s` of the tick
 //! ahead, with `s` sub-steps: the mean of the poses at which the sub-steps begin. With a force at the pose at the start
@@ -77,7 +77,7 @@ fn time_ahead(state: &State) -> Fx {
 struct Sum<'a> {
     state: &'a State,
     body: &'a Body,
-    /// The place of the body, as seen from its own centre.
+    /// Pose of the body relative to its own centre.
     place: Place,
     /// Centre of mass of the body in the world.
     centre: Vec2<Fx>,
@@ -85,7 +85,7 @@ struct Sum<'a> {
     /// Area of all shapes in m², or the length of all lines if they have no area.
     size: Fx,
     has_area: bool,
-    /// Mass in kg of the medium that the body displaces, and the sum of its masses times their places.
+    /// Mass in kg of the medium that the body displaces, and the first moment of this mass about the body's centre.
     displaced: Fx,
     moment: Vec2<Fx>,
     effect: AreaEffect,
@@ -158,7 +158,7 @@ impl<'a> Sum<'a> {
         }
     }
 
-    /// Adds what acts on a part of the body of `size` m² with its centre at `arm` from the body's.
+    /// Adds the forces on a part of the body of `size` m² whose centre is at `arm` from the body's centre.
     fn add_forces(&mut self, area: &Area, place: &Place, size: Fx, arm: Vec2<Fx>) {
         let mass = fx_mul(area.density, size);
         self.displaced = self.displaced.saturating_add(mass);
@@ -168,7 +168,7 @@ impl<'a> Sum<'a> {
         self.effect.torque = self.effect.torque.saturating_add(arm.cross(force));
     }
 
-    /// Adds what acts on the body as a whole, for the share of it that is in the area.
+    /// Adds the effects on the body as a whole, scaled by the share of it that is in the area.
     fn add_share(&mut self, area: &Area, shape: &Shape, medium: &Body, place: &Place, share: Fx) {
         let mut field = place.rotation.apply_wide(area.acceleration);
         if let Some(attraction) = &area.attraction {
@@ -199,7 +199,7 @@ impl<'a> Sum<'a> {
     }
 }
 
-/// The place of a body whose predicted centre is at `centre`.
+/// Pose of a body whose predicted centre is at `centre`.
 fn place_of(body: &Body, centre: Vec2<Fx>, ahead: Fx) -> Place {
     let turned = Angle::from_radians(fx_mul(body.angular_velocity(), ahead));
     Place {
@@ -209,7 +209,7 @@ fn place_of(body: &Body, centre: Vec2<Fx>, ahead: Fx) -> Place {
     }
 }
 
-/// Acceleration towards a place, as seen from the body.
+/// Acceleration towards the point `to`, given relative to the body.
 fn pull(attraction: &Attraction, to: Vec2<Fx>) -> Vec2<Fx> {
     let Attraction { acceleration, radius, falloff } = *attraction;
     let Some((direction, distance)) = to.normalized_with_length() else { return Vec2::ZERO };

@@ -6,9 +6,9 @@
 //! the contact exists from the start. It loses the rest of its displacement in this tick.
 //!
 //! Bodies with [`Continuous::Kinematic`] are also swept against kinematic bodies, once these have been moved. Whether
-//! such a body is fast is judged relative to each of them, by the displacement from where its material would have taken
-//! it: what lies on a platform or in a drum is not held back. A body that is stopped is carried for the rest of the
-//! tick.
+//! such a body is fast is judged relative to each kinematic body: by its displacement from the position to which the
+//! kinematic body would have carried it. A body that lies on a platform or in a drum is therefore not held back. A body
+//! that is stopped by a kinematic body is carried by it for the rest of the tick.
 
 use core::ops::ControlFlow;
 
@@ -68,7 +68,7 @@ fn is_fast_relative(scratch: &Scratch, swept: &SweptBody, obstacle: &Sweep) -> b
     shift.is_longer_than(limit.saturating_sub(fx_mul(turned, extents.reach)))
 }
 
-/// Where a moving body takes a point from a fraction of the tick on until its end.
+/// Position at the end of the tick of a world point that moves with a body from a fraction of the tick on.
 fn carried(sweep: &Sweep, point: Vec2<Fx>, fraction: Fx) -> Vec2<Fx> {
     let (before, turned_before) = sweep.at(fraction);
     let (after, turned_after) = sweep.at(Fx::ONE);
@@ -195,8 +195,8 @@ fn first_impact(
         } else {
             shapes.broad_phase().each_fixed_overlap(area, visit);
         }
-        // Counting cannot end the search, but the budget of a world with so many shapes has paid for comparing them
-        // all.
+        // Counted after the search for this shape, which it need not end: the budget already covers comparing all
+        // shapes of the world.
         meter.spend(1 + visited / VISITS_PER_WORK);
     }
     first

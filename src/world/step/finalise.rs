@@ -64,8 +64,8 @@ fn run_shares(
     })
 }
 
-/// Sweeps the fast bodies that only fixed bodies stop, so that they need not wait for all other bodies, each thread its
-/// own.
+/// Sweeps the fast bodies that only fixed bodies stop. Each thread sweeps its own bodies, which need not wait for other
+/// bodies to be moved.
 fn sweep_bodies(state: &State, scratch: &mut Scratch) {
     let mut finalised = core::mem::take(&mut scratch.finalised);
     if finalised.iter().any(|finalised| !finalised.swept.is_empty()) {
@@ -161,7 +161,7 @@ impl Sources<'_> {
     }
 }
 
-/// Does what a thread has left to be done in order.
+/// Completes the work that a thread has left over because it depends on the order.
 fn complete(state: &mut State, scratch: &mut Scratch, finalised: &Finalised) {
     for &slot in &finalised.settled {
         scratch.pairs.changes.body_changed(state.bodies.at(slot));
@@ -170,7 +170,8 @@ fn complete(state: &mut State, scratch: &mut Scratch, finalised: &Finalised) {
     for &(slot, pose) in &finalised.others {
         move_body(state, scratch, slot, pose);
     }
-    // A single thread moves each of these bodies at once, while it is in the cache.
+    // Empty if several threads have swept these bodies. A single thread sweeps and moves each one at once, while it is
+    // in the cache.
     finalised.swept.iter().for_each(|swept| continuous::sweep(state, scratch, swept));
     scratch.results.stats.impacts += finalised.impacts;
     scratch.sweeps.relative.extend_from_slice(&finalised.relative);

@@ -1,10 +1,10 @@
 //! Contacts at the time of impact: the manifold of shapes that first touch later in the tick.
 //!
-//! A manifold of the start of the tick shows shapes that are still apart. Two balls that fly past each other's centre
-//! turn their common normal until they touch, and a rod turns its ends. Solved with the normal and the lever arms of
-//! the start, such an impact changes the angular momentum and the energy of the bodies. So the shapes are advanced to
-//! the time at which they touch at the velocities of the start, and collided there. The separations are then those of
-//! the start again, along the new rows:
+//! A manifold of the start of the tick describes shapes that are still apart. The common normal of two balls that do
+//! not meet head-on turns until they touch, and so do the ends of a rotating rod. An impact that is solved with the
+//! normal and the lever arms of the start changes the angular momentum and the energy of the bodies. The shapes are
+//! therefore advanced, at the velocities of the start, to the time at which they touch, and collided there. The
+//! separations are then converted back to the start of the tick, along the new rows:
 //!
 //! ```text
 //! s(0) = s(f) + f (approach in the tick)

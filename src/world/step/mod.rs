@@ -100,7 +100,7 @@ impl World {
         begin(Phase::Solve, PhaseView::of(state, scratch));
         let Scratch { solver, .. } = scratch;
         let first_sub_step = state.tick.wrapping_mul(settings.sub_steps.into());
-        // Without the budget for it nobody looks at the result.
+        // If the budget does not cover the sub-steps, they are skipped, and the caller discards the result.
         let sub_steps = if can_solve { settings.sub_steps } else { 0 };
         solver.sub_steps(first_sub_step, sub_steps, &tuning, &mut state.contacts);
         solver.store_joints(&mut state.joints);

@@ -284,8 +284,8 @@ fn surface_of(state: &State, poses: &Poses, (a, b): Pair) -> Surface {
     Surface::between(side(a), side(b), state.config.solver.restitution_threshold)
 }
 
-/// Returns the hit event that a contact causes if its shapes push each other in this tick: if they approach faster than
-/// the hit speed.
+/// Returns the hit event that a contact causes if its shapes push each other in this tick: if they approach at the hit
+/// speed or faster.
 fn fast_approach(
     state: &State,
     motion: &MotionCache,

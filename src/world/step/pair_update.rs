@@ -28,8 +28,8 @@ pub(super) fn update_pairs(state: &mut State, scratch: &mut Scratch) {
 }
 
 /// Moves the sleeping contacts with a body that has become active to the fresh contacts. Ends sleeping contacts whose
-/// boxes no longer overlap or which may not collide any more, as after a kinematic body with a sensor was moved by
-/// hand.
+/// boxes no longer overlap or which may not collide any more, for example after an edit has moved a kinematic body with
+/// a sensor.
 fn activate_sleeping_contacts(state: &mut State, scratch: &mut Scratch) {
     let pairs = &mut scratch.pairs;
     pairs.buffers.fresh.clear();

@@ -16,7 +16,7 @@ use crate::world::cache::Scratch;
 use crate::world::events::{Events, SensorEvent};
 use crate::world::state::{Side, State};
 
-/// Work units of following a pair that was not foreseen.
+/// Work units of following a pair that is not among the contacts.
 const UNFORESEEN_WORK: u64 = 16;
 
 /// Number of pairs of shapes outside their fat boxes that cost one work unit to consider.
@@ -97,7 +97,7 @@ impl Visit {
             (true, false) => (None, Some(last().unwrap_or(Fx::ZERO))),
             (false, false) => {
                 let begin = first();
-                // An end at 0 would be that of a change between ticks, which precedes a beginning.
+                // A fraction of 0 marks a change between ticks, which would come before the beginning.
                 (begin, begin.map(|begin| last().unwrap_or(begin).max(begin).max(Fx::DELTA)))
             }
         };
@@ -188,7 +188,7 @@ fn report_unforeseen(state: &mut State, scratch: &mut Scratch) {
         return;
     }
     let left = u64::try_from(scratch.sweeps.left_boxes.len()).unwrap_or(u64::MAX);
-    // Each is searched for, and in the worst case compared with each.
+    // The broad phase is searched for each of these shapes, and in the worst case each is compared with every other.
     if !scratch.meter.spend(left.saturating_mul(1 + left / COMPARED_PER_WORK)) {
         return;
     }

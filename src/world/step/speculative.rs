@@ -1,4 +1,4 @@
-//! Speculative contacts: which contact points bodies can reach within the tick at their velocities at its start.
+//! Speculative contacts: selects the contact points that bodies can reach within the tick at their initial velocities.
 
 use crate::body::{Body, Shape};
 use crate::collision::{GhostFilter, Manifold, ManifoldPoint, OneWay, PosedShape, is_ghost};

@@ -78,8 +78,8 @@ pub struct ContactForce {
 
 impl World {
     /// Returns the contacts of the last tick that had points, sorted by pair, as the narrow phase found them at the
-    /// start of the tick. Sensors have no manifolds. Nor are manifolds part of the state: after a restore the result is
-    /// empty until the next tick. Contacts of a shape that is removed or replaced leave it at once.
+    /// start of the tick. Sensors have no manifolds. Manifolds are not part of the state: after a restore the result is
+    /// empty until the next tick. Contacts of a shape that is removed or replaced are dropped at once.
     #[doc(alias = "manifold")]
     pub fn contacts(&self) -> impl Iterator<Item = ContactView<'_>> {
         let found = self.scratch.contacts.output();

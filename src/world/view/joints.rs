@@ -6,8 +6,8 @@ use crate::solver::{Joint, JointKind, JointPart, Tuning, Weld};
 use crate::world::World;
 
 impl World {
-    /// Returns the anchors of a joint in the world, in metres: that of body A, that of body B. `None`, as with all
-    /// these methods, if the joint is not in the world.
+    /// Returns the anchors of a joint in the world, in metres: first that of body A, then that of body B. `None` if the
+    /// joint is not in the world, as with all methods for a single joint.
     #[must_use]
     pub fn joint_anchors(&self, id: JointId) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
         let (joint, a, b) = self.joint_and_bodies(id)?;

@@ -40,8 +40,8 @@ impl World {
         }
     }
 
-    /// Returns those of [`World::contacts`] in which a body takes part, as shape A or as shape B, with their
-    /// [forces](ContactView::forces). Looks through all contacts. Empty if the body is not in the world.
+    /// Returns the [`World::contacts`] in which a shape of a body takes part, as shape A or as shape B, with their
+    /// [forces](ContactView::forces). Searches all contacts. Empty if the body is not in the world.
     pub fn contacts_of(&self, id: BodyId) -> impl Iterator<Item = ContactView<'_>> {
         let is_there = self.body(id).is_some();
         let is_own = move |shape: ShapeId| self.shape(shape).is_some_and(|shape| shape.body() == id);
@@ -49,9 +49,9 @@ impl World {
         contacts.filter(move |contact| is_own(contact.shape_a) || is_own(contact.shape_b))
     }
 
-    /// Returns the shapes that a sensor overlapped at the end of the last tick, in slot order: those that have begun to
-    /// overlap it by a [`SensorEvent`](crate::world::SensorEvent) and have not ended. Empty if the shape is no sensor
-    /// or is not in the world. It is part of the state, so that it is the same after a restore.
+    /// Returns the shapes that a sensor overlapped at the end of the last tick, in slot order: those whose overlap was
+    /// begun by a [`SensorEvent`](crate::world::SensorEvent) and has not ended. Empty if the shape is no sensor or is
+    /// not in the world. The result follows from the state, so that it is the same after a restore.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, world::World};

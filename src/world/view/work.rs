@@ -17,10 +17,10 @@ pub(crate) struct AddedWork {
 
 impl World {
     /// Returns an upper bound of the cost of the next tick in work units, if at most `bodies` bodies with `shapes`
-    /// shapes altogether are added before it: a start for [`Game::work`](crate::lockstep::Game::work). It counts
+    /// shapes altogether are added before it. [`Game::work`](crate::lockstep::Game::work) can be based on it. It counts
     /// bodies, shapes, pairs and joints, times the solver's sub-steps and iterations, 4 more for each pair, and 8 for
-    /// the tick. Shapes may be added on top of each other: it assumes as many new pairs as the world allows, for which
-    /// every shape is compared with every other.
+    /// the tick. Because shapes may be added on top of each other, it assumes as many new pairs as the world allows,
+    /// for which every shape is compared with every other.
     ///
     /// ```
     /// # use lockstep2d::world::World;
@@ -53,8 +53,8 @@ impl World {
     }
 
     /// Starts to count work whose amount is known only when it is done: sweeps of fast bodies, shapes in reach of an
-    /// explosion, shapes that meet a sensor unforeseen. Beyond `max` units it is not done, and the state is wrong from
-    /// then on. Changes no result otherwise; without a call there is no bound.
+    /// explosion, and shapes that cross a sensor outside of their fat boxes. Work beyond `max` units is skipped, and
+    /// the state is wrong from then on. Otherwise no result changes. Without a call there is no bound.
     pub(crate) fn start_work_meter(&mut self, max: u64) {
         self.scratch.meter = WorkMeter::start(max);
     }

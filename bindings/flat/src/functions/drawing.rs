@@ -14,7 +14,7 @@ use crate::describe::{CType, api};
 use crate::numbers::RawBody;
 use crate::table::with;
 
-// SAFETY: any bytes are a float.
+// SAFETY: every byte pattern is a float, and there is no padding.
 unsafe impl Plain for f64 {}
 
 impl CType for f64 {
@@ -30,7 +30,7 @@ fn float(value: Fx) -> f64 {
     value.to_bits() as f64 * UNIT
 }
 
-/// A body's handle as a number: it has at most 53 bits.
+/// A body's handle as a float, which is exact because a handle has at most 53 bits.
 #[expect(clippy::cast_precision_loss, reason = "at most 53 bits")]
 fn number(id: RawBody) -> f64 {
     id.0 as f64

@@ -34,7 +34,7 @@ fn shapes_of(shapes: &In<'_, RawShapeDef>, count: usize) -> Outcome<Vec<ShapeDef
     shapes.slice(count)?.iter().map(RawShapeDef::def).collect()
 }
 
-/// Commands of a body alone.
+/// Executes a command whose only parameter is a body.
 macro_rules! body_commands {
     ($target:ident, $body:ident, $command:ident) => {
         edit($target, Command::$command { body: $body.id()? }).map(|_| ())

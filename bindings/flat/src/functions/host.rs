@@ -167,7 +167,8 @@ impl HostReplay {
         setup.ok_or(Verdict::Malformed { offset: 0, flaw: lockstep2d::replay::Flaw::Setup })
     }
 
-    /// The bytes of the inputs of a run, all players after each other: a list of bytes for each player.
+    /// Decodes the inputs of a run, a list of bytes for each player, and returns the bytes of all players one after
+    /// another.
     fn decode(&self, encoded: &[u8], input_bytes: usize, length: usize) -> Option<Vec<u8>> {
         let mut list = u64::from(self.setup.2).to_le_bytes().to_vec();
         list.extend_from_slice(encoded);

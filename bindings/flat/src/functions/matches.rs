@@ -20,7 +20,7 @@ use crate::table::{self, Bytes, with};
 /// A participant of a match.
 pub(crate) struct Match {
     endpoint: Endpoint,
-    /// A packet and a request that did not fit the buffer they were asked for with.
+    /// A packet and a request that did not fit into the caller's buffer, kept for the next call.
     packet: Option<(Address, Vec<u8>)>,
     request: Option<Request>,
     events: VecDeque<Happened>,

@@ -62,7 +62,7 @@ pub(crate) const FUNCTIONS: &[(&str, &[Function])] = &[
     ("Mathematics", maths::FUNCTIONS),
 ];
 
-/// All functions, with arguments that are drawn.
+/// Calls of all functions with drawn arguments.
 #[cfg(any(test, feature = "fuzzing"))]
 pub(crate) const DRAWN: &[&[crate::fuzzing::DrawnCall]] = &[
     library::DRAWN,

@@ -24,7 +24,7 @@ pub(super) fn finished() -> Failure {
     Failure::new(Status::Record, "the recording is finished")
 }
 
-/// Limits that a pointer means.
+/// The limits that a pointer refers to; the default limits for a null pointer.
 pub(super) fn limits_of(limits: &In<'_, RawLimits>) -> Outcome<Limits> {
     if limits.is_null() { Ok(Limits::default()) } else { limits.get()?.limits() }
 }

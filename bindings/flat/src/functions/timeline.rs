@@ -34,7 +34,7 @@ fn failed(error: &SeekError) -> Failure {
     Failure::new(status, error.to_string())
 }
 
-/// Goes by a tick, if there is one.
+/// Steps a timeline by a tick, if there is one.
 fn go(timeline: u32, by: impl FnOnce(&mut Seekable<'_>) -> Result<Step, SeekError>) -> Outcome {
     with(timeline, |timeline: &mut SandboxTimeline| {
         match timeline.with_dependent_mut(|_, timeline| by(timeline)) {

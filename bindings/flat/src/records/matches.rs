@@ -275,7 +275,7 @@ impl RawVerdict {
     }
 }
 
-/// A field of the struct in the width of the session.
+/// Converts a field of the struct to the width that the session uses.
 fn narrow<T: TryFrom<u32>>(name: &str, given: u32) -> Outcome<T> {
     T::try_from(given).map_err(|_| value(name, given))
 }
@@ -348,7 +348,7 @@ pub(crate) const fn match_status(status: Status) -> u32 {
 }
 
 impl RawMatchEvent {
-    /// An event of which only the kind is known.
+    /// An event with only its kind set.
     pub(crate) fn new(kind: u32) -> Self {
         let none = RawHash { low: 0, high: 0 };
         RawMatchEvent { kind, peer: 0, seat: 0, tick: 0, value: 0, reserved: 0, ours: none, theirs: none }
@@ -383,7 +383,7 @@ impl RawMatchEvent {
         }
     }
 
-    /// The contact refuses.
+    /// The event that the contact refuses.
     pub(crate) fn refused(reason: RefusalReason) -> Self {
         let value = match reason {
             RefusalReason::Offer => REFUSED_OFFER,

@@ -148,7 +148,7 @@ impl RawQueryFilter {
         })
     }
 
-    /// The filter that a pointer means.
+    /// The filter that a pointer refers to; the default filter for a null pointer.
     pub(crate) fn of(pointer: &In<'_, Self>) -> Outcome<QueryFilter> {
         if pointer.is_null() { Ok(QueryFilter::default()) } else { pointer.get()?.filter() }
     }

@@ -16,7 +16,7 @@ fn game(scene: &Scene) -> Sandbox {
     Sandbox::new(&scene.setup(SEED)).unwrap()
 }
 
-/// Executes a command by the function with its structs, if there is one.
+/// Executes a command through its function with structs, if there is one.
 fn edit(target: u32, command: &Command) {
     let id = Out::null;
     match command {
@@ -115,7 +115,7 @@ fn a_recorded_scene_verifies_and_rolls_back() {
     [recording, commands].into_iter().for_each(|handle| done(ls2d_free(handle)));
 }
 
-/// Goes to and fro in a replay that ends in the state of a game.
+/// Seeks back and forth in a replay that ends in the state of a game.
 fn seek(file: &[u8], end: &Sandbox) {
     let (mut timeline, mut verdict) =
         (0, RawVerdict { kind: 9, reserved: 0, ticks: 0, hash: RawHash { low: 0, high: 0 } });

@@ -1,4 +1,4 @@
-//! Avian: its components of the bodies and colliders are saved, and its resources that last longer than a tick.
+//! Avian: a save contains its components of bodies and colliders, and its resources that last longer than a tick.
 
 use avian2d::collider_tree::{ColliderTreeOptimization, ColliderTrees, MovedProxies};
 use avian2d::collision::collider::EnlargedAabb;

@@ -1,4 +1,4 @@
-//! [`Engine`]: what is measured.
+//! [`Engine`]: the interface to the engines that are measured.
 
 /// Number of saves that are kept.
 pub const DEPTH: usize = 9;

@@ -15,7 +15,7 @@ use crate::engine::{DEPTH, Engine};
 #[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Tick;
 
-/// An app, and what of its state is compared.
+/// An app, and the part of its state that is compared.
 pub struct GgrsApp {
     app: App,
     state: fn(&mut World) -> Vec<u64>,

@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// An engine, and what was measured.
+/// An engine and its measurements.
 struct Measured {
     name: &'static str,
     engine: Box<dyn Engine>,
@@ -63,8 +63,8 @@ impl Measured {
         Measured { name, engine, bytes: 0, saves, loads, rollbacks, equal: 0 }
     }
 
-    /// Plays until the pile rests, then fills the buffer of saves and counts what it takes. The ticks are included:
-    /// data that a save shares with the world is copied by the next tick.
+    /// Plays until the pile rests, then fills the buffer of saves and counts the memory that it takes. The ticks
+    /// between the saves are included, because the next tick copies data that a save shares with the world.
     fn settle(&mut self) {
         (0..SETTLING).for_each(|_| self.engine.step());
         let region = Region::new(ALLOCATOR);
@@ -76,7 +76,7 @@ impl Measured {
         self.bytes = change.bytes_allocated.saturating_sub(change.bytes_deallocated) / DEPTH;
     }
 
-    /// Plays a tick, then returns to `DEPTH` ticks before and plays them again.
+    /// Plays a tick, then returns to the oldest save, `DEPTH - 1` ticks before, and plays these ticks again.
     fn roll_back(&mut self) {
         self.tick();
         let before = self.engine.state();
@@ -105,7 +105,7 @@ impl Measured {
     }
 }
 
-/// The time in microseconds that one call of ten stays below: other programs take the processor from long calls.
+/// The 10th percentile of the times in microseconds: other programs on the machine lengthen some calls.
 fn lowest_tenth(times: &[Duration]) -> f64 {
     let mut times = times.to_vec();
     times.sort();

@@ -1,4 +1,4 @@
-//! The drivers: what plays the ticks of a game.
+//! The drivers, which play the ticks of a game.
 
 mod local;
 mod network;
@@ -49,7 +49,7 @@ impl<G: LockstepGame> Driver<G> {
             Driver::SyncTest(test) if !is_paused => test.run(time.delta, inputs),
             Driver::Replay(replay) if !is_paused => replay.run(time.delta),
             Driver::Local(_) | Driver::SyncTest(_) | Driver::Replay(_) => Ok(()),
-            // Packets arrive in a pause, too.
+            // Packets have to be received during a pause, too.
             Driver::Match(network) => network.run(time, is_paused, inputs),
         }
     }

@@ -76,7 +76,7 @@ impl<G: LockstepGame> ReplayDriver<G> {
     }
 
     pub(crate) fn fraction(&self) -> f32 {
-        // At the end nothing comes to go to.
+        // At the end there is no next tick to interpolate to.
         if self.tick() == self.ticks { 1.0 } else { fraction_of(&self.timestep) }
     }
 }

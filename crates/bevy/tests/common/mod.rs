@@ -72,7 +72,7 @@ fn listen(
     assert_eq!(failure, None, "the driver has stopped");
 }
 
-/// Checks that the views are exactly the bodies, and stand where they stand.
+/// Checks that there is a view for every body and no other, at the pose of its body.
 pub fn check_views(app: &mut App) {
     let mut query = app.world_mut().query::<(Entity, &BodyView, &Transform)>();
     let scale = app.world().resource::<LockstepSettings>().pixels_per_metre;

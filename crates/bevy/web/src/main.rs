@@ -1,8 +1,8 @@
 //! `versus` over WebRTC: in web pages, natively, and between both. Arrow keys.
 //!
-//! A page without a room in its address makes one and opens a match. Whoever opens the page with `#ROOM` joins it.
-//! Natively: `bevy_lockstep2d_web [ROOM [SERVER]]`. Needs a signalling server of matchbox: `cargo run --example bot`
-//! has one, and a player.
+//! A page without a room in its address creates a room and opens a match. Every other page that is opened with `#ROOM`
+//! joins the match. Natively: `bevy_lockstep2d_web [ROOM [SERVER]]`. Needs a signalling server of matchbox: `cargo run
+//! --example bot` has one, and a player.
 
 #[cfg_attr(target_arch = "wasm32", path = "page.rs")]
 #[cfg_attr(not(target_arch = "wasm32"), path = "native.rs")]
@@ -17,26 +17,26 @@ use lockstep2d::peer::{PeerEvent, PeerIdentity, PeerOptions};
 use lockstep2d::session::Status;
 use lockstep2d_matchbox::Matchbox;
 
-/// Where a player goes.
+/// The signalling server, the room and the identity of a player.
 struct Arguments {
     /// The signalling server: `ws://HOST:PORT`.
     server: String,
-    /// The room of a match that somebody has opened.
+    /// The room of a match that another player has opened.
     room: Option<String>,
     /// Identity of the player. A player whose identity the match already knows gets its seat back.
     me: PeerIdentity,
-    /// The name for a room of one's own.
+    /// Name of the room that is created if `room` is `None`.
     new_room: String,
 }
 
 #[derive(Resource)]
 struct Room(String);
 
-/// A room in which nobody is yet.
+/// A room without other members so far.
 #[derive(Resource)]
 struct Empty(Option<Matchbox>, PeerIdentity);
 
-/// Joins the match of whoever is in the room.
+/// Joins the match once another member is in the room.
 fn join(mut commands: Commands, mut empty: ResMut<Empty>) -> Result {
     let me = empty.1;
     if let Some(mut matchbox) = empty.0.take() {
@@ -57,7 +57,7 @@ fn join(mut commands: Commands, mut empty: ResMut<Empty>) -> Result {
     Ok(())
 }
 
-/// Tells in what state the match is.
+/// Shows the state of the match.
 fn tell(lockstep: Option<Res<Lockstep<Versus>>>, room: Res<Room>, mut windows: Query<&mut Window>) {
     let name = &room.0;
     let peer = lockstep.as_ref().and_then(|lockstep| lockstep.peer());

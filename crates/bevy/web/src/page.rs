@@ -34,7 +34,7 @@ fn random_numbers() -> [u64; 4] {
     core::array::from_fn(|index| u64::from_le_bytes(numbers[index]))
 }
 
-/// The key of this tab, so that a page that is loaded again gets its seat back. A new tab has the given one.
+/// The key of this tab, so that a page that is loaded again gets its seat back. A new tab gets the key `new`.
 fn kept_key(new: u64) -> u64 {
     let Some(storage) = web_sys::window().and_then(|window| window.session_storage().ok().flatten()) else {
         return new;

@@ -61,7 +61,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
         play_lines(&mut copy, path, limits)?;
     }
     let idle = vec![G::Input::default(); usize::try_from(copy.players()).unwrap_or(0)];
-    // A verifier with these limits would refuse more ticks.
+    // One tick beyond the limit is enough for the verification of the result to fail.
     let idle_ticks = arguments.idle.min(limits.ticks.saturating_sub(copy.ticks()).saturating_add(1));
     for _ in 0..idle_ticks {
         copy.step(&idle)?;
@@ -102,7 +102,7 @@ fn play_lines<G: Game>(copy: &mut Copy<G>, path: &Path, limits: &Limits) -> Resu
     } else {
         Box::new(File::open(path).map_err(&read_error)?)
     };
-    // Inputs take some ten times as many bytes in JSON as in a replay.
+    // Inputs take about ten times as many bytes in JSON as in a replay.
     let lines = BufReader::new(source.take(limits.file_bytes.saturating_mul(16))).lines();
     for (number, line) in (1..).zip(lines) {
         let line = line.map_err(&read_error)?;

@@ -104,8 +104,8 @@ fn state_of_replay<G: Game>(
     Ok(State { tick: Some(tick), hash: Some(playback.game().state_hash()), fields })
 }
 
-/// The state of a tick as the report's peer had it, which may differ from what its replay leads to. Without a save of
-/// that tick, the state is computed from the replay.
+/// The state of the report's peer at a tick, which may differ from the state that its replay leads to. If the report
+/// has no save of that tick, the state is computed from the replay.
 fn state_of_report<G: Game>(
     report: &DesyncReport,
     arguments: &Arguments,

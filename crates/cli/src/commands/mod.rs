@@ -1,5 +1,5 @@
-//! The commands, one file each: `Arguments` describes what a command takes, `run` does it, and a row of [`table`] lists
-//! it.
+//! The commands, one file each. In each file, `Arguments` declares the arguments of the command and `run` executes it.
+//! [`table`] has a row for each command.
 
 mod bisect;
 mod diff;
@@ -22,7 +22,7 @@ use lockstep2d::lockstep::Game;
 
 use crate::context::{CommandResult, Context};
 
-/// A command: its name, help and arguments as clap has them, and what it does.
+/// A command: its clap definition (name, help and arguments), and the function that executes it.
 pub(crate) struct Row<G: Game> {
     pub(crate) command: Command,
     pub(crate) run: fn(&ArgMatches, &mut Context<'_, G>) -> CommandResult,

@@ -48,8 +48,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     Ok(Exit::Success)
 }
 
-/// Appends to the file as the game runs, so that a process that is killed leaves a valid incomplete replay in the
-/// temporary file.
+/// Appends to the temporary file while the game runs, so that a killed process leaves a valid incomplete replay in it.
 fn write<G: Game>(
     mut recording: Recording<G>,
     mut scene: Scene<G>,

@@ -92,7 +92,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     Ok(Exit::Success)
 }
 
-/// Goes to the requested tick, then back. Returns the numbers of ticks simulated on the way there and on the way back.
+/// Seeks to the requested tick, then steps back. Returns the numbers of ticks simulated by the seek and by the steps.
 fn go<G: Game>(timeline: &mut Timeline<'_, G>, arguments: &Arguments) -> Result<(u64, u64), CommandError> {
     let path = || arguments.file.clone();
     let explain = |error| match error {

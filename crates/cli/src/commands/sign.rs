@@ -15,7 +15,7 @@ use crate::files::{self, Shown};
 use crate::output_file::{OutputFile, Overwrite};
 use crate::signature::{FILE_BYTES_MAX, GameDigest, SecretKey, Signatures, path_beside};
 
-/// Longest secret key file in bytes.
+/// Maximum size of a secret key file in bytes.
 const KEY_BYTES_MAX: u64 = 4096;
 
 /// Sign a replay, in a file beside it
@@ -46,7 +46,8 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
         .map_err(CommandError::replay(&arguments.file))?;
 
     let beside = path_beside(&arguments.file);
-    // Locked before the file is read, so that no signature is lost when several processes sign.
+    // The output file is locked before the signatures are read, so that no signature is lost when several processes
+    // sign at the same time.
     let mut output = OutputFile::create(&beside, Overwrite::ALWAYS)?;
     let mut signatures = match read_signatures(&beside) {
         Err(CommandError::Read { error, .. }) if error.kind() == io::ErrorKind::NotFound => {
@@ -83,7 +84,7 @@ struct Line {
 /// # Errors
 /// [`CommandError::Read`], [`CommandError::NoText`] and [`CommandError::Line`].
 pub(crate) fn read_signatures(path: &Path) -> Result<Signatures, CommandError> {
-    // Reading a pipe of this name would block.
+    // If the path is a pipe, reading it would block.
     if !fs::metadata(path).map_err(CommandError::read(path))?.is_file() {
         return Err(CommandError::NoText { path: path.to_path_buf() });
     }

@@ -1,4 +1,4 @@
-//! `stats`: figures of every tick of a replay.
+//! `stats`: statistics of every tick of a replay.
 
 use std::path::PathBuf;
 
@@ -65,7 +65,7 @@ fn line(tick: u64, hash: StateHash, figures: &[(&str, u64)]) -> String {
     line + "}"
 }
 
-/// The figures of all ticks, summarised.
+/// Summary of the figures of all ticks.
 #[derive(Default)]
 struct Summary {
     ticks: u64,

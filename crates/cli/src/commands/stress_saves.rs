@@ -85,7 +85,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
 fn options(arguments: &Arguments, limits: &Limits) -> CheckOptions {
     let mut options = CheckOptions::default();
     if !arguments.all {
-        // A game that is not deterministic is told apart from a save that loses something.
+        // `Variant::Again` distinguishes a nondeterministic game from a save that loses state.
         options.variants = vec![Variant::Again, Variant::Reloaded];
         options.variants.extend(arguments.rollback.then_some(Variant::RolledBack));
     }

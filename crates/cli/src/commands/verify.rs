@@ -106,12 +106,12 @@ pub struct LimitArguments {
 }
 
 impl LimitArguments {
-    /// These limits, where an argument is given, and otherwise those of `limits`.
+    /// Returns `limits`, overridden by the limits that the arguments give.
     ///
     /// ```
     /// use lockstep2d::replay::Limits;
     /// use lockstep2d_cli::{LimitArguments, clap::{self, Parser}};
-    /// /// A worker of one's own that verifies replays.
+    /// /// The arguments of a custom program that verifies replays.
     /// #[derive(Parser)]
     /// struct Arguments {
     ///     #[command(flatten)]

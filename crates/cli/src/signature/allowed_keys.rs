@@ -11,7 +11,7 @@ use super::line_error::{Flaw, LineError};
 use super::signatures::{Signatures, message};
 use crate::identity::GameDigest;
 
-/// Longest name in bytes.
+/// Maximum length of a name in bytes.
 const NAME_BYTES_MAX: usize = 64;
 
 /// Public keys and the names of their owners. A name may have several keys.
@@ -31,7 +31,7 @@ struct Owner {
 ///
 /// ```
 /// use lockstep2d_cli::signature::Check;
-/// /// Whether a match counts: both players have signed it, and nobody has forged a signature.
+/// /// Whether a match counts: both players have signed it, and no signature is forged.
 /// fn counts(check: &Check) -> bool {
 ///     check.forged.is_empty() && ["alice", "bob"].iter().all(|name| check.signed_by.iter().any(|by| by == name))
 /// }
@@ -54,7 +54,7 @@ impl AllowedKeys {
         self.0.values().map(|owner| &owner.name).collect::<BTreeSet<_>>().len()
     }
 
-    /// Checks the signatures of a game. Those of keys that are not in the list are ignored.
+    /// Checks the signatures of a game. Signatures by keys that are not in the list are ignored.
     #[must_use]
     pub fn check(&self, signatures: &Signatures, game: &GameDigest) -> Check {
         let message = message(game);
@@ -62,7 +62,7 @@ impl AllowedKeys {
         for signature in signatures.all() {
             let Some(Owner { key, name }) = self.0.get(&signature.key) else { continue };
             let bytes = ed25519_dalek::Signature::from_bytes(&signature.bytes);
-            // The strict equation: there is no second signature that anybody could derive from a valid one.
+            // Strict verification: nobody can derive a second valid signature from a valid one.
             let is_valid = key.verify_strict(&message, &bytes).is_ok();
             if is_valid { &mut valid } else { &mut forged }.insert(name.clone());
         }

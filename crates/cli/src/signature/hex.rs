@@ -1,4 +1,4 @@
-//! Bytes as hexadecimal digits in lower case. One value has one text.
+//! Bytes as hexadecimal digits in lower case. Each value has exactly one text.
 
 use std::fmt;
 

@@ -13,12 +13,12 @@ use crate::identity::GameDigest;
 /// Beginning of the line of a secret key file.
 const PREFIX: &str = "lockstep2d secret key 1 ";
 
-/// A key to sign games with. [`SecretKey::text`] gives its file, parsing reads it.
+/// A key to sign games with. [`SecretKey::text`] returns the contents of its file, and `str::parse` reads them.
 ///
 /// The module [`signature`](crate::signature) has an example.
 pub struct SecretKey(SigningKey);
 
-/// The system has no random numbers.
+/// Error: the system provides no random numbers.
 #[derive(Debug)]
 pub struct RandomError(getrandom::Error);
 
@@ -26,14 +26,14 @@ impl SecretKey {
     /// Makes a new key from the random numbers of the operating system.
     ///
     /// # Errors
-    /// [`RandomError`] if the system has none.
+    /// [`RandomError`] if the system provides none.
     pub fn generate() -> Result<Self, RandomError> {
         let mut seed = [0; 32];
         getrandom::fill(&mut seed).map_err(RandomError)?;
         Ok(SecretKey(SigningKey::from_bytes(&seed)))
     }
 
-    /// The public key, by which others recognise signatures of this key.
+    /// The public key, with which others verify signatures by this key.
     #[must_use]
     pub fn public_key(&self) -> PublicKey {
         PublicKey(self.0.verifying_key().to_bytes())
@@ -45,14 +45,14 @@ impl SecretKey {
         Signature { key: self.public_key(), bytes: self.0.sign(&message(game)).to_bytes() }
     }
 
-    /// The text of a secret key file: one line. Whoever reads it can sign in the name of its owner.
+    /// The text of a secret key file: one line. Anyone who can read it can sign in the name of its owner.
     #[must_use]
     pub fn text(&self) -> String {
         format!("{PREFIX}{}\n", Hex(self.0.as_bytes()))
     }
 }
 
-/// Without the secret.
+/// Omits the secret.
 impl fmt::Debug for SecretKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "SecretKey of {}", self.public_key())
@@ -70,12 +70,13 @@ impl FromStr for SecretKey {
     }
 }
 
-/// A public key: 32 bytes, shown as 64 hexadecimal digits. It need not be a valid one.
+/// A public key: 32 bytes, shown as 64 hexadecimal digits. The bytes need not be a valid key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PublicKey(pub [u8; 32]);
 
 impl PublicKey {
-    /// The key for verifying, unless the bytes are no key or one for which anybody can sign.
+    /// The verification key; `None` if the bytes are not a key, or are a weak key, for which anyone can forge
+    /// signatures.
     pub(super) fn decode(self) -> Option<VerifyingKey> {
         VerifyingKey::from_bytes(&self.0).ok().filter(|key| !key.is_weak())
     }

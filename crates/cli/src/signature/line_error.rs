@@ -1,4 +1,4 @@
-//! [`LineError`]: why a file of keys or signatures cannot be read.
+//! [`LineError`]: the reason why a file of keys or signatures cannot be read.
 
 use std::fmt;
 
@@ -16,22 +16,22 @@ use super::signatures::SIGNATURES_MAX;
 pub struct LineError {
     /// Number of the line, from 1.
     pub line: u64,
-    /// What is wrong with it.
+    /// The flaw of the line.
     pub flaw: Flaw,
 }
 
-/// What is wrong with a line.
+/// Flaw of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flaw {
-    /// It is not a signature: `lockstep2d signature 1 KEY SIGNATURE`.
+    /// The line is not a signature: `lockstep2d signature 1 KEY SIGNATURE`.
     NoSignature,
-    /// It is not a secret key: `lockstep2d secret key 1 SEED`.
+    /// The line is not a secret key: `lockstep2d secret key 1 SEED`.
     NoSecretKey,
-    /// It is not an allowed key: `KEY NAME`.
+    /// The line is not an allowed key: `KEY NAME`.
     NoAllowedKey,
-    /// The digits are no public key of Ed25519, or one for which anybody can sign.
+    /// The digits are not a public key of Ed25519, or are a weak key, for which anyone can forge signatures.
     InvalidKey,
-    /// The key has a line already.
+    /// An earlier line has the same key.
     KeyTwice,
     /// The name is longer than 64 bytes or has control characters.
     Name,

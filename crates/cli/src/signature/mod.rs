@@ -1,10 +1,10 @@
-//! Signatures of games with Ed25519: who vouches for a replay.
+//! Ed25519 signatures of games, with which key owners vouch for a replay.
 //!
-//! A signature is made over the [`GameDigest`], so it holds for the same rules, setup and inputs, whatever blocks,
-//! checkpoints and trailer the file has, and for nothing else. FORMAT.md has the layout of the files, VERIFYING.md says
-//! what a signature does not prove.
+//! A signature covers the [`GameDigest`]. Therefore it is valid for exactly one combination of rules, setup and inputs,
+//! whatever blocks, checkpoints and trailer the file has. FORMAT.md gives the layout of the files, and VERIFYING.md
+//! explains what a signature does not prove.
 //!
-//! A server checks who has signed an upload:
+//! A server checks the signatures of an upload:
 //!
 //! ```
 //! use lockstep2d::lockstep::Sandbox;
@@ -29,7 +29,7 @@
 //! # }
 //! ```
 //!
-//! It still has to verify the replay: anyone can sign a replay that does not match.
+//! The server still has to verify the replay: anyone can sign a replay that does not match.
 
 mod allowed_keys;
 mod hex;

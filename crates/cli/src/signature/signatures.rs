@@ -9,10 +9,10 @@ use super::key::PublicKey;
 use super::line_error::{Flaw, LineError};
 use crate::identity::GameDigest;
 
-/// Most signatures in a file: all players of a match, and servers.
+/// Maximum number of signatures in a file: enough for all players of a match, and servers.
 pub const SIGNATURES_MAX: usize = 256;
 
-/// A file of more bytes has more than [`SIGNATURES_MAX`] signatures.
+/// Maximum size of a signature file in bytes. A larger file has more than [`SIGNATURES_MAX`] signatures.
 pub const FILE_BYTES_MAX: u64 = 64 << 10;
 
 /// Appended to the name of a replay for the name of its signature file.
@@ -21,7 +21,7 @@ const SUFFIX: &str = ".sig";
 /// Beginning of every line of a signature file.
 const PREFIX: &str = "lockstep2d signature 1 ";
 
-/// Precedes the digest in the message that is signed, so that no other use of a key gives the same signature.
+/// Prefix of the digest in the signed message, so that no other use of a key gives the same signature.
 const DOMAIN: &[u8; 22] = b"lockstep2d signature 1";
 
 /// The signature of one key.
@@ -29,14 +29,14 @@ const DOMAIN: &[u8; 22] = b"lockstep2d signature 1";
 pub struct Signature {
     /// The public key of the signer.
     pub key: PublicKey,
-    /// The signature of Ed25519.
+    /// The bytes of the Ed25519 signature.
     pub bytes: [u8; 64],
 }
 
-/// The signatures of a replay: at most one of each key, in the order of the file.
+/// The signatures of a replay: at most one by each key, in the order of the file.
 ///
-/// The text has one way to be written: a file with any other byte than `to_string` gives cannot be parsed
-/// or has other signatures. The module [`signature`](crate::signature) has an example.
+/// The text is canonical: a file that differs in any byte from the result of `to_string` cannot be parsed, or has other
+/// signatures. The module [`signature`](crate::signature) has an example.
 ///
 /// ```
 /// use lockstep2d::{lockstep::Sandbox, replay::{Limits, Recording}};
@@ -50,7 +50,7 @@ pub struct Signature {
 ///     let signature: Signature = player.sign(&digest);
 ///     signatures.add(signature)?;
 /// }
-/// // Whose signatures are in the file? That they are valid is for `AllowedKeys::check` to say.
+/// // The keys of the signatures in the file. `AllowedKeys::check` checks whether the signatures are valid.
 /// let text = signatures.to_string();
 /// let read: Signatures = text.parse()?;
 /// let keys: Vec<PublicKey> = read.all().iter().map(|signature| signature.key).collect();
@@ -80,7 +80,7 @@ impl Signatures {
         &self.0
     }
 
-    /// Adds a signature. An earlier one of the same key is replaced.
+    /// Adds a signature. An earlier signature by the same key is replaced.
     ///
     /// # Errors
     /// [`Flaw::TooMany`].

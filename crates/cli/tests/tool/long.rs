@@ -1,4 +1,4 @@
-//! `verify` with files that take long: they hold up no other file, are named, and can be stopped without a verdict.
+//! `verify` with slow files: they delay no other file, are reported by name, and can be stopped without a verdict.
 
 use std::fs;
 use std::thread;

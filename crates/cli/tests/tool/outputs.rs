@@ -1,5 +1,5 @@
-//! Commands that write a file lose nothing: an existing file is replaced only on request, and by all of the new bytes
-//! or by none of them, with a full disk, a killed process and two writers of the same file.
+//! Commands that write a file lose no data: an existing file is replaced only on request, and either by all of the new
+//! bytes or not at all, with a full disk, a killed process and two writers of the same file.
 #![cfg(unix)]
 
 use std::fs;
@@ -45,7 +45,7 @@ pub(crate) fn message(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// The names in a folder, sorted.
+/// The names of the entries of a folder, sorted.
 pub(crate) fn names(folder: &Folder) -> Vec<String> {
     let entries = fs::read_dir(folder.path("")).unwrap();
     let mut names: Vec<String> =

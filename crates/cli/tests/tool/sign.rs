@@ -95,14 +95,14 @@ fn players_sign_the_same_file_and_a_number_of_them_is_required() {
     let too_few = not_valid("missing", &["alice", "server"]);
     assert_eq!(signers(&folder, "a.replay", &["--require", "3"]), too_few);
 
-    // Two keys of one owner are one name.
+    // Two keys of one owner count as one name.
     let keys = fs::read_to_string(folder.path("keys")).unwrap();
     folder.write("keys", keys.replace(" server\n", " alice\n").as_bytes());
     assert_eq!(signers(&folder, "a.replay", &["--require", "2"]), not_valid("missing", &["alice"]));
     let (exit, lines) = check(&folder, "a.replay", &["--require", "3"]);
     assert_eq!((exit, lines), (Exit::Trouble, vec![]), "there are two names only");
 
-    // A key that is not in the file counts for nothing.
+    // A signature by a key that is not in the file is ignored.
     folder.write("keys", keys.replace(" server\n", " bob\n").replacen(" alice\n", " x\n", 1).as_bytes());
     let only_bob: Vec<&str> = keys.lines().filter(|line| line.ends_with(" bob")).collect();
     folder.write("keys", only_bob.concat().as_bytes());

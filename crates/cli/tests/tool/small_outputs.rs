@@ -1,5 +1,5 @@
-//! Keys, signature files and cache entries lose nothing either: with a full disk, a killed process and two writers.
-//! `outputs` tests the commands with one large output.
+//! Keys, signature files and cache entries lose no data with a full disk, a killed process and two writers. `outputs`
+//! tests the commands with one large output.
 #![cfg(unix)]
 #![expect(clippy::disallowed_types, reason = "kills come at moments of a run whose length is measured")]
 
@@ -42,7 +42,7 @@ fn shuffled(round: u64, range: u64) -> u64 {
 }
 
 /// Kills the tool at random moments, until both the old and the new output were found, and at least `rounds` times.
-/// `prepare` puts the old output back; `is_new` judges what is found.
+/// `prepare` restores the old output; `is_new` returns whether the output is the new one.
 fn kill_often(arguments: &[&str], rounds: u64, prepare: impl Fn(), is_new: impl Fn() -> bool) {
     let start = Instant::now();
     prepare();
@@ -224,7 +224,7 @@ fn kills_and_other_writers_leave_whole_entries_in_a_cache() {
         }
         let [.., survivor] = writers;
         assert_eq!(verify(&survivor.wait_with_output().unwrap()).0, expected);
-        // Every entry is one that is used: without it, the file would be simulated again and not be marked as cached.
+        // Every entry is used: without its entry, a file would be simulated again and not be marked as cached.
         let again = tool(&arguments);
         assert_eq!(verify(&again).0, expected);
         assert_eq!(String::from_utf8_lossy(&again.stdout).matches("\"cached\":true").count(), expected.len());

@@ -269,7 +269,7 @@ fn the_digest_of_a_game_depends_on_rules_setup_and_inputs_only() {
     for interval in [1, 2, 7, 60, 1000] {
         assert_eq!(game_of(&folder, &recorded(&setup(), interval, None)), game, "{interval}");
     }
-    // Claims do not count.
+    // The digest does not depend on the claims.
     let mut boast = Recording::<Liar>::start(&setup(), 10).unwrap();
     (0..95).for_each(|tick| boast.step(&inputs_at(tick)).unwrap());
     assert_eq!(game_of(&folder, &boast.finish().unwrap()), game);

@@ -99,8 +99,8 @@ async fn first_frame(socket: &mut Socket) -> Result<Option<Vec<u8>>, Error> {
     Ok(None)
 }
 
-/// The address of the member with a secret. Nobody can find the secret of an address, and nothing has to be stored: the
-/// address outlives connections and the relay.
+/// The address of the member with a secret: a hash, from which nobody can find the secret. Nothing has to be stored,
+/// so that the address outlives connections and the relay.
 fn member_of(secret: &[u8]) -> Option<Member> {
     let valid = secret.len() == SECRET_BYTES;
     valid.then(|| blake3::hash(secret).as_bytes().first_chunk().copied()).flatten()
@@ -149,7 +149,7 @@ impl Connection<'_> {
                         Next::Members => self.members(),
                         Next::Replaced => return close(&mut self.socket, CLOSE_REPLACED).await,
                     };
-                    // A member that does not read for so long is gone.
+                    // A member that does not read for the idle time counts as gone.
                     let Ok(sent) = timeout(idle, self.socket.send(message)).await else { return Ok(()) };
                     sent?;
                 }
@@ -165,7 +165,7 @@ impl Connection<'_> {
         }
     }
 
-    /// Forwards a datagram, with the address of its sender in the place of that of its receiver.
+    /// Forwards a datagram, with the address of its receiver replaced by that of its sender.
     fn forward(&self, message: &Message) {
         if let Message::Binary(bytes) = message
             && let Some((to, datagram)) = unframe(bytes)
@@ -176,7 +176,7 @@ impl Connection<'_> {
 
     fn members(&self) -> Message {
         let members = self.shared.rooms.members(&self.code, self.member);
-        // A struct of strings has a text.
+        // A struct of strings can always be encoded.
         Message::text(serde_json::to_string(&members).unwrap_or_default())
     }
 }

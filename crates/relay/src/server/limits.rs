@@ -20,7 +20,7 @@ pub struct Limits {
     pub bytes_per_second: u32,
     /// Datagrams per second from one member, likewise.
     pub datagrams_per_second: u32,
-    /// Time without any frame after which a member is disconnected. It is pinged three times within it.
+    /// Time without any frame after which a member is disconnected. The member is pinged three times within this time.
     pub idle: Duration,
     /// Origins of web pages that may connect. Empty: all. Native clients have no origin and are always admitted.
     pub origins: Vec<String>,

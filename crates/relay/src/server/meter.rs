@@ -1,8 +1,8 @@
-//! [`Meter`]: how much a member sends.
+//! [`Meter`]: the traffic of a member.
 
 use core::time::Duration;
 
-/// Excess over the rate that ends a connection.
+/// Multiple of the allowed rate above which a connection is closed.
 const EXCESS: u64 = 8;
 
 const MICROS: u64 = 1_000_000;
@@ -18,7 +18,7 @@ pub(super) enum Pace {
     Flood,
 }
 
-/// A token bucket that holds a second's worth.
+/// A token bucket that holds the units of one second.
 #[derive(Clone, Debug)]
 struct Bucket {
     per_second: u64,

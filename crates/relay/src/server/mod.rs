@@ -59,16 +59,16 @@ impl Server {
         let places = Arc::new(Semaphore::new(self.limits.connections));
         let shared = Arc::new(Shared { limits: self.limits, rooms: rooms::Rooms::default() });
         loop {
-            // A connection that finds no place waits in the backlog of the system.
+            // When no place is free, new connections wait in the backlog of the system.
             let Ok(place) = Arc::clone(&places).acquire_owned().await else { return };
             let Ok((stream, _)) = self.listener.accept().await else {
-                // For example too many open files.
+                // The error may be temporary, such as too many open files.
                 tokio::time::sleep(core::time::Duration::from_millis(50)).await;
                 continue;
             };
             let shared = Arc::clone(&shared);
             tokio::spawn(async move {
-                // Errors of a connection concern that member alone, which notices.
+                // An error of a connection affects that member alone, and the member notices it.
                 let _ = connection::serve(&shared, stream).await;
                 drop(place);
             });

@@ -1,4 +1,4 @@
-//! [`Queue`]: what waits to be sent to a member.
+//! [`Queue`]: frames that wait to be sent to a member.
 
 use std::collections::VecDeque;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -16,7 +16,7 @@ pub(super) struct Queue {
 struct State {
     frames: VecDeque<Vec<u8>>,
     bytes: usize,
-    /// The member does not know who is in the room now.
+    /// The member has not been told the current members of the room.
     room_changed: bool,
     /// A newer connection of the same member takes the place of this one.
     replaced: bool,
@@ -39,7 +39,7 @@ impl Queue {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Appends a frame, and drops the oldest ones if there is too much.
+    /// Appends a frame, and drops the oldest frames beyond the limit of bytes.
     pub(super) fn push(&self, frame: Vec<u8>) {
         let mut state = self.state();
         state.bytes += frame.len();

@@ -1,4 +1,4 @@
-//! [`Rooms`]: who is where.
+//! [`Rooms`]: the members of all rooms.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -7,18 +7,18 @@ use super::limits::Limits;
 use super::queue::Queue;
 use crate::frame::{Member, Members, to_text};
 
-/// Why nobody else is admitted.
+/// Reason why no further member is admitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Full {
     Room,
     Relay,
 }
 
-/// All rooms by their code. A room exists while somebody is in it.
+/// All rooms by their code. A room exists while it has members.
 #[derive(Default)]
 pub(super) struct Rooms(Mutex<BTreeMap<String, Room>>);
 
-/// Members in the order in which they came.
+/// Members in order of arrival.
 type Room = Vec<(Member, Arc<Queue>)>;
 
 impl Rooms {
@@ -62,7 +62,7 @@ impl Rooms {
         }
     }
 
-    /// Hands a frame to a member. There may be no such member: datagrams may be lost.
+    /// Hands a frame to a member. A frame for an address without a member is dropped: datagrams may be lost.
     pub(super) fn forward(&self, code: &str, to: Member, frame: Vec<u8>) {
         let queue = {
             let rooms = self.rooms();

@@ -12,13 +12,13 @@ use crate::raster::Image;
 /// Writer of an animated PNG.
 pub(super) struct Apng<W: Write> {
     pace: Pace,
-    /// Number of frames that are still to be added.
+    /// Number of remaining frames.
     frames: u32,
     state: State<W>,
 }
 
 enum State<W: Write> {
-    /// Nothing written yet: the header needs the size of the first frame.
+    /// Nothing has been written yet, because the header needs the size of the first frame.
     Empty(Option<W>),
     Begun {
         writer: Writer<W>,
@@ -84,7 +84,7 @@ fn write_changes<W: Write>(writer: &mut Writer<W>, shown: &Image, frame: &Image)
         .pixels(frame.width())
         .flat_map(|pixel| if is_opaque && !has_changed(pixel) { &nothing[..] } else { colour(frame, pixel) });
     let changes: Vec<u8> = changes.copied().collect();
-    // Otherwise the encoder would check the new dimension against the old position.
+    // Without this reset, the encoder would check the new dimension against the old position.
     writer.reset_frame_position().map_err(failed)?;
     writer.set_frame_dimension(region.width, region.height).map_err(failed)?;
     writer.set_frame_position(region.left, region.top).map_err(failed)?;

@@ -21,7 +21,7 @@ pub(super) struct Gif<W: Write> {
 }
 
 enum State<W: Write> {
-    /// Nothing written yet: the header needs the size and the colours of the first frame.
+    /// Nothing has been written yet, because the header needs the size and the colours of the first frame.
     Empty(Option<W>),
     Begun(Box<Begun<W>>),
 }

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 type Rgb = [u8; 3];
 
-/// Most colours, with one index left for pixels that stay as they were.
+/// Maximum number of colours. The remaining index is for pixels that do not change.
 const COLOURS_MAX: usize = 255;
 /// Number of the most frequent colours that are kept exactly if there are too many colours.
 const KEPT: usize = 96;
@@ -17,7 +17,7 @@ const KEPT: usize = 96;
 const ERROR_MAX: u8 = 24;
 /// A colour is stray if it has at most one pixel per this number of pixels of the frame.
 const PIXELS_OF_A_STRAY: u64 = 20_000;
-/// Most colours in the cache of nearest colours.
+/// Maximum number of colours in the cache of nearest colours.
 const REMEMBERED_MAX: usize = 1 << 16;
 
 /// Number of pixels of each colour.
@@ -121,7 +121,7 @@ impl Palette {
         self.colours.iter().chain(&[[0; 3]]).flatten().copied().collect()
     }
 
-    /// Clears the cache down to the palette's own colours.
+    /// Resets the cache to the palette's own colours.
     fn remember(&mut self) {
         self.nearest = self.colours.iter().copied().zip(0..=u8::MAX).collect();
     }

@@ -12,7 +12,7 @@ use clip::Area;
 
 pub use image::Image;
 
-/// Longest side of an image, in pixels.
+/// Maximum side length of an image, in pixels.
 pub const SIDE_MAX: u32 = 16384;
 
 /// Draws a list on a background, with antialiased edges. The sides of the image are clamped to 1 to [`SIDE_MAX`].

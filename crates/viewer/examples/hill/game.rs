@@ -38,7 +38,7 @@ pub(crate) struct Save {
 const PLANKS: i32 = 10;
 /// Ends of the bridge.
 const BRIDGE: (i32, i32) = (12, 12 + PLANKS);
-/// Force at which a joint of the bridge breaks, in N. It bears the car, but not every shell.
+/// Force at which a joint of the bridge breaks, in N. The bridge bears the car, but not every shell.
 const STRENGTH: Fx = fx!(200);
 const RELOAD: u32 = 30;
 /// Ticks after which a shell is removed.
@@ -105,7 +105,7 @@ impl Hill {
         Ok(())
     }
 
-    /// Counts the goals that a car has reached, and removes old shells and what fell out of the world.
+    /// Counts the goals that a car has reached, and removes old shells and bodies that have fallen out of the world.
     fn judge(&mut self) -> Result<(), WorldError> {
         let reached = self.world.events().sensor_begin.iter().filter(|event| {
             let visitor = self.world.shape(event.visitor).map(|shape| shape.body());

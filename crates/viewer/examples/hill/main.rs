@@ -1,4 +1,5 @@
-//! A game that knows nothing of the viewer, in the viewer: a car on a hill, shells, a bridge that breaks, and goals.
+//! A game without any code for the viewer, shown in the viewer: a car on a hill, shells, a bridge that breaks, and
+//! goals.
 //!
 //! `cargo run --release -p lockstep2d-viewer --example hill`
 

@@ -7,7 +7,7 @@ use lockstep2d::world::World;
 use super::player::slice_of;
 use crate::source::Source;
 
-/// Second of two sources that are shown at the same tick.
+/// The second of two sources that are shown at the same tick.
 pub(super) struct Comparison {
     pub(super) other: Box<dyn Source>,
     /// Second copies of both sources, which search for the first differing tick independently of the shown tick.

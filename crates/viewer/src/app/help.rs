@@ -5,7 +5,7 @@ use lockstep2d_render::{CELL_HEIGHT, DrawList, width_of};
 use super::theme;
 use crate::event::Key;
 
-/// A row: keys, as text and to compare them with those of a game, and what they do.
+/// A row of the help: the keys as text, the keys as values (to compare them with the keys of a game), and their effect.
 type Line = (&'static str, &'static [Key], &'static str);
 
 const LINES: &[Line] = &[
@@ -41,7 +41,7 @@ const LIVE: &[Line] = &[
     ("g", &[], "gravity: down, none, up, left, right"),
 ];
 
-/// Draws the help, without the keys that are those of a game's players.
+/// Draws the help, without the keys that a game's players use.
 pub(super) fn draw(list: &mut DrawList, [width, height]: [f32; 2], is_live: bool, players: &[Key]) {
     let is_free = |line: &&Line| line.1.iter().all(|key| !players.contains(key));
     let live = if is_live { LIVE } else { &[] };

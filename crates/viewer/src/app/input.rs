@@ -24,13 +24,14 @@ pub(super) struct Pointer {
 enum Doing {
     #[default]
     Nothing,
-    /// The button went down at this position; a click unless the pointer moves further.
+    /// The button went down at this position. It is a click unless the pointer moves further than [`CLICK`].
     Pressing([f32; 2]),
     /// Moves the view.
     Panning,
     /// Moves along the timeline.
     Scrubbing,
-    /// Drags a body since the button went down at this position; also a click if the pointer does not move further.
+    /// Drags a body. The button went down at this position. It is also a click if the pointer does not move further
+    /// than [`CLICK`].
     Dragging([f32; 2]),
     /// Draws a new body.
     Spawning,

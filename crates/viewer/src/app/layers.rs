@@ -9,8 +9,7 @@ use crate::event::Key;
 /// Key of each layer, in the order of [`Layers::named`].
 pub const LAYER_KEYS: [char; 13] = ['1', '2', '3', '4', '5', '6', '7', '8', '9', '0', 'c', 'v', 'i'];
 
-/// Layers that are on at the start, unless a viewer chooses others: those that a game would show. The debug layers
-/// start off.
+/// Default layers at the start, which show the world as a game would. The debug layers are off.
 pub(crate) const fn layers_at_first() -> Layers {
     Layers { outlines: true, joints: true, ..Layers::NONE }
 }

@@ -256,8 +256,8 @@ impl App {
             tick: source.tick(),
             ticks: source.ticks(),
             hash: Some(source.hash()),
-            // The message stands alone: beside an error about another file, the verdict of the shown file would seem to
-            // be about that other file.
+            // A message replaces the remarks: beside an error about another file, the verdict on the shown file would
+            // seem to refer to that other file.
             status: self.message.clone().unwrap_or_else(|| self.remarks().join(" · ")),
         }
     }
@@ -304,7 +304,7 @@ impl App {
         }
     }
 
-    /// Ends what the source takes part in, before the program ends.
+    /// Closes the source before the program ends: it leaves a network match, for example.
     pub fn close(&mut self) {
         if let Some(source) = &mut self.source {
             source.close();

@@ -96,8 +96,8 @@ impl Player {
     }
 }
 
-/// Most ticks of a world that are played in a frame, at least one. The cost of a tick is taken as 100 plus one per
-/// body plus two per pair.
+/// Maximum number of ticks of a world that are played in a frame, at least one. The cost of a tick is estimated as 100
+/// plus one per body plus two per pair.
 pub(super) fn slice_of(world: &World) -> u64 {
     SLICE / (100 + world.body_count() as u64 + 2 * world.pair_count() as u64).min(SLICE)
 }

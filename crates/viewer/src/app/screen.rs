@@ -12,7 +12,7 @@ use super::{App, help, theme};
 
 const LEFT: f32 = 12.0;
 const TOP: f32 = 8.0;
-/// Most characters in a row of text; a longer status is wrapped.
+/// Maximum number of characters in a row of text. A longer status is wrapped.
 const COLUMNS_MAX: usize = 120;
 
 /// Top of the layer list, in pixels, unless the lines of text above it end lower.
@@ -61,8 +61,8 @@ pub(super) fn draw(app: &mut App) {
     let bottom = draw_lines(list, &lines, *size);
     let layer_list = LayerList { corner: [LEFT, LAYERS_TOP.max(bottom + CELL_HEIGHT / 2.0)] };
     let players = source.as_ref().map_or(Vec::new(), |source| source.keys());
-    // In a small window the layer list is left out, and while people play, because it would lie over their game; its
-    // keys still work.
+    // The layer list is omitted in a small window, and while people play, because it would cover their game. Its keys
+    // still work.
     let fits = source.is_some() && layer_list.corner[1] + LayerList::size()[1] < size[1] - CELL_HEIGHT * 3.0;
     let is_in_the_way = player.playing && !players.is_empty() && !*help;
     app.layer_list = (fits && !is_in_the_way).then_some(layer_list);

@@ -49,7 +49,7 @@ pub(super) enum Entry {
 }
 
 impl OnlineArgs {
-    /// Way to enter a match, if one is asked for.
+    /// Way to enter a match, if the arguments select one.
     pub(super) fn entry(&self) -> Option<Entry> {
         let host = self.host.clone().map(Entry::Host);
         let join = self.join.clone().map(Entry::Join);

@@ -13,7 +13,7 @@ pub enum Form {
     Circle,
     /// Rectangle.
     Box,
-    /// Convex polygon, random each time.
+    /// Random convex polygon, a new one for each spawn.
     Polygon,
     /// Capsule: a rod with round ends.
     Capsule,
@@ -133,13 +133,13 @@ pub trait Playground {
     /// Queues an act for the next tick. Several acts may be queued.
     ///
     /// If the next tick is already recorded, because the user went back, it is played again with the queued acts in
-    /// place of the recorded ones, and all later ticks are dropped. Going back to an earlier tick drops queued acts
-    /// and releases the held body.
+    /// place of the recorded ones, and all later ticks are dropped. A seek to an earlier tick drops queued acts and
+    /// releases the held body.
     fn act(&mut self, act: Act);
 
     /// Returns the held body; `None` also between the grab and the tick that carries it out.
     fn held(&self) -> Option<Held>;
 
-    /// Number of queued acts. They wait while the world is paused.
+    /// Number of queued acts. Acts remain queued while the world is paused.
     fn waiting(&self) -> usize;
 }

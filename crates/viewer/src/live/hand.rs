@@ -29,7 +29,7 @@ const STRENGTH: i64 = 1000;
 /// the torque of a quarter of its weight at that radius.
 const GRIP: Fx = fx!(2.5);
 
-/// State of the pointer as a grabbing hand.
+/// Grab state of the pointer.
 #[derive(Debug)]
 pub(super) struct Hand {
     hold: Hold,

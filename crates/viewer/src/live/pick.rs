@@ -14,8 +14,8 @@ pub(super) struct Picked {
     pub(super) point: Vec2<Fx>,
 }
 
-/// Picks the body at `aim` among those for which `wanted` holds: the topmost one that contains the point, or else the
-/// nearest within reach. Solid shapes come before sensors.
+/// Picks the body at `aim` among those for which `wanted` holds: the topmost one that contains the point or, if none
+/// contains it, the nearest one within `aim.within`. Solid shapes take precedence over sensors.
 pub(super) fn pick(world: &World, aim: Aim, wanted: impl Fn(&Body) -> bool) -> Option<Picked> {
     let solid = QueryFilter::default();
     let all = QueryFilter { sensors: true, ..solid };

@@ -2,8 +2,8 @@
 
 use lockstep2d_render::{GLYPH_HEIGHT, GLYPH_WIDTH, glyph};
 
-/// Size of a slot: a glyph and one empty pixel on its right and below, so that no neighbour bleeds in when text is
-/// magnified.
+/// Size of a slot: a glyph with one empty pixel on its right and one below, so that neighbouring glyphs do not bleed
+/// into it when text is magnified.
 const SLOT: [usize; 2] = [GLYPH_WIDTH + 1, GLYPH_HEIGHT + 1];
 const COLUMNS: usize = 16;
 /// Number of Latin-1 characters, which come first.

@@ -9,7 +9,7 @@ type Point = [f32; 2];
 
 /// Sample of full coverage.
 const WHOLE: [f32; 3] = [0.0, 1.0, 0.0];
-/// Most points of a line that become one strip; each becomes at most four corners.
+/// Maximum number of points of a line in one strip. Each point becomes at most four corners.
 const RUN: usize = Chunk::VERTICES / 4 - 2;
 
 impl Mesh {

@@ -61,9 +61,10 @@ pub struct Chunk {
 }
 
 impl Chunk {
-    /// Most vertices of a chunk.
+    /// Maximum number of vertices of a chunk.
     pub const VERTICES: usize = 1 << 15;
-    /// Most indices of a chunk. The shape with the most indices per vertex is an area without a border, with 4.5.
+    /// Maximum number of indices of a chunk. The shape with the most indices per vertex is an area without a border,
+    /// with 4.5.
     pub const INDICES: usize = 5 * Chunk::VERTICES;
 }
 
@@ -113,7 +114,7 @@ impl Mesh {
             self.used += 1;
         }
         let chunk = &mut self.chunks[self.used - 1];
-        // At most 2^15, the capacity of a chunk.
+        // The number is at most 2^15, the capacity of a chunk.
         let first = chunk.vertices.len() as u16;
         (chunk, first)
     }

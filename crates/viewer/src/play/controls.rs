@@ -8,7 +8,7 @@ use crate::event::{Event, Key};
 /// Changes the input of a tick while a key is down.
 type Change<I> = Rc<dyn Fn(&mut I)>;
 
-/// Keys of a player, and what each of them does to the player's input for a tick.
+/// Keys of a player, and the change that each of them makes to the player's input for a tick.
 ///
 /// The input of a tick starts as the default, and every key that is down changes it, in the order in which the keys
 /// were added. A key that goes down and up between two ticks counts for one tick.
@@ -58,8 +58,8 @@ impl<I: Default> Controls<I> {
         Controls { bindings: Vec::new(), down: Vec::new(), tapped: Vec::new() }
     }
 
-    /// Adds a key, and what it does to the input of a tick while it is down. The viewer's own use of the key ends; the
-    /// space bar, for example, no longer pauses.
+    /// Adds a key, and the change that it makes to the input of a tick while it is down. The key loses its function in
+    /// the viewer: the space bar, for example, no longer pauses.
     #[must_use]
     pub fn key(mut self, key: impl Into<Key>, change: impl Fn(&mut I) + 'static) -> Self {
         self.bindings.push((key.into(), Rc::new(change)));

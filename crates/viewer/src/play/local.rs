@@ -1,4 +1,4 @@
-//! [`LocalMatch`]: a game that is played at one computer.
+//! [`LocalMatch`]: a game that is played on one computer.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::Game;
@@ -26,8 +26,8 @@ pub struct LocalMatch<G: Game> {
     nothing: World,
 }
 
-/// Memory of a save in bytes, as far as it is not shared with other saves. That of a game's own rules is not known and
-/// counted as a kilobyte.
+/// Memory in bytes that a save does not share with other saves. The memory of the game's own rules is unknown and
+/// counts as a kilobyte.
 fn bytes_of<G: Game>(game: &G, _: &G::Save) -> usize {
     1024 + game.world().map_or(0, |world| world.save().rollback_bytes())
 }

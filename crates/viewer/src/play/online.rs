@@ -15,7 +15,7 @@ use super::presentation::Presentation;
 use crate::event::{Event, Key};
 use crate::source::{Source, SourceError};
 
-/// Longest time for which closing waits until the others know that this peer leaves, and time between two updates.
+/// Maximum time for which closing waits until the others know that this peer leaves, and time between two updates.
 const LEAVE_TIME: Duration = Duration::from_millis(500);
 const LEAVE_STEP: Duration = Duration::from_millis(5);
 
@@ -227,7 +227,7 @@ impl<G: Game + 'static, T: Transport> Source for Online<G, T> {
         Ok(true)
     }
 
-    /// Leaves the match: the others go on at once.
+    /// Leaves the match; the others continue at once.
     fn close(&mut self) {
         self.peer.leave();
         for _ in 0..LEAVE_TIME.as_millis() / LEAVE_STEP.as_millis() {

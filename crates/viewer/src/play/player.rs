@@ -1,4 +1,4 @@
-//! [`Player`]: who controls a seat.
+//! [`Player`]: the control of a seat.
 
 use std::fmt;
 use std::rc::Rc;
@@ -14,8 +14,8 @@ pub type Bot<G> = Box<dyn FnMut(&G) -> <G as Game>::Input>;
 /// Creates the bot of a seat, with the random seed of the scene.
 type MakeBot<G> = Rc<dyn Fn(u64, usize) -> Bot<G>>;
 
-/// Control of a seat: keys, a bot or nobody. [`Viewer::keys`](crate::Viewer::keys) and
-/// [`Viewer::bot`](crate::Viewer::bot) make them; tests give them to a [`LocalMatch`](crate::LocalMatch).
+/// Control of a seat: keys, a bot or no player. [`Viewer::keys`](crate::Viewer::keys) and
+/// [`Viewer::bot`](crate::Viewer::bot) create players; tests pass them to a [`LocalMatch`](crate::LocalMatch).
 ///
 /// ```
 /// use std::rc::Rc;
@@ -33,7 +33,7 @@ type MakeBot<G> = Rc<dyn Fn(u64, usize) -> Bot<G>>;
 /// let mut play = LocalMatch::new("weightless", &SandboxSetup::default(), &[bot], 0)?;
 /// play.seek(10)?;
 /// assert_eq!(play.world().config().gravity, Vec2::ZERO);
-/// // A person without keys, and nobody: both do nothing.
+/// // A person without keys and an absent player: both give no input.
 /// for player in [Player::Keys(Controls::new()), Player::Absent] {
 ///     LocalMatch::<Sandbox>::new("still", &SandboxSetup::default(), &[player], 0)?.seek(10)?;
 /// }
@@ -44,7 +44,7 @@ pub enum Player<G: Game> {
     Keys(Controls<G::Input>),
     /// A bot, created from the random seed of the scene and the number of its seat.
     Bot(MakeBot<G>),
-    /// Nobody: the seat's input is [`Game::absent`].
+    /// No player: the seat's input is [`Game::absent`].
     Absent,
 }
 

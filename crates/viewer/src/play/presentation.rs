@@ -1,4 +1,4 @@
-//! [`Presentation`]: how a game is shown, apart from its world.
+//! [`Presentation`]: the parts of a game that are shown besides its world.
 
 use std::collections::BTreeSet;
 use std::rc::Rc;
@@ -15,7 +15,7 @@ pub(crate) type Fields = Vec<(String, String)>;
 /// Draws over the world of a game.
 pub(crate) type Draw<G> = dyn Fn(&G, &mut Canvas<'_>);
 
-/// Presentation of a game beside its world: drawing, status line, state of the rules.
+/// The parts of a game that are shown besides its world: drawing, status line, state of the rules.
 pub(crate) struct Presentation<G: Game> {
     /// Draws over the world.
     pub(crate) draw: Rc<Draw<G>>,
@@ -33,7 +33,7 @@ impl<G: Game> Clone for Presentation<G> {
 }
 
 impl<G: Game + 'static> Default for Presentation<G> {
-    /// Nothing but the world, and as state all fields of a save that are not the world.
+    /// No drawing and no status line. The state consists of all fields of a save except those of the world.
     fn default() -> Self {
         Presentation {
             draw: Rc::new(|_, _| {}),
@@ -59,7 +59,7 @@ fn own_state<G: Game>(game: &G) -> Fields {
     let all = fields(&game.save()).unwrap_or_default();
     let world = game.world().and_then(|world| fields(&world.save()).ok()).unwrap_or_default();
     let Some(first) = world.first().map(Field::path) else { return listed(&all) };
-    // The world is where the path of its first field occurs.
+    // The path of the world in the save is found by the path of the world's first field.
     let inside = all.iter().find_map(|field| field.path().strip_suffix(first)).map(str::to_owned);
     let of_world: BTreeSet<&str> = world.iter().map(Field::path).collect();
     let is_own = |field: &&Field| match inside.as_deref() {

@@ -2,17 +2,17 @@
 
 use std::collections::BTreeMap;
 
-/// Most saves, however small they are, because each new save may scan all of them.
+/// Maximum number of saves of any size, because adding a save may scan all of them.
 const FRAMES_MAX: usize = 2048;
-/// Distance from the current tick, in ticks, that is added to the age of a save: within it saves are about equally
-/// dense. Ten seconds at 60 Hz.
+/// Number of ticks added to the distance of a save from the current tick: ten seconds at 60 Hz. Within this distance,
+/// saves are about equally dense.
 const NEAR: u64 = 600;
 
 /// Saves of a game at some ticks, within a memory budget.
 ///
 /// When the budget is used up, the least useful saves are dropped: the gap between saves may grow in proportion to
-/// their distance from the current tick. So a single step back is cheap, and seeking far back costs in proportion to
-/// the distance.
+/// their distance from the current tick. Therefore a single step back is cheap, and the cost of a seek far back is
+/// proportional to the distance.
 pub(super) struct History<S> {
     frames: BTreeMap<u64, Frame<S>>,
     bytes: usize,

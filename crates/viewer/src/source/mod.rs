@@ -1,4 +1,4 @@
-//! [`Source`]: something that the viewer can show.
+//! [`Source`]: the interface of everything that the viewer can show.
 
 mod open;
 mod replay;
@@ -18,7 +18,7 @@ use lockstep2d_render::{Camera, DrawList};
 use crate::event::{Event, Key};
 use crate::live::Playground;
 
-/// Something that has a world at every tick: a replay, a snapshot or a live game.
+/// A sequence of worlds, one for each tick, that the viewer can show: a replay, a snapshot or a live game.
 ///
 /// *Tick t* is the state after *t* ticks.
 ///
@@ -46,7 +46,7 @@ use crate::live::Playground;
 /// assert_eq!(app.report().name, "still");
 /// ```
 pub trait Source {
-    /// Name for display: of the file or the scene.
+    /// Name of the file or the scene, for display.
     fn name(&self) -> &str;
 
     /// World at the current tick.
@@ -101,8 +101,8 @@ pub trait Source {
         Vec::new()
     }
 
-    /// Advances a source that runs by its own clock, such as a network match. Returns `true` if the source does; then
-    /// the viewer does not play it, and it cannot be paused.
+    /// Advances a source that runs by its own clock, such as a network match. Returns `true` if the source runs by its
+    /// own clock; the viewer then does not play it, and it cannot be paused.
     ///
     /// # Errors
     /// [`SourceError`] if the source cannot continue.
@@ -113,7 +113,7 @@ pub trait Source {
     /// Draws the game's own graphics on top of the world: scores, colours of players.
     fn decorate(&mut self, _list: &mut DrawList, _camera: &Camera) {}
 
-    /// Returns a replay file of everything so far; `None` if the source is not recorded.
+    /// Returns a replay file of all ticks so far; `None` if the source is not recorded.
     ///
     /// # Errors
     /// [`SourceError`] if no replay can be made.
@@ -121,11 +121,11 @@ pub trait Source {
         None
     }
 
-    /// Ends what the source takes part in, such as a network match. Called once before the program ends; takes at most
-    /// a second.
+    /// Closes the source: it leaves a network match, for example. Called once before the program ends; takes at most a
+    /// second.
     fn close(&mut self) {}
 
-    /// Returns names and values of the state that is not the world: that of the game's own rules.
+    /// Returns names and values of the state besides the world, which is the state of the game's own rules.
     fn state(&self) -> Vec<(String, String)> {
         Vec::new()
     }

@@ -9,11 +9,11 @@ use lockstep2d_render::{Camera, DrawList};
 use super::{Source, SourceError};
 use crate::play::Presentation;
 
-/// Interval between keyframes, in ticks. Seeking backwards replays fewer ticks than this: half a second in large
-/// scenes.
+/// Interval between keyframes, in ticks. Seeking backwards replays fewer ticks than this, which takes up to half a
+/// second in large scenes.
 const INTERVAL: u32 = 60;
 
-/// Amount that is verified per frame, in work units: a few milliseconds.
+/// Work units that are verified per frame, which take a few milliseconds.
 const THINK_WORK: u64 = 100_000;
 
 /// Replay of a game that has a world. It is verified in the background while it is shown.
@@ -80,7 +80,7 @@ impl<G: Game + 'static> Replay<G> {
         if tick == self.timeline.tick() {
             return Ok(());
         }
-        // Steps from the tick before, so that derived data outside the state, such as contact points, is available.
+        // Seeks to the previous tick and steps from it, so that derived data such as contact points is available.
         let Some(before) = tick.checked_sub(1) else {
             return self.timeline.seek(tick).map_err(SourceError::of);
         };

@@ -1,4 +1,4 @@
-//! [`Snapshot`]: a snapshot file as a source; the world can run on from it.
+//! [`Snapshot`]: a snapshot file as a source, from which the world can run on.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use super::{Source, SourceError};
 
 /// Initial interval between saves, in ticks.
 const INTERVAL: u64 = 30;
-/// Most saves. When there are more, every second one is dropped and the interval doubles.
+/// Maximum number of saves. Beyond it, every second save is dropped and the interval doubles.
 const SAVES_MAX: usize = 256;
 
 /// World of a snapshot, which runs on without any input.

@@ -64,8 +64,8 @@ impl Host {
     }
 }
 
-/// Writes a file as a whole: whatever happens, there is the old one or the new one. Pipes and devices are written
-/// directly.
+/// Replaces a file atomically: after any failure, the path has either the old contents or all of the new ones. Pipes
+/// and devices are written directly.
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if path.exists() && !path.is_file() {
         return fs::write(path, bytes);
@@ -74,14 +74,14 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     fs::rename(beside, path)
 }
 
-/// Writes a file under the given name or, if there is one, with a number. No file is replaced.
+/// Writes a file under the given name or, if that file exists, under a name with a number. No file is replaced.
 fn save_as_new(name: &str, bytes: &[u8]) -> io::Result<PathBuf> {
     let beside = write_beside(Path::new(name), bytes)?;
     let (stem, ending) = name.rsplit_once('.').unwrap_or((name, "replay"));
     let numbered = (2..1000).map(|number| format!("{stem}-{number}.{ending}"));
     let mut outcome = Err(io::ErrorKind::AlreadyExists.into());
     for path in std::iter::once(name.to_owned()).chain(numbered).map(PathBuf::from) {
-        // Unlike a rename, a link never replaces a file.
+        // Unlike a rename, a hard link never replaces a file.
         outcome = fs::hard_link(&beside, &path).map(|()| path);
         if !outcome.as_ref().is_err_and(|error| error.kind() == io::ErrorKind::AlreadyExists) {
             break;

@@ -34,7 +34,7 @@ impl Keyboard {
     }
 }
 
-/// Returns whether a held key repeats: keys that step do, keys that toggle something do not.
+/// Returns whether a held key repeats. Keys that step repeat; keys that toggle a setting do not.
 fn repeats(key: Key) -> bool {
     let steps = [Key::Left, Key::Right, Key::Up, Key::Down, Key::PageUp, Key::PageDown];
     steps.contains(&key) || matches!(key, Key::Character(',' | '.' | '+' | '-' | '='))

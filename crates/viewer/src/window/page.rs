@@ -27,7 +27,7 @@ impl Host {
         Host { last: None.into() }
     }
 
-    /// Carries out the viewer's requests, and reports to the page what the viewer shows when that has changed.
+    /// Carries out the viewer's requests, and sends a report of the viewer to the page when it has changed.
     pub(super) fn serve(&self, app: &mut App) -> Result<(), WindowError> {
         for Request::Save { name, bytes } in app.take_requests() {
             let digits = bytes.iter().fold(String::new(), |mut digits, byte| {

@@ -14,7 +14,7 @@ use super::performance::Performance;
 use super::renderer::Renderer;
 use super::{Outcome, WindowError};
 
-/// Longest time step between two frames, in seconds: after a longer pause the world does not catch up.
+/// Maximum time step between two frames, in seconds. After a longer pause, the world does not catch up.
 const PAUSE_MAX: f64 = 0.25;
 
 /// The viewer and its window.

@@ -6,7 +6,7 @@ use lockstep2d_viewer::App;
 use super::picture::{Picture, distance};
 use super::run::{app, directory, golden, play};
 
-/// Keys of all layers that are compared: not the broad phase, whose tree is not part of the state and may differ.
+/// Keys of all compared layers. The broad phase is left out, because its tree is not part of the state and may differ.
 const ALL: &str = "key 2\nkey 4\nkey 6\nkey 7\nkey 8\nkey 9\nkey 0\nkey c\nkey v\nkey i\n";
 
 #[test]

@@ -15,8 +15,8 @@ struct Buckets {
 }
 
 impl Buckets {
-    /// Serves the files in `in` of this folder as the bucket `uploads`. `None` if the environment variable `LOCKSTEP2D_S3` does not name the
-    /// program.
+    /// Serves the files in `in` of this folder as the bucket `uploads`. `None` if the environment variable
+    /// `LOCKSTEP2D_S3` does not name the program.
     fn start(folder: &Folder) -> Option<Self> {
         let Ok(program) = std::env::var("LOCKSTEP2D_S3") else {
             eprintln!("skipped: LOCKSTEP2D_S3 does not name a server");
@@ -31,7 +31,7 @@ impl Buckets {
         Some(Buckets { port, _process: serve(&mut command, port) })
     }
 
-    /// A program that has this key to the buckets.
+    /// The program with this key for the buckets.
     fn with_key(&self, program: Program, key: &'static str) -> Program {
         let endpoint = format!("http://127.0.0.1:{}", self.port);
         let variables = [
@@ -58,7 +58,7 @@ fn files_of_a_bucket_have_the_results_of_files() {
     let program = Program { folder: elsewhere.0.clone(), ..worker(&server, &folder) };
     let program = buckets.with_key(program, "secret");
 
-    // A name of a file, and all of the bucket: the file is known already.
+    // One file is submitted by its name, and then all files of the bucket: the first file is already known.
     let one = program.submit(&["--bucket", "s3://uploads", "00007.replay"]);
     assert_eq!(one.len(), 1, "{one:?}");
     let all = program.submit(&["--bucket", "s3://uploads/"]);

@@ -1,4 +1,5 @@
-//! The queue with a real server: every file has exactly one result, equal to that of `verify --json`, whatever dies.
+//! The queue with a real server: every file has exactly one result, equal to that of `verify --json`, whichever
+//! process is killed.
 //!
 //! `LOCKSTEP2D_WORKER_FILES` is the number of files of the largest test, 300 by default.
 #![cfg(unix)]
@@ -115,7 +116,7 @@ fn every_file_has_one_result_though_workers_and_the_server_are_killed() {
             server.restart();
             restarts += 1;
         }
-        // One for each 30 results. The last results come without a kill.
+        // One kill for each 30 results. The last results come without a kill.
         while kills < found / 30 && found < count {
             let victim = usize::try_from(random(&mut state) % WORKERS as u64).unwrap();
             workers[victim].kill();
@@ -141,7 +142,7 @@ fn time_of(workers: usize, program: &Program, queue: &str, count: usize) -> Dura
         || program.run(&["results", "--queue", queue]).stdout.split(|byte| *byte == b'\n').count() - 1;
     while results() < count {
         assert!(start.elapsed() < PATIENCE, "waited too long for {count} results");
-        // Asking takes time from the workers.
+        // Polling takes processor time from the workers.
         std::thread::sleep(Duration::from_millis(200));
     }
     let time = start.elapsed();

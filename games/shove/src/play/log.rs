@@ -15,13 +15,13 @@ use serde_json::{Value, json};
 #[derive(Debug)]
 pub(super) struct Log {
     json: bool,
-    /// Number of ticks played, and when it last grew.
+    /// Number of ticks played, and the time at which it last grew.
     tick: Option<(u64, Duration)>,
     /// Longest time without a tick, and the time at its end.
     stall: (Duration, Duration),
     delay: Option<u16>,
     desync: Option<u64>,
-    /// Whether this peer has left, or all have finished: from then on nothing is played.
+    /// Whether this peer has left, or all peers have finished. No more ticks are played then.
     is_over: bool,
 }
 
@@ -31,7 +31,7 @@ impl Log {
         Log { json, tick: None, stall, delay: None, desync: None, is_over: false }
     }
 
-    /// Says where others reach this peer.
+    /// Writes the address of this peer.
     pub(super) fn say_bound(&self, peer: &mut UdpPeer) -> std::io::Result<()> {
         let address = peer.transport_mut().local_address()?.to_string();
         if self.json {
@@ -137,7 +137,7 @@ pub(super) fn say_error(json: bool, error: &dyn Error) {
     eprintln!("error: {error}");
 }
 
-/// Writes a line. A reader that has gone is no reason to leave the match.
+/// Writes a line. Errors are ignored, so that the match continues if the reader of the output has gone.
 fn print(line: &dyn std::fmt::Display) {
     let _ = writeln!(std::io::stdout().lock(), "{line}");
 }

@@ -22,7 +22,7 @@ use lockstep2d_shove::online::{self, UdpPeer};
 use arguments::Arguments;
 use log::Log;
 
-/// Time between two updates. Packets wait at most this long.
+/// Time between two updates, and maximum time for which received packets wait.
 const UPDATE_INTERVAL: Duration = Duration::from_millis(1);
 
 /// Returns the definition of the subcommand.
@@ -60,7 +60,7 @@ fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
         peer.end_at(ticks);
     }
     let played = take_part(arguments, &mut peer, &interrupts, &mut log, file.as_mut());
-    // Whatever ended the match, the replay gets its end.
+    // The replay is completed whatever ended the match.
     let summary = log.summary(&peer);
     let end = peer.finish()?;
     if let Some(file) = &mut file {
@@ -73,8 +73,8 @@ fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
     played
 }
 
-/// Creates a file to write while the match goes on: whoever is killed leaves a replay without its end. A file that
-/// exists is not replaced, and of two processes one is told.
+/// Creates a file that is written during the match, so that a killed process leaves a replay without its end. An
+/// existing file is not replaced. If two processes create the same file, one of them gets an error.
 fn create(path: &Path) -> Result<File, Box<dyn Error>> {
     let file = match File::create_new(path) {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {
@@ -86,7 +86,7 @@ fn create(path: &Path) -> Result<File, Box<dyn Error>> {
     file.map_err(|error| format!("cannot write {}: {error}", path.display()).into())
 }
 
-/// Fails if there is a file of this name. Pipes and devices may be there.
+/// Returns an error if a regular file of this name exists. Pipes and devices are accepted.
 fn check_absent(path: &Path) -> Result<(), Box<dyn Error>> {
     if path.is_file() {
         return Err(format!("cannot write {}: it exists; name another file", path.display()).into());
@@ -132,10 +132,10 @@ fn take_part(
             }
             (0, None | Some(Status::Paused)) => {}
             (0, Some(_)) => heard_at = now,
-            // Nobody knows this peer yet.
+            // The peer is not in a match yet, so it can leave at once.
             (_, None) => break,
             (1, Some(_)) => peer.leave(),
-            // Somebody who interrupts twice is in a hurry.
+            // After a second interrupt, the peer does not wait until the others know that it leaves.
             (_, Some(_)) => break,
         }
         thread::sleep(UPDATE_INTERVAL);
@@ -156,7 +156,7 @@ fn pad_of_bot(
     bots[place].1.pad(game)
 }
 
-/// Counts Ctrl-C and requests of the system to end.
+/// Counts interrupts by Ctrl-C and termination signals of the system.
 fn interrupts() -> Result<Arc<AtomicUsize>, ctrlc::Error> {
     let count = Arc::new(AtomicUsize::new(0));
     let counted = Arc::clone(&count);

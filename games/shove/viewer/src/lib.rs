@@ -1,4 +1,4 @@
-//! Shove for people: two at one keyboard, with bots, or over a network; and its replays.
+//! The viewer of Shove: matches of two people at one keyboard, with bots, or over a network, and replays.
 #![expect(clippy::disallowed_types, reason = "drawing uses floats")]
 
 mod decorate;
@@ -32,7 +32,7 @@ pub fn viewer() -> Viewer<Shove> {
     viewer
 }
 
-/// Makes the bot of a seat.
+/// Creates the bot of a seat.
 #[must_use]
 pub fn bot(seed: u64, seat: usize) -> lockstep2d_viewer::Bot<Shove> {
     let mut bot = Bot::new(seed, u8::try_from(seat).unwrap_or(u8::MAX));

@@ -168,9 +168,9 @@ fn players_and_scores_are_seen() {
 
 type Guest = Online<Shove, Port>;
 
-/// A host and somebody who joins, with their setups.
+/// A host and a joining peer, with their setups.
 fn host_and_guest([ours, theirs]: [Setup; 2]) -> [Guest; 2] {
-    // The time of the network stands still, and everything arrives at once.
+    // The time of the network does not advance, and all packets arrive at once.
     let network = Network::new(LinkConditions::default(), 1);
     let (options, me) = (PeerOptions::rollback(), |number: u64| PeerIdentity::new([number; 4]));
     let host = Peer::host(&ours, options, me(1), network.port(0)).unwrap();
@@ -212,7 +212,7 @@ fn two_keyboards_far_apart_play_the_same_match() {
         let pressed = ours.iter().filter(|pads| pads[seat] != Pad::default()).count();
         assert!(pressed > 20, "seat {seat} pressed buttons in only {pressed} ticks");
     }
-    // Nobody reads the packets of the one who leaves, which waits for an answer no longer than half a second.
+    // No peer reads the packets of the leaving peer, which waits for an answer for at most half a second.
     let [host, _] = &mut guests;
     host.close();
     assert!(host.status().ends_with("out of the match"), "{}", host.status());

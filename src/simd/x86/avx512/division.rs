@@ -16,8 +16,9 @@ const CHORDS: usize = 16;
 /// Number of mantissa bits that give the position on the chord.
 const REST: u32 = 27;
 
-/// `2^62 / m` at the start of each chord, less 1, so that all values fit 31 bits; and the decrease along the chord.
+/// `2^62 / m` at the start of each chord, less 1, so that all values fit 31 bits.
 const STARTS: [i32; CHORDS] = CURVE.0;
+/// Decrease of that value along each chord.
 const FALLS: [i32; CHORDS] = CURVE.1;
 const CURVE: ([i32; CHORDS], [i32; CHORDS]) = {
     let (mut starts, mut falls) = ([0; CHORDS], [0; CHORDS]);
@@ -32,7 +33,8 @@ const CURVE: ([i32; CHORDS], [i32; CHORDS]) = {
     (starts, falls)
 };
 
-/// `2^60 / d` for `d` with 30 fraction bits, up to 2^46, like [`super::super::super::division::reciprocal`].
+/// `2^60 / d` for an integer `d` of up to 2^46, which represents a number with 30 fraction bits: like
+/// [`super::super::super::division::reciprocal`].
 #[inline(always)]
 pub(super) fn reciprocal(d: __m512i) -> __m512i {
     // SAFETY: see `super::Avx512`.

@@ -1,7 +1,8 @@
 //! Units with bounds in a block: limits, which may only push, motors, whose force is limited, and springs of limited
-//! force. The block has to find out which bounds are reached. It begins with all motors, and with those limits
-//! and springs that would be within their bounds if only their own two bodies were there; a unit that would be beyond a
-//! bound is held at it, until there is none.
+//! force. The block finds the reached bounds with an active set. At first, all motors are active, and those limits and
+//! springs that would be within their bounds if no other unit acted on their two bodies. Each round solves the
+//! equations of the active units, and holds units that would be beyond a bound at that bound, until no active unit is
+//! beyond one.
 
 use super::super::super::context::{Pass, StepContext};
 use super::super::hinge::{HingeSet, Poses};
@@ -18,12 +19,12 @@ pub(super) struct BoundedUnit {
     pub(super) mass: (i64, i64),
     /// Whether its equations are solved in the current pass. Otherwise its impulse is `held`.
     pub(super) is_active: bool,
-    /// The impulse at which it is held, that of a bound.
+    /// The impulse at which the unit is held while it is not active.
     pub(super) held: [i64; 2],
 }
 
-/// `S^2` of a limit that is not reached, with 30 fraction bits: 1, less so much that rows that depend on
-/// it have a solution.
+/// `S^2` of a limit that is not reached, with 30 fraction bits: so far below 1 that the equations have a solution even
+/// if other rows depend on it.
 const OPEN_SCALE: i64 = ONE - (1 << 20);
 
 /// `S^2` of a motor, with 30 fraction bits. Closer to 1 than that of a limit: under leverage the impulse is large, and
@@ -60,8 +61,8 @@ impl Block {
         }
     }
 
-    /// Activates all motors, and the limits and springs that would be within their bounds if nothing but their own
-    /// bodies were there. The other springs are held at a bound; in the relax pass, springs keep their impulses.
+    /// Activates all motors, and the limits and springs that would be within their bounds if no other unit acted on
+    /// their bodies. The other springs are held at a bound; in the relax pass, springs keep their impulses.
     fn activate(&mut self, pass: Pass, hinges: &HingeSet, list: &JointList) {
         let Block { bounded, units, impulses, wanted, .. } = self;
         for bounded in bounded.iter_mut() {
@@ -84,9 +85,10 @@ impl Block {
         }
     }
 
-    /// Deactivates units whose impulse would be beyond a bound: all limits and springs, and the motors that are
-    /// furthest beyond theirs, or all motors. A strong motor against a brake wants as much as the brake until the brake
-    /// slips. Returns whether there were any.
+    /// Deactivates units whose impulse would be beyond a bound. With `furthest_only`, motors are deactivated only if
+    /// their excess is at least half the largest one: while a brake holds a strong motor, the equations ask for as
+    /// large an impulse of the motor as of the brake, and only the brake should slip. Returns whether any unit was
+    /// deactivated.
     fn deactivate(&mut self, furthest_only: bool, hinges: &HingeSet, list: &JointList) -> bool {
         let Block { bounded, units, impulses, x, .. } = self;
         let impulses_of = |unit: &Unit| {
@@ -132,7 +134,7 @@ impl Block {
         any
     }
 
-    /// The scales of a pass for the units that are active.
+    /// Sets the scales of a pass. They are 0 for units that are not active.
     fn set_current_scales(&mut self, pass: Pass, hinges: &HingeSet, list: &JointList) {
         let Block { bounded, units, bias, relax, current, .. } = self;
         current.clone_from(match pass {

@@ -1,10 +1,11 @@
 //! The choice of joints that are solved in blocks, and their order.
 //!
-//! One iteration solves a body with one joint exactly, and a chain of like bodies well. It does not at bodies whose
-//! joints disturb each other: there it may even add energy. A body is *crowded* if it has two or more joints and
+//! One iteration solves a body with one joint exactly, and a chain of like bodies well. It fails at bodies whose joints
+//! disturb each other, where it may even add energy. A body is *crowded* if two or more joints hold it and
 //!
 //! - one of them holds more than a point: a weld, a slider, a spring, or
-//! - it is so light, or its arms are so long, that two hinges or the sum of all but one take most of its mobility.
+//! - it is so light, or its arms are so long, that it has a large share in the mobility of the points of two hinges, or
+//!   in the sum over all hinges but one.
 //!
 //! All joints of a crowded body are solved in a block. Two crowded bodies with a common joint share a block, as long as
 //! it does not grow beyond [`ROWS_MAX`]. The choice depends on the joints of a body alone, so that a joint elsewhere
@@ -20,15 +21,14 @@ use super::super::options::JointLimit;
 use super::super::state::Joint;
 use crate::math::{Fx, Unit, fx_mul};
 
-/// Largest number of rows of a block. The cost of a block without any order, such as a hub, grows with the third power
-/// of its rows: this many cost about as much as 5000 contacts.
+/// Largest number of rows of a block. The cost of a block with a full matrix, such as that of a hub, grows with the
+/// third power of its rows: a block of this size costs about as much as 5000 contacts.
 pub(super) const ROWS_MAX: u32 = 96;
 
 /// Smallest share that makes a body with two hinges crowded, if each of them has it.
 const PAIR_MIN: Unit = Unit::lit("0.6");
 
-/// Smallest sum of the shares of all hinges but the largest that makes a body crowded. 1.5 would be reached by cloth of
-/// discs.
+/// Smallest sum of the shares of all hinges but the largest that makes a body crowded. Cloth of discs would reach 1.5.
 const SUM_MIN: i64 = (1 << 30) / 100 * 152;
 
 /// A joint that may be solved in a block, with the properties by which blocks are chosen.
@@ -36,15 +36,16 @@ const SUM_MIN: i64 = (1 << 30) / 100 * 152;
 pub(in super::super) struct Candidate {
     /// The indices of its bodies: the ground for a body that no impulse changes.
     pub(in super::super) bodies: [u32; 2],
-    /// Number of rows that hold the bodies, are springs or motors. A joint without such rows takes no part.
+    /// Number of rows that a block would solve: those that hold the bodies, springs, limits, and motors along one
+    /// direction. A joint without such rows takes no part.
     pub(in super::super) rows: u32,
     /// Whether it has more rows than that of a motor, which crowds no body.
     pub(in super::super) holds: bool,
-    /// Whether it is a hinge that holds nothing but a point.
+    /// Whether it is a revolute joint, which holds nothing but a point.
     pub(in super::super) is_hinge: bool,
     /// `1 / (1 / M + 1 / M')` of the masses of its bodies, in kg.
     pub(in super::super) reduced_mass: Fx,
-    /// The shares of the bodies in the mobility of the point.
+    /// The shares of the bodies in the mobility of the point of a revolute joint; 0 for other joints.
     pub(in super::super) shares: [Unit; 2],
 }
 
@@ -135,9 +136,9 @@ pub(super) struct Choice {
     places: Vec<u32>,
     bodies: Vec<JointsOfBody>,
     of_body: Vec<u32>,
-    /// For each candidate, whether the current walk or an earlier block has it.
+    /// For each candidate, whether it is in the current walk or in an earlier block.
     taken: Vec<bool>,
-    /// For each candidate, whether a block has it.
+    /// For each candidate, whether it is in a block.
     settled: Vec<bool>,
     queue: Vec<u32>,
     /// Number of walks so far.
@@ -173,7 +174,7 @@ impl Choice {
             if !is_chosen || self.settled[first] {
                 continue;
             }
-            // The first walk finds a joint at the rim of the block; the envelope is narrow from there.
+            // The first walk finds a joint at the rim of the block. An order that starts there has a narrow envelope.
             let start = index(first);
             self.walk(candidates, start);
             let rim = self.queue.last().copied().unwrap_or(start);
@@ -246,7 +247,7 @@ impl Choice {
         }
     }
 
-    /// Lists the joints that crowded bodies connect with one, breadth first, until a block is full.
+    /// Lists the joints that crowded bodies connect with the joint `start`, breadth first, until the block is full.
     fn walk(&mut self, candidates: &[Candidate], start: u32) {
         self.walks += 1;
         self.queue.clear();
@@ -265,8 +266,9 @@ impl Choice {
         }
     }
 
-    /// Takes the joints of a body that fit beside a number of rows, in ascending order. Returns the rows with them.
-    /// The number of rows only grows during a walk, so a joint that does not fit is not tried again in it.
+    /// Adds the joints of a body to the walk, in ascending order. Leaves out joints that would bring the block above
+    /// [`ROWS_MAX`] rows. `rows` is the number of rows so far; returns the new number. It only grows during a walk, so
+    /// a joint that does not fit is not tried again in the same walk.
     fn take_joints_of(&mut self, place: u32, mut rows: u32) -> u32 {
         let Choice { bodies, of_body, taken, settled, queue, walks, .. } = self;
         let JointsOfBody { next, ends, walk } = &mut bodies[place as usize];

@@ -5,7 +5,7 @@
 //! and its energy grows if `kappa` is above about 1 (B. Chirikov, "A universal instability of many-dimensional
 //! oscillator systems", 1979). A body above [`KICK_MIN`] therefore answers the impulses of its block with the inertia
 //! `I + h^2 F . r`, as in a step that is implicit in the rotation (S. Andrews, M. Teichmann and P. Kry, "Geometric
-//! Stiffness for Real-time Constrained Multibody Dynamics", 2017). `F` is that of the last sub-step.
+//! Stiffness for Real-time Constrained Multibody Dynamics", 2017). `F` is the force of the last sub-step.
 
 use super::super::hinge::HingeSet;
 use super::super::list::JointList;
@@ -18,26 +18,27 @@ use crate::math::{Ratio, Vec2, round_shift_wide, saturate_wide};
 /// bodies below the instability keep theirs.
 const KICK_MIN: i64 = ONE / 2;
 
-/// Largest kick that is told from larger ones.
+/// Limit to which kicks are clamped.
 const KICK_MAX: i64 = 1000 * ONE;
 
-/// How the torque of a force changes while its body rotates.
+/// The change of the torque of a force while its body rotates.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Leverage {
-    /// Not at all, or by little.
+    /// No change, or a negligible one.
     None,
-    /// The point turns with the body and the force does not: `F . r`. With the lever ratios of both bodies, which are
-    /// the arms over the radii of gyration, turned by a right angle.
+    /// The point turns with the body and the force does not: the derivative is `F . r`. Contains the lever ratios of
+    /// both bodies, which are the arms over the radii of gyration, turned by a right angle.
     AtPoint([Vec2<Ratio>; 2]),
     /// The force turns with A, and acts at a point of B. With `d` from A's centre to that point, `r` from B's, and the
     /// position `n . d` on the axis `n`, the derivatives of the torques are `F n . d` and `F n . r` by the rotations of
-    /// A and B, and `F` by a translation across the axis. Each body takes its `|F| |r|`, which is at least the
-    /// derivative by its own rotation, whatever the direction. With the lengths of the lever ratios.
+    /// A and B, and `F` by a translation across the axis. For each body `|F|` times the length of its own arm is used
+    /// instead, which is at least the derivative by its own rotation for any direction of the force. Contains the
+    /// lengths of the lever ratios.
     AlongAxis([Ratio; 2]),
 }
 
 impl Leverage {
-    /// The torque for each radian over the radius of gyration, of an impulse on the body of a side.
+    /// The change of torque per radian, divided by the radius of gyration, by an impulse on the body of a side.
     fn stiffness(&self, side: usize, impulse: [i64; 2]) -> i64 {
         let [x, y] = impulse.map(i128::from);
         let product = match self {
@@ -50,8 +51,9 @@ impl Leverage {
 }
 
 impl Blocks {
-    /// Computes the inertia of all bodies for the next sub-step from the impulses of the last. `rotation_of` is the
-    /// rotation of a body in a sub-step, with 30 fraction bits, at a scaled angular velocity with 32.
+    /// Computes the inertia of all bodies for the next sub-step from the impulses of the last. `rotation_of` converts
+    /// the scaled angular velocity of a body, with 32 fraction bits, to its rotation in a sub-step, with 30 fraction
+    /// bits.
     pub(super) fn update_inertia(
         &mut self,
         hinges: &HingeSet,
@@ -106,8 +108,8 @@ impl Block {
         changed
     }
 
-    /// Takes geometric stiffness out of the impulses, which are scaled by the denominators of their rows: joints store
-    /// them as they are for the inertia alone.
+    /// Removes geometric stiffness from the impulses. Impulses are scaled by the denominators of their rows, and joints
+    /// store them with the denominators of the inertia without geometric stiffness.
     pub(super) fn restore_inertia(&mut self, hinges: &HingeSet, list: &JointList) {
         let Block { units, rows, impulses, .. } = self;
         for unit in units.iter_mut().filter(|unit| unit.is_stiffened()) {

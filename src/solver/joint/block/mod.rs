@@ -1,9 +1,9 @@
-//! Blocks: joints that one iteration after the other cannot solve are solved together, exactly.
+//! Blocks: groups of joints that are solved together, exactly, because iterations over single joints do not converge.
 //!
-//! Warm-started iterations over joints that meet at one body may diverge: they are a heavy ball with momentum 1 in the
-//! sense of B. Polyak (1964), and joints that disturb each other in a circle make it spiral outwards. `choice.rs` finds
-//! such joints. All their rows, `i`, that are not held at a bound (`bounds.rs`) then get the changes `d` that satisfy
-//! the softness of every row at once, instead of the changes `w` that each row by itself would make:
+//! Warm-started iterations over joints that meet at one body may diverge: they are the heavy-ball method of B. Polyak
+//! (1964) with momentum 1, which diverges if joints disturb each other in a cycle. `choice.rs` finds such joints. All
+//! their rows, `i`, that are not held at a bound (`bounds.rs`) then get the changes `d` that satisfy the softness of
+//! every row at once, instead of the changes `w` that each row by itself would make:
 //!
 //! ```text
 //! w_i = -massScale_i (v_i + bias_i) - impulseScale_i L_i           as for a single row
@@ -16,11 +16,11 @@
 //! Changes are also divided by `Q = sqrt(m_least / m)`, where `m` is the reduced mass of the two bodies, because the
 //! matrix is symmetric only for impulses, not for speeds.
 //!
-//! This is `A d + (impulseScale / massScale) d = w / massScale` with a unit diagonal, whose smallest eigenvalue is at
-//! least the smallest impulse scale, whatever masses and arms are, even if rows depend on each other, as in a loop of
-//! welds. (Springs between points at long arms may depend on each other more closely; `matrix.rs` bounds the pivots.)
-//! The relax pass, which has no softness, adds [`EXCESS`] to the diagonal instead. The matrix depends on the pose
-//! alone. The impulses and the arithmetic that applies them are those of single rows.
+//! The equation of `z` is `A d + (impulseScale / massScale) d = w / massScale`, scaled to a unit diagonal. The smallest
+//! eigenvalue of its matrix is at least the smallest impulse scale, whatever masses and arms are, even if rows depend
+//! on each other, as in a loop of welds. (Springs between points at long arms may depend on each other more closely;
+//! `matrix.rs` bounds the pivots.) The relax pass, which has no softness, adds [`EXCESS`] to the diagonal instead. The
+//! matrix depends on the pose alone. The impulses and the arithmetic that applies them are those of single rows.
 
 mod bounds;
 mod choice;
@@ -84,7 +84,7 @@ struct Block {
     relax: Scales,
     matrix: Matrix,
     factor: Factor,
-    /// The pass for which the factor is.
+    /// The pass for which `factor` was computed.
     factored: Option<Pass>,
     bounded: Vec<BoundedUnit>,
     /// Springs whose softness depends on the pose.
@@ -131,8 +131,8 @@ impl Blocks {
         &self.choice.order
     }
 
-    /// Arranges the chosen joints. `numbers` has the number of each chosen hinge among the hinges in blocks, and
-    /// the slot of each other joint, by which its parts are sorted.
+    /// Arranges the chosen joints. For each chosen joint, `numbers` has the number of a hinge among the hinges in
+    /// blocks, or the slot of any other joint. `parts` is sorted by slot.
     pub(super) fn arrange(
         &mut self,
         hinges: &HingeSet,
@@ -182,9 +182,9 @@ impl Blocks {
         self.blocks.iter_mut().for_each(|block| block.return_impulses(hinges, list));
     }
 
-    /// Starts a sub-step with impulses of 0. Equations that are solved exactly need no warm start, and softness has the
-    /// same result without. At a light body between heavy ones the impulses are large and cancel, but those of the last
-    /// pose do not cancel at the new one. `rotation_of` is that of [`Self::update_inertia`].
+    /// Starts a sub-step with impulses of 0. Equations that are solved exactly need no warm start, and softness gives
+    /// the same result without one. At a light body between heavy ones the impulses are large and cancel, but those of
+    /// the last pose do not cancel at the new one. `rotation_of` is that of [`Self::update_inertia`].
     pub(super) fn start_sub_step(
         &mut self,
         hinges: &HingeSet,
@@ -309,8 +309,8 @@ impl Block {
         }
     }
 
-    /// Returns the impulses to the joints, for the next tick. What does not fit their format is dropped: the impulses
-    /// are only where the next tick begins.
+    /// Returns the impulses to the joints, for the next tick. Impulses are clamped to the format of the joint, because
+    /// the next tick only starts from them.
     fn return_impulses(&mut self, hinges: &mut HingeSet, list: &mut JointList) {
         self.restore_inertia(hinges, list);
         for unit in &self.units {

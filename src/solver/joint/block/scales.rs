@@ -20,7 +20,7 @@ pub(super) struct Scales {
 }
 
 impl Scales {
-    /// Adds a row with `S` and `1 / S`, and with `Q` and `1 / Q`.
+    /// Adds a row with `S` and `1 / S`, with `Q` and `1 / Q`, and with the impulse scale `give`.
     pub(super) fn push(&mut self, scale: (i64, i64), mass: (i64, i64), give: i64) {
         for numbers in [&mut self.scales, &mut self.inwards, &mut self.outwards, &mut self.yields] {
             numbers.push(0);

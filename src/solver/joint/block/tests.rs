@@ -139,7 +139,7 @@ fn no_block_grows_beyond_its_limit_and_no_joint_is_lost() {
     assert!(choice.order.iter().copied().eq(0..199));
 }
 
-/// The blocks by their definition: joint by joint, breadth first, with all joints of a body looked at.
+/// The blocks by their definition, as an oracle: breadth first, with a scan over all joints for each body.
 fn blocks_by_definition(candidates: &[Candidate], crowded: impl Fn(u32) -> bool) -> Vec<Vec<u32>> {
     let mut taken = vec![false; candidates.len()];
     let walk = |start: u32, taken: &mut Vec<bool>| {

@@ -122,7 +122,7 @@ impl Unit {
         self.row..self.row + self.rows().count()
     }
 
-    /// Its first two numbers among those of all rows.
+    /// The entries of its first two rows in a list with one number for each row of the block.
     pub(super) fn impulses(&self, numbers: &[i64]) -> [i64; 2] {
         let mut own = [0; 2];
         self.range().zip(&mut own).for_each(|(row, number)| *number = numbers[row]);
@@ -312,7 +312,7 @@ impl Unit {
         (self.bodies[side] != GROUND).then_some((self.bodies[side], self.mobility.roots[side]))
     }
 
-    /// The largest impulse of a row that the state can hold.
+    /// The largest magnitude of a row's impulse that fits the state.
     pub(super) fn impulse_max(&self, part: usize) -> Speed {
         let is_angle = part == 2 || matches!(self.source, Source::HingeLimit(..) | Source::HingeDrive(_));
         if is_angle { ANGLE_MAX } else { IMPULSE_MAX }
@@ -375,7 +375,7 @@ impl Unit {
         }
     }
 
-    /// The magnitude of an impulse over that of the bound of a motor.
+    /// The magnitude of an impulse divided by the largest impulse of the motor.
     pub(super) fn excess(&self, impulse: i64, hinges: &HingeSet, list: &JointList) -> u64 {
         let [_, max] = self.bounds(hinges, list);
         impulse.unsigned_abs() / max.unsigned_abs().max(1)

@@ -246,7 +246,7 @@ impl<const N: usize> AngleRows<N> {
         pair.turn(&self.f, L::sub(new, old), faults);
     }
 
-    /// `w` of the springs: the impulse that is to be taken away.
+    /// `w` of the springs: the decrease of the impulse.
     #[inline(always)]
     fn wanted_of_spring<L: Lanes<N>>(
         &self,
@@ -268,8 +268,8 @@ impl<const N: usize> AngleRows<N> {
         }
     }
 
-    /// Solves the limits. As with contacts, a gap may close within this sub-step, and a gap that the bias pass has not
-    /// closed is left to the next sub-step.
+    /// Solves the lower limits (side 0) or the upper limits (side 1). As with contacts, a gap may close within this
+    /// sub-step, and a gap that the bias pass has not closed is left to the next sub-step.
     #[inline(always)]
     fn solve_limit<L: Lanes<N>>(
         &mut self,
@@ -339,7 +339,7 @@ fn velocity<L: Lanes<N>, const N: usize>(
     vn
 }
 
-/// The speed of a number of turns, saturated.
+/// Converts an angle in units of 2^-32 turn to a speed, saturated. `per_turn` is the speed per turn.
 #[inline]
 fn speed_of(turns: i64, per_turn: Fx) -> i32 {
     const EXTRA: u32 = 32 + Fx::FRAC_NBITS - Speed::FRAC_NBITS;

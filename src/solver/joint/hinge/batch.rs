@@ -24,7 +24,8 @@ pub(in crate::solver) struct Batch<const N: usize> {
     pub(super) lambda: [Ints<N>; 2],
     /// Whether any hinge in the batch has rows on the angle. The batch then has [`super::angle::AngleRows`].
     pub(super) has_angle: bool,
-    /// Whether the hinges have a softness of their own, all the same: that of the record.
+    /// Whether the hinges have a softness of their own. It is the same for all hinges of the batch, and stored in the
+    /// record.
     pub(super) is_tuned: bool,
 }
 
@@ -37,7 +38,8 @@ pub(in crate::solver) struct Records<const N: usize> {
     pub(super) len: usize,
     /// The slots of the joints.
     pub(super) slots: [u32; N],
-    /// The angles of the joints in units of 2^-32 turn: at the start of the tick, or after the tick at its end.
+    /// The angles of the joints in units of 2^-32 turn: at the start of the tick while it is solved, and at its end
+    /// afterwards.
     pub(super) turns: [i64; N],
     /// The angles of the joints while no body is rotated.
     pub(super) rest: [Angle; N],

@@ -15,7 +15,7 @@ use super::{HingeSet, Hinges, Poses};
 use crate::math::{Ratio, Speed, Unit, Vec2};
 use crate::simd::{Lanes, Scalar};
 
-/// A refresh without a solve, which is the block's.
+/// Refreshes a batch without solving it, because the block solves it.
 #[derive(Clone, Copy)]
 struct RefreshBlocked<'a> {
     refresh: Refresh<'a>,

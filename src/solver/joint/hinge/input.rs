@@ -114,7 +114,7 @@ impl Turning {
     }
 }
 
-/// A product in two parts, each of which fits 64 bits.
+/// `number factor`, computed in two parts, each of which fits 64 bits.
 fn product(number: i32, factor: Fx) -> i64 {
     let (number, high, low) = (i64::from(number), factor.to_bits() >> 32, factor.to_bits() & 0xFFFF_FFFF);
     number * high + round_shift(number * low, 32)

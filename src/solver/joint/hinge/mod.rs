@@ -35,7 +35,7 @@ use refresh::{Refresh, Stiffness};
 use solve::{Relax, Solve};
 use warm_start::WarmStart;
 
-/// The kind of constraint that a hinge is.
+/// Hinges as a kind of constraint.
 #[derive(Clone, Debug)]
 pub(super) enum Hinges {}
 
@@ -96,7 +96,7 @@ impl HingeSet {
         self.blocked.run_in_order(WarmStart { refresh }, context);
     }
 
-    /// One iteration over the overflow. Refreshes the hinges in blocks.
+    /// One iteration over the overflow. Also refreshes the hinges in blocks.
     pub(super) fn solve(&mut self, pass: Pass, poses: Poses<'_>, context: &StepContext<'_>) {
         let [refresh, _] = refreshes(&mut self.is_stale, poses, context);
         match pass {

@@ -131,9 +131,9 @@ fn rotated_ratios<L: Lanes<N>, const N: usize>(quads: &[L::Int; 4], ratios: &[In
 /// Fraction bits of [`gap_factors`].
 pub(super) const FACTOR: u32 = 14;
 
-/// `1 / (2 kA)` and `-1 / (2 kB)` in 1/m, by which a gap becomes a change of lever ratios. 0 if one of the bodies is
-/// not moved: no angular momentum is kept there, and the anchor is the better point. Saturates for bodies of less than
-/// a hundredth of a millimetre.
+/// `1 / (2 kA)` and `-1 / (2 kB)` in 1/m, by which a gap becomes a change of lever ratios. 0 if no impulse moves one of
+/// the bodies: angular momentum is then not conserved, and the anchor is the better point. Saturates for radii of
+/// gyration of less than a hundredth of a millimetre.
 pub(super) fn gap_factors(inverse_gyrations: [Reciprocal; 2], fractions: MassFractions) -> [i32; 2] {
     if fractions.a == 0 || fractions.b == 0 {
         return [0; 2];
@@ -143,8 +143,8 @@ pub(super) fn gap_factors(inverse_gyrations: [Reciprocal; 2], fractions: MassFra
     [a, -b]
 }
 
-/// Lever ratios that reach into the gap, `e + factor (-gap_y, gap_x)`. Those that would be too long for the products of
-/// `K` stay as they are: beyond 87 radii of gyration angular momentum is not kept.
+/// Lever ratios that reach into the gap, `e + factor (-gap_y, gap_x)`. Lever ratios that would be too long for the
+/// products of `K` stay as they are: beyond 87 radii of gyration angular momentum is not kept.
 #[inline(always)]
 fn reaching<L: Lanes<N>, const N: usize>(
     e: [L::Int; 2],
@@ -163,8 +163,8 @@ fn reaching<L: Lanes<N>, const N: usize>(
     [L::select(beyond, e[0], x), L::select(beyond, e[1], y)]
 }
 
-/// The gap in the format of [`Step`]. `gap` is the exact gap at the start of the tick, with 52 fraction bits. `moved`
-/// is the displacement since then. Their sum is rounded once.
+/// The gap in the format of [`Step`]. `gap` is the exact gap without the displacements of the bodies since the start of
+/// the tick, with 52 fraction bits. `moved` is the displacement of B relative to A. Their sum is rounded once.
 #[inline(always)]
 fn moved_gap<L: Lanes<N>, const N: usize>(gap: L::Wide, moved: L::Int) -> L::Int {
     const ARM: u32 = Length::FRAC_NBITS + Unit::FRAC_NBITS;

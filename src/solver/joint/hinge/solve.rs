@@ -48,7 +48,7 @@ impl Operation<Hinges> for Relax<'_> {
 fn solve<L: Lanes<N>, const N: usize>(pass: Pass, refresh: &Refresh<'_>, parts: BatchParts<'_, Hinges, N>) {
     let BatchParts { batch, record, extra: mut angle, bodies, faults } = parts;
     refresh.refresh::<L, N>(batch, record, angle.as_deref_mut(), bodies);
-    // These are copied, so that the compiler sees that writing to the batch does not change them.
+    // Both are copied, so that the compiler sees that writing to the batch does not change them.
     let (stiffness, quads) = (refresh.stiffness_of(batch, record), refresh.poses.quads);
     let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
     if let Some(rows) = angle {

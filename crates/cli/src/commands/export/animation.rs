@@ -12,7 +12,7 @@ use super::{Arguments, Output, Replay};
 use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 
-/// Most frames a second by default: more are hard to see.
+/// Largest default frame rate in frames per second. A higher rate makes no visible difference.
 const FRAME_RATE_MAX: u32 = 30;
 /// Default width of an animation in pixels. It is smaller than that of a picture, to keep files small.
 const WIDTH: u32 = 640;
@@ -20,7 +20,7 @@ const WIDTH: u32 = 640;
 const GIF_RATE_MAX: u32 = 50;
 /// Number of ticks that are sampled to find a window in which all of them fit.
 const SAMPLES: u64 = 100;
-/// Number of samples for each sample picture, from which the palette is made.
+/// Number of samples per sample picture. The palette is computed from the sample pictures.
 const SAMPLES_OF_A_PICTURE: usize = 10;
 
 /// Writes a range of ticks as an animation.
@@ -101,8 +101,8 @@ struct Camera<'a, G: Game> {
 }
 
 impl<'a, G: Game> Camera<'a, G> {
-    /// All frames have the same size. Its aspect ratio is that of the game's own view, unless the arguments set both
-    /// sides.
+    /// All frames have the same size. Their aspect ratio is that of the game's own view, unless the arguments set both
+    /// width and height.
     fn new(
         replay: &mut Replay<'_, G>,
         view: Option<fn(&G) -> View>,

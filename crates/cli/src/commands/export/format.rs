@@ -42,7 +42,7 @@ pub(super) struct Formats {
 }
 
 impl Formats {
-    /// The selected format, or else the one that the extension of the output file names.
+    /// The format selected by an option or, without an option, by the extension of the output file.
     pub(super) fn chosen(&self, output: Option<&Path>) -> Result<Format, CommandError> {
         let Formats { svg, png, gif, apng, json, plot } = *self;
         let asked = [

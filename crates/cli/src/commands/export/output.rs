@@ -17,8 +17,9 @@ pub(super) struct Output<'a> {
 }
 
 impl Output<'_> {
-    /// Calls `write` with the output file of the arguments as destination, or without one with the standard output. The
-    /// file appears when all of it is written: a run that fails or is interrupted leaves the old file.
+    /// Calls `write` with the output file of the arguments as destination, or with the standard output if there is no
+    /// output file. The file appears when all of it is written: a run that fails or is interrupted leaves the old file
+    /// unchanged.
     pub(super) fn write(
         arguments: &Arguments,
         console: &mut Console<'_>,

@@ -57,13 +57,13 @@ struct Bytes {
     setup: u64,
     inputs: u64,
     trailer: u64,
-    /// Everything after the intact part.
+    /// Number of bytes after the intact part.
     rest: u64,
 }
 
 enum Setup {
     Fields(Vec<Field>),
-    /// It cannot be decoded, or belongs to another game.
+    /// The setup cannot be decoded, or belongs to another game.
     Unknown,
 }
 

@@ -17,7 +17,7 @@ use crate::console::json_text;
 /// semantics.
 const VERSION: u32 = 1;
 
-/// Most bytes of an entry that are read: enough for 256 claims.
+/// Maximum number of bytes read from an entry: enough for 256 claims.
 const ENTRY_BYTES_MAX: u64 = 1 << 20;
 
 /// A folder with one file for each report, named by a hash of everything that the report depends on.
@@ -26,7 +26,7 @@ const ENTRY_BYTES_MAX: u64 = 1 << 20;
 /// writers of an entry write the same bytes. An entry that is damaged or cannot be read counts as absent.
 pub(super) struct Cache {
     folder: PathBuf,
-    /// Hash of what is the same for all files: the program and the limits.
+    /// Hash of the rules, the semantics and the limits, which are the same for all files.
     context: Hash,
 }
 
@@ -34,7 +34,7 @@ pub(super) struct Cache {
 #[derive(Serialize, Deserialize)]
 struct Entry {
     report: Report,
-    /// Hash of the key and the report. It detects damage, and entries under the name of another entry.
+    /// Hash of the key and the report. It detects damage, and an entry that was renamed to another key.
     checksum: String,
 }
 
@@ -56,7 +56,7 @@ impl Cache {
     /// The cached report of a key, if there is an undamaged entry.
     pub(super) fn get(&self, key: &Hash) -> Option<Report> {
         let (mut text, path) = (String::new(), self.path(key));
-        // A pipe of this name would block for ever.
+        // If the path is a pipe, reading it would block for ever.
         if !fs::metadata(&path).ok()?.is_file() {
             return None;
         }
@@ -71,7 +71,7 @@ impl Cache {
     /// Writes the entry of a report.
     ///
     /// # Errors
-    /// When it cannot be written. Verdicts do not depend on the cache.
+    /// When the entry cannot be written. Verdicts do not depend on the cache.
     pub(super) fn put(&self, key: &Hash, report: Report) -> io::Result<()> {
         let entry = Entry { checksum: checksum(key, &report), report };
         let text = serde_json::to_string(&entry)?;
@@ -98,7 +98,7 @@ pub(super) fn key(context: &Hash, bytes: &[u8; 32]) -> Hash {
     hasher.finalize()
 }
 
-/// Hash of everything but the file's bytes that a verdict depends on.
+/// Hash of everything that a verdict depends on, except the file's bytes.
 pub(super) fn context(rules: RulesId, limits: &Limits) -> Hash {
     // Exhaustive destructuring: a new limit does not compile until it is hashed here.
     let Limits {
@@ -133,7 +133,7 @@ pub(super) fn context(rules: RulesId, limits: &Limits) -> Hash {
     for number in numbers {
         hasher.update(&number.to_le_bytes());
     }
-    // The only part of variable length, so it comes last.
+    // The name is the only part of variable length, so it comes last.
     hasher.update(name);
     hasher.finalize()
 }

@@ -46,7 +46,7 @@ impl Sink<Result<Verified, CommandError>> for Display<'_, '_> {
         Ok(())
     }
 
-    /// Names the files that take long, and updates the progress line.
+    /// Prints the names of files that take long, and updates the progress line.
     fn pause(&mut self) -> Result<Pause, CommandError> {
         for work in self.shared.watch.overdue() {
             self.progress.aside(|| self.console.note(work));
@@ -55,7 +55,8 @@ impl Sink<Result<Verified, CommandError>> for Display<'_, '_> {
         Ok(if self.interrupt.caught().is_some() { Pause::End } else { Pause::Continue })
     }
 
-    /// Names the files at work and the signal, and ends the process without waiting for them.
+    /// Prints the names of the signal and of the files that are being verified, and ends the process without waiting
+    /// for these files.
     fn end(&mut self) {
         let Some((name, signal)) = self.interrupt.caught() else { return };
         self.totals.elapsed = self.clock.elapsed();
@@ -123,7 +124,7 @@ impl<'a, 'c> Display<'a, 'c> {
         })
     }
 
-    /// Prints the line of a file that has used up its time. It counts like a file that cannot be read.
+    /// Prints the line of a file that has exceeded its time limit. The file counts like one that cannot be read.
     fn out_of_time(
         &mut self,
         path: &Path,

@@ -1,4 +1,5 @@
-//! [`Interrupt`]: SIGINT and SIGTERM, so that the files at work can be named before the process ends.
+//! [`Interrupt`]: catches SIGINT and SIGTERM, so that the names of unfinished files are printed before the process
+//! ends.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -9,7 +10,8 @@ use signal_hook::{SigId, flag, low_level};
 /// The signals, their numbers as flags, and their names.
 const SIGNALS: [(i32, usize, &str); 2] = [(SIGINT, 1, "SIGINT"), (SIGTERM, 2, "SIGTERM")];
 
-/// Listens for the signals while it exists. A second signal has its ordinary effect, also if the output is blocked.
+/// Catches the signals while the value exists. A second signal ends the process at once, even while the output is
+/// blocked.
 pub(super) struct Interrupt {
     /// The flag of the signal, 0 before one arrives.
     caught: Arc<AtomicUsize>,
@@ -17,13 +19,14 @@ pub(super) struct Interrupt {
 }
 
 impl Interrupt {
-    /// Listens, or without `owns_process` does nothing: signals of a program that uses the tool as a library are its
-    /// own.
+    /// Starts to catch the signals. Does nothing without `owns_process`, because a program that uses the tool as a
+    /// library handles signals itself.
     pub(super) fn listen(owns_process: bool) -> Self {
         let (caught, again) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicBool::new(false)));
         let mut ids = Vec::new();
         for (signal, number, _) in SIGNALS.into_iter().filter(|_| owns_process) {
-            // In this order: at the first signal, `again` is still false. What cannot be registered is not caught.
+            // Handlers run in the order of registration, so `again` is still false when the first handler runs at the
+            // first signal. Errors are ignored: a signal that cannot be registered is not caught.
             ids.extend(flag::register_conditional_default(signal, Arc::clone(&again)));
             ids.extend(flag::register(signal, Arc::clone(&again)));
             ids.extend(flag::register_usize(signal, Arc::clone(&caught), number));
@@ -31,7 +34,7 @@ impl Interrupt {
         Interrupt { caught, ids }
     }
 
-    /// The signal that arrived: its name and number.
+    /// Name and number of the signal that arrived.
     pub(super) fn caught(&self) -> Option<(&'static str, i32)> {
         let caught = self.caught.load(Ordering::Relaxed);
         SIGNALS.iter().find(|(_, number, _)| *number == caught).map(|(signal, _, name)| (*name, *signal))

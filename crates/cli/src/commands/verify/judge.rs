@@ -14,9 +14,9 @@ use super::watch::{Watch, Work};
 pub(super) struct Shared {
     /// Set when no more results are needed.
     pub(super) stop: AtomicBool,
-    /// Ticks that were played.
+    /// Number of ticks played so far.
     pub(super) ticks: AtomicU64,
-    /// The files at work.
+    /// The files that are being verified.
     pub(super) watch: Watch,
 }
 
@@ -25,7 +25,7 @@ pub(super) struct Shared {
 pub(super) enum Outcome {
     /// A verdict.
     Report(Report),
-    /// No verdict: the file has used up its time.
+    /// No verdict: the file has exceeded its time limit.
     OutOfTime {
         /// Number of ticks that were played.
         ticks: u64,
@@ -58,7 +58,7 @@ fn play<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared, work: &Work) ->
     let report =
         |verdict: &Verdict, claims: &[_]| Outcome::Report(Report::new(length, verdict, claims, None));
     loop {
-        // One tick may take long, so this is checked before each.
+        // A single tick may take long, so these conditions are checked before every tick.
         if shared.stop.load(Ordering::Relaxed) {
             return Outcome::Stopped;
         }
@@ -75,7 +75,7 @@ fn play<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared, work: &Work) ->
     }
 }
 
-/// The versions that a file needs which this program cannot verify.
+/// The versions required by a file that this program cannot verify.
 fn needs(bytes: &[u8], limits: &Limits, verdict: &Verdict) -> Option<Needs> {
     match verdict {
         Verdict::Unverifiable { why: Mismatch::Format { file, .. } } => {

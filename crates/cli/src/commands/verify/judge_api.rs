@@ -1,4 +1,4 @@
-//! [`Judge`]: the verdicts of `verify` for servers that do not have their files in a folder.
+//! [`Judge`]: the verdicts of `verify` for programs that hold files in memory, such as servers.
 
 use std::marker::PhantomData;
 use std::path::Path;
@@ -11,7 +11,7 @@ use super::cache;
 use super::judge::{Outcome, Shared, judge};
 use super::report::Digests;
 
-/// Verifies files of the game `G` one by one, on any thread, and gives the lines of `verify --json`.
+/// Verifies files of the game `G` one by one, on any thread, and returns the same lines as `verify --json`.
 ///
 /// ```
 /// use lockstep2d::lockstep::Sandbox;
@@ -46,14 +46,14 @@ pub struct Judge<G: Game> {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Judged {
-    /// The name of the verdict, as VERIFYING.md lists them.
+    /// Name of the verdict, as listed in VERIFYING.md.
     pub verdict: String,
     /// The line of JSON, without a line break.
     pub line: String,
 }
 
 impl<G: Game> Judge<G> {
-    /// A judge with these limits of what one file may cost.
+    /// Creates a judge with these limits for each file.
     #[must_use]
     pub fn new(limits: Limits) -> Self {
         Judge { limits, shared: Shared::default(), game: PhantomData }
@@ -81,7 +81,7 @@ impl<G: Game> Judge<G> {
         }
     }
 
-    /// Ends all files at work before their next tick, without a verdict, and all that begin later.
+    /// Stops the verification of all files, including later ones, before their next tick and without a verdict.
     pub fn stop(&self) {
         self.shared.stop.store(true, Ordering::Relaxed);
     }
@@ -92,8 +92,8 @@ impl<G: Game> Judge<G> {
         self.shared.ticks.load(Ordering::Relaxed)
     }
 
-    /// Identifies everything that the verdict depends on, as 64 hexadecimal digits: the BLAKE3 of the bytes of the
-    /// file, the rules, the semantics of the engine, and the limits. It names the entries of `verify --cache`, too.
+    /// Key of everything that the verdict depends on, as 64 hexadecimal digits: the file with this BLAKE3 digest, the
+    /// rules, the semantics of the engine, and the limits. The entries of `verify --cache` are named by the same key.
     #[must_use]
     pub fn key(&self, blake3: &[u8; 32]) -> String {
         cache::key(&cache::context(G::RULES, &self.limits), blake3).to_string()

@@ -5,7 +5,7 @@ use std::cell::{Cell, RefCell};
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 use std::sync::Once;
 
-/// Most characters of a panic message that are kept. The message may quote the file.
+/// Maximum number of characters kept from a panic message, which may quote the file.
 const MESSAGE_CHARS_MAX: usize = 400;
 
 /// A panic that was caught.
@@ -23,7 +23,7 @@ thread_local! {
     static LOCATION: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// Runs `work`. A panic is returned instead of printed; whatever `work` was changing must not be used afterwards.
+/// Runs `work`. A panic is returned instead of printed. Data that `work` was changing must not be used afterwards.
 pub(super) fn catch<T>(work: impl FnOnce() -> T) -> Result<T, Panic> {
     listen();
     IS_CAUGHT.set(true);

@@ -6,8 +6,8 @@ use std::sync::{Mutex, mpsc};
 use std::thread;
 use std::time::Duration;
 
-/// Most tasks that are started before the result of the first of them is shown. Their results are held in memory while
-/// a long task runs, unless results are shown as they come.
+/// Maximum number of tasks that are started before the result of the first of them is shown. With [`Order::Tasks`],
+/// their results are held in memory while a long task runs.
 const AHEAD_MAX: u64 = 1024;
 
 /// Longest time between two calls of [`Sink::pause`].
@@ -19,9 +19,9 @@ const STACK_BYTES: usize = 8 << 20;
 /// The order in which results are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
-    /// That of the tasks: a long task holds up the results of those after it.
+    /// The order of the tasks: a long task delays the results of those after it.
     Tasks,
-    /// As they come.
+    /// The order in which the tasks are completed.
     Completion,
 }
 
@@ -33,14 +33,14 @@ pub(super) trait Sink<R> {
     /// Shows one result.
     fn result(&mut self, result: R) -> Result<(), Self::Error>;
 
-    /// Called again and again, at least every [`MOMENT`]. [`Pause::End`] ends the run.
+    /// Called repeatedly, at least every [`MOMENT`]. [`Pause::End`] ends the run.
     fn pause(&mut self) -> Result<Pause, Self::Error>;
 
-    /// Called after [`Pause::End`], when all results that were held are shown. Tasks may still be running.
+    /// Called after [`Pause::End`], when all held results have been shown. Tasks may still be running.
     fn end(&mut self);
 }
 
-/// Whether a run goes on.
+/// Whether a run continues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pause {
     Continue,

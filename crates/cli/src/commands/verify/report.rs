@@ -36,7 +36,7 @@ pub(super) struct Digests {
 }
 
 impl Digests {
-    /// The digests of a file. One that is damaged or exceeds a limit has no digest of its game.
+    /// The digests of a file. A file that is damaged or exceeds a limit has no digest of its game.
     pub(super) fn of(bytes: &[u8], limits: &Limits) -> Self {
         Digests { blake3: blake3::hash(bytes), game: GameDigest::of_any(bytes, limits).ok() }
     }
@@ -46,7 +46,7 @@ impl Digests {
     }
 }
 
-/// The versions that a file needs. All but the format are unknown if the format is another version.
+/// The versions that a file requires. If the format has another version, all others are unknown.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(super) struct Needs {
     pub(super) format: u32,
@@ -93,8 +93,8 @@ impl Report {
         matches!(self.verdict.as_str(), "incomplete" | "unverifiable")
     }
 
-    /// Whether every other run gives the same report. A panic is not final: the machine may have caused it, or a fix
-    /// may come without a new version of the rules.
+    /// Whether every other run gives the same report. A panic is not final: the machine may have caused it, or a later
+    /// fix may not change the version of the rules.
     pub(super) fn is_final(&self) -> bool {
         self.verdict != PANICKED
     }
@@ -136,7 +136,7 @@ pub(super) fn unread(file: &Path, error: &io::Error) -> String {
     json!({ "file": file.display().to_string(), "error": error.to_string() }).to_string()
 }
 
-/// The line of a file that has used up its time, which has no verdict.
+/// The line of a file that has exceeded its time limit, which has no verdict.
 pub(super) fn out_of_time(
     file: &Path,
     digests: &Digests,

@@ -1,4 +1,4 @@
-//! [`Signers`]: checks who has signed a file (`--keys`).
+//! [`Signers`]: checks the signatures of a file (`--keys`).
 
 use std::fmt;
 use std::io;
@@ -18,7 +18,7 @@ pub(super) struct Signers {
     required: usize,
 }
 
-/// Result of the signature check, as fields of the JSON line. Independent of the verdict.
+/// Result of the signature check, as fields of the JSON line. It is independent of the verdict.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(super) struct Signed {
     signature: State,
@@ -50,7 +50,7 @@ impl Signers {
     /// Reads the file of public keys.
     ///
     /// # Errors
-    /// When it cannot be read or parsed, or has fewer than `required` names.
+    /// When the file cannot be read or parsed, or has fewer than `required` names.
     pub(super) fn read(path: &Path, required: usize) -> Result<Self, CommandError> {
         let text = sign::read_text(path, u64::MAX)?;
         let keys: AllowedKeys = text.parse().map_err(CommandError::line(path))?;
@@ -61,7 +61,7 @@ impl Signers {
         Ok(Signers { keys, required })
     }
 
-    /// Checks the signatures beside a replay. `game` is `None` for a replay that is damaged: nobody can sign one.
+    /// Checks the signatures beside a replay. `game` is `None` for a damaged replay, which cannot be signed.
     ///
     /// # Errors
     /// When there is a signature file that cannot be read, or the replay comes from the standard input.

@@ -10,7 +10,7 @@ use crate::walk::Walk;
 /// The argument that stands for the standard input.
 pub(super) const INPUT: &str = "-";
 
-/// The files that the arguments name, and errors in finding them, in order.
+/// Iterator over the files given by the arguments and the errors in finding them, in order.
 pub(super) struct Tasks<'a> {
     arguments: std::slice::Iter<'a, PathBuf>,
     shard: Shard,
@@ -22,7 +22,7 @@ pub(super) struct Tasks<'a> {
 struct FolderTasks<'a> {
     path: &'a Path,
     walk: Walk,
-    /// Whether any file was found, also of another part.
+    /// Whether any file was found, including files of other parts.
     is_any: bool,
 }
 
@@ -31,7 +31,7 @@ impl<'a> Tasks<'a> {
         Tasks { arguments: arguments.iter(), shard, folder: None, is_input_taken: false }
     }
 
-    /// Starts an argument. A file that is named directly is taken whatever its extension.
+    /// Starts an argument. A file that is named directly is accepted with any extension.
     fn open(&mut self, path: &'a Path) -> Option<Result<PathBuf, CommandError>> {
         if path.as_os_str() == INPUT {
             let again = std::mem::replace(&mut self.is_input_taken, true);

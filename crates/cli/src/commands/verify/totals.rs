@@ -25,14 +25,14 @@ pub(super) struct Totals {
 }
 
 impl Totals {
-    /// Counts a file that has used up its time.
+    /// Counts a file that has exceeded its time limit.
     pub(super) fn add_undecided(&mut self, ticks: u64) {
         self.files += 1;
         self.undecided += 1;
         self.ticks = self.ticks.saturating_add(ticks);
     }
 
-    /// Counts a file that is not signed as required, beside its verdict.
+    /// Counts a file that is not signed as required, in addition to its verdict.
     pub(super) fn add_unsigned(&mut self) {
         self.unsigned += 1;
     }

@@ -31,9 +31,9 @@ pub(super) struct Verified {
     pub(super) outcome: Outcome,
     pub(super) digests: Digests,
     pub(super) cached: bool,
-    /// Why the report could not be cached.
+    /// The error that kept the report from being cached.
     pub(super) unkept: Option<io::Error>,
-    /// Result of the signature check, if signatures are required. Never cached.
+    /// Result of the signature check, if signatures are required. It is never cached.
     pub(super) signed: Option<Signed>,
 }
 

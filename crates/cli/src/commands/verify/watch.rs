@@ -1,4 +1,4 @@
-//! [`Watch`]: the files at work, so that long ones can be named and stopped.
+//! [`Watch`]: the files that are being verified, so that slow ones can be reported and stopped.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -11,22 +11,22 @@ use super::totals::rate;
 use crate::clock::Clock;
 use crate::files::Shown;
 
-/// Seconds after which a file is named for the first time. The interval then doubles up to [`NAMED_AGAIN_MAX`].
+/// Seconds after which a file is reported for the first time. The interval then doubles up to [`NAMED_AGAIN_MAX`].
 const NAMED_AFTER: u64 = 5;
-/// Longest interval in seconds at which a file is named again.
+/// Longest interval in seconds at which a file is reported again.
 const NAMED_AGAIN_MAX: u64 = 60;
 
 /// Value of [`Work::ticks`] before the file is opened.
 const UNKNOWN: u64 = u64::MAX;
 
-/// The files at work on all threads.
+/// The files that are being verified on all threads.
 #[derive(Debug, Default)]
 pub(super) struct Watch {
     works: Mutex<BTreeMap<u64, Arc<Work>>>,
     begun: AtomicU64,
 }
 
-/// A file at work, and how far it is.
+/// A file that is being verified, and its progress.
 #[derive(Debug)]
 pub(super) struct Work {
     path: PathBuf,
@@ -35,11 +35,11 @@ pub(super) struct Work {
     tick: AtomicU64,
     /// Ticks in the file, or [`UNKNOWN`].
     ticks: AtomicU64,
-    /// Second at which the file is named next.
+    /// Second at which the file is reported next.
     named_at: AtomicU64,
 }
 
-/// A file at work. It leaves the [`Watch`] when the value is dropped.
+/// Guard of a file in the [`Watch`], which is removed from it when the guard is dropped.
 pub(super) struct AtWork<'a> {
     watch: &'a Watch,
     number: u64,
@@ -62,12 +62,12 @@ impl Watch {
         AtWork { watch: self, number, work }
     }
 
-    /// All files at work, those that began first first.
+    /// All files that are being verified, in the order in which they began.
     pub(super) fn at_work(&self) -> Vec<Arc<Work>> {
         self.works().values().map(Arc::clone).collect()
     }
 
-    /// The files that are to be named now.
+    /// The files that are due to be reported.
     pub(super) fn overdue(&self) -> Vec<Arc<Work>> {
         self.works().values().filter(|work| work.is_overdue()).map(Arc::clone).collect()
     }
@@ -93,7 +93,7 @@ impl Work {
         self.tick.load(Ordering::Relaxed)
     }
 
-    /// Whether the file has used up its time.
+    /// Whether the file has exceeded its time limit.
     pub(super) fn is_out_of_time(&self) -> bool {
         self.time_max.is_some_and(|most| self.clock.elapsed() >= most)
     }

@@ -21,7 +21,7 @@ impl AngleRows<1> {
         })
     }
 
-    /// `w` of that row.
+    /// `w` of the spring or of the row that holds the angle.
     pub(in super::super) fn blocked_wanted<L: Lanes<1>>(
         &self,
         pass: Pass,
@@ -69,7 +69,7 @@ impl AngleRows<1> {
         self.has_drive && self.drive.max.0[0] > 0
     }
 
-    /// `w` of the motor. Its speed is limited to what the limits allow.
+    /// `w` of the motor. Its target speed is at most the speed at which the limits may be approached.
     pub(in super::super) fn wanted_of_drive<L: Lanes<1>>(
         &self,
         pair: &BodyPairW<L, 1>,
@@ -102,7 +102,7 @@ impl AngleRows<1> {
         &mut self.limits[side].lambda.0[0]
     }
 
-    /// The impulse of that row.
+    /// The impulse of the spring or of the row that holds the angle.
     pub(in super::super) fn held_impulse(&mut self) -> &mut i32 {
         &mut self.spring.lambda.0[0]
     }

@@ -19,7 +19,7 @@ const RIGHT: f64 = 16.0;
 /// Space above the curves of a panel in pixels, for its title, and below them.
 const TITLE: f64 = 22.0;
 const GAP: f64 = 14.0;
-/// Most steps of the vertical axis, and of the time axis.
+/// Maximum number of steps of the vertical axis, and of the time axis.
 const STEPS_UP: i64 = 4;
 const STEPS_ALONG: i64 = 10;
 

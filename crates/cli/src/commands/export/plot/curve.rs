@@ -1,6 +1,6 @@
 //! [`Curve`]: values over ticks, reduced to the number of points that a plot can show.
 
-/// Most columns.
+/// Maximum number of columns.
 const COLUMNS: u64 = 1000;
 
 /// Values over any number of ticks. Of the values in one column, the first, lowest, highest and last are kept, so that
