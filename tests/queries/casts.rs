@@ -3,6 +3,7 @@
 use crate::oracle::along;
 use crate::sweep;
 use lockstep2d::body::{BodyDef, Chain, Geometry, Polygon, ShapeDef};
+use lockstep2d::collision::BroadPhaseKind;
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Rng, Rot, Vec2, fx_mul, ratio};
 use lockstep2d::world::{InitialOverlap, Probe, QueryFilter, World};
@@ -194,4 +195,38 @@ fn a_turning_cast_stops_at_the_first_touch_of_small_steps() {
         }
     }
     assert!(hits > 300 && misses > 100, "{hits} {misses}");
+}
+
+/// A search that gives up reports a shape early. The first shape must not depend on the order in which the broad phase
+/// visits them.
+#[test]
+fn turning_casts_do_not_depend_on_the_broad_phase() {
+    let mut rng = Rng::new(17);
+    let (mut hits, mut given_up) = (0, 0);
+    for _ in 0..300 {
+        let mut world = World::default();
+        let distance = [fx!(3), fx!(1000), fx!(1000000000)][rng.below(3) as usize];
+        let mut place = |reach: Fx| at(rng.range(-reach, reach), rng.range(fx!(-2), fx!(2)));
+        for _ in 0..8 {
+            let shape = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));
+            world.spawn(&BodyDef::fixed().position(place(distance)), &[shape]).expect("in range");
+        }
+        let start = place(fx!(2));
+        let probe =
+            Probe::new(Polygon::rectangle(fx!(2), fx!(0.1)).expect("valid"), start).expect("in range");
+        let way = at(if rng.below(2) == 0 { distance } else { -distance }, fx!(0));
+        let turns = rng.range(fx!(-300), fx!(300));
+        let mut answers = [BroadPhaseKind::Tree, BroadPhaseKind::SweepAndPrune, BroadPhaseKind::BruteForce]
+            .map(|kind| {
+                world.set_broad_phase(kind);
+                world.cast_turning(&probe, way, turns, QueryFilter::default())
+            });
+        assert!(
+            answers.windows(2).all(|pair| pair[0] == pair[1]),
+            "{turns} turns along {way:?}: {answers:?}"
+        );
+        hits += answers.iter_mut().filter_map(|answer| answer.take()).count();
+        given_up += u32::from(turns.abs() > fx!(160));
+    }
+    assert!(hits > 300 && given_up > 50, "{hits} hits, {given_up} given up");
 }

@@ -8,8 +8,7 @@ use crate::body::{Handle, ShapeId};
 use crate::collision::{
     PosedShape, SKIN, StartPolicy, SupportShape, Sweep, TimeOfImpact, distance, first_impact, to_grid,
 };
-
-use crate::math::{Aabb, Fx, Unit, Vec2, saturate};
+use crate::math::{Aabb, Fx, Unit, Vec2, saturate, saturate_wide};
 use crate::world::World;
 
 /// A probe in motion.
@@ -24,7 +23,7 @@ impl World {
     ///
     /// The probe stops 0.1 to 0.15 mm before it touches. A shape that it touches at the start stops it when it comes
     /// 0.05 mm deeper. A probe that turns by more than 160 turns, or reaches further than 1024 m from its position, is
-    /// stopped at once.
+    /// stopped as soon as the disc in which it turns may reach the box around a shape.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, math::Vec2, world::{Probe, World}};
@@ -63,7 +62,9 @@ impl World {
                 return interest;
             };
             if let Some(fraction) = turning.first_touch(posed, resting.as_ref(), filter.initial_overlap) {
-                let found = (fraction, shape);
+                // A search that gives up may report a shape before the probe gets there. The broad phase would then
+                // decide by the order of its visits which shape is the first.
+                let found = (fraction.max(entry(area, translation, posed.bounds)), shape);
                 let best = closest.map_or(found, |best| best.min(found));
                 closest = Some(best);
                 interest = Unit::from_bits(saturate((best.0.to_bits() >> 2) + 1)).min(Unit::ONE);
@@ -121,4 +122,16 @@ impl Turning {
         let starts_inside = fraction == Fx::ZERO && start.distance < Fx::ZERO;
         CastHit { shape, fraction, travelled, point: touch.point_a, normal: touch.normal, starts_inside }
     }
+}
+
+/// Fraction of a translation before which an area does not reach a box, rounded down.
+fn entry(area: Aabb, translation: Vec2<Fx>, aabb: Aabb) -> Fx {
+    let on_axis = |[lower, upper]: [Fx; 2], [box_lower, box_upper]: [Fx; 2], way: Fx| {
+        let bits = |at: Fx| i128::from(at.to_bits());
+        let gap = if way < Fx::ZERO { bits(lower) - bits(box_upper) } else { bits(box_lower) - bits(upper) };
+        if gap > 0 { (gap << Fx::FRAC_NBITS).checked_div(bits(way).abs()).unwrap_or_default() } else { 0 }
+    };
+    let x = on_axis([area.lower.x, area.upper.x], [aabb.lower.x, aabb.upper.x], translation.x);
+    let y = on_axis([area.lower.y, area.upper.y], [aabb.lower.y, aabb.upper.y], translation.y);
+    Fx::from_bits(saturate_wide(x.max(y))).min(Fx::ONE)
 }
