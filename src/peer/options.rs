@@ -144,7 +144,7 @@ impl PeerIdentity {
         PeerIdentity::new(random_numbers())
     }
 
-    /// The same identity with a key that the lobby has assigned.
+    /// Returns the identity with its key replaced by one that the lobby has assigned.
     #[must_use]
     pub fn with_key(self, key: Key) -> Self {
         PeerIdentity { key, ..self }

@@ -68,7 +68,7 @@ impl Session {
     fn complete_ticks(&mut self) {
         while self.progress.complete < self.view.stop() && self.view.begun {
             let tick = self.progress.complete;
-            // The same spans cover all ticks up to the next start or end of a span.
+            // Between two consecutive starts or ends of spans, the set of spans that cover a tick does not change.
             let mut limit = self.view.stop();
             let mut somebody = false;
             for &index in &self.progress.live {

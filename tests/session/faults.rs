@@ -7,7 +7,8 @@ use super::{storm, sweep};
 
 /// Largest number of matches that are played with a fault until one breaks an invariant.
 const MATCHES: u64 = 300;
-/// The same for a fault that shows in about one of a thousand storms, and is searched for in the long run only.
+/// Largest number of matches for a fault that breaks an invariant in about one of a thousand storms. Such a fault is
+/// only searched for in the long run.
 const MATCHES_RARE: u64 = 2000;
 
 /// Each fault, the first seed, and the step to the next one: rare faults are searched for in storms only.

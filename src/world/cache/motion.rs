@@ -45,7 +45,7 @@ impl PredictedMotion {
         self.shift.scale::<_, U24>(fraction).widen()
     }
 
-    /// The same motion, starting from the position of the centre of mass at a fraction of the tick.
+    /// Returns this motion with the centre of mass moved to its position at a fraction of the tick.
     pub(crate) fn advanced(&self, fraction: Unit) -> Self {
         PredictedMotion { centre: self.centre + self.shift_until(fraction), ..*self }
     }
