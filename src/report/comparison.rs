@@ -132,6 +132,8 @@ pub struct Subject {
 }
 
 /// A single bit flip between two ticks after which the rules lead exactly to the state of the diverged side.
+/// Rarely another flip leads to the same state, such as one of the velocity instead of the spin of a ball that rolls;
+/// only the digests of the phases of that tick can tell the two apart.
 ///
 /// ```
 /// use lockstep2d::report::{Comparison, Explanation, Stage};

@@ -60,12 +60,31 @@ fn flipped_bits(difference: &Difference) -> u32 {
     (bits(&difference.a) ^ bits(&difference.b)).count_ones()
 }
 
+/// The field and the bit of the explanation.
+fn explained(found: &Comparison) -> Option<(BodyField, u32)> {
+    let explanation = found.explanation.as_ref()?;
+    let name = explanation.differences.first()?.field().name();
+    let field = BodyField::ALL.into_iter().find(|field| field.name() == name)?;
+    Some((field, explanation.bit))
+}
+
+/// The state after the tick in which a bit flips. A ball that rolls may move on in exactly the same way whether its
+/// velocity or its spin was changed; no comparison can tell the two flips apart.
+fn state_after(seed: u64, flip: Flip) -> StateHash {
+    let mut peer = Peer::new(seed, Some(flip));
+    while peer.tick < flip.tick {
+        peer.advance();
+    }
+    peer.game.state_hash()
+}
+
 /// Compares the reports of a peer whose game had a bit flip and of another peer, in `count` cases. Of the flips that
-/// are drawn, every `stride`th is tried. Returns the number of flips that made no difference to the game.
+/// are drawn, every `stride`th is tried. At most one in twenty may be explained by another flip with the same effect.
+/// Returns the number of flips that made no difference to the game.
 fn cases(seed: u64, count: u32, when: When, stride: u32) -> u32 {
     let mut rng = Rng::new(seed);
     let mut drawn = 0_u32;
-    let (mut told, mut swallowed, mut largest) = (0, 0, 0);
+    let (mut told, mut swallowed, mut ambiguous, mut largest) = (0, 0, 0, 0);
     while told < count {
         let flip = random_flip(&mut rng, when);
         let faulty = rng.next_u32() as usize % 3;
@@ -119,13 +138,19 @@ fn cases(seed: u64, count: u32, when: When, stride: u32) -> u32 {
             }
         };
         assert_eq!(difference.field().thing(), Some(body.as_str()), "{what}");
-        assert_eq!(difference.field().name(), flip.motion.name(), "{what}");
+        if difference.field().name() != flip.motion.name() {
+            let explained = explained(&found).expect(&what);
+            let found = Flip { motion: explained.0, bit: explained.1, ..flip };
+            assert_eq!(state_after(seed, found), state_after(seed, flip), "{what}");
+            ambiguous += 1;
+        }
         largest = largest.max(found.subjects.len());
         let seats: Vec<&[u32]> = found.groups.iter().map(|group| group.seats.as_slice()).collect();
         let faulty = u32::try_from(faulty).unwrap();
         let others: Vec<u32> = (0..3).filter(|seat| *seat != faulty).collect();
         assert_eq!(seats, [others.as_slice(), &[faulty]], "{what}");
     }
+    assert!(ambiguous * 20 <= count, "{ambiguous} of {count} flips were explained by another one");
     if when == When::Before {
         assert!(largest > 20, "expected a flip to spread to more than 20 objects, found {largest}");
     }
