@@ -253,6 +253,13 @@ declare class Handle {
     dispose(): void;
 }
 
+/** Where to add a body of `spawnEach`. */
+export interface Place {
+    position: Vec;
+    /** No rotation by default. */
+    angle?: Rotation;
+}
+
 /** Edits, which a world executes at once and a list of commands collects. */
 declare class Edits extends Handle {
     despawn(body: BodyId): void;
@@ -288,8 +295,10 @@ declare class Edits extends Handle {
 export class Commands extends Edits {
     constructor();
     spawn(options: BodyOptions): undefined;
+    spawnEach(options: Omit<BodyOptions, "position" | "angle">, places: Place[]): undefined;
     addShape(body: BodyId, shape: ShapeDef): undefined;
     addJoint(options: JointOptions): undefined;
+    addJointEach(options: Omit<JointOptions, "a" | "b" | "anchor" | "axis">, pairs: [BodyId, BodyId][]): undefined;
     readonly length: number;
     clear(): void;
     toBytes(): Uint8Array;
@@ -364,8 +373,13 @@ export class World extends Edits {
     toBytes(): Uint8Array;
     clone(): World;
     spawn(options: BodyOptions): BodyId;
+    /** Adds a body with the same definition at each place, or none if one of them is refused. A recording stores the
+     * definition once. */
+    spawnEach(options: Omit<BodyOptions, "position" | "angle">, places: Place[]): BodyId[];
     addShape(body: BodyId, shape: ShapeDef): ShapeId;
     addJoint(options: JointOptions): JointId;
+    /** Adds a joint with the same definition between each pair of bodies, or none if one of them is refused. */
+    addJointEach(options: Omit<JointOptions, "a" | "b" | "anchor" | "axis">, pairs: [BodyId, BodyId][]): JointId[];
     step(ticks?: number): void;
     /** Executes a list of commands, and returns how many were refused. */
     execute(commands: Commands): number;
@@ -475,7 +489,6 @@ export interface Verdict {
     hash: string;
     text: string;
 }
-/** Verifies a replay of a world from any source. */
 /** A replay of a world that goes to any of its ticks: tick t is the state after t ticks. */
 export class Timeline extends Handle {
     /** Throws a Lockstep2dError with the code RECORD, and the `verdict`, if it cannot be played. */
@@ -492,6 +505,7 @@ export class Timeline extends Handle {
     world(): World;
 }
 
+/** Verifies a replay of a world from any source. */
 export function verifyReplay(bytes: Uint8Array, limits?: Limits): Verdict;
 
 /** A world that is recorded while it runs, and changed by lists of commands alone. */
@@ -502,6 +516,13 @@ export class Recording extends Handle {
     world(): World;
     take(): Uint8Array;
     finish(): Uint8Array;
+}
+/** Inputs of a tick. */
+export interface TickInputs {
+    /** Inputs of all players or seats, one after another. */
+    inputs: Uint8Array;
+    /** Bit for each one that nobody plays. Its input is zeros. */
+    absent: bigint;
 }
 /** Records a game with rules of its own. */
 export class Recorder extends Handle {
@@ -516,8 +537,12 @@ export class Recorder extends Handle {
         start: string;
         interval?: number;
     });
-    /** Records the inputs of all players. Returns whether `checkpoint` has to follow. */
-    record(inputs: Uint8Array): boolean;
+    /** Records the inputs of all players, and a bit for each player that is absent, whose input is zeros: both as
+     * `Match.finalInputs` returns them. Returns whether `checkpoint` has to follow. */
+    record(inputs: Uint8Array, absent?: bigint): boolean;
+    /** Adds a result such as a score, with a name of 1 to 64 bytes, before `finish`: at most 256 with different names,
+     * which can be read without playing the replay. */
+    claim(name: string, number: number | bigint): void;
     checkpoint(hash: string): void;
     take(): Uint8Array;
     finish(hash: string): Uint8Array;
@@ -532,9 +557,44 @@ export class Replay extends Handle {
     readonly inputBytes: number;
     readonly ticks: number;
     readonly setup: Uint8Array;
-    next(): Uint8Array | undefined;
+    /** The results that the file states, which are true if the verdict is `match`. */
+    readonly claims: Map<string, bigint>;
+    next(): TickInputs | undefined;
+    /** Passes the hash of the state before the first tick and after every tick, or answers `checksum`. */
     check(hash: string): void;
+    /** Adds a result of the game that was played. The verdict compares all of them with `claims`. */
+    claim(name: string, number: number | bigint): void;
     verdict(hash: string): Verdict;
+    /** Goes to a tick by the requests that follow, which begin in the state before the first tick. `ReplayDriver` fulfils
+     * them. */
+    seek(tick: number): void;
+    /** The next request on the way there: `save`, `load`, `advance`, or `checksum`, which `check` answers. Throws an error
+     * with the code RECORD if the game has diverged from the file. */
+    nextRequest(): MatchRequest | undefined;
+    /** Ticks between the states that `seek` asks to save: 60 at first, or more, so that there are at most 256 states. */
+    setInterval(ticks: number): void;
+}
+/** A game that a `ReplayDriver` plays. Its whole state is in what `save` returns and `hash` covers. */
+export interface ReplayGame<Saved = unknown> {
+    step(inputs: Uint8Array, absent: bigint): void;
+    save(): Saved;
+    load(saved: Saved): void;
+    drop?(saved: Saved): void;
+    hash(): string;
+}
+/** Goes to any tick of a replay with a game, which begins in the state before the first tick. */
+export class ReplayDriver<Saved = unknown> {
+    constructor(replay: Replay, game: ReplayGame<Saved>);
+    readonly tick: number;
+    /** Goes to a tick. Ticks that were played before cost less than an interval of simulation. Throws an error with the code
+     * RECORD if the game diverges from the file: it stays there, and earlier ticks can be reached. */
+    seek(tick: number): void;
+    /** Goes forward by a tick, which is always played. Returns false at the end. */
+    step(): boolean;
+    /** Goes back by a tick. Returns false at the start. */
+    stepBack(): boolean;
+    /** Frees the saved states. */
+    dispose(): void;
 }
 
 export interface MatchOptions {
@@ -673,7 +733,7 @@ export class Match extends Handle {
     /** Numbers of ticks: played, final for the match, and played with final inputs here. */
     ticks(): { played: number; final: number; confirmed: number };
     /** The final inputs of all seats for a tick, while they are kept. */
-    finalInputs(tick: number): Uint8Array | undefined;
+    finalInputs(tick: number): TickInputs | undefined;
     /** Seats that this peer plays. */
     readonly seats: number[];
     /** Leaves the match. Go on with `update` until the status is `closed`, so that the others notice. */
@@ -689,13 +749,8 @@ export class Match extends Handle {
     /** Changes `guess` of the options. */
     setGuess(ticks: number): void;
 }
-/** A game that a `MatchDriver` plays. Its whole state is in what `save` returns and `hash` covers. */
-export interface MatchGame<Saved = unknown> {
-    step(inputs: Uint8Array, absent: bigint): void;
-    save(): Saved;
-    load(saved: Saved): void;
-    drop?(saved: Saved): void;
-    hash(): string;
+/** A game that a `MatchDriver` plays, also for those who join. */
+export interface MatchGame<Saved = unknown> extends ReplayGame<Saved> {
     encode(): Uint8Array;
     decode(bytes: Uint8Array): void;
 }

@@ -25,11 +25,12 @@ export class Tape {
             return;
         }
         for (const { confirmed } = match.ticks(); this.ticks < confirmed; this.ticks++) {
-            const inputs = match.finalInputs(this.ticks);
-            if (inputs === undefined) {
+            const final = match.finalInputs(this.ticks);
+            if (final === undefined) {
                 this.broken = true;
                 return;
             }
+            const { inputs } = final;
             this.#game.apply(inputs, this.#commands);
             this.#recording.step(this.#commands);
             this.#game.step(inputs);

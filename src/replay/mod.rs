@@ -35,6 +35,7 @@ mod recording;
 mod runs;
 mod tick_inputs;
 mod timeline;
+mod trailer;
 mod verdict;
 mod verified_replay;
 
@@ -46,7 +47,7 @@ pub use format::{
 pub use header::Header;
 pub use limits::{LimitKind, Limits};
 pub use raw_replay::RawReplay;
-pub use reader::{InputBlock, Part, ReadError, Reader, Trailer};
+pub use reader::{InputBlock, Part, ReadError, Reader};
 pub use recorder::{CHECKPOINT_INTERVAL, RecordError, Recorder};
 pub use recording::Recording;
 pub use runs::{Run, Runs};
@@ -55,5 +56,6 @@ pub use timeline::{
     KEYFRAMES_BYTES_MAX, KEYFRAMES_FORMAT_VERSION, KEYFRAMES_MAGIC, KeyframesError, KeyframesFlaw, SeekError,
     Timeline, TimelineOptions,
 };
+pub use trailer::Trailer;
 pub use verdict::{ClaimDifference, Mismatch, Verdict};
 pub use verified_replay::{Step, VerifiedReplay, verify};

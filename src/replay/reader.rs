@@ -3,18 +3,15 @@
 //! The reader checks all properties that do not require stepping the game: lengths, checksums, the chain, run lengths,
 //! the order of the blocks, the trailer's counts.
 
-use alloc::string::String;
-use alloc::vec::Vec;
 use core::fmt;
 
 use super::bytes::Cursor;
 use super::flaw::Flaw;
-use super::format::{
-    BLOCK_HEAD_BYTES, CHECKSUM_BYTES, CLAIM_NAME_BYTES_MAX, CLAIMS_MAX, HASH_BYTES, checksum, kind, link,
-};
+use super::format::{BLOCK_HEAD_BYTES, CHECKSUM_BYTES, HASH_BYTES, checksum, kind, link};
 use super::header::{Header, ReadHeader};
 use super::limits::{LimitKind, Limits};
 use super::runs::Runs;
+use super::trailer::{Trailer, read_claims};
 use crate::hash::StateHash;
 
 /// Reason why a file, or the rest of it, cannot be read.
@@ -126,33 +123,6 @@ impl<'a> InputBlock<'a> {
     pub fn runs(&self) -> Runs<'a> {
         self.runs.clone()
     }
-}
-
-/// The trailer of a file: its statements about the end of the game.
-///
-/// ```
-/// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
-/// use lockstep2d::replay::{Limits, Recording, Trailer, VerifiedReplay};
-/// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
-/// # (0..90).for_each(|_| recording.step(&[vec![]]).expect("one input"));
-/// # let file = recording.finish().expect("no claims");
-/// // A scoreboard shows at once what a file claims, and verifies it later.
-/// let replay = VerifiedReplay::<Sandbox>::open(&file, &Limits::default())?;
-/// let Trailer { ticks, claims, .. } = replay.trailer().expect("a complete file");
-/// let score = claims.iter().find(|(name, _)| name == "score").map(|(_, score)| *score);
-/// assert_eq!((*ticks, score), (90, None), "the sandbox has no score");
-/// # Ok::<(), lockstep2d::replay::Verdict>(())
-/// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Trailer {
-    /// Number of ticks in the game.
-    pub ticks: u64,
-    /// Hash of the state after the last tick.
-    pub final_hash: StateHash,
-    /// Hash of the header and all blocks of inputs.
-    pub chain: StateHash,
-    /// Results that the game reports, in ascending order of names.
-    pub claims: Vec<(String, i64)>,
 }
 
 /// Reads a replay from the bytes of a file.
@@ -342,7 +312,7 @@ impl<'a> Reader<'a> {
         if chain != self.chain.0 {
             return malformed(start + 24, Flaw::Chain);
         }
-        let claims = claims(&mut cursor)?;
+        let claims = read_claims(&mut cursor)?;
         if !cursor.is_empty() {
             return malformed(cursor.offset(), Flaw::TrailerLength);
         }
@@ -363,31 +333,4 @@ struct Block<'a> {
     /// The chain including this block.
     chain: StateHash,
     end: usize,
-}
-
-fn claims(cursor: &mut Cursor<'_>) -> Result<Vec<(String, i64)>, ReadError> {
-    let count_offset = cursor.offset();
-    let count = cursor.varint()?;
-    if count > CLAIMS_MAX {
-        return Err(ReadError::Malformed { offset: count_offset, flaw: Flaw::Claims { count } });
-    }
-    let mut claims: Vec<(String, i64)> = Vec::new();
-    for _ in 0..count {
-        let offset = cursor.offset();
-        let malformed = |flaw| ReadError::Malformed { offset, flaw };
-        let length = cursor.varint()?;
-        if length == 0 || length > CLAIM_NAME_BYTES_MAX {
-            return Err(malformed(Flaw::ClaimName));
-        }
-        let name = usize::try_from(length).ok().and_then(|length| cursor.take(length));
-        let (Some(name), Some(value)) = (name, cursor.i64()) else {
-            return Err(malformed(Flaw::BlockCut));
-        };
-        let name = core::str::from_utf8(name).map_err(|_| malformed(Flaw::ClaimName))?;
-        if claims.last().is_some_and(|(previous, _)| previous.as_str() >= name) {
-            return Err(malformed(Flaw::ClaimOrder));
-        }
-        claims.push((name.into(), value));
-    }
-    Ok(claims)
 }

@@ -1,16 +1,13 @@
 //! [`VerifiedReplay`]: simulates a replay tick by tick and compares its checkpoints; [`verify`] runs it to its end.
 
-use alloc::collections::BTreeMap;
-use alloc::string::String;
-use alloc::vec::Vec;
-
 use super::flaw::Flaw;
 use super::format::checkpoint_hash;
 use super::header::{Header, offset};
 use super::limits::{LimitKind, Limits};
 use super::raw_replay::{RawReplay, ReplayPosition};
-use super::reader::{Part, ReadError, Reader, Trailer};
-use super::verdict::{ClaimDifference, Mismatch, Verdict};
+use super::reader::{Part, ReadError, Reader};
+use super::trailer::Trailer;
+use super::verdict::{Mismatch, Verdict};
 use crate::codec;
 use crate::lockstep::{Game, StartError};
 use crate::world::World;
@@ -172,13 +169,7 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
         let Some(trailer) = self.ending.trailer.filter(|trailer| trailer.ticks == ticks) else {
             return Verdict::Incomplete { ticks, hash };
         };
-        // The last checkpoint already covers this state, so a different final hash is a wrong statement in the trailer
-        // and not a divergence of the game.
-        if trailer.final_hash != hash {
-            let difference = ClaimDifference::FinalHash { claimed: trailer.final_hash, actual: hash };
-            return Verdict::ClaimMismatch { ticks, hash, difference };
-        }
-        match first_difference(trailer.claims, self.raw.game().claims()) {
+        match trailer.difference(hash, self.raw.game().claims()) {
             Some(difference) => Verdict::ClaimMismatch { ticks, hash, difference },
             None => Verdict::Match { ticks, hash },
         }
@@ -279,18 +270,4 @@ pub(super) fn start<G: Game>(header: &Header<'_>, limits: &Limits) -> Result<(G,
         return Err(malformed(offset::TICK_RATE, flaw));
     }
     Ok((game, work))
-}
-
-/// The first name, in ascending order, whose value differs between the two sides.
-fn first_difference(claimed: Vec<(String, i64)>, actual: Vec<(String, i64)>) -> Option<ClaimDifference> {
-    let claimed: BTreeMap<String, i64> = claimed.into_iter().collect();
-    let actual: BTreeMap<String, i64> = actual.into_iter().collect();
-    let mut names: Vec<&String> = claimed.keys().chain(actual.keys()).collect();
-    names.sort();
-    let name = names.into_iter().find(|name| claimed.get(*name) != actual.get(*name))?;
-    Some(ClaimDifference::Value {
-        name: name.clone(),
-        claimed: claimed.get(name).copied(),
-        actual: actual.get(name).copied(),
-    })
 }

@@ -1103,6 +1103,11 @@ ls2d_status ls2d_world_execute(uint32_t world, uint32_t commands, uint32_t *refu
 /* Adds a body with its shapes. Its handle is written, unless the pointer is null or the target is a list. */
 ls2d_status ls2d_spawn(uint32_t target, const ls2d_body_def *body, const ls2d_shape_def *shapes, size_t shape_count, ls2d_body *id);
 
+/* Adds a body with the same definition at each pose, or none if one of them is refused. A recording stores the
+ * definition once. Bodies and flags of the poses are not read. The handles are written, unless the pointer is null
+ * or the target is a list. */
+ls2d_status ls2d_spawn_each(uint32_t target, const ls2d_body_def *body, const ls2d_shape_def *shapes, size_t shape_count, const ls2d_pose *poses, size_t pose_count, ls2d_body *ids, size_t capacity);
+
 /* Removes a body with its shapes and joints. */
 ls2d_status ls2d_despawn(uint32_t target, ls2d_body body);
 
@@ -1117,6 +1122,11 @@ ls2d_status ls2d_set_shape(uint32_t target, ls2d_shape shape, const ls2d_shape_d
 
 /* Adds a joint. Its handle is written, unless the pointer is null or the target is a list. */
 ls2d_status ls2d_add_joint(uint32_t target, const ls2d_joint_def *joint, ls2d_joint *id);
+
+/* Adds a joint with the same definition between each pair of bodies, or none if one of them is refused. A recording
+ * stores the definition once. `ends` has the two bodies of each joint, one after the other. The handles are
+ * written, unless the pointer is null or the target is a list. */
+ls2d_status ls2d_add_joint_each(uint32_t target, const ls2d_joint_def *joint, const ls2d_body *ends, size_t end_count, ls2d_joint *ids, size_t capacity);
 
 /* Removes a joint. */
 ls2d_status ls2d_remove_joint(uint32_t target, ls2d_joint joint);
@@ -1386,15 +1396,16 @@ ls2d_status ls2d_timeline_step_back(uint32_t timeline);
 /* Makes a copy of the world at the current tick, to draw and query it. */
 ls2d_status ls2d_timeline_world(uint32_t timeline, uint32_t *world);
 
-/* ---- Replays of games with rules of their own ---- */
+/* ---- Recorders of games with rules of their own ---- */
 
 /* Starts a recorder for a game with rules of its own. `rules` is the name of the rules in UTF-8, `setup` what the
  * first tick depends on, `start` the hash of the state before it. There is a checkpoint every `interval` ticks. */
 ls2d_status ls2d_recorder_new(const uint8_t *rules, size_t rules_length, uint32_t rules_version, uint32_t players, uint32_t tick_rate, uint32_t input_bytes, const uint8_t *setup, size_t setup_size, const ls2d_hash *start, uint32_t interval, uint32_t *recorder);
 
-/* Records the final inputs of the next tick: those of all players, one after another. Writes 1 to `due` if
- * `ls2d_recorder_checkpoint` has to follow with the hash of the state after this tick. */
-ls2d_status ls2d_recorder_record(uint32_t recorder, const uint8_t *inputs, size_t size, uint32_t *due);
+/* Records the final inputs of the next tick: those of all players, one after another. `absent` has a bit for each
+ * player that nobody plays, whose input is zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow
+ * with the hash of the state after this tick. */
+ls2d_status ls2d_recorder_record(uint32_t recorder, const uint8_t *inputs, size_t size, uint64_t absent, uint32_t *due);
 
 /* Passes the hash of the state after the last recorded tick. Without a checkpoint due, nothing happens. */
 ls2d_status ls2d_recorder_checkpoint(uint32_t recorder, const ls2d_hash *hash);
@@ -1402,8 +1413,14 @@ ls2d_status ls2d_recorder_checkpoint(uint32_t recorder, const ls2d_hash *hash);
 /* Takes the bytes that are finished, to be appended to the file. */
 ls2d_status ls2d_recorder_take(uint32_t recorder, uint32_t *bytes);
 
+/* Adds a result of the game, such as a score, before the recorder is finished: a name of 1 to 64 bytes of UTF-8,
+ * and a number. A replay has at most 256 results with different names, which can be read without playing it. */
+ls2d_status ls2d_recorder_claim(uint32_t recorder, const uint8_t *name, size_t name_length, int64_t number);
+
 /* Ends a replay with the hash of the last state, and returns the bytes that have not been taken yet. */
 ls2d_status ls2d_recorder_finish(uint32_t recorder, const ls2d_hash *hash, uint32_t *bytes);
+
+/* ---- Replays of games with rules of their own ---- */
 
 /* Opens a replay of a game with rules of its own, from any source. If it cannot be played, its verdict is written,
  * the handle is 0, and the result is `LS2D_RECORD`. */
@@ -1415,14 +1432,38 @@ ls2d_status ls2d_replay_rules(uint32_t replay, uint32_t *rules, uint32_t *rules_
 /* The setup of the game as bytes. */
 ls2d_status ls2d_replay_setup(uint32_t replay, uint32_t *bytes);
 
-/* The inputs of all players for the next tick, as `players` times `input_bytes` bytes. `LS2D_NONE` at the end. */
-ls2d_status ls2d_replay_next(uint32_t replay, uint8_t *inputs, size_t capacity, size_t *size);
+/* Name, as bytes, and number of a result that the file states, in ascending order of names. It is true if the
+ * verdict is `LS2D_MATCH`. `LS2D_NONE` after the last one. */
+ls2d_status ls2d_replay_claim_at(uint32_t replay, uint32_t index, uint32_t *name, int64_t *number);
 
-/* Passes the hash of the state before the first tick, and after each tick. */
+/* The inputs of all players for the next tick, as `players` times `input_bytes` bytes, with a bit in `absent` for
+ * each player that nobody plays; a null pointer is not written. `LS2D_NONE` at the end. */
+ls2d_status ls2d_replay_next(uint32_t replay, uint8_t *inputs, size_t capacity, size_t *size, uint64_t *absent);
+
+/* Passes the hash of the state before the first tick, and after each tick; or answers `LS2D_REQUEST_CHECKSUM`. */
 ls2d_status ls2d_replay_check(uint32_t replay, const ls2d_hash *hash);
+
+/* Adds a result of the game that was played. The verdict compares all of them with those that the file states. */
+ls2d_status ls2d_replay_claim(uint32_t replay, const uint8_t *name, size_t name_length, int64_t number);
 
 /* The verdict after the last tick, with the hash of the last state. */
 ls2d_status ls2d_replay_verdict(uint32_t replay, const ls2d_hash *hash, ls2d_verdict *verdict);
+
+/* ---- Timelines of replays of games with rules of their own ---- */
+
+/* Goes to a tick: tick t is the state after t ticks. The game goes there by the requests that follow, which begin
+ * in the state before the first tick. */
+ls2d_status ls2d_replay_seek(uint32_t replay, uint64_t tick);
+
+/* The next request on the way to a tick: `LS2D_REQUEST_SAVE`, `LS2D_REQUEST_LOAD`, `LS2D_REQUEST_ADVANCE` as in a
+ * match, and `LS2D_REQUEST_CHECKSUM`, which `ls2d_replay_check` answers with the hash of the current state.
+ * `LS2D_NONE` when the tick is reached. `LS2D_RECORD` if the game has diverged from the file: only earlier ticks
+ * can be reached. */
+ls2d_status ls2d_replay_next_request(uint32_t replay, ls2d_request *request, uint8_t *inputs, size_t capacity, size_t *size);
+
+/* Sets the ticks between the states that seeking asks to save. At first it is 60, or more for replays that would
+ * need more than 256 states. */
+ls2d_status ls2d_replay_set_interval(uint32_t replay, uint32_t ticks);
 
 /* ---- Matches ---- */
 

@@ -140,6 +140,10 @@ impl<'a, T: Plain> Out<'a, T> {
         Out(pointer, PhantomData)
     }
 
+    pub(crate) const fn is_null(&self) -> bool {
+        self.0.is_null()
+    }
+
     /// Checks the pointer before an operation whose result would otherwise be lost.
     pub(crate) fn check(&self) -> Outcome {
         check(self.0)

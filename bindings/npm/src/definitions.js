@@ -180,11 +180,12 @@ export function writeBody(at, options) {
     flags(at, "body_def", set, cleared);
 }
 
-/** Writes a body and its shapes into memory. Returns the addresses and the number of shapes. */
-export function writeBodyAndShapes(options) {
+/** Writes a body and its shapes into memory. Returns the addresses, also that of a number of bytes after them, and the
+ * number of shapes. */
+export function writeBodyAndShapes(options, room = 0) {
     const shapes = expand(options.shapes ?? []);
     const [body, each] = [sizeOf("body_def"), sizeOf("shape_def")];
-    const at = scratch(8 + body + each * shapes.length);
+    const at = scratch(8 + body + each * shapes.length + room);
     writeBody(at + 8, options);
     shapes.forEach((one, index) => {
         const place = at + 8 + body + each * index;
@@ -194,7 +195,8 @@ export function writeBodyAndShapes(options) {
             putBytes(place, one.bytes);
         }
     });
-    return { id: at, body: at + 8, shapes: at + 8 + body, count: shapes.length };
+    const after = at + 8 + body;
+    return { id: at, body: at + 8, shapes: after, count: shapes.length, rest: after + each * shapes.length };
 }
 
 export const bodyKind = (name) => lookup(BODY_KINDS, name, "the type of a body");

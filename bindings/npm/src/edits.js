@@ -15,6 +15,26 @@ export class Edits extends Handle {
         return this.added(at);
     }
 
+    /** Adds a body with the same definition at each place: `{ position, angle }`, or none if one of them is refused.
+     * Returns their handles; a list of commands returns undefined. */
+    spawnEach(options, places) {
+        const pose = sizeOf("pose");
+        const room = places.length * (pose + 8);
+        const { rest, body, shapes, count } = writeBodyAndShapes(options, room);
+        const ids = rest + places.length * pose;
+        places.forEach(({ position, angle = 0 }, index) => write("pose", rest + index * pose, { position, angle }));
+        putRaw(ids, -1n);
+        call("ls2d_spawn_each", this.handle, body, shapes, count, rest, places.length, ids, places.length);
+        return this.#allAdded(ids, places.length);
+    }
+
+    #allAdded(at, count) {
+        if (count > 0 && this.added(at) === undefined) {
+            return undefined;
+        }
+        return Array.from({ length: count }, (_, index) => idAt(at + 8 * index));
+    }
+
     added(at) {
         return u64(at) === 0xffffffffffffffffn ? undefined : idAt(at);
     }
@@ -52,6 +72,19 @@ export class Edits extends Handle {
         putRaw(at, -1n);
         call("ls2d_add_joint", this.handle, at + 48, at);
         return this.added(at);
+    }
+
+    /** Adds a joint with the same definition between each pair of bodies, or none if one of them is refused. Returns
+     * their handles; a list of commands returns undefined. */
+    addJointEach(options, pairs) {
+        const size = sizeOf("joint_def");
+        const at = scratch(size + 24 * pairs.length);
+        const ids = at + size + 16 * pairs.length;
+        writeJoint(at, options);
+        pairs.flat().forEach((body, index) => putRaw(at + size + 8 * index, id(body)));
+        putRaw(ids, -1n);
+        call("ls2d_add_joint_each", this.handle, at, at + size, 2 * pairs.length, ids, pairs.length);
+        return this.#allAdded(ids, pairs.length);
     }
 
     place(at, { anchor, axis = [0, 0] }) {

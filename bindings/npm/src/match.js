@@ -2,13 +2,13 @@
 import { Lockstep2dError } from "./error.js";
 import { C } from "./layout.js";
 import { Handle, call, copy, give, putBytes, read, scratch, sizeOf, takeBytes, u32, u64, write, writeHash } from "./library.js";
+import { nextRequest } from "./requests.js";
 
 const STATUS = ["joining", "watching", "waiting", "playing", "paused", "dropped", "kicked", "leaving", "left", "finished", "closed",
     "connecting"];
 const EVENTS = ["status", "view", "seated", "unseated", "waiting", "resumed", "pause", "end", "desync", "conflict", "tooFarBehind",
     "refused", "state", "badState"];
 const REASONS = ["offer", "full", "taken", "notReady"];
-const REQUESTS = ["save", "load", "advance", "checksum", "forget"];
 const ADDRESS_MAX = 32;
 const PACKET_MAX = 2048;
 
@@ -87,13 +87,7 @@ export class Match extends Handle {
 
     /** The next request, to be fulfilled before `advance` is called again. */
     nextRequest() {
-        const size = sizeOf("request");
-        const at = scratch(8 + size + this.#inputs);
-        if (!call("ls2d_match_next_request", this.handle, at + 8, at + 8 + size, this.#inputs, at)) {
-            return undefined;
-        }
-        const { kind, ...rest } = read("request", at + 8);
-        return { ...rest, kind: REQUESTS[kind], inputs: copy(at + 8 + size, u32(at)) };
+        return nextRequest("ls2d_match_next_request", this.handle, this.#inputs);
     }
 
     reportHash(tick, hash) {
@@ -156,10 +150,13 @@ export class Match extends Handle {
         return { played: u32(at), final: u32(at + 4), confirmed: u32(at + 8) };
     }
 
-    /** The final inputs of all seats for a tick, while they are kept. */
+    /** The final inputs of all seats for a tick, while they are kept, as `Recorder.record` takes them. */
     finalInputs(tick) {
         const at = scratch(16 + this.#inputs);
-        return call("ls2d_match_final_inputs", this.handle, tick, at + 16, this.#inputs, at, at + 8) ? copy(at + 16, u32(at)) : undefined;
+        if (!call("ls2d_match_final_inputs", this.handle, tick, at + 16, this.#inputs, at, at + 8)) {
+            return undefined;
+        }
+        return { inputs: copy(at + 16, u32(at)), absent: u64(at + 8) };
     }
 
     /** Own seats, in ascending order. */

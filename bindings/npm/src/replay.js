@@ -1,8 +1,9 @@
 // Replays: of worlds that commands change, and of games with rules of their own.
 import { writeConfig } from "./definitions.js";
-import { Handle, call, copy, fieldAt, give, hashAt, lastText, scratch, sizeOf, statusOf, takeBytes, text, u32, u64, write, writeHash } from "./library.js";
+import { Handle, call, copy, fieldAt, give, giveText, hashAt, lastText, scratch, sizeOf, statusOf, takeBytes, text, u32, u64, write, writeHash } from "./library.js";
 import { Lockstep2dError } from "./error.js";
 import { STATUS } from "./layout.js";
+import { nextRequest } from "./requests.js";
 import { Adopted, World } from "./world.js";
 
 const VERDICTS = ["match", "claim_mismatch", "diverged", "incomplete", "malformed", "limit_exceeded", "unverifiable"];
@@ -84,6 +85,15 @@ export class Recording extends Handle {
     }
 }
 
+function claim(name, handle, what, number) {
+    const [at, length] = giveText(what);
+    const value = typeof number === "bigint" || Number.isSafeInteger(number) ? BigInt(number) : undefined;
+    if (value === undefined || BigInt.asIntN(64, value) !== value) {
+        throw new Lockstep2dError("VALUE", `a claim is an integer of 64 bits, and not ${number}`);
+    }
+    call(name, handle, at + 64, length, value);
+}
+
 /** Records a game with rules of its own: the final inputs of every tick, and hashes of its states. */
 export class Recorder extends Handle {
     /** `start` is the hash of the state before the first tick. */
@@ -99,11 +109,17 @@ export class Recorder extends Handle {
         super(u32(at + 16));
     }
 
-    /** Records the inputs of all players for the next tick. Returns whether `checkpoint` has to follow. */
-    record(inputs) {
+    /** Records the inputs of all players for the next tick, and a bit for each player that is absent, whose input is
+     * zeros. Returns whether `checkpoint` has to follow. */
+    record(inputs, absent = 0n) {
         const at = give(inputs);
-        call("ls2d_recorder_record", this.handle, at + 64, inputs.length, at);
+        call("ls2d_recorder_record", this.handle, at + 64, inputs.length, absent, at);
         return u32(at) === 1;
+    }
+
+    /** Adds a result, such as a score, before the end. */
+    claim(name, number) {
+        claim("ls2d_recorder_claim", this.handle, name, number);
     }
 
     #hash(hash) {
@@ -153,13 +169,49 @@ export class Replay extends Handle {
         this.setup = takeBytes(u32(to));
     }
 
-    /** The inputs of all players for the next tick, or undefined at the end. */
-    next() {
-        const at = scratch(8 + this.#inputs);
-        return call("ls2d_replay_next", this.handle, at + 8, this.#inputs, at) ? copy(at + 8, this.#inputs) : undefined;
+    /** The results that the file states: true if the verdict is a match. */
+    get claims() {
+        const claims = new Map();
+        for (let index = 0; ; index++) {
+            const at = scratch(16);
+            if (!call("ls2d_replay_claim_at", this.handle, index, at, at + 8)) {
+                return claims;
+            }
+            const number = BigInt.asIntN(64, u64(at + 8));
+            claims.set(text(takeBytes(u32(at))), number);
+        }
     }
 
-    /** Passes the hash of the state before the first tick, and after every tick. */
+    /** The inputs of all players for the next tick and the bits of those that are absent, or undefined at the end. */
+    next() {
+        const at = scratch(16 + this.#inputs);
+        if (!call("ls2d_replay_next", this.handle, at + 16, this.#inputs, at, at + 8)) {
+            return undefined;
+        }
+        return { inputs: copy(at + 16, this.#inputs), absent: u64(at + 8) };
+    }
+
+    /** Goes to a tick by the requests that follow, which begin in the state before the first tick. */
+    seek(tick) {
+        call("ls2d_replay_seek", this.handle, BigInt(tick));
+    }
+
+    /** The next request on the way to a tick: `save`, `load`, `advance`, or `checksum`, which `check` answers. */
+    nextRequest() {
+        return nextRequest("ls2d_replay_next_request", this.handle, this.#inputs);
+    }
+
+    /** Ticks between the states that `seek` asks to save. */
+    setInterval(ticks) {
+        call("ls2d_replay_set_interval", this.handle, ticks);
+    }
+
+    /** Adds a result of the game that was played, for the verdict. */
+    claim(name, number) {
+        claim("ls2d_replay_claim", this.handle, name, number);
+    }
+
+    /** Passes the hash of the state before the first tick, and after every tick; or answers `checksum`. */
     check(hash) {
         const at = scratch(16);
         writeHash(at, hash);
@@ -172,6 +224,82 @@ export class Replay extends Handle {
         writeHash(at, hash);
         call("ls2d_replay_verdict", this.handle, at, at + 16);
         return verdictAt(at + 16);
+    }
+}
+
+/** Goes to any tick of a replay with a game, which has
+ *
+ * - `step(inputs, absent)`: advances by a tick with the inputs of all players;
+ * - `save()`, `load(saved)`: a copy of the whole state, and back; `drop(saved)`, if there is something to free;
+ * - `hash()`: 32 hexadecimal digits of the whole state.
+ *
+ * The game begins in the state before the first tick. */
+export class ReplayDriver {
+    #replay;
+    #game;
+    #saves = new Map();
+    #tick = 0;
+
+    constructor(replay, game) {
+        this.#replay = replay;
+        this.#game = game;
+    }
+
+    /** Number of ticks that the game has played. */
+    get tick() {
+        return this.#tick;
+    }
+
+    /** Goes to a tick. Ticks that were played before cost less than an interval of simulation. Throws an error with the
+     * code RECORD if the game diverges from the file: it stays there, and earlier ticks can be reached. */
+    seek(tick) {
+        this.#replay.seek(tick);
+        for (let request = this.#replay.nextRequest(); request !== undefined; request = this.#replay.nextRequest()) {
+            this.#answer(request);
+        }
+    }
+
+    /** Goes forward by a tick, which is always played. Returns false at the end. */
+    step() {
+        return this.#by(1);
+    }
+
+    /** Goes back by a tick. Returns false at the start. */
+    stepBack() {
+        return this.#by(-1);
+    }
+
+    /** Frees the saved states. */
+    dispose() {
+        this.#saves.forEach((saved) => this.#game.drop?.(saved));
+        this.#saves.clear();
+    }
+
+    #by(ticks) {
+        const tick = this.#tick + ticks;
+        if (tick < 0 || tick > this.#replay.ticks) {
+            return false;
+        }
+        this.seek(tick);
+        return true;
+    }
+
+    #answer({ kind, tick, inputs, absent }) {
+        switch (kind) {
+            case "save":
+                this.#saves.set(tick, this.#game.save());
+                break;
+            case "load":
+                this.#game.load(this.#saves.get(tick));
+                this.#tick = tick;
+                break;
+            case "advance":
+                this.#game.step(inputs, absent);
+                this.#tick = tick + 1;
+                break;
+            default:
+                this.#replay.check(this.#game.hash());
+        }
     }
 }
 

@@ -52,40 +52,56 @@ test("a recorded world verifies, and a changed file does not", () => {
     timeline.dispose();
 });
 
-// A game: each player counts, and the sum is hashed.
+// A game: each player counts, and ticks without a player are counted. All sums are hashed.
 class Sums {
-    sums = [0, 0];
-    step(inputs) {
-        inputs.forEach((input, player) => (this.sums[player] += input));
+    sums = [0, 0, 0];
+    step(inputs, absent) {
+        inputs.forEach((input, player) => (this.sums[player] = (this.sums[player] * 3 + input) >>> 0));
+        this.sums[2] += absent === 0n ? 0 : 1;
     }
     hash() {
         return L.hashBytes(new Uint8Array(Uint32Array.from(this.sums).buffer));
     }
+    save() {
+        return [...this.sums];
+    }
+    load(saved) {
+        this.sums = [...saved];
+    }
 }
+
+const inputsAt = (tick) => (tick % 50 < 20 ? [Uint8Array.of(tick % 7, 0), 2n] : [Uint8Array.of(tick % 7, tick % 11), 0n]);
 
 function record(ticks) {
     const game = new Sums();
     const recorder = new L.Recorder({ rules: "sums", players: 2, inputBytes: 1, setup: Uint8Array.of(1, 2), start: game.hash() });
     for (let tick = 0; tick < ticks; tick++) {
-        const inputs = Uint8Array.of(tick % 7, tick % 11);
-        const due = recorder.record(inputs);
-        game.step(inputs);
+        const [inputs, absent] = inputsAt(tick);
+        const due = recorder.record(inputs, absent);
+        game.step(inputs, absent);
         if (due) {
             recorder.checkpoint(game.hash());
         }
     }
+    recorder.claim("score", -7);
+    recorder.claim("größe", 1n << 62n);
+    assert.throws(() => recorder.claim("half", 0.5), { code: "VALUE" });
+    assert.throws(() => recorder.claim("score", 1), { code: "VALUE" });
+    assert.throws(() => recorder.record(Uint8Array.of(1, 1), 2n), { code: "INPUTS" });
     return recorder.finish(game.hash());
 }
 
-function play(bytes, cheat = () => {}) {
+function play(bytes, cheat = () => {}, score = -7) {
     const replay = new L.Replay(bytes);
     const game = new Sums();
     replay.check(game.hash());
-    for (let inputs = replay.next(), tick = 0; inputs !== undefined; inputs = replay.next(), tick++) {
+    for (let next = replay.next(), tick = 0; next !== undefined; next = replay.next(), tick++) {
         cheat(game, tick);
-        game.step(inputs);
+        game.step(next.inputs, next.absent);
         replay.check(game.hash());
     }
+    replay.claim("größe", 1n << 62n);
+    replay.claim("score", score);
     return { replay, verdict: replay.verdict(game.hash()) };
 }
 
@@ -93,11 +109,52 @@ test("a game with rules in JavaScript records, and its replay verifies", () => {
     const bytes = record(150);
     const { replay, verdict } = play(bytes);
     assert.deepEqual([replay.rules, replay.players, replay.ticks, [...replay.setup]], ["sums", 2, 150, [1, 2]]);
+    assert.deepEqual([...replay.claims], [["größe", 1n << 62n], ["score", -7n]]);
     assert.deepEqual([verdict.verdict, verdict.ticks], ["match", 150]);
+    assert.equal(play(bytes, undefined, -6).verdict.verdict, "claim_mismatch");
     const other = play(bytes, (game, tick) => tick === 100 && (game.sums[0] += 1)).verdict;
     assert.deepEqual([other.verdict, other.ticks], ["diverged", 120]);
     assert.throws(() => new L.Replay(bytes.slice(0, 30)), { code: "RECORD" });
     assert.throws(() => new L.Replay(file("replays/ragdoll.replay")), (error) => error.verdict.verdict === "unverifiable");
+});
+
+test("a game with rules in JavaScript goes to any tick of its replay", () => {
+    const states = [new Sums()];
+    for (let tick = 0; tick < 300; tick++) {
+        const next = new Sums();
+        next.load(states[tick].sums);
+        next.step(...inputsAt(tick));
+        states.push(next);
+    }
+    const replay = new L.Replay(record(300));
+    const game = new Sums();
+    let dropped = 0;
+    game.drop = () => dropped++;
+    const driver = new L.ReplayDriver(replay, game);
+    const at = (tick) => assert.deepEqual([driver.tick, game.sums], [tick, states[tick].sums]);
+    for (const tick of [70, 300, 69, 180, 181, 0, 299]) {
+        driver.seek(tick);
+        at(tick);
+    }
+    assert.ok(driver.step());
+    at(300);
+    assert.ok(!driver.step());
+    assert.ok(driver.stepBack());
+    at(299);
+    driver.seek(0);
+    assert.ok(!driver.stepBack());
+    assert.throws(() => driver.seek(301), { code: "VALUE" });
+    driver.dispose();
+    assert.equal(dropped, 6);
+
+    // A game that diverges: only earlier ticks can be reached.
+    const wrong = new Sums();
+    const other = new L.ReplayDriver(new L.Replay(record(300)), wrong);
+    other.seek(130);
+    wrong.sums[0] ^= 1;
+    assert.throws(() => other.seek(200), { code: "RECORD" });
+    other.seek(100);
+    assert.deepEqual(wrong.sums, states[100].sums);
 });
 
 test("files are opened and refused, although reading them moves the memory", () => {

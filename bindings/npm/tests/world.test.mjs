@@ -117,6 +117,27 @@ test("commands are edits as bytes", () => {
     assert.equal(remote.world.hash(), direct.world.hash());
 });
 
+test("bodies and joints with one definition are added together, or none", () => {
+    const world = new L.World();
+    const places = Array.from({ length: 300 }, (_, index) => ({ position: [index, "0.5"], angle: index % 2 === 0 ? 0 : L.degrees(90) }));
+    const bodies = world.spawnEach({ shapes: [L.box("0.25", "0.5")], userData: 7 }, places);
+    assert.deepEqual(bodies, world.bodies());
+    const last = world.body(bodies[299]);
+    assert.deepEqual([last.position.x.toNumber(), last.angle.bits, last.userData], [299, 0x40000000, 7n]);
+    const pairs = bodies.slice(1).map((body, index) => [bodies[index], body]);
+    const joints = world.addJointEach({ type: "revolute", anchorA: ["0.5", 0], anchorB: ["-0.5", 0] }, pairs);
+    assert.deepEqual(joints, world.joints());
+    assert.throws(() => world.spawnEach({}, [{ position: [0, 0] }, { position: [2_000_000_000, 0] }]), { name: "Lockstep2dError" });
+    assert.throws(() => world.addJointEach({ type: "revolute" }, [[bodies[0], bodies[1]], [bodies[2], bodies[2]]]), { name: "Lockstep2dError" });
+    assert.deepEqual([world.counts().bodies, world.counts().joints], [300, 299]);
+    assert.deepEqual([world.spawnEach({}, []), world.addJointEach({ type: "revolute" }, [])], [[], []]);
+    const commands = new L.Commands();
+    assert.equal(commands.spawnEach({}, places), undefined);
+    assert.equal(commands.addJointEach({ type: "revolute" }, pairs), undefined);
+    assert.equal(world.execute(commands), 0);
+    assert.deepEqual([world.counts().bodies, world.counts().joints], [600, 598]);
+});
+
 test("10 000 worlds that are disposed leak nothing", () => {
     const before = L.objectCount();
     const memory = () => library().memory.buffer.byteLength;

@@ -5,11 +5,13 @@ use lockstep2d::codec;
 use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::world::{self, Command, World};
 
-use crate::border::{In, Out};
+use crate::border::{In, Out, Plain};
 use crate::describe::api;
 use crate::numbers::{RawAngle, RawBody, RawFx, RawJoint, RawShape, RawVec2};
-use crate::records::{RawBodyDef, RawConfig, RawExplosion, RawJointDef, RawShapeDef, body_kind, name_of};
-use crate::status::{Failure, Outcome, Status};
+use crate::records::{
+    RawBodyDef, RawConfig, RawExplosion, RawJointDef, RawPose, RawShapeDef, body_kind, name_of,
+};
+use crate::status::{Failure, Outcome, Status, value};
 use crate::table::{self, Bytes, Commands, Object, with, with_any, with_two};
 
 /// Largest number of shapes of one call.
@@ -32,6 +34,20 @@ fn shapes_of(shapes: &In<'_, RawShapeDef>, count: usize) -> Outcome<Vec<ShapeDef
         return Err(super::library::copied("a body of at most 4096 shapes", count));
     }
     shapes.slice(count)?.iter().map(RawShapeDef::def).collect()
+}
+
+/// Checks that there is room for all handles before anything is added.
+fn check_room<T: Plain>(ids: &Out<'_, T>, capacity: usize, needed: usize) -> Outcome {
+    if ids.is_null() || needed <= capacity {
+        return Ok(());
+    }
+    Err(Failure::new(Status::Buffer, format!("a buffer of {capacity} items, {needed} are needed")))
+}
+
+/// Writes handles, unless the pointer is null.
+fn set_ids<T: Plain>(mut ids: Out<'_, T>, capacity: usize, made: Vec<T>) -> Outcome {
+    let mut count = 0;
+    if ids.is_null() { Ok(()) } else { ids.set_all(capacity, &mut Out::of(&mut count), &made) }
 }
 
 /// Executes a command whose only parameter is a body.
@@ -160,6 +176,30 @@ api! {
         }
     }
 
+    /// Adds a body with the same definition at each pose, or none if one of them is refused. A recording stores the
+    /// definition once. Bodies and flags of the poses are not read. The handles are written, unless the pointer is null
+    /// or the target is a list.
+    fn ls2d_spawn_each(
+        target: u32,
+        body: In<'_, RawBodyDef>,
+        shapes: In<'_, RawShapeDef>,
+        shape_count: usize,
+        poses: In<'_, RawPose>,
+        pose_count: usize,
+        ids: Out<'_, RawBody>,
+        capacity: usize,
+    ) {
+        check_room(&ids, capacity, pose_count)?;
+        let (body, shapes) = (body.get()?.def()?, shapes_of(&shapes, shape_count)?);
+        let places = poses.slice(pose_count)?.iter().map(RawPose::pose).collect();
+        match edit(target, Command::SpawnEach { body, shapes, places })? {
+            Some(world::Outcome::Bodies(bodies)) => {
+                set_ids(ids, capacity, bodies.into_iter().map(RawBody::of).collect())
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Removes a body with its shapes and joints.
     fn ls2d_despawn(target: u32, body: RawBody) { body_commands!(target, body, Despawn) }
 
@@ -187,6 +227,32 @@ api! {
         let mut id = id;
         match edit(target, Command::AddJoint { joint: joint.get()?.def()? })? {
             Some(world::Outcome::Joint(joint)) => id.set_if_wanted(RawJoint::of(joint)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Adds a joint with the same definition between each pair of bodies, or none if one of them is refused. A recording
+    /// stores the definition once. `ends` has the two bodies of each joint, one after the other. The handles are
+    /// written, unless the pointer is null or the target is a list.
+    fn ls2d_add_joint_each(
+        target: u32,
+        joint: In<'_, RawJointDef>,
+        ends: In<'_, RawBody>,
+        end_count: usize,
+        ids: Out<'_, RawJoint>,
+        capacity: usize,
+    ) {
+        check_room(&ids, capacity, end_count / 2)?;
+        let joint = joint.get()?.def()?;
+        let (pairs, []) = ends.slice(end_count)?.as_chunks() else {
+            return Err(value("the number of ends of joints", end_count));
+        };
+        let pair = |&[a, b]: &[RawBody; 2]| Ok((a.id()?, b.id()?));
+        let ends = pairs.iter().map(pair).collect::<Outcome<_>>()?;
+        match edit(target, Command::AddJointEach { joint, ends })? {
+            Some(world::Outcome::Joints(joints)) => {
+                set_ids(ids, capacity, joints.into_iter().map(RawJoint::of).collect())
+            }
             _ => Ok(()),
         }
     }

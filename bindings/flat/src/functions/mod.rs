@@ -5,7 +5,11 @@ mod drawing;
 mod edit;
 mod events;
 #[cfg(feature = "lockstep")]
-mod host;
+mod host_recorder;
+#[cfg(feature = "lockstep")]
+mod host_replay;
+#[cfg(feature = "lockstep")]
+mod host_timeline;
 mod library;
 #[cfg(feature = "lockstep")]
 mod matches;
@@ -24,7 +28,11 @@ pub use drawing::*;
 pub use edit::*;
 pub use events::*;
 #[cfg(feature = "lockstep")]
-pub use host::*;
+pub use host_recorder::*;
+#[cfg(feature = "lockstep")]
+pub use host_replay::*;
+#[cfg(feature = "lockstep")]
+pub use host_timeline::*;
 pub use library::*;
 #[cfg(feature = "lockstep")]
 pub use matches::*;
@@ -56,7 +64,11 @@ pub(crate) const FUNCTIONS: &[(&str, &[Function])] = &[
     #[cfg(feature = "lockstep")]
     ("Timelines of replays of worlds", timeline::FUNCTIONS),
     #[cfg(feature = "lockstep")]
-    ("Replays of games with rules of their own", host::FUNCTIONS),
+    ("Recorders of games with rules of their own", host_recorder::FUNCTIONS),
+    #[cfg(feature = "lockstep")]
+    ("Replays of games with rules of their own", host_replay::FUNCTIONS),
+    #[cfg(feature = "lockstep")]
+    ("Timelines of replays of games with rules of their own", host_timeline::FUNCTIONS),
     #[cfg(feature = "lockstep")]
     ("Matches", matches::FUNCTIONS),
     ("Mathematics", maths::FUNCTIONS),
@@ -79,7 +91,11 @@ pub(crate) const DRAWN: &[&[crate::fuzzing::DrawnCall]] = &[
     #[cfg(feature = "lockstep")]
     timeline::DRAWN,
     #[cfg(feature = "lockstep")]
-    host::DRAWN,
+    host_recorder::DRAWN,
+    #[cfg(feature = "lockstep")]
+    host_replay::DRAWN,
+    #[cfg(feature = "lockstep")]
+    host_timeline::DRAWN,
     #[cfg(feature = "lockstep")]
     matches::DRAWN,
     maths::DRAWN,

@@ -4,7 +4,7 @@ use lockstep2d::body::{
     Body, BodyDef, BodyId, BodyKind, BodySettings, Continuous, MassSource, MotionLocks, Name,
 };
 use lockstep2d::math::{Fx, Vec2};
-use lockstep2d::world::{Explosion, MoveEvent};
+use lockstep2d::world::{BodyPose, Explosion, MoveEvent};
 
 use super::{check_flags, check_reserved, check_size, flag, has, size};
 use crate::describe::{constants, records};
@@ -314,6 +314,11 @@ impl RawPose {
             angle: RawAngle::of(body.angle()),
             flags: state_flags(body),
         }
+    }
+
+    /// Position and rotation, to add a body there.
+    pub(crate) const fn pose(&self) -> BodyPose {
+        BodyPose { position: self.position.vec(), angle: self.angle.angle() }
     }
 
     /// The pose after a move.

@@ -1,6 +1,8 @@
 //! Tests with the conversions that foreign callers do not see.
 #![expect(clippy::indexing_slicing, reason = "a test fails by a panic")]
 
+#[cfg(feature = "lockstep")]
+mod host_games;
 mod misuse;
 mod random_calls;
 mod scenes;

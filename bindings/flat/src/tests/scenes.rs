@@ -26,10 +26,16 @@ fn edit(target: u32, command: &Command) {
             done(ls2d_spawn(target, In::of(&body), In::all(&shapes), shapes.len(), id()));
         }
         Command::SpawnEach { body, shapes, places } => {
-            for &BodyPose { position, angle } in places {
-                let body = lockstep2d::body::BodyDef { position, angle, ..*body };
-                edit(target, &Command::Spawn { body, shapes: shapes.clone() });
-            }
+            let shapes: Vec<RawShapeDef> = shapes.iter().map(RawShapeDef::of).collect();
+            let body = RawBodyDef::of(body);
+            let pose = |place: &BodyPose| {
+                let position = RawVec2 { x: RawFx::of(place.position.x), y: RawFx::of(place.position.y) };
+                RawPose { body: RawBody(0), position, angle: RawAngle::of(place.angle), flags: 0 }
+            };
+            let poses: Vec<RawPose> = places.iter().map(pose).collect();
+            let (shape_count, pose_count) = (shapes.len(), poses.len());
+            let (shapes, poses) = (In::all(&shapes), In::all(&poses));
+            done(ls2d_spawn_each(target, In::of(&body), shapes, shape_count, poses, pose_count, id(), 0));
         }
         Command::AddShape { body, shape } => {
             let shape = RawShapeDef::of(shape);
@@ -39,10 +45,9 @@ fn edit(target: u32, command: &Command) {
             done(ls2d_add_joint(target, In::of(&RawJointDef::of(joint)), Out::null()));
         }
         Command::AddJointEach { joint, ends } => {
-            for &(body_a, body_b) in ends {
-                let joint = lockstep2d::solver::JointDef { body_a, body_b, ..*joint };
-                edit(target, &Command::AddJoint { joint });
-            }
+            let ends: Vec<RawBody> = ends.iter().flat_map(|&(a, b)| [a, b]).map(RawBody::of).collect();
+            let joint = RawJointDef::of(joint);
+            done(ls2d_add_joint_each(target, In::of(&joint), In::all(&ends), ends.len(), Out::null(), 0));
         }
         Command::SetVelocity { body, velocity, angular_velocity } => {
             let (x, y) = (RawFx::of(velocity.x), RawFx::of(velocity.y));
@@ -223,5 +228,55 @@ fn a_character_moves_as_in_rust() {
         on_ground += u32::from(state.flags & MOVER_ON_GROUND != 0);
     }
     assert!(state.position.x.fx() > fx!(7.9) && most >= 1 && on_ground > 200, "{state:?}");
+    done(ls2d_free(world));
+}
+
+/// Handles are written in order; a short buffer or a wrong body adds nothing.
+#[test]
+fn bodies_and_joints_are_added_together_or_not_at_all() {
+    let mut world = 0;
+    done(ls2d_world_new(In::null(), Out::of(&mut world)));
+    let mut body = RawBodyDef::of(&lockstep2d::body::BodyDef::dynamic());
+    body.user_data = 7;
+    let pose = |x: i64| {
+        let position = RawVec2 { x: RawFx(x << 32), y: RawFx(0) };
+        RawPose { body: RawBody(9), position, angle: RawAngle(1 << 30), flags: 9 }
+    };
+    let poses = [pose(0), pose(2), pose(4)];
+    let mut ids = [RawBody(u64::MAX); 3];
+    let mut spawn = |capacity| {
+        let (poses, ids) = (In::all(&poses), Out::all(&mut ids));
+        ls2d_spawn_each(world, In::of(&body), In::null(), 0, poses, 3, ids, capacity)
+    };
+    assert_eq!(spawn(2), Status::Buffer as i32);
+    done(spawn(3));
+    let count = |world| {
+        let mut poses = [pose(0); 8];
+        let mut count = 0;
+        done(ls2d_world_poses(world, Out::all(&mut poses), 8, Out::of(&mut count)));
+        (count, poses)
+    };
+    let (bodies, found) = count(world);
+    assert_eq!(bodies, 3);
+    for (index, pose) in found[..3].iter().enumerate() {
+        assert_eq!(
+            (pose.body, pose.position, pose.angle),
+            (ids[index], poses[index].position, poses[index].angle)
+        );
+    }
+    let mut joint = RawJointDef::of_kind(0).unwrap();
+    let mut joints = [RawJoint(u64::MAX); 2];
+    let mut join = |ends: &[RawBody], capacity| {
+        let ids = Out::all(&mut joints);
+        ls2d_add_joint_each(world, In::of(&joint), In::all(ends), ends.len(), ids, capacity)
+    };
+    assert_eq!(join(&[ids[0], ids[1], ids[1]], 2), Status::Value as i32, "an odd number of ends");
+    assert_ne!(join(&[ids[0], ids[1], ids[1], ids[1]], 2), Status::Ok as i32, "a body with itself");
+    assert_eq!(join(&[ids[0], ids[1], ids[1], ids[2]], 1), Status::Buffer as i32);
+    done(join(&[ids[0], ids[1], ids[1], ids[2]], 2));
+    for (id, ends) in joints.iter().zip([[ids[0], ids[1]], [ids[1], ids[2]]]) {
+        done(ls2d_joint_get(world, *id, Out::of(&mut joint)));
+        assert_eq!([joint.body_a, joint.body_b], ends);
+    }
     done(ls2d_free(world));
 }

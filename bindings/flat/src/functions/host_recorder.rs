@@ -1,0 +1,212 @@
+//! Recorders of games whose rules are in another language: the game plays, and this library keeps the file.
+//!
+//! A checkpoint is a hash of the state, which the game computes, and of all inputs so far.
+
+use lockstep2d::hash::StateHash;
+use lockstep2d::lockstep::{Game, RulesId, SetupError};
+use lockstep2d::replay::{CLAIM_NAME_BYTES_MAX, CLAIMS_MAX, Recorder};
+
+use super::replay::finished;
+use crate::border::{In, Out};
+use crate::describe::api;
+use crate::numbers::RawHash;
+use crate::status::{Failure, Outcome, Status, value};
+use crate::table::{self, Bytes, with};
+
+/// Setup of a host's game: rules, players, tick rate, bytes of an input, hash of the first state, the game's own setup.
+pub(super) type HostSetup = (Vec<u8>, u32, u32, u32, u32, StateHash, Vec<u8>);
+
+/// Players, tick rate, state hash and claims of a game that the host plays, for its recorder.
+pub(super) struct HostGame {
+    players: u32,
+    tick_rate: u32,
+    hash: StateHash,
+    claims: Vec<(String, i64)>,
+}
+
+impl Game for HostGame {
+    type Setup = HostSetup;
+    /// The bytes of an input; none if nobody plays the seat.
+    type Input = Vec<u8>;
+    type Save = StateHash;
+
+    const RULES: RulesId = RulesId { name: "host", version: 1 };
+
+    fn new(setup: &HostSetup) -> Result<Self, SetupError> {
+        let &(_, _, players, tick_rate, _, hash, _) = setup;
+        Ok(HostGame { players, tick_rate, hash, claims: Vec::new() })
+    }
+
+    fn players(&self) -> u32 {
+        self.players
+    }
+
+    fn tick_rate(&self) -> u32 {
+        self.tick_rate
+    }
+
+    fn step(&mut self, _: &[Vec<u8>]) {}
+
+    fn state_hash(&self) -> StateHash {
+        self.hash
+    }
+
+    fn save(&self) -> StateHash {
+        self.hash
+    }
+
+    fn load(&mut self, save: &StateHash) {
+        self.hash = *save;
+    }
+
+    fn work(&self, _: &[Vec<u8>]) -> u64 {
+        1
+    }
+
+    fn claims(&self) -> Vec<(String, i64)> {
+        self.claims.clone()
+    }
+}
+
+/// A recorder of a host's game until it is finished.
+pub(crate) struct HostRecorder {
+    recorder: Option<Recorder<HostGame>>,
+    game: HostGame,
+    input_bytes: usize,
+}
+
+impl HostRecorder {
+    fn get(&mut self) -> Outcome<&mut Recorder<HostGame>> {
+        self.recorder.as_mut().ok_or_else(finished)
+    }
+
+    /// The inputs of all players from their bytes. Those of absent players have no bytes in the file.
+    fn inputs(&self, bytes: &[u8], absent: u64) -> Outcome<Vec<Vec<u8>>> {
+        let players = usize::try_from(self.game.players).unwrap_or(usize::MAX);
+        let expected = players.saturating_mul(self.input_bytes);
+        if bytes.len() != expected {
+            let text = format!("{} bytes of inputs, {expected} are expected", bytes.len());
+            return Err(Failure::new(Status::Inputs, text));
+        }
+        let inputs = bytes.chunks_exact(self.input_bytes).enumerate().map(|(seat, input)| {
+            if absent >> seat & 1 == 0 {
+                return Ok(input.to_vec());
+            }
+            let is_zero = input.iter().all(|&byte| byte == 0);
+            let failure = || Failure::new(Status::Inputs, format!("seat {seat} is absent and has an input"));
+            is_zero.then(Vec::new).ok_or_else(failure)
+        });
+        inputs.collect()
+    }
+}
+
+/// Whether a game can have this number of players, and bytes of an input.
+pub(super) fn are_possible(players: u32, input_bytes: u32) -> bool {
+    (1..=64).contains(&players) && (1..=512).contains(&input_bytes)
+}
+
+/// Adds a result of a game.
+pub(super) fn claim(claims: &mut Vec<(String, i64)>, name: &str, number: i64) -> Outcome {
+    let length = u32::try_from(name.len()).unwrap_or(u32::MAX);
+    if !(1..=CLAIM_NAME_BYTES_MAX).contains(&length) {
+        return Err(value("the length of a name of a claim", length));
+    }
+    if u32::try_from(claims.len()).is_ok_and(|count| count >= CLAIMS_MAX) {
+        return Err(value("the number of claims", claims.len() + 1));
+    }
+    if claims.iter().any(|(other, _)| other == name) {
+        return Err(Failure::new(Status::Value, format!("there is already a claim {name:?}")));
+    }
+    claims.push((name.to_owned(), number));
+    Ok(())
+}
+
+api! {
+    /// Starts a recorder for a game with rules of its own. `rules` is the name of the rules in UTF-8, `setup` what the
+    /// first tick depends on, `start` the hash of the state before it. There is a checkpoint every `interval` ticks.
+    fn ls2d_recorder_new(
+        rules: In<'_, u8>,
+        rules_length: usize,
+        rules_version: u32,
+        players: u32,
+        tick_rate: u32,
+        input_bytes: u32,
+        setup: In<'_, u8>,
+        setup_size: usize,
+        start: In<'_, RawHash>,
+        interval: u32,
+        recorder: Out<'_, u32>,
+    ) {
+        let mut recorder = recorder;
+        recorder.check()?;
+        if !are_possible(players, input_bytes) {
+            return Err(value("players or bytes of an input", format!("{players}, {input_bytes}")));
+        }
+        let rules = rules.text(rules_length)?.as_bytes().to_vec();
+        let setup = setup.slice(setup_size)?.to_vec();
+        let start = start.get()?.hash();
+        let setup = (rules, rules_version, players, tick_rate, input_bytes, start, setup);
+        let (started, game) = Recorder::<HostGame>::start(&setup, interval)?;
+        let input_bytes = usize::try_from(input_bytes).unwrap_or(usize::MAX);
+        recorder.set(table::add(HostRecorder { recorder: Some(started), game, input_bytes })?)
+    }
+
+    /// Records the final inputs of the next tick: those of all players, one after another. `absent` has a bit for each
+    /// player that nobody plays, whose input is zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow
+    /// with the hash of the state after this tick.
+    fn ls2d_recorder_record(
+        recorder: u32,
+        inputs: In<'_, u8>,
+        size: usize,
+        absent: u64,
+        due: Out<'_, u32>,
+    ) {
+        let mut due = due;
+        with(recorder, |recorder: &mut HostRecorder| {
+            let inputs = recorder.inputs(inputs.slice(size)?, absent)?;
+            let recorder = recorder.get()?;
+            recorder.record(&inputs)?;
+            due.set_if_wanted(recorder.is_checkpoint_due().into())
+        })
+    }
+
+    /// Passes the hash of the state after the last recorded tick. Without a checkpoint due, nothing happens.
+    fn ls2d_recorder_checkpoint(recorder: u32, hash: In<'_, RawHash>) {
+        let hash = hash.get()?.hash();
+        with(recorder, |recorder: &mut HostRecorder| {
+            recorder.get()?.checkpoint(hash);
+            Ok(())
+        })
+    }
+
+    /// Takes the bytes that are finished, to be appended to the file.
+    fn ls2d_recorder_take(recorder: u32, bytes: Out<'_, u32>) {
+        let mut bytes = bytes;
+        bytes.check()?;
+        let taken = with(recorder, |recorder: &mut HostRecorder| Ok(recorder.get()?.take_bytes()))?;
+        bytes.set(table::add(Bytes(taken))?)
+    }
+
+    /// Adds a result of the game, such as a score, before the recorder is finished: a name of 1 to 64 bytes of UTF-8,
+    /// and a number. A replay has at most 256 results with different names, which can be read without playing it.
+    fn ls2d_recorder_claim(recorder: u32, name: In<'_, u8>, name_length: usize, number: i64) {
+        let name = name.text(name_length)?;
+        with(recorder, |recorder: &mut HostRecorder| {
+            recorder.get()?;
+            claim(&mut recorder.game.claims, name, number)
+        })
+    }
+
+    /// Ends a replay with the hash of the last state, and returns the bytes that have not been taken yet.
+    fn ls2d_recorder_finish(recorder: u32, hash: In<'_, RawHash>, bytes: Out<'_, u32>) {
+        let mut bytes = bytes;
+        bytes.check()?;
+        let hash = hash.get()?.hash();
+        let rest = with(recorder, |recorder: &mut HostRecorder| {
+            recorder.game.hash = hash;
+            let taken = recorder.recorder.take().ok_or_else(finished)?;
+            Ok(taken.finish(&recorder.game)?)
+        })?;
+        bytes.set(table::add(Bytes(rest))?)
+    }
+}

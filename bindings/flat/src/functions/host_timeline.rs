@@ -1,0 +1,104 @@
+//! Any tick of a replay of a game whose rules are in another language: the game fulfils requests, as in a match. It
+//! saves, restores and advances its state, and passes its hash at the checkpoints.
+
+use super::host_replay::HostReplay;
+use crate::border::Out;
+use crate::describe::api;
+use crate::records::{REQUEST_ADVANCE, REQUEST_CHECKSUM, REQUEST_LOAD, REQUEST_SAVE, RawRequest};
+use crate::status::{Failure, Outcome, Status, value};
+use crate::table::with;
+
+impl HostReplay {
+    /// The next request on the way to the target.
+    fn request(&self) -> Outcome<RawRequest> {
+        if let Some(failed) = &self.failed
+            && self.target >= failed.ticks()
+        {
+            return Err(Failure::new(Status::Record, failed.to_string()));
+        }
+        let latest = self.saved.range(..=self.target).next_back().copied();
+        if self.target < self.tick {
+            let failure = || value("the tick to go to, without a saved state before it,", self.target);
+            return request(REQUEST_LOAD, latest.ok_or_else(failure)?, 0);
+        }
+        // A single step is always played, for what happens in it.
+        if let Some(latest) = latest.filter(|&latest| latest > self.tick && self.target - self.tick > 1) {
+            return request(REQUEST_LOAD, latest, 0);
+        }
+        let kind = if self.compared != Some(self.tick) && self.checkpoint().is_some() {
+            REQUEST_CHECKSUM
+        } else if self.tick.is_multiple_of(self.interval) && !self.saved.contains(&self.tick) {
+            REQUEST_SAVE
+        } else if self.tick < self.target {
+            REQUEST_ADVANCE
+        } else {
+            return Err(Failure::none());
+        };
+        request(kind, self.tick, self.run().map_or(0, |run| run.absent))
+    }
+
+    /// Notes that a request was passed to the game. A checksum is requested until it is answered.
+    fn fulfil(&mut self, request: RawRequest) {
+        match request.kind {
+            REQUEST_LOAD => (self.tick, self.compared) = (request.tick.into(), None),
+            REQUEST_SAVE => _ = self.saved.insert(self.tick),
+            REQUEST_ADVANCE => self.tick += 1,
+            _ => {}
+        }
+    }
+}
+
+fn request(kind: u32, tick: u64, absent: u64) -> Outcome<RawRequest> {
+    let tick = u32::try_from(tick).map_err(|_| value("the tick of a request", tick))?;
+    let absent = if kind == REQUEST_ADVANCE { absent } else { 0 };
+    Ok(RawRequest { kind, tick, absent, guessed: 0 })
+}
+
+api! {
+    /// Goes to a tick: tick t is the state after t ticks. The game goes there by the requests that follow, which begin
+    /// in the state before the first tick.
+    fn ls2d_replay_seek(replay: u32, tick: u64) {
+        with(replay, |replay: &mut HostReplay| {
+            if tick > replay.ticks {
+                let text = format!("there are {} ticks, and no tick {tick}", replay.ticks);
+                return Err(Failure::new(Status::Value, text));
+            }
+            replay.target = tick;
+            Ok(())
+        })
+    }
+
+    /// The next request on the way to a tick: `LS2D_REQUEST_SAVE`, `LS2D_REQUEST_LOAD`, `LS2D_REQUEST_ADVANCE` as in a
+    /// match, and `LS2D_REQUEST_CHECKSUM`, which `ls2d_replay_check` answers with the hash of the current state.
+    /// `LS2D_NONE` when the tick is reached. `LS2D_RECORD` if the game has diverged from the file: only earlier ticks
+    /// can be reached.
+    fn ls2d_replay_next_request(
+        replay: u32,
+        request: Out<'_, RawRequest>,
+        inputs: Out<'_, u8>,
+        capacity: usize,
+        size: Out<'_, usize>,
+    ) {
+        let (mut request, mut inputs, mut size) = (request, inputs, size);
+        request.check()?;
+        with(replay, |replay: &mut HostReplay| {
+            let next = replay.request()?;
+            let played = if next.kind == REQUEST_ADVANCE { replay.inputs() } else { Vec::new() };
+            inputs.set_all(capacity, &mut size, &played)?;
+            replay.fulfil(next);
+            request.set(next)
+        })
+    }
+
+    /// Sets the ticks between the states that seeking asks to save. At first it is 60, or more for replays that would
+    /// need more than 256 states.
+    fn ls2d_replay_set_interval(replay: u32, ticks: u32) {
+        with(replay, |replay: &mut HostReplay| {
+            if ticks == 0 {
+                return Err(value("the interval", ticks));
+            }
+            replay.interval = ticks.into();
+            Ok(())
+        })
+    }
+}

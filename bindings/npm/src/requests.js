@@ -1,0 +1,15 @@
+// Requests to a game: to save, restore and advance its state.
+import { call, copy, read, scratch, sizeOf, u32 } from "./library.js";
+
+const REQUESTS = ["save", "load", "advance", "checksum", "forget"];
+
+/** The next request of a match or of a replay, whose inputs have a number of bytes. */
+export function nextRequest(name, handle, inputBytes) {
+    const size = sizeOf("request");
+    const at = scratch(8 + size + inputBytes);
+    if (!call(name, handle, at + 8, at + 8 + size, inputBytes, at)) {
+        return undefined;
+    }
+    const { kind, ...rest } = read("request", at + 8);
+    return { ...rest, kind: REQUESTS[kind], inputs: copy(at + 8 + size, u32(at)) };
+}
