@@ -1,7 +1,7 @@
 // Compiled with --strict only: the types of matches, relays and replays.
 import {
     Commands, type Lockstep2dError, Match, MatchDriver, type MatchGame, Recorder, Recording, Relay, Replay, ReplayDriver,
-    type Snapshot, World, decodeNativeState, encodeNativeState, fx, nativeOffer, verifyReplay,
+    type Snapshot, World, decodeNativeState, degrees, encodeNativeState, fx, nativeOffer, verifyReplay,
 } from "lockstep2d";
 
 import { World as CoreWorld, type BodyOptions } from "lockstep2d/core";
@@ -43,7 +43,7 @@ export function record(): string {
     driver.seek(replay.ticks);
     const score: bigint | undefined = replay.claims.get("score");
     replay.claim("score", score ?? 0);
-    const bodies: number[] = world.spawnEach({ shapes: [] }, [{ position: [0, "0.5"], angle: "0.25" }, { position: [1, 0] }]);
+    const bodies: number[] = world.spawnEach({ shapes: [] }, [{ position: [0, "0.5"], angle: degrees(30) }, { position: [1, 0] }]);
     world.addJointEach({ type: "revolute" }, [[bodies[0]!, bodies[1]!]]);
     const { verdict } = verifyReplay(recording.finish());
     return verdict + fx("0.5").mul(2).toString();
