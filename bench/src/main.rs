@@ -94,7 +94,7 @@ struct RollbackArguments {
     /// Run only these scenes, repeated or separated by commas
     #[arg(long = "scene", value_delimiter = ',', value_parser = PossibleValuesParser::new(script::SCENES))]
     scenes: Vec<String>,
-    /// Most steps of each scene, for a quick run
+    /// Maximum number of steps of each scene, for a quick run
     #[arg(long, value_parser = clap::value_parser!(u64).range(9..))]
     steps: Option<u64>,
     /// Print lines of JSON instead of a table
@@ -113,7 +113,7 @@ struct ScenesArguments {
     /// Threads of each engine; ratios compare CPU time with one thread, and wall-clock time with more
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=32))]
     threads: u16,
-    /// Most steps of each scene, for a quick run
+    /// Maximum number of steps of each scene, for a quick run
     #[arg(long, value_parser = clap::value_parser!(u64).range(2..))]
     steps: Option<u64>,
     /// Print lines of JSON instead of tables: one for each scene, and a summary

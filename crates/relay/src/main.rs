@@ -15,37 +15,37 @@ use serde_json::json;
 #[derive(Debug, Parser)]
 #[command(version)]
 struct Arguments {
-    /// Address and port to listen on. Port 0 lets the system choose one.
+    /// Address and port to listen on; with port 0 the system chooses one
     #[arg(long, default_value = "127.0.0.1:7010")]
     listen: String,
-    /// Origin of web pages that may connect, for example https://game.example; may be repeated. Default: all.
+    /// Origin of web pages that may connect, such as https://game.example; may be repeated [default: all]
     #[arg(long = "origin")]
     origins: Vec<String>,
-    /// Connections at the same time.
+    /// Maximum number of connections
     #[arg(long, default_value_t = Limits::default().connections)]
     connections: usize,
-    /// Rooms at the same time.
+    /// Maximum number of rooms
     #[arg(long, default_value_t = Limits::default().rooms)]
     rooms: usize,
-    /// Members of a room.
+    /// Maximum number of members of a room
     #[arg(long, default_value_t = Limits::default().members)]
     members: usize,
-    /// Largest datagram in bytes.
+    /// Maximum size of a datagram in bytes
     #[arg(long, default_value_t = Limits::default().datagram_bytes)]
     datagram_bytes: usize,
-    /// Bytes that wait for one member; the oldest datagrams are dropped.
+    /// Maximum bytes that wait for one member; the oldest datagrams are dropped
     #[arg(long, default_value_t = Limits::default().queue_bytes)]
     queue_bytes: usize,
-    /// Bytes per second from one member.
+    /// Maximum bytes per second from one member
     #[arg(long, default_value_t = Limits::default().bytes_per_second)]
     bytes_per_second: u32,
-    /// Datagrams per second from one member.
+    /// Maximum datagrams per second from one member
     #[arg(long, default_value_t = Limits::default().datagrams_per_second)]
     datagrams_per_second: u32,
-    /// Seconds without any frame after which a member is disconnected.
+    /// Seconds without a frame after which a member is disconnected
     #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=3600))]
     idle_seconds: u64,
-    /// Prints JSON, one line for each event.
+    /// Print a line of JSON for each event
     #[arg(long)]
     json: bool,
 }

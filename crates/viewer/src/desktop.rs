@@ -19,27 +19,27 @@ mod online;
 #[derive(Debug, Parser)]
 #[command(version)]
 struct Args {
-    /// Replay, divergence report or snapshot to show. Without a file, a live scene is shown.
+    /// Replay, divergence report or snapshot to show [default: a live scene]
     file: Option<PathBuf>,
-    /// Second replay or snapshot, compared with the first.
+    /// Second replay or snapshot, compared with the first
     #[arg(requires = "file")]
     other: Option<PathBuf>,
-    /// Live scene; `--list` shows the names.
+    /// Live scene; `--list` shows the names
     #[arg(long, value_name = "NAME", conflicts_with = "file")]
     scene: Option<String>,
-    /// Random seed of the scene or match [default: 0].
+    /// Random seed of the scene or match [default: 0]
     #[arg(long, value_name = "NUMBER")]
     seed: Option<u64>,
-    /// Lists the scenes.
+    /// List the scenes
     #[arg(long)]
     list: bool,
-    /// File that the replay of a live scene or match is saved to: at the end, and with the key `s`. It must not exist.
+    /// File for the replay of a live scene or match, saved at the end and with the key `s`; it must not exist
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Runs a script instead of taking user input: see the docs of `lockstep2d_viewer::script`.
+    /// Run a script instead of taking user input: see the docs of `lockstep2d_viewer::script`
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
-    /// Width and height of the window.
+    /// Width and height of the window
     #[arg(long, value_name = "WxH", default_value = "1120x720", value_parser = size)]
     size: [u16; 2],
     #[command(flatten)]

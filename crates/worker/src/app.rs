@@ -121,13 +121,13 @@ enum Command {
     Results {
         #[command(flatten)]
         connection: Connection,
-        /// Print the results that come later as well, until a signal
+        /// Also print later results, until a signal
         #[arg(long)]
         follow: bool,
     },
 }
 
-/// How to reach the queue.
+/// Connection to the queue.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Connection {
     /// The server: nats://host:4222, or tls://host
@@ -172,10 +172,10 @@ pub(crate) struct WorkArguments {
     /// credentials, the region and the endpoint
     #[arg(long, value_name = "URL")]
     pub(crate) bucket: Option<Url>,
-    /// Deliveries of a job, each of which ended without a result, after which its result is `crashed`
+    /// Number of deliveries of a job without a result after which its result is `crashed`
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
     pub(crate) max_deliver: u16,
-    /// Seconds without a sign of life after which a job goes to another worker
+    /// Seconds without a sign of progress after which a job goes to another worker
     #[arg(long, value_name = "N", default_value = "30", value_parser = seconds)]
     pub(crate) ack_seconds: Duration,
     /// Seconds after a signal in which the file at work may be completed; then it goes back to the queue

@@ -36,7 +36,7 @@ pub(super) struct Printed {
     /// Print all differences as one JSON document
     #[arg(long)]
     json: bool,
-    /// Most bodies, joints and other parts of the state to show
+    /// Maximum number of bodies, joints and other parts of the state to show
     #[arg(long, default_value_t = 10, value_name = "N")]
     subjects: usize,
 }

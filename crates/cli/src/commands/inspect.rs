@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
     /// List only fields whose path starts with this, such as world.bodies
     #[arg(long, value_name = "PREFIX", conflicts_with = "body")]
     path: Option<String>,
-    /// Most fields of a setup to show
+    /// Maximum number of fields of a setup to show
     #[arg(long, value_name = "N", default_value_t = 20)]
     fields: usize,
     /// Print everything as one JSON document

@@ -33,7 +33,7 @@ pub(crate) struct Arguments {
     /// The tick to go to; 0 is the start
     #[arg(long, value_name = "N")]
     tick: u64,
-    /// Then step back K times, one tick at a time
+    /// Number of single steps back from there
     #[arg(long, value_name = "K", default_value_t = 0)]
     back: u64,
     /// The keyframe file of the replay; it is written if it does not exist

@@ -32,7 +32,7 @@ use crate::output_file::{OutputFile, Overwrite};
 pub(crate) struct Arguments {
     /// The replay
     file: PathBuf,
-    /// The first tick to compare; up to there the game is only played
+    /// The first tick to compare; earlier ticks are only played
     #[arg(long, default_value_t = 0, value_name = "TICK")]
     from: u64,
     /// The last tick to play [default: the end]
@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
     /// Also roll back by 1 to 8 ticks, with right and wrong input predictions
     #[arg(long)]
     rollback: bool,
-    /// Also play every other variant that must give the same states: without caches, with other broad phases and so on
+    /// Also play all other variants that must give the same states: without caches, with other broad phases and so on
     #[arg(long)]
     all: bool,
     /// On failure, write the shortest failing replay that could be found

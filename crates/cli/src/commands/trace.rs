@@ -17,7 +17,8 @@ use crate::output_file::{OutputFile, Overwrite};
 #[command(
     after_help = "This program plays the inputs again; checkpoints of the file are not checked. A program of another \
                         platform can `bisect` the trace to find the tick, phase, body and field in which the two first \
-                        differ."
+                        differ.\n\nExit code: 0 when it was written, 1 when the replay cannot be played up to the \
+                        tick, 2 for wrong usage, or files that cannot be read or written."
 )]
 pub(crate) struct Arguments {
     /// The replay

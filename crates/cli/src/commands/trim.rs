@@ -26,7 +26,7 @@ use crate::rewriting::{Copy, CopyError};
 pub(crate) struct Arguments {
     /// The replay
     file: PathBuf,
-    /// Most ticks to keep
+    /// Maximum number of ticks to keep
     #[arg(long, value_name = "N")]
     ticks: Option<u64>,
     /// The file to write

@@ -59,7 +59,7 @@ pub(crate) struct Arguments {
     /// Cache verdicts in this folder, and do not play files again whose verdict is cached
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
-    /// Print each result as soon as it is known, in any order: a long file holds up no other
+    /// Print each result as soon as it is known, in any order
     #[arg(long)]
     unordered: bool,
     /// Stop a file after this many seconds, without a verdict; checked between ticks
@@ -71,7 +71,7 @@ pub(crate) struct Arguments {
     limits: LimitArguments,
 }
 
-/// Whose signatures are required.
+/// Required signatures.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Signatures")]
 struct SignerArguments {
@@ -88,19 +88,19 @@ struct SignerArguments {
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Limits of one file")]
 pub struct LimitArguments {
-    /// Most bytes of the file
+    /// Maximum size of the file in bytes
     #[arg(long, value_name = "N")]
     max_bytes: Option<u64>,
-    /// Most ticks
+    /// Maximum number of ticks
     #[arg(long, value_name = "N")]
     max_ticks: Option<u64>,
-    /// Most bodies in its world at a time
+    /// Maximum number of bodies in its world at any time
     #[arg(long, value_name = "N")]
     max_bodies: Option<u64>,
-    /// Most work units of one tick, as the game counts them
+    /// Maximum work units of one tick, as the game counts them
     #[arg(long, value_name = "N")]
     max_tick_work: Option<u64>,
-    /// Most work units of all ticks together
+    /// Maximum work units of all ticks together
     #[arg(long, value_name = "N")]
     max_work: Option<u64>,
 }

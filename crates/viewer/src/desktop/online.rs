@@ -16,22 +16,22 @@ const IDS: [&str; 6] = ["host", "join", "watch", "players", "lockstep", "rollbac
 
 #[derive(Debug, Args)]
 pub(super) struct OnlineArgs {
-    /// Hosts a match at this address, such as 0.0.0.0:7000, and waits for the players.
+    /// Host a match at this address, such as 0.0.0.0:7000, and wait for the players
     #[arg(long, value_name = "ADDRESS", group = "entry", conflicts_with = "file", help_heading = "Network")]
     host: Option<String>,
-    /// Joins the match at this address.
+    /// Join the match at this address
     #[arg(long, value_name = "ADDRESS", group = "entry", conflicts_with = "file", help_heading = "Network")]
     join: Option<String>,
-    /// Joins the match at this address as a spectator.
+    /// Join the match at this address as a spectator
     #[arg(long, value_name = "ADDRESS", group = "entry", conflicts_with = "file", help_heading = "Network")]
     watch: Option<String>,
-    /// Number of players that a match waits for before its first tick.
+    /// Number of players that a match waits for before its first tick
     #[arg(long, value_name = "NUMBER", requires = "host", help_heading = "Network")]
     players: Option<u8>,
-    /// Waits for late inputs instead of guessing them.
+    /// Wait for late inputs instead of guessing them
     #[arg(long, requires = "entry", conflicts_with = "rollback", help_heading = "Network")]
     lockstep: bool,
-    /// Guesses late inputs and corrects them afterwards.
+    /// Guess late inputs and correct them afterwards
     #[arg(long, requires = "entry", help_heading = "Network")]
     rollback: bool,
 }

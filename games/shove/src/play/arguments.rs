@@ -23,52 +23,52 @@ Exit codes:
 pub(super) struct Arguments {
     #[command(flatten)]
     way: Participation,
-    /// Local address of the socket; any free port if not given.
+    /// Local address of the socket [default: any free port]
     #[arg(long, value_name = "ADDRESS", conflicts_with = "host")]
     bind: Option<String>,
-    /// Own seat, from 0; any free seat if not given.
+    /// Own seat, counted from 0 [default: any free seat]
     #[arg(long, conflicts_with = "watch")]
     seat: Option<u8>,
-    /// Number that identifies the player: a new process with the same key gets the seat of the old one.
+    /// Number that identifies the player: a new process with the same key gets the seat of the old one
     #[arg(long, value_name = "NUMBER")]
     key: Option<u64>,
-    /// Number of players that the first tick waits for; used by the host only.
+    /// Number of players that the first tick waits for; used by the host only
     #[arg(long, default_value_t = 2)]
     players: u8,
-    /// Number of seats of the match.
+    /// Number of seats of the match
     #[arg(long, default_value_t = 4)]
     seats: u8,
-    /// Random seed for the placement of players and crates.
+    /// Random seed for the placement of players and crates
     #[arg(long, default_value_t = 0)]
     pub(super) seed: u64,
-    /// Waits for late inputs instead of guessing them: the same as --window 0.
+    /// Wait for late inputs instead of guessing them: the same as --window 0
     #[arg(long, conflicts_with = "window")]
     lockstep: bool,
-    /// Ticks that may be played with guessed inputs [default: 8].
+    /// Maximum number of ticks played with guessed inputs [default: 8]
     #[arg(long, value_name = "TICKS", value_parser = clap::value_parser!(u16).range(..=i64::from(GUESS_MAX)))]
     window: Option<u16>,
-    /// Smallest number of ticks until an input takes effect [default: 1, or 0 in lockstep].
+    /// Minimum number of ticks until an input takes effect [default: 1, or 0 in lockstep]
     #[arg(long, value_name = "TICKS", value_parser = clap::value_parser!(u16).range(..=i64::from(DELAY_MAX)))]
     delay_min: Option<u16>,
-    /// Largest such number. Between the two, it follows the latency.
+    /// Maximum number of ticks until an input takes effect; between the two, the delay follows the latency
     #[arg(long, value_name = "TICKS", default_value_t = 20, value_parser = clap::value_parser!(u16).range(..=i64::from(DELAY_MAX)))]
     delay_max: u16,
-    /// Seconds for which all wait for a player that is not heard before they go on without it; the same for all.
+    /// Seconds for which the match waits for a player whose packets do not arrive; the same for all peers
     #[arg(long, value_name = "SECONDS", default_value_t = 2, value_parser = clap::value_parser!(u64).range(1..))]
     patience: u64,
-    /// Seconds after which this peer gives up if it hears nobody.
+    /// Seconds without packets after which this peer gives up
     #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..))]
     pub(super) give_up: u64,
-    /// Ends after this number of ticks; without it the match runs until all have left.
+    /// Number of ticks of the match [default: until all have left]
     #[arg(long)]
     pub(super) ticks: Option<u64>,
-    /// File for the replay, which must not exist.
+    /// File for the replay; it must not exist
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
-    /// File for a divergence report, written if states differ. It must not exist.
+    /// File for a divergence report, written if states differ; it must not exist
     #[arg(long, value_name = "FILE")]
     pub(super) report: Option<PathBuf>,
-    /// Prints a line of JSON for each event; the last one has the result.
+    /// Print a line of JSON for each event; the last one has the result
     #[arg(long)]
     pub(super) json: bool,
 }
@@ -76,13 +76,13 @@ pub(super) struct Arguments {
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 struct Participation {
-    /// Hosts a match at this address.
+    /// Host a match at this address
     #[arg(long, value_name = "ADDRESS")]
     host: Option<String>,
-    /// Joins the match at this address, which may be that of any participant.
+    /// Join the match at this address, which may be that of any participant
     #[arg(long, value_name = "ADDRESS")]
     join: Option<String>,
-    /// Joins the match at this address as a spectator.
+    /// Join the match at this address as a spectator
     #[arg(long, value_name = "ADDRESS")]
     watch: Option<String>,
 }
