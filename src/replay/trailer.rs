@@ -42,20 +42,24 @@ impl Trailer {
     /// The first difference from the last state of a game: its hash, or the claim with the first name in ascending
     /// order whose value differs.
     #[must_use]
-    pub fn difference(&self, hash: StateHash, claims: Vec<(String, i64)>) -> Option<ClaimDifference> {
+    pub fn difference(&self, hash: StateHash, claims: &[(String, i64)]) -> Option<ClaimDifference> {
         // The last checkpoint already covers this state, so a different final hash is a wrong statement in the trailer
         // and not a divergence of the game.
         if self.final_hash != hash {
             return Some(ClaimDifference::FinalHash { claimed: self.final_hash, actual: hash });
         }
-        let claimed: BTreeMap<&String, i64> = self.claims.iter().map(|(name, value)| (name, *value)).collect();
-        let actual: BTreeMap<&String, i64> = claims.iter().map(|(name, value)| (name, *value)).collect();
-        let mut names: Vec<&String> = claimed.keys().chain(actual.keys()).copied().collect();
-        names.sort();
+        let claimed = by_name(&self.claims);
+        let actual = by_name(claims);
+        let mut names: Vec<&str> = claimed.keys().chain(actual.keys()).copied().collect();
+        names.sort_unstable();
         let name = names.into_iter().find(|name| claimed.get(name) != actual.get(name))?;
         let (claimed, actual) = (claimed.get(name).copied(), actual.get(name).copied());
-        Some(ClaimDifference::Value { name: name.clone(), claimed, actual })
+        Some(ClaimDifference::Value { name: name.into(), claimed, actual })
     }
+}
+
+fn by_name(claims: &[(String, i64)]) -> BTreeMap<&str, i64> {
+    claims.iter().map(|(name, value)| (name.as_str(), *value)).collect()
 }
 
 pub(super) fn read_claims(cursor: &mut Cursor<'_>) -> Result<Vec<(String, i64)>, ReadError> {

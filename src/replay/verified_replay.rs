@@ -169,7 +169,7 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
         let Some(trailer) = self.ending.trailer.filter(|trailer| trailer.ticks == ticks) else {
             return Verdict::Incomplete { ticks, hash };
         };
-        match trailer.difference(hash, self.raw.game().claims()) {
+        match trailer.difference(hash, &self.raw.game().claims()) {
             Some(difference) => Verdict::ClaimMismatch { ticks, hash, difference },
             None => Verdict::Match { ticks, hash },
         }

@@ -164,7 +164,7 @@ impl HostReplay {
         let ticks = self.ticks;
         Ok(match &self.trailer {
             None => Verdict::Incomplete { ticks, hash },
-            Some(trailer) => match trailer.difference(hash, self.claims.clone()) {
+            Some(trailer) => match trailer.difference(hash, &self.claims) {
                 Some(difference) => Verdict::ClaimMismatch { ticks, hash, difference },
                 None => Verdict::Match { ticks, hash },
             },

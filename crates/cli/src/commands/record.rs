@@ -16,7 +16,9 @@ use crate::scenes::Scene;
 
 /// Play a scene and write its replay
 #[derive(Args, Debug)]
-#[command(after_help = "Exit code: 0 when it was written, 2 for wrong usage, or a file that cannot be written.")]
+#[command(
+    after_help = "Exit code: 0 when it was written, 2 for wrong usage, or a file that cannot be written."
+)]
 pub(crate) struct Arguments {
     /// The name of the scene, as `scenes` lists it
     scene: String,
