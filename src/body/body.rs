@@ -192,7 +192,7 @@ impl Body {
     /// Moment of inertia about the centre of mass in kg m²; 0 unless the body is dynamic.
     #[must_use]
     pub fn inertia(&self) -> Fx {
-        fx_mul(fx_mul(self.mass.mass, self.mass.gyration), self.mass.gyration)
+        self.mass.inertia()
     }
 
     /// Radius of gyration in metres, `sqrt(inertia / mass)`.

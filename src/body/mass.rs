@@ -63,6 +63,20 @@ pub enum MassSource {
 }
 
 /// Mass, centre of mass and radius of gyration of a body.
+///
+/// ```
+/// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, world::World};
+/// # let mut world = World::default();
+/// use lockstep2d::body::MassProperties;
+/// // A person of 80 kg, with the centre and the proportions of its shapes.
+/// let shapes = [ShapeDef::new(Polygon::rectangle(fx!(0.25), fx!(0.9))?)];
+/// let person = MassProperties::of_shapes(&shapes)?.with_mass(fx!(80));
+/// let id = world.spawn(&BodyDef::dynamic().mass(person.into()), &shapes)?;
+/// // m (w^2 + h^2) / 12
+/// let inertia = fx!(80) * (fx!(0.5) * fx!(0.5) + fx!(1.8) * fx!(1.8)) / 12;
+/// assert!((world.body(id).expect("it was added").inertia() - inertia).abs() < fx!(0.001));
+/// # Ok::<(), lockstep2d::body::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MassProperties {
     /// Mass in kg; 0 for a fixed or kinematic body, and for a dynamic one without mass.
@@ -76,6 +90,45 @@ pub struct MassProperties {
 }
 
 impl MassProperties {
+    /// Properties of a dynamic body with these shapes, from their areas and densities.
+    ///
+    /// # Errors
+    /// [`WorldError::MassOutOfRange`] if the mass is not 1e-5 to 2^30 kg, also if no shape has an area and a density;
+    /// [`WorldError::GyrationOutOfRange`] if the radius of gyration is not 0.002 to 512 m.
+    pub fn of_shapes(shapes: &[ShapeDef]) -> Result<Self, WorldError> {
+        Self::from_parts(shapes.iter().map(Part::of_shape))
+    }
+
+    /// Mass in kg; 0 for a fixed or kinematic body, and for a dynamic one without mass.
+    #[must_use]
+    pub const fn mass(&self) -> Fx {
+        self.mass
+    }
+
+    /// Centre of mass in the body's frame, in metres.
+    #[must_use]
+    pub const fn centre_of_mass(&self) -> Vec2<Fx> {
+        self.centre
+    }
+
+    /// Radius of gyration about the centre of mass in metres, `sqrt(inertia / mass)`.
+    #[must_use]
+    pub const fn radius_of_gyration(&self) -> Fx {
+        self.gyration
+    }
+
+    /// Moment of inertia about the centre of mass in kg m², saturated.
+    #[must_use]
+    pub const fn inertia(&self) -> Fx {
+        fx_mul(fx_mul(self.mass, self.gyration), self.gyration)
+    }
+
+    /// Another mass with the same centre and radius of gyration: a body of another density.
+    #[must_use]
+    pub const fn with_mass(self, mass: Fx) -> Self {
+        MassProperties { mass, ..self }
+    }
+
     /// Properties of a body whose velocity no force changes: fixed, kinematic, or without mass. Its `k` is arbitrary: 4
     /// m allows a rotation of 100 rad/s within a speed limit of 400 m/s, and keeps the ratio of the longest lever arm
     /// to `k` below 91.
@@ -149,6 +202,13 @@ impl MassProperties {
         let gyration = Fx::from_bits(i64::try_from(bits).unwrap_or(i64::MAX));
         check_gyration(gyration)?;
         Ok(Self::new(total, centre, gyration))
+    }
+}
+
+impl From<MassProperties> for MassSource {
+    fn from(properties: MassProperties) -> Self {
+        let MassProperties { mass, centre, gyration, .. } = properties;
+        MassSource::Given { mass, centre, gyration }
     }
 }
 

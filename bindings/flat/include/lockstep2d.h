@@ -1066,7 +1066,7 @@ ls2d_status ls2d_world_random_range(uint32_t world, ls2d_fx low, ls2d_fx high, l
 /* Drops the caches of a world. Does not change any hash; the next tick takes longer. */
 ls2d_status ls2d_world_clear_scratch(uint32_t world);
 
-/* ---- Edits of a world, or of a list of commands ---- */
+/* ---- Definitions ---- */
 
 /* Sets the defaults of a body of a kind: at rest at the origin. */
 ls2d_status ls2d_body_def_init(uint32_t kind, ls2d_body_def *def);
@@ -1080,6 +1080,12 @@ ls2d_status ls2d_joint_def_init(uint32_t kind, ls2d_joint_def *def);
 /* Makes the links of a chain through some points, closed if `closed` is not 0, solid only from the right if
  * `one_sided` is not 0. The links have the material, filter and so on of `base`. */
 ls2d_status ls2d_chain_links(const ls2d_shape_def *base, const ls2d_vec2 *points, size_t point_count, uint32_t closed, uint32_t one_sided, ls2d_shape_def *links, size_t capacity, size_t *count);
+
+/* Mass, centre of mass and radius of gyration of a dynamic body with some shapes, for `mass`, `mass_centre` and
+ * `mass_gyration` of its definition. Null pointers are not written. Without area and density it is an error. */
+ls2d_status ls2d_shapes_mass(const ls2d_shape_def *shapes, size_t shape_count, ls2d_fx *mass, ls2d_vec2 *centre, ls2d_fx *gyration);
+
+/* ---- Edits of a world, or of a list of commands ---- */
 
 /* Makes an empty list of commands. */
 ls2d_status ls2d_commands_new(uint32_t *commands);

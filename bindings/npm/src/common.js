@@ -2,7 +2,7 @@
 export { Lockstep2dError } from "./error.js";
 export { Angle, Fx, degrees, fx, radians, turns } from "./fx.js";
 export { loaded } from "./library.js";
-export { box, capsule, chain, circle, hull, polygon, segment } from "./definitions.js";
+export { box, capsule, chain, circle, hull, massOf, polygon, segment } from "./definitions.js";
 export { decodeMoverState, encodeMoverState, moveCharacter } from "./character.js";
 export { Commands } from "./edits.js";
 export { Snapshot, World } from "./world.js";

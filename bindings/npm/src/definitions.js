@@ -2,7 +2,7 @@
 import { Lockstep2dError } from "./error.js";
 import { vectorOf } from "./fx.js";
 import { C } from "./layout.js";
-import { call, copy as copyOf, fieldAt, list, putBytes, putRaw, scratch, sizeOf, statusOf, struct, u32, write } from "./library.js";
+import { call, copy as copyOf, fieldAt, fxAt, list, putBytes, putRaw, scratch, sizeOf, statusOf, struct, u32, write } from "./library.js";
 
 const BODY_KINDS = { fixed: C.FIXED, kinematic: C.KINEMATIC, dynamic: C.DYNAMIC };
 const SWEEPS = { off: C.SWEEP_OFF, fixed: C.SWEEP_FIXED, bullet: C.SWEEP_BULLET, kinematic: C.SWEEP_KINEMATIC };
@@ -197,6 +197,13 @@ export function writeBodyAndShapes(options, room = 0) {
     });
     const after = at + 8 + body;
     return { id: at, body: at + 8, shapes: after, count: shapes.length, rest: after + each * shapes.length };
+}
+
+/** Mass, centre of mass and radius of gyration of a dynamic body with some shapes, for the option `mass`. */
+export function massOf(shapes) {
+    const { rest, shapes: at, count } = writeBodyAndShapes({ shapes }, 32);
+    call("ls2d_shapes_mass", at, count, rest, rest + 8, rest + 24);
+    return { mass: fxAt(rest), centre: { x: fxAt(rest + 8), y: fxAt(rest + 16) }, gyration: fxAt(rest + 24) };
 }
 
 export const bodyKind = (name) => lookup(BODY_KINDS, name, "the type of a body");

@@ -117,6 +117,18 @@ test("commands are edits as bytes", () => {
     assert.equal(remote.world.hash(), direct.world.hash());
 });
 
+test("the mass of shapes is that of a body with them, and can be scaled", () => {
+    const world = new L.World();
+    const shapes = [L.box("0.25", "0.9"), L.circle("0.5", { density: 3 })];
+    const mass = L.massOf(shapes);
+    const [body, person] = [world.spawn({ shapes }), world.spawn({ shapes, mass: { ...mass, mass: 80 } })].map((id) => world.body(id));
+    assert.deepEqual([mass.mass, mass.centre], [body.mass, body.centre]);
+    assert.equal(person.mass.toNumber(), 80);
+    const ratio = person.inertia.toNumber() / body.inertia.toNumber();
+    assert.ok(Math.abs(ratio - 80 / mass.mass.toNumber()) < 1e-6, `${ratio}`);
+    assert.throws(() => L.massOf([L.segment([0, 0], [1, 0])]), { name: "Lockstep2dError" });
+});
+
 test("bodies and joints with one definition are added together, or none", () => {
     const world = new L.World();
     const places = Array.from({ length: 300 }, (_, index) => ({ position: [index, "0.5"], angle: index % 2 === 0 ? 0 : L.degrees(90) }));

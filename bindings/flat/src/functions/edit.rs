@@ -1,21 +1,18 @@
 //! Edits: each is a command that is executed by a world at once, or added to a list.
 
-use lockstep2d::body::{BodyDef, Chain, Geometry, ShapeDef};
 use lockstep2d::codec;
 use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::world::{self, Command, World};
 
+use super::definitions::shapes_of;
 use crate::border::{In, Out, Plain};
 use crate::describe::api;
-use crate::numbers::{RawAngle, RawBody, RawFx, RawJoint, RawShape, RawVec2};
+use crate::numbers::{RawAngle, RawBody, RawFx, RawJoint, RawShape};
 use crate::records::{
     RawBodyDef, RawConfig, RawExplosion, RawJointDef, RawPose, RawShapeDef, body_kind, name_of,
 };
 use crate::status::{Failure, Outcome, Status, value};
 use crate::table::{self, Bytes, Commands, Object, with, with_any, with_two};
-
-/// Largest number of shapes of one call.
-const SHAPES_MAX: usize = 4096;
 
 /// Executes a command, if the target is a world, or adds it to a list of commands. Nothing is returned for a list.
 fn edit(target: u32, command: Command) -> Outcome<Option<world::Outcome>> {
@@ -27,13 +24,6 @@ fn edit(target: u32, command: Command) -> Outcome<Option<world::Outcome>> {
         }
         _ => Err(Failure::new(Status::HandleKind, "a world or a list of commands is expected")),
     })
-}
-
-fn shapes_of(shapes: &In<'_, RawShapeDef>, count: usize) -> Outcome<Vec<ShapeDef>> {
-    if count > SHAPES_MAX {
-        return Err(super::library::copied("a body of at most 4096 shapes", count));
-    }
-    shapes.slice(count)?.iter().map(RawShapeDef::def).collect()
 }
 
 /// Checks that there is room for all handles before anything is added.
@@ -58,60 +48,6 @@ macro_rules! body_commands {
 }
 
 api! {
-    /// Sets the defaults of a body of a kind: at rest at the origin.
-    fn ls2d_body_def_init(kind: u32, def: Out<'_, RawBodyDef>) {
-        let mut def = def;
-        def.set(RawBodyDef::of(&BodyDef::new(body_kind(kind)?)))
-    }
-
-    /// Sets the defaults of a shape of a kind. Its geometry has to be set.
-    fn ls2d_shape_def_init(kind: u32, def: Out<'_, RawShapeDef>) {
-        let mut def = def;
-        let mut raw = RawShapeDef::of(&ShapeDef::new(Geometry::Circle { radius: Fx::ZERO }));
-        raw.kind = kind;
-        def.set(raw)
-    }
-
-    /// Sets the defaults of a joint of a kind, without its bodies.
-    fn ls2d_joint_def_init(kind: u32, def: Out<'_, RawJointDef>) {
-        let mut def = def;
-        def.set(RawJointDef::of_kind(kind)?)
-    }
-
-    /// Makes the links of a chain through some points, closed if `closed` is not 0, solid only from the right if
-    /// `one_sided` is not 0. The links have the material, filter and so on of `base`.
-    fn ls2d_chain_links(
-        base: In<'_, RawShapeDef>,
-        points: In<'_, RawVec2>,
-        point_count: usize,
-        closed: u32,
-        one_sided: u32,
-        links: Out<'_, RawShapeDef>,
-        capacity: usize,
-        count: Out<'_, usize>,
-    ) {
-        let (mut links, mut count) = (links, count);
-        let mut base = base.get()?;
-        if point_count > SHAPES_MAX + 1 {
-            return Err(super::library::copied("a chain of at most 4096 links", point_count));
-        }
-        let points: Vec<Vec2<Fx>> = points.slice(point_count)?.iter().map(|point| point.vec()).collect();
-        let mut chain = Chain::new(&points);
-        if closed != 0 {
-            chain = chain.closed();
-        }
-        if one_sided != 0 {
-            chain = chain.one_sided();
-        }
-        let made = chain.links()?;
-        // The geometry of the base does not matter.
-        base = RawShapeDef { kind: crate::records::CIRCLE, radius: RawFx::of(Fx::ONE), ..base };
-        let base = base.def()?;
-        let with_base = |link: &ShapeDef| RawShapeDef::of(&ShapeDef { geometry: link.geometry, ..base });
-        let made: Vec<RawShapeDef> = made.iter().map(with_base).collect();
-        links.set_all(capacity, &mut count, &made)
-    }
-
     /// Makes an empty list of commands.
     fn ls2d_commands_new(commands: Out<'_, u32>) {
         let mut commands = commands;

@@ -1,6 +1,7 @@
 //! The functions of the API, by subject.
 
 mod character;
+mod definitions;
 mod drawing;
 mod edit;
 mod events;
@@ -24,6 +25,7 @@ mod view;
 mod world;
 
 pub use character::*;
+pub use definitions::*;
 pub use drawing::*;
 pub use edit::*;
 pub use events::*;
@@ -52,6 +54,7 @@ use crate::describe::Function;
 pub(crate) const FUNCTIONS: &[(&str, &[Function])] = &[
     ("The library", library::FUNCTIONS),
     ("Worlds", world::FUNCTIONS),
+    ("Definitions", definitions::FUNCTIONS),
     ("Edits of a world, or of a list of commands", edit::FUNCTIONS),
     ("What is in a world", view::FUNCTIONS),
     ("Drawing", drawing::FUNCTIONS),
@@ -79,6 +82,7 @@ pub(crate) const FUNCTIONS: &[(&str, &[Function])] = &[
 pub(crate) const DRAWN: &[&[crate::fuzzing::DrawnCall]] = &[
     library::DRAWN,
     world::DRAWN,
+    definitions::DRAWN,
     edit::DRAWN,
     view::DRAWN,
     drawing::DRAWN,

@@ -1,9 +1,10 @@
 //! The scenes of the library, built and played through the flat API, have the hashes that they have without it: with
 //! the structs of definitions, with encoded commands, in recordings, and through snapshots.
 
-use lockstep2d::codec;
+use lockstep2d::body::{Geometry, MassProperties, Polygon, ShapeDef};
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::world::{BodyPose, Command};
+use lockstep2d::{codec, fx};
 use lockstep2d_scenes::{ALL, Scene};
 
 use super::{done, hash_of, list_of, take};
@@ -279,4 +280,22 @@ fn bodies_and_joints_are_added_together_or_not_at_all() {
         assert_eq!([joint.body_a, joint.body_b], ends);
     }
     done(ls2d_free(world));
+}
+
+#[test]
+fn the_mass_of_shapes_is_that_in_rust() {
+    let half = fx!(0.5);
+    let shapes =
+        [Geometry::from(Polygon::rectangle(half, fx!(0.9)).unwrap()), Geometry::circle(half).unwrap()];
+    let shapes = shapes.map(ShapeDef::new);
+    let expected = MassProperties::of_shapes(&shapes).unwrap();
+    let shapes = shapes.map(|shape| RawShapeDef::of(&shape));
+    let (mut mass, mut centre, mut gyration) = (RawFx(0), RawVec2 { x: RawFx(9), y: RawFx(9) }, RawFx(0));
+    let outs = (Out::of(&mut mass), Out::of(&mut centre), Out::of(&mut gyration));
+    done(ls2d_shapes_mass(In::all(&shapes), 2, outs.0, outs.1, outs.2));
+    let bits = |number: lockstep2d::math::Fx| RawFx(number.to_bits());
+    assert_eq!((mass, gyration), (bits(expected.mass()), bits(expected.radius_of_gyration())));
+    assert_eq!((centre.x, centre.y), (bits(expected.centre_of_mass().x), bits(expected.centre_of_mass().y)));
+    let none = ls2d_shapes_mass(In::null(), 0, Out::null(), Out::null(), Out::null());
+    assert_ne!(none, Status::Ok as i32, "no mass");
 }

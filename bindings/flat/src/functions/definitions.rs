@@ -1,0 +1,92 @@
+//! Definitions of bodies, shapes and joints, before they are added to a world.
+
+use lockstep2d::body::{BodyDef, Chain, Geometry, MassProperties, ShapeDef};
+use lockstep2d::math::{Fx, Vec2};
+
+use crate::border::{In, Out};
+use crate::describe::api;
+use crate::numbers::{RawFx, RawVec2};
+use crate::records::{RawBodyDef, RawJointDef, RawShapeDef, body_kind};
+use crate::status::Outcome;
+
+/// Largest number of shapes of one call.
+const SHAPES_MAX: usize = 4096;
+
+pub(super) fn shapes_of(shapes: &In<'_, RawShapeDef>, count: usize) -> Outcome<Vec<ShapeDef>> {
+    if count > SHAPES_MAX {
+        return Err(super::library::copied("a body of at most 4096 shapes", count));
+    }
+    shapes.slice(count)?.iter().map(RawShapeDef::def).collect()
+}
+
+api! {
+    /// Sets the defaults of a body of a kind: at rest at the origin.
+    fn ls2d_body_def_init(kind: u32, def: Out<'_, RawBodyDef>) {
+        let mut def = def;
+        def.set(RawBodyDef::of(&BodyDef::new(body_kind(kind)?)))
+    }
+
+    /// Sets the defaults of a shape of a kind. Its geometry has to be set.
+    fn ls2d_shape_def_init(kind: u32, def: Out<'_, RawShapeDef>) {
+        let mut def = def;
+        let mut raw = RawShapeDef::of(&ShapeDef::new(Geometry::Circle { radius: Fx::ZERO }));
+        raw.kind = kind;
+        def.set(raw)
+    }
+
+    /// Sets the defaults of a joint of a kind, without its bodies.
+    fn ls2d_joint_def_init(kind: u32, def: Out<'_, RawJointDef>) {
+        let mut def = def;
+        def.set(RawJointDef::of_kind(kind)?)
+    }
+
+    /// Makes the links of a chain through some points, closed if `closed` is not 0, solid only from the right if
+    /// `one_sided` is not 0. The links have the material, filter and so on of `base`.
+    fn ls2d_chain_links(
+        base: In<'_, RawShapeDef>,
+        points: In<'_, RawVec2>,
+        point_count: usize,
+        closed: u32,
+        one_sided: u32,
+        links: Out<'_, RawShapeDef>,
+        capacity: usize,
+        count: Out<'_, usize>,
+    ) {
+        let (mut links, mut count) = (links, count);
+        let mut base = base.get()?;
+        if point_count > SHAPES_MAX + 1 {
+            return Err(super::library::copied("a chain of at most 4096 links", point_count));
+        }
+        let points: Vec<Vec2<Fx>> = points.slice(point_count)?.iter().map(|point| point.vec()).collect();
+        let mut chain = Chain::new(&points);
+        if closed != 0 {
+            chain = chain.closed();
+        }
+        if one_sided != 0 {
+            chain = chain.one_sided();
+        }
+        let made = chain.links()?;
+        // The geometry of the base does not matter.
+        base = RawShapeDef { kind: crate::records::CIRCLE, radius: RawFx::of(Fx::ONE), ..base };
+        let base = base.def()?;
+        let with_base = |link: &ShapeDef| RawShapeDef::of(&ShapeDef { geometry: link.geometry, ..base });
+        let made: Vec<RawShapeDef> = made.iter().map(with_base).collect();
+        links.set_all(capacity, &mut count, &made)
+    }
+
+    /// Mass, centre of mass and radius of gyration of a dynamic body with some shapes, for `mass`, `mass_centre` and
+    /// `mass_gyration` of its definition. Null pointers are not written. Without area and density it is an error.
+    fn ls2d_shapes_mass(
+        shapes: In<'_, RawShapeDef>,
+        shape_count: usize,
+        mass: Out<'_, RawFx>,
+        centre: Out<'_, RawVec2>,
+        gyration: Out<'_, RawFx>,
+    ) {
+        let (mut mass, mut centre, mut gyration) = (mass, centre, gyration);
+        let properties = MassProperties::of_shapes(&shapes_of(&shapes, shape_count)?)?;
+        mass.set_if_wanted(RawFx::of(properties.mass()))?;
+        centre.set_if_wanted(RawVec2::of(properties.centre_of_mass()))?;
+        gyration.set_if_wanted(RawFx::of(properties.radius_of_gyration()))
+    }
+}
