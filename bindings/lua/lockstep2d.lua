@@ -1,6 +1,6 @@
 --- The flat API of lockstep2d for LuaJIT and LÖVE. Functions, structs and constants are those of lockstep2d.h without
 --- their prefix: `ls.world_step(world)`, `ls.DYNAMIC`. `lockstep2d.h` and the library have to be in the folder of this
---- file, or in that of the LÖVE game; a library that the system finds will do as well.
+--- file, or in that of the LÖVE game; the library may also be where the system finds it.
 ---
 --- A function that returns a status raises an error if it fails, and otherwise returns whether there was something to
 --- return (`LS2D_OK`, not `LS2D_NONE`). Other functions return their result.
@@ -45,7 +45,7 @@ local returns_status = {}
 for name in header:gmatch("\nls2d_status (ls2d_[%w_]+)%(") do
     returns_status[name] = true
 end
--- LuaJIT parses declarations: comments, macros and what is for C++ are removed.
+-- LuaJIT parses declarations only, so comments, macros and the code for C++ are removed.
 ffi.cdef((header:gsub("/%*.-%*/", ""):gsub("#ifdef __cplusplus.-#endif", ""):gsub("\n#[^\n]*", "")))
 local C = load_library()
 assert(C.ls2d_api_version() == ls.API_VERSION, "lockstep2d.h and the library have different versions")
@@ -81,7 +81,7 @@ setmetatable(ls, {
     end,
 })
 
---- A struct with its defaults: `ls.make("body_def", ls.DYNAMIC)` is what `ls2d_body_def_init` makes of the arguments.
+--- A struct with its defaults: `ls.make("body_def", ls.DYNAMIC)` calls `ls2d_body_def_init` with the other arguments.
 function ls.make(struct, ...)
     local made = ffi.new("ls2d_" .. struct)
     local arguments = { ... }
@@ -113,7 +113,7 @@ function ls.number(fx)
     return tonumber(fx) / 4294967296
 end
 
---- Bytes as a string. Frees the object.
+--- The contents of a bytes object as a string. Frees the object.
 function ls.take_bytes(handle)
     local size = ffi.new("size_t[1]")
     ls.bytes_size(handle, size)

@@ -1,11 +1,11 @@
---- Plays a game in a match: does what the session of `ls2d_match_host` or `ls2d_match_join` asks for.
+--- Plays a game in a match: fulfils the requests of the session of `ls2d_match_host` or `ls2d_match_join`.
 ---
 --- The game has
 --- - `step(inputs, absent)`: advances by a tick with the inputs of all seats, a string; `absent` has a bit for each seat
 ---   that nobody plays;
---- - `save()`, `load(saved)`, `drop(saved)`: a copy of the whole state, and back;
+--- - `save()`, `load(saved)`, `drop(saved)`: copies the whole state, restores it, frees the copy;
 --- - `hash()`: an `ls2d_hash` of the whole state;
---- - `encode()`, `decode(bytes)`: the state as a string, for those who join.
+--- - `encode()`, `decode(bytes)`: converts the state to a string and back, for peers that join.
 ---
 --- `send(to, packet)` carries packets; both are strings.
 local ffi = require("ffi")
@@ -17,7 +17,7 @@ Driver.__index = Driver
 local ADDRESS_MAX, PACKET_MAX = 32, 2048
 
 --- Opens a match, or joins one if there is a `contact`: the address of a participant, as a string. `settings`
---- are fields of `ls2d_match_config`. All who play together need the same `offer`, a string with rules and version.
+--- are fields of `ls2d_match_config`. All peers need the same `offer`, a string with rules and version.
 function Driver.new(options)
     local config = ls.make("match_config", options.seats)
     for field, value in pairs(options.settings or {}) do
@@ -59,8 +59,8 @@ function Driver:receive(now, from, packet)
     ls.match_receive(self.match, now * 1e6, from, #from, packet, #packet)
 end
 
---- Passes the time, in seconds, and plays what is due with the inputs that `read(seats)` returns: a string for your
---- own seats, of which there are so many. Returns what happened, as a list of tables.
+--- Advances the time, in seconds, and plays the ticks that are due. `read(seats)` returns the inputs of your own seats,
+--- as a string; `seats` is their number. Returns the events, as a list of tables.
 function Driver:update(now, read)
     ls.match_update(self.match, now * 1e6)
     local events = {}
@@ -109,13 +109,13 @@ function Driver:seat_count()
     return count
 end
 
---- Where the match stands: `ls.MATCH_PLAYING` and so on.
+--- The status of the match: `ls.MATCH_PLAYING` and so on.
 function Driver:status()
     ls.match_status(self.match, self.flag)
     return self.flag[0]
 end
 
---- Numbers of ticks that were played, that are final, and that are both: 0 before it has joined.
+--- Numbers of ticks: played, final for the match, and played with final inputs here. 0 before the peer has joined.
 function Driver:ticks()
     if self:status() == ls.MATCH_CONNECTING then
         return 0, 0, 0
@@ -172,7 +172,7 @@ local answers = {
     [ls.REQUEST_CHECKSUM] = function(self, tick)
         ls.match_report_hash(self.match, tick, self.saves[tick].hash)
     end,
-    -- The newest state before the forgotten ones is kept for those who join.
+    -- The newest of the states that are no longer needed is kept for peers that join.
     [ls.REQUEST_FORGET] = function(self, tick)
         local newest = self:newest(tick)
         self:forget(function(kept) return newest ~= nil and kept < newest end)
@@ -185,7 +185,7 @@ function Driver:fulfil()
     end
 end
 
--- The newest state that is final, as bytes. The game is back where it was afterwards.
+-- Offers the newest final state, as bytes. Afterwards the game is in its old state again.
 function Driver:offer_state()
     local _, _, confirmed = self:ticks()
     local tick = self:newest(confirmed)

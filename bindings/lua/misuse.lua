@@ -1,4 +1,4 @@
---- Mistakes are errors that say what is wrong, and no crash.
+--- Tests that mistakes raise errors that say what is wrong, and do not crash.
 local ls = require("lockstep2d")
 
 local function fails(what, pattern, action, ...)

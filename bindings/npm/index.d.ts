@@ -9,7 +9,7 @@ export interface Vec2 {
     x: Fx;
     y: Fx;
 }
-/** Handle of a body: a number, unique in its world for ever. */
+/** Handle of a body: a number that its world never uses again. */
 export type BodyId = number;
 /** Handle of a shape. */
 export type ShapeId = number;
@@ -19,7 +19,7 @@ export type JointId = number;
 export type Rotation = Angle | 0;
 
 export interface InitOptions {
-    /** Chooses the module with or without SIMD; by default what the machine has. */
+    /** Chooses the module with or without SIMD; by default, with SIMD if the machine has it. */
     simd?: boolean;
     /** A module to use instead of the inlined one. */
     wasm?: WebAssembly.Module | Response | BufferSource;
@@ -36,11 +36,11 @@ export function objectCount(): number;
 /** An error with a code, such as `FLOAT`, `STALE_BODY`, `GEOMETRY`, `DISPOSED`. */
 export class Lockstep2dError extends Error {
     readonly code: string;
-    /** Of a replay that cannot be played. */
+    /** The verdict, if a replay cannot be played. */
     readonly verdict?: Verdict;
 }
 
-/** A number of the simulation: 64 bits, 32 of them behind the point. Immutable. */
+/** A number of the simulation: 64 bits, 32 of which are fraction bits. Immutable. */
 export class Fx {
     private constructor(raw: bigint);
     static fromRaw(raw: bigint | number): Fx;
@@ -124,11 +124,11 @@ export interface ShapeOptions {
     restitutionThreshold?: Num;
     rollingResistance?: Num;
     surfaceSpeed?: Num;
-    /** Bits of the categories that the shape belongs to, and collides with. */
+    /** Bits of the categories that the shape belongs to. `mask` has those that it collides with. */
     category?: bigint | number;
     mask?: bigint | number;
     group?: number;
-    /** Direction in which others pass a one-way platform. */
+    /** Direction in which other shapes pass through a one-way platform. */
     oneWay?: Rotation;
     sensor?: boolean;
     area?: AreaOptions;
@@ -157,6 +157,10 @@ export function capsule(a: Vec, b: Vec, radius: Num, options?: ShapeOptions): Sh
 export function segment(a: Vec, b: Vec, options?: ShapeOptions): ShapeDef;
 export function chain(points: readonly Vec[], options?: ShapeOptions & { closed?: boolean; oneSided?: boolean }): ChainDef;
 
+/** Mass in kg, centre of mass and radius of gyration in metres of a dynamic body with some shapes, for the option `mass`:
+ * `{ ...massOf(shapes), mass: 80 }` is a body of 80 kg with the proportions of its shapes. */
+export function massOf(shapes: readonly ShapeDef[]): { mass: Fx; centre: Vec2; gyration: Fx };
+
 export type BodyType = "fixed" | "kinematic" | "dynamic";
 export interface BodyOptions {
     /** `dynamic` by default. */
@@ -171,7 +175,7 @@ export interface BodyOptions {
     angularDamping?: Num;
     gravityScale?: Num;
     sleepSpeed?: Num;
-    /** What the body does not pass through, however fast it is. `fixed` by default. */
+    /** Kinds of bodies that the body does not pass through, however fast it is. `fixed` by default. */
     continuous?: "off" | "fixed" | "bullet" | "kinematic";
     enabled?: boolean;
     asleep?: boolean;
@@ -194,7 +198,7 @@ export interface JointOptions {
     type: "revolute" | "prismatic" | "distance" | "weld" | "wheel" | "motor" | "filter" | "gear" | "rack" | "pulley";
     a: BodyId;
     b: BodyId;
-    /** Anchor in the world at the current poses; for sliders and wheels with an axis. Only for worlds. */
+    /** Anchor in world coordinates at the current poses. Sliders and wheels also need `axis`. Only for worlds. */
     anchor?: Vec;
     axis?: Vec;
     /** Anchors and angles in the frames of the bodies. */
@@ -247,7 +251,7 @@ export interface ConfigOptions {
     continuous?: boolean;
 }
 
-/** Something that the library keeps. The garbage collector frees it some time, `dispose` at once. */
+/** An object that the library stores. `dispose` frees it at once; otherwise the garbage collector frees it later. */
 declare class Handle {
     protected constructor();
     dispose(): void;
@@ -277,7 +281,7 @@ declare class Edits extends Handle {
     applyAngularImpulse(body: BodyId, impulse: Num): void;
     setVelocity(body: BodyId, velocity: Vec, angular?: Num): void;
     setTransform(body: BodyId, position: Vec, angle?: Rotation): void;
-    /** Gives a kinematic body the velocity with which it is there after the next tick. */
+    /** Gives a kinematic body the velocity with which it reaches this pose in the next tick. */
     moveTo(body: BodyId, position: Vec, angle?: Rotation): void;
     setBody(body: BodyId, options: Omit<BodyOptions, "shapes">): void;
     setType(body: BodyId, type: BodyType): void;
@@ -302,7 +306,7 @@ export class Commands extends Edits {
     readonly length: number;
     clear(): void;
     toBytes(): Uint8Array;
-    /** Replaces the list by an encoded one. */
+    /** Replaces the list by a list that is decoded from bytes. */
     fromBytes(bytes: Uint8Array): this;
 }
 
@@ -366,9 +370,9 @@ export interface Events {
 
 /** A physics world. */
 export class World extends Edits {
-    /** `smallest`: the size of the smallest boxes of stacks, for which sub-steps are added. */
+    /** `smallest` is the size of the smallest boxes that have to stand in stacks. Small sizes add sub-steps. */
     constructor(options?: ConfigOptions & { smallest?: Num });
-    /** Makes a world from bytes of any source. */
+    /** Makes a world from bytes, which may come from any source. */
     static fromBytes(bytes: Uint8Array): World;
     toBytes(): Uint8Array;
     clone(): World;
@@ -392,7 +396,7 @@ export class World extends Edits {
     counts(): { bodies: number; shapes: number; joints: number; awake: number; pairs: number };
     config(): Record<string, unknown>;
     setConfig(options: ConfigOptions): void;
-    /** From the generator of the world, which is part of its state. */
+    /** A random number from 0 to below `bound`, from the generator of the world, which is part of its state. */
     random(bound: number): number;
     randomRange(low: Num, high: Num): Fx;
     save(): Snapshot;
@@ -408,7 +412,7 @@ export class World extends Edits {
     jointAnchors(joint: JointId): [Vec2, Vec2];
     jointAngle(joint: JointId): Fx | undefined;
     jointForce(joint: JointId): { force: Vec2; torque: Fx } | undefined;
-    /** For drawing: five floats for each enabled body, its handle, x, y, angle in radians, and 1 if it is awake. */
+    /** For drawing: five floats for each enabled body: its handle, x, y, angle in radians, and 1 if it is awake. */
     poses(target?: Float64Array): Float64Array;
     events(): Events;
     castRay(origin: Vec, translation: Vec, filter?: Filter): RayHit | undefined;
@@ -423,11 +427,11 @@ export class World extends Edits {
 /** Geometry and abilities of a character. It is upright, and y is up. */
 export interface MoverOptions {
     shape: ShapeDef;
-    /** Steepest slope that is ground, measured from level; 45 degrees. */
+    /** Steepest slope that counts as ground, measured from the horizontal; 45 degrees by default. */
     slopeMax?: Rotation;
-    /** Height in metres of steps that it climbs without a jump; 0. */
+    /** Height in metres of steps that it climbs without a jump; 0 by default. */
     stepHeight?: Num;
-    /** Distance in metres by which ground may fall within a tick while it still follows; 0.1. */
+    /** Distance in metres by which the ground may descend within a tick while the character follows it; 0.1 by default. */
     snapDistance?: Num;
 }
 /** A surface that a character has met. */
@@ -489,7 +493,7 @@ export interface Verdict {
     hash: string;
     text: string;
 }
-/** A replay of a world that goes to any of its ticks: tick t is the state after t ticks. */
+/** Goes to any tick of a replay of a world: tick t is the state after t ticks. */
 export class Timeline extends Handle {
     /** Throws a Lockstep2dError with the code RECORD, and the `verdict`, if it cannot be played. */
     constructor(bytes: Uint8Array, limits?: Limits);
@@ -505,7 +509,7 @@ export class Timeline extends Handle {
     world(): World;
 }
 
-/** Verifies a replay of a world from any source. */
+/** Verifies a replay of a world. The file may come from any source. */
 export function verifyReplay(bytes: Uint8Array, limits?: Limits): Verdict;
 
 /** A world that is recorded while it runs, and changed by lists of commands alone. */
@@ -521,7 +525,7 @@ export class Recording extends Handle {
 export interface TickInputs {
     /** Inputs of all players or seats, one after another. */
     inputs: Uint8Array;
-    /** Bit for each one that nobody plays. Its input is zeros. */
+    /** Bit for each player or seat that nobody plays. Its input is zeros. */
     absent: bigint;
 }
 /** Records a game with rules of its own. */
@@ -565,8 +569,8 @@ export class Replay extends Handle {
     /** Adds a result of the game that was played. The verdict compares all of them with `claims`. */
     claim(name: string, number: number | bigint): void;
     verdict(hash: string): Verdict;
-    /** Goes to a tick by the requests that follow, which begin in the state before the first tick. `ReplayDriver` fulfils
-     * them. */
+    /** Begins to go to a tick; `nextRequest` returns the requests, which `ReplayDriver` fulfils. At the first call the game
+     * has to be in the state before the first tick. */
     seek(tick: number): void;
     /** The next request on the way there: `save`, `load`, `advance`, or `checksum`, which `check` answers. Throws an error
      * with the code RECORD if the game has diverged from the file. */
@@ -589,7 +593,7 @@ export class ReplayDriver<Saved = unknown> {
     /** Goes to a tick. Ticks that were played before cost less than an interval of simulation. Throws an error with the code
      * RECORD if the game diverges from the file: it stays there, and earlier ticks can be reached. */
     seek(tick: number): void;
-    /** Goes forward by a tick, which is always played. Returns false at the end. */
+    /** Goes forward by a tick, which is always simulated, even if its state is saved. Returns false at the end. */
     step(): boolean;
     /** Goes back by a tick. Returns false at the start. */
     stepBack(): boolean;
@@ -610,7 +614,7 @@ export interface MatchOptions {
     tickRate?: number;
     /** Ticks that may be played with guessed inputs; 0, the default, is lockstep. Each peer chooses its own. */
     guess?: number;
-    /** Smallest delay of your own inputs in ticks. The match chooses a delay between the two, by the latency. */
+    /** Smallest delay of your own inputs in ticks. The delay follows the latency, between `delayMin` and `delayMax`. */
     delayMin?: number;
     /** Largest delay of your own inputs in ticks. */
     delayMax?: number;
@@ -622,7 +626,7 @@ export interface MatchOptions {
     history?: number;
     /** Final ticks whose inputs are kept for peers that come back. After a longer absence a peer downloads a state. */
     logTicks?: number;
-    /** Ticks from the cut, at which a change of the players takes effect, to the first own input of a peer that joins. */
+    /** Ticks from the cut, where a change of the players takes effect, to the first tick that a joining peer plays. */
     seatLead?: number;
     /** A peer that lags by at most this many ticks may have a seat. */
     seatWithin?: number;
@@ -636,16 +640,17 @@ export interface MatchOptions {
     key?: bigint;
     /** Random numbers that no one else knows: random by default. They protect from forged addresses. */
     secret?: readonly [bigint, bigint];
-    /** Has to be the same for all, or they are refused: versions, rules, setup. */
+    /** Versions, rules and setup, as bytes. They have to be the same for all peers; others are refused. */
     offer?: Uint8Array;
     /** Address of a peer that takes part. Without it, a match is opened. */
     contact?: Uint8Array;
 }
 /**
- * Where a match stands: `connecting` asks the contact; `joining` follows the match and asks for a seat; `watching` asks for
- * none; `waiting` has a seat in a match that has not begun; `paused` cannot hear a majority, which alone goes on; `dropped`
- * was left behind and asks for its seat again; `kicked` was removed for good; `leaving` tells the others; `left` and
- * `finished` still answer those that lack something; `closed` sends nothing more.
+ * Status of a peer. `connecting` asks the contact for entry; `joining` follows the match and asks for a seat;
+ * `watching` follows the match and asks for no seat; `waiting` has a seat in a match that has not begun; `paused`
+ * receives no packets from a majority, and only a majority can continue the match; `dropped` was left behind by the
+ * others and asks for its seat again; `kicked` was removed for good; `leaving` announces its departure; `left` and
+ * `finished` still answer peers that lack packets; `closed` sends nothing more.
  */
 export type MatchStatus =
     | "joining" | "watching" | "waiting" | "playing" | "paused" | "dropped" | "kicked" | "leaving" | "left" | "finished" | "closed"
@@ -653,19 +658,19 @@ export type MatchStatus =
 /**
  * Something that happened. Fields that a kind does not name are 0 or `""`.
  *
- * - `status`: the match stands somewhere else: `status`.
- * - `view`: who has which seat has changed.
+ * - `status`: the status of the match has changed to `status`.
+ * - `view`: the seats of the peers have changed.
  * - `seated`, `unseated`: from `tick` on, `peer` has or no longer has `seat`.
- * - `waiting`: play stands still for inputs of `peer`; `value` is 1 if its packets arrive, so that its game is slow.
+ * - `waiting`: play waits for inputs of `peer`; `value` is 1 if its packets arrive, which means that its game is slow.
  * - `resumed`: play goes on.
  * - `pause`: `peer` asks all to stop (`value` 1), or no longer does (0).
  * - `end`: the match will have `tick` ticks.
  * - `desync`: after `tick` ticks, `peer` has the hash `theirs` instead of `ours`.
- * - `conflict`: `peer` has issued two inputs for `tick`. It is not listened to any more.
- * - `tooFarBehind`: the others no longer keep the inputs that are needed; this peer has to join again.
+ * - `conflict`: `peer` has issued two different inputs for `tick`. Its inputs are no longer accepted.
+ * - `tooFarBehind`: the others no longer keep the inputs that this peer lacks; it has to join again.
  * - `refused`: the contact does not let this peer in, because of `reason`.
  * - `state`: the encoded `state` after `tick` ticks. The game has to load it before further requests are fulfilled.
- * - `badState`: a state that arrived is damaged; another one is asked for.
+ * - `badState`: a received state is damaged; another one is requested.
  */
 export interface MatchEvent {
     kind:
@@ -684,7 +689,7 @@ export interface MatchEvent {
     state?: Uint8Array;
 }
 /**
- * What the match asks of the game, in this order, before `advance` is called again:
+ * A request of the match to the game. Fulfil requests in their order, before you call `advance` again:
  *
  * - `save`: keep a copy of the state before `tick`.
  * - `load`: restore the copy of the state before `tick`.
@@ -711,7 +716,7 @@ export class Match extends Handle {
     ask(contact: Uint8Array): void;
     /** Takes a packet that arrived from an address. Packets of strangers are ignored. */
     receive(now: number, from: Uint8Array, packet: Uint8Array): void;
-    /** Lets time pass. Call it every few milliseconds, and after `receive`. */
+    /** Advances the time. Call it every few milliseconds, and after `receive`. */
     update(now: number): void;
     /** Whether it is time for the next tick, and the match can take its inputs. */
     isDue(now: number): boolean;
@@ -727,12 +732,12 @@ export class Match extends Handle {
     nextEvent(): MatchEvent | undefined;
     /** Whether a peer that joins needs a state: answer with `offerState`. */
     readonly wantsState: boolean;
-    /** Offers the encoded state after `tick` final ticks to those that join. */
+    /** Offers the encoded state after `tick` final ticks to peers that join. */
     offerState(tick: number, state: Uint8Array): void;
     readonly status: MatchStatus;
     /** Numbers of ticks: played, final for the match, and played with final inputs here. */
     ticks(): { played: number; final: number; confirmed: number };
-    /** The final inputs of all seats for a tick, while they are kept. */
+    /** The final inputs of all seats for a tick, or undefined if they are not kept. */
     finalInputs(tick: number): TickInputs | undefined;
     /** Seats that this peer plays. */
     readonly seats: number[];
@@ -749,7 +754,7 @@ export class Match extends Handle {
     /** Changes `guess` of the options. */
     setGuess(ticks: number): void;
 }
-/** A game that a `MatchDriver` plays, also for those who join. */
+/** A game that a `MatchDriver` plays. `encode` and `decode` are for peers that join. */
 export interface MatchGame<Saved = unknown> extends ReplayGame<Saved> {
     encode(): Uint8Array;
     decode(bytes: Uint8Array): void;
@@ -778,7 +783,7 @@ export function nativeOffer(options: {
 }): Uint8Array;
 /** The state of a native game whose `Save` is the `Snapshot` of its world: what `MatchGame.encode` returns. */
 export function encodeNativeState(world: World): Uint8Array;
-/** The world of such a state, from any source: what `MatchGame.decode` takes. */
+/** Decodes the world of such a state, which may come from any source: what `MatchGame.decode` takes. */
 export function decodeNativeState(bytes: Uint8Array): World;
 
 /** A member of a room of a relay (`crates/relay`): carries the packets of a match over a WebSocket. A lost connection is
@@ -786,8 +791,8 @@ export function decodeNativeState(bytes: Uint8Array): World;
 export class Relay {
     private constructor();
     /** Enters a room, which exists from then on. `url` is `wss://HOST` or `ws://HOST:PORT`, `code` 1 to 32 letters,
-     * digits and `-`. With the same `secret`, 16 random bytes, one has the same address again. `WebSocket` is needed
-     * where there is no global one, as in Node before 22. */
+     * digits and `-`. With the same `secret`, 16 random bytes, a member gets the same address again. `WebSocket` is
+     * needed where there is no global one, as in Node before 22. */
     static connect(url: string, code: string, options?: { secret?: Uint8Array; WebSocket?: unknown }): Promise<Relay>;
     readonly own: Uint8Array;
     /** Addresses of the others in the room, in the order in which they came. */

@@ -8,7 +8,7 @@ export const SEATS = 4;
 /** Data that all peers have to agree on. */
 export const offer = () => nativeOffer({ rules: RULES, seats: SEATS });
 
-/** Sets up a world, or a list of commands. */
+/** Adds the level to a world or to a list of commands. */
 export function setUp(edits) {
     edits.spawn({ type: "fixed", position: [0, -1], shapes: [box(8, 1, { friction: "0.8" })] });
     for (const x of [-4, 4, -6, 6]) {

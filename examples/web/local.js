@@ -10,7 +10,7 @@ addEventListener("keydown", ({ code }) => pressed.add(code));
 addEventListener("keyup", ({ code }) => pressed.delete(code));
 const pad = (seat) => Object.entries(KEYS[seat]).reduce((bits, [code, bit]) => bits | (pressed.has(code) ? bit : 0), 0);
 
-// A network in memory. Packets may be lost, and arrive late.
+// A network in memory, with loss and latency.
 const network = {
     peers: [],
     send(from, to, packet) {

@@ -4,7 +4,7 @@ import { Direct } from "./direct.js";
 import { Game, SEATS, offer } from "./game.js";
 import { Tape } from "./tape.js";
 
-/** Identity of this window for a room: a page that is closed and opened again, or reloaded, has its seat again. */
+/** Identity of this window for a room: a page that is reloaded gets its seat back. */
 function identity(code) {
     const name = `lockstep2d ${code.toUpperCase()}`;
     const stored = sessionStorage.getItem(name);
@@ -17,7 +17,8 @@ export class Player {
     desyncs = 0;
     #input;
 
-    /** Enters a room: opens a match, or joins the one that is there. `input` returns the bits of the pad. */
+    /** Enters a room. Opens a match if nobody is there, otherwise joins the match of the room. `input` returns the bits
+     * of the pad. */
     static async enter(url, code, input) {
         const { secret, key } = identity(code);
         const relay = await Relay.connect(url, code, { secret });
@@ -32,7 +33,7 @@ export class Player {
         this.direct = new Direct(relay);
         this.match = new Match({ seats: SEATS, guess: 8, delayMin: 1, key, offer: offer(), contact: relay.others[0] });
         this.driver = new MatchDriver(this.match, this.game, (to, packet) => this.direct.send(to, packet));
-        // A page in the background has few timers, but receives packets, so these play the match, too.
+        // Browsers slow down the timers of a page in the background, so received packets update the match as well.
         this.direct.onPacket = (from, packet) => {
             this.driver.receive(performance.now(), from, packet);
             this.update();

@@ -10,7 +10,7 @@ export class Tape {
     #parts = [];
     /** Number of recorded ticks. */
     ticks = 0;
-    /** Whether a tick is missing: a peer that joins late does not have the first ones. */
+    /** Whether a tick is missing, as for a peer that joins late, which does not have the first ticks. */
     broken = false;
 
     constructor() {
@@ -19,7 +19,7 @@ export class Tape {
         this.#recording = new Recording({ setup });
     }
 
-    /** Records the ticks of a match that are final. Call it more often than every few minutes. */
+    /** Records the final ticks of a match. The match keeps their inputs for some minutes: call it more often. */
     follow(match) {
         if (this.broken || match.status === "connecting") {
             return;

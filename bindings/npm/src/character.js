@@ -37,8 +37,8 @@ function readPlane(at) {
     return plane;
 }
 
-/** Moves a character for one tick at its velocity, among the shapes that a filter sees. Returns its new state, and the
- * surfaces that it has met. The game adds gravity to the velocity; the world does not change. */
+/** Moves a character for one tick at its velocity, among the shapes that the filter accepts. Returns its new state, and
+ * the surfaces that it has met. The game adds gravity to the velocity; the world does not change. */
 export function moveCharacter(world, mover, state, filter = {}) {
     const [abilities, pose, plane] = [sizeOf("mover"), sizeOf("mover_state"), sizeOf("mover_plane")];
     const before = abilities + 2 * pose + sizeOf("query_filter");

@@ -1,4 +1,4 @@
-// What both entries have: all but replays and matches.
+// The exports of both entry points: everything except replays and matches.
 export { Lockstep2dError } from "./error.js";
 export { Angle, Fx, degrees, fx, radians, turns } from "./fx.js";
 export { loaded } from "./library.js";
@@ -10,7 +10,7 @@ export { Random, angleOf, cos, cross, dot, hashBytes, hypot, normalize, rotate, 
 
 import { library } from "./library.js";
 
-/** Version of the engine's arithmetic: programs with different ones do not compute the same states. */
+/** Version of the engine's arithmetic: programs with different versions do not compute the same states. */
 export const semantics = () => library().ls2d_semantics();
 /** Number of objects that are not disposed. */
 export const objectCount = () => library().ls2d_object_count();

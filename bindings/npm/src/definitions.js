@@ -36,7 +36,7 @@ function lookup(table, name, what) {
 
 const optionalLookup = (table, name, what) => (name === undefined ? undefined : lookup(table, name, what));
 
-/** Fails for a misspelt option, which would otherwise be ignored. */
+/** Throws an error for a misspelt option, which would otherwise be ignored. */
 function onlyKnown(options, known, what) {
     const unknown = Object.keys(options).find((key) => !known.includes(key));
     if (unknown !== undefined) {
@@ -59,7 +59,7 @@ export const box = (halfWidth, halfHeight, options) => shape(C.RECTANGLE, { poin
 export const polygon = (points, options) => shape(C.POLYGON, { points, count: points.length }, options);
 /** The convex hull of 3 to 8 points in any order. */
 export const hull = (points, options) => shape(C.HULL, { points, count: points.length }, options);
-/** All points within a radius of a line. */
+/** A capsule: all points within a radius of a line. */
 export const capsule = (a, b, radius, options) => shape(C.CAPSULE, { points: [a, b], radius }, options);
 /** A line without area. */
 export const segment = (a, b, options) => shape(C.SEGMENT, { points: [a, b] }, options);
@@ -127,7 +127,7 @@ export function writeShape(at, { kind, geometry, options }) {
     flags(at, "shape_def", set, cleared & ~set);
 }
 
-/** The shapes of a body with chains as the bytes of their links. */
+/** Replaces the chains among the shapes of a body by their links, as bytes. */
 export function expand(shapes) {
     return shapes.flatMap((each) => (each.closed === undefined ? [each] : chainLinks(each)));
 }
@@ -180,8 +180,8 @@ export function writeBody(at, options) {
     flags(at, "body_def", set, cleared);
 }
 
-/** Writes a body and its shapes into memory. Returns the addresses, also that of a number of bytes after them, and the
- * number of shapes. */
+/** Writes a body and its shapes into memory. Returns their addresses, the number of shapes, and the address `rest` of
+ * `room` bytes after them. */
 export function writeBodyAndShapes(options, room = 0) {
     const shapes = expand(options.shapes ?? []);
     const [body, each] = [sizeOf("body_def"), sizeOf("shape_def")];
@@ -246,7 +246,7 @@ export function writeJoint(at, options) {
     flags(at, "joint_def", set, options.enabled === false ? C.JOINT_ENABLED : 0);
 }
 
-/** Writes the settings of a world over those that are there. */
+/** Writes the given settings of a world, and keeps all others. */
 export function writeConfig(at, options) {
     const known = Object.keys(struct("config").fields).map((name) => name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase()));
     const { sleeping, continuous, ...plain } = options;

@@ -61,7 +61,7 @@ export class Edits extends Handle {
         call("ls2d_set_shape", this.handle, id(shape, "a shape"), at);
     }
 
-    /** Adds a joint, and returns its handle. `anchor` and `axis` are in the world, and need a world. */
+    /** Adds a joint, and returns its handle. `anchor` and `axis` are in world coordinates, and need a world. */
     addJoint(options) {
         const size = sizeOf("joint_def");
         const at = scratch(48 + size);
@@ -211,7 +211,7 @@ export class Commands extends Edits {
         return takeBytes(u32(at));
     }
 
-    /** Replaces the list by an encoded one. */
+    /** Replaces the list by a list that is decoded from bytes. */
     fromBytes(bytes) {
         const at = give(bytes);
         call("ls2d_commands_decode", this.handle, at + 64, bytes.length);

@@ -5,7 +5,7 @@ const ONE = 1n << 32n;
 const MAX = (1n << 63n) - 1n;
 const MIN = -(1n << 63n);
 const NUMBER = /^([+-]?)(\d+)(?:\.(\d+))?$/;
-// Strings that were read, because the same few occur again and again.
+// Parsed strings, because the same few strings occur again and again.
 const CACHE = new Map();
 const CACHE_MAX = 4096;
 
@@ -31,7 +31,7 @@ function parse(text) {
     const [, sign, whole, fraction = ""] = parts;
     const scale = 10n ** BigInt(fraction.length);
     const digits = BigInt(whole + fraction) * ONE;
-    // To nearest, halves to even.
+    // Rounded to nearest, halves to even.
     let raw = digits / scale;
     const rest = 2n * (digits % scale);
     if (rest > scale || (rest === scale && (raw & 1n) === 1n)) {
@@ -135,7 +135,7 @@ export class Fx {
         return this.compare(other) === 0;
     }
 
-    /** The whole number below, as a JavaScript number. */
+    /** The number rounded down to an integer, as a JavaScript number. */
     floor() {
         return Number(this.raw >> 32n);
     }
@@ -158,7 +158,7 @@ export class Fx {
         return this.toString();
     }
 
-    // `a < b` with an Fx would compare floats, and `a + b` join texts.
+    // Otherwise `a < b` would compare floats, and `a + b` would concatenate strings.
     [Symbol.toPrimitive](hint) {
         if (hint === "string") {
             return this.toString();

@@ -41,8 +41,8 @@ async function start(modules, { simd, wasm } = {}) {
     variant = wasm ? "given" : chosen ? "simd" : "plain";
 }
 
-/** The function `init` for two inlined modules, with and without SIMD. Later calls wait for the first one and change
- * nothing. */
+/** Makes the function `init` for two inlined modules, with and without SIMD. Later calls of `init` wait for the first
+ * one and change nothing. */
 export const initializer = (modules) => (options) => {
     starting ??= start(modules, options).catch((error) => {
         starting = undefined;
@@ -63,7 +63,7 @@ export function library() {
     return exports;
 }
 
-// The memory of the module moves when it grows.
+// The views are made again when the memory of the module has grown, because the old buffer is detached then.
 function memory() {
     if (bytes === undefined || bytes.buffer !== exports.memory.buffer) {
         bytes = new Uint8Array(exports.memory.buffer);
@@ -72,7 +72,7 @@ function memory() {
     return bytes;
 }
 
-/** Address of memory of at least so many bytes, valid until the next call. */
+/** Address of memory of at least `size` bytes, valid until the next call. */
 export function scratch(size) {
     const address = library().ls2d_scratch(size) >>> 0;
     if (address === 0) {
@@ -126,7 +126,7 @@ export function writeHash(at, text) {
     view.setBigUint64(at, BigInt(`0x${text.slice(16)}`), true);
 }
 
-/** A handle of a body, shape or joint as the library takes it. */
+/** Converts a handle of a body, shape or joint to the type that the library takes. */
 export function id(value, what = "a body") {
     if (Number.isSafeInteger(value) && value >= 0) {
         return BigInt(value);
@@ -172,7 +172,7 @@ const STRIDE = { fx: 8, vec2: 16, uint64_t: 8, body: 8, uint8_t: 1 };
 
 const camel = (name) => name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
 
-/** Writes those fields of a struct that are given. */
+/** Writes the given fields of a struct. */
 export function write(name, at, values) {
     for (const [field, [offset, kind, count]] of Object.entries(STRUCTS[name].fields)) {
         const value = values[camel(field)];
@@ -204,7 +204,7 @@ export function read(name, at) {
     return result;
 }
 
-/** Number of a field of a struct, to be combined with others. */
+/** Address of a field of a struct. */
 export function fieldAt(name, at, field) {
     return at + STRUCTS[name].fields[field][0];
 }
@@ -247,8 +247,8 @@ export const text = (data) => DECODER.decode(data);
 
 let capacity = 64;
 
-/** Calls a function that writes a list of items of a size, with a buffer that is large enough, and returns its address and
- * the number of items. `before` bytes in front of the list are for other arguments, which `prepare` writes. */
+/** Calls `ask`, which writes a list of items of `size` bytes, with a buffer that is large enough. Returns the address of
+ * the list and the number of items. `before` bytes in front of it are for other arguments, which `prepare` writes. */
 export function list(size, before, ask, prepare = () => {}) {
     for (;;) {
         const at = scratch(8 + before + capacity * size);
@@ -268,7 +268,7 @@ export function list(size, before, ask, prepare = () => {}) {
 const registry =
     typeof FinalizationRegistry === "undefined" ? undefined : new FinalizationRegistry((handle) => exports.ls2d_free(handle));
 
-/** Something that the library keeps. `dispose` frees it at once; otherwise the garbage collector does, some time. */
+/** An object that the library stores. `dispose` frees it at once; otherwise the garbage collector frees it later. */
 export class Handle {
     #handle;
 

@@ -12,7 +12,7 @@ const REASONS = ["offer", "full", "taken", "notReady"];
 const ADDRESS_MAX = 32;
 const PACKET_MAX = 2048;
 
-// Milliseconds, as performance.now() has them, in microseconds.
+// Converts milliseconds, as performance.now() returns them, to microseconds.
 const micros = (now) => BigInt(Math.max(0, Math.floor(now * 1000)));
 
 function random(count) {
@@ -24,7 +24,7 @@ function identity({ peer, key, secret }) {
     return { peer: peer ?? Number(a & 0xffffffffn), key: key ?? b, secret: secret ?? [c, d] };
 }
 
-/** One participant of a match. `MatchDriver` does what this class asks for. */
+/** One participant of a match. `MatchDriver` fulfils its requests. */
 export class Match extends Handle {
     #inputs;
 
@@ -55,7 +55,7 @@ export class Match extends Handle {
         this.inputBytes = config.inputBytes ?? 1;
     }
 
-    /** Asks another participant, or the same one again. */
+    /** Asks another participant for entry, or the same one again. */
     ask(contact) {
         const at = give(contact);
         call("ls2d_match_ask", this.handle, at + 64, contact.length);
@@ -131,7 +131,7 @@ export class Match extends Handle {
         return u32(at) === 1;
     }
 
-    /** Offers the state after a number of final ticks to those who join. */
+    /** Offers the state after a number of final ticks to peers that join. */
     offerState(tick, state) {
         const at = give(state);
         call("ls2d_match_offer_state", this.handle, tick, at + 64, state.length);
@@ -143,14 +143,14 @@ export class Match extends Handle {
         return STATUS[u32(at)];
     }
 
-    /** Numbers of ticks: played, final, and both. */
+    /** Numbers of ticks: played, final for the match, and played with final inputs here. */
     ticks() {
         const at = scratch(16);
         call("ls2d_match_ticks", this.handle, at, at + 4, at + 8);
         return { played: u32(at), final: u32(at + 4), confirmed: u32(at + 8) };
     }
 
-    /** The final inputs of all seats for a tick, while they are kept, as `Recorder.record` takes them. */
+    /** The final inputs of all seats for a tick, as `Recorder.record` takes them, or undefined if they are not kept. */
     finalInputs(tick) {
         const at = scratch(16 + this.#inputs);
         if (!call("ls2d_match_final_inputs", this.handle, tick, at + 16, this.#inputs, at, at + 8)) {
@@ -202,9 +202,9 @@ const putAddress = (at, data) => {
 /** Plays a game in a match. The game has
  *
  * - `step(inputs, absent)`: advances by a tick with the inputs of all seats;
- * - `save()`, `load(saved)`: a copy of the whole state, and back; `drop(saved)`, if there is something to free;
- * - `hash()`: 32 hexadecimal digits of the whole state;
- * - `encode()`, `decode(bytes)`: the state as bytes, for those who join.
+ * - `save()`, `load(saved)`: copies the whole state, restores it; `drop(saved)`, if there is something to free;
+ * - `hash()`: the hash of the whole state, 32 hexadecimal digits;
+ * - `encode()`, `decode(bytes)`: converts the state to bytes and back, for peers that join.
  *
  * `send(to, packet)` carries packets. Call `update` every few milliseconds. */
 export class MatchDriver {
@@ -234,7 +234,8 @@ export class MatchDriver {
         this.#match.receive(now, from, packet);
     }
 
-    /** Passes the time, plays what is due with the inputs that `read(seats)` returns, and returns what happened. */
+    /** Advances the time, and plays the ticks that are due with the inputs that `read(seats)` returns. Returns the
+     * events. */
     update(now, readInputs) {
         this.#match.update(now);
         const events = [];
@@ -308,7 +309,7 @@ export class MatchDriver {
                 this.#match.reportHash(tick, this.#saved(tick).hash);
                 break;
             default:
-                // The newest state before the forgotten ones is kept for those who join.
+                // The newest of the states that are no longer needed is kept for peers that join.
                 this.#forgetBefore(tick);
         }
     }
@@ -326,7 +327,7 @@ export class MatchDriver {
         return found;
     }
 
-    // The newest state that is final, as bytes. The game is back where it was afterwards.
+    // Offers the newest final state, as bytes. Afterwards the game is in its old state again.
     #offer() {
         const { confirmed } = this.#match.ticks();
         const tick = Math.max(-1, ...[...this.#saves.keys()].filter((kept) => kept <= confirmed));

@@ -3,10 +3,10 @@ import { Lockstep2dError } from "./error.js";
 
 const ADDRESS = 8;
 const SECRET = 16;
-// Milliseconds before connecting again: the first time, and at most.
+// Pause in milliseconds before connecting again: the first one, and the longest one.
 const PAUSE_MIN = 250;
 const PAUSE_MAX = 8000;
-// Bytes that wait to be sent. Further packets are dropped, as in the buffer of a socket.
+// Largest number of bytes that wait to be sent. Further packets are dropped, as in the buffer of a socket.
 const BUFFERED_MAX = 512 * 1024;
 // Close codes after which connecting again is of no use: a wrong secret, and another connection of the same member.
 const FINAL = [4000, 4003];
@@ -32,7 +32,7 @@ export class Relay {
     onMembers = () => {};
 
     /** Enters a room, which exists from then on. `url` is `wss://HOST` or `ws://HOST:PORT`, `code` 1 to 32 letters,
-     * digits and `-`. With the same `secret`, 16 random bytes, one has the same address again. */
+     * digits and `-`. With the same `secret`, 16 random bytes, a member gets the same address again. */
     static async connect(url, code, { secret = crypto.getRandomValues(new Uint8Array(SECRET)), WebSocket = globalThis.WebSocket } = {}) {
         if (WebSocket === undefined) {
             throw new Lockstep2dError("VALUE", "there is no WebSocket here; pass one as option");
@@ -98,7 +98,7 @@ export class Relay {
         this.#pause = Math.min(2 * this.#pause, PAUSE_MAX);
     }
 
-    /** Sends a packet, or loses it. */
+    /** Sends a packet. It is dropped if there is no connection, or if too many bytes wait to be sent. */
     send(to, packet) {
         if (!this.isOpen || to.length !== ADDRESS || this.#socket.bufferedAmount > BUFFERED_MAX) {
             return;

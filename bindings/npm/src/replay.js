@@ -70,7 +70,7 @@ export class Recording extends Handle {
         return new World(new Adopted(u32(at)));
     }
 
-    /** Bytes that are finished, to be appended to a file. */
+    /** Returns the bytes that are finished, to be appended to a file. */
     take() {
         const at = scratch(8);
         call("ls2d_recording_take", this.handle, at);
@@ -191,7 +191,8 @@ export class Replay extends Handle {
         return { inputs: copy(at + 16, this.#inputs), absent: u64(at + 8) };
     }
 
-    /** Goes to a tick by the requests that follow, which begin in the state before the first tick. */
+    /** Begins to go to a tick; `nextRequest` returns the requests. At the first call the game has to be in the state
+     * before the first tick. */
     seek(tick) {
         call("ls2d_replay_seek", this.handle, BigInt(tick));
     }
@@ -206,12 +207,12 @@ export class Replay extends Handle {
         call("ls2d_replay_set_interval", this.handle, ticks);
     }
 
-    /** Adds a result of the game that was played, for the verdict. */
+    /** Adds a result of the played game. The verdict compares all of them with those of the file. */
     claim(name, number) {
         claim("ls2d_replay_claim", this.handle, name, number);
     }
 
-    /** Passes the hash of the state before the first tick, and after every tick; or answers `checksum`. */
+    /** Passes the hash of the state before the first tick and after every tick, or answers the request `checksum`. */
     check(hash) {
         const at = scratch(16);
         writeHash(at, hash);
@@ -230,8 +231,8 @@ export class Replay extends Handle {
 /** Goes to any tick of a replay with a game, which has
  *
  * - `step(inputs, absent)`: advances by a tick with the inputs of all players;
- * - `save()`, `load(saved)`: a copy of the whole state, and back; `drop(saved)`, if there is something to free;
- * - `hash()`: 32 hexadecimal digits of the whole state.
+ * - `save()`, `load(saved)`: copies the whole state, restores it; `drop(saved)`, if there is something to free;
+ * - `hash()`: the hash of the whole state, 32 hexadecimal digits.
  *
  * The game begins in the state before the first tick. */
 export class ReplayDriver {
@@ -259,7 +260,7 @@ export class ReplayDriver {
         }
     }
 
-    /** Goes forward by a tick, which is always played. Returns false at the end. */
+    /** Goes forward by a tick, which is always simulated, even if its state is saved. Returns false at the end. */
     step() {
         return this.#by(1);
     }
@@ -303,7 +304,7 @@ export class ReplayDriver {
     }
 }
 
-/** A replay of a world that goes to any of its ticks: tick t is the state after t ticks. */
+/** Goes to any tick of a replay of a world: tick t is the state after t ticks. */
 export class Timeline extends Handle {
     /** Throws an error with the code RECORD, and the `verdict`, if it cannot be played. */
     constructor(bytes, limits) {

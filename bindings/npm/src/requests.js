@@ -3,7 +3,7 @@ import { call, copy, read, scratch, sizeOf, u32 } from "./library.js";
 
 const REQUESTS = ["save", "load", "advance", "checksum", "forget"];
 
-/** The next request of a match or of a replay, whose inputs have a number of bytes. */
+/** The next request of a match or of a replay. `inputBytes` is the number of bytes of the inputs of a tick. */
 export function nextRequest(name, handle, inputBytes) {
     const size = sizeOf("request");
     const at = scratch(8 + size + inputBytes);

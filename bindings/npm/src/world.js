@@ -19,7 +19,7 @@ export class Snapshot extends Handle {
     }
 }
 
-/** A filter in front of other arguments: 0 stands for the defaults. */
+/** Writes a filter at an address, and returns the address; without a filter, 0, which stands for the defaults. */
 function filterAt(at, filter) {
     if (filter === undefined) {
         return 0;
@@ -48,7 +48,7 @@ export class World extends Edits {
         return u32(at);
     }
 
-    /** Makes a world from bytes of any source. */
+    /** Makes a world from bytes, which may come from any source. */
     static fromBytes(bytes) {
         const at = give(bytes);
         call("ls2d_world_decode", at + 64, bytes.length, at);
@@ -67,7 +67,7 @@ export class World extends Edits {
         return new World(new Adopted(u32(at)));
     }
 
-    /** Advances the world by one tick, or by some. */
+    /** Advances the world by one tick, or by several. */
     step(ticks = 1) {
         call("ls2d_world_steps", this.handle, ticks);
     }
@@ -202,7 +202,7 @@ export class World extends Edits {
         return this.#ids("ls2d_sensor_overlaps", [id(shape, "a shape")]);
     }
 
-    /** Body and definition of a shape as the library keeps it. */
+    /** Body and definition of a shape, as the library stores it. */
     shape(shape) {
         const at = scratch(8 + sizeOf("shape_def"));
         call("ls2d_shape_get", this.handle, id(shape, "a shape"), at + 8, at);
@@ -230,7 +230,7 @@ export class World extends Edits {
         return found ? { force: { x: fxAt(at), y: fxAt(at + 8) }, torque: fxAt(at + 16) } : undefined;
     }
 
-    /** For drawing: five floats for each enabled body, its handle, x, y, angle in radians, and 1 if it is awake. */
+    /** For drawing: five floats for each enabled body: its handle, x, y, angle in radians, and 1 if it is awake. */
     poses(target) {
         const ask = (rows, capacity, count) => library().ls2d_draw_poses(this.handle, rows, capacity, count);
         const { at, count } = list(8, 0, ask);
@@ -341,7 +341,7 @@ export class World extends Edits {
     }
 }
 
-/** A handle that the library has made. */
+/** A handle of an existing object, for the constructor of a world. */
 export class Adopted {
     constructor(handle) {
         this.handle = handle;

@@ -30,7 +30,7 @@ pub(super) fn limits_of(limits: &In<'_, RawLimits>) -> Outcome<Limits> {
 }
 
 api! {
-    /// Sets the default limits of a replay: a day of play, minutes of computing.
+    /// Sets the default limits of a replay: a day of play, hours of computing for a file made to be slow.
     fn ls2d_limits_init(limits: Out<'_, RawLimits>) {
         let mut limits = limits;
         limits.set(RawLimits::of(&Limits::default()))
