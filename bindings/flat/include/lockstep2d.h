@@ -3,7 +3,7 @@
  * Written by the tests of lockstep2d-flat; do not edit it.
  *
  * Functions return a status: LS2D_OK, LS2D_NONE if there is nothing to return, or an error, whose text ls2d_last_error
- * copies. Objects are handles, numbers that are never 0. A wrong or stale handle is an error, never undefined. ls2d_free
+ * copies. Objects are handles, numbers that are never 0. A wrong or stale handle is an error, never undefined behaviour. ls2d_free
  * frees objects of all kinds.
  *
  * Pointers are null or point to as many items as the function reads or writes, and nothing else uses that memory during
@@ -1355,7 +1355,7 @@ ls2d_status ls2d_world_decode(const uint8_t *data, size_t size, uint32_t *world)
 
 /* ---- Replays of worlds ---- */
 
-/* Sets the default limits of a replay: a day of play, minutes of computing. */
+/* Sets the default limits of a replay: a day of play, hours of computing for a file made to be slow. */
 ls2d_status ls2d_limits_init(ls2d_limits *limits);
 
 /* Starts a recording: a world that the commands of a list set up, with a checkpoint every `interval` ticks. A null

@@ -13,7 +13,7 @@ const OPENING: &str = "\
  * Written by the tests of lockstep2d-flat; do not edit it.
  *
  * Functions return a status: LS2D_OK, LS2D_NONE if there is nothing to return, or an error, whose text ls2d_last_error
- * copies. Objects are handles, numbers that are never 0. A wrong or stale handle is an error, never undefined. ls2d_free
+ * copies. Objects are handles, numbers that are never 0. A wrong or stale handle is an error, never undefined behaviour. ls2d_free
  * frees objects of all kinds.
  *
  * Pointers are null or point to as many items as the function reads or writes, and nothing else uses that memory during

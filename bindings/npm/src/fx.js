@@ -62,7 +62,7 @@ export function rawOf(value, what = "a number") {
         }
         throw new Lockstep2dError(
             "FLOAT",
-            `${what} is the float ${value}. Floats differ between machines once they are computed with, so that they cannot ` +
+            `${what} is the float ${value}. Computations with floats differ between machines, therefore floats cannot ` +
                 `enter the simulation: write an integer, a text such as "0.1", or fx("0.1").`,
         );
     }
