@@ -18,7 +18,6 @@ const FOLDERS: &[&str] = &["src", "crates/cli/src", "crates/render/src", "crates
 
 /// Public types without an example, and why.
 const WITHOUT: &[(&str, &str, &str)] = &[
-    ("body", "MassProperties", "opaque: only decoders of snapshots outside of this crate name it"),
     ("replay", "KeyframesFlaw", "printed as the reason in a `KeyframesError`, not handled"),
     ("report", "ReportFlaw", "printed as the reason in a `ReportError`, not handled"),
     ("crates/cli", "RandomError", "opaque: printed when the system has no random numbers"),
