@@ -1457,8 +1457,8 @@ ls2d_status ls2d_replay_verdict(uint32_t replay, const ls2d_hash *hash, ls2d_ver
 
 /* ---- Timelines of replays of games with rules of their own ---- */
 
-/* Goes to a tick: tick t is the state after t ticks. The game goes there by the requests that follow, which begin
- * in the state before the first tick. */
+/* Sets the tick to go to; tick t is the state after t ticks. `ls2d_replay_next_request` then returns what the game
+ * has to do. At the first request the game has to be in its first state. */
 ls2d_status ls2d_replay_seek(uint32_t replay, uint64_t tick);
 
 /* The next request on the way to a tick: `LS2D_REQUEST_SAVE`, `LS2D_REQUEST_LOAD`, `LS2D_REQUEST_ADVANCE` as in a

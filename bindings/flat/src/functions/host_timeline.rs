@@ -55,8 +55,8 @@ fn request(kind: u32, tick: u64, absent: u64) -> Outcome<RawRequest> {
 }
 
 api! {
-    /// Goes to a tick: tick t is the state after t ticks. The game goes there by the requests that follow, which begin
-    /// in the state before the first tick.
+    /// Sets the tick to go to; tick t is the state after t ticks. `ls2d_replay_next_request` then returns what the game
+    /// has to do. At the first request the game has to be in its first state.
     fn ls2d_replay_seek(replay: u32, tick: u64) {
         with(replay, |replay: &mut HostReplay| {
             if tick > replay.ticks {
