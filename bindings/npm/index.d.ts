@@ -597,7 +597,7 @@ export class ReplayDriver<Saved = unknown> {
     step(): boolean;
     /** Goes back by a tick. Returns false at the start. */
     stepBack(): boolean;
-    /** Frees the saved states. */
+    /** Frees the saved states. The driver cannot be used afterwards. */
     dispose(): void;
 }
 

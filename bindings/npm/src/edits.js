@@ -1,4 +1,5 @@
 // Edits of a world, executed at once or collected in a list of commands.
+import { Lockstep2dError } from "./error.js";
 import { bodyKind, writeBody, writeBodyAndShapes, writeJoint, writeShape } from "./definitions.js";
 import { bitsOf, rawOf, vectorOf } from "./fx.js";
 import { Handle, call, give, giveText, id, idAt, putRaw, scratch, sizeOf, takeBytes, u32, u64, write } from "./library.js";
@@ -22,7 +23,13 @@ export class Edits extends Handle {
         const room = places.length * (pose + 8);
         const { rest, body, shapes, count } = writeBodyAndShapes(options, room);
         const ids = rest + places.length * pose;
-        places.forEach(({ position, angle = 0 }, index) => write("pose", rest + index * pose, { position, angle }));
+        places.forEach(({ position, angle = 0 }, index) => {
+            // Fields that are undefined are not written, and the memory has what was there before.
+            if (position === undefined) {
+                throw new Lockstep2dError("VALUE", `place ${index} has no position`);
+            }
+            write("pose", rest + index * pose, { position, angle });
+        });
         putRaw(ids, -1n);
         call("ls2d_spawn_each", this.handle, body, shapes, count, rest, places.length, ids, places.length);
         return this.#allAdded(ids, places.length);
@@ -80,8 +87,16 @@ export class Edits extends Handle {
         const size = sizeOf("joint_def");
         const at = scratch(size + 24 * pairs.length);
         const ids = at + size + 16 * pairs.length;
+        if (options.anchor !== undefined) {
+            throw new Lockstep2dError("VALUE", "joints of `addJointEach` have `anchorA` and `anchorB`, and no `anchor`");
+        }
         writeJoint(at, options);
-        pairs.flat().forEach((body, index) => putRaw(at + size + 8 * index, id(body)));
+        pairs.forEach((pair, index) => {
+            if (pair.length !== 2) {
+                throw new Lockstep2dError("VALUE", `pair ${index} has ${pair.length} bodies`);
+            }
+            pair.forEach((body, end) => putRaw(at + size + 16 * index + 8 * end, id(body)));
+        });
         putRaw(ids, -1n);
         call("ls2d_add_joint_each", this.handle, at, at + size, 2 * pairs.length, ids, pairs.length);
         return this.#allAdded(ids, pairs.length);

@@ -270,7 +270,7 @@ export class ReplayDriver {
         return this.#by(-1);
     }
 
-    /** Frees the saved states. */
+    /** Frees the saved states. The driver cannot be used afterwards. */
     dispose() {
         this.#saves.forEach((saved) => this.#game.drop?.(saved));
         this.#saves.clear();

@@ -143,6 +143,11 @@ test("bodies and joints with one definition are added together, or none", () => 
     assert.throws(() => world.addJointEach({ type: "revolute" }, [[bodies[0], bodies[1]], [bodies[2], bodies[2]]]), { name: "Lockstep2dError" });
     assert.deepEqual([world.counts().bodies, world.counts().joints], [300, 299]);
     assert.deepEqual([world.spawnEach({}, []), world.addJointEach({ type: "revolute" }, [])], [[], []]);
+    const wrong = [[bodies[0], bodies[1], bodies[2]], [bodies[3]]];
+    assert.throws(() => world.addJointEach({ type: "revolute" }, wrong), { code: "VALUE" });
+    assert.throws(() => world.addJointEach({ type: "revolute", anchor: [0, 0] }, pairs), { code: "VALUE" });
+    assert.throws(() => world.spawnEach({}, [{ position: [0, 0] }, { angle: 0 }]), { code: "VALUE" });
+    assert.deepEqual([world.counts().bodies, world.counts().joints], [300, 299]);
     const commands = new L.Commands();
     assert.equal(commands.spawnEach({}, places), undefined);
     assert.equal(commands.addJointEach({ type: "revolute" }, pairs), undefined);

@@ -26,9 +26,13 @@ fn edit(target: u32, command: Command) -> Outcome<Option<world::Outcome>> {
     })
 }
 
-/// Checks that there is room for all handles before anything is added.
+/// Checks, before anything is added, that all handles can be written.
 fn check_room<T: Plain>(ids: &Out<'_, T>, capacity: usize, needed: usize) -> Outcome {
-    if ids.is_null() || needed <= capacity {
+    if ids.is_null() {
+        return Ok(());
+    }
+    ids.check()?;
+    if needed <= capacity {
         return Ok(());
     }
     Err(Failure::new(Status::Buffer, format!("a buffer of {capacity} items, {needed} are needed")))

@@ -8,7 +8,7 @@ use lockstep2d::lockstep::Game;
 use lockstep2d::replay::{Flaw, Limits, Mismatch, Part, Reader, Trailer, Verdict, checkpoint_hash};
 
 use super::host_recorder::{HostGame, HostSetup, are_possible, claim};
-use super::replay::limits_of;
+use super::replay::{limits_of, set_opened};
 use crate::border::{In, Out};
 use crate::describe::api;
 use crate::numbers::RawHash;
@@ -215,13 +215,7 @@ api! {
         let (mut replay, mut verdict) = (replay, verdict);
         replay.set(0)?;
         let limits = limits_of(&limits)?;
-        match HostReplay::open(data.slice(size)?, &limits) {
-            Ok(opened) => replay.set(table::add(opened)?),
-            Err(found) => {
-                verdict.set_if_wanted(RawVerdict::of(&found))?;
-                Err(Failure::new(Status::Record, found.to_string()))
-            }
-        }
+        set_opened(HostReplay::open(data.slice(size)?, &limits), &mut replay, &mut verdict)
     }
 
     /// Name of the rules as bytes. The other figures of the header are written where a pointer is not null.

@@ -2,14 +2,14 @@
 //! verify`.
 
 use lockstep2d::lockstep::{Sandbox, SandboxSetup};
-use lockstep2d::replay::{self, Limits, Recording};
+use lockstep2d::replay::{self, Limits, Recording, Verdict};
 use lockstep2d::world::{Config, World};
 
 use crate::border::{In, Out};
 use crate::describe::api;
 use crate::records::{RawConfig, RawLimits, RawVerdict};
 use crate::status::{Failure, Outcome, Status, note};
-use crate::table::{self, Bytes, Commands, with, with_two};
+use crate::table::{self, Bytes, Commands, Kind, with, with_two};
 
 /// A recording until it is finished.
 pub(crate) struct SandboxRecorder(Option<Recording<Sandbox>>);
@@ -27,6 +27,21 @@ pub(super) fn finished() -> Failure {
 /// The limits that a pointer refers to; the default limits for a null pointer.
 pub(super) fn limits_of(limits: &In<'_, RawLimits>) -> Outcome<Limits> {
     if limits.is_null() { Ok(Limits::default()) } else { limits.get()?.limits() }
+}
+
+/// Returns the handle of a replay that was opened, or the verdict on a file that cannot be played.
+pub(super) fn set_opened<T: Kind>(
+    opened: Result<T, Verdict>,
+    handle: &mut Out<'_, u32>,
+    verdict: &mut Out<'_, RawVerdict>,
+) -> Outcome {
+    match opened {
+        Ok(opened) => handle.set(table::add(opened)?),
+        Err(found) => {
+            verdict.set_if_wanted(RawVerdict::of(&found))?;
+            Err(Failure::new(Status::Record, found.to_string()))
+        }
+    }
 }
 
 api! {

@@ -1,10 +1,10 @@
 //! Replays of worlds that go to any tick, forwards and backwards.
 
 use lockstep2d::lockstep::Sandbox;
-use lockstep2d::replay::{SeekError, Step, Timeline, TimelineOptions, Verdict};
+use lockstep2d::replay::{SeekError, Step, Timeline, TimelineOptions};
 use self_cell::self_cell;
 
-use super::replay::limits_of;
+use super::replay::{limits_of, set_opened};
 use crate::border::{In, Out};
 use crate::describe::api;
 use crate::records::{RawLimits, RawVerdict};
@@ -20,10 +20,6 @@ self_cell! {
         #[not_covariant]
         dependent: Seekable,
     }
-}
-
-fn refused(verdict: &Verdict) -> Failure {
-    Failure::new(Status::Record, verdict.to_string())
 }
 
 fn failed(error: &SeekError) -> Failure {
@@ -61,13 +57,8 @@ api! {
         let limits = limits_of(&limits)?;
         let file = data.slice(size)?.to_vec();
         let options = TimelineOptions::default();
-        match SandboxTimeline::try_new(file, |file| Seekable::open(file, &options, &limits)) {
-            Ok(opened) => timeline.set(table::add(opened)?),
-            Err(why) => {
-                verdict.set_if_wanted(RawVerdict::of(&why))?;
-                Err(refused(&why))
-            }
-        }
+        let opened = SandboxTimeline::try_new(file, |file| Seekable::open(file, &options, &limits));
+        set_opened(opened, &mut timeline, &mut verdict)
     }
 
     /// The current tick, and the number of ticks. Null pointers are not written.
