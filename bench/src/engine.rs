@@ -115,8 +115,8 @@ pub trait Builder {
     /// The engine's name.
     const NAME: &str;
 
-    /// Creates a body with its shapes at a place, under the id that lockstep2d gave it.
-    fn spawn(&mut self, id: BodyId, body: &BodyDef, shapes: &[ShapeDef], place: BodyPose) -> Result<()>;
+    /// Creates a body with its shapes at a pose, under the id that lockstep2d gave it.
+    fn spawn(&mut self, id: BodyId, body: &BodyDef, shapes: &[ShapeDef], pose: BodyPose) -> Result<()>;
 
     /// Creates a joint between two bodies, A first.
     fn join(&mut self, joint: &JointDef, bodies: (BodyId, BodyId)) -> Result<()>;
@@ -137,8 +137,8 @@ pub fn build<B: Builder>(builder: &mut B, event: &Event) -> Result<()> {
         (Command::Spawn { body, shapes }, Outcome::Body(id)) => {
             builder.spawn(*id, body, shapes, BodyPose { position: body.position, angle: body.angle })
         }
-        (Command::SpawnEach { body, shapes, places }, Outcome::Bodies(ids)) => {
-            ids.iter().zip(places).try_for_each(|(id, place)| builder.spawn(*id, body, shapes, *place))
+        (Command::SpawnEach { body, shapes, poses }, Outcome::Bodies(ids)) => {
+            ids.iter().zip(poses).try_for_each(|(id, pose)| builder.spawn(*id, body, shapes, *pose))
         }
         (Command::AddJoint { joint }, _) => builder.join(joint, joint.bodies()),
         (Command::AddJointEach { joint, ends }, _) => {

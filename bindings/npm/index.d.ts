@@ -258,7 +258,7 @@ declare class Handle {
 }
 
 /** Where to add a body of `spawnEach`. */
-export interface Place {
+export interface BodyPose {
     position: Vec;
     /** No rotation by default. */
     angle?: Rotation;
@@ -299,7 +299,7 @@ declare class Edits extends Handle {
 export class Commands extends Edits {
     constructor();
     spawn(options: BodyOptions): undefined;
-    spawnEach(options: Omit<BodyOptions, "position" | "angle">, places: Place[]): undefined;
+    spawnEach(options: Omit<BodyOptions, "position" | "angle">, poses: BodyPose[]): undefined;
     addShape(body: BodyId, shape: ShapeDef): undefined;
     addJoint(options: JointOptions): undefined;
     addJointEach(options: Omit<JointOptions, "a" | "b" | "anchor" | "axis">, pairs: [BodyId, BodyId][]): undefined;
@@ -377,9 +377,9 @@ export class World extends Edits {
     toBytes(): Uint8Array;
     clone(): World;
     spawn(options: BodyOptions): BodyId;
-    /** Adds a body with the same definition at each place, or none if one of them is refused. A recording stores the
+    /** Adds a body with the same definition at each pose, or none if one of them is refused. A recording stores the
      * definition once. */
-    spawnEach(options: Omit<BodyOptions, "position" | "angle">, places: Place[]): BodyId[];
+    spawnEach(options: Omit<BodyOptions, "position" | "angle">, poses: BodyPose[]): BodyId[];
     addShape(body: BodyId, shape: ShapeDef): ShapeId;
     addJoint(options: JointOptions): JointId;
     /** Adds a joint with the same definition between each pair of bodies, or none if one of them is refused. */

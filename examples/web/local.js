@@ -1,7 +1,7 @@
 import { Match, MatchDriver, init, loaded, verifyReplay } from "lockstep2d";
 import { draw } from "./draw.js";
 import { Game, SEATS, offer } from "./game.js";
-import { Tape } from "./tape.js";
+import { MatchRecording } from "./recording.js";
 
 const element = (id) => document.getElementById(id);
 const KEYS = [{ KeyA: 1, KeyD: 2, KeyW: 4 }, { ArrowLeft: 1, ArrowRight: 2, ArrowUp: 4 }];
@@ -53,10 +53,10 @@ const verify = (bytes) => verifyReplay(bytes).text;
 await init();
 const peers = [new Peer(0, "left"), new Peer(1, "right")];
 network.peers = peers;
-let tape = new Tape();
+let recording = new MatchRecording();
 setInterval(() => {
     peers.forEach((peer) => peer.update());
-    tape.follow(peers[0].driver.match);
+    recording.follow(peers[0].driver.match);
 }, 4);
 const frame = () => {
     peers.forEach((peer) => peer.draw());
@@ -65,8 +65,8 @@ const frame = () => {
 requestAnimationFrame(frame);
 
 function save() {
-    const bytes = tape.finish();
-    tape = new Tape();
+    const bytes = recording.finish();
+    recording = new MatchRecording();
     return bytes;
 }
 element("save").addEventListener("click", () => {

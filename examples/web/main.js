@@ -38,7 +38,7 @@ function frame() {
 
 function save() {
     const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([player.tape.finish()]));
+    link.href = URL.createObjectURL(new Blob([player.recording.finish()]));
     link.download = "push.replay";
     link.click();
 }
@@ -64,5 +64,5 @@ globalThis.example = {
     direct: () => player.direct.enable(),
     hash: () => player.game.hash(),
     module: () => loaded(),
-    replay: () => [...player.tape.finish()],
+    replay: () => [...player.recording.finish()],
 };

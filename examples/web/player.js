@@ -2,7 +2,7 @@
 import { Match, MatchDriver, Relay } from "lockstep2d";
 import { Direct } from "./direct.js";
 import { Game, SEATS, offer } from "./game.js";
-import { Tape } from "./tape.js";
+import { MatchRecording } from "./recording.js";
 
 /** Identity of this window for a room: a page that is reloaded gets its seat back. */
 function identity(code) {
@@ -29,7 +29,7 @@ export class Player {
         this.#input = input;
         this.relay = relay;
         this.game = new Game();
-        this.tape = new Tape();
+        this.recording = new MatchRecording();
         this.direct = new Direct(relay);
         this.match = new Match({ seats: SEATS, guess: 8, delayMin: 1, key, offer: offer(), contact: relay.others[0] });
         this.driver = new MatchDriver(this.match, this.game, (to, packet) => this.direct.send(to, packet));
@@ -49,7 +49,7 @@ export class Player {
         const input = (seats) => Uint8Array.from(seats, () => this.#input());
         const events = this.driver.update(performance.now(), input);
         this.desyncs += events.filter(({ kind }) => kind === "desync").length;
-        this.tape.follow(this.match);
+        this.recording.follow(this.match);
         if (this.match.status === "closed") {
             this.close();
         }

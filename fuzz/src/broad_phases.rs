@@ -104,7 +104,7 @@ impl Crowd {
                 }
                 1 => self.each(world, 4, &mut commands, |_, body| Command::Despawn { body }),
                 2 | 3 => self.each(world, 3, &mut commands, |crowd, body| {
-                    let BodyPose { position, angle } = crowd.place();
+                    let BodyPose { position, angle } = crowd.pose();
                     Command::SetTransform { body, position, angle }
                 }),
                 4 => self.each(world, 2, &mut commands, |crowd, body| {
@@ -154,11 +154,11 @@ impl Crowd {
         Command::SpawnEach {
             body,
             shapes: vec![self.shape],
-            places: (0..count).map(|_| self.place()).collect(),
+            poses: (0..count).map(|_| self.pose()).collect(),
         }
     }
 
-    fn place(&mut self) -> BodyPose {
+    fn pose(&mut self) -> BodyPose {
         let reach = self.reach;
         let mut position = Vec2::new(self.rng.range(-reach, reach), self.rng.range(-reach, reach));
         if self.rng.chance(1, 8) {

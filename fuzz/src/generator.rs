@@ -294,12 +294,12 @@ impl Generator {
 
     fn spawned_each(&self, source: &mut Source<'_>) -> Command {
         let (body, shapes) = (self.body_def(source), Self::shapes_of_a_body(source));
-        let place = |source: &mut Source<'_>| {
+        let pose = |source: &mut Source<'_>| {
             let position = if source.one_in(16) { source.mostly_vec(0, 0) } else { self.near(source, 3000) };
             BodyPose { position, angle: source.angle() }
         };
-        let places = (0..source.below(8)).map(|_| place(source)).collect();
-        Command::SpawnEach { body, shapes, places }
+        let poses = (0..source.below(8)).map(|_| pose(source)).collect();
+        Command::SpawnEach { body, shapes, poses }
     }
 
     fn joint_def(&mut self, source: &mut Source<'_>, world: &World) -> JointDef {

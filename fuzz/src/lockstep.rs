@@ -59,28 +59,28 @@ enum Disturbance {
 }
 
 /// All variants except that of the plain world.
-const WAYS: [Variant; 8] = {
+const VARIANTS: [Variant; 8] = {
     use BroadPhaseKind::{BruteForce, SweepAndPrune, Tree};
     use Disturbance::{ClearedScratch, None, ThroughBytes};
-    const fn way(broad_phase: BroadPhaseKind, disturbance: Disturbance) -> Variant {
+    const fn variant(broad_phase: BroadPhaseKind, disturbance: Disturbance) -> Variant {
         Variant { broad_phase, disturbance }
     }
     [
-        way(Tree, ThroughBytes),
-        way(Tree, ClearedScratch),
-        way(SweepAndPrune, None),
-        way(BruteForce, None),
-        way(SweepAndPrune, ThroughBytes),
-        way(BruteForce, ThroughBytes),
-        way(SweepAndPrune, ClearedScratch),
-        way(BruteForce, ClearedScratch),
+        variant(Tree, ThroughBytes),
+        variant(Tree, ClearedScratch),
+        variant(SweepAndPrune, None),
+        variant(BruteForce, None),
+        variant(SweepAndPrune, ThroughBytes),
+        variant(BruteForce, ThroughBytes),
+        variant(SweepAndPrune, ClearedScratch),
+        variant(BruteForce, ClearedScratch),
     ]
 };
 
 /// The two worlds that must stay equal.
 struct Variants {
     plain: World,
-    way: Variant,
+    variant: Variant,
     other: World,
 }
 
@@ -115,8 +115,8 @@ fn play(bytes: &[u8], mut meddle: impl FnMut(&mut Variants)) -> Seen {
     let mut source = Source::new(bytes);
     let config = generator::config(&mut source);
     let plain = World::new(config).unwrap_or_default();
-    let way = source.pick(&WAYS);
-    let mut variants = Variants { other: way.begin(&plain), way, plain };
+    let variant = source.pick(&VARIANTS);
+    let mut variants = Variants { other: variant.begin(&plain), variant, plain };
     let mut generator = Generator::new(&mut source);
     let ticks = source.pick(&[60, 60, 60, 60, 60, 60, 60, 120]);
     let rollback_at = source.below(ticks);
@@ -133,7 +133,7 @@ fn play(bytes: &[u8], mut meddle: impl FnMut(&mut Variants)) -> Seen {
         if tick == rollback_at {
             rollback = Some(Rollback { save: variants.plain.save(), ticks: Vec::new() });
         }
-        variants.way.perturb(&mut source, &mut variants.other);
+        variants.variant.perturb(&mut source, &mut variants.other);
         variants.execute(&commands, &mut seen);
         meddle(&mut variants);
         let hash = variants.step();
@@ -200,7 +200,7 @@ impl Variant {
 
 impl Variants {
     fn execute(&mut self, commands: &[Command], seen: &mut Seen) {
-        let Variants { plain, way, other } = self;
+        let Variants { plain, variant, other } = self;
         for command in commands {
             let outcome = plain.execute(command);
             match &outcome {
@@ -215,7 +215,7 @@ impl Variants {
                     );
                 }
             }
-            assert_eq!(other.execute(command), outcome, "{way:?}: {command:?}");
+            assert_eq!(other.execute(command), outcome, "{variant:?}: {command:?}");
         }
         if !commands.is_empty() {
             check(plain, &commands);
@@ -223,13 +223,13 @@ impl Variants {
     }
 
     fn step(&mut self) -> StateHash {
-        let Variants { plain, way, other } = self;
+        let Variants { plain, variant, other } = self;
         plain.step();
         other.step();
         let digest = plain.digest();
         let differing = other.digest().differing(&digest);
-        assert!(differing.is_empty(), "{way:?}, tick {}: {differing:?}", plain.tick());
-        assert_eq!(other.events(), plain.events(), "{way:?}, tick {}: events", plain.tick());
+        assert!(differing.is_empty(), "{variant:?}, tick {}: {differing:?}", plain.tick());
+        assert_eq!(other.events(), plain.events(), "{variant:?}, tick {}: events", plain.tick());
         if plain.tick().is_multiple_of(CHECK_INTERVAL) {
             check(plain, &"a tick");
         }

@@ -279,12 +279,12 @@ fn change(source: &mut Source<'_>, world: &World, body: BodyId, commands: &mut V
         },
         _ => {
             let count = 1 + source.below(4);
-            let place = |index: usize| BodyPose {
+            let pose = |index: usize| BodyPose {
                 position: here + Vec2::new(Fx::from_num(index), fx!(2)),
                 angle: lockstep2d::math::Angle::ZERO,
             };
-            let places = (0..count).map(place).collect();
-            Command::SpawnEach { body: BodyDef::dynamic(), shapes: vec![ordinary_shape(source)], places }
+            let poses = (0..count).map(pose).collect();
+            Command::SpawnEach { body: BodyDef::dynamic(), shapes: vec![ordinary_shape(source)], poses }
         }
     });
 }

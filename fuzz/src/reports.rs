@@ -45,7 +45,7 @@ struct Phases {
 struct Flip {
     tick: u64,
     body: usize,
-    motion: BodyField,
+    field: BodyField,
     bit: u32,
 }
 
@@ -64,15 +64,15 @@ pub fn run(bytes: &[u8]) -> &'static str {
     let mut source = Source::new(bytes);
     let way = source.below(8);
     let limits = verdicts::limits();
-    let course = Trajectory::record(&mut source);
+    let trajectory = Trajectory::record(&mut source);
     let flip = Flip {
-        tick: source.below(course.inputs.len()) as u64,
+        tick: source.below(trajectory.inputs.len()) as u64,
         body: source.below(3),
-        motion: source.pick(&BodyField::ALL),
+        field: source.pick(&BodyField::ALL),
         bit: source.below(32) as u32,
     };
-    let right = Evidence::Report(Box::new(course.report(&mut source, None)));
-    let report = course.report(&mut source, (way != 0).then_some(flip));
+    let right = Evidence::Report(Box::new(trajectory.report(&mut source, None)));
+    let report = trajectory.report(&mut source, (way != 0).then_some(flip));
     let original = report.to_bytes();
     let mut file = original.clone();
     match way {
@@ -157,7 +157,7 @@ impl Trajectory {
                 && let world = game.world_mut()
                 && let Some(body) = { world.bodies().map(|(id, _)| id).nth(flip.body) }
             {
-                let _ = world.flip_bit(body, flip.motion, flip.bit);
+                let _ = world.flip_bit(body, flip.field, flip.bit);
             }
             let inputs =
                 recorder.record(std::slice::from_ref(commands)).expect("inputs that can be recorded");

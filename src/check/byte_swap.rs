@@ -22,7 +22,7 @@ const INTERVAL: u64 = 16;
 const FUTURE: usize = 48;
 /// Maximum number of saves of other ticks to take bytes from.
 const DONORS_MAX: usize = 6;
-/// Maximum number of exchanges tried with one save.
+/// Maximum number of swaps tried with one save.
 const TRIES_MAX: usize = 32;
 
 /// Saves of some ticks, and the inputs that followed.
@@ -88,7 +88,7 @@ impl<G: Game> ByteSwaps<G> {
         let mut byte_swaps: Vec<_> = byte_swaps.filter(|(range, _)| !overlap(range, &world)).collect();
         byte_swaps.sort_by(|a, b| (a.0.start, a.0.end, &a.1).cmp(&(b.0.start, b.0.end, &b.1)));
         byte_swaps.dedup();
-        // If there are more exchanges than are tried, each save starts at a different one.
+        // If there are more swaps than are tried, each save starts at a different one.
         let turn = usize::try_from(moment.tick).unwrap_or(0).wrapping_mul(7) % byte_swaps.len().max(1);
         byte_swaps.rotate_left(turn);
         for (range, replacement) in byte_swaps.into_iter().take(TRIES_MAX) {
@@ -163,7 +163,7 @@ fn overlap(a: &Range<usize>, b: &Range<usize>) -> bool {
     a.start < b.end && b.start < a.end
 }
 
-/// The possible exchanges with a save of the same length: every single byte that differs and every run of such bytes.
+/// The possible swaps with a save of the same length: every single byte that differs and every run of such bytes.
 fn byte_swaps(bytes: &[u8], donor: &[u8]) -> Vec<(Range<usize>, Vec<u8>)> {
     let mut found = Vec::new();
     if bytes.len() != donor.len() {
@@ -187,7 +187,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bytes_and_runs_are_exchanged() {
+    fn bytes_and_runs_are_swapped() {
         let found = byte_swaps(&[1, 2, 3, 4, 5, 6], &[1, 9, 8, 4, 5, 7]);
         let expected: [(Range<usize>, &[u8]); 4] =
             [(1..2, &[9]), (2..3, &[8]), (1..3, &[9, 8]), (5..6, &[7])];

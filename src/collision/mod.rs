@@ -18,7 +18,7 @@ pub(crate) use narrow_phase::{
     collide_near, is_ghost, margin_for, may_meet,
 };
 pub(crate) use query::{
-    Place, Ring, SKIN, SKIN_TOLERANCE, ShapeHit, StartPolicy, Sweep, TimeOfImpact, cast_ray, cast_shape,
-    contains_point, distance, first_impact, first_overlap, goes_against, overlap, time_of_impact,
+    RelativePose, Ring, SKIN, SKIN_TOLERANCE, ShapeHit, StartPolicy, Sweep, TimeOfImpact, cast_ray,
+    cast_shape, contains_point, distance, first_impact, first_overlap, goes_against, overlap, time_of_impact,
 };
 pub(crate) use shape::{Fraction, Link, Outline, PosedShape, SupportShape, arm_of, to_grid};

@@ -63,13 +63,13 @@ impl fmt::Display for OrNothing<'_> {
 /// second list has are placed by their position in the second list.
 #[must_use]
 pub fn differences(a: &[Field], b: &[Field]) -> Vec<Difference> {
-    let (places_a, positions_b) = (places(a), places(b));
-    let in_a: BTreeSet<_> = places_a.iter().collect();
+    let (positions_a, positions_b) = (positions(a), positions(b));
+    let in_a: BTreeSet<_> = positions_a.iter().collect();
     let in_b: BTreeMap<_, usize> = positions_b.iter().zip(0..).collect();
     let mut found = Vec::new();
     let mut passed = 0;
-    for (field, place) in a.iter().zip(&places_a) {
-        let Some(&at) = in_b.get(place) else {
+    for (field, position) in a.iter().zip(&positions_a) {
+        let Some(&at) = in_b.get(position) else {
             found.push(Difference::new(field, Some(field), None));
             continue;
         };
@@ -86,24 +86,24 @@ pub fn differences(a: &[Field], b: &[Field]) -> Vec<Difference> {
 /// A path, and the number of earlier fields with the same path: a map may have two keys with the same text.
 type FieldPosition<'a> = (&'a str, u32);
 
-fn places(fields: &[Field]) -> Vec<FieldPosition<'_>> {
-    let mut places = Vec::with_capacity(fields.len());
+fn positions(fields: &[Field]) -> Vec<FieldPosition<'_>> {
+    let mut positions = Vec::with_capacity(fields.len());
     let mut seen: BTreeMap<&str, u32> = BTreeMap::new();
     for field in fields {
         let before = seen.entry(field.path()).or_default();
-        places.push((field.path(), *before));
+        positions.push((field.path(), *before));
         *before += 1;
     }
-    places
+    positions
 }
 
 /// Fields in a range of the second list that the first list does not have.
 fn only_in_b<'a>(
     b: &'a [Field],
-    places: &'a [FieldPosition<'a>],
+    positions: &'a [FieldPosition<'a>],
     in_a: &'a BTreeSet<&FieldPosition<'a>>,
     range: Range<usize>,
 ) -> impl Iterator<Item = Difference> + 'a {
-    let lacking = range.filter(|&at| !in_a.contains(&places[at]));
+    let lacking = range.filter(|&at| !in_a.contains(&positions[at]));
     lacking.map(|at| Difference::new(&b[at], None, Some(&b[at])))
 }

@@ -51,7 +51,7 @@ impl serde::ser::Error for InspectError {
 pub(super) struct Collector {
     fields: Vec<Field>,
     path: String,
-    thing: Option<(usize, usize)>,
+    subject: Option<(usize, usize)>,
     depth: u32,
     /// Type name of the current value. For display only: it decides how a number is written.
     kind: &'static str,
@@ -67,7 +67,7 @@ impl Collector {
     }
 
     pub(super) fn push(&mut self, value: Value) {
-        self.fields.push(Field { path: self.path.clone(), thing: self.thing, value });
+        self.fields.push(Field { path: self.path.clone(), subject: self.subject, value });
     }
 
     /// Adds a value at the current path.
@@ -95,11 +95,11 @@ impl Collector {
 
     /// Adds an entry of a map. The entries of the outermost map are the objects that a report refers to.
     pub(super) fn entry<T: Serialize + ?Sized>(&mut self, key: &str, value: &T) -> Result<(), InspectError> {
-        let (outer, section) = (self.thing, self.path.len());
+        let (outer, section) = (self.subject, self.path.len());
         let length = section + usize::from(section > 0) + key.len();
-        self.thing = outer.or(Some((length, section)));
+        self.subject = outer.or(Some((length, section)));
         let result = self.named(key, value);
-        self.thing = outer;
+        self.subject = outer;
         result
     }
 

@@ -164,7 +164,7 @@ fn a_field_knows_its_thing_and_its_section() {
     let inner = BTreeMap::from([("velocity".to_string(), Vec2::new(1, 2))]);
     let world = World { bodies: BTreeMap::from([("body 1v0".to_string(), inner)]), tick: [3] };
     let found = of(&(0u8, world));
-    let parts = |at: usize| (found[at].section(), found[at].thing(), found[at].name());
+    let parts = |at: usize| (found[at].section(), found[at].subject(), found[at].name());
     assert_eq!(parts(0), ("", None, "[0]"));
     assert_eq!(parts(1), ("[1].bodies", Some("[1].bodies.body 1v0"), "velocity.x"));
     assert_eq!(parts(3), ("", None, "[1].tick[0]"));

@@ -121,7 +121,7 @@ impl fmt::Display for Value {
 /// world.spawn(&BodyDef::dynamic(), &[])?;
 /// let fields = fields(&world.save()).expect("a world");
 /// // A custom inspector, which lists all fields of one body.
-/// let of_body = |field: &&Field| field.thing().is_some_and(|thing| thing.ends_with("body 0v0"));
+/// let of_body = |field: &&Field| field.subject().is_some_and(|subject| subject.ends_with("body 0v0"));
 /// let names: Vec<_> = fields.iter().filter(of_body).map(Field::name).collect();
 /// assert!(names.contains(&"velocity.x"), "{names:?}");
 /// # Ok::<(), lockstep2d::body::WorldError>(())
@@ -129,8 +129,8 @@ impl fmt::Display for Value {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
     pub(super) path: String,
-    /// Number of bytes of the path that name the enclosing object, and number of those that name its section.
-    pub(super) thing: Option<(usize, usize)>,
+    /// Lengths in bytes of two prefixes of the path: that of the enclosing object, and that of its section.
+    pub(super) subject: Option<(usize, usize)>,
     /// Value of the field.
     pub value: Value,
 }
@@ -144,15 +144,15 @@ impl Field {
 
     /// Path of the object that contains the field, such as `world.bodies.body 12v1`: an entry of the outermost map.
     #[must_use]
-    pub fn thing(&self) -> Option<&str> {
-        self.thing.map(|(end, _)| &self.path[..end])
+    pub fn subject(&self) -> Option<&str> {
+        self.subject.map(|(end, _)| &self.path[..end])
     }
 
     /// Section that contains the field, such as `world.bodies`: the path of the outermost map, or the first name if
     /// there is no map.
     #[must_use]
     pub fn section(&self) -> &str {
-        let end = match self.thing {
+        let end = match self.subject {
             Some((_, end)) => end,
             None => self.path.find(['.', '[']).unwrap_or(self.path.len()),
         };
@@ -162,7 +162,7 @@ impl Field {
     /// Name of the field within its object, such as `velocity.x`.
     #[must_use]
     pub fn name(&self) -> &str {
-        match self.thing {
+        match self.subject {
             Some((end, _)) => self.path[end..].trim_start_matches('.'),
             None => &self.path,
         }

@@ -135,7 +135,7 @@ impl core::error::Error for SetupError {}
 ///     fn world_mut(&mut self) -> Option<&mut World> { Some(&mut self.world) }
 /// }
 ///
-/// // In return: recording, verification, tools, matches, and a check of determinism.
+/// // This gives: recording, verification, tools, matches, and a check of determinism.
 /// use lockstep2d::check::{CheckOptions, check, random_inputs};
 /// let inputs = random_inputs::<Lift>(1, 30, &mut Rng::new(1));
 /// check::<Lift>(&(), &inputs, &CheckOptions::default())?;

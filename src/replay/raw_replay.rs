@@ -28,7 +28,7 @@ use crate::world::World;
 pub struct RawReplay<'a, G: Game> {
     game: G,
     limits: Limits,
-    place: ReplayPosition<'a>,
+    position: ReplayPosition<'a>,
     /// Bytes that `inputs` were decoded from.
     encoded: Option<&'a [u8]>,
     inputs: Vec<G::Input>,
@@ -61,9 +61,9 @@ impl<'a, G: Game> RawReplay<'a, G> {
         check_rules::<G>(inputs.reader().header())?;
         let (mut game, work) = start::<G>(inputs.reader().header(), limits)?;
         check_bodies(&mut game, limits)?;
-        let (limits, place) = (limits.clone(), ReplayPosition { inputs, tick: 0, work });
+        let (limits, position) = (limits.clone(), ReplayPosition { inputs, tick: 0, work });
         let length = ending.ticks;
-        Ok((RawReplay { game, limits, place, encoded: None, inputs: Vec::new(), length }, ending))
+        Ok((RawReplay { game, limits, position, encoded: None, inputs: Vec::new(), length }, ending))
     }
 
     /// The game at the current tick.
@@ -86,14 +86,14 @@ impl<'a, G: Game> RawReplay<'a, G> {
     /// Number of ticks played.
     #[must_use]
     pub fn tick(&self) -> u64 {
-        self.place.tick
+        self.position.tick
     }
 
     /// Work units of the setup and of all ticks played, as counted by [`Game::new_within`] and [`Game::work`], and by
     /// the world while it plays.
     #[must_use]
     pub fn work(&self) -> u64 {
-        self.place.work
+        self.position.work
     }
 
     /// The inputs of the last tick played; empty before the first tick.
@@ -122,12 +122,12 @@ impl<'a, G: Game> RawReplay<'a, G> {
 
     /// Reads the inputs of the next tick. The caller must then play or skip that tick.
     pub(crate) fn read_inputs(&mut self) -> Result<Step, Verdict> {
-        let Some(run) = self.place.inputs.next_tick()? else {
+        let Some(run) = self.position.inputs.next_tick()? else {
             return Ok(Step::Ended);
         };
         if self.encoded != Some(run.encoded) {
             let malformed = |_| Verdict::Malformed { offset: run.offset, flaw: Flaw::Inputs };
-            let players = self.place.inputs.reader().header().players;
+            let players = self.position.inputs.reader().header().players;
             self.inputs = decode_inputs(run.encoded, players).map_err(malformed)?;
             self.encoded = Some(run.encoded);
         }
@@ -143,7 +143,7 @@ impl<'a, G: Game> RawReplay<'a, G> {
     pub(crate) fn play_with<T>(&mut self, step: impl FnOnce(&mut G, &[G::Input]) -> T) -> Result<T, Verdict> {
         let work = self.game.work(&self.inputs);
         LimitKind::TickWork.check(work, self.limits.tick_work)?;
-        let before = self.place.work;
+        let before = self.position.work;
         LimitKind::TotalWork.check(before.saturating_add(work), self.limits.total_work)?;
         let room = (self.limits.tick_work - work).min(self.limits.total_work - before - work);
         if let Some(world) = self.game.world_mut() {
@@ -153,17 +153,17 @@ impl<'a, G: Game> RawReplay<'a, G> {
         // A world whose work budget is exhausted has a wrong state, so this check precedes any use of the state.
         let metered = self.game.world_mut().map_or(0, |world| world.metered_work());
         let work = work.saturating_add(metered);
-        self.place.work = before.saturating_add(work);
+        self.position.work = before.saturating_add(work);
         LimitKind::TickWork.check(work, self.limits.tick_work)?;
-        LimitKind::TotalWork.check(self.place.work, self.limits.total_work)?;
-        self.place.tick += 1;
+        LimitKind::TotalWork.check(self.position.work, self.limits.total_work)?;
+        self.position.tick += 1;
         check_bodies(&mut self.game, &self.limits)?;
         Ok(done)
     }
 
     /// Counts the tick whose inputs were read as played, for a tick that another game with the same state has played.
     pub(crate) fn skip(&mut self) {
-        self.place.tick += 1;
+        self.position.tick += 1;
     }
 
     /// Canonical bytes of the inputs that were read last.
@@ -178,19 +178,19 @@ impl<'a, G: Game> RawReplay<'a, G> {
 
     /// Decodes the setup that the game was started from.
     pub(crate) fn setup(&self) -> Result<G::Setup, Verdict> {
-        decode_setup::<G>(self.place.inputs.reader().header())
+        decode_setup::<G>(self.position.inputs.reader().header())
     }
 
     /// The current position in the file.
-    pub(super) fn place(&self) -> &ReplayPosition<'a> {
-        &self.place
+    pub(super) fn position(&self) -> &ReplayPosition<'a> {
+        &self.position
     }
 
     /// Restores a state and position of this raw replay or of another one of the same file. [`RawReplay::inputs`] is
     /// then empty.
-    pub(super) fn go(&mut self, save: &G::Save, place: ReplayPosition<'a>) {
+    pub(super) fn go(&mut self, save: &G::Save, position: ReplayPosition<'a>) {
         self.game.load(save);
-        self.place = place;
+        self.position = position;
         self.encoded = None;
         self.inputs.clear();
     }

@@ -87,7 +87,7 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
     /// its setup leads to another start state.
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, Verdict> {
         let (raw, ending) = RawReplay::<G>::open_to_end(file, limits)?;
-        let reader = raw.place().inputs.reader();
+        let reader = raw.position().inputs.reader();
         if checkpoint_hash(raw.game().state_hash(), reader.inputs_digest()) != reader.start() {
             return Err(Verdict::Diverged { last_equal: None, first_different: 0 });
         }
@@ -182,7 +182,7 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
         if self.agrees() {
             return Ok(Step::Ticked);
         }
-        let (tick, inputs) = (self.tick(), &self.raw.place().inputs);
+        let (tick, inputs) = (self.tick(), &self.raw.position().inputs);
         let block_ticks = inputs.finished_block().map_or(0, |block| u64::from(block.ticks));
         // All earlier blocks have been compared.
         Err(Verdict::Diverged { last_equal: Some(tick - block_ticks), first_different: tick })
@@ -190,19 +190,19 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
 
     /// Whether the state matches the checkpoint of this tick; true if the file has none at this tick.
     pub(super) fn agrees(&self) -> bool {
-        self.raw.place().inputs.finished_block().is_none_or(|block| {
+        self.raw.position().inputs.finished_block().is_none_or(|block| {
             checkpoint_hash(self.game().state_hash(), block.inputs_digest) == block.checkpoint
         })
     }
 
     /// The current position in the file.
-    pub(super) fn place(&self) -> &ReplayPosition<'a> {
-        self.raw.place()
+    pub(super) fn position(&self) -> &ReplayPosition<'a> {
+        self.raw.position()
     }
 
     /// Restores an earlier state and position.
-    pub(super) fn go(&mut self, save: &G::Save, place: ReplayPosition<'a>) {
-        self.raw.go(save, place);
+    pub(super) fn go(&mut self, save: &G::Save, position: ReplayPosition<'a>) {
+        self.raw.go(save, position);
         self.failed = None;
     }
 }

@@ -42,7 +42,7 @@ pub(super) fn subjects(differences: Vec<Difference>) -> Vec<Subject> {
     let mut places = BTreeMap::new();
     for difference in differences {
         let field = difference.field();
-        let path = field.thing().unwrap_or(field.section());
+        let path = field.subject().unwrap_or(field.section());
         let at = *places.entry(String::from(path)).or_insert(subjects.len());
         if at == subjects.len() {
             let section = field.section().into();
@@ -57,7 +57,7 @@ pub(super) fn subjects(differences: Vec<Difference>) -> Vec<Subject> {
 /// Difference of a body's motion, in units of the last bit; 0 for anything else.
 fn disturbance(subject: &Subject) -> u128 {
     let is_motion = |difference: &&Difference| {
-        BodyField::SPEEDS.iter().any(|motion| difference.field().name() == motion.name())
+        BodyField::SPEEDS.iter().any(|field| difference.field().name() == field.name())
     };
     let units = |difference: &Difference| both_bits(difference).map_or(0, |(a, b)| a.abs_diff(b));
     subject.differences.iter().filter(is_motion).map(units).sum()
@@ -102,11 +102,11 @@ pub(super) fn explain<G: Game>(
     let Some(culprit) = search(wrong, &mut game, candidates, work) else {
         return Ok(());
     };
-    let Candidate { path, motion, bit, when, .. } = culprit;
+    let Candidate { path, field, bit, when, .. } = culprit;
     if is_known {
         found.subjects.sort_by_key(|subject| subject.path != path);
         let first = &mut found.subjects[0].differences;
-        first.sort_by_key(|difference| difference.field().name() != motion.name());
+        first.sort_by_key(|difference| difference.field().name() != field.name());
     }
     // The state before and after the flip.
     game.load(&wrong.before);
@@ -114,13 +114,13 @@ pub(super) fn explain<G: Game>(
         game.step(&wrong.inputs);
     }
     let was = fields(&game.save())?;
-    flip(&mut game, &path, motion, bit);
+    flip(&mut game, &path, field, bit);
     let differences = differences(&was, &fields(&game.save())?);
     let (tick, stage) = match when {
         When::Before => (wrong.tick, Stage::BeforeStep),
         When::After => (wrong.tick + 1, Stage::AfterStep),
     };
-    let path = differences.first().and_then(|first| first.field().thing()).map_or(path, String::from);
+    let path = differences.first().and_then(|first| first.field().subject()).map_or(path, String::from);
     found.stage.get_or_insert(stage);
     found.explanation = Some(Explanation { tick, path, bit, differences });
     Ok(())
@@ -136,7 +136,7 @@ enum When {
 /// A candidate for the flipped bit.
 struct Candidate {
     path: String,
-    motion: BodyField,
+    field: BodyField,
     bit: u32,
     when: When,
     /// Distance of the bit's value from the observed difference, as a base-2 logarithm times 256. Candidates at the
@@ -149,13 +149,13 @@ struct Candidate {
 fn candidates(subjects: &[Subject]) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for subject in subjects.iter().filter(|subject| handle(&subject.path).is_some()) {
-        for motion in BodyField::ALL {
-            let of_motion = |difference: &&Difference| difference.field().name() == motion.name();
-            let difference = subject.differences.iter().find(of_motion).and_then(both_bits);
+        for field in BodyField::ALL {
+            let of_field = |difference: &&Difference| difference.field().name() == field.name();
+            let difference = subject.differences.iter().find(of_field).and_then(both_bits);
             let size = log2(difference.map_or(0, |(a, b)| a.abs_diff(b)));
-            candidates.extend((0..motion.bits()).map(|bit| Candidate {
+            candidates.extend((0..field.bits()).map(|bit| Candidate {
                 path: subject.path.clone(),
-                motion,
+                field,
                 bit,
                 when: When::Before,
                 distance: size.map_or(u32::MAX, |size| size.abs_diff(bit << 8)),
@@ -184,9 +184,9 @@ fn everybody<G: Game>(game: &mut G, before: &G::Save) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for when in [When::After, When::Before] {
         for path in &paths {
-            for motion in BodyField::ALL {
-                let of_bit = |bit| Candidate { path: path.clone(), motion, bit, when, distance: 0 };
-                candidates.extend((0..motion.bits()).map(of_bit));
+            for field in BodyField::ALL {
+                let of_bit = |bit| Candidate { path: path.clone(), field, bit, when, distance: 0 };
+                candidates.extend((0..field.bits()).map(of_bit));
             }
         }
     }
@@ -213,9 +213,9 @@ fn search<G: Game>(
         let Some(rest) = left.checked_sub(price) else {
             return false;
         };
-        let Candidate { path, motion, bit, when, .. } = candidate;
+        let Candidate { path, field, bit, when, .. } = candidate;
         game.load(if *when == When::Before { &wrong.before } else { &right });
-        if flip(game, path, *motion, *bit).is_none() {
+        if flip(game, path, *field, *bit).is_none() {
             return false;
         }
         left = rest;
@@ -236,10 +236,10 @@ fn handle(path: &str) -> Option<(u32, u32)> {
 }
 
 /// Flips a bit of a body's motion; `None` if the path has no body or the resulting speed is invalid.
-fn flip<G: Game>(game: &mut G, path: &str, motion: BodyField, bit: u32) -> Option<()> {
+fn flip<G: Game>(game: &mut G, path: &str, field: BodyField, bit: u32) -> Option<()> {
     let handle = handle(path)?;
     let world = game.world_mut()?;
     let body = world.bodies().map(|(id, _)| id);
     let body = { body }.find(|id| (id.index(), id.generation()) == handle)?;
-    world.flip_bit(body, motion, bit).ok()
+    world.flip_bit(body, field, bit).ok()
 }

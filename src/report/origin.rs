@@ -51,9 +51,9 @@ fn flipped_bit<G: Game>(
         return Ok(None);
     };
     // The path of the world within the game's save is not known here, so the end of the path is compared.
-    let place = only.field().thing().unwrap_or(only.field().section());
+    let place = only.field().subject().unwrap_or(only.field().section());
     let saved = fields(&wrong.before)?;
-    let path = saved.iter().filter_map(|field| field.thing()).find(|path| path.ends_with(place));
+    let path = saved.iter().filter_map(|field| field.subject()).find(|path| path.ends_with(place));
     let path = path.map_or_else(|| String::from(place), String::from);
     let mut differences = differences.to_vec();
     differences.sort_by_key(|difference| difference != only);

@@ -58,7 +58,7 @@ impl TickPhases {
         let Some(world) = game.world_mut() else {
             return TickPhases::default();
         };
-        let digests = world.phase_digests().iter().take(PHASE_DIGESTS_MAX).map(|noted| noted.digest);
+        let digests = world.phase_digests().iter().take(PHASE_DIGESTS_MAX).map(|logged| logged.digest);
         let digests = digests.collect();
         let start = world.step_start().map(bytes_of).unwrap_or_default();
         world.stop_logging_phases();
@@ -166,15 +166,15 @@ mod tests {
         let mut changed = before.clone();
         changed.spawn(&BodyDef::fixed().position((fx!(1), fx!(2))), &[]).expect("valid");
         let (old, new) = (before.to_bytes(), changed.to_bytes());
-        let noted =
+        let logged =
             TickPhases { digests: Vec::new(), start: patches(&old, &new), start_length: new.len() as u64 };
-        assert_eq!(noted.start(&before).map(|world| world.state_hash()), Some(changed.state_hash()));
-        let endless = TickPhases { start_length: u64::MAX, ..noted.clone() };
+        assert_eq!(logged.start(&before).map(|world| world.state_hash()), Some(changed.state_hash()));
+        let endless = TickPhases { start_length: u64::MAX, ..logged.clone() };
         assert!(endless.start(&before).is_none());
-        let mut beyond = noted.clone();
+        let mut beyond = logged.clone();
         beyond.start[0].at = u64::MAX;
         assert!(beyond.start(&before).is_none());
-        let mut damaged = noted;
+        let mut damaged = logged;
         damaged.start[0].bytes[0] ^= 1;
         assert!(damaged.start(&before).is_none());
     }

@@ -12,7 +12,7 @@ use super::contacts::Contacts;
 use super::event::Status;
 use super::guests::Guests;
 use super::id::{Key, PeerId, Tick};
-use super::join_packet::{JoinPacket, OFFER_BYTES_MAX, ROSTER_MAX, RefusalReason};
+use super::join_packet::{ADDRESS_LIST_MAX, JoinPacket, OFFER_BYTES_MAX, RefusalReason};
 use super::routes::{Routes, token};
 use super::siphash::Secret;
 use super::start_state::StartState;
@@ -27,7 +27,7 @@ const HELLO_INTERVAL: u64 = 200_000;
 /// Time without a new chunk after which a download starts again, in microseconds.
 const DOWNLOAD_PATIENCE: u64 = 3_000_000;
 /// Time between lists of addresses in microseconds.
-const ROSTER_INTERVAL: u64 = 500_000;
+const ADDRESS_LIST_INTERVAL: u64 = 500_000;
 /// Maximum number of packets waiting to be sent.
 const PACKETS_MAX: usize = 8192;
 
@@ -131,7 +131,7 @@ pub struct Endpoint {
     pub(super) guests: Guests,
     pub(super) contacts: Contacts,
     pub(super) pinned: Option<Arc<Pinned>>,
-    pub(super) roster_at: u64,
+    pub(super) address_list_at: u64,
     pub(super) packets: VecDeque<(Address, Vec<u8>)>,
     pub(super) events: VecDeque<JoinEvent>,
 }
@@ -182,7 +182,7 @@ impl Endpoint {
             guests: Guests::default(),
             contacts: Contacts::default(),
             pinned: None,
-            roster_at: 0,
+            address_list_at: 0,
             packets: VecDeque::new(),
             events: VecDeque::new(),
         }
@@ -359,14 +359,14 @@ impl Endpoint {
             let token = token(self.secret, id, &address);
             self.send(address, &JoinPacket::Probe { token });
         }
-        if now >= self.roster_at {
-            self.roster_at = now + ROSTER_INTERVAL;
+        if now >= self.address_list_at {
+            self.address_list_at = now + ADDRESS_LIST_INTERVAL;
             let Phase::InMatch(session) = &self.phase else { return };
             self.routes.retain(|id| session.link(id).is_some());
-            let addresses = self.routes.known(ROSTER_MAX);
+            let addresses = self.routes.known(ADDRESS_LIST_MAX);
             let all = self.routes.known(usize::MAX);
             for (_, address) in &all {
-                self.send(*address, &JoinPacket::Roster { addresses: addresses.clone() });
+                self.send(*address, &JoinPacket::AddressList { addresses: addresses.clone() });
             }
         }
         self.flush();

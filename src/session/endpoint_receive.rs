@@ -91,7 +91,7 @@ impl Endpoint {
                     self.routes.prove(sender, from, now);
                 }
             }
-            JoinPacket::Roster { addresses } => {
+            JoinPacket::AddressList { addresses } => {
                 if self.routes.address(sender) == Some(from) {
                     for (id, address) in addresses.into_iter().filter(|(id, _)| *id != self.me) {
                         self.contacts.note(id, address);

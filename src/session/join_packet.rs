@@ -14,7 +14,7 @@ pub(super) const CHUNK_BYTES: usize = 1152;
 /// Largest number of words in a request's bit mask of received chunks.
 pub(super) const MASKS_MAX: usize = 16;
 /// Largest number of addresses in a packet.
-pub(super) const ROSTER_MAX: usize = 24;
+pub(super) const ADDRESS_LIST_MAX: usize = 24;
 
 /// Reason why a peer may not join.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,7 +79,7 @@ pub(super) enum JoinPacket {
         token: u64,
     },
     /// Addresses of other peers.
-    Roster {
+    AddressList {
         addresses: Vec<(PeerId, Address)>,
     },
 }
@@ -151,7 +151,7 @@ impl JoinPacket {
                 body.push(KIND_FIRST + 7);
                 body.put_u64(*token);
             }
-            JoinPacket::Roster { addresses } => {
+            JoinPacket::AddressList { addresses } => {
                 body.push(KIND_FIRST + 8);
                 body.put_count(addresses.len());
                 for (id, address) in addresses {
@@ -206,9 +206,11 @@ impl JoinPacket {
             6 => JoinPacket::Probe { token: reader.u64()? },
             7 => JoinPacket::Pong { token: reader.u64()? },
             8 => {
-                let count = reader.count(ROSTER_MAX)?;
+                let count = reader.count(ADDRESS_LIST_MAX)?;
                 let address = |reader: &mut Reader| Ok((PeerId(reader.u32()?), Address::read(reader)?));
-                JoinPacket::Roster { addresses: (0..count).map(|_| address(reader)).collect::<Decoded<_>>()? }
+                JoinPacket::AddressList {
+                    addresses: (0..count).map(|_| address(reader)).collect::<Decoded<_>>()?,
+                }
             }
             _ => return Err(Malformed),
         };
@@ -227,4 +229,4 @@ fn read_bytes(reader: &mut Reader) -> Decoded<Vec<u8>> {
 }
 
 const _: () = assert!(CHUNK_BYTES + 32 <= PACKET_BYTES_MAX && OFFER_BYTES_MAX + 64 <= PACKET_BYTES_MAX);
-const _: () = assert!(ROSTER_MAX * (5 + super::address::ADDRESS_BYTES_MAX) + 32 <= PACKET_BYTES_MAX);
+const _: () = assert!(ADDRESS_LIST_MAX * (5 + super::address::ADDRESS_BYTES_MAX) + 32 <= PACKET_BYTES_MAX);

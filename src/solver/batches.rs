@@ -63,7 +63,8 @@ pub(super) struct BatchList<K: BatchKind> {
 pub(super) struct BatchShare<'a, K: BatchKind> {
     /// `None` if there is no overflow.
     overflow: Option<Overflow<'a, K>>,
-    coloured: &'a mut Batches<K, WIDTH>,
+    /// The coloured constraints of the thread.
+    pub(super) coloured: &'a mut Batches<K, WIDTH>,
 }
 
 /// The constraints that fit no colour, which one of the threads solves.
@@ -154,11 +155,6 @@ impl<K: BatchKind> BatchShare<'_, K> {
         }
     }
 
-    /// The coloured constraints of the thread.
-    pub(super) fn coloured(&self) -> &Batches<K, WIDTH> {
-        self.coloured
-    }
-
     /// Runs an operation over the overflow, one constraint after the other.
     pub(super) fn run_overflow(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
         match &mut self.overflow {
@@ -167,11 +163,6 @@ impl<K: BatchKind> BatchShare<'_, K> {
             Some(Overflow::OfAnotherThread) => {}
         }
         context.wait();
-    }
-
-    /// Runs an operation over the coloured constraints, colour by colour.
-    pub(super) fn run_coloured(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
-        self.coloured.run_coloured(operation, context);
     }
 }
 
@@ -192,37 +183,22 @@ impl<K: BatchKind> Batches<K, 1> {
 impl<K: BatchKind> Batches<K, WIDTH> {
     /// Runs an operation over the batches of a thread, and waits after each colour for the other threads.
     pub(super) fn run_coloured(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
-        if context.is_alone() {
-            // The batches are in the order of the colours.
-            let all = ColourEnd { batches: self.batches.len(), extras: self.extras.len() };
-            self.run_colour(ColourEnd::default(), all, operation, context);
-            return;
-        }
-        let mut start = ColourEnd::default();
-        for colour in 0..self.colour_ends.len() {
-            let end = self.colour_ends[colour];
-            self.run_colour(start, end, operation, context);
+        let Batches { batches, records, extras, colour_ends } = self;
+        // A thread that works alone need not wait: the batches are in the order of the colours.
+        let all = [ColourEnd { batches: batches.len(), extras: extras.len() }];
+        let ends = if context.is_alone() { &all } else { colour_ends.as_slice() };
+        let (mut start, mut faults) = (ColourEnd::default(), 0);
+        for &end in ends {
+            let batches = &mut batches[start.batches..end.batches];
+            if !batches.is_empty() {
+                let records = &records[start.batches..end.batches];
+                let extras = &mut extras[start.extras..end.extras];
+                let (bodies, faults) = (context.bodies, &mut faults);
+                context.machine.run(Run { batches, records, extras, operation, bodies, faults });
+            }
             start = end;
             context.wait();
         }
-    }
-
-    fn run_colour(
-        &mut self,
-        start: ColourEnd,
-        end: ColourEnd,
-        operation: impl Operation<K>,
-        context: &StepContext<'_>,
-    ) {
-        let batches = &mut self.batches[start.batches..end.batches];
-        if batches.is_empty() {
-            return;
-        }
-        let records = &self.records[start.batches..end.batches];
-        let extras = &mut self.extras[start.extras..end.extras];
-        let mut faults = 0;
-        let (bodies, faults_of_run) = (context.bodies, &mut faults);
-        context.machine.run(Run { batches, records, extras, operation, bodies, faults: faults_of_run });
         context.add_faults(faults);
     }
 }

@@ -5,7 +5,7 @@
 //! one that contacts have caused in the last sub-step, from their warm start to the end of the sub-step:
 //!
 //! ```text
-//! push = v - v_free,    v' = v_free' + push
+//! change = v - v_free,    v' = v_free' + change
 //! ```
 //!
 //! where `v_free` is the velocity that the body would have without contacts. This takes one sum for each body instead
@@ -45,15 +45,15 @@ struct Group<const N: usize> {
     /// round or saturate, because both are below 512 m/s.
     shared: bool,
     free: VelocityW<Ints<N>>,
-    push: VelocityW<Ints<N>>,
+    change: VelocityW<Ints<N>>,
 }
 
 /// An operation on all groups, one after the other.
 #[derive(Clone, Copy, Debug)]
 enum Task {
-    /// Computes the velocity changes by contacts, `push`, from the velocities and `v_free`.
+    /// Computes the velocity changes by contacts, `change`, from the velocities and `v_free`.
     Measure,
-    /// Records `v_free` and adds `push` to the velocities.
+    /// Records `v_free` and adds `change` to the velocities.
     Apply,
     /// Subtracts the velocity from `v_free`.
     Suspend,
@@ -125,7 +125,7 @@ impl ContactVelocities {
 }
 
 impl<const N: usize> Group<N> {
-    const NONE: Self = Group { at: [GROUND; N], shared: false, free: Self::STILL, push: Self::STILL };
+    const NONE: Self = Group { at: [GROUND; N], shared: false, free: Self::STILL, change: Self::STILL };
     const STILL: VelocityW<Ints<N>> = VelocityW { x: Ints::ZERO, y: Ints::ZERO, turn: Ints::ZERO };
 }
 
@@ -140,19 +140,19 @@ impl<const N: usize> Kernel<N> for Perform<'_, N> {
     #[inline(always)]
     fn run<L: Lanes<N>>(self) {
         let Perform { groups, task, bodies, faults } = self;
-        for Group { at, shared, free, push } in groups {
+        for Group { at, shared, free, change } in groups {
             match task {
                 Task::Measure => {
                     let v = L::velocities(bodies, at);
-                    store::<L, N>(difference::<L, N>(v, load::<L, N>(free)), push);
+                    store::<L, N>(difference::<L, N>(v, load::<L, N>(free)), change);
                 }
                 Task::Apply => {
                     let v = L::velocities(bodies, at);
                     store::<L, N>(v, free);
                     // The free velocity is already within the limits.
-                    let mut pushed = BodyPairW::<L, N> { a: v, b: sum::<L, N>(v, load::<L, N>(push)) };
-                    pushed.keep_in_range(faults);
-                    L::set_velocities(bodies, at, pushed.b);
+                    let mut changed = BodyPairW::<L, N> { a: v, b: sum::<L, N>(v, load::<L, N>(change)) };
+                    changed.keep_in_range(faults);
+                    L::set_velocities(bodies, at, changed.b);
                 }
                 Task::Suspend if *shared => {
                     let v = L::velocities(bodies, at);

@@ -195,10 +195,15 @@ impl Solver {
         let mut joints = joints.split();
         let moving = (0..parts).map(|part| &moving[part_of(moving.len(), WIDTH, part, parts)]);
         let shares = moving.zip(set.shares()).zip(contact_velocities).zip(joints.shares());
-        self.faults += threads.run_team(shares, |(((moving, contacts), velocities), joints), member| {
+        let shares = shares.map(|(((moving, contacts), velocities), joints)| SolverShare {
+            moving,
+            contacts,
+            velocities,
+            joints,
+        });
+        self.faults += threads.run_team(shares, |mut share, member| {
             let mut faults = 0;
             let context = StepContext::of_member(machine, member, tuning, bodies.cells(), &mut faults);
-            let mut share = SolverShare { moving, contacts, velocities, joints };
             for index in 0..count {
                 share.sub_step(first.wrapping_add(index.into()), &context);
             }

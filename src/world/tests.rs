@@ -160,12 +160,12 @@ fn boxes_balls_and_hinges() -> World {
 /// The accumulated velocity change of the contacts equals the sum of their impulses, except for the rounding of about
 /// twenty changes per row.
 #[test]
-fn pushes_are_what_the_impulses_amount_to() {
+fn contact_velocities_are_what_the_impulses_amount_to() {
     for (name, mut world) in [("mixed", boxes_balls_and_hinges()), ("polygons", hundred_polygons())] {
         let (mut worst, mut most) = (0, 0);
         for _ in 0..120 {
             world.step();
-            let (error, largest) = world.push_error();
+            let (error, largest) = world.contact_velocity_error();
             (worst, most) = (worst.max(error), most.max(largest));
         }
         assert!(worst <= 100, "{name}: the velocity change differs from the impulses by {worst} units");
@@ -176,7 +176,7 @@ fn pushes_are_what_the_impulses_amount_to() {
 /// A box that is locked along x is pushed along x by a ball that leans on it. The velocity that the lock removes again
 /// must not count as a missing velocity change.
 #[test]
-fn pushes_are_known_of_what_is_locked() {
+fn contact_velocities_are_known_of_what_is_locked() {
     let mut world = World::default();
     let floor = Polygon::rectangle(fx!(10), fx!(1)).unwrap();
     world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[ShapeDef::new(floor)]).unwrap();
@@ -188,7 +188,7 @@ fn pushes_are_known_of_what_is_locked() {
     let (mut worst, mut most) = (0, 0);
     for _ in 0..30 {
         world.step();
-        let (error, largest) = world.push_error();
+        let (error, largest) = world.contact_velocity_error();
         (worst, most) = (worst.max(error), most.max(largest));
     }
     assert!(

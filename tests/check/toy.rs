@@ -51,7 +51,7 @@ pub(crate) struct Toy {
     total: i64,
     /// Player and strength of the last hit: a cache.
     last_hit: Option<(usize, u32)>,
-    asked: Cell<u32>,
+    polls: Cell<u32>,
     tidy: Cell<bool>,
 }
 
@@ -143,7 +143,7 @@ impl Game for Toy {
 
     fn new(&mistake: &Mistake) -> Result<Self, SetupError> {
         let state = State { places: [-3, 3], cooldown: [0; 2], hits: [0; 2], tick: 0 };
-        Ok(Toy { mistake, state, total: 0, last_hit: None, asked: Cell::new(0), tidy: Cell::new(false) })
+        Ok(Toy { mistake, state, total: 0, last_hit: None, polls: Cell::new(0), tidy: Cell::new(false) })
     }
 
     fn players(&self) -> u32 {
@@ -172,7 +172,7 @@ impl Game for Toy {
             self.state.hits[0] += 1;
         }
         if self.has(Mistake::HashCounts) {
-            self.state.hits[1] += self.asked.replace(0) / 2;
+            self.state.hits[1] += self.polls.replace(0) / 2;
         }
         if self.has(Mistake::HashTidies) && !self.tidy.get() {
             self.state.hits[0] += u32::from(self.state.tick == 7);
@@ -181,7 +181,7 @@ impl Game for Toy {
     }
 
     fn state_hash(&self) -> StateHash {
-        self.asked.set(self.asked.get() + 1);
+        self.polls.set(self.polls.get() + 1);
         self.tidy.set(true);
         let State { places, cooldown, hits, tick } = &self.state;
         let cooldown = match self.mistake {
@@ -209,19 +209,19 @@ impl Game for Toy {
     }
 
     fn work(&self, _: &[Pad]) -> u64 {
-        self.asked.set(self.asked.get() + 1);
+        self.polls.set(self.polls.get() + 1);
         match self.mistake {
-            Mistake::WorkCounts => self.asked.get().into(),
+            Mistake::WorkCounts => self.polls.get().into(),
             Mistake::WorkIsHuge => u64::MAX,
             _ => 1,
         }
     }
 
     fn claims(&self) -> Vec<(String, i64)> {
-        self.asked.set(self.asked.get() + 1);
+        self.polls.set(self.polls.get() + 1);
         let hits = self.state.hits.map(i64::from);
         match self.mistake {
-            Mistake::ClaimsCount => vec![("asked".into(), self.asked.get().into())],
+            Mistake::ClaimsCount => vec![("polls".into(), self.polls.get().into())],
             Mistake::ClaimsTwice => hits.map(|hits| ("hits".into(), hits)).into(),
             Mistake::ClaimsGlobal => {
                 vec![("shared".into(), SHARED.fetch_add(1, Ordering::Relaxed).into())]

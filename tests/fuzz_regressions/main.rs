@@ -230,9 +230,9 @@ fn many_shapes_added_in_one_tick_are_work() {
 #[test]
 fn many_fixed_shapes_at_one_point_wake_nobody_for_long() {
     // Each shape searched all earlier ones for bodies to wake and cached those that never sleep: a minute for 20 000.
-    let places = vec![BodyPose { position: Vec2::ZERO, angle: Angle::ZERO }; 50_000];
+    let poses = vec![BodyPose { position: Vec2::ZERO, angle: Angle::ZERO }; 50_000];
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
-    let spawn = Command::SpawnEach { body: BodyDef::fixed(), shapes: vec![ball], places };
+    let spawn = Command::SpawnEach { body: BodyDef::fixed(), shapes: vec![ball], poses };
     let game = Sandbox::new(&SandboxSetup { config: Config::default(), commands: vec![spawn] });
     assert_eq!(game.unwrap().world().body_count(), 50_000);
 }

@@ -120,15 +120,18 @@ pub(crate) fn mutated(rng: &mut Rng, originals: &[Vec<u8>]) -> Vec<u8> {
 pub(crate) fn check_replays<G: Game>(originals: &[Vec<u8>], few: u64) {
     let limits = Limits::default();
     let verdicts = originals.iter().map(|file| (file, verify::<G>(file, &limits)));
-    let courses: Vec<_> = verdicts.map(|(file, verdict)| Trajectory::of(file, verdict)).collect();
+    let trajectories: Vec<_> = verdicts.map(|(file, verdict)| Trajectory::of(file, verdict)).collect();
     let (mut rng, mut figures) = (Rng::new(1), Figures::default());
     for number in 0..files_wanted(few) {
         let file = mutated(&mut rng, originals);
         let name = |verdict: &Verdict| verdict.name().to_string();
         let verdict = figures.count(&file, || verify::<G>(&file, &limits), name);
         if verdict.is_match() {
-            let course = Trajectory::of(&file, verdict);
-            assert!(courses.contains(&course), "file {number} is accepted, but differs from every original");
+            let trajectory = Trajectory::of(&file, verdict);
+            assert!(
+                trajectories.contains(&trajectory),
+                "file {number} is accepted, but differs from every original"
+            );
         }
     }
     figures.print("replays");

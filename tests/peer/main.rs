@@ -207,7 +207,7 @@ fn a_desync_is_reported_and_the_reports_blame_the_one_with_the_fault() {
     for options in modes() {
         let mut table = Table::new(20, 0);
         table.host(options);
-        FAULT.set(Some(Fault { tick: 70, disc: 1, motion: BodyField::ALL[0], bit: 9 }));
+        FAULT.set(Some(Fault { tick: 70, disc: 1, field: BodyField::ALL[0], bit: 9 }));
         table.join(options, 0);
         table.play(4000);
         let desync = |events: &[PeerEvent]| -> Option<PeerDesync> {

@@ -36,7 +36,7 @@ pub(crate) struct Pushers {
 pub(crate) struct Fault {
     pub(crate) tick: u64,
     pub(crate) disc: usize,
-    pub(crate) motion: BodyField,
+    pub(crate) field: BodyField,
     pub(crate) bit: u32,
 }
 
@@ -104,7 +104,7 @@ impl Game for Pushers {
         }
         self.world.step();
         if let Some(fault) = self.fault.filter(|fault| fault.tick == self.world.tick()) {
-            let _ = self.world.flip_bit(self.discs[fault.disc], fault.motion, fault.bit);
+            let _ = self.world.flip_bit(self.discs[fault.disc], fault.field, fault.bit);
         }
     }
 

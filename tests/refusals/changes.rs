@@ -182,10 +182,10 @@ fn changes_to_joints_out_of_range_are_refused() {
 fn one_of_many_refuses_all() {
     let mut stage = Stage::new();
     let (floor, lift, ball, gone) = (stage.floor, stage.lift, stage.ball, stage.gone);
-    let place = |x| BodyPose { position: Vec2::new(x, fx!(5)), angle: Angle::ZERO };
-    let each = |shape, places| Command::SpawnEach { body: BodyDef::dynamic(), shapes: vec![shape], places };
-    stage.refuses(each(self::ball(), vec![place(fx!(0)), place(Fx::MAX)]), far);
-    stage.refuses(each(self::ball().density(Fx::DELTA), vec![place(fx!(0)), place(fx!(3))]), weightless);
+    let pose = |x| BodyPose { position: Vec2::new(x, fx!(5)), angle: Angle::ZERO };
+    let each = |shape, poses| Command::SpawnEach { body: BodyDef::dynamic(), shapes: vec![shape], poses };
+    stage.refuses(each(self::ball(), vec![pose(fx!(0)), pose(Fx::MAX)]), far);
+    stage.refuses(each(self::ball().density(Fx::DELTA), vec![pose(fx!(0)), pose(fx!(3))]), weightless);
     let join = |ends| Command::AddJointEach { joint: JointDef::new(floor, ball, Revolute::new()), ends };
     stage.refuses(join(vec![(floor, ball), (ball, gone)]), stale);
     stage.refuses(join(vec![(floor, ball), (ball, ball)]), |error| {
@@ -199,10 +199,10 @@ fn one_of_many_refuses_all() {
     let other = world.spawn(&BodyDef::dynamic(), &[self::ball()]).expect("room");
     let before = world.state_hash();
     let full = |what, limit| Err(WorldError::Full { what, limit });
-    assert_eq!(world.execute(&each(self::ball(), vec![place(fx!(0)); 2])), full("bodies", 3));
-    let places = vec![place(fx!(0))];
+    assert_eq!(world.execute(&each(self::ball(), vec![pose(fx!(0)); 2])), full("bodies", 3));
+    let poses = vec![pose(fx!(0))];
     let shapes = vec![self::ball(); 3];
-    let three = Command::SpawnEach { body: BodyDef::dynamic(), shapes, places };
+    let three = Command::SpawnEach { body: BodyDef::dynamic(), shapes, poses };
     assert_eq!(world.execute(&three), full("shapes", 4));
     let joint = JointDef::new(body, other, Revolute::new());
     let twice = Command::AddJointEach { joint, ends: vec![(body, other); 2] };

@@ -83,21 +83,21 @@ fn what_is_not_a_replay_is_malformed() {
 #[test]
 fn a_replay_can_be_stopped_at_any_tick() {
     let file = record(35, 10, inputs_at);
-    let mut playback = VerifiedReplay::<Counter>::open(&file, &Limits::default()).unwrap();
-    assert_eq!(playback.ticks(), 35);
+    let mut replay = VerifiedReplay::<Counter>::open(&file, &Limits::default()).unwrap();
+    assert_eq!(replay.ticks(), 35);
     for tick in 0..=35 {
-        assert_eq!(playback.tick(), tick);
-        assert_eq!(playback.game().state_hash(), hash_after(tick), "after tick {tick}");
+        assert_eq!(replay.tick(), tick);
+        assert_eq!(replay.game().state_hash(), hash_after(tick), "after tick {tick}");
         let expected = if tick < 35 { Step::Ticked } else { Step::Ended };
-        assert_eq!(playback.step(), Ok(expected));
+        assert_eq!(replay.step(), Ok(expected));
     }
-    assert!(playback.conclude().is_match());
+    assert!(replay.conclude().is_match());
 
-    let mut playback = VerifiedReplay::<Counter>::open(&file, &Limits::default()).unwrap();
+    let mut replay = VerifiedReplay::<Counter>::open(&file, &Limits::default()).unwrap();
     for _ in 0..34 {
-        playback.step().unwrap();
+        replay.step().unwrap();
     }
-    assert_eq!(playback.conclude(), Verdict::Incomplete { ticks: 34, hash: hash_after(34) });
+    assert_eq!(replay.conclude(), Verdict::Incomplete { ticks: 34, hash: hash_after(34) });
 }
 
 /// The worked example of `docs/FORMAT.md`: four ticks of the counter, a checkpoint every three.

@@ -271,13 +271,13 @@ fn a_file_of_another_program_is_unverifiable() {
 #[test]
 fn a_verdict_is_final() {
     let file = forge(&original(), |forged| forged.payload(1)[2] ^= 1);
-    let mut playback = VerifiedReplay::<Counter>::open(&file, &Limits::default()).unwrap();
+    let mut replay = VerifiedReplay::<Counter>::open(&file, &Limits::default()).unwrap();
     let diverged = Verdict::Diverged { last_equal: Some(10), first_different: 20 };
     for tick in 1..20 {
-        assert_eq!(playback.step(), Ok(Step::Ticked), "tick {tick}");
+        assert_eq!(replay.step(), Ok(Step::Ticked), "tick {tick}");
     }
     for _ in 0..3 {
-        assert_eq!(playback.step(), Err(diverged.clone()));
+        assert_eq!(replay.step(), Err(diverged.clone()));
     }
-    assert_eq!(playback.conclude(), diverged);
+    assert_eq!(replay.conclude(), diverged);
 }

@@ -19,11 +19,11 @@ fn setup() -> SandboxSetup {
         Command::Spawn { body: BodyDef::fixed(), shapes: vec![ball()] },
         Command::Spawn { body: BodyDef::kinematic().position((fx!(5), fx!(0))), shapes: vec![ball()] },
     ];
-    let places = (0..6).map(|x| BodyPose { position: Vec2::new(Fx::from(x), fx!(2)), angle: Angle::ZERO });
+    let poses = (0..6).map(|x| BodyPose { position: Vec2::new(Fx::from(x), fx!(2)), angle: Angle::ZERO });
     commands.push(Command::SpawnEach {
         body: BodyDef::dynamic(),
         shapes: vec![ball()],
-        places: places.collect(),
+        poses: poses.collect(),
     });
     SandboxSetup { config: Config::default(), commands }
 }
@@ -43,7 +43,7 @@ fn commands(world: &World, body: BodyId, value: Fx) -> Vec<Command> {
         Command::SpawnEach {
             body: BodyDef::fixed(),
             shapes: vec![ball().sensor()],
-            places: vec![BodyPose { position: vector, angle }],
+            poses: vec![BodyPose { position: vector, angle }],
         },
         Command::AddShape { body, shape: ball().offset((value, fx!(0))) },
         Command::AddJoint { joint },
@@ -109,9 +109,9 @@ fn every_command_can_be_recorded_and_verified() {
 #[test]
 fn many_bodies_in_one_command_are_work() {
     let mut recording = Recording::<Sandbox>::start(&setup(), 3).unwrap();
-    let places = vec![BodyPose { position: Vec2::ZERO, angle: Angle::ZERO }; 20_000];
+    let poses = vec![BodyPose { position: Vec2::ZERO, angle: Angle::ZERO }; 20_000];
     let body = BodyDef { settings: BodySettings::default(), ..BodyDef::fixed() };
-    recording.step(&[vec![Command::SpawnEach { body, shapes: vec![ball()], places }]]).unwrap();
+    recording.step(&[vec![Command::SpawnEach { body, shapes: vec![ball()], poses }]]).unwrap();
     let file = recording.finish().unwrap();
     let limits = Limits { tick_work: 1_000_000, ..Limits::default() };
     let verdict = verify::<Sandbox>(&file, &limits);

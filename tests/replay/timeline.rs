@@ -20,10 +20,10 @@ pub(crate) fn open<'a, G: Game>(file: &'a [u8], interval: u32, bytes: usize) -> 
 
 /// Returns the state hash of every tick of a straight playback.
 pub(crate) fn hashes<G: Game>(file: &[u8]) -> Vec<StateHash> {
-    let mut playback = VerifiedReplay::<G>::open(file, &Limits::default()).unwrap();
-    let mut hashes = vec![playback.game().state_hash()];
-    while playback.step().unwrap() == Step::Ticked {
-        hashes.push(playback.game().state_hash());
+    let mut replay = VerifiedReplay::<G>::open(file, &Limits::default()).unwrap();
+    let mut hashes = vec![replay.game().state_hash()];
+    while replay.step().unwrap() == Step::Ticked {
+        hashes.push(replay.game().state_hash());
     }
     hashes
 }
@@ -237,14 +237,14 @@ fn a_game_that_does_not_save_all_of_itself_is_found_out() {
 }
 
 #[test]
-fn inputs_of_a_playback_are_those_of_the_tick() {
+fn inputs_of_a_verified_replay_are_those_of_the_tick() {
     let file = record(35, 10, inputs_at);
-    let mut playback = VerifiedReplay::<Counter>::open(&file, &Limits::default()).unwrap();
-    assert_eq!(playback.inputs(), &[] as &[Input]);
+    let mut replay = VerifiedReplay::<Counter>::open(&file, &Limits::default()).unwrap();
+    assert_eq!(replay.inputs(), &[] as &[Input]);
     for tick in 0..35 {
-        playback.step().unwrap();
-        assert_eq!(playback.inputs(), inputs_at(tick));
+        replay.step().unwrap();
+        assert_eq!(replay.inputs(), inputs_at(tick));
     }
     let units: u64 = (0..35).map(|tick| Counter { sum: 0, tick: 0, moods: 0 }.work(&inputs_at(tick))).sum();
-    assert_eq!(playback.work(), units);
+    assert_eq!(replay.work(), units);
 }

@@ -94,13 +94,13 @@ fn inputs(tick: u64) -> Vec<u8> {
 fn random_flip(rng: &mut Rng, seed: u64) -> (Flip, String) {
     let mut below = |n: u32| rng.next_u32() % n;
     loop {
-        let motion = BodyField::ALL[below(6) as usize];
+        let field = BodyField::ALL[below(6) as usize];
         let flip = Flip {
             tick: 1 + u64::from(below(LENGTH - 60)),
             when: if below(2) == 0 { When::Before } else { When::After },
             body: below(u32::try_from(BODIES).unwrap()) as usize,
-            motion,
-            bit: below(motion.bits()),
+            field,
+            bit: below(field.bits()),
         };
         let mut yard = Yard::new(&seed).unwrap();
         (1..flip.tick).for_each(|tick| yard.step(&inputs(tick - 1)));
@@ -132,8 +132,8 @@ fn culprit(found: &Comparison) -> (String, String) {
     if let Some(told) = &found.explanation {
         return (told.path.clone(), told.differences[0].field().name().into());
     }
-    let thing = found.subjects.first().expect("something differs");
-    (thing.path.clone(), thing.differences[0].field().name().into())
+    let subject = found.subjects.first().expect("something differs");
+    (subject.path.clone(), subject.differences[0].field().name().into())
 }
 
 #[test]
@@ -144,7 +144,7 @@ fn a_flipped_bit_is_found_in_its_trace_for_less_than_three_verifications() {
     sweep::for_each(cases, |case| {
         let (flip, path) = random_flip(&mut Rng::new(600 + case), case);
         let when = if flip.when == When::Before { "before" } else { "after" };
-        drawn.lock().unwrap().extend([flip.motion.name(), when]);
+        drawn.lock().unwrap().extend([flip.field.name(), when]);
         FLIP.set(Some(flip));
         let mut trace = Trace::<Faulty<true>>::start(&case, LENGTH).unwrap();
         (0..TICKS).for_each(|tick| trace.step(&inputs(tick)).unwrap());
@@ -157,9 +157,9 @@ fn a_flipped_bit_is_found_in_its_trace_for_less_than_three_verifications() {
         assert_eq!(found.last_equal, Some(flip.tick - 1), "{what}");
         let stage = if flip.when == When::Before { Stage::BeforeStep } else { Stage::AfterStep };
         assert_eq!(found.stage, Some(stage), "{what}");
-        assert_eq!(culprit(&found), (path.clone(), flip.motion.name().into()), "{what}");
+        assert_eq!(culprit(&found), (path.clone(), flip.field.name().into()), "{what}");
     });
-    // Every kind of motion, before and after the step.
+    // Every field, before and after the step.
     let drawn = drawn.into_inner().unwrap();
     assert_eq!(drawn.len(), BodyField::ALL.len() + 2, "only {drawn:?}");
     let worst = worst.into_inner();
@@ -188,7 +188,7 @@ fn a_replay_tells_the_second_and_the_trace_of_that_second_the_rest() {
     assert_eq!((trace.tick(), trace.history().len()), (first, 61));
     let found = bisect::<Sound>(&evidence(trace.to_bytes()), None, &limits).unwrap();
     assert_eq!(found.first_different, Some(flip.tick), "{found:?}");
-    assert_eq!(culprit(&found), (path, flip.motion.name().into()), "{found:?}");
+    assert_eq!(culprit(&found), (path, flip.field.name().into()), "{found:?}");
     // A program without the fault finds no difference in its own trace of the same replay.
     let own = Trace::<Sound>::of_replay(&replay, &limits, u64::MAX, 60).unwrap();
     assert!(bisect::<Sound>(&evidence(own.to_bytes()), None, &limits).unwrap().is_equal());
@@ -255,8 +255,8 @@ fn of_two_replays_the_tick_after_the_first_other_command_is_found() {
         assert_eq!((found.last_equal, found.first_different), (Some(tick), Some(tick + 1)), "{found:?}");
         assert_eq!(found.input.as_ref().map(|input| input.tick), Some(tick), "{found:?}");
         assert_eq!(found.stage, Some(Stage::BeforeStep), "{found:?}");
-        let (thing, name) = culprit(&found);
-        assert!(thing.ends_with(&format!("body {body}v0")), "{thing} {name}");
+        let (path, name) = culprit(&found);
+        assert!(path.ends_with(&format!("body {body}v0")), "{path} {name}");
         let found = bisect::<Sandbox>(&a, Some(&a), &Limits::default()).unwrap();
         assert!(found.is_equal() && found.last_equal == Some(260));
     });

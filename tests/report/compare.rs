@@ -49,7 +49,7 @@ fn random_flip(rng: &mut Rng, when: When) -> Flip {
         tick: 30 + u64::from(rng.next_u32() % 60),
         when,
         body: rng.next_u32() as usize % BODIES,
-        motion: BodyField::ALL[rng.next_u32() as usize % 2],
+        field: BodyField::ALL[rng.next_u32() as usize % 2],
         bit: rng.next_u32() % 30,
     }
 }
@@ -137,10 +137,10 @@ fn cases(seed: u64, count: u32, when: When, stride: u32) -> u32 {
                 &explanation.differences[0]
             }
         };
-        assert_eq!(difference.field().thing(), Some(body.as_str()), "{what}");
-        if difference.field().name() != flip.motion.name() {
+        assert_eq!(difference.field().subject(), Some(body.as_str()), "{what}");
+        if difference.field().name() != flip.field.name() {
             let explained = explained(&found).expect(&what);
-            let found = Flip { motion: explained.0, bit: explained.1, ..flip };
+            let found = Flip { field: explained.0, bit: explained.1, ..flip };
             assert_eq!(state_after(seed, found), state_after(seed, flip), "{what}");
             ambiguous += 1;
         }
@@ -195,8 +195,8 @@ fn peers_that_agree_are_equal() {
 
 /// A replay has only checkpoints, so that the tick is found to within one checkpoint interval, and no fields are found.
 #[test]
-fn replays_tell_who_departed_between_which_checkpoints() {
-    let flip = Flip { tick: 60, when: When::After, body: 9, motion: BodyField::VelocityY, bit: 12 };
+fn replays_tell_who_diverged_between_which_checkpoints() {
+    let flip = Flip { tick: 60, when: When::After, body: 9, field: BodyField::VelocityY, bit: 12 };
     let mut peers = [None, Some(flip)].map(|flip| Peer::new(3, flip));
     (0..110).for_each(|_| peers.iter_mut().for_each(Peer::advance));
     let replays = [0, 1].map(|peer: usize| Evidence::Replay(peers[peer].replay()));
@@ -253,7 +253,7 @@ fn worlds_are_compared_field_by_field() {
     let bytes = peer.game.world.to_bytes();
     let same = Evidence::read(bytes, &Limits::default()).unwrap();
     assert!(compared(&a, &same).is_equal());
-    let flip = Flip { tick: 0, when: When::After, body: 20, motion: BodyField::Spin, bit: 3 };
+    let flip = Flip { tick: 0, when: When::After, body: 20, field: BodyField::Spin, bit: 3 };
     let body = flip.apply(&mut peer.game).unwrap();
     let b = Evidence::World(Box::new(peer.game.world));
     let found = compared(&a, &b);

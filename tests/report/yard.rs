@@ -121,7 +121,7 @@ pub(crate) struct Flip {
     pub(crate) when: When,
     /// Index among the dynamic bodies.
     pub(crate) body: usize,
-    pub(crate) motion: BodyField,
+    pub(crate) field: BodyField,
     pub(crate) bit: u32,
 }
 
@@ -129,7 +129,7 @@ impl Flip {
     /// Flips the bit and returns the body's path, or `None` if the resulting speed would be out of range.
     pub(crate) fn apply(&self, game: &mut Yard) -> Option<String> {
         let body = game.world.bodies().filter(|(_, body)| body.is_dynamic()).nth(self.body)?.0;
-        game.world.flip_bit(body, self.motion, self.bit).ok()?;
+        game.world.flip_bit(body, self.field, self.bit).ok()?;
         Some(format!("world.bodies.body {body}"))
     }
 }

@@ -142,10 +142,10 @@ fn a_barrel_holds_what_falls_into_it() {
         stage.fixed(at!(-5, 10), rect(fx!(0.5), fx!(10)));
         stage.fixed(at!(5, 10), rect(fx!(0.5), fx!(10)));
         let place = |i: i32| Vec2::new(num(i % 10) * 4 / 5 - fx!(3.6), num(i / 10) * 4 / 5 + fx!(0.6));
-        let places: Vec<_> = (0..100)
+        let poses: Vec<_> = (0..100)
             .map(|i| BodyPose { position: place(i), angle: Angle::from_radians(num(i % 3) / 10) })
             .collect();
-        let bodies = stage.world.spawn_each(&BodyDef::dynamic(), shapes, &places).expect("valid");
+        let bodies = stage.world.spawn_each(&BodyDef::dynamic(), shapes, &poses).expect("valid");
         assert_eq!(bodies.len(), 100);
         stage.run(200);
         for (_, body) in stage.world.bodies().filter(|(_, body)| body.is_dynamic()) {
@@ -187,11 +187,10 @@ fn tumblers_lose_nothing() {
 fn what_is_removed_leaves_nothing() {
     let mut stage = Stage::with_floor();
     for _ in 0..10 {
-        let place =
+        let pose =
             |i: i32| BodyPose { position: Vec2::new(num(i % 8), num(i / 8) + fx!(0.5)), angle: Angle::ZERO };
-        let places: Vec<_> = (0..40).map(place).collect();
-        let bodies =
-            stage.world.spawn_each(&BodyDef::dynamic(), &[square(fx!(0.5))], &places).expect("valid");
+        let poses: Vec<_> = (0..40).map(pose).collect();
+        let bodies = stage.world.spawn_each(&BodyDef::dynamic(), &[square(fx!(0.5))], &poses).expect("valid");
         stage.run(5);
         assert!(stage.world.contacts().count() >= 40);
         bodies.into_iter().for_each(|id| stage.world.despawn(id).expect("there"));

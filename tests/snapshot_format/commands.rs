@@ -249,7 +249,7 @@ fn cases(handles: &Handles) -> Vec<(Command, Written)> {
             Command::SpawnEach {
                 body: def,
                 shapes: vec![polygon],
-                places: vec![BodyPose { position: vector, angle }],
+                poses: vec![BodyPose { position: vector, angle }],
             },
             w().u32(1).then(def_bytes).then(shapes()).u64(1).fx(&[2, -1]).u32(9),
         ),

@@ -40,9 +40,9 @@ pub(super) fn spawn(body: BodyDef, shapes: Vec<ShapeDef>) -> Command {
     Command::Spawn { body, shapes }
 }
 
-pub(super) fn each(body: BodyDef, shape: ShapeDef, places: impl Iterator<Item = (Fx, Fx)>) -> Command {
+pub(super) fn each(body: BodyDef, shape: ShapeDef, positions: impl Iterator<Item = (Fx, Fx)>) -> Command {
     let pose = |(x, y)| BodyPose { position: Vec2::new(x, y), angle: Angle::ZERO };
-    Command::SpawnEach { body, shapes: vec![shape], places: places.map(pose).collect() }
+    Command::SpawnEach { body, shapes: vec![shape], poses: positions.map(pose).collect() }
 }
 
 /// Places in a square of `side` times `side`, `gap` apart.

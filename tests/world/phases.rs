@@ -39,7 +39,7 @@ fn worlds_that_differ_before_a_tick_differ_in_all_its_phases() {
 }
 
 #[test]
-fn noting_phases_changes_no_result_and_can_be_ended() {
+fn logging_phases_changes_no_result_and_can_be_ended() {
     let (mut world, mut other) = (pile(), pile());
     other.stop_logging_phases();
     for _ in 0..5 {

@@ -66,8 +66,8 @@ impl Drop for Box2d {
 impl Builder for Box2d {
     const NAME: &str = "Box2D";
 
-    fn spawn(&mut self, id: BodyId, body: &BodyDef, shapes: &[ShapeDef], place: BodyPose) -> Result<()> {
-        let def = shapes::body_def(body, place)?;
+    fn spawn(&mut self, id: BodyId, body: &BodyDef, shapes: &[ShapeDef], pose: BodyPose) -> Result<()> {
+        let def = shapes::body_def(body, pose)?;
         // SAFETY: see above.
         let made = unsafe { b2CreateBody(self.world, &def) };
         self.bodies.insert(id, made);

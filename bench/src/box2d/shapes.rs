@@ -21,7 +21,7 @@ pub fn rotation(angle: Angle) -> b2Rot {
 }
 
 /// Converts a body with its pose.
-pub fn body_def(body: &BodyDef, place: BodyPose) -> Result<b2BodyDef> {
+pub fn body_def(body: &BodyDef, pose: BodyPose) -> Result<b2BodyDef> {
     ensure!(matches!(body.mass, MassSource::Shapes), "explicit masses are not supported");
     let settings = &body.settings;
     // SAFETY: takes no arguments.
@@ -31,8 +31,8 @@ pub fn body_def(body: &BodyDef, place: BodyPose) -> Result<b2BodyDef> {
         BodyKind::Kinematic => b2BodyType_b2_kinematicBody,
         BodyKind::Dynamic => b2BodyType_b2_dynamicBody,
     };
-    def.position = vector(place.position);
-    def.rotation = rotation(place.angle);
+    def.position = vector(pose.position);
+    def.rotation = rotation(pose.angle);
     def.linearVelocity = vector(body.velocity);
     def.angularVelocity = body.angular_velocity.to_num();
     def.linearDamping = settings.linear_damping.to_num();

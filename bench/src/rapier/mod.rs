@@ -84,8 +84,8 @@ impl Rapier {
 impl Builder for Rapier {
     const NAME: &str = "rapier2d";
 
-    fn spawn(&mut self, id: BodyId, def: &BodyDef, shapes: &[ShapeDef], place: BodyPose) -> Result<()> {
-        let mut body = shapes::body(def, place, &self.config)?.build();
+    fn spawn(&mut self, id: BodyId, def: &BodyDef, shapes: &[ShapeDef], pose: BodyPose) -> Result<()> {
+        let mut body = shapes::body(def, pose, &self.config)?.build();
         body.activation_mut().normalized_linear_threshold =
             match def.settings.may_sleep && self.config.sleeping {
                 true => def.settings.sleep_speed.to_num(),

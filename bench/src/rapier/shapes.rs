@@ -23,7 +23,7 @@ fn radians(angle: Angle) -> f32 {
 
 /// Converts a body with its pose. Sleeping is disabled per body, because rapier2d has no such switch for the whole
 /// world.
-pub fn body(def: &BodyDef, place: BodyPose, config: &Config) -> Result<RigidBodyBuilder> {
+pub fn body(def: &BodyDef, pose: BodyPose, config: &Config) -> Result<RigidBodyBuilder> {
     ensure!(matches!(def.mass, MassSource::Shapes), "explicit masses are not supported");
     let settings = &def.settings;
     let kind = match def.kind {
@@ -32,7 +32,7 @@ pub fn body(def: &BodyDef, place: BodyPose, config: &Config) -> Result<RigidBody
         BodyKind::Dynamic => RigidBodyType::Dynamic,
     };
     Ok(RigidBodyBuilder::new(kind)
-        .pose(Pose::new(vector(place.position), radians(place.angle)))
+        .pose(Pose::new(vector(pose.position), radians(pose.angle)))
         .linvel(vector(def.velocity))
         .angvel(def.angular_velocity.to_num())
         .linear_damping(settings.linear_damping.to_num())

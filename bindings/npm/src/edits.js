@@ -16,23 +16,23 @@ export class Edits extends Handle {
         return this.added(at);
     }
 
-    /** Adds a body with the same definition at each place: `{ position, angle }`, or none if one of them is refused.
+    /** Adds a body with the same definition at each pose: `{ position, angle }`, or none if one of them is refused.
      * Returns their handles; a list of commands returns undefined. */
-    spawnEach(options, places) {
-        const pose = sizeOf("pose");
-        const room = places.length * (pose + 8);
+    spawnEach(options, poses) {
+        const size = sizeOf("pose");
+        const room = poses.length * (size + 8);
         const { rest, body, shapes, count } = writeBodyAndShapes(options, room);
-        const ids = rest + places.length * pose;
-        places.forEach(({ position, angle = 0 }, index) => {
+        const ids = rest + poses.length * size;
+        poses.forEach(({ position, angle = 0 }, index) => {
             // Fields that are undefined are not written, and the memory has what was there before.
             if (position === undefined) {
-                throw new Lockstep2dError("VALUE", `place ${index} has no position`);
+                throw new Lockstep2dError("VALUE", `pose ${index} has no position`);
             }
-            write("pose", rest + index * pose, { position, angle });
+            write("pose", rest + index * size, { position, angle });
         });
         putRaw(ids, -1n);
-        call("ls2d_spawn_each", this.handle, body, shapes, count, rest, places.length, ids, places.length);
-        return this.#allAdded(ids, places.length);
+        call("ls2d_spawn_each", this.handle, body, shapes, count, rest, poses.length, ids, poses.length);
+        return this.#allAdded(ids, poses.length);
     }
 
     #allAdded(at, count) {

@@ -131,8 +131,8 @@ test("the mass of shapes is that of a body with them, and can be scaled", () => 
 
 test("bodies and joints with one definition are added together, or none", () => {
     const world = new L.World();
-    const places = Array.from({ length: 300 }, (_, index) => ({ position: [index, "0.5"], angle: index % 2 === 0 ? 0 : L.degrees(90) }));
-    const bodies = world.spawnEach({ shapes: [L.box("0.25", "0.5")], userData: 7 }, places);
+    const poses = Array.from({ length: 300 }, (_, index) => ({ position: [index, "0.5"], angle: index % 2 === 0 ? 0 : L.degrees(90) }));
+    const bodies = world.spawnEach({ shapes: [L.box("0.25", "0.5")], userData: 7 }, poses);
     assert.deepEqual(bodies, world.bodies());
     const last = world.body(bodies[299]);
     assert.deepEqual([last.position.x.toNumber(), last.angle.bits, last.userData], [299, 0x40000000, 7n]);
@@ -149,7 +149,7 @@ test("bodies and joints with one definition are added together, or none", () => 
     assert.throws(() => world.spawnEach({}, [{ position: [0, 0] }, { angle: 0 }]), { code: "VALUE" });
     assert.deepEqual([world.counts().bodies, world.counts().joints], [300, 299]);
     const commands = new L.Commands();
-    assert.equal(commands.spawnEach({}, places), undefined);
+    assert.equal(commands.spawnEach({}, poses), undefined);
     assert.equal(commands.addJointEach({ type: "revolute" }, pairs), undefined);
     assert.equal(world.execute(commands), 0);
     assert.deepEqual([world.counts().bodies, world.counts().joints], [600, 598]);

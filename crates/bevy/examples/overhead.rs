@@ -18,18 +18,18 @@ const ROWS: i32 = 45;
 fn pyramid() -> Result<SandboxSetup, WorldError> {
     let ground = ShapeDef::new(Polygon::rectangle(fx!(60), fx!(1))?);
     let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
-    let place = |row: i32, column: i32| {
+    let pose = |row: i32, column: i32| {
         let x = fx_mul(Fx::from_num(2 * column + row - ROWS), fx!(0.525));
         BodyPose { position: Vec2::new(x, fx!(0.5) + Fx::from_num(row)), angle: Angle::ZERO }
     };
-    let places = (0..ROWS).flat_map(|row| (0..ROWS - row).map(move |column| place(row, column)));
+    let poses = (0..ROWS).flat_map(|row| (0..ROWS - row).map(move |column| pose(row, column)));
     let fixed = BodyDef::fixed().position((fx!(0), fx!(-1)));
     let commands = vec![
         Command::Spawn { body: fixed, shapes: vec![ground] },
         Command::SpawnEach {
             body: BodyDef::dynamic().never_sleeps(),
             shapes: vec![square],
-            places: places.collect(),
+            poses: poses.collect(),
         },
     ];
     Ok(SandboxSetup { commands, ..SandboxSetup::default() })

@@ -185,7 +185,7 @@ impl StepLog {
         self.refresh(world);
     }
 
-    /// Takes the poses of a state that was not stepped to.
+    /// Takes the poses of a state that no step has led to, such as a loaded one. Views go there without interpolation.
     fn refresh(&mut self, world: Option<&World>) {
         self.after.capture(world);
         self.before = self.after.clone();

@@ -27,14 +27,14 @@ impl<G: Game> Copy<G> {
     /// Plays the first `ticks` ticks of a replay, or all if it has fewer, and records them again.
     pub(crate) fn new(file: &[u8], ticks: u64, limits: &Limits) -> Result<Self, CopyError> {
         let unplayable = |verdict| CopyError::Replay { ticks: 0, verdict };
-        let mut playback = VerifiedReplay::<G>::open(file, limits).map_err(unplayable)?;
+        let mut replay = VerifiedReplay::<G>::open(file, limits).map_err(unplayable)?;
         let reader = Reader::open(file, limits).map_err(|error| unplayable(error.into()))?;
         let header = reader.header();
         let setup = codec::decode(header.setup).map_err(|_| CopyError::Record(RecordError::Setup))?;
         let (mut recorder, _) =
             Recorder::<G>::start(&setup, header.checkpoint_interval).map_err(CopyError::Record)?;
         while recorder.ticks() < ticks {
-            match playback.step() {
+            match replay.step() {
                 Ok(Step::Ticked) => {}
                 Ok(Step::Ended) => break,
                 Err(verdict) => {
@@ -45,12 +45,12 @@ impl<G: Game> Copy<G> {
                     return Err(CopyError::Replay { ticks, verdict });
                 }
             }
-            recorder.record(playback.inputs()).map_err(CopyError::Record)?;
+            recorder.record(replay.inputs()).map_err(CopyError::Record)?;
             if recorder.is_checkpoint_due() {
-                recorder.checkpoint(playback.game().state_hash());
+                recorder.checkpoint(replay.game().state_hash());
             }
         }
-        Ok(Copy { game: playback.into_game(), recorder })
+        Ok(Copy { game: replay.into_game(), recorder })
     }
 
     /// Number of recorded ticks.

@@ -78,8 +78,8 @@ impl Builder {
         shapes: &[ShapeDef],
         positions: impl IntoIterator<Item = Vec2<Fx>>,
     ) -> Result<Vec<BodyId>, WorldError> {
-        let places = positions.into_iter().map(|position| BodyPose { position, angle: body.angle }).collect();
-        match self.command(Command::SpawnEach { body, shapes: shapes.to_vec(), places })? {
+        let poses = positions.into_iter().map(|position| BodyPose { position, angle: body.angle }).collect();
+        match self.command(Command::SpawnEach { body, shapes: shapes.to_vec(), poses })? {
             Outcome::Bodies(ids) => Ok(ids),
             other => unreachable!("expected spawned bodies, got {other:?}"),
         }

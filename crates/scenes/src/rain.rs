@@ -65,13 +65,13 @@ fn announce(column: u32) -> Result<Vec<Command>, WorldError> {
         let x = fx!(-121.875) + fx!(6.25).saturating_mul_int(column.into()) + Fx::from_num(i) / 2;
         let group = i32::try_from(ragdoll + 1).expect("a few hundred");
         for (index, bone) in BONES.iter().enumerate() {
-            let place = |floor: u32| BodyPose {
+            let pose = |floor: u32| BodyPose {
                 position: bone.position(Vec2::new(x, Fx::from_num(40 + 45 * floor))),
                 angle: Angle::ZERO,
             };
             let body = bone.body().disabled().user_data(mark(ragdoll, index));
-            let places = (0..FLOORS).map(place).collect();
-            commands.push(Command::SpawnEach { body, shapes: bone.shapes(group)?, places });
+            let poses = (0..FLOORS).map(pose).collect();
+            commands.push(Command::SpawnEach { body, shapes: bone.shapes(group)?, poses });
         }
     }
     Ok(commands)

@@ -239,7 +239,7 @@ fn who_goes_back_lets_go() {
 }
 
 #[test]
-fn only_an_act_that_does_something_cuts_the_tape() {
+fn only_an_act_that_does_something_cuts_the_recording() {
     let (mut live, _) = one_disc();
     play(&mut live, 30);
     live.seek(10).unwrap();

@@ -40,10 +40,10 @@ impl State {
     pub(super) fn alter_contact(&mut self, source: &mut Source<'_>) -> Option<()> {
         let rests = source.one_in(3);
         if source.one_in(6) {
-            return self.alter_resting(source);
+            return self.alter_sleeping_contacts(source);
         }
         let (a, b) = (self.shapes.pick(source)? as u32, self.shapes.pick(source)? as u32);
-        let contacts = if rests { &mut self.resting } else { &mut self.contacts };
+        let contacts = if rests { &mut self.sleeping_contacts } else { &mut self.contacts };
         let at = source.below(contacts.len());
         match source.below(9) {
             0 => {
@@ -86,10 +86,10 @@ impl State {
     }
 
     /// Moves a contact from the active to the sleeping contacts, or back, so that its place is wrong.
-    fn alter_resting(&mut self, source: &mut Source<'_>) -> Option<()> {
+    fn alter_sleeping_contacts(&mut self, source: &mut Source<'_>) -> Option<()> {
         let (from, to) = match source.one_in(2) {
-            true => (&mut self.contacts, &mut self.resting),
-            false => (&mut self.resting, &mut self.contacts),
+            true => (&mut self.contacts, &mut self.sleeping_contacts),
+            false => (&mut self.sleeping_contacts, &mut self.contacts),
         };
         let at = source.below(from.len());
         let moved = (!from.is_empty()).then(|| from.remove(at))?;

@@ -38,7 +38,7 @@ pub struct State {
     joints: Arena<Joint>,
     islands: Arena<Island>,
     contacts: Vec<Contact>,
-    resting: Vec<Contact>,
+    sleeping_contacts: Vec<Contact>,
     pairs_left_out: bool,
     removed_contacts: Vec<Reported>,
     rng: (u64, u64),

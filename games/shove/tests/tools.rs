@@ -35,14 +35,14 @@ fn text(path: &Path) -> &str {
 #[test]
 fn a_match_can_be_gone_through() {
     let bytes = fs::read(replay()).expect("the committed replay should be readable");
-    let mut playback =
+    let mut verified =
         VerifiedReplay::<Shove>::open(&bytes, &Limits::default()).expect("the replay should be valid");
-    while playback.tick() < 1990 {
-        playback.step().expect("the replay should be valid");
+    while verified.tick() < 1990 {
+        verified.step().expect("the replay should be valid");
     }
     let keyframes = path("keyframes");
     let arguments = ["seek", &replay(), "--tick", "2000", "--back", "10", "--keyframes", text(&keyframes)];
-    let expected = format!("tick 1990 of 3000\nstate {}\n", playback.game().state_hash());
+    let expected = format!("tick 1990 of 3000\nstate {}\n", verified.game().state_hash());
     for there in [2000, 200] {
         let out = shove(&arguments);
         assert!(out.contains(&expected), "{out}");
@@ -53,11 +53,11 @@ fn a_match_can_be_gone_through() {
     assert_eq!(out.lines().count(), 2, "{out}");
     let out = shove(&["export", &replay(), "--json", "--from", "1989", "--to", "1990"]);
     assert_eq!(out.lines().count(), 2);
-    assert!(out.contains(&format!("{{\"tick\":1990,\"hash\":\"{}\"", playback.game().state_hash())));
+    assert!(out.contains(&format!("{{\"tick\":1990,\"hash\":\"{}\"", verified.game().state_hash())));
     assert!(shove(&["stats", &replay()]).contains("joints solved"));
 
-    while matches!(playback.step(), Ok(Step::Ticked)) {}
-    let (told, claims) = (shove(&["inspect", &replay()]), playback.game().claims());
+    while matches!(verified.step(), Ok(Step::Ticked)) {}
+    let (told, claims) = (shove(&["inspect", &replay()]), verified.game().claims());
     assert_eq!(claims.len(), 4);
     for (name, value) in claims {
         assert!(told.contains(&format!("claims \"{name}\" = {value}\n")), "{told}");

@@ -123,7 +123,7 @@ struct Batch {
     d: [Ints<WIDTH>; 2],
     radius: [Ints<WIDTH>; 2],
     margin: Ints<WIDTH>,
-    found: Manifolds,
+    manifolds: Manifolds,
 }
 
 /// Manifolds of eight pairs.
@@ -188,10 +188,10 @@ impl BoxPairs {
     /// appending, if the pair is left to the scalar path.
     #[inline(always)]
     pub(crate) fn append_to(&self, manifolds: &mut Vec<Manifold>, place: usize, origin: Vec2<Fx>) -> bool {
-        let (found, lane) = (&self.batches[place / WIDTH].found, place % WIDTH);
-        let is_closed = found.open >> lane & 1 == 0;
+        let (batch, lane) = (&self.batches[place / WIDTH], place % WIDTH);
+        let is_closed = batch.manifolds.open >> lane & 1 == 0;
         if is_closed {
-            manifolds.push(found.manifold(lane, origin));
+            manifolds.push(batch.manifolds.manifold(lane, origin));
         }
         is_closed
     }
@@ -203,7 +203,7 @@ impl Batch {
         d: [Ints::ZERO; 2],
         radius: [Ints::ZERO; 2],
         margin: Ints::ZERO,
-        found: Manifolds {
+        manifolds: Manifolds {
             open: 0,
             normal: [Ints::ZERO; 2],
             count: Ints::ZERO,

@@ -184,8 +184,11 @@ fn deepest(a: &SupportShape, b: &SupportShape) -> Axis {
 }
 
 /// For each face of a core: its normal, the separation of the other core from it, and the other core's nearest point.
-fn faces(core: &SupportShape, other: &SupportShape) -> impl Iterator<Item = (Vec2<Unit>, Grid, Vec2<Grid>)> {
-    edges(core.points()).filter_map(|(p, q)| {
+fn faces(
+    support_shape: &SupportShape,
+    other: &SupportShape,
+) -> impl Iterator<Item = (Vec2<Unit>, Grid, Vec2<Grid>)> {
+    edges(support_shape.points()).filter_map(|(p, q)| {
         let edge = q - p;
         let tangent = direction(edge)?;
         let point = furthest(other.points(), edge.perp());

@@ -23,7 +23,7 @@ const POINTS: usize = 2 * CORNERS as usize;
 
 /// The pose of a body relative to the origin of the rings of its shapes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub(crate) struct RelativePose {
     /// Centre of mass from the origin of the rings, in metres.
     pub(crate) centre: Vec2<Fx>,
     pub(crate) rotation: Rot,
@@ -31,8 +31,8 @@ pub(crate) struct Place {
     pub(crate) local_centre: Vec2<Fx>,
 }
 
-impl Place {
-    /// A point of the body's frame.
+impl RelativePose {
+    /// Converts a point of the body's frame to one relative to the origin of the rings.
     pub(crate) fn point(&self, local: Vec2<Fx>) -> Vec2<Fx> {
         self.centre + self.rotation.apply_wide(local - self.local_centre)
     }
@@ -52,8 +52,8 @@ pub(crate) struct Extent {
 
 impl Ring {
     /// The outline of a shape of a body.
-    pub(crate) fn of(shape: &ShapeDef, place: &Place) -> Self {
-        let point = |vertex: Vec2<Fx>| place.point(shape.offset + vertex);
+    pub(crate) fn of(shape: &ShapeDef, pose: &RelativePose) -> Self {
+        let point = |vertex: Vec2<Fx>| pose.point(shape.offset + vertex);
         match &shape.geometry {
             Geometry::Circle { radius } => Ring::rounded(&[point(Vec2::ZERO)], *radius),
             Geometry::Capsule { a, b, radius } => Ring::rounded(&[point(*a), point(*b)], *radius),
@@ -155,8 +155,8 @@ mod tests {
     use crate::body::Polygon;
     use crate::math::{PI, Rng};
 
-    fn place(x: Fx, y: Fx, angle: Angle) -> Place {
-        Place { centre: Vec2::new(x, y), rotation: Rot::from_angle(angle), local_centre: Vec2::ZERO }
+    fn pose(x: Fx, y: Fx, angle: Angle) -> RelativePose {
+        RelativePose { centre: Vec2::new(x, y), rotation: Rot::from_angle(angle), local_centre: Vec2::ZERO }
     }
 
     fn square(half: Fx) -> ShapeDef {
@@ -169,44 +169,45 @@ mod tests {
 
     #[test]
     fn a_box_is_cut_at_the_surface() {
-        let sea = Ring::of(&square(fx!(10)), &place(fx!(0), fx!(-10), Angle::ZERO));
-        let half = Ring::of(&square(fx!(0.5)), &place(fx!(1), fx!(0.25), Angle::ZERO)).inside(&sea);
+        let sea = Ring::of(&square(fx!(10)), &pose(fx!(0), fx!(-10), Angle::ZERO));
+        let half = Ring::of(&square(fx!(0.5)), &pose(fx!(1), fx!(0.25), Angle::ZERO)).inside(&sea);
         let extent = half.extent().unwrap();
         close(extent.size, fx!(0.25), fx!(0.0000001));
         close(extent.centre.x, fx!(1), fx!(0.0000001));
         close(extent.centre.y, fx!(-0.125), fx!(0.0000001));
-        let above = Ring::of(&square(fx!(0.5)), &place(fx!(1), fx!(0.75), Angle::ZERO)).inside(&sea);
+        let above = Ring::of(&square(fx!(0.5)), &pose(fx!(1), fx!(0.75), Angle::ZERO)).inside(&sea);
         assert_eq!(above.extent(), None);
     }
 
     /// A segment of a disc up to the height `h` below the centre: `r^2 (acos(h / r) - h / r sqrt(1 - (h / r)^2))`.
     #[test]
     fn a_disc_is_cut_as_theory_says() {
-        let sea = Ring::of(&square(fx!(50)), &place(fx!(0), fx!(-50), Angle::ZERO));
+        let sea = Ring::of(&square(fx!(50)), &pose(fx!(0), fx!(-50), Angle::ZERO));
         let disc = ShapeDef::new(Geometry::circle(fx!(2)).unwrap());
         // acos(1/2) = pi/3, acos(-1/2) = 2 pi / 3
         for (height, angle, sign) in
             [(fx!(1), PI / 3, fx!(-1)), (fx!(-1), PI * 2 / 3, fx!(1)), (fx!(0), PI / 2, fx!(0))]
         {
-            let cut = Ring::of(&disc, &place(fx!(3), height, Angle::ZERO)).inside(&sea).extent().unwrap();
+            let cut = Ring::of(&disc, &pose(fx!(3), height, Angle::ZERO)).inside(&sea).extent().unwrap();
             let expected = (angle + fx_mul(sign, fx!(0.433012701892))) * 4;
             close(cut.size, expected, fx!(0.02));
             close(cut.centre.x, fx!(3), fx!(0.000001));
         }
-        let whole = Ring::of(&disc, &place(fx!(0), fx!(-9), Angle::ZERO)).inside(&sea).extent().unwrap();
+        let whole = Ring::of(&disc, &pose(fx!(0), fx!(-9), Angle::ZERO)).inside(&sea).extent().unwrap();
         close(whole.size, PI * 4, fx!(0.00001));
     }
 
     #[test]
     fn the_part_of_a_line_is_a_length() {
-        let sea = Ring::of(&square(fx!(10)), &place(fx!(0), fx!(-10), Angle::ZERO));
+        let sea = Ring::of(&square(fx!(10)), &pose(fx!(0), fx!(-10), Angle::ZERO));
         let line = ShapeDef::new(Geometry::segment(Vec2::ZERO, Vec2::new(fx!(0), fx!(4))).unwrap());
-        let cut = Ring::of(&line, &place(fx!(0), fx!(-1), Angle::ZERO)).inside(&sea).extent().unwrap();
+        let cut = Ring::of(&line, &pose(fx!(0), fx!(-1), Angle::ZERO)).inside(&sea).extent().unwrap();
         close(cut.size, fx!(1), fx!(0.000001));
         close(cut.centre.y, fx!(-0.5), fx!(0.000001));
     }
 
-    /// Two areas that share an edge divide every shape between them, whatever its form.
+    /// The parts of a shape that are in two adjacent areas add up to the whole shape, in size and centre, for every kind
+    /// of shape.
     #[test]
     fn neighbouring_areas_divide_a_shape() {
         let mut rng = Rng::new(7);
@@ -222,11 +223,11 @@ mod tests {
                 2 => ShapeDef::new(Polygon::square(size).unwrap().rounded(size / 3).unwrap()),
                 _ => ShapeDef::new(Polygon::regular(3 + rng.below(6), size).unwrap()),
             };
-            let at = place(rng.range(fx!(-4), fx!(4)), rng.range(fx!(-4), fx!(4)), turn);
+            let at = pose(rng.range(fx!(-4), fx!(4)), rng.range(fx!(-4), fx!(4)), turn);
             let whole = Ring::of(&def, &at).extent().unwrap();
             let half = |x: Fx| {
                 let half = ShapeDef::new(Polygon::square(fx!(20)).unwrap());
-                let half = Ring::of(&half, &place(x, fx!(0), Angle::ZERO));
+                let half = Ring::of(&half, &pose(x, fx!(0), Angle::ZERO));
                 Ring::of(&def, &at).inside(&half).extent()
             };
             let parts = [half(fx!(-20)), half(fx!(20))];

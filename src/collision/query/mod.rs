@@ -7,7 +7,7 @@ mod shape_cast;
 mod time_of_impact;
 
 pub(crate) use distance::{distance, overlap};
-pub(crate) use immersion::{Place, Ring};
+pub(crate) use immersion::{RelativePose, Ring};
 pub(crate) use ray::{cast_ray, contains_point};
 pub(crate) use shape_cast::{SKIN, ShapeHit, TOLERANCE as SKIN_TOLERANCE, cast_shape, goes_against};
 pub(crate) use time_of_impact::{

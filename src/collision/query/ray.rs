@@ -157,7 +157,7 @@ mod tests {
         let mut rng = Rng::new(1);
         let (mut hits, mut misses, mut grazing, mut inside) = (0, 0, 0, 0);
         for _ in 0..30_000 {
-            let shape = samples::core(&mut rng);
+            let shape = samples::support(&mut rng);
             let origin = samples::vector(&mut rng, fx!(4));
             let aim = samples::vector(&mut rng, fx!(1.2));
             let translation = (aim - origin).scale(rng.range(fx!(0.5), fx!(3)));
@@ -197,7 +197,7 @@ mod tests {
         let mut rng = Rng::new(3);
         let mut rays = 0;
         for _ in 0..20_000 {
-            let shape = samples::core(&mut rng);
+            let shape = samples::support(&mut rng);
             let points = samples::world_points(&shape);
             let (first, last) = (points[0], points[points.len() - 1]);
             for (through, onwards) in
@@ -222,7 +222,7 @@ mod tests {
         let mut rng = Rng::new(2);
         let mut hits = 0;
         for _ in 0..10_000 {
-            let shape = samples::core(&mut rng);
+            let shape = samples::support(&mut rng);
             let far = samples::vector(&mut rng, fx!(1073741823));
             let aim = samples::vector(&mut rng, fx!(0.5));
             let Some(hit) = cast_ray(&shape, far, aim - far + (aim - far)) else { continue };

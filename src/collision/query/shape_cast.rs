@@ -148,7 +148,7 @@ mod tests {
         let mut rng = Rng::new(1);
         let (mut hits, mut misses, mut grazing) = (0, 0, 0);
         for _ in 0..20_000 {
-            let (a, b) = (samples::core(&mut rng), samples::placed(&mut rng, fx!(4)));
+            let (a, b) = (samples::support(&mut rng), samples::placed(&mut rng, fx!(4)));
             if distance(&a, &b).distance <= SKIN + TOLERANCE {
                 continue;
             }
@@ -177,7 +177,7 @@ mod tests {
         let mut rng = Rng::new(2);
         let mut stopped = 0;
         for _ in 0..20_000 {
-            let (a, b) = (samples::core(&mut rng), samples::placed(&mut rng, fx!(4)));
+            let (a, b) = (samples::support(&mut rng), samples::placed(&mut rng, fx!(4)));
             let translation = samples::vector(&mut rng, fx!(8));
             let Some(hit) = cast_shape(&a, &b, translation) else { continue };
             stopped += 1;
@@ -201,7 +201,7 @@ mod tests {
         let mut rng = Rng::new(3);
         let mut free = 0;
         for _ in 0..20_000 {
-            let (a, b) = (samples::core(&mut rng), samples::placed(&mut rng, fx!(0.6)));
+            let (a, b) = (samples::support(&mut rng), samples::placed(&mut rng, fx!(0.6)));
             let start = distance(&a, &b).distance;
             let translation = samples::vector(&mut rng, fx!(2));
             if start > SKIN || cast_shape(&a, &b, translation).is_some() {
@@ -261,7 +261,7 @@ mod tests {
         let mut hits = 0;
         for _ in 0..5_000 {
             let far = samples::vector(&mut rng, fx!(1073741823));
-            let (a, b) = (samples::core(&mut rng), samples::core(&mut rng).moved(to_grid(far)));
+            let (a, b) = (samples::support(&mut rng), samples::support(&mut rng).moved(to_grid(far)));
             let Some(hit) = cast_shape(&a, &b, -far) else { continue };
             hits += 1;
             let gap = distance(&a, &b.moved(to_grid(hit.travelled))).distance - SKIN;

@@ -125,8 +125,9 @@ pub(crate) fn first_impact(
 const OVERLAP_STEPS_MAX: u32 = 256;
 
 /// Fraction of the tick after which two shapes first overlap, to within 0.05 mm of depth; 0 if they do from the start.
-/// `None` if they do not within the tick, or only by less than 0.05 mm. Arguments as for [`time_of_impact`], but no
-/// shape has to be protected. Two segments, which have no depth unless they cross, overlap within 0.05 mm.
+/// `None` if they do not within the tick, or only by less than 0.05 mm. Arguments as for [`time_of_impact`], but neither
+/// shape is protected. Two segments, which have no depth unless they cross, count as overlapping when they come within
+/// 0.05 mm of each other.
 pub(crate) fn first_overlap(
     a: &SupportShape,
     sweep_a: &Sweep,
@@ -140,12 +141,12 @@ pub(crate) fn first_overlap(
     let mut fraction = Fx::ZERO;
     for _ in 0..OVERLAP_STEPS_MAX {
         let (posed_a, posed_b) = (a.at(fraction), b.at(fraction));
-        let Distance { distance, normal, .. } = distance(&posed_a.core, &posed_b.core);
+        let Distance { distance, normal, .. } = distance(&posed_a.support, &posed_b.support);
         if distance <= overlap {
             return Some(fraction);
         }
         let left = Fx::ONE - fraction;
-        let offset = radii(&a.core, &b.core).saturating_add(target);
+        let offset = radii(&a.support, &b.support).saturating_add(target);
         let free = free_part(&a.tracks(&posed_a, normal, -1), &b.tracks(&posed_b, normal, 1), offset, left);
         if free == left || free == Fx::ZERO {
             return None;
@@ -175,14 +176,14 @@ fn swept_pair(
     let moved = (sweep_b.end - sweep_b.start).length().saturating_add((sweep_a.end - sweep_a.start).length());
     let reach_b = to_fx(b.reach());
     let reach = moved.saturating_add(reach_b).saturating_add(radii(a, b)).saturating_add(target);
-    let Some(core_a) = near(a, sweep_a, between, reach.saturating_add(Fx::ONE)) else {
+    let Some(support_a) = near(a, sweep_a, between, reach.saturating_add(Fx::ONE)) else {
         return Err(Unswept::Apart);
     };
-    let reach_a = to_fx(core_a.reach());
+    let reach_a = to_fx(support_a.reach());
     if between.is_longer_than(reach.saturating_add(reach_a)) {
         return Err(Unswept::Apart);
     }
-    let swept_a = SweptShape::new(core_a, reach_a, sweep_a, -between);
+    let swept_a = SweptShape::new(support_a, reach_a, sweep_a, -between);
     swept_a.zip(SweptShape::new(*b, reach_b, sweep_b, Vec2::ZERO)).ok_or(Unswept::TooFast)
 }
 
@@ -191,14 +192,14 @@ fn advance(a: &SweptShape, b: &SweptShape, mut target: Fx, policy: StartPolicy) 
     let steps_max = if policy == StartPolicy::Protect { STEPS_MAX } else { QUERY_STEPS_MAX };
     for step in 0..steps_max {
         let (posed_a, posed_b) = (a.at(fraction), b.at(fraction));
-        let Distance { distance, normal, .. } = distance(&posed_a.core, &posed_b.core);
+        let Distance { distance, normal, .. } = distance(&posed_a.support, &posed_b.support);
         let close = target.saturating_add(TOLERANCE);
         if distance <= close {
             if step > 0 {
                 return TimeOfImpact::Hit { fraction };
             }
             let deeper = match policy {
-                StartPolicy::Protect => target_of_contact(&a.core, &b.core, distance),
+                StartPolicy::Protect => target_of_contact(&a.support, &b.support, distance),
                 StartPolicy::Resist => Some(distance.saturating_sub(TOLERANCE * 2)),
                 StartPolicy::Report if distance < Fx::ZERO => None,
                 StartPolicy::Report => return TimeOfImpact::Hit { fraction },
@@ -212,7 +213,7 @@ fn advance(a: &SweptShape, b: &SweptShape, mut target: Fx, policy: StartPolicy) 
             }
         }
         let left = Fx::ONE - fraction;
-        let offset = radii(&a.core, &b.core).saturating_add(target);
+        let offset = radii(&a.support, &b.support).saturating_add(target);
         let free = free_part(&a.tracks(&posed_a, normal, -1), &b.tracks(&posed_b, normal, 1), offset, left);
         if free == left {
             return TimeOfImpact::Separated;
@@ -250,7 +251,7 @@ fn near(a: &SupportShape, sweep: &Sweep, b: Vec2<Fx>, window: Fx) -> Option<Supp
 
 /// A moving shape.
 struct SweptShape {
-    core: SupportShape,
+    support: SupportShape,
     sweep: Sweep,
     /// Centre of its body at the start, relative to that of B.
     centre: Vec2<Fx>,
@@ -263,14 +264,14 @@ struct SweptShape {
 
 /// The support shape at some time, relative to B's centre at the start.
 struct Posed {
-    core: SupportShape,
+    support: SupportShape,
     centre: Vec2<Grid>,
 }
 
 impl SweptShape {
     /// Creates a swept shape from a support shape whose furthest point is `reach` from its body's centre. `None` if it
     /// rotates too far.
-    fn new(core: SupportShape, reach: Fx, sweep: &Sweep, centre: Vec2<Fx>) -> Option<Self> {
+    fn new(support: SupportShape, reach: Fx, sweep: &Sweep, centre: Vec2<Fx>) -> Option<Self> {
         let turn = i128::from(sweep.turn) * i128::from(TAU.to_bits());
         let theta = Fx::from_bits(saturate_wide(round_shift_wide(turn, Fx::FRAC_NBITS)));
         let theta = if reach == 0 { Fx::ZERO } else { theta };
@@ -280,7 +281,7 @@ impl SweptShape {
         let curvature = fx_mul(fx_mul(theta, theta), reach) / 2 + Fx::DELTA * 4;
         let curvature = if theta == 0 { Fx::ZERO } else { curvature };
         Some(SweptShape {
-            core,
+            support,
             sweep: *sweep,
             centre,
             displacement: sweep.end - sweep.start,
@@ -292,8 +293,8 @@ impl SweptShape {
     fn at(&self, fraction: Fx) -> Posed {
         let (displacement, rotation) = self.sweep.at(fraction);
         let centre = to_grid(self.centre + displacement);
-        let core = if self.theta == 0 { self.core } else { self.core.rotated(rotation) };
-        Posed { core: core.moved(centre), centre }
+        let support = if self.theta == 0 { self.support } else { self.support.rotated(rotation) };
+        Posed { support: support.moved(centre), centre }
     }
 
     /// Positions and speeds of the vertices along an axis, both negated if `sign` is -1. If the shape does not rotate,
@@ -302,7 +303,7 @@ impl SweptShape {
         let wide = normal.widen();
         let speed = wide.dot(self.displacement);
         let mut tracks = Tracks { count: 0, vertices: [(Fx::ZERO, Fx::ZERO); 8], curvature: self.curvature };
-        for &point in posed.core.points() {
+        for &point in posed.support.points() {
             let spin = fx_mul(self.theta, from_grid(point - posed.centre).cross(wide));
             let (x, v) = (to_fx(along(normal, point)), speed.saturating_add(spin));
             let track = (x.saturating_mul_int(sign), v.saturating_mul_int(sign));

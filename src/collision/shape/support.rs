@@ -70,12 +70,12 @@ impl SupportShape {
 
     fn from_grid_points(points: impl IntoIterator<Item = Vec2<Grid>>, radius: Fx) -> Self {
         let radius = Grid::from_bits(round_shift(radius.clamp(Fx::ZERO, RADIUS_MAX).to_bits(), FINER));
-        let mut core = SupportShape { count: 0, points: [Vec2::ZERO; POLYGON_VERTICES_MAX], radius };
-        for (slot, point) in core.points.iter_mut().zip(points) {
+        let mut support = SupportShape { count: 0, points: [Vec2::ZERO; POLYGON_VERTICES_MAX], radius };
+        for (slot, point) in support.points.iter_mut().zip(points) {
             *slot = point;
-            core.count += 1;
+            support.count += 1;
         }
-        core
+        support
     }
 
     pub(crate) fn points(&self) -> &[Vec2<Grid>] {
@@ -279,7 +279,7 @@ mod tests {
     use crate::body::{Body, BodyDef, Geometry, MassProperties, Polygon, ShapeDef};
     use crate::math::Angle;
 
-    fn core_of(geometry: Geometry, origin: Vec2<Fx>) -> SupportShape {
+    fn support_of(geometry: Geometry, origin: Vec2<Fx>) -> SupportShape {
         let def = BodyDef::fixed().position((fx!(1000000003), fx!(-7))).angle(Angle::QUARTER);
         let body = Body::new(&def, MassProperties::immovable());
         SupportShape::of(&PosedShape::new(&ShapeDef::new(geometry), &body, body.rotation()), origin)
@@ -289,13 +289,13 @@ mod tests {
     fn shapes_become_points_and_a_radius() {
         let origin = Vec2::new(fx!(1000000000), fx!(-7));
         let point = |x, y| to_grid(Vec2::new(x, y));
-        let disc = core_of(Geometry::circle(fx!(2)).unwrap(), origin);
+        let disc = support_of(Geometry::circle(fx!(2)).unwrap(), origin);
         assert_eq!((disc.points(), disc.radius), (&[point(fx!(3), fx!(0))][..], Grid::from_num(2)));
         let ends = [Vec2::new(fx!(0), fx!(0)), Vec2::new(fx!(4), fx!(0))];
-        let segment = core_of(Geometry::segment(ends[0], ends[1]).unwrap(), origin);
+        let segment = support_of(Geometry::segment(ends[0], ends[1]).unwrap(), origin);
         assert_eq!(segment.points(), [point(fx!(3), fx!(0)), point(fx!(3), fx!(4))]);
         let rounded = Polygon::rectangle(fx!(2), fx!(1)).unwrap().rounded(fx!(0.5)).unwrap();
-        let polygon = core_of(rounded.into(), origin);
+        let polygon = support_of(rounded.into(), origin);
         assert_eq!((polygon.points().len(), polygon.radius), (4, Grid::from_num(0.5)));
         assert_eq!(polygon.points()[0], point(fx!(4), fx!(-2)));
         assert_eq!(edges(polygon.points()).count(), 4);

@@ -151,7 +151,7 @@ fn count(n: usize) -> u64 {
 fn shapes_added(command: &Command) -> u64 {
     match command {
         Command::Spawn { shapes, .. } => count(shapes.len()),
-        Command::SpawnEach { shapes, places, .. } => count(shapes.len()).saturating_mul(count(places.len())),
+        Command::SpawnEach { shapes, poses, .. } => count(shapes.len()).saturating_mul(count(poses.len())),
         Command::AddShape { .. } => 1,
         _ => 0,
     }
@@ -160,7 +160,7 @@ fn shapes_added(command: &Command) -> u64 {
 fn bodies_added(command: &Command) -> u64 {
     match command {
         Command::Spawn { .. } => 1,
-        Command::SpawnEach { places, .. } => count(places.len()),
+        Command::SpawnEach { poses, .. } => count(poses.len()),
         _ => 0,
     }
 }

@@ -185,13 +185,13 @@ impl Visitor<'_> for SaveBytes {
 
 /// Encodes the keyframes as the bytes of a file.
 pub(super) fn encode<G: Game>(replay: &[u8], keyframes: &Keyframes<'_>) -> Vec<u8> {
-    let at_checkpoints = keyframes.iter().filter(|frame| frame.place.inputs.finished_block().is_some());
+    let at_checkpoints = keyframes.iter().filter(|frame| frame.position.inputs.finished_block().is_some());
     let body = Body {
         rules_name: G::RULES.name.into(),
         rules_version: G::RULES.version,
         replay: StateHash::of_bytes(replay),
         interval: keyframes.interval(),
-        saves: at_checkpoints.map(|frame| (frame.place.tick, Save(frame.save.clone()))).collect(),
+        saves: at_checkpoints.map(|frame| (frame.position.tick, Save(frame.save.clone()))).collect(),
     };
     ENVELOPE.seal(crate::SEMANTICS, &body)
 }
@@ -226,19 +226,19 @@ pub(super) fn place<'a>(
     ticks: u64,
     body: Body,
 ) -> Result<Vec<Keyframe<'a>>, KeyframesError> {
-    let mut place = start.clone();
+    let mut position = start.clone();
     let mut keyframes = Vec::new();
     for (tick, Save(save)) in body.saves {
-        while place.tick < tick.min(ticks) && matches!(place.inputs.next_tick(), Ok(Some(_))) {
-            place.tick += 1;
+        while position.tick < tick.min(ticks) && matches!(position.inputs.next_tick(), Ok(Some(_))) {
+            position.tick += 1;
         }
-        if place.tick != tick {
+        if position.tick != tick {
             return Err(KeyframesError::Invalid(KeyframesFlaw::Ticks));
         }
-        if place.inputs.finished_block().is_none() {
+        if position.inputs.finished_block().is_none() {
             return Err(KeyframesError::Invalid(KeyframesFlaw::Checkpoint));
         }
-        keyframes.push(Keyframe { place: place.clone(), save });
+        keyframes.push(Keyframe { position: position.clone(), save });
     }
     Ok(keyframes)
 }

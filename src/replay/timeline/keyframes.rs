@@ -8,7 +8,7 @@ use super::super::raw_replay::ReplayPosition;
 /// A saved state with its position in the replay.
 #[derive(Clone, Debug)]
 pub(super) struct Keyframe<'a> {
-    pub(super) place: ReplayPosition<'a>,
+    pub(super) position: ReplayPosition<'a>,
     /// Canonical bytes of the game's save.
     pub(super) save: Vec<u8>,
 }
@@ -64,9 +64,9 @@ impl<'a> Keyframes<'a> {
 
     /// Inserts a keyframe if one is due at its tick, otherwise drops it.
     pub(super) fn insert(&mut self, frame: Keyframe<'a>) {
-        if self.is_due(frame.place.tick) {
+        if self.is_due(frame.position.tick) {
             self.bytes += frame.bytes();
-            self.later.insert(frame.place.tick, frame);
+            self.later.insert(frame.position.tick, frame);
             while self.bytes > self.bytes_max && !self.later.is_empty() {
                 self.thin_out();
             }

@@ -163,11 +163,11 @@ impl<'a, G: Game> Timeline<'a, G> {
     /// its setup leads to another start state.
     pub fn open(file: &'a [u8], options: &TimelineOptions, limits: &Limits) -> Result<Self, Verdict> {
         let replay = VerifiedReplay::<G>::open(file, limits)?;
-        let place = replay.place().clone();
-        let block_ticks = u64::from(place.inputs.reader().header().checkpoint_interval).max(1);
+        let position = replay.position().clone();
+        let block_ticks = u64::from(position.inputs.reader().header().checkpoint_interval).max(1);
         let interval = u64::from(options.interval).max(1);
         let interval = if interval > block_ticks { interval - interval % block_ticks } else { interval };
-        let start = Keyframe { place, save: codec::encode(&replay.game().save()) };
+        let start = Keyframe { position, save: codec::encode(&replay.game().save()) };
         let keyframes = Keyframes::new(start, interval, options.bytes.min(KEYFRAMES_BYTES_MAX));
         let (trail, failed) = (Trail::default(), None);
         Ok(Timeline { file, replay, keyframes, trail, played: 0, simulated: 0, failed })
@@ -216,7 +216,7 @@ impl<'a, G: Game> Timeline<'a, G> {
 
     /// Ticks of the keyframes, in ascending order, including 0.
     pub fn keyframes(&self) -> impl Iterator<Item = u64> {
-        self.keyframes.iter().map(|frame| frame.place.tick)
+        self.keyframes.iter().map(|frame| frame.position.tick)
     }
 
     /// Seeks to a tick. Ticks that have been played before cost less than one [`interval`](Self::interval) of
@@ -304,7 +304,7 @@ impl<'a, G: Game> Timeline<'a, G> {
         let body = bytes::decode::<G>(self.file, bytes)?;
         let interval = body.interval.saturating_mul(self.interval().div_ceil(body.interval));
         let start = self.keyframes.first().clone();
-        let found = bytes::place(&start.place, self.ticks(), body)?;
+        let found = bytes::place(&start.position, self.ticks(), body)?;
         let mut keyframes = Keyframes::new(start, interval, self.keyframes.bytes_max());
         for frame in found {
             keyframes.insert(frame);
@@ -324,13 +324,13 @@ impl<'a, G: Game> Timeline<'a, G> {
     fn go_to_latest_before(&mut self, tick: u64) -> Result<(), SeekError> {
         let frame = self.keyframes.latest(tick);
         let kept = self.trail.latest(tick);
-        let from = kept.map_or(0, |(place, _)| place.tick).max(frame.place.tick);
+        let from = kept.map_or(0, |(position, _)| position.tick).max(frame.position.tick);
         if (from..=tick).contains(&self.tick()) {
             return Ok(());
         }
-        match kept.filter(|(place, _)| place.tick == from) {
-            Some((place, save)) => {
-                self.replay.go(save, place.clone());
+        match kept.filter(|(position, _)| position.tick == from) {
+            Some((position, save)) => {
+                self.replay.go(save, position.clone());
                 Ok(())
             }
             None => self.go_to_keyframe(tick),
@@ -338,12 +338,12 @@ impl<'a, G: Game> Timeline<'a, G> {
     }
 
     fn go_to_keyframe(&mut self, tick: u64) -> Result<(), SeekError> {
-        let Keyframe { place, save } = self.keyframes.latest(tick);
-        let tick = place.tick;
+        let Keyframe { position, save } = self.keyframes.latest(tick);
+        let tick = position.tick;
         let save: G::Save = codec::decode(save)
             .map_err(|error| SeekError::Keyframe { tick, why: alloc::format!("{error}") })?;
-        let (back, here) = (self.game().save(), self.replay.place().clone());
-        self.replay.go(&save, place.clone());
+        let (back, here) = (self.game().save(), self.replay.position().clone());
+        self.replay.go(&save, position.clone());
         if self.replay.agrees() {
             return Ok(());
         }
@@ -357,7 +357,7 @@ impl<'a, G: Game> Timeline<'a, G> {
         let length = u64::try_from(length).unwrap_or(u64::MAX).max(2);
         let spacing = self.interval().div_ceil(length);
         if self.tick().is_multiple_of(spacing) {
-            self.trail.keep(self.replay.place().clone(), self.replay.game().save(), length);
+            self.trail.keep(self.replay.position().clone(), self.replay.game().save(), length);
         }
     }
 
@@ -378,7 +378,7 @@ impl<'a, G: Game> Timeline<'a, G> {
         }
         if self.keyframes.is_due(now) {
             let save = codec::encode(&self.game().save());
-            self.keyframes.insert(Keyframe { place: self.replay.place().clone(), save });
+            self.keyframes.insert(Keyframe { position: self.replay.position().clone(), save });
         }
         Ok(())
     }

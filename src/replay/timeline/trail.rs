@@ -22,9 +22,9 @@ impl<'a, S> Trail<'a, S> {
     }
 
     /// Inserts a save and removes others, latest first, until at most `length` are left.
-    pub(super) fn keep(&mut self, place: ReplayPosition<'a>, save: S, length: u64) {
-        let tick = place.tick;
-        self.saves.insert(tick, (place, save));
+    pub(super) fn keep(&mut self, position: ReplayPosition<'a>, save: S, length: u64) {
+        let tick = position.tick;
+        self.saves.insert(tick, (position, save));
         let is_full = |count: usize| u64::try_from(count).is_ok_and(|count| count > length);
         while is_full(self.saves.len()) {
             // If no save is later than this tick, the earliest one is the least useful.

@@ -125,8 +125,8 @@ impl ContactShare<'_> {
 
     /// Runs an operation over all other contacts, colour by colour.
     pub(super) fn run_coloured(&mut self, operation: impl Operation<Contacts>, context: &StepContext<'_>) {
-        self.warm.run_coloured(operation, context);
-        self.cold.run_coloured(operation, context);
+        self.warm.coloured.run_coloured(operation, context);
+        self.cold.coloured.run_coloured(operation, context);
     }
 
     /// Whether any contact is cold.
@@ -142,7 +142,7 @@ impl ContactShare<'_> {
     /// Runs an operation over the cold contacts.
     pub(super) fn run_cold(&mut self, operation: impl Operation<Contacts>, context: &StepContext<'_>) {
         self.cold.run_overflow(operation, context);
-        self.cold.run_coloured(operation, context);
+        self.cold.coloured.run_coloured(operation, context);
     }
 
     /// Applies restitution, after the passes of a sub-step.

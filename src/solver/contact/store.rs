@@ -155,7 +155,7 @@ impl ContactShare<'_> {
             if let Some(batches) = share.own_overflow() {
                 Store { batches, store }.run::<Scalar<1>>();
             }
-            machine.run(Store { batches: share.coloured(), store });
+            machine.run(Store { batches: share.coloured, store });
         }
     }
 }

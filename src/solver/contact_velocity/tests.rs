@@ -1,5 +1,5 @@
 //! The velocity change that the warm start applies to a body is the one that contacts have caused. The tests of
-//! `world::tests` checks the same property for whole worlds with `push_error`.
+//! `world::tests` checks the same property for whole worlds with `contact_velocity_error`.
 
 use std::vec::Vec;
 
@@ -109,7 +109,7 @@ fn what_is_too_fast_is_a_fault() {
 impl Solver {
     /// Compares the velocity changes that contacts have caused in the last sub-step with those by the accumulated
     /// impulses in their rows. Returns the largest difference and the largest change by impulses, in units of a speed.
-    pub(crate) fn push_error(&mut self, tuning: &Tuning) -> (i32, i32) {
+    pub(crate) fn contact_velocity_error(&mut self, tuning: &Tuning) -> (i32, i32) {
         let Solver { list, contacts, contact_velocities, machine, faults, .. } = self;
         let context = &StepContext::new(*machine, tuning, &mut list.bodies, faults);
         contact_velocities.iter_mut().for_each(|velocities| velocities.measure(context));
@@ -123,9 +123,9 @@ impl Solver {
             for (lane, &index) in group.at.iter().enumerate() {
                 let body = &self.list.bodies[index as usize];
                 let rows = [body.velocity.x, body.velocity.y, body.spin].map(Speed::to_bits);
-                let VelocityW { x, y, turn } = &group.push;
-                for (row, push) in rows.into_iter().zip([x.0[lane], y.0[lane], turn.0[lane]]) {
-                    error = error.max((row - push).abs());
+                let VelocityW { x, y, turn } = &group.change;
+                for (row, change) in rows.into_iter().zip([x.0[lane], y.0[lane], turn.0[lane]]) {
+                    error = error.max((row - change).abs());
                     largest = largest.max(row.abs());
                 }
             }

@@ -24,9 +24,7 @@ use crate::threads::TeamLock;
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct JointSet {
     cache_key: CacheKey,
-    /// Bodies that have joints but are not among the active bodies of the tick, and far anchors: the slot of each, and
-    /// the frame of a far anchor.
-    anchors: Vec<(u32, Option<JointFrame>)>,
+    anchors: Vec<Anchor>,
     /// For each body of the tick, its place in `bodies`, counted from 1; 0 if the body has no joint.
     places: Vec<u32>,
     /// The properties of bodies that the arrangement of their joints depends on.
@@ -64,6 +62,14 @@ pub(in crate::solver) struct JointSource<'a> {
     pub(in crate::solver) slots: &'a [u32],
     pub(in crate::solver) bodies: &'a Arena<Body, BodyId>,
     pub(in crate::solver) tuning: &'a Tuning,
+}
+
+/// A body that has joints but is not among the active bodies of the tick, or a far anchor.
+#[derive(Clone, Copy, Debug)]
+struct Anchor {
+    slot: u32,
+    /// The frame of a far anchor.
+    far: Option<JointFrame>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -152,8 +158,8 @@ impl JointSet {
 
     /// Reuses the hinges of the last tick, with the bodies at their current poses.
     fn resume(&mut self, bodies: &Arena<Body, BodyId>, list: &mut BodyList) {
-        for &(slot, frame) in &self.anchors {
-            match frame {
+        for &Anchor { slot, far } in &self.anchors {
+            match far {
                 Some(frame) => list.add_far_anchor(slot, frame.far_pose(bodies.at(slot))),
                 None => list.own_index_of(slot, bodies.at(slot)),
             };
@@ -173,12 +179,12 @@ impl JointSet {
             let joint = joints.at(slot);
             let (a, b) = joint.def.bodies();
             let parts = hinge_parts(&joint.def.kind);
-            let places = [(a, joint.def.frame_a), (b, joint.def.frame_b)].map(|(id, frame)| {
+            let indices = [(a, joint.def.frame_a), (b, joint.def.frame_b)].map(|(id, frame)| {
                 let far = Some(frame).filter(|frame| parts.is_some() && frame.is_far());
-                self.place_of((id.index(), far), bodies, list, tuning.rate)
+                self.index_of_body(id.index(), far, bodies, list, tuning.rate)
             });
-            places.into_iter().for_each(|place| self.bodies[place].joints += 1);
-            let ends = places.map(|place| &self.bodies[place]);
+            indices.into_iter().for_each(|index| self.bodies[index].joints += 1);
+            let ends = indices.map(|index| &self.bodies[index]);
             colouring.add(node(slot, ends[0], ends[1]));
             self.entries.push(match parts {
                 Some(parts) => Entry::Hinge(self.hinges.push_input(slot, joint, ends, &parts, tuning)),
@@ -195,18 +201,19 @@ impl JointSet {
         self.quads.resize(list.len(), Quad::default());
     }
 
-    /// Returns the place of a body in `bodies`, the compact copies of the properties that joints need. Adds the body if
+    /// Returns the index of a body in `bodies`, the compact copies of the properties that joints need. Adds the body if
     /// it is missing. A far anchor of a hinge is a body of its own, without mass.
-    fn place_of(
+    fn index_of_body(
         &mut self,
-        (slot, far): (u32, Option<JointFrame>),
+        slot: u32,
+        far: Option<JointFrame>,
         bodies: &Arena<Body, BodyId>,
         list: &mut BodyList,
         rate: u32,
     ) -> usize {
         let body = bodies.at(slot);
         if far.is_some() || list.index_of(slot) == GROUND {
-            self.anchors.push((slot, far));
+            self.anchors.push(Anchor { slot, far });
         }
         let (index, end) = match far {
             Some(frame) => {

@@ -181,16 +181,16 @@ impl JointList {
         let JointList { joints, links, rows, points, couplings } = self;
         let walk = Walk { links: links.iter_mut(), rows, points };
         for (joint, (_, rows, points)) in joints.iter().zip(walk) {
-            let place = joint.ends.place(bodies, body_rotations);
+            let pose = joint.ends.pose(bodies, body_rotations);
             for point in points {
-                point.refresh(&place);
+                point.refresh(&pose);
             }
             for row in rows {
                 let measure = match row.direction {
                     Direction::Coupled(index) => {
-                        couplings[index as usize].measure(&joint.ends, &place, bodies, body_rotations)
+                        couplings[index as usize].measure(&joint.ends, &pose, bodies, body_rotations)
                     }
-                    direction => joint.ends.measure(direction, &place, body_rotations),
+                    direction => joint.ends.measure(direction, &pose, body_rotations),
                 };
                 row.refresh(&measure, tuning.rate);
             }

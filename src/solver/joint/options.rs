@@ -8,8 +8,9 @@ use crate::math::Fx;
 
 /// Largest limit, target or speed of a joint. The solver saturates at much smaller values.
 const SIZE_MAX: Fx = fx!(1048576);
-/// Largest frequency of a spring in Hz, and largest damping ratio.
+/// Largest frequency of a spring in Hz.
 const HERTZ_MAX: Fx = fx!(1000);
+/// Largest damping ratio of a spring.
 const DAMPING_RATIO_MAX: Fx = fx!(100);
 
 /// The range of a joint's position, in radians or metres, within ±2^20. The lower end is not above the upper one.

@@ -68,13 +68,13 @@ impl JointPoint {
 
     /// Computes arms, gains and gap at the current pose.
     #[inline]
-    pub(super) fn refresh(&mut self, place: &JointPose) {
+    pub(super) fn refresh(&mut self, pose: &JointPose) {
         (self.block, self.bias) = match &self.task {
             PointTask::Spring { softness, .. } => {
-                let push = Vec2::new(softness.push(place.gap.x), softness.push(place.gap.y));
-                (place.block(softness.mass_scale), push)
+                let push = Vec2::new(softness.push(pose.gap.x), softness.push(pose.gap.y));
+                (pose.block(softness.mass_scale), push)
             }
-            PointTask::Drive { velocity, .. } => (place.block(Unit::ONE), -*velocity),
+            PointTask::Drive { velocity, .. } => (pose.block(Unit::ONE), -*velocity),
         };
     }
 

@@ -79,7 +79,7 @@ impl Ends {
 
     /// The anchors at the current pose.
     #[inline]
-    pub(super) fn place(&self, bodies: &[Cell<SolverBody>], body_rotations: &[BodyRotation]) -> JointPose {
+    pub(super) fn pose(&self, bodies: &[Cell<SolverBody>], body_rotations: &[BodyRotation]) -> JointPose {
         let (a, b) = (self.body_a as usize, self.body_b as usize);
         let arm_a = WideArm::rotated(body_rotations[a].rotation, self.local_a);
         let arm_b = WideArm::rotated(body_rotations[b].rotation, self.local_b);
@@ -102,20 +102,20 @@ impl Ends {
     /// The point at which an impulse does not rotate the bodies relative to each other. If the angle is held as well,
     /// rows on the angle and rows at this point do not disturb each other. With the vector `c` from A's centre to B's,
     /// and A's share `sA = iA / (iA + iB)` of the inverse inertias, the point is at `-sA c` from B's centre.
-    fn balanced(&self, place: &JointPose, body_rotations: &[BodyRotation]) -> JointPose {
+    fn balanced(&self, pose: &JointPose, body_rotations: &[BodyRotation]) -> JointPose {
         let (share_a, _) = self.measure_angle(body_rotations).row.shares();
-        let (arm_a, arm_b) = (place.lever_a.arm.widen(), place.lever_b.arm.widen());
-        let between = arm_a + place.gap - arm_b;
+        let (arm_a, arm_b) = (pose.lever_a.arm.widen(), pose.lever_b.arm.widen());
+        let between = arm_a + pose.gap - arm_b;
         let arm = -between.scale(share_a.into());
         // Vectors from the anchor to that point, for B and for A.
         let (to_b, apart) = (arm - arm_b, Angle::from_turns(Fx::from_bits(self.turns(body_rotations))));
         let to_a = Rot::from_angle(-apart).apply_wide(to_b);
-        let gap = place.gap + to_b - to_a;
+        let gap = pose.gap + to_b - to_a;
         JointPose {
-            lever_a: Lever { arm: (between + arm - gap).narrow(), ..place.lever_a },
-            lever_b: Lever { arm: arm.narrow(), ..place.lever_b },
+            lever_a: Lever { arm: (between + arm - gap).narrow(), ..pose.lever_a },
+            lever_b: Lever { arm: arm.narrow(), ..pose.lever_b },
             gap,
-            ..*place
+            ..*pose
         }
     }
 
@@ -123,21 +123,21 @@ impl Ends {
     pub(super) fn measure(
         &self,
         direction: Direction,
-        place: &JointPose,
+        pose: &JointPose,
         body_rotations: &[BodyRotation],
     ) -> Measure {
         match direction {
             Direction::Angle => self.measure_angle(body_rotations),
-            Direction::Along => self.measure_axis(self.axis, place, body_rotations),
-            Direction::Across => self.measure_axis(self.axis.perp(), place, body_rotations),
+            Direction::Along => self.measure_axis(self.axis, pose, body_rotations),
+            Direction::Across => self.measure_axis(self.axis.perp(), pose, body_rotations),
             Direction::AcrossBalanced => {
-                self.measure_axis(self.axis.perp(), &self.balanced(place, body_rotations), body_rotations)
+                self.measure_axis(self.axis.perp(), &self.balanced(pose, body_rotations), body_rotations)
             }
             Direction::Apart => {
                 // Anchors that coincide define no direction, so that any direction is valid.
-                let n = place.gap.normalized().unwrap_or(self.axis);
-                let (row, denominator) = Row::prepare(n, place.lever_a, place.lever_b, place.fractions);
-                Measure { row, denominator, position: place.gap.length(), scale: Fx::ONE, reach: NO_REACH }
+                let n = pose.gap.normalized().unwrap_or(self.axis);
+                let (row, denominator) = Row::prepare(n, pose.lever_a, pose.lever_b, pose.fractions);
+                Measure { row, denominator, position: pose.gap.length(), scale: Fx::ONE, reach: NO_REACH }
             }
             Direction::Coupled(_) => Measure {
                 row: Row::NONE,
@@ -150,11 +150,11 @@ impl Ends {
     }
 
     /// Measures along an axis of A. The axis turns with A about A's centre, so that A's arm reaches to B's anchor.
-    fn measure_axis(&self, axis: Vec2<Unit>, place: &JointPose, body_rotations: &[BodyRotation]) -> Measure {
+    fn measure_axis(&self, axis: Vec2<Unit>, pose: &JointPose, body_rotations: &[BodyRotation]) -> Measure {
         let n = body_rotations[self.body_a as usize].rotation.apply(axis);
-        let [a, b] = place.levers_at_one_point().unwrap_or([place.reach_of_a(), place.lever_b]);
-        let (row, denominator) = Row::prepare(n, a, b, place.fractions);
-        let position = place.gap.dot(n.widen());
+        let [a, b] = pose.levers_at_one_point().unwrap_or([pose.reach_of_a(), pose.lever_b]);
+        let (row, denominator) = Row::prepare(n, a, b, pose.fractions);
+        let position = pose.gap.dot(n.widen());
         Measure { row, denominator, position, scale: Fx::ONE, reach: [a, b].map(Lever::ratio) }
     }
 

@@ -74,7 +74,8 @@ impl ShapeCache {
         self.poses.motion_mut().begin(body_slots, last_moving);
     }
 
-    /// The motion of bodies and shapes, with the extents and the broad phase that its prediction reads.
+    /// The data for predicting motion: the motion cache, which is written, and the extents and the broad phase, which are
+    /// read.
     pub(crate) fn prediction(&mut self) -> (&mut MotionCache, &[Extents], &BroadPhase) {
         let (motion, extents) = self.poses.motion_and_extents();
         (motion, extents, &self.broad_phase)

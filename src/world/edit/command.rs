@@ -39,7 +39,9 @@ pub enum Command {
         /// Definitions of the shapes of each body.
         shapes: Vec<ShapeDef>,
         /// Position and rotation of each body.
-        places: Vec<BodyPose>,
+        // The key in JSON, for `fork --then`.
+        #[serde(rename = "places")]
+        poses: Vec<BodyPose>,
     },
     /// Calls [`World::despawn`].
     Despawn {
@@ -264,7 +266,7 @@ pub enum Outcome {
     Shape(ShapeId),
     /// A joint.
     Joint(JointId),
-    /// A body for each place, in order.
+    /// A body for each pose, in order.
     Bodies(Vec<BodyId>),
     /// A joint for each pair of bodies, in order.
     Joints(Vec<JointId>),
@@ -278,8 +280,8 @@ impl World {
     pub fn execute(&mut self, command: &Command) -> Result<Outcome, WorldError> {
         match *command {
             Command::Spawn { ref body, ref shapes } => return self.spawn(body, shapes).map(Outcome::Body),
-            Command::SpawnEach { ref body, ref shapes, ref places } => {
-                return self.spawn_each(body, shapes, places).map(Outcome::Bodies);
+            Command::SpawnEach { ref body, ref shapes, ref poses } => {
+                return self.spawn_each(body, shapes, poses).map(Outcome::Bodies);
             }
             Command::AddJointEach { ref joint, ref ends } => {
                 return self.add_joint_each(joint, ends).map(Outcome::Joints);

@@ -23,11 +23,11 @@ use crate::world::state::{Island, State};
 /// use lockstep2d::{fx, math::{Angle, Fx, Vec2}, world::BodyPose};
 /// # let mut world = World::default();
 /// // A row of dominoes.
-/// let place = |i| BodyPose { position: Vec2::new(fx!(0.4) * Fx::from_num(i), fx!(0.5)), angle: Angle::ZERO };
+/// let pose = |i| BodyPose { position: Vec2::new(fx!(0.4) * Fx::from_num(i), fx!(0.5)), angle: Angle::ZERO };
 /// let domino = ShapeDef::new(Polygon::rectangle(fx!(0.05), fx!(0.5))?);
-/// let places: Vec<_> = (0..10).map(place).collect();
-/// let row = world.spawn_each(&BodyDef::dynamic(), &[domino], &places)?;
-/// assert_eq!(world.body(row[9]).map(|last| last.position()), Some(places[9].position));
+/// let poses: Vec<_> = (0..10).map(pose).collect();
+/// let row = world.spawn_each(&BodyDef::dynamic(), &[domino], &poses)?;
+/// assert_eq!(world.body(row[9]).map(|last| last.position()), Some(poses[9].position));
 /// # Ok::<(), lockstep2d::body::WorldError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -76,8 +76,8 @@ impl World {
         Ok(id)
     }
 
-    /// Adds a body with the same definition at every place. A recording stores the definition only once, unlike with a
-    /// [`World::spawn`] for each place.
+    /// Adds a body with the same definition at every pose. A recording stores the definition only once, unlike with a
+    /// [`World::spawn`] for each pose.
     ///
     /// # Errors
     /// The errors of [`World::spawn`]. No body is then added.
@@ -85,21 +85,19 @@ impl World {
         &mut self,
         body: &BodyDef,
         shapes: &[ShapeDef],
-        places: &[BodyPose],
+        poses: &[BodyPose],
     ) -> Result<Vec<BodyId>, WorldError> {
         let config = self.state.config;
-        check_room(self.state.bodies.len(), places.len(), config.body_limit, "bodies")?;
-        let wanted = shapes.len().saturating_mul(places.len());
+        check_room(self.state.bodies.len(), poses.len(), config.body_limit, "bodies")?;
+        let wanted = shapes.len().saturating_mul(poses.len());
         check_room(self.state.shapes.len(), wanted, config.shape_limit, "shapes")?;
-        for place in places {
-            check_position(place.position)?;
+        for pose in poses {
+            check_position(pose.position)?;
         }
         // Every other error would already occur with the first body.
-        places
+        poses
             .iter()
-            .map(|place| {
-                self.spawn(&BodyDef { position: place.position, angle: place.angle, ..*body }, shapes)
-            })
+            .map(|pose| self.spawn(&BodyDef { position: pose.position, angle: pose.angle, ..*body }, shapes))
             .collect()
     }
 

@@ -56,8 +56,8 @@ impl World {
         {
             return Ok(());
         }
-        let core = SupportShape::of(self.scratch.shapes.poses().at(slot), explosion.centre);
-        match explosion.on(&core) {
+        let support = SupportShape::of(self.scratch.shapes.poses().at(slot), explosion.centre);
+        match explosion.on(&support) {
             Some(Push { impulse, point }) => self.push_body(body, impulse, point),
             None => Ok(()),
         }

@@ -81,22 +81,22 @@ impl World {
     /// # Errors
     /// [`WorldError`] if the handle is stale, the body is disabled, asleep or not dynamic, the bit does not exist, the
     /// axis is locked, or the result is out of range. The world is then unchanged.
-    pub fn flip_bit(&mut self, id: BodyId, motion: BodyField, bit: u32) -> Result<(), WorldError> {
+    pub fn flip_bit(&mut self, id: BodyId, field: BodyField, bit: u32) -> Result<(), WorldError> {
         let body = self.state.get().bodies.get(id).ok_or(WorldError::StaleBody(id))?;
         let locks = body.settings.locks;
-        let locked = match motion {
+        let locked = match field {
             BodyField::VelocityX | BodyField::CentreX => locks.x,
             BodyField::VelocityY | BodyField::CentreY => locks.y,
             BodyField::Spin | BodyField::Angle => locks.rotation,
         };
         let is_free = body.is_dynamic() && !body.is_asleep() && body.is_enabled() && !locked;
-        if !is_free || bit >= motion.bits() {
+        if !is_free || bit >= field.bits() {
             return Err(WorldError::WrongKind(id));
         }
         let mut pose = Pose { centre: body.centre, angle: body.angle };
-        match motion {
+        match field {
             BodyField::VelocityX | BodyField::VelocityY | BodyField::Spin => {
-                return self.flip_speed(id, motion, bit);
+                return self.flip_speed(id, field, bit);
             }
             BodyField::CentreX => pose.centre.x = flipped_place(pose.centre.x, bit)?,
             BodyField::CentreY => pose.centre.y = flipped_place(pose.centre.y, bit)?,
@@ -107,9 +107,9 @@ impl World {
         Ok(())
     }
 
-    fn flip_speed(&mut self, id: BodyId, motion: BodyField, bit: u32) -> Result<(), WorldError> {
+    fn flip_speed(&mut self, id: BodyId, field: BodyField, bit: u32) -> Result<(), WorldError> {
         let body = self.state.bodies.at_mut(id.slot());
-        let number = match motion {
+        let number = match field {
             BodyField::VelocityX => &mut body.velocity.x,
             BodyField::VelocityY => &mut body.velocity.y,
             _ => &mut body.spin,

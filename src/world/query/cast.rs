@@ -191,8 +191,8 @@ impl World {
         self.scratch.shapes.broad_phase().each_along(area, translation, |slot| {
             let posed = self.scratch.shapes.poses().at(slot);
             if let Some(shape) = self.seen(slot, filter).filter(|_| posed.is_solid_from(origin)) {
-                let core = SupportShape::of(posed, origin);
-                if let Some(hit) = cast_ray(&core, Vec2::ZERO, translation) {
+                let support = SupportShape::of(posed, origin);
+                if let Some(hit) = cast_ray(&support, Vec2::ZERO, translation) {
                     let (fraction, point, normal) = (hit.fraction, origin + hit.point, hit.normal);
                     let starts_inside = normal == Vec2::ZERO;
                     if starts_inside && filter.initial_overlap == InitialOverlap::Ignore {

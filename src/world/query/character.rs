@@ -94,8 +94,8 @@ impl Mover {
     }
 
     /// Sets the distance in metres by which the ground may fall within a tick while the character still follows it,
-    /// clamped to 0 to 100. It should be at least the distance per tick times the steepest slope, and the height of
-    /// steps down.
+    /// clamped to 0 to 100. It should be at least the distance per tick times the steepest slope, and at least the
+    /// height of the steps that the character walks down.
     #[must_use]
     pub fn snap_distance(mut self, distance: Fx) -> Self {
         self.snap_distance = distance.clamp(Fx::ZERO, HEIGHT_MAX);

@@ -97,15 +97,15 @@ impl World {
     pub fn collide_mover(&self, probe: &Probe, within: Fx, filter: QueryFilter) -> Vec<MoverPlane> {
         let posed = probe.posed();
         let origin = probe.position();
-        let core = SupportShape::of(&posed, origin);
-        let middle = origin + core.middle();
+        let support = SupportShape::of(&posed, origin);
+        let middle = origin + support.middle();
         let mut planes: Vec<MoverPlane> = Vec::new();
         if within < Fx::ZERO {
             return planes;
         }
         self.each_overlapping(posed.bounds.expanded(within), filter, |shape, other| {
             let ClosestPoints { distance, normal, point_a, .. } =
-                proximity(&SupportShape::of(other, origin), &core, origin);
+                proximity(&SupportShape::of(other, origin), &support, origin);
             if distance <= within && other.is_solid_from(middle) {
                 planes.push(self.mover_plane(shape, normal, distance, point_a));
             }

@@ -47,8 +47,8 @@ impl World {
         let origin = area.centre();
         let (lower, upper) = (area.lower - origin, area.upper - origin);
         let corners = [lower, Vec2::new(upper.x, lower.y), upper, Vec2::new(lower.x, upper.y)];
-        let core = SupportShape::from_points(corners, Fx::ZERO);
-        self.overlapping(area, filter, |posed| overlap(&SupportShape::of(posed, origin), &core))
+        let support = SupportShape::from_points(corners, Fx::ZERO);
+        self.overlapping(area, filter, |posed| overlap(&SupportShape::of(posed, origin), &support))
     }
 
     /// Returns every shape that overlaps a probe, borders included.
@@ -56,8 +56,8 @@ impl World {
     pub fn overlap_shape(&self, probe: &Probe, filter: QueryFilter) -> Vec<ShapeId> {
         let posed = probe.posed();
         let origin = probe.position();
-        let core = SupportShape::of(&posed, origin);
-        self.overlapping(posed.bounds, filter, |other| overlap(&SupportShape::of(other, origin), &core))
+        let support = SupportShape::of(&posed, origin);
+        self.overlapping(posed.bounds, filter, |other| overlap(&SupportShape::of(other, origin), &support))
     }
 
     /// Returns every shape that contains a point in the world, in metres, borders included.

@@ -110,7 +110,7 @@ impl Probe {
     #[must_use]
     #[doc(alias = "point test")]
     pub fn contains_point(&self, point: Vec2<Fx>) -> bool {
-        contains_point(&self.core(point), Vec2::ZERO)
+        contains_point(&self.support(point), Vec2::ZERO)
     }
 
     /// Returns where a ray from a point in the world along a translation, in metres, meets the shape. A chain link that
@@ -121,7 +121,7 @@ impl Probe {
         if !self.posed().is_solid_from(origin) {
             return None;
         }
-        let hit = cast_ray(&self.core(origin), Vec2::ZERO, translation)?;
+        let hit = cast_ray(&self.support(origin), Vec2::ZERO, translation)?;
         let starts_inside = hit.normal == Vec2::ZERO;
         Some(ProbeHit {
             fraction: hit.fraction,
@@ -137,7 +137,7 @@ impl Probe {
     #[doc(alias = "shapecast")]
     pub fn cast(&self, translation: Vec2<Fx>, other: &Probe) -> Option<ProbeHit> {
         let origin = self.position();
-        let (own, other) = (self.core(origin), other.core(origin));
+        let (own, other) = (self.support(origin), other.support(origin));
         let hit = cast_shape(&other, &own, translation)?;
         let starts_inside = hit.fraction == Fx::ZERO && distance(&other, &own).distance < Fx::ZERO;
         Some(ProbeHit {
@@ -153,14 +153,14 @@ impl Probe {
     #[doc(alias = "gjk")]
     pub fn distance(&self, other: &Probe) -> ClosestPoints {
         let origin = self.position();
-        proximity(&self.core(origin), &other.core(origin), origin)
+        proximity(&self.support(origin), &other.support(origin), origin)
     }
 
     /// Whether the shapes share a point, borders included.
     #[must_use]
     pub fn overlaps(&self, other: &Probe) -> bool {
         let origin = self.position();
-        overlap(&self.core(origin), &other.core(origin))
+        overlap(&self.support(origin), &other.support(origin))
     }
 
     /// Returns the contact manifold with another shape, as the solver gets it for two shapes that are at rest. It is
@@ -194,7 +194,7 @@ impl Probe {
             let start = probe.position();
             Sweep { start, end: start + by.translation, turn: by.turns.to_bits() }
         };
-        let (a, b) = (other.core(other.position()), self.core(self.position()));
+        let (a, b) = (other.support(other.position()), self.support(self.position()));
         let (sweep_a, sweep_b) = (sweep(other, theirs), sweep(self, own));
         match first_impact((&a, &sweep_a), (&b, &sweep_b), SKIN, StartPolicy::Report) {
             Impact::Separated => TimeOfImpact::Separated,
@@ -205,7 +205,7 @@ impl Probe {
     }
 
     /// The shape relative to an origin.
-    fn core(&self, origin: Vec2<Fx>) -> SupportShape {
+    fn support(&self, origin: Vec2<Fx>) -> SupportShape {
         SupportShape::of(&self.posed(), origin)
     }
 }

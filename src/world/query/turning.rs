@@ -13,7 +13,7 @@ use crate::world::World;
 
 /// A probe in motion.
 struct Turning {
-    core: SupportShape,
+    support: SupportShape,
     sweep: Sweep,
 }
 
@@ -47,12 +47,12 @@ impl World {
         filter: QueryFilter,
     ) -> Option<CastHit> {
         let origin = probe.position();
-        let core = SupportShape::of(&probe.posed(), origin);
-        let middle = origin + core.middle();
+        let support = SupportShape::of(&probe.posed(), origin);
+        let middle = origin + support.middle();
         let sweep = Sweep { start: origin, end: origin + translation, turn: turns.to_bits() };
-        let turning = Turning { core, sweep };
+        let turning = Turning { support, sweep };
         let resting = self.resting(probe, translation, filter, Rest::TURNING, |_, _, _| true);
-        let reach = core.reach_with_radius().saturating_add(SKIN + SKIN);
+        let reach = support.reach_with_radius().saturating_add(SKIN + SKIN);
         let area = Aabb::new(origin, origin).expanded(reach);
         let mut closest: Option<(Fx, ShapeId)> = None;
         let mut interest = Unit::ONE;
@@ -88,7 +88,7 @@ impl Turning {
         let a = SupportShape::of(other, other.centre);
         if overlap != InitialOverlap::Resist {
             let origin = self.sweep.start;
-            let start = distance(&SupportShape::of(other, origin), &self.core);
+            let start = distance(&SupportShape::of(other, origin), &self.support);
             if start.distance < Fx::ZERO {
                 return (overlap == InitialOverlap::Report).then_some(Fx::ZERO);
             }
@@ -105,7 +105,7 @@ impl Turning {
     /// gives up, so that nothing is passed.
     fn touch(&self, other: &SupportShape, centre: Vec2<Fx>, sweep: &Sweep) -> Option<Fx> {
         let still = Sweep::fixed(centre);
-        match first_impact((other, &still), (&self.core, sweep), SKIN, StartPolicy::Resist) {
+        match first_impact((other, &still), (&self.support, sweep), SKIN, StartPolicy::Resist) {
             TimeOfImpact::Separated => None,
             TimeOfImpact::Hit { fraction } | TimeOfImpact::Failed { fraction } => Some(fraction),
             TimeOfImpact::Overlapped => Some(Fx::ZERO),
@@ -115,9 +115,9 @@ impl Turning {
     /// The hit on a shape at a fraction of the motion.
     fn hit(&self, other: &PosedShape, shape: ShapeId, fraction: Fx) -> CastHit {
         let origin = self.sweep.start;
-        let start = distance(&SupportShape::of(other, origin), &self.core);
+        let start = distance(&SupportShape::of(other, origin), &self.support);
         let (travelled, turned) = self.sweep.at(fraction);
-        let there = self.core.rotated(turned).moved(to_grid(travelled));
+        let there = self.support.rotated(turned).moved(to_grid(travelled));
         let touch = proximity(&SupportShape::of(other, origin), &there, origin);
         let starts_inside = fraction == Fx::ZERO && start.distance < Fx::ZERO;
         CastHit { shape, fraction, travelled, point: touch.point_a, normal: touch.normal, starts_inside }

@@ -28,8 +28,8 @@ const BODY_BYTES: usize = 36;
 /// Largest size of a record of optional parts.
 const OPTIONAL_BYTES: usize = 5 + 24 + 8 + 20;
 const BOX_BYTES: usize = 16;
-/// Bodies that are packed before the boxes of their shapes, which need the bodies' centres: few enough to stay in the
-/// cache.
+/// Number of bodies in a block. The boxes of a block's shapes are packed right after its bodies, because packing a box
+/// reads the centre of its body, which is then still in the cache.
 const BLOCK: usize = 32;
 /// Marker in place of the first coordinate of a box that follows in full.
 const NOT_NEAR: i32 = i32::MIN;

@@ -6,7 +6,7 @@
 //! because the sub-steps move it by less than the symplectic Euler method does.
 
 use crate::body::{Area, Attraction, Body, Falloff, Geometry, Handle, Shape, area_of};
-use crate::collision::{Pair, Place, Ring, SupportShape, overlap};
+use crate::collision::{Pair, RelativePose, Ring, SupportShape, overlap};
 use crate::math::{Angle, Fx, Rot, Vec2, fx_div, fx_mul};
 use crate::solver::{AreaEffect, Tuning};
 use crate::world::cache::{Scratch, is_awake};
@@ -78,7 +78,7 @@ struct Sum<'a> {
     state: &'a State,
     body: &'a Body,
     /// Pose of the body relative to its own centre.
-    place: Place,
+    pose: RelativePose,
     /// Centre of mass of the body in the world.
     centre: Vec2<Fx>,
     ahead: Fx,
@@ -101,14 +101,13 @@ impl<'a> Sum<'a> {
             body.shapes().iter().map(|id| state.shapes.at(id.slot())).filter(|shape| !shape.is_sensor());
         let area: Fx = solid.clone().fold(Fx::ZERO, |sum, shape| sum.saturating_add(area_of(shape.def())));
         let has_area = area > 0;
-        let place = place_of(body, Vec2::ZERO, ahead);
-        let length =
-            |shape: &Shape| Ring::of(shape.def(), &place).extent().map_or(Fx::ZERO, |line| line.size);
+        let pose = pose_of(body, Vec2::ZERO, ahead);
+        let length = |shape: &Shape| Ring::of(shape.def(), &pose).extent().map_or(Fx::ZERO, |line| line.size);
         let size = if has_area { area } else { solid.map(length).fold(Fx::ZERO, Fx::saturating_add) };
         Sum {
             state,
             body,
-            place,
+            pose,
             centre: body.centre + body.velocity().scale(ahead),
             ahead,
             size,
@@ -128,12 +127,12 @@ impl<'a> Sum<'a> {
         let Some(area) = area_shape.area() else { return };
         let medium = self.state.bodies.at(area_shape.body().slot());
         let centre = medium.centre + medium.velocity().scale(self.ahead);
-        let place = place_of(medium, centre - self.centre, self.ahead);
-        let ring = Ring::of(area_shape.def(), &place);
+        let pose = pose_of(medium, centre - self.centre, self.ahead);
+        let ring = Ring::of(area_shape.def(), &pose);
         let mut inside = Fx::ZERO;
         for &[.., shape] in shapes {
             let shape = self.state.shapes.at(shape);
-            let whole = Ring::of(shape.def(), &self.place);
+            let whole = Ring::of(shape.def(), &self.pose);
             let Some(all) = whole.extent() else { continue };
             let Some(part) = whole.inside(&ring).extent() else { continue };
             let size = match shape.geometry() {
@@ -149,36 +148,36 @@ impl<'a> Sum<'a> {
             };
             inside = inside.saturating_add(size);
             if self.has_area {
-                self.add_forces(area, &place, size, part.centre);
+                self.add_forces(area, &pose, size, part.centre);
             }
         }
         let share = fx_div(inside, self.size).unwrap_or(Fx::ZERO).min(Fx::ONE);
         if share > 0 {
-            self.add_share(area, area_shape, medium, &place, share);
+            self.add_share(area, area_shape, medium, &pose, share);
         }
     }
 
     /// Adds the forces on a part of the body of `size` m² whose centre is at `arm` from the body's centre.
-    fn add_forces(&mut self, area: &Area, place: &Place, size: Fx, arm: Vec2<Fx>) {
+    fn add_forces(&mut self, area: &Area, pose: &RelativePose, size: Fx, arm: Vec2<Fx>) {
         let mass = fx_mul(area.density, size);
         self.displaced = self.displaced.saturating_add(mass);
         self.moment += arm.scale(mass);
-        let force = place.rotation.apply_wide(area.force).scale(size);
+        let force = pose.rotation.apply_wide(area.force).scale(size);
         self.effect.force += force;
         self.effect.torque = self.effect.torque.saturating_add(arm.cross(force));
     }
 
     /// Adds the effects on the body as a whole, scaled by the share of it that is in the area.
-    fn add_share(&mut self, area: &Area, shape: &Shape, medium: &Body, place: &Place, share: Fx) {
-        let mut field = place.rotation.apply_wide(area.acceleration);
+    fn add_share(&mut self, area: &Area, shape: &Shape, medium: &Body, pose: &RelativePose, share: Fx) {
+        let mut field = pose.rotation.apply_wide(area.acceleration);
         if let Some(attraction) = &area.attraction {
-            field += pull(attraction, place.point(shape.offset()));
+            field += pull(attraction, pose.point(shape.offset()));
         }
         let field = field.scale(share);
         self.field += field;
         let linear_drag = fx_mul(area.linear_drag, share);
         let angular_drag = fx_mul(area.angular_drag, share);
-        let flow = medium.velocity_at(self.centre) + place.rotation.apply_wide(area.flow);
+        let flow = medium.velocity_at(self.centre) + pose.rotation.apply_wide(area.flow);
         let effect = &mut self.effect;
         effect.acceleration += field + flow.scale(linear_drag);
         let turning = if medium.turns() { medium.angular_velocity() } else { Fx::ZERO };
@@ -200,9 +199,9 @@ impl<'a> Sum<'a> {
 }
 
 /// Pose of a body whose predicted centre is at `centre`.
-fn place_of(body: &Body, centre: Vec2<Fx>, ahead: Fx) -> Place {
+fn pose_of(body: &Body, centre: Vec2<Fx>, ahead: Fx) -> RelativePose {
     let turned = Angle::from_radians(fx_mul(body.angular_velocity(), ahead));
-    Place {
+    RelativePose {
         centre,
         rotation: Rot::from_angle(body.angle() + turned),
         local_centre: body.local_centre_of_mass(),

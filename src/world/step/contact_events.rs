@@ -14,7 +14,7 @@ use crate::world::state::{Reported, State};
 /// two ticks.
 pub(super) fn report_contacts(state: &mut State, scratch: &mut Scratch) {
     let Scratch { results, pairs, shapes, contacts: cache, solver, .. } = scratch;
-    let (events, motion, found) = (&mut results.events, shapes.motion(), cache.output());
+    let (events, motion, output) = (&mut results.events, shapes.motion(), cache.output());
     let ContactResults { pushed, hit_impulses } = &solver.results;
     events.clear();
     for removed in state.removed_contacts.drain(..) {
@@ -25,7 +25,7 @@ pub(super) fn report_contacts(state: &mut State, scratch: &mut Scratch) {
     }
     let (near, apart) = (state.config.touching_distance(), state.config.speculative_distance);
     let mut contacts = core::mem::take(&mut state.contacts);
-    let mut manifolds = found.contacts.iter().zip(&found.manifolds).peekable();
+    let mut manifolds = output.contacts.iter().zip(&output.manifolds).peekable();
     for (index, contact) in (0u32..).zip(&mut contacts) {
         let manifold = manifolds.next_if(|(contact, _)| **contact == index).map(|(_, manifold)| manifold);
         if manifold.is_none() {
@@ -45,7 +45,7 @@ pub(super) fn report_contacts(state: &mut State, scratch: &mut Scratch) {
         }
     }
     state.contacts = contacts;
-    let hits = found.approaches.iter().filter(|hit| pushed[hit.contact as usize]);
+    let hits = output.approaches.iter().filter(|hit| pushed[hit.contact as usize]);
     events.hits.extend(hits.map(|hit| {
         let speed = widen(hit_impulses[hit.contact as usize]);
         let mass = state.reduced_mass(state.contacts[hit.contact as usize].shapes);

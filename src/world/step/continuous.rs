@@ -150,7 +150,7 @@ fn first_impact(
         }
         let posed = shapes.poses().at(id.slot());
         // Computed only when a first obstacle is found, because most fast bodies are far from all obstacles.
-        let mut core_and_target = None;
+        let mut support_and_target = None;
         let start = if swept.sweep.turn == 0 { posed.bounds } else { disc };
         let area = start.swept(swept.sweep.end - swept.sweep.start);
         let visit = |other| {
@@ -170,15 +170,15 @@ fn first_impact(
                 if !is_fast {
                     return ControlFlow::Continue(());
                 }
-                let &mut (core, target) = core_and_target.get_or_insert_with(|| {
-                    let core = SupportShape::of(posed, body.centre);
+                let &mut (support, target) = support_and_target.get_or_insert_with(|| {
+                    let support = SupportShape::of(posed, body.centre);
                     // A quarter of the depth at which its centre would be on the surface, and at most 5 mm.
-                    (core, -(core.inner_radius() / 4).min(fx!(0.005)))
+                    (support, -(support.inner_radius() / 4).min(fx!(0.005)))
                 });
                 if !meter.spend(IMPACT_WORK) {
                     return ControlFlow::Break(());
                 }
-                let fraction = match time_of_impact(&there, &movement, &core, &swept.sweep, target) {
+                let fraction = match time_of_impact(&there, &movement, &support, &swept.sweep, target) {
                     TimeOfImpact::Hit { fraction } => Some(fraction),
                     // The fraction reached is safe. At 0 it is ignored, so that the body does not get stuck.
                     TimeOfImpact::Failed { fraction } => Some(fraction).filter(|&fraction| fraction > 0),
@@ -205,8 +205,8 @@ fn first_impact(
 /// A shape about its body's centre as it was at the start of the tick, and the movement of that body within the tick.
 fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (SupportShape, Sweep) {
     let body = state.body_of(shape);
-    let core = SupportShape::of(scratch.shapes.poses().at(shape), body.centre);
-    let stands = (core, Sweep::fixed(body.centre));
+    let support = SupportShape::of(scratch.shapes.poses().at(shape), body.centre);
+    let stands = (support, Sweep::fixed(body.centre));
     if body.kind() == BodyKind::Fixed {
         return stands;
     }
@@ -215,8 +215,8 @@ fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (SupportShape, S
     let start = scratch.sweeps.starts[index];
     // The rotation by the shorter way. Obstacles that rotate by more than half a turn in a tick are not handled.
     let turn = (body.angle - start.angle).to_turns().to_bits();
-    let core = core.rotated(Rot::from_angle(start.angle - body.angle));
-    (core, Sweep { start: start.centre, end: body.centre, turn })
+    let support = support.rotated(Rot::from_angle(start.angle - body.angle));
+    (support, Sweep { start: start.centre, end: body.centre, turn })
 }
 
 /// Whether a body is swept against an obstacle.

@@ -86,10 +86,10 @@ impl World {
 
         begin(Phase::Prepare, PhaseView::of(state, scratch));
         let Scratch { solver, awake, contacts, .. } = scratch;
-        let found = contacts.output();
+        let output = contacts.output();
         solver.prepare_bodies(&state.bodies, awake.bodies(), &tuning);
         solver.prepare_joints(&state.joints, awake.joints(), &state.bodies, &tuning);
-        solver.prepare_contacts(&found.touching, &found.manifolds, &found.impacts, &state.contacts);
+        solver.prepare_contacts(&output.touching, &output.manifolds, &output.impacts, &state.contacts);
         areas::apply_areas(state, scratch, &tuning);
         let can_solve = solver_work::spend(state, scratch, pairs_before);
         let Scratch { solver, .. } = scratch;

@@ -11,8 +11,8 @@ use crate::world::state::State;
 use crate::world::stats::Phase;
 
 impl World {
-    /// Starts to record a digest after every phase of every tick. A tick then takes several times as long. Clears what
-    /// was recorded before. No result depends on it.
+    /// Starts to record a digest after every phase of every tick, and discards digests recorded earlier. A tick then
+    /// takes several times as long. Recording does not change the simulation.
     pub fn log_phases(&mut self) {
         self.phases = Some(PhaseLog::default());
     }
@@ -65,13 +65,13 @@ pub(super) struct PhaseView<'a> {
     pub(super) state: &'a State,
     pub(super) solver: &'a Solver,
     pub(super) awake: &'a AwakeSet,
-    pub(super) found: &'a NarrowPhaseOutput,
+    pub(super) output: &'a NarrowPhaseOutput,
 }
 
 impl<'a> PhaseView<'a> {
     pub(super) fn of(state: &'a State, scratch: &'a Scratch) -> Self {
         let Scratch { solver, awake, contacts, .. } = scratch;
-        PhaseView { state, solver, awake, found: contacts.output() }
+        PhaseView { state, solver, awake, output: contacts.output() }
     }
 
     /// Digest of the state and of the intermediate results of a phase, without results of an earlier tick.
@@ -85,12 +85,12 @@ impl<'a> PhaseView<'a> {
     }
 
     fn manifolds(&self) -> StateHash {
-        let listed = self.found.manifolds.iter().map(|manifold| {
+        let listed = self.output.manifolds.iter().map(|manifold| {
             let points = manifold.points().iter();
             let points = points.map(|point| (point.anchor, point.separation, point.feature.0));
             (manifold.normal, manifold.origin, points.collect::<Vec<_>>())
         });
-        StateHash::of(&(&self.found.contacts, listed.collect::<Vec<_>>()))
+        StateHash::of(&(&self.output.contacts, listed.collect::<Vec<_>>()))
     }
 
     fn motions(&self) -> StateHash {

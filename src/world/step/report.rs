@@ -23,7 +23,7 @@ pub(super) fn report_moves(state: &State, scratch: &mut Scratch) {
 /// Fills in the statistics of the tick, and adds its faults to those of the world.
 pub(super) fn count(state: &mut State, scratch: &mut Scratch) {
     let Scratch { solver, results, contacts, awake, .. } = scratch;
-    let (stats, found) = (&mut results.stats, contacts.output());
+    let (stats, output) = (&mut results.stats, contacts.output());
     let faults = solver.faults + u64::from(state.pairs_left_out);
     state.faults = state.faults.saturating_add(faults);
     let count = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
@@ -31,12 +31,12 @@ pub(super) fn count(state: &mut State, scratch: &mut Scratch) {
         bodies: count(awake.bodies().len()),
         joints: count(awake.joints().len()),
         pairs: count(state.contacts.len()),
-        contacts: count(found.touching.len()),
+        contacts: count(output.touching.len()),
         points: solver.warm_starts.points,
         points_kept: solver.warm_starts.kept,
         points_lost: solver.warm_starts.lost,
-        axis_hits: found.sat.cached_axis_hits,
-        axis_searches: found.sat.searches,
+        axis_hits: output.sat.cached_axis_hits,
+        axis_searches: output.sat.searches,
         impacts: stats.impacts,
         faults,
     };

@@ -17,8 +17,9 @@ use fixed::types::extra::{LeEqU32, U27};
 /// n.(xA - xB) + tA (rA x n) - tB (rB x n)
 /// ```
 ///
-/// where `r` is the arm of the manifold's origin plus the anchor: each point adds `(tA - tB) (anchor x n)`. The result
-/// is in units of `Step` and does not saturate.
+/// The lever arm is the vector from the body's centre to the manifold's origin, plus the anchor of the point. The first
+/// part is the same for all points; each point adds only `(tA - tB) (anchor x n)`. The result is in units of `Step` and
+/// does not saturate.
 #[inline(always)]
 pub(super) fn approach(
     a: &PredictedMotion,

@@ -82,8 +82,8 @@ impl World {
     /// empty until the next tick. Contacts of a shape that is removed or replaced are dropped at once.
     #[doc(alias = "manifold")]
     pub fn contacts(&self) -> impl Iterator<Item = ContactView<'_>> {
-        let found = self.scratch.contacts.output();
-        found.contacts.iter().zip(&found.manifolds).map(|(&index, manifold)| {
+        let output = self.scratch.contacts.output();
+        output.contacts.iter().zip(&output.manifolds).map(|(&index, manifold)| {
             let contact = &self.state.contacts[index as usize];
             let event = self.state.contact_event(contact);
             let (shape_a, shape_b) = (event.shape_a, event.shape_b);

@@ -131,8 +131,8 @@ api! {
     ) {
         check_room(&ids, capacity, pose_count)?;
         let (body, shapes) = (body.get()?.def()?, shapes_of(&shapes, shape_count)?);
-        let places = poses.slice(pose_count)?.iter().map(RawPose::pose).collect();
-        match edit(target, Command::SpawnEach { body, shapes, places })? {
+        let poses = poses.slice(pose_count)?.iter().map(RawPose::pose).collect();
+        match edit(target, Command::SpawnEach { body, shapes, poses })? {
             Some(world::Outcome::Bodies(bodies)) => {
                 set_ids(ids, capacity, bodies.into_iter().map(RawBody::of).collect())
             }

@@ -26,14 +26,14 @@ fn edit(target: u32, command: &Command) {
             let body = RawBodyDef::of(body);
             done(ls2d_spawn(target, In::of(&body), In::all(&shapes), shapes.len(), id()));
         }
-        Command::SpawnEach { body, shapes, places } => {
+        Command::SpawnEach { body, shapes, poses } => {
             let shapes: Vec<RawShapeDef> = shapes.iter().map(RawShapeDef::of).collect();
             let body = RawBodyDef::of(body);
-            let pose = |place: &BodyPose| {
-                let position = RawVec2 { x: RawFx::of(place.position.x), y: RawFx::of(place.position.y) };
-                RawPose { body: RawBody(0), position, angle: RawAngle::of(place.angle), flags: 0 }
+            let raw = |pose: &BodyPose| {
+                let position = RawVec2 { x: RawFx::of(pose.position.x), y: RawFx::of(pose.position.y) };
+                RawPose { body: RawBody(0), position, angle: RawAngle::of(pose.angle), flags: 0 }
             };
-            let poses: Vec<RawPose> = places.iter().map(pose).collect();
+            let poses: Vec<RawPose> = poses.iter().map(raw).collect();
             let (shape_count, pose_count) = (shapes.len(), poses.len());
             let (shapes, poses) = (In::all(&shapes), In::all(&poses));
             done(ls2d_spawn_each(target, In::of(&body), shapes, shape_count, poses, pose_count, id(), 0));

@@ -12,7 +12,7 @@ const here = JSON.stringify(new URL("../../src/index.js", import.meta.url).href)
 register(`data:text/javascript,${encodeURIComponent(`export const resolve = (name, context, next) =>
     name === "lockstep2d" ? { url: ${here}, shortCircuit: true } : next(name, context);`)}`);
 const { Game, SEATS, offer } = await import("../../../../examples/web/game.js");
-const { Tape } = await import("../../../../examples/web/tape.js");
+const { MatchRecording } = await import("../../../../examples/web/recording.js");
 
 const { values, positionals: [url, code, key] } = parseArgs({
     allowPositionals: true,
@@ -27,7 +27,7 @@ const relay = await L.Relay.connect(url, code);
 const game = new Game();
 const match = new L.Match({ seats: SEATS, guess: 8, delayMin: 1, key: BigInt(key), offer: offer(), contact: relay.others[0] });
 const driver = new L.MatchDriver(match, game, (to, packet) => relay.send(to, packet));
-const tape = new Tape();
+const recording = new MatchRecording();
 const counts = {};
 let [paused, joinedAt] = [false, undefined];
 const statuses = [];
@@ -46,7 +46,7 @@ while (match.status !== "closed") {
             joinedAt = event.tick;
         }
     }
-    tape.follow(match);
+    recording.follow(match);
     if (driver.tick >= quitAt) {
         process.exit(0);
     }
@@ -62,8 +62,8 @@ while (match.status !== "closed") {
     }
     await sleep(4);
 }
-if (values.output !== undefined && !tape.broken) {
-    writeFileSync(values.output, tape.finish());
+if (values.output !== undefined && !recording.broken) {
+    writeFileSync(values.output, recording.finish());
 }
-console.log(JSON.stringify({ ticks: driver.tick, hash: game.hash(), desyncs: counts.desync ?? 0, joinedAt, statuses, recorded: tape.ticks }));
+console.log(JSON.stringify({ ticks: driver.tick, hash: game.hash(), desyncs: counts.desync ?? 0, joinedAt, statuses, recorded: recording.ticks }));
 relay.close();

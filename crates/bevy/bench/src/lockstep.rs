@@ -31,7 +31,7 @@ impl Lockstep {
             Command::SpawnEach {
                 body: BodyDef::dynamic().never_sleeps(),
                 shapes: vec![square],
-                places: (0..bodies).map(pose).collect(),
+                poses: (0..bodies).map(pose).collect(),
             },
         ];
         let game = Observed::new(&SandboxSetup { commands, ..SandboxSetup::default() })?;

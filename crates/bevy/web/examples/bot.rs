@@ -1,7 +1,8 @@
-//! A signalling server, and a player without a window in the room `bot`, for a match in a page: `index.html#bot`.
+//! Runs a signalling server and a headless player that hosts the room `bot`. Open the page at `index.html#bot` to play
+//! against it.
 //!
-//! `bot [PORT [TICKS]]`: the server listens on port 3536 of this machine, and the match ends after a number of ticks.
-//! Then its replay is verified, and the hash of its last state printed.
+//! `bot [PORT [TICKS]]`: the server listens on `PORT` (3536 by default). With `TICKS` the match ends after that many
+//! ticks. At the end of the match its replay is verified, and the hash of its last state printed.
 
 use std::net::Ipv4Addr;
 use std::thread::sleep;

@@ -87,7 +87,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     let mut replay = Replay::<G>::open(&bytes, arguments, limits)?;
     match format {
         Format::Svg | Format::Png => {
-            let tick = arguments.tick.unwrap_or(replay.playback.ticks());
+            let tick = arguments.tick.unwrap_or(replay.verified.ticks());
             replay.check(tick)?;
             replay.play_to(tick)?;
             let view = arguments.view(replay.view(context.tool.view));
@@ -160,7 +160,7 @@ impl Arguments {
 
 /// A replay that is played on demand up to a tick.
 struct Replay<'a, G: Game> {
-    playback: VerifiedReplay<'a, G>,
+    verified: VerifiedReplay<'a, G>,
     path: &'a PathBuf,
 }
 
@@ -168,7 +168,7 @@ impl<'a, G: Game> Replay<'a, G> {
     fn open(bytes: &'a [u8], arguments: &'a Arguments, limits: &Limits) -> Result<Self, CommandError> {
         let path = &arguments.file;
         Ok(Replay {
-            playback: VerifiedReplay::open(bytes, limits).map_err(CommandError::replay(path))?,
+            verified: VerifiedReplay::open(bytes, limits).map_err(CommandError::replay(path))?,
             path,
         })
     }
@@ -176,7 +176,7 @@ impl<'a, G: Game> Replay<'a, G> {
     /// The first and the last requested tick.
     fn range(&self, arguments: &Arguments) -> Result<(u64, u64), CommandError> {
         let first = arguments.tick.or(arguments.from).unwrap_or(0);
-        let last = arguments.tick.or(arguments.to).unwrap_or(self.playback.ticks());
+        let last = arguments.tick.or(arguments.to).unwrap_or(self.verified.ticks());
         self.check(first)?;
         self.check(last)?;
         if first > last {
@@ -187,24 +187,24 @@ impl<'a, G: Game> Replay<'a, G> {
 
     /// Refuses a tick after the end.
     fn check(&self, tick: u64) -> Result<(), CommandError> {
-        let ticks = self.playback.ticks();
+        let ticks = self.verified.ticks();
         let path = || self.path.clone();
         if tick > ticks { Err(CommandError::NoSuchTick { path: path(), tick, ticks }) } else { Ok(()) }
     }
 
     /// Plays on up to tick `tick`.
     fn play_to(&mut self, tick: u64) -> Result<(), CommandError> {
-        while self.playback.tick() < tick {
-            self.playback.step().map_err(CommandError::replay(self.path))?;
+        while self.verified.tick() < tick {
+            self.verified.step().map_err(CommandError::replay(self.path))?;
         }
         Ok(())
     }
 
     fn view(&self, view: Option<fn(&G) -> View>) -> View {
-        view.map_or_else(View::default, |view| view(self.playback.game()))
+        view.map_or_else(View::default, |view| view(self.verified.game()))
     }
 
     fn world(&mut self) -> Result<&World, CommandError> {
-        self.playback.world().ok_or(CommandError::NoPictures)
+        self.verified.world().ok_or(CommandError::NoPictures)
     }
 }

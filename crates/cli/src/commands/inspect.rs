@@ -92,16 +92,16 @@ fn state_of_replay<G: Game>(
     context: &Context<'_, G>,
 ) -> Result<State, CommandError> {
     let refused = CommandError::replay(&arguments.file);
-    let mut playback = VerifiedReplay::<G>::open(bytes, context.limits()).map_err(&refused)?;
-    let (tick, ticks) = (arguments.tick.unwrap_or(0), playback.ticks());
+    let mut replay = VerifiedReplay::<G>::open(bytes, context.limits()).map_err(&refused)?;
+    let (tick, ticks) = (arguments.tick.unwrap_or(0), replay.ticks());
     if tick > ticks {
         return Err(CommandError::NoSuchTick { path: arguments.file.clone(), tick, ticks });
     }
-    while playback.tick() < tick {
-        playback.step().map_err(&refused)?;
+    while replay.tick() < tick {
+        replay.step().map_err(&refused)?;
     }
-    let fields = fields(&playback.game().save())?;
-    Ok(State { tick: Some(tick), hash: Some(playback.game().state_hash()), fields })
+    let fields = fields(&replay.game().save())?;
+    Ok(State { tick: Some(tick), hash: Some(replay.game().state_hash()), fields })
 }
 
 /// The state of the report's peer at a tick, which may differ from the state that its replay leads to. If the report

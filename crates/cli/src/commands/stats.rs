@@ -33,25 +33,25 @@ pub(crate) struct Arguments {
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let refused = CommandError::replay(&arguments.file);
     let bytes = context.load(&arguments.file)?;
-    let mut playback = VerifiedReplay::<G>::open(&bytes, context.limits()).map_err(&refused)?;
+    let mut replay = VerifiedReplay::<G>::open(&bytes, context.limits()).map_err(&refused)?;
     let mut summary = Summary::default();
     let failed = loop {
-        let work_before = playback.work();
-        match playback.step() {
+        let work_before = replay.work();
+        match replay.step() {
             Ok(Step::Ticked) => {}
             Ok(Step::Ended) => break None,
             Err(verdict) => break Some(verdict),
         }
-        let mut figures = vec![("work", playback.work() - work_before)];
-        figures.extend(playback.world().into_iter().flat_map(figures::of));
+        let mut figures = vec![("work", replay.work() - work_before)];
+        figures.extend(replay.world().into_iter().flat_map(figures::of));
         if arguments.json {
-            context.console.line(line(playback.tick(), playback.game().state_hash(), &figures))?;
+            context.console.line(line(replay.tick(), replay.game().state_hash(), &figures))?;
         }
-        summary.add(playback.tick(), &figures);
+        summary.add(replay.tick(), &figures);
     };
     if !arguments.json {
         let (file, ticks) = (Shown(&arguments.file), summary.ticks);
-        let hash = playback.game().state_hash();
+        let hash = replay.game().state_hash();
         context.console.line(format_args!("{file}: {ticks} ticks, state {hash}"))?;
         summary.print(&mut context.console)?;
     }

@@ -192,7 +192,7 @@ fn described(finding: &Finding) -> Json {
         json!({"ticks": ticks, "guess": guess})
     });
     json!({
-        "way": finding.variant.to_string(),
+        "variant": finding.variant.to_string(),
         "fault": finding.fault.to_string(),
         "tick": finding.tick,
         "phase": finding.phase.map(|phase| format!("{phase:?}")),

@@ -16,9 +16,9 @@ use crate::{Folder, golden, replay, run, run_sandbox, run_tool_of};
 /// The sandbox after `ticks` ticks of one of the repository's replays.
 fn played(scene: &str, ticks: u64) -> Sandbox {
     let file = fs::read(golden(scene)).unwrap();
-    let mut playback = VerifiedReplay::<Sandbox>::open(&file, &Limits::default()).unwrap();
-    (0..ticks).for_each(|_| assert_eq!(playback.step(), Ok(Step::Ticked)));
-    playback.into_game()
+    let mut verified = VerifiedReplay::<Sandbox>::open(&file, &Limits::default()).unwrap();
+    (0..ticks).for_each(|_| assert_eq!(verified.step(), Ok(Step::Ticked)));
+    verified.into_game()
 }
 
 #[test]
@@ -204,13 +204,13 @@ fn numbers_of_a_world_have_bits_and_a_decimal() {
     let outcome = run_sandbox(&["export", &golden("ragdoll"), "--json", "--tick", "60"]);
     let line: Value = serde_json::from_str(&outcome.out).unwrap();
     let file = fs::read(golden("ragdoll")).unwrap();
-    let mut playback = VerifiedReplay::<Sandbox>::open(&file, &Limits::default()).unwrap();
-    (0..60).for_each(|_| assert_eq!(playback.step(), Ok(Step::Ticked)));
-    assert_eq!(line["hash"], playback.game().state_hash().to_string());
+    let mut verified = VerifiedReplay::<Sandbox>::open(&file, &Limits::default()).unwrap();
+    (0..60).for_each(|_| assert_eq!(verified.step(), Ok(Step::Ticked)));
+    assert_eq!(line["hash"], verified.game().state_hash().to_string());
     let world = &line["state"]["world"];
     assert_eq!(world["settings"]["gravity"]["y"], json!({"bits": -42949672960i64, "decimal": "-10"}));
     assert_eq!(world["settings"]["solver"]["contact"]["Soft"]["hertz"]["decimal"], "30");
-    let (id, body) = playback.game().world().bodies().last().unwrap();
+    let (id, body) = verified.game().world().bodies().last().unwrap();
     let shown = &world["bodies"][format!("body {id}")]["velocity"]["x"];
     assert_eq!(shown["bits"], body.velocity().x.to_bits() >> 11, "a speed has 21 fraction bits");
     let text = outcome.out.as_str();

@@ -16,14 +16,14 @@ use crate::{Folder, golden, run_sandbox};
 
 /// The pictures of a replay after each of `ticks`.
 fn pictures(file: &[u8], ticks: &[u64], view: &View) -> Vec<Image> {
-    let mut playback = VerifiedReplay::<Sandbox>::open(file, &Limits::default()).unwrap();
+    let mut replay = VerifiedReplay::<Sandbox>::open(file, &Limits::default()).unwrap();
     let mut pictures = Vec::new();
     for &tick in ticks {
-        while playback.tick() < tick {
-            assert_eq!(playback.step(), Ok(Step::Ticked));
+        while replay.tick() < tick {
+            assert_eq!(replay.step(), Ok(Step::Ticked));
         }
         let mut list = DrawList::default();
-        page(&mut list, playback.game().world(), view);
+        page(&mut list, replay.game().world(), view);
         pictures.push(raster(&list, (view.width, view.height), Colour::hex(0xffffff)));
     }
     pictures
@@ -34,13 +34,13 @@ fn pictures(file: &[u8], ticks: &[u64], view: &View) -> Vec<Image> {
 fn window(file: &[u8], mut ticks: RangeInclusive<u64>) -> Aabb {
     let step = usize::try_from((ticks.end() - ticks.start()).div_ceil(100).max(1)).unwrap();
     let last = *ticks.end();
-    let mut playback = VerifiedReplay::<Sandbox>::open(file, &Limits::default()).unwrap();
+    let mut replay = VerifiedReplay::<Sandbox>::open(file, &Limits::default()).unwrap();
     let mut window: Option<Aabb> = None;
     for tick in ticks.by_ref().step_by(step).chain([last]) {
-        while playback.tick() < tick {
-            assert_eq!(playback.step(), Ok(Step::Ticked));
+        while replay.tick() < tick {
+            assert_eq!(replay.step(), Ok(Step::Ticked));
         }
-        let fitting = fit(playback.game().world());
+        let fitting = fit(replay.game().world());
         window = Some(window.map_or(fitting, |window| window.union(fitting)));
     }
     window.unwrap()

@@ -88,11 +88,11 @@ fn it_is_xml_with_a_curve_for_everything() {
 #[test]
 fn curves_have_the_extremes_of_what_they_show() {
     let file = std::fs::read(golden("ragdoll")).unwrap();
-    let mut playback = VerifiedReplay::<Sandbox>::open(&file, &Limits::default()).unwrap();
+    let mut replay = VerifiedReplay::<Sandbox>::open(&file, &Limits::default()).unwrap();
     let (mut kinetic, mut overlap, mut points, mut gap) =
         (vec![0.0f64], vec![0.0f64], vec![0u64], vec![0.0f64]);
-    while playback.step() == Ok(Step::Ticked) {
-        let world = playback.game().world();
+    while replay.step() == Ok(Step::Ticked) {
+        let world = replay.game().world();
         kinetic.push(world.bodies().map(|(_, body)| body.kinetic_energy().to_num::<f64>()).sum());
         let depths = world.contacts().flat_map(|contact| contact.manifold.points());
         overlap.push(depths.map(|point| -point.separation.to_num::<f64>() * 1000.0).fold(0.0, f64::max));

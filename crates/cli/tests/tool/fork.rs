@@ -66,15 +66,15 @@ fn commands_of_the_sandbox_come_from_json() {
     ]);
     assert_eq!(outcome.exit, Exit::Success, "{}", outcome.err);
     let bytes = fs::read(&new).unwrap();
-    let mut playback = VerifiedReplay::<Sandbox>::open(&bytes, &Limits::default()).unwrap();
-    let rises = |playback: &VerifiedReplay<'_, Sandbox>| {
-        let world = playback.game().world();
+    let mut verified = VerifiedReplay::<Sandbox>::open(&bytes, &Limits::default()).unwrap();
+    let rises = |verified: &VerifiedReplay<'_, Sandbox>| {
+        let world = verified.game().world();
         world.bodies().any(|(_, body)| body.velocity().y > 0)
     };
-    (0..60).for_each(|_| assert_eq!(playback.step(), Ok(Step::Ticked)));
-    assert!(!rises(&playback), "it falls at first");
-    (0..61).for_each(|_| assert_eq!(playback.step(), Ok(Step::Ticked)));
-    assert!(rises(&playback), "it rises after gravity is reversed");
+    (0..60).for_each(|_| assert_eq!(verified.step(), Ok(Step::Ticked)));
+    assert!(!rises(&verified), "it falls at first");
+    (0..61).for_each(|_| assert_eq!(verified.step(), Ok(Step::Ticked)));
+    assert!(rises(&verified), "it rises after gravity is reversed");
 }
 
 #[test]

@@ -38,11 +38,11 @@ fn peak_so_far(pid: u32) -> Option<u64> {
 }
 
 /// Bodies with one square each.
-fn squares(places: impl Iterator<Item = (Fx, Fx)>) -> Vec<Edit> {
+fn squares(positions: impl Iterator<Item = (Fx, Fx)>) -> Vec<Edit> {
     let pose = |(x, y)| BodyPose { position: Vec2::new(x, y), angle: Angle::ZERO };
     let square = ShapeDef::new(Polygon::square(fx!(0.5)).unwrap());
     let body = BodyDef::dynamic();
-    vec![Edit::SpawnEach { body, shapes: vec![square], places: places.map(pose).collect() }]
+    vec![Edit::SpawnEach { body, shapes: vec![square], poses: positions.map(pose).collect() }]
 }
 
 /// A pile of squares on one spot, which all touch each other.

@@ -13,13 +13,13 @@ use crate::counter::Counter;
 use crate::{Folder, golden, replay, run, run_sandbox};
 
 fn hash_at<G: Game>(file: &[u8], tick: u64) -> StateHash {
-    let mut playback = VerifiedReplay::<G>::open(file, &Limits::default()).unwrap();
-    (0..tick).for_each(|_| assert_eq!(playback.step(), Ok(Step::Ticked)));
-    playback.game().state_hash()
+    let mut verified = VerifiedReplay::<G>::open(file, &Limits::default()).unwrap();
+    (0..tick).for_each(|_| assert_eq!(verified.step(), Ok(Step::Ticked)));
+    verified.game().state_hash()
 }
 
 #[test]
-fn the_state_of_a_tick_is_that_of_a_playback() {
+fn the_state_of_a_tick_is_that_of_a_verified_replay() {
     let folder = Folder::new("seek");
     let bytes = replay(95);
     let file = folder.write("a.replay", &bytes);

@@ -42,22 +42,22 @@ fn a_game_without_a_world_has_its_work() {
 fn figures_are_those_of_the_world() {
     let file = std::fs::read(golden("ragdoll")).unwrap();
     let outcome = run_sandbox(&["stats", &golden("ragdoll"), "--json"]);
-    let mut playback = VerifiedReplay::<Sandbox>::open(&file, &Limits::default()).unwrap();
+    let mut verified = VerifiedReplay::<Sandbox>::open(&file, &Limits::default()).unwrap();
     let mut touching = 0;
     for line in outcome.out.lines() {
-        assert_eq!(playback.step(), Ok(Step::Ticked));
+        assert_eq!(verified.step(), Ok(Step::Ticked));
         let line: Value = serde_json::from_str(line).unwrap();
-        let world = playback.game().world();
+        let world = verified.game().world();
         let stats = world.stats();
-        assert_eq!(line["tick"], playback.tick());
-        assert_eq!(line["hash"], playback.game().state_hash().to_string());
+        assert_eq!(line["tick"], verified.tick());
+        assert_eq!(line["hash"], verified.game().state_hash().to_string());
         assert_eq!(line["bodies"], world.body_count());
         assert_eq!(line["awake"], world.awake_body_count());
         assert_eq!((&line["contacts"], &line["points"]), (&stats.contacts.into(), &stats.points.into()));
         assert_eq!((&line["joints_solved"], &line["faults"]), (&stats.joints.into(), &stats.faults.into()));
         touching += stats.contacts;
     }
-    assert_eq!(playback.step(), Ok(Step::Ended));
+    assert_eq!(verified.step(), Ok(Step::Ended));
     assert!(touching > 100);
 }
 

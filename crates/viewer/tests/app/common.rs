@@ -85,10 +85,10 @@ pub(crate) fn texts(app: &mut App) -> Vec<String> {
 
 /// Returns the state hash at a tick of a sandbox replay.
 pub(crate) fn hash_at(file: &[u8], tick: u64) -> lockstep2d::hash::StateHash {
-    let mut playback =
+    let mut verified =
         lockstep2d::replay::VerifiedReplay::<Sandbox>::open(file, &Default::default()).unwrap();
-    while playback.tick() < tick {
-        playback.step().unwrap();
+    while verified.tick() < tick {
+        verified.step().unwrap();
     }
-    playback.game().state_hash()
+    verified.game().state_hash()
 }

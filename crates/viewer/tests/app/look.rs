@@ -62,10 +62,10 @@ fn a_click_on_a_body_shows_all_its_fields_as_decimals_and_bits() {
     click(&mut app, [label.at[0] - 3.0, label.at[1] + 14.0]);
     let lines = texts(&mut app);
     assert!(lines.contains(&format!("body {}", label.text)), "{lines:?}");
-    let playback =
+    let verified =
         lockstep2d::replay::VerifiedReplay::<lockstep2d::lockstep::Sandbox>::open(&file, &Default::default());
-    let playback = playback.unwrap();
-    let mut bodies = playback.game().world().bodies();
+    let verified = verified.unwrap();
+    let mut bodies = verified.game().world().bodies();
     let (_, body) = bodies.find(|(id, _)| id.to_string() == label.text).unwrap();
     let y = body.centre_of_mass().y.to_bits();
     assert!(lines.iter().any(|line| line.ends_with(&format!("(bits {y})"))), "{y}: {lines:?}");

@@ -86,7 +86,7 @@ impl Kernel<WIDTH> for Collide<'_> {
 
 #[inline(always)]
 fn collide<L: Lanes<WIDTH>>(batch: &mut Batch, boxes: &[Turned]) {
-    let Batch { at, d, radius, margin, found } = batch;
+    let Batch { at, d, radius, margin, manifolds } = batch;
     let [a, b] = [corners::<L>(boxes, &at[0]), corners::<L>(boxes, &at[1])];
     let [radius_a, radius_b] = [L::load(&radius[0]), L::load(&radius[1])];
     let (d, margin) = ([L::load(&d[0]), L::load(&d[1])], L::load(margin));
@@ -122,7 +122,7 @@ fn collide<L: Lanes<WIDTH>>(batch: &mut Batch, boxes: &[Turned]) {
         );
         open = L::either(open, L::both(is_apart, corner));
     }
-    found.open = L::bits(open) & !L::bits(is_far);
+    manifolds.open = L::bits(open) & !L::bits(is_far);
 
     let [below, beyond] = [L::sub(zero, lower.along), L::sub(upper.along, length)];
     let span = L::sub(upper.along, lower.along);
@@ -145,10 +145,10 @@ fn collide<L: Lanes<WIDTH>>(batch: &mut Batch, boxes: &[Turned]) {
         [feature::<L>(swapped, edge, next::<L>(opposed)), feature::<L>(swapped, next::<L>(edge), opposed)];
     let first = point::<L>(&reference, low, features[0], is_far);
     let second = point::<L>(&reference, high, features[1], is_far);
-    store::<L>(&first, &second, found);
+    store::<L>(&first, &second, manifolds);
     let normal = select_vector::<L>(swapped, negated::<L>(reference.n), reference.n);
-    L::store(normal[0], &mut found.normal[0]);
-    L::store(normal[1], &mut found.normal[1]);
+    L::store(normal[0], &mut manifolds.normal[0]);
+    L::store(normal[1], &mut manifolds.normal[1]);
 }
 
 /// Contact point at an end of the incident edge.
@@ -184,17 +184,17 @@ fn feature<L: Lanes<WIDTH>>(swapped: L::Mask, of_reference: L::Int, of_incident:
 fn store<L: Lanes<WIDTH>>(
     first: &Point<L::Int, L::Mask>,
     second: &Point<L::Int, L::Mask>,
-    found: &mut Manifolds,
+    manifolds: &mut Manifolds,
 ) {
     let (none, not_both) = (L::both(first.gone, second.gone), L::either(first.gone, second.gone));
-    let [front, back] = &mut found.points;
+    let [front, back] = &mut manifolds.points;
     for i in 0..4 {
         let foremost = L::select(first.gone, second.numbers[i], first.numbers[i]);
         L::store(L::select(none, L::splat(0), foremost), &mut front.0[i]);
         L::store(L::select(not_both, L::splat(0), second.numbers[i]), &mut back.0[i]);
     }
     let fewer = L::add(L::to_int(none), L::to_int(not_both));
-    L::store(L::add(L::splat(2), fewer), &mut found.count);
+    L::store(L::add(L::splat(2), fewer), &mut manifolds.count);
 }
 
 #[inline(always)]

@@ -21,9 +21,9 @@ fn rectangle(half_width: Fx, half_height: Fx) -> SupportShape {
 }
 
 fn separation(a: &SupportShape, sweep_a: &Sweep, b: &SupportShape, sweep_b: &Sweep, fraction: Fx) -> Fx {
-    let pose = |core: &SupportShape, sweep: &Sweep| {
+    let pose = |support: &SupportShape, sweep: &Sweep| {
         let (moved, rotation) = sweep.at(fraction);
-        core.rotated(rotation).moved(to_grid(sweep.start - sweep_a.start + moved))
+        support.rotated(rotation).moved(to_grid(sweep.start - sweep_a.start + moved))
     };
     distance(&pose(a, sweep_a), &pose(b, sweep_b)).distance
 }
@@ -45,7 +45,7 @@ fn no_contact_is_passed_and_none_is_invented() {
     let mut rng = Rng::new(1);
     let (mut hits, mut separated, mut failed, mut started) = (0, 0, 0, 0);
     for _ in 0..15_000 {
-        let (a, b) = (samples::core(&mut rng), samples::core(&mut rng));
+        let (a, b) = (samples::support(&mut rng), samples::support(&mut rng));
         let (sweep_a, sweep_b) = (random_sweep(&mut rng), random_sweep(&mut rng));
         let target = rng.range(fx!(-0.01), fx!(0.02));
         if separation(&a, &sweep_a, &b, &sweep_b, Fx::ZERO) <= target + TOLERANCE {
@@ -90,7 +90,7 @@ fn contact_is_left_or_deepened_but_not_passed() {
     let mut rng = Rng::new(2);
     let (mut hits, mut free_to_go, mut overlapped, mut failed) = (0, 0, 0, 0);
     for _ in 0..20_000 {
-        let (a, b) = (samples::core(&mut rng), samples::core(&mut rng));
+        let (a, b) = (samples::support(&mut rng), samples::support(&mut rng));
         let (sweep_a, sweep_b) = (random_sweep(&mut rng), random_sweep(&mut rng));
         let start = distance(&a, &b.moved(to_grid(sweep_b.start - sweep_a.start)));
         // Moves the shape so that it starts near contact.
@@ -210,10 +210,10 @@ fn the_far_end_of_the_world_and_wild_spins_end_safely() {
             for turn in [i64::MIN, -1, 0, i64::MAX] {
                 let (still, wild) = (Sweep::fixed(start), Sweep { start, end, turn });
                 for target in [fx!(-1), fx!(1)] {
-                    for core in [&rod, &line] {
-                        time_of_impact(core, &wild, &rod, &still, target);
-                        time_of_impact(core, &still, &rod, &wild, target);
-                        time_of_impact(core, &wild, &line, &wild, target);
+                    for support in [&rod, &line] {
+                        time_of_impact(support, &wild, &rod, &still, target);
+                        time_of_impact(support, &still, &rod, &wild, target);
+                        time_of_impact(support, &wild, &line, &wild, target);
                     }
                 }
             }

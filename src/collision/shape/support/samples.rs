@@ -10,7 +10,7 @@ pub(in crate::collision) fn vector(rng: &mut Rng, size: Fx) -> Vec2<Fx> {
 }
 
 /// A random point, segment, capsule, disc or polygon, with or without a radius, about its own centre.
-pub(in crate::collision) fn core(rng: &mut Rng) -> SupportShape {
+pub(in crate::collision) fn support(rng: &mut Rng) -> SupportShape {
     loop {
         let points: Vec<_> = (0..7).map(|_| vector(rng, fx!(1))).collect();
         let radius = if rng.chance(1, 2) { Fx::ZERO } else { rng.range(fx!(0.01), fx!(0.4)) };
@@ -35,14 +35,14 @@ pub(in crate::collision) fn core(rng: &mut Rng) -> SupportShape {
 
 /// A random support shape of the largest shape size: up to 110 m from the centre.
 pub(in crate::collision) fn large(rng: &mut Rng) -> SupportShape {
-    let core = core(rng);
-    let points: Vec<_> = world_points(&core).into_iter().map(|point| point.scale(fx!(75))).collect();
-    SupportShape::from_points(points, to_fx(core.radius) * 75)
+    let support = support(rng);
+    let points: Vec<_> = world_points(&support).into_iter().map(|point| point.scale(fx!(75))).collect();
+    SupportShape::from_points(points, to_fx(support.radius) * 75)
 }
 
 /// A random support shape with a random offset.
 pub(in crate::collision) fn placed(rng: &mut Rng, spread: Fx) -> SupportShape {
-    core(rng).moved(to_grid(vector(rng, spread)))
+    support(rng).moved(to_grid(vector(rng, spread)))
 }
 
 /// Sphere tracing: the distance in metres along a path of `length` metres at which it reaches a surface, within
@@ -71,6 +71,6 @@ pub(in crate::collision) fn extremes() -> impl Iterator<Item = Vec2<Fx>> {
 }
 
 /// Points of a support shape as world vectors.
-pub(in crate::collision) fn world_points(core: &SupportShape) -> Vec<Vec2<Fx>> {
-    core.points().iter().map(|&point| from_grid(point)).collect()
+pub(in crate::collision) fn world_points(support: &SupportShape) -> Vec<Vec2<Fx>> {
+    support.points().iter().map(|&point| from_grid(point)).collect()
 }

@@ -184,7 +184,8 @@ impl Unit {
         }
     }
 
-    /// The changes that one iteration over each row by itself would make if its impulse were 0, as speeds.
+    /// For each row, the change of its impulse, as a speed, that one iteration over this row alone makes, starting from
+    /// an impulse of 0.
     pub(super) fn wanted(
         &self,
         pass: Pass,

@@ -48,16 +48,16 @@ impl JointSet {
         let (mut bodies, mut faults) = ([SolverBody::default(); 3], 0);
         let context = StepContext::new(Machine::default(), tuning, &mut bodies, &mut faults);
         self.refresh(&context);
-        let place = Ends::prepare(joint, indices, [a, b]).place(context.bodies, &self.body_rotations);
+        let pose = Ends::prepare(joint, indices, [a, b]).pose(context.bodies, &self.body_rotations);
         self.split().shares().for_each(|mut share| share.warm_start(&context));
         if let JointKind::Pulley(pulley) = &joint.def.kind {
             return pulley_reaction(pulley, joint, (a, b), &bodies, tuning);
         }
         // The velocity of the lighter body has more significant bits.
         let (body, moved, arm) = if a.has_mass() && (!b.has_mass() || a.mass() < b.mass()) {
-            (a, bodies[1].reversed(), place.reach_of_a().arm)
+            (a, bodies[1].reversed(), pose.reach_of_a().arm)
         } else {
-            (b, bodies[2], place.lever_b.arm)
+            (b, bodies[2], pose.lever_b.arm)
         };
         let per_second = |speed| fx_mul(widen(speed), body.mass()).saturating_mul_int(tuning.rate.into());
         let force = Vec2::new(per_second(moved.velocity.x), per_second(moved.velocity.y));

@@ -113,7 +113,7 @@ impl Angular {
     }
 }
 
-/// The rows of one hinge.
+/// The rows on the angle of one hinge.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct AngleInput {
     pub(super) e: [Ratio; 2],

@@ -7,9 +7,8 @@ use lockstep2d::report::{Blame, Comparison, Group, Side, Subject, Trajectory};
 use serde_json::{Value as Json, json};
 
 pub(super) fn document([a, b]: [&Path; 2], found: &Comparison) -> String {
-    let thing = |thing: &Subject| json!({"path": thing.path, "section": thing.section, "fields": fields(&thing.differences)});
-    let subjects: Vec<Json> = found.subjects.iter().map(thing).collect();
-    let began: Vec<Json> = found.began.iter().map(thing).collect();
+    let subjects: Vec<Json> = found.subjects.iter().map(subject).collect();
+    let began: Vec<Json> = found.began.iter().map(subject).collect();
     let input = found
         .input
         .as_ref()
@@ -39,6 +38,14 @@ pub(super) fn document([a, b]: [&Path; 2], found: &Comparison) -> String {
         "notes": found.notes,
     });
     document.to_string()
+}
+
+fn subject(subject: &Subject) -> Json {
+    json!({
+        "path": subject.path,
+        "section": subject.section,
+        "fields": fields(&subject.differences),
+    })
 }
 
 fn side(file: &Path, trajectory: &Trajectory) -> Json {

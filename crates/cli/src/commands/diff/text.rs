@@ -128,7 +128,7 @@ impl Text<'_> {
     }
 
     fn subjects(&self, subjects: &[Subject], f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut sections: Vec<&str> = subjects.iter().map(|thing| thing.section.as_str()).collect();
+        let mut sections: Vec<&str> = subjects.iter().map(|subject| subject.section.as_str()).collect();
         sections.sort_unstable();
         sections.dedup();
         let count = subjects.len();

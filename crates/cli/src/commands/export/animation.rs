@@ -71,7 +71,7 @@ struct Frames {
 impl Frames {
     fn of<G: Game>(replay: &Replay<'_, G>, arguments: &Arguments) -> Result<Self, CommandError> {
         let (first, last) = replay.range(arguments)?;
-        let tick_rate = replay.playback.game().tick_rate();
+        let tick_rate = replay.verified.game().tick_rate();
         let ticks = arguments.every.unwrap_or_else(|| tick_rate.div_ceil(FRAME_RATE_MAX).max(1));
         let count = u32::try_from((last - first) / u64::from(ticks) + 1).unwrap_or(u32::MAX);
         Ok(Frames { first, last, pace: Pace { ticks, tick_rate }, count })

@@ -17,7 +17,7 @@ pub(super) fn write<G: Game>(
 ) -> Result<(), CommandError> {
     for tick in ticks {
         replay.play_to(tick)?;
-        let game = replay.playback.game();
+        let game = replay.verified.game();
         output.line(&line(tick, game.state_hash(), &game.save())?)?;
     }
     Ok(())

@@ -44,7 +44,7 @@ impl State {
 
 fn is_wanted(field: &Field, arguments: &Arguments) -> bool {
     let is_body = |id: &str| {
-        let name = field.thing().and_then(|thing| thing.rsplit('.').next());
+        let name = field.subject().and_then(|subject| subject.rsplit('.').next());
         let found = name.and_then(|name| name.strip_prefix("body "));
         // The handle, and the name if the body has one.
         let mut words = found.into_iter().flat_map(|found| found.split(' '));

@@ -46,15 +46,15 @@ pub(super) fn judge<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared, wor
 
 fn play<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared, work: &Work) -> Outcome {
     let length = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
-    let mut playback = match VerifiedReplay::<G>::open(bytes, limits) {
-        Ok(playback) => playback,
+    let mut replay = match VerifiedReplay::<G>::open(bytes, limits) {
+        Ok(replay) => replay,
         Err(verdict) => {
             let needs = needs(bytes, limits, &verdict);
             return Outcome::Report(Report::new(length, &verdict, &[], needs));
         }
     };
-    let claims = playback.trailer().map(|trailer| trailer.claims.clone()).unwrap_or_default();
-    work.set_ticks(playback.ticks());
+    let claims = replay.trailer().map(|trailer| trailer.claims.clone()).unwrap_or_default();
+    work.set_ticks(replay.ticks());
     let report =
         |verdict: &Verdict, claims: &[_]| Outcome::Report(Report::new(length, verdict, claims, None));
     loop {
@@ -63,14 +63,14 @@ fn play<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared, work: &Work) ->
             return Outcome::Stopped;
         }
         if work.is_out_of_time() {
-            return Outcome::OutOfTime { ticks: playback.tick() };
+            return Outcome::OutOfTime { ticks: replay.tick() };
         }
-        match playback.step() {
+        match replay.step() {
             Ok(Step::Ticked) => {}
-            Ok(Step::Ended) => return report(&playback.conclude(), &claims),
+            Ok(Step::Ended) => return report(&replay.conclude(), &claims),
             Err(verdict) => return report(&verdict, &[]),
         }
-        work.set_tick(playback.tick());
+        work.set_tick(replay.tick());
         shared.ticks.fetch_add(1, Ordering::Relaxed);
     }
 }

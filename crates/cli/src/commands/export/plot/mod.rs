@@ -41,7 +41,7 @@ pub(super) fn write<G: Game>(
     let mut panels = panels(first, last);
     let (mut joints, mut ticks) = (0, first..=last);
     let hash = loop {
-        let Some(tick) = ticks.next() else { break replay.playback.game().state_hash() };
+        let Some(tick) = ticks.next() else { break replay.verified.game().state_hash() };
         replay.play_to(tick)?;
         let world = replay.world()?;
         joints = world.joint_count().max(joints);
@@ -58,7 +58,7 @@ pub(super) fn write<G: Game>(
         panels.pop();
     }
     let name = arguments.file.file_name().unwrap_or_default().to_string_lossy();
-    let rate = replay.playback.game().tick_rate().max(1);
+    let rate = replay.verified.game().tick_rate().max(1);
     let title = format!("{name} · ticks {first} to {last} at {rate} a second · {hash}");
     let (width, height) = (arguments.width.unwrap_or(chart::WIDTH), arguments.height);
     let document = Chart { title, panels, first, last, rate, width, height }.svg();

@@ -3,7 +3,7 @@
 import { Commands, Recording } from "lockstep2d";
 import { Game, setUp } from "./game.js";
 
-export class Tape {
+export class MatchRecording {
     #game = new Game();
     #commands = new Commands();
     #recording;
