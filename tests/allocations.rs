@@ -1,7 +1,5 @@
 //! A step allocates nothing once its buffers have grown to the size of the scene.
 
-mod common;
-
 use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::lockstep::{Game, Sandbox};
@@ -74,7 +72,8 @@ fn allocations(world: &mut World, warm_up: u64, ticks: u64) -> usize {
 /// Returns the initial world of a scene, to be stepped without commands.
 fn world_of(name: &str) -> World {
     let scene = Scene::find(name).expect("a scene of this crate");
-    let mut game = Sandbox::new(&scene.setup(common::SEED)).expect("the scenes of this crate are valid");
+    let mut game =
+        Sandbox::new(&scene.setup(lockstep2d_tests::SEED)).expect("the scenes of this crate are valid");
     std::mem::take(game.world_mut())
 }
 

@@ -1,16 +1,13 @@
 //! SIMD backend and thread count never affect results: on every backend of this machine and on any number of threads,
 //! the large scenes end in the hashes of `tests/backends.txt`.
 
-mod common;
-#[path = "common/sweep.rs"]
-mod sweep;
-
 use core::fmt::Debug;
 use std::sync::Mutex;
 
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::world::{Backend, StepStats, World};
 use lockstep2d_scenes::Scene;
+use lockstep2d_tests::sweep;
 
 const HASHES: &str = "tests/backends.txt";
 
@@ -31,7 +28,8 @@ const SCENES: [(&str, u64); 10] = [
 /// Returns the hash at the end of a scene, and the statistics of its last tick.
 fn end_of(name: &str, ticks: u64, choose: impl FnOnce(&mut World) -> bool) -> (String, StepStats) {
     let scene = Scene::find(name).expect("a scene of this crate");
-    let mut game = Sandbox::new(&scene.setup(common::SEED)).expect("the scenes of this crate are valid");
+    let mut game =
+        Sandbox::new(&scene.setup(lockstep2d_tests::SEED)).expect("the scenes of this crate are valid");
     assert!(choose(game.world_mut()), "this machine does not support the requested backend or thread count");
     for tick in 0..ticks {
         let commands = scene.commands(tick, &game);
@@ -46,7 +44,7 @@ fn all_end_in_their_hashes<Variant: Copy + Debug + Sync>(
     variants: &[Variant],
     choose: fn(&mut World, Variant) -> bool,
 ) {
-    let known = common::goldens_of(HASHES);
+    let known = lockstep2d_tests::goldens_of(HASHES);
     let wrong = Mutex::new(Vec::new());
     sweep::for_each(SCENES.to_vec(), |(name, ticks)| {
         let end_of = |variant| end_of(name, ticks, |world| choose(world, variant));

@@ -2,18 +2,14 @@
 //! and another broad phase give the same hash and events after every tick. The final hash is the one in
 //! `tests/goldens.txt`, in every build profile and on every machine.
 
-mod common;
-#[path = "common/sweep.rs"]
-mod sweep;
-
 use std::sync::{LazyLock, OnceLock};
 
-use common::goldens;
 use lockstep2d::collision::BroadPhaseKind;
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::world::{Events, World};
 use lockstep2d_scenes::{ALL, Scene};
+use lockstep2d_tests::{goldens, sweep};
 
 /// Observable results of a run after every tick.
 struct Trace {
@@ -23,7 +19,8 @@ struct Trace {
 
 /// Runs a scene; `perturb` runs before each tick and must not affect results.
 fn trace(scene: &Scene, ticks: u64, mut perturb: impl FnMut(u64, &mut Sandbox)) -> Trace {
-    let mut game = Sandbox::new(&scene.setup(common::SEED)).expect("the scenes of this crate are valid");
+    let mut game =
+        Sandbox::new(&scene.setup(lockstep2d_tests::SEED)).expect("the scenes of this crate are valid");
     let mut trace = Trace { hashes: vec![game.state_hash()], events: vec![] };
     for tick in 0..ticks {
         perturb(tick, &mut game);
@@ -70,7 +67,8 @@ fn each_scene(hold: impl Fn(&Scene, u64, &Trace) + Sync) {
 }
 
 fn shape_count(scene: &Scene) -> usize {
-    let start = Sandbox::new(&scene.setup(common::SEED)).expect("the scenes of this crate are valid");
+    let start =
+        Sandbox::new(&scene.setup(lockstep2d_tests::SEED)).expect("the scenes of this crate are valid");
     start.world().shape_count()
 }
 

@@ -1,15 +1,12 @@
 //! The committed replays verify, end in the committed hashes, and equal what their scenes record.
 
-mod common;
-#[path = "common/sweep.rs"]
-mod sweep;
-
 use lockstep2d::lockstep::Sandbox;
 use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, Recording, Verdict, verify};
 use lockstep2d_scenes::Scene;
+use lockstep2d_tests::sweep;
 
 fn replays() -> Vec<(String, Vec<u8>)> {
-    let folder = std::fs::read_dir(common::root().join("replays")).expect("replays/");
+    let folder = std::fs::read_dir(lockstep2d_tests::root().join("replays")).expect("replays/");
     let mut replays: Vec<_> = folder
         .map(|entry| entry.expect("readable").path())
         .filter(|path| path.extension().is_some_and(|extension| extension == "replay"))
@@ -24,7 +21,7 @@ fn replays() -> Vec<(String, Vec<u8>)> {
 
 #[test]
 fn every_replay_matches_and_ends_in_its_golden() {
-    let goldens = common::goldens();
+    let goldens = lockstep2d_tests::goldens();
     let replays = replays();
     assert_eq!(replays.len(), goldens.len(), "a replay for each golden");
     sweep::for_each(replays, |(name, bytes)| {
@@ -44,7 +41,8 @@ fn every_replay_is_what_its_scene_records() {
     sweep::for_each(replays(), |(name, bytes)| {
         let scene = Scene::find(&name).expect("a scene for each replay");
         let mut recording =
-            Recording::<Sandbox>::start(&scene.setup(common::SEED), CHECKPOINT_INTERVAL).expect("valid");
+            Recording::<Sandbox>::start(&scene.setup(lockstep2d_tests::SEED), CHECKPOINT_INTERVAL)
+                .expect("valid");
         for tick in 0..scene.golden_ticks {
             let commands = scene.commands(tick, recording.game());
             recording.step(&[commands]).expect("small inputs");

@@ -1,13 +1,11 @@
 //! Characters stay on their ground: on lifts, turning platforms, trains and belts, and on random stairs and slopes
 //! between walls, for each kind of mover shape and from 30 to 240 ticks a second.
 
-#[path = "common/sweep.rs"]
-mod sweep;
-
 use lockstep2d::body::{BodyDef, BodyId, Chain, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Rng, Vec2, fx_div, fx_mul};
 use lockstep2d::world::{Config, Mover, MoverState, QueryFilter, World};
+use lockstep2d_tests::sweep;
 
 const RATES: [u32; 4] = [30, 60, 120, 240];
 

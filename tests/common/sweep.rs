@@ -1,23 +1,22 @@
 //! Sweeps check one property in many cases. `cargo test` runs a sample of each sweep; with `LOCKSTEP2D_LONG=1` in the
 //! environment, as set by `.ci/long`, every sweep runs at full size.
-#![allow(dead_code, reason = "each test binary uses a part")]
 
 use std::sync::Mutex;
 use std::thread;
 
 /// Whether sweeps run at full size.
-pub(crate) fn is_long() -> bool {
+pub fn is_long() -> bool {
     std::env::var_os("LOCKSTEP2D_LONG").is_some_and(|value| value == "1")
 }
 
 /// Returns `full` in the long run and `sampled` otherwise.
-pub(crate) fn size<T>(full: T, sampled: T) -> T {
+pub fn size<T>(full: T, sampled: T) -> T {
     if is_long() { full } else { sampled }
 }
 
 /// Returns all cases in the long run; otherwise the first, every `stride`th after it, and the last. A stride without a
 /// common divisor with the number of values on each axis meets all values of all axes.
-pub(crate) fn sample<T>(cases: impl IntoIterator<Item = T>, stride: usize) -> Vec<T> {
+pub fn sample<T>(cases: impl IntoIterator<Item = T>, stride: usize) -> Vec<T> {
     let cases: Vec<T> = cases.into_iter().collect();
     let (last, stride) = (cases.len().saturating_sub(1), size(1, stride));
     let chosen = |(at, _): &(usize, T)| at.is_multiple_of(stride) || *at == last;
@@ -29,7 +28,7 @@ pub(crate) fn sample<T>(cases: impl IntoIterator<Item = T>, stride: usize) -> Ve
 /// # Panics
 ///
 /// If a check panics, after all other cases have been checked.
-pub(crate) fn for_each<T: Send>(cases: Vec<T>, check: impl Fn(T) + Sync) {
+pub fn for_each<T: Send>(cases: Vec<T>, check: impl Fn(T) + Sync) {
     let processors = thread::available_parallelism().map_or(1, usize::from);
     let workers = processors.min(cases.len());
     let cases = Mutex::new(cases.into_iter());
@@ -50,7 +49,7 @@ pub(crate) fn for_each<T: Send>(cases: Vec<T>, check: impl Fn(T) + Sync) {
 /// # Panics
 ///
 /// If a check panics, after all other cases have been checked.
-pub(crate) fn at_once<T: Send>(cases: impl IntoIterator<Item = T>, check: impl Fn(T) + Sync) {
+pub fn at_once<T: Send>(cases: impl IntoIterator<Item = T>, check: impl Fn(T) + Sync) {
     let check = &check;
     thread::scope(|scope| {
         for case in cases {

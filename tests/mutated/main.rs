@@ -4,8 +4,6 @@
 //! `MUTATIONS=100000 cargo test --release --test mutated -- --nocapture` is the long run and prints figures.
 #![expect(clippy::unwrap_used, reason = "the files of this repository are valid")]
 
-#[path = "../common/mod.rs"]
-mod common;
 mod judge;
 mod memory;
 mod mutation;
@@ -30,7 +28,9 @@ const SNAPSHOT_MULTIPLE: usize = 100;
 
 #[test]
 fn a_mutated_replay_is_never_another_match() {
-    let paths = std::fs::read_dir(common::root().join("replays")).unwrap().map(|entry| entry.unwrap().path());
+    let paths = std::fs::read_dir(lockstep2d_tests::root().join("replays"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path());
     let mut paths: Vec<_> =
         paths.filter(|path| path.extension().is_some_and(|extension| extension == "replay")).collect();
     paths.sort();
@@ -43,7 +43,7 @@ fn a_mutated_replay_is_never_another_match() {
 fn snapshots() -> Vec<Vec<u8>> {
     let mut snapshots = vec![World::default().to_bytes()];
     for scene in lockstep2d_scenes::ALL {
-        let mut game = Sandbox::new(&scene.setup(common::SEED)).unwrap();
+        let mut game = Sandbox::new(&scene.setup(lockstep2d_tests::SEED)).unwrap();
         for tick in 0..40 {
             let commands = Scene::commands(scene, tick, &game);
             game.step(&[commands]);

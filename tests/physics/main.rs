@@ -32,13 +32,12 @@ mod seams;
 mod slope;
 mod spring_pairs;
 mod surface;
-#[path = "../common/sweep.rs"]
-mod sweep;
 
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::math::{Fx, fx_mul};
 use lockstep2d::world::World;
 use lockstep2d_scenes::Scene;
+use lockstep2d_tests::sweep;
 
 /// Returns the scene of a name, before its first tick.
 fn open(name: &str) -> Sandbox {

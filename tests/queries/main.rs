@@ -6,8 +6,6 @@ mod churn;
 mod extremes;
 mod oracle;
 mod single;
-#[path = "../common/sweep.rs"]
-mod sweep;
 
 use churn::Churn;
 use lockstep2d::body::{Polygon, ShapeId};
@@ -15,6 +13,7 @@ use lockstep2d::collision::BroadPhaseKind;
 use lockstep2d::fx;
 use lockstep2d::math::{Aabb, Fx, Rng, Vec2, fx_mul};
 use lockstep2d::world::{CastHit, ClosestPoints, Probe, QueryFilter, RayHit, World};
+use lockstep2d_tests::sweep;
 use oracle::{Solid, TOLERANCE, along, seen};
 
 /// A query with its parameters.

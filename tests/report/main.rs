@@ -5,6 +5,6 @@ mod bisect;
 mod compare;
 mod fields;
 mod format;
-#[path = "../common/sweep.rs"]
-mod sweep;
 mod yard;
+
+use lockstep2d_tests::sweep;

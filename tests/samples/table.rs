@@ -20,7 +20,7 @@ fn tests_of(module: &str, source: &str) -> Vec<String> {
 
 #[test]
 fn the_page_of_samples_names_every_test() {
-    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = lockstep2d_tests::root();
     let mut written = BTreeSet::new();
     for entry in std::fs::read_dir(root.join("tests/samples")).expect("this folder") {
         let path = entry.expect("readable").path();

@@ -17,10 +17,10 @@ mod pace;
 mod sim;
 mod stories;
 mod storm;
-#[path = "../common/sweep.rs"]
-mod sweep;
 
 use std::sync::atomic::{AtomicU64, Ordering};
+
+use lockstep2d_tests::sweep;
 
 /// Seeds of a full run. It may take 30 minutes on two cores.
 const SEEDS: u64 = 100_000;

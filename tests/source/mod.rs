@@ -19,7 +19,7 @@ pub(crate) struct Token {
 
 /// Returns the files below a folder of the repository with one of these extensions (`""` means none), sorted by path.
 pub(crate) fn files(folder: &str, extensions: &[&str]) -> Vec<Source> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = &lockstep2d_tests::root();
     let mut paths = Vec::new();
     collect(&root.join(folder), extensions, &mut paths);
     paths.sort();

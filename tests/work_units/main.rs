@@ -8,8 +8,6 @@
 
 mod builders;
 mod cost;
-#[path = "../common/sweep.rs"]
-mod sweep;
 
 use std::time::Duration;
 
@@ -23,6 +21,7 @@ use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::replay::{Limits, Recording, verify};
 use lockstep2d::solver::{JointDef, Revolute, Threshold, ThresholdAction, Weld};
 use lockstep2d::world::{Command, Config, Explosion};
+use lockstep2d_tests::sweep;
 
 use builders::{body, each, grid, identifier, joined, octagon, spawn, square, still};
 use cost::{Case, computed, setup, too_expensive, too_expensive_commands};

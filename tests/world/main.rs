@@ -16,13 +16,12 @@ mod sensors;
 mod setters;
 mod settings;
 mod sleeping;
-#[path = "../common/sweep.rs"]
-mod sweep;
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef, ShapeId};
 use lockstep2d::fx;
 use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::world::{Config, World};
+use lockstep2d_tests::sweep;
 
 fn square(half: Fx) -> ShapeDef {
     ShapeDef::new(Polygon::square(half).expect("valid"))

@@ -4,9 +4,6 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
-#[path = "../../../tests/common/sweep.rs"]
-mod sweep;
-
 use std::fs;
 use std::net::UdpSocket;
 use std::path::{Path, PathBuf};
@@ -16,6 +13,7 @@ use std::time::Duration;
 
 use lockstep2d::replay::{Limits, Part, Reader, Verdict, verify};
 use lockstep2d_shove::{Pad, Shove};
+use lockstep2d_tests::sweep;
 
 /// Seconds for which all peers wait for a silent player: long enough for a process without CPU time on a busy machine.
 const PATIENCE: &str = "8";

@@ -39,8 +39,6 @@ pub enum Command {
         /// Definitions of the shapes of each body.
         shapes: Vec<ShapeDef>,
         /// Position and rotation of each body.
-        // The key in JSON, for `fork --then`.
-        #[serde(rename = "places")]
         poses: Vec<BodyPose>,
     },
     /// Calls [`World::despawn`].

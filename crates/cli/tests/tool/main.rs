@@ -4,8 +4,6 @@
 
 #[path = "../../../../tests/replay/counter.rs"]
 mod counter;
-#[path = "../../../../tests/common/sweep.rs"]
-mod sweep;
 
 mod batch;
 mod binary;
@@ -40,6 +38,7 @@ use std::path::{Path, PathBuf};
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::replay::Recording;
 use lockstep2d_cli::{Catalogue, Exit, Scene, SceneInfo, Tool};
+use lockstep2d_tests::sweep;
 
 use counter::{Counter, Setup, inputs_at, setup};
 

@@ -1,25 +1,29 @@
-//! Access to the committed hashes, shared by test binaries.
-#![allow(dead_code, reason = "each test binary uses only some of these items")]
+//! Helpers that the tests share: the committed hashes, and sweeps.
 
-use std::path::PathBuf;
+pub mod sweep;
+
+use std::path::{Path, PathBuf};
 
 /// Seed of the golden scenes.
-pub(crate) const SEED: u64 = 1;
+pub const SEED: u64 = 1;
 
 /// Hash of a scene after a number of ticks, for the current semantics.
-pub(crate) struct Golden {
-    pub(crate) scene: String,
-    pub(crate) ticks: u64,
-    pub(crate) hash: String,
+pub struct Golden {
+    /// Name of the scene.
+    pub scene: String,
+    /// Number of ticks.
+    pub ticks: u64,
+    /// State hash in hexadecimal.
+    pub hash: String,
 }
 
 /// Returns the lines of `tests/goldens.txt` for the current semantics.
-pub(crate) fn goldens() -> Vec<Golden> {
+pub fn goldens() -> Vec<Golden> {
     goldens_of("tests/goldens.txt")
 }
 
 /// Returns the lines of a file of hashes for the current semantics: semantics, scene, ticks, hash.
-pub(crate) fn goldens_of(file: &str) -> Vec<Golden> {
+pub fn goldens_of(file: &str) -> Vec<Golden> {
     let text = std::fs::read_to_string(root().join(file)).expect("a file of hashes");
     let semantics = lockstep2d::SEMANTICS.to_string();
     let lines = text.lines().filter(|line| !line.starts_with('#') && !line.is_empty());
@@ -38,6 +42,9 @@ pub(crate) fn goldens_of(file: &str) -> Vec<Golden> {
 }
 
 /// Returns the root folder of the repository.
-pub(crate) fn root() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .expect("the tests are in a folder of the repository")
+        .to_owned()
 }
