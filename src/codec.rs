@@ -86,16 +86,17 @@ pub fn encode<T: Serialize + ?Sized>(value: &T) -> Vec<u8> {
 /// Largest number of bytes that [`decode`] accepts: 256 MiB.
 pub const DECODE_BYTES_MAX: usize = 256 << 20;
 
-/// Number of bytes by which the announced length of a string may exceed the number of bytes given before the length is
-/// rejected as too large. A smaller excess is reported as missing bytes. 16 is the size of the largest number, a u128.
+/// Slack of the decoder's limit in bytes. If the announced length of a string exceeds the bytes given by at most the
+/// slack, the error is that bytes are missing; if it exceeds them by more, that the length is too large. 16 is the size
+/// of the largest number, a u128.
 const SLACK: usize = 16;
 
 /// Decodes a value whose canonical encoding is all of `bytes`.
 ///
 /// A length prefix is not trusted. For a string, the allocation is at most 16 bytes more than the bytes given. For a
-/// list of values it is at most a small multiple of the number of bytes given, plus up to 1 MiB for each list that has
-/// begun, before its values are read. Two kinds of types defeat these limits and must not be decoded from untrusted
-/// bytes: lists of values that take no bytes, whose length is unbounded, and recursive types, whose depth is unbounded.
+/// list of values, it is at most a small multiple of the number of bytes given, plus up to 1 MiB that is reserved for
+/// each list when it begins. Two kinds of types defeat these limits and must not be decoded from untrusted bytes: lists
+/// of values that take no bytes, whose length is unbounded, and recursive types, whose depth is unbounded.
 ///
 /// # Errors
 /// [`DecodeError`] if the bytes are not exactly the encoding of one such value.

@@ -50,8 +50,8 @@ impl StateHash {
         self.0.to_le_bytes()
     }
 
-    /// Deliberately wrong version for the canary `tests/cross/run broken`: it contains two mistakes that have no effect
-    /// on x86-64, the machine's byte order and the machine's width of `usize`.
+    /// Deliberately wrong version for the canary `tests/cross/run broken`: the result depends on the machine's byte
+    /// order and on its width of `usize`. Neither mistake has an effect on x86-64.
     #[cfg(lockstep2d_broken)]
     #[allow(clippy::cast_possible_truncation, reason = "a deliberate mistake")]
     fn bytes(self) -> alloc::vec::Vec<u8> {

@@ -7,8 +7,8 @@
 //! - [`body`]: definitions of bodies and shapes. [`solver`]: joints and settings. [`collision`]: contact manifolds.
 //! - [`math`]: numbers, vectors and angles, also for a game's own rules; [`fx!`] writes constants.
 //! - [`lockstep`]: [`lockstep::Game`], the trait over which recording, verification and tools are generic.
-//! - [`peer`]: a participant of a match of any game, on [`session`]: the agreement of the peers of a match on one
-//!   history, without I/O.
+//! - [`peer`]: a participant of a match, for any game. It is built on [`session`], the protocol without I/O by which
+//!   the peers of a match agree on one history.
 //! - [`replay`]: writes, reads and verifies replay files.
 //! - [`report`]: the report that a peer writes when states differ, and its analysis: who diverged, when and where.
 //! - [`check`]: runs a game in many ways that must give the same result, for tests and fuzzers.

@@ -115,7 +115,7 @@ fn slopes_up_to_the_limit_are_ground_and_steeper_ones_are_walls() {
         let end = states[179];
         assert!(end.is_on_ground(), "{degrees}: {end:?}");
         if degrees <= 45 {
-            // At full speed the character walks about 6 m along the slope: its round foot cuts the corner.
+            // The character walks 6 m along the slope, except that its round foot cuts the corner at the bottom.
             let up = end.position.y - fx!(0.7);
             let expected = fx_mul(fx!(6), Fx::from_num(angle.sin()));
             assert!((up - expected).abs() < fx!(0.3), "{degrees}: {up} {expected}");

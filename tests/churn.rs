@@ -7,7 +7,7 @@ use lockstep2d::math::Rng;
 use lockstep2d::solver::{JointDef, Revolute};
 use lockstep2d::world::World;
 
-/// A world under churn, with every handle that it has issued.
+/// A world under churn, with the handles of its bodies, of destroyed bodies and shapes, and of all joints ever added.
 struct Churn {
     world: World,
     rng: Rng,

@@ -1,9 +1,9 @@
 //! Every public type is shown in use by an example of the documentation.
 //!
 //! A type is shown if Rust code in the documentation of its own top-level module uses its name. The best place is the
-//! documentation of the type itself, or of the item through which users get the type. A smaller crate counts as one
-//! module. Imports do not count, nor does text that readers do not see as code: hidden lines, comments and literals.
-//! `cargo test --doc` checks that the code compiles and is correct.
+//! documentation of the type itself, or of the item through which users get the type. Each of the other crates counts
+//! as one module. Imports do not count, nor does text that readers do not see as code: hidden lines, comments and
+//! literals. `cargo test --doc` checks that the code compiles and is correct.
 //!
 //! All types that are declared `pub` count, because the lint `unreachable_pub` refuses those that no user can name.
 
@@ -74,7 +74,7 @@ fn is_hidden_line(line: &str) -> bool {
     line == "#" || line.starts_with("# ")
 }
 
-/// The name of the type that a line declares.
+/// Returns the name of the type that a line declares.
 fn declared(line: &str) -> Option<String> {
     let rest = ["struct ", "enum ", "trait ", "union "].iter().find_map(|kind| {
         let line = line.strip_prefix("pub ")?;
@@ -101,7 +101,7 @@ fn modules(files: &[Source]) -> BTreeMap<String, Module> {
     modules
 }
 
-/// The types that no example shows, each with its module.
+/// Returns the types that no example shows, as pairs of module and type.
 fn not_shown(modules: &BTreeMap<String, Module>) -> Vec<(&str, &str)> {
     let missing = modules.iter().flat_map(|(name, module)| {
         let types = module.types.iter().filter(|found| !module.shown.contains(*found));

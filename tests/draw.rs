@@ -177,7 +177,8 @@ fn after_a_removal_the_contacts_of_all_other_bodies_stay() {
     });
 }
 
-/// Two balls, each joined to a fixed body 3 m away, and both inside a sensor with a radius of 10 m.
+/// Joins a ball to a fixed body 3 m away, inside the body's sensor with a radius of 10 m. Returns the world and the
+/// figures of the legend.
 #[expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 fn figures_of(kind: impl Into<JointKind>) -> (World, String) {
     let mut world = World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).unwrap();
@@ -276,7 +277,7 @@ fn pictures_are_well_formed_for_any_view() {
 fn a_picture_has_an_element_for_each_body_and_style() {
     let view = View { layers: Layers::ALL, ..View::default() };
     let picture = svg(&scene(), &view);
-    // The four bodies, and the two dynamic ones again as islands.
+    // The four bodies that have shapes, and the two dynamic ones again as islands.
     assert_eq!(picture.matches("<title>body ").count(), 4 + 2);
     // The bodies, 12 styles (boxes of the broad phase, fat boxes, arm, velocity, centres, anchors, gap, normals,
     // points, forces, friction and the solver's graph colour), and the scale bar.

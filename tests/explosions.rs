@@ -14,7 +14,7 @@ fn weightless() -> World {
     World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).expect("valid")
 }
 
-/// A body of 2 kg with a radius of gyration of 1 m.
+/// Spawns a body of 2 kg with a radius of gyration of 1 m.
 fn spawn(world: &mut World, shape: impl Into<Geometry>, x: Fx, y: Fx) -> BodyId {
     let mass = MassSource::Given { mass: fx!(2), centre: Vec2::ZERO, gyration: fx!(1) };
     world.spawn(&BodyDef::dynamic().position((x, y)).mass(mass), &[ShapeDef::new(shape)]).expect("valid")

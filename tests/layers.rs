@@ -2,8 +2,8 @@
 //! the code, including unit tests, and fails on any path that leads to a higher layer.
 //!
 //! Inside a module that has folders, each folder uses only the folders that are listed for it, and files of different
-//! folders do not depend on each other in a circle. This test leaves out unit tests, and counts a path through a
-//! re-export as a path to the file that defines the item. It reads only paths: calls of methods are not found.
+//! folders do not depend on each other in a circle. The tests of folders leave out unit tests, and count a path through
+//! a re-export as a path to the file that defines the item. They read only paths: calls of methods are not found.
 //!
 //! ```text
 //!             peer
@@ -204,7 +204,7 @@ fn wrong_folders_and_circles_are_found() {
     assert_eq!(wrong(&same_folder), (0, 0), "a circle within a folder");
 }
 
-/// The folder of a file of a module: `a` for `m/a/x.rs` and `m/a/mod.rs`, `.` for `m/c.rs` and `m/mod.rs`.
+/// Returns the folder of a file of a module: `a` for `m/a/x.rs` and `m/a/mod.rs`, `.` for `m/c.rs` and `m/mod.rs`.
 fn folder_of<'a>(place: &'a [String], sources: &Crate) -> &'a str {
     let is_folder = |name: &String| {
         place.len() > 2

@@ -75,7 +75,7 @@ fn each_box_of_a_stack_bears_those_above() {
     }
 }
 
-/// `F = m a`: friction pushes a box that slides to the right to the left.
+/// `F = m a`: on a box that slides to the right, friction acts to the left.
 #[test]
 fn friction_is_what_slows_a_sliding_box() {
     let mut world = empty();
@@ -204,7 +204,8 @@ fn the_broad_phase_has_boxes_around_all_of_what_they_hold() {
     assert_eq!(world.broad_phase_boxes(), []);
 }
 
-/// Two squares on a slab, one above the other and joined to it, and one square far away.
+/// Two squares on a slab, one above the other and welded to it, and a distant square with a filter joint to the upper
+/// one.
 #[test]
 fn the_contacts_and_joints_of_a_body_are_those_of_the_world_that_name_it() {
     let mut world = empty();

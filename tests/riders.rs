@@ -26,7 +26,7 @@ fn world(tick_rate: u32) -> World {
     World::new(Config { tick_rate, ..Config::default() }).expect("valid")
 }
 
-/// Change of a velocity by gravity in one tick.
+/// Returns the speed that gravity adds in one tick, in m/s.
 fn fall(tick_rate: u32) -> Fx {
     fx!(10) / i64::from(tick_rate)
 }
@@ -56,8 +56,9 @@ struct Ride {
     platform: Platform,
     rng: Rng,
     velocity: Vec2<Fx>,
-    /// Radii of the ellipse in metres, and angular velocity in turns a second.
+    /// Radii of the ellipse in metres.
     size: Vec2<Fx>,
+    /// Frequency of the ellipse and of turning to and fro, in 1/s.
     turns: Fx,
 }
 
@@ -90,7 +91,7 @@ impl Ride {
             self.velocity = at(self.rng.range(fx!(-5), fx!(5)), self.rng.range(fx!(-5), fx!(5)));
         }
         let (sin, cos) = (Fx::from(phase.sin()), Fx::from(phase.cos()));
-        // At most 20 degrees to each side.
+        // The platform turns by at most 20 degrees to each side.
         let swing = fx_mul(fx_mul(fx!(0.349), fx_mul(self.turns, fx!(6.2832))), cos);
         let (velocity, spin) = match self.platform {
             Platform::Lift | Platform::Train | Platform::Belt => (self.velocity, fx!(0)),
@@ -174,7 +175,7 @@ fn a_rider_at_rest_stays_where_it_is_on_its_lift() {
                 let from_lift = state.position - world.body(lift).expect("there").position();
                 assert!((from_lift - at(fx!(1), fx!(1.2001))).length() < fx!(0.000002), "{from_lift:?}");
                 let ground = state.ground.expect("a lift");
-                // The displacement of a tick is rounded, and so is this velocity, by up to 1 µm/s per tick a second.
+                // Displacements are rounded, so the velocity has an error of up to 1 µm times the tick rate.
                 let error = (ground.velocity - velocity).length();
                 assert!(ground.body == lift && error < fx!(0.000001) * i64::from(rate), "{error}");
             }
@@ -211,7 +212,7 @@ fn a_belt_carries_at_its_speed() {
     }
 }
 
-/// A level between two walls: its points, and the heights of the floor at both walls.
+/// Returns the points of a level of stairs and slopes between two walls.
 fn level(rng: &mut Rng) -> Vec<Vec2<Fx>> {
     let mut points = vec![at(fx!(-3), fx!(4)), at(fx!(-3), fx!(0)), at(fx!(0), fx!(0))];
     let (mut x, mut y) = (fx!(0), fx!(0));
@@ -231,7 +232,7 @@ fn level(rng: &mut Rng) -> Vec<Vec2<Fx>> {
             y += fx_mul(fx_mul(slope, run), up);
             points.push(at(x, y));
         }
-        // A level stretch follows a slope: feet that are still on the slope would meet a higher step.
+        // A level stretch follows each slope: to feet that are still on the slope, a step would be higher.
         x += rng.range(fx!(0.8), fx!(3));
         points.push(at(x, y));
     }
@@ -254,7 +255,7 @@ fn run((shape, tick_rate, speed, seed): ((&str, Geometry), u32, Fx, u64)) {
     let end = points[points.len() - 1].x;
     for (direction, wall) in [(fx!(1), end), (fx!(-1), fx!(-3))] {
         let way = fx_div(end + fx!(9), speed).expect("a speed");
-        // Steps are climbed at walking speed, which lengthens the path.
+        // The climb of each step adds to the path, so twice the time is allowed.
         let ticks = (way * i64::from(tick_rate) * 2).to_num::<u32>();
         for tick in 0..ticks {
             state.velocity = at(fx_mul(direction, speed), state.velocity.y - fall(tick_rate));
@@ -306,7 +307,7 @@ fn a_run_up_a_slope_ends_at_the_wall() {
     }
 }
 
-/// Between two slopes of 60 degrees a character is not on ground, but can tell, and jumps out.
+/// Between two slopes of 60 degrees a character is not on ground. It is told that it is wedged, and can jump out.
 #[test]
 fn a_character_in_a_steep_v_is_wedged_and_can_jump_out() {
     for rate in RATES {

@@ -25,9 +25,9 @@ const BANNED: &[(&str, &str)] = &[
     ("eprintln", "a library does not print"),
 ];
 
-/// Floating-point types, and the paths that may use them: drawing is not simulation, and a serializer must implement
-/// methods for them.
+/// Floating-point types.
 const FLOATS: &[&str] = &["f32", "f64"];
+/// Paths that may use floating point: drawing is not simulation, and a serializer must implement methods for it.
 const ALLOWED_FLOATS: &[&str] = &["src/draw/", "src/inspect/serializer.rs"];
 
 /// Files that may use `unsafe`: SIMD instructions, prefetches, and bodies shared between threads.
@@ -44,8 +44,9 @@ const ALLOWED_UNSAFE: &[&str] = &[
     "src/simd/shared.rs",
 ];
 
-/// Comment that gives the reason for an `unsafe`, at most `REASON_ABOVE` lines above it.
+/// Comment that gives the reason for an `unsafe`.
 const REASON: &str = "// SAFETY: ";
+/// Largest number of lines from this comment down to the `unsafe`.
 const REASON_ABOVE: usize = 3;
 
 /// Folders that define state.

@@ -19,12 +19,12 @@ pub struct Plan {
     pub rounds: usize,
     /// Threads of each engine.
     pub threads: usize,
-    /// Most steps; `None` for the full length of the scene.
+    /// Largest number of steps; `None` for the full length of the scene.
     pub steps: Option<u64>,
 }
 
 impl Plan {
-    /// Number of runs for a scene, warm-ups included; the unit of the progress bar.
+    /// Number of runs for a scene, warm-ups included. The progress bar counts runs.
     pub fn runs(&self) -> u64 {
         ((self.rounds + 1) * Kind::ALL.len()) as u64
     }

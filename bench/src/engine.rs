@@ -127,7 +127,7 @@ pub trait Builder {
     /// Enables a body.
     fn enable(&mut self, body: BodyId) -> Result<()>;
 
-    /// Gives a kinematic body the velocity that moves it there within a tick.
+    /// Gives a kinematic body the velocity that moves it to a pose within a tick.
     fn move_to(&mut self, body: BodyId, position: Vec2<Fx>, angle: Angle) -> Result<()>;
 }
 
@@ -174,14 +174,14 @@ pub trait Engine {
     /// Returns the largest distance between the two anchors of a joint, in metres; `None` without joints.
     fn joint_gap(&self) -> Option<f64>;
 
-    /// Saves the world in a slot, of [`SAVES`], and reuses the memory of the save that it replaces.
+    /// Saves the world in one of [`SAVES`] slots, and reuses the memory of the save that was there.
     fn save(&mut self, slot: usize);
 
     /// Size of the saved world as a file, in bytes.
     fn saved_bytes(&self, slot: usize) -> usize;
 
-    /// Memory that one more save takes, in bytes: that of the save in a slot. The saves of Box2D and rapier2d are
-    /// files.
+    /// Memory of the save in a slot that is not shared with the world, in bytes. A save of Box2D or rapier2d shares
+    /// none: it has the size of the file.
     fn held_bytes(&self, slot: usize) -> usize {
         self.saved_bytes(slot)
     }

@@ -35,7 +35,7 @@ pub struct Cost {
     pub save_and_hash_percent: f64,
     /// CPU time of a restore and a resimulation of 8 ticks with their saves and hashes, in units of a step.
     pub rollback_steps: f64,
-    /// Memory of a save that it does not share, in bytes.
+    /// Memory of a save that is not shared with the world, in bytes.
     pub save_bytes: usize,
     /// `save_bytes` per dynamic body.
     pub save_bytes_per_body: f64,
@@ -120,7 +120,7 @@ fn advance(world: &mut World, events: &[Event]) -> Result<()> {
     Ok(())
 }
 
-/// Returns the memory of a save that it does not share with the world, in bytes.
+/// Returns the memory of a save that is not shared with the world, in bytes.
 fn save_bytes(world: &World) -> usize {
     world.save().rollback_bytes()
 }

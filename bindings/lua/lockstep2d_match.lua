@@ -145,7 +145,7 @@ function Driver:resume(tick, state)
     self:keep(tick)
 end
 
---- The newest state up to a tick, or nil.
+--- Returns the tick of the newest kept state up to `tick`, or nil.
 function Driver:newest(tick)
     local newest
     for kept in pairs(self.saves) do

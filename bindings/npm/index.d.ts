@@ -572,8 +572,8 @@ export class Replay extends Handle {
     /** Begins to go to a tick; `nextRequest` returns the requests, which `ReplayDriver` fulfils. At the first call the game
      * has to be in the state before the first tick. */
     seek(tick: number): void;
-    /** The next request on the way there: `save`, `load`, `advance`, or `checksum`, which `check` answers. Throws an error
-     * with the code RECORD if the game has diverged from the file. */
+    /** The next request on the way to the tick of `seek`: `save`, `load`, `advance`, or `checksum`, which `check`
+     * answers. Throws an error with the code RECORD if the game has diverged from the file. */
     nextRequest(): MatchRequest | undefined;
     /** Ticks between the states that `seek` asks to save: 60 at first, or more, so that there are at most 256 states. */
     setInterval(ticks: number): void;
@@ -591,7 +591,7 @@ export class ReplayDriver<Saved = unknown> {
     constructor(replay: Replay, game: ReplayGame<Saved>);
     readonly tick: number;
     /** Goes to a tick. Ticks that were played before cost less than an interval of simulation. Throws an error with the code
-     * RECORD if the game diverges from the file: it stays there, and earlier ticks can be reached. */
+     * RECORD if the game diverges from the file: the driver stays there, and earlier ticks can be reached. */
     seek(tick: number): void;
     /** Goes forward by a tick, which is always simulated, even if its state is saved. Returns false at the end. */
     step(): boolean;
@@ -745,7 +745,7 @@ export class Match extends Handle {
     leave(): void;
     /** Asks for an end of the match after a number of ticks. It is decided two seconds before; until then others can join. */
     endAt(ticks: number): void;
-    /** Asks all others to stop for now, or to go on. */
+    /** Asks all others to pause, or withdraws the request. */
     pause(paused: boolean): void;
     /** Votes for going on without a peer that is missing. */
     goOnWithout(peer: number): void;
@@ -783,7 +783,8 @@ export function nativeOffer(options: {
 }): Uint8Array;
 /** The state of a native game whose `Save` is the `Snapshot` of its world: what `MatchGame.encode` returns. */
 export function encodeNativeState(world: World): Uint8Array;
-/** Decodes the world of such a state, which may come from any source: what `MatchGame.decode` takes. */
+/** Decodes the world from a state of `encodeNativeState` or of a native game, which may come from any source: what
+ * `MatchGame.decode` takes. */
 export function decodeNativeState(bytes: Uint8Array): World;
 
 /** A member of a room of a relay (`crates/relay`): carries the packets of a match over a WebSocket. A lost connection is

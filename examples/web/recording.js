@@ -19,7 +19,7 @@ export class MatchRecording {
         this.#recording = new Recording({ setup });
     }
 
-    /** Records the final ticks of a match. The match keeps their inputs for some minutes: call it more often. */
+    /** Records the final ticks of a match. The match keeps their inputs for some minutes, so call this more often. */
     follow(match) {
         if (this.broken || match.status === "connecting") {
             return;

@@ -23,7 +23,7 @@ pub struct Generator {
     joints: Vec<JointId>,
 }
 
-/// Decides whether the scene is an ordinary one, and its settings, which are mostly valid.
+/// Decides whether the scene is an ordinary one, and returns its settings, which are mostly valid.
 pub fn config(source: &mut Source<'_>) -> Config {
     let ordinary = !source.one_in(4);
     source.set_ordinary(ordinary);
@@ -165,7 +165,7 @@ impl Generator {
             10..=17 => self.push(source, body),
             18 => Command::SetGravity { gravity: source.mostly_vec(-30_000, 30_000) },
             19 | 20 => {
-                // A target that a kinematic body can reach within a tick.
+                // Mostly a target that a kinematic body can reach within a tick.
                 let here = world.body(body).map_or(self.middle, |body| body.position());
                 let reach = if source.one_in(6) { 20_000 } else { 300 };
                 let position = here + source.mostly_vec(-reach, reach);
@@ -197,7 +197,7 @@ impl Generator {
         });
     }
 
-    /// A force, impulse, velocity or position.
+    /// A command that applies a force, torque or impulse, or sets a velocity or pose.
     fn push(&self, source: &mut Source<'_>, body: BodyId) -> Command {
         let place = |source: &mut Source<'_>| {
             if source.one_in(12) { source.mostly_vec(-5000, 5000) } else { self.near(source, 3000) }
@@ -314,7 +314,7 @@ impl Generator {
         Command::AddJointEach { joint, ends }
     }
 
-    /// A change of a joint. It rarely names other bodies, which the world refuses.
+    /// A change of a joint. A change that names other bodies, which is rare, is refused by the world.
     fn altered_joint(&mut self, source: &mut Source<'_>, world: &World) -> Command {
         let joint = self.joint(source, world);
         let mut def = self.joint_def(source, world);

@@ -16,7 +16,8 @@ type Point = Vec2<Length>;
 /// Makes the hull of some points. Returns whether there is one.
 ///
 /// # Panics
-/// When it is not the hull, when the order or repetition of the points matters, or when a valid hull is refused.
+/// When the result is not the hull, when the order or repetition of the points matters, or when a valid hull is
+/// refused.
 pub fn run(bytes: &[u8]) -> bool {
     let mut source = Source::new(bytes);
     let points = points(&mut source);
@@ -105,7 +106,7 @@ fn is_between(c: Point, a: Point, b: Point) -> bool {
     (low.x..=high.x).contains(&c.x) && (low.y..=high.y).contains(&c.y)
 }
 
-/// Whether the rounded length of an edge is at least the minimum.
+/// Whether an edge is more than one unit longer than the minimum, so that its rounded length is at least the minimum.
 fn length_is_legal(a: Point, b: Point) -> bool {
     let difference = |from: Length, to: Length| BigInt::from(to.to_bits()) - from.to_bits();
     let square = difference(a.x, b.x).pow(2) + difference(a.y, b.y).pow(2);
@@ -116,7 +117,7 @@ fn length_is_legal(a: Point, b: Point) -> bool {
 fn assert_normal(normal: Vec2<lockstep2d::math::Unit>, a: Point, b: Point) {
     let (x, y) = (BigInt::from(normal.x.to_bits()), BigInt::from(normal.y.to_bits()));
     let (dx, dy) = (BigInt::from(b.x.to_bits()) - a.x.to_bits(), BigInt::from(b.y.to_bits()) - a.y.to_bits());
-    // |n . e| <= 0.76 (|ex| + |ey|) units.
+    // Each component of the normal n has an error of at most 0.76 units, so |n . e| < 0.77 (|ex| + |ey|) units.
     let along: BigInt = (&x * &dx + &y * &dy).abs();
     assert!(along * 100 <= (dx.abs() + dy.abs()) * 77, "{normal:?} from {a:?} to {b:?}");
     assert!((&x * &dy - &y * &dx).is_positive(), "{normal:?} points inwards");

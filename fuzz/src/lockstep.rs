@@ -1,5 +1,6 @@
-//! Runs one scene in variants that must not differ: a plain world that is rolled back once, and a second world with
-//! another broad phase, reloaded from bytes, or without caches, or with another broad phase and one of the latter two.
+//! Runs one scene in two worlds that must not differ: a plain world that is rolled back once, and a second world that
+//! has another broad phase, or is reloaded from bytes, or has its caches cleared, or that combines another broad phase
+//! with reloading or clearing.
 
 use std::sync::Mutex;
 
@@ -96,7 +97,7 @@ pub fn run(bytes: &[u8]) -> Seen {
 /// world flips.
 ///
 /// # Panics
-/// Always, if the scene has a crowd.
+/// When the scene has a crowd, more than 12 touching contacts and eight or more bodies, while the eighth body can move.
 pub fn run_with_a_fault(bytes: &[u8]) {
     play(bytes, |variants| {
         let touching = variants.plain.contacts().filter(|contact| contact.touching).count();
@@ -105,7 +106,7 @@ pub fn run_with_a_fault(bytes: &[u8]) {
         if touching > 12
             && let Some(&body) = bodies.get(7)
         {
-            // The flip is refused while the body sleeps.
+            // The flip is refused if the body cannot move: if it is asleep, disabled, locked or not dynamic.
             let _ = other.flip_bit(body, BodyField::ALL[0], 0);
         }
     });

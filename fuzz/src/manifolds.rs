@@ -60,7 +60,7 @@ pub fn run(bytes: &[u8]) -> Seen {
     let at_b = at_a + between;
     let (angle_a, angle_b) = (source.angle(), source.angle());
     let a = BodyDef::fixed().position(at_a).angle(angle_a);
-    // From its shapes a segment would have no mass, and a body without mass has no contacts with fixed ones.
+    // The mass is given, because segments have none, and a body without mass has no contacts with fixed bodies.
     let mass = MassSource::Given { mass: Fx::ONE, centre: Vec2::ZERO, gyration: Fx::ONE };
     let b = BodyDef::dynamic().position(at_b).angle(angle_b).mass(mass);
     let shapes = [(a, def_a), (b, def_b)].map(|(body, geometry)| {
@@ -239,13 +239,14 @@ fn separation(a: &Solid, b: &Solid) -> Exact {
         [(a, b), (b, a)].into_iter().flat_map(|(a, b)| a.points.iter().map(|point| b.square_distance(point)));
     let apart = apart.min().unwrap_or_else(Exact::zero);
     match deepest {
-        // Crossing segments are not nearest at an end point; collinear segments have no separating axis across them.
+        // For crossing segments `apart` is positive, because it is the distance of end points. For collinear segments
+        // `deepest` is zero even if they are apart.
         Some(deepest) if !deepest.is_positive() && (deepest.is_negative() || apart.is_zero()) => deepest,
         _ => apart,
     }
 }
 
-/// Whether a signed square is that of `found`, within some micrometres.
+/// Whether a signed square is that of `found`, with an error of at most `error` micrometres.
 fn is_within(exact: &Exact, found: &Exact, error: i64) -> bool {
     let error = micrometres(error);
     (signed_square(&(found - &error))..=signed_square(&(found + &error))).contains(exact)

@@ -24,10 +24,10 @@ const TURNS: u32 = 500;
 const NEWCOMER: u32 = 150;
 /// Port of the attacker.
 const STRANGER: u32 = 9;
-/// Packets that the attacker remembers.
+/// Number of packets that the attacker remembers.
 const PACKETS: usize = 64;
 
-/// A packet: number of the sender, and bytes.
+/// The last packets that were sent: number of the sender, and bytes.
 type Heard = Rc<RefCell<VecDeque<(u32, Vec<u8>)>>>;
 
 /// A port whose outgoing packets are recorded.
@@ -55,9 +55,9 @@ impl Transport for Tapped {
 /// Statistics of a match.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seen {
-    /// Final ticks of host and player.
+    /// Last tick that both host and player have confirmed; 0 if one of them has stopped.
     pub ticks: u64,
-    /// Packets of the attacker.
+    /// Number of packets that the attacker sent.
     pub packets: u64,
     /// Whether a peer has stopped, which forged packets can cause.
     pub stopped: bool,
@@ -71,7 +71,7 @@ pub struct Seen {
 struct Match {
     network: Network,
     heard: Heard,
-    /// Peers by number; `None` for a peer that has stopped.
+    /// Peers by number; `None` for a peer that has stopped or not yet started.
     peers: [Option<Peer<Memory, Tapped>>; 3],
     /// Whether the attacker can make correct checksums.
     forges: bool,

@@ -115,7 +115,7 @@ fn pool(source: &mut Source<'_>, shape: ShapeDef) -> ShapeDef {
     )
 }
 
-/// Adds equal bodies in rows, next to each other or slightly apart.
+/// Adds equal bodies in rows, touching, slightly apart or slightly overlapping.
 pub(crate) fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
     let shape = ordinary_shape(source);
     let count = source.pick(&[12, 8, 16, 14, 10, 12, 20, 28]);
@@ -147,7 +147,7 @@ pub(crate) fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec
     }
 }
 
-/// Adds bodies joined in a chain, whose first one is usually joined to the ground.
+/// Adds bodies joined in a chain, the first of which is usually joined to a fixed body.
 fn chain(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>) {
     let slot = |commands: &[Command]| {
         let spawned = commands.iter().filter(|command| matches!(command, Command::Spawn { .. })).count();
@@ -174,7 +174,7 @@ fn chain(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>)
     }
 }
 
-/// Adds a moderate change.
+/// Adds a command that makes a moderate change.
 pub fn command(
     source: &mut Source<'_>,
     world: &World,
@@ -251,7 +251,7 @@ fn neighbours(source: &mut Source<'_>, world: &World, body: BodyId) -> Option<Jo
     Some(joints::finish(source, joint))
 }
 
-/// Changes how a body, shape or joint takes part in the simulation.
+/// Adds a command that changes a body, shape or joint, or that spawns a few bodies.
 fn change(source: &mut Source<'_>, world: &World, body: BodyId, commands: &mut Vec<Command>) {
     let here = world.body(body).map_or(Vec2::ZERO, |body| body.position());
     let some_shape = world.body(body).and_then(|body| body.shapes().first());

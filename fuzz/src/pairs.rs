@@ -15,8 +15,10 @@ use crate::{generator, shapes};
 /// better than that of the other shape by half a millimetre, and outlines within another half a millimetre count as
 /// touching.
 const ERROR: Fx = fx!(0.001001);
-/// Maximum difference in metres between the distances with the shapes exchanged: twice 20 nm, and a part of their size.
+/// Maximum difference in metres between the distances with the shapes exchanged, before the part that grows with size:
+/// twice 20 nm, rounded up.
 const DISTANCE_ERROR: Fx = fx!(0.00000005);
+/// Divisor of the size, for the part that is added to [`DISTANCE_ERROR`].
 const PARTS: i64 = 1_000_000_000;
 
 /// A world with two bodies.
@@ -119,14 +121,15 @@ impl Pair {
         self.world.set_velocity(moving, Vec2::ZERO, Fx::ZERO).expect("a velocity of zero is valid");
     }
 
-    /// The contact, directed from the fixed shape to the other one.
+    /// The contact, directed from the shape that was created first to the other one, and whether it is touching.
     fn contact(&self) -> Option<(Manifold, bool)> {
         let contact = self.world.contacts().next()?;
         Some((*contact.manifold, contact.touching))
     }
 }
 
-/// Checks that with the shapes exchanged the distance is equal and, except for ties, the normal is opposite.
+/// Checks that with the shapes exchanged the distance is equal and, if they are apart, the normal points to the other
+/// side.
 fn distances(pair: &Pair) {
     let [a, b] = pair.shapes;
     let (Some(there), Some(back)) = (pair.world.distance(a, b), pair.world.distance(b, a)) else { return };

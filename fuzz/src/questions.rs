@@ -171,7 +171,8 @@ impl Questions<'_> {
         self.world.probe_distance(&probe, shape).expect("the shape exists").distance.saturating_add(radius)
     }
 
-    /// Checks that every shape inside is found, and no shape outside.
+    /// Checks that exactly the shapes that overlap are found. `distance` returns the distance of a shape from the
+    /// point, probe or box of the query.
     fn check_found(&self, found: &[ShapeId], distance: impl Fn(ShapeId) -> Fx) {
         assert!(found.is_sorted_by(|a, b| a < b), "the shapes must be in slot order");
         if self.ordinary {

@@ -35,7 +35,7 @@ struct Body {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Phases {
     digests: Vec<StateHash>,
-    /// Offsets and bytes.
+    /// Patches of the world's bytes: offset and new bytes.
     start: Vec<(u64, Vec<u8>)>,
     length: u64,
 }
@@ -56,7 +56,8 @@ struct Trajectory {
     interval: u32,
 }
 
-/// Reads two files and compares them, if possible. Returns the result as one word.
+/// Reads the report of a peer that may have diverged or forged it, and compares it with the report of a peer that
+/// followed the rules. Returns the result as one word.
 ///
 /// # Panics
 /// When a changed report is read without its hash repaired, or when a side that followed the rules is blamed.

@@ -64,7 +64,7 @@ pub fn mass(source: &mut Source<'_>) -> MassSource {
     }
 }
 
-/// A moderate mass, centred near the origin.
+/// A moderate mass, centred near the origin, or the mass of the body's shapes.
 pub fn ordinary_mass(source: &mut Source<'_>) -> MassSource {
     if source.one_in(3) {
         return MassSource::Shapes;

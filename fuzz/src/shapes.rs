@@ -59,7 +59,7 @@ pub fn area(source: &mut Source<'_>) -> Area {
     area
 }
 
-/// Makes a few shapes sensors, areas or one-way, and lets many report hits.
+/// Makes a few shapes sensors, areas or one-way, and lets some report hits.
 fn role(source: &mut Source<'_>, def: &mut ShapeDef) {
     match source.below(12) {
         0 | 1 => def.events.hit = true,
@@ -74,7 +74,7 @@ fn role(source: &mut Source<'_>, def: &mut ShapeDef) {
     }
 }
 
-/// A shape of an ordinary scene: 0.2 to 1 m, with similar densities.
+/// A shape of an ordinary scene: 0.2 to 1.4 m, with similar densities.
 pub fn ordinary_shape(source: &mut Source<'_>) -> ShapeDef {
     let geometry = match source.below(10) {
         8 | 9 => {

@@ -73,7 +73,7 @@ impl<'a> Source<'a> {
         self.bytes.arbitrary().unwrap_or(0)
     }
 
-    /// 64 bits.
+    /// A number of 64 bits.
     pub fn word(&mut self) -> u64 {
         self.bytes.arbitrary().unwrap_or(0)
     }

@@ -27,7 +27,7 @@ pub fn limits() -> Limits {
 /// Verifies the file that the bytes describe.
 ///
 /// # Panics
-/// When a changed file is a `Match`, or an unchanged one is not.
+/// When a changed file is a `Match`, or an unchanged one is neither a `Match` nor beyond a limit.
 pub fn run(bytes: &[u8]) -> Verdict {
     let mut source = Source::new(bytes);
     let way = source.below(8);
@@ -73,7 +73,7 @@ pub fn scene(source: &mut Source<'_>) -> (SandboxSetup, Generator) {
     (SandboxSetup { config, commands }, generator)
 }
 
-/// Records a replay of such a scene.
+/// Records a replay of a small [`scene`].
 fn record(source: &mut Source<'_>) -> Vec<u8> {
     let (setup, mut generator) = scene(source);
     let interval = 1 + source.below(9) as u32;

@@ -1,4 +1,4 @@
-//! Checks that the targets whose input is a file or packet reach many results, and prints their speed.
+//! Checks that the targets whose input is a file or packets reach many results, and prints their speed.
 
 use std::collections::BTreeMap;
 

@@ -11,16 +11,16 @@ use lockstep2d::replay::{Limits, Recording, Step, VerifiedReplay};
 use lockstep2d_fuzz::source::Source;
 use lockstep2d_fuzz::{generator, verdicts};
 
-/// Nanoseconds for each unit that are allowed, with and without debug assertions and overflow checks.
+/// Maximum time of a unit of work in nanoseconds, with and without debug assertions and overflow checks.
 const MAX: u128 = if cfg!(debug_assertions) { 3000 } else { 1000 };
 
 /// Shortest time that is judged alone. The time of a shorter part is judged with the whole file.
 const JUDGED: Duration = Duration::from_micros(50);
 
-/// The shortest of so many runs counts, so that a busy machine counts little.
+/// Number of runs of a file. The shortest time of each part counts, so that other load on the machine matters little.
 const RUNS: usize = 5;
 
-/// Ticks of a world.
+/// Number of ticks of a world, at most.
 const TICKS: u64 = 60;
 
 /// A part of a file: its units, and the shortest time that it has taken.

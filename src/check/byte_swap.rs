@@ -16,7 +16,8 @@ use crate::codec;
 use crate::hash::StateHash;
 use crate::lockstep::Game;
 
-/// Interval in ticks between kept saves. Some saves at the start are kept in addition.
+/// Minimum interval in ticks between kept saves. At the start, saves at ticks that are powers of two are kept in
+/// addition.
 const INTERVAL: u64 = 16;
 /// Number of ticks for which the futures are compared.
 const FUTURE: usize = 48;
@@ -46,7 +47,7 @@ impl<G: Game> Default for ByteSwaps<G> {
 }
 
 impl<G: Game> ByteSwaps<G> {
-    /// Records the state after a tick.
+    /// Keeps the save after a tick if it is due, and examines the saves whose future is known.
     pub(super) fn perturb(
         &mut self,
         game: &G,
@@ -102,8 +103,8 @@ impl<G: Game> ByteSwaps<G> {
         Ok(())
     }
 
-    /// The number of ticks after which two states with the same hash have different hashes, and their saves before
-    /// these ticks.
+    /// Plays two states with the same hash. Returns the number of ticks after which their hashes differ, and the saves
+    /// at the start; `None` if they do not differ, or if the changed bytes are no other state with this hash.
     #[expect(clippy::type_complexity, reason = "it is taken apart at once")]
     fn futures_differ(
         &self,

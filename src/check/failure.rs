@@ -51,8 +51,8 @@ pub struct Failure {
     /// The finding in the minimised replay.
     pub minimised: Finding,
     /// A replay file with as few ticks and inputs as could be found; [`check_replay`](super::check_replay) reproduces
-    /// the failure. If the game is not deterministic between runs, its checkpoints may differ from those of the next
-    /// run.
+    /// the failure. If the game is not deterministic between runs, the checkpoints in the replay may differ from those
+    /// of the next run.
     pub replay: Vec<u8>,
     /// Number of ticks in the replay.
     pub ticks: u64,

@@ -46,7 +46,8 @@ pub enum Fault {
         /// Reason.
         why: String,
     },
-    /// Two consecutive calls of `state_hash`, `work`, `claims` or `save` return different results.
+    /// Two consecutive calls of `state_hash`, `work`, `claims` or `save` return different results, or `claims` differs
+    /// between two runs.
     Answers {
         /// Name of the function.
         of: &'static str,
@@ -208,7 +209,7 @@ impl fmt::Display for Fault {
             Fault::SavedAgain => write!(f, "saving the loaded state leads to other bytes"),
             Fault::Unreadable { why } => write!(f, "the save cannot be decoded: {why}"),
             Fault::Refused { why } => write!(f, "the setup can no longer start a game: {why}"),
-            Fault::Answers { of } => write!(f, "two consecutive calls of `{of}` return different results"),
+            Fault::Answers { of } => write!(f, "`{of}` returns different results for the same state"),
             Fault::Unhashed => {
                 write!(
                     f,

@@ -146,8 +146,8 @@ impl<G: Game> Search<'_, G> {
         Some((finding, found))
     }
 
-    /// Plays a candidate until it is known whether it fails often enough. The candidate is then cut after the last
-    /// failing tick of these runs.
+    /// Plays a candidate repeatedly, and stops once it cannot fail often enough. A candidate that fails often enough is
+    /// cut after the last failing tick of its runs.
     fn attempt(&mut self, mut ticks: Vec<Inputs<G>>, log: &Log<G>) -> Option<Attempt<G>> {
         let repeats = self.options.repeats.max(1);
         let candidate = log.of(ticks.clone());
@@ -172,7 +172,8 @@ impl<G: Game> Search<'_, G> {
         self.spent >= self.options.budget
     }
 
-    /// Removes ticks, then all inputs of ticks, then inputs of single players, as long as the log becomes smaller.
+    /// Removes ticks, then all inputs of ticks, then inputs of single players, then changes between ticks. Repeats this
+    /// as long as the log becomes smaller.
     fn shrink(&mut self, log: &Log<G>, mut best: Attempt<G>) -> Attempt<G> {
         loop {
             let before = weight(&best.ticks);
@@ -232,7 +233,8 @@ fn without<I: Clone + Default>(inputs: &alloc::rc::Rc<[I]>, player: usize) -> al
     inputs.into()
 }
 
-/// Size of a log in lexicographic order: ticks, inputs that are not the default, changes between ticks.
+/// Size of a log, compared lexicographically: the numbers of ticks, of inputs that are not the default, and of changes
+/// between ticks.
 fn weight<I: Default + PartialEq>(ticks: &[alloc::rc::Rc<[I]>]) -> (usize, usize, usize) {
     let nothing = I::default();
     let inputs = ticks.iter().flat_map(|inputs| inputs.iter());

@@ -69,8 +69,8 @@ pub fn check<G: Game>(
     check_log(setup, &log, options)
 }
 
-/// Checks a game with the setup and the inputs of a replay, from [`CheckOptions::from`] to [`CheckOptions::to`]. Its
-/// checkpoints are ignored.
+/// Checks a game with the setup and the inputs of a replay, from [`CheckOptions::from`] to [`CheckOptions::to`]. The
+/// checkpoints of the replay are ignored.
 ///
 /// # Errors
 /// Same as [`check`]; [`CheckError::Replay`] if the file is not a replay of this game or costs more than the limits

@@ -127,7 +127,8 @@ pub enum Phases {
     /// Compares only the states between ticks.
     #[default]
     Ignored,
-    /// Compares the world and the inputs of the later phases after each phase. A tick takes several times as long.
+    /// Compares the digests of the world, and of the data that later phases read, after each phase. A tick takes
+    /// several times as long.
     Compared,
 }
 

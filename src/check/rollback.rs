@@ -11,7 +11,7 @@ use super::replica::Now;
 use crate::hash::StateHash;
 use crate::lockstep::Game;
 
-/// Maximum number of kept ticks.
+/// Maximum depth of a rollback in ticks.
 const DEPTH_MAX: u32 = 64;
 
 /// The last ticks of the replica that is rolled back.

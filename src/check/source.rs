@@ -51,7 +51,7 @@ pub fn random_inputs<G: Game>(players: u32, ticks: u64, rng: &mut Rng) -> Vec<Ve
     log
 }
 
-/// Encodes and decodes the inputs.
+/// Returns the inputs after encoding and decoding, or default inputs if that fails.
 fn canonical<I>(inputs: Vec<I>, players: u32) -> Vec<I>
 where
     I: Clone + Default + serde::Serialize + de::DeserializeOwned,
@@ -87,7 +87,7 @@ impl Source<'_> {
         I::deserialize(self).unwrap_or_default()
     }
 
-    /// An integer of up to `count` bits: mostly small, or near an end or the middle of its range.
+    /// Returns a number whose low `count` bits are used: often small, or near the maximum or the middle of the range.
     fn bits(&mut self, count: u32) -> u128 {
         if count <= 8 {
             return self.byte().into();

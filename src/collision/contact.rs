@@ -32,15 +32,15 @@ pub(crate) struct Contact {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct PointImpulse {
     pub(crate) feature: u16,
-    /// Normal impulse `p = L / D`, scaled by `mA + mB`, which makes it independent of the lever arms.
+    /// Normal impulse times `mA + mB`: `p = L / D` of `solver/row.rs`. It does not depend on the lever arms.
     pub(crate) normal: Speed,
     /// Tangent impulse with the same scale: this point's share of the total friction of both points.
     pub(crate) tangent: Speed,
 }
 
-/// The lever arms of a contact, in world axes: the vectors from A's centre of mass to both points, and from B's centre
-/// of mass to A's. Of each coordinate, in units of 2^-17 m, only the low 16 bits are stored, as a signed number. A
-/// vector is stored as `x + 2^16 y`.
+/// The lever arms of a contact, in world axes: the vectors from A's centre of mass to both points, and the vector from
+/// B's centre of mass to A's. Each coordinate is in units of 2^-17 m, of which the low 16 bits are stored as a signed
+/// number. A vector is stored as `x + 2^16 y`.
 ///
 /// The arms are kept while the shapes hardly move relative to each other. With arms that follow every movement, a stack
 /// that leans would turn itself further: columns of more than 40 boxes fall. With kept arms, columns of 100 boxes stand

@@ -2,8 +2,8 @@
 
 use crate::math::{Fx, Length, Step, Unit, Vec2};
 
-/// Identifies a contact point across ticks, so that its accumulated impulse can be carried over: the pair (vertex of A,
-/// vertex of B) of the matched ends, independent of which shape has the reference edge and of the clipping.
+/// Identifies a contact point across ticks, so that its accumulated impulse can be carried over: the pair of the
+/// vertices of A and B that meet at the point, independent of which shape has the reference edge and of the clipping.
 ///
 /// Identifiers that encode the clipping as well change while a pile settles. Every change loses a warm start, and the
 /// pile sinks (`docs/DESIGN.md` has the figures).

@@ -8,7 +8,7 @@ use crate::fx;
 use crate::math::{Aabb, Fx, Vec2};
 use crate::world::World;
 
-/// Minimum radius of a scene in metres: bodies within four times this distance of the median belong to it.
+/// Minimum radius of a scene in metres: bodies within four times this distance of the median always belong to it.
 const SCENE_REACH_MIN: Fx = fx!(16);
 /// Maximum distance, in scene sizes, at which ground is included.
 const GROUND_SIZES: i64 = 12;
@@ -19,11 +19,11 @@ const GROUND_REACH: Fx = fx!(16);
 /// Maximum size, in metres, of a fixed shape that is shown if no body can move.
 const FIXED_SIZE_MAX: Fx = fx!(512);
 
-/// The window around all bodies that can move, their joints, and the ground near them, with a margin.
+/// Returns the window around all bodies that can move, their joints, and the ground near them, with a margin.
 ///
 /// A body far away from all others is left out, because it would make the rest too small to see. Of a fixed shape
-/// larger than the scene, only the nearest part is shown. The window depends on the current positions, so it moves with
-/// the bodies.
+/// larger than the distance up to which ground is included, only the nearest point is in the window. The window depends
+/// on the current positions, so it moves with the bodies.
 #[must_use]
 pub fn fit(world: &World) -> Aabb {
     let moving = world.bodies().filter(|(_, body)| body.kind() != BodyKind::Fixed);
@@ -49,8 +49,9 @@ fn bounds_of(world: &World, body: &Body) -> Aabb {
     boxes.reduce(Aabb::union).unwrap_or(Aabb::new(centre, centre))
 }
 
-/// The box around the bodies that form the scene. Bodies are sorted by distance from the median. The first body that is
-/// more than four times as far away as all before it is left out, together with all bodies after it.
+/// The box around the bodies that form the scene. Bodies are sorted by distance from the median. A body is left out,
+/// together with all bodies after it, if it is more than four times as far away as all bodies before it and as
+/// [`SCENE_REACH_MIN`].
 fn scene_of(mut boxes: Vec<Aabb>) -> Option<Aabb> {
     let middle = |component: fn(Vec2<Fx>) -> Fx| {
         let mut values: Vec<Fx> = boxes.iter().map(|aabb| component(aabb.centre())).collect();

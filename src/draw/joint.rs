@@ -10,8 +10,8 @@ use crate::math::{Fx, Vec2, fx_div};
 use crate::solver::{Joint, JointKind, Pulley, Weld};
 use crate::world::World;
 
-/// Adds a joint: its anchors, the lines to its bodies, the part of the distance between the anchors that it allows and
-/// the part that violates it, and the size of the latter.
+/// Adds the primitives of a joint: its anchors, the lines to its bodies, the allowed and the violating part of the
+/// distance between the anchors, and the joint error as text.
 pub(super) fn add(world: &World, id: JointId, layers: Layers, found: Sink<'_>) {
     let (Some(joint), Some((anchor_a, anchor_b))) = (world.joint(id), world.joint_anchors(id)) else {
         return;
@@ -54,7 +54,7 @@ pub(super) fn add(world: &World, id: JointId, layers: Layers, found: Sink<'_>) {
     }
 }
 
-/// The position of B's anchor without joint error that is nearest to its actual position.
+/// Returns the position without joint error that is nearest to B's anchor.
 fn nearest_allowed(joint: &Joint, world: &World, (anchor_a, anchor_b): (Vec2<Fx>, Vec2<Fx>)) -> Vec2<Fx> {
     let def = joint.def();
     match &def.kind {

@@ -56,7 +56,7 @@ impl Legend {
     }
 }
 
-/// A length in metres, converted to millimetres.
+/// Converts a length in metres to millimetres.
 fn millimetres(length: Fx) -> Fx {
     length.saturating_mul_int(1000)
 }

@@ -68,7 +68,7 @@ impl Layers {
         }
     }
 
-    /// All layers by field name, in painting order.
+    /// Returns a reference to each layer with its field name, in the order in which menus list the layers.
     #[must_use]
     pub fn named(&mut self) -> [(&'static str, &mut bool); 13] {
         [
@@ -180,12 +180,12 @@ pub enum Style {
     Asleep,
     /// The outline of a shape in the colour of its island.
     Island(Hue),
-    /// The box of an inner node of the broad phase; nodes at the lowest depth enclose all others.
+    /// The box of an inner node of the broad phase. The box of a root encloses all others of its tree.
     BroadPhase,
     /// The fat box of a shape in the broad phase.
     FatBox,
     /// A line from a joint's anchor to the centre of mass of the body, or between the anchors where the joint allows
-    /// them to be apart: a rod, a spring, the way of a slider, a rope.
+    /// them to be apart: a rod, a spring, the travel of a slider, a rope.
     JointArm,
     /// A line from the centre of mass to its predicted position in a tenth of a second.
     Velocity,

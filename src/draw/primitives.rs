@@ -19,8 +19,8 @@ const FORCE_LENGTH: Fx = fx!(0.2);
 /// Approximate gravity, in m/s².
 const FORCE_UNIT: i64 = 10;
 
-/// Collects all primitives of some layers of a world: the boxes of the broad phase, then the bodies, islands, contacts
-/// and joints, each in slot order.
+/// Returns the primitives of the given layers of a world: the boxes of the broad phase, then the bodies, islands,
+/// contacts and joints, each in slot order.
 #[must_use]
 pub fn primitives(world: &World, layers: Layers) -> Vec<Primitive> {
     let mut found = Vec::new();
@@ -130,7 +130,8 @@ fn add_outlines(world: &World, (id, body): (BodyId, &Body), style: Style, found:
     }
 }
 
-/// Adds each island in the colour of its first body, so that it keeps its colour while it grows.
+/// Adds the outlines of each island, in a colour chosen by the first body, so that an island keeps its colour while it
+/// grows.
 fn add_islands(world: &World, found: Sink<'_>) {
     for island in world.islands() {
         let Some(first) = island.first() else { continue };
@@ -186,7 +187,8 @@ fn add_forces(contact: &ContactView<'_>, add: &mut impl FnMut(Style, Form)) {
     }
 }
 
-/// Length of a force in metres, with the sign of the acceleration, to 16 fractional bits; see [`Style::ContactForce`].
+/// Drawn length of a force in metres, with the sign of the acceleration, to 16 fractional bits: see
+/// [`Style::ContactForce`].
 fn force_length(acceleration: Fx) -> Fx {
     let units = (acceleration / FORCE_UNIT).to_bits();
     // The root has half as many fractional bits.

@@ -9,8 +9,8 @@ use core::fmt;
 use crate::fx;
 use crate::math::{Aabb, Fx, Vec2, div_round, saturate_wide, segment_intersection};
 
-/// Minimum width of the window in metres. In a narrower window the largest shapes (120 m) have coordinates of more than
-/// 2^23 pixels, at which common renderers (cairo) overflow.
+/// Minimum width of the window in metres. In a much narrower window, the largest shapes (110 m from the centre to a
+/// side) would have coordinates of more than 2^23 pixels, at which common renderers (cairo) overflow.
 const WINDOW_MIN: Fx = fx!(0.02);
 
 /// A coordinate or length in hundredths of a pixel.
@@ -49,7 +49,7 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    /// Shows a window as large as it fits into `size` pixels.
+    /// Creates the screen that shows a window as large as fits into `size` pixels.
     pub(super) fn new(window: Aabb, size: (u32, u32)) -> Self {
         let window = Aabb::new(window.lower.min(window.upper), window.lower.max(window.upper));
         let units = |lower: Fx, upper: Fx| {
@@ -84,7 +84,7 @@ impl Screen {
         saturate_wide(div_round(units * self.pixels * 100, self.units))
     }
 
-    /// The visible part of a line.
+    /// Returns the visible part of a line, or `None` if there is none.
     pub(super) fn clipped(&self, from: Vec2<Fx>, to: Vec2<Fx>) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
         let Aabb { lower, upper } = self.seen;
         if self.seen.contains_point(from) && self.seen.contains_point(to) {

@@ -146,7 +146,7 @@ fn add_layer(text: &mut String, style: Style, marks: &Marks, elements: &str) {
         None => text.push_str("none\""),
         Some(Fill { colour, opacity: 100 }) => push(text, format_args!("#{colour:06x}\"")),
         Some(Fill { colour, opacity }) => {
-            push(text, format_args!("#{colour:06x}\" fill-opacity=\".{opacity}\""))
+            push(text, format_args!("#{colour:06x}\" fill-opacity=\".{opacity:02}\""))
         }
     }
     let width = marks.scaled(width.into());
@@ -188,7 +188,8 @@ fn add_scale_bar(text: &mut String, screen: &Screen, (width, height): (u32, u32)
     );
 }
 
-/// Appends text with all markup escaped. Characters that XML does not allow become U+FFFD.
+/// Appends text with all markup escaped. Control characters below U+0020, and other characters that XML does not allow,
+/// become U+FFFD.
 fn add_escaped(text: &mut String, raw: &str) {
     for character in raw.chars() {
         match character {

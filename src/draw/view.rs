@@ -14,9 +14,9 @@ use crate::math::Aabb;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct View {
-    /// Width in pixels, clamped to 64 to 16384.
+    /// Width in pixels, clamped to `64..=16384`.
     pub width: u32,
-    /// Height in pixels, including the legend, clamped to 64 to 16384.
+    /// Height in pixels, including the legend, clamped to `64..=16384`.
     pub height: u32,
     /// The part of the world to show.
     pub frame: Frame,

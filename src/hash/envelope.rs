@@ -8,12 +8,12 @@ use serde::{Serialize, de::DeserializeOwned};
 use super::StateHash;
 use crate::codec::{self, DecodeError};
 
-/// Size of the header: magic, format, semantics, length.
+/// Size of the header in bytes: magic, format, semantics, length.
 const HEADER_LEN: usize = 8 + 4 + 4 + 8;
-/// Size of the hash at the end.
+/// Size of the hash at the end, in bytes.
 const HASH_LEN: usize = 16;
 
-/// A kind of file.
+/// Constants that identify a kind of file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Envelope {
     /// The first eight bytes.
@@ -29,7 +29,7 @@ pub(crate) enum EnvelopeError {
     Magic,
     /// The layout has another version.
     Format { found: u32 },
-    /// The header announces another number of bytes.
+    /// The file has another number of bytes than the header announces.
     Length { announced: u64, found: u64 },
     /// The hash at the end does not match the bytes before it.
     Hash,
@@ -43,7 +43,7 @@ pub(crate) struct Opened<'a> {
     bytes: &'a [u8],
     /// The semantics of the engine that wrote the file.
     pub(crate) semantics: u32,
-    /// Announced length of the body.
+    /// Announced length of the body in bytes.
     length: u64,
 }
 

@@ -136,7 +136,7 @@ fn push_name(path: &mut String, name: &str) {
     path.push_str(name);
 }
 
-/// A map key as text: its only value, or all its values.
+/// Converts a map key to text: the values of its fields, separated by commas.
 pub(super) fn key<T: Serialize + ?Sized>(key: &T) -> Result<String, InspectError> {
     let parts = super::fields(key)?.into_iter().map(|field| match field.value {
         Value::Text(text) => text,

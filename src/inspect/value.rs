@@ -44,9 +44,9 @@ pub enum Value {
     Text(String),
     /// Bytes.
     Bytes(Vec<u8>),
-    /// A name: that of a variant, or `none`.
+    /// The name of a variant, `none` or `some none`.
     Name(&'static str),
-    /// A list, map or struct without parts.
+    /// A list, map or struct without parts, or a unit.
     Empty,
 }
 
@@ -112,7 +112,7 @@ impl fmt::Display for Value {
     }
 }
 
-/// A part of a value that has no parts itself.
+/// A leaf of an inspected value: a value without parts, with its path.
 ///
 /// ```
 /// # use lockstep2d::{body::BodyDef, world::World};

@@ -198,7 +198,7 @@ pub trait Game: Sized {
     /// default is "nothing pressed". A game that distinguishes absence from idleness returns an input that no player
     /// can send.
     ///
-    /// The replay records it like any other input, so all peers agree on the tick at which a player left.
+    /// Replays record it like any other input. All peers use it from the same tick on.
     #[must_use]
     fn absent() -> Self::Input {
         Self::Input::default()

@@ -180,10 +180,10 @@ impl Game for Sandbox {
         Some(&mut self.world)
     }
 
-    /// Bodies, shapes, pairs and joints, times the solver's sub-steps and iterations. Shapes that were just placed on
-    /// top of each other create new pairs in the tick: in the worst case as many as the world allows, for which the
-    /// broad phase compares every shape with every other. The world itself counts work that is known only during the
-    /// tick.
+    /// Counts bodies, shapes, pairs and joints, times the solver's sub-steps and iterations. Shapes that were just
+    /// placed on top of each other create new pairs in the tick. The bound assumes the worst case: as many pairs as the
+    /// world allows, found by comparing every shape with every other. The world itself counts work that is known only
+    /// during the tick.
     fn work(&self, inputs: &[Vec<Command>]) -> u64 {
         let mut costs = Costs::of(&self.world);
         inputs.iter().flatten().for_each(|command| costs.add(command));

@@ -62,7 +62,7 @@ pub enum PeerEvent {
 pub struct PeerDesync {
     /// The other peer.
     pub peer: PeerId,
-    /// Number of ticks played.
+    /// Number of ticks after which the two states differ.
     pub tick: u64,
     /// Hash of this peer.
     pub ours: StateHash,

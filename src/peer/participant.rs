@@ -180,7 +180,9 @@ impl<G: Game, T: Transport> Peer<G, T> {
                         let differences = theirs.map(|theirs| self.parameters.differences(&theirs));
                         return Err(PeerError::Parameters(differences.unwrap_or_default()));
                     }
-                    RefusalReason::Full => return Err(PeerError::Refused { why: "too many peers watch" }),
+                    RefusalReason::Full => {
+                        return Err(PeerError::Refused { why: "too many peers are joining" });
+                    }
                     RefusalReason::Taken => return Err(PeerError::Refused { why: "the identity is taken" }),
                     // The request is sent again later.
                     RefusalReason::NotReady => {}

@@ -22,8 +22,9 @@ use crate::session::Address;
 pub const SEALED_OVERHEAD: usize = HEADER + TAG;
 const HEADER: usize = 16;
 const TAG: usize = 16;
-/// Words of the replay window: a packet that arrives after 2048 later packets of its sender is dropped.
+/// Number of words of a replay window.
 const WINDOW_WORDS: usize = 32;
+/// Length of a replay window: a packet that arrives after 2048 later packets of its sender is dropped.
 const WINDOW: u64 = 2048;
 /// Maximum number of senders with a replay window. Beyond it, the sender that was silent longest is removed.
 const SENDERS_MAX: usize = 1024;

@@ -209,7 +209,7 @@ impl<G: Game> Simulation<G> {
         Ok(())
     }
 
-    /// A report of a desync. `hashes` are the hashes of the other seats.
+    /// Creates the report of a desync. `hashes` are the hashes of the other seats.
     pub(super) fn report(
         &mut self,
         tick: u64,

@@ -25,7 +25,7 @@ pub const PLAYERS_MAX: u32 = 64;
 /// Maximum length of the name of a game's rules, in bytes.
 pub const RULES_NAME_BYTES_MAX: u32 = 64;
 
-/// Maximum number of claims in a trailer, which are results such as those of a scoreboard.
+/// Maximum number of claims in a trailer. Claims are results of a game, such as a score.
 pub const CLAIMS_MAX: u32 = 256;
 
 /// Maximum length of the name of a claim, in bytes.

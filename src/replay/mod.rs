@@ -6,17 +6,17 @@
 //!
 //! # What `Match` means
 //!
-//! The file is complete, and under these rules and this engine its setup and its inputs lead, tick by tick, to the end
-//! state and the claims that it states. This holds for a file from any source, because the verifier trusts only the
-//! setup and the inputs: it recomputes everything else and compares.
+//! The file is complete, and its setup and its inputs lead, tick by tick, to the end state and the claims that the file
+//! states, under these rules and with this engine. This holds for a file from any source, because the verifier trusts
+//! only the setup and the inputs: it recomputes everything else and compares.
 //!
 //! # What it does not mean
 //!
 //! None of the hashes is keyed, so a match does not prove who played or that the file is the original recording: anyone
-//! who can run the game can write another valid replay. Neither an accident nor editing inputs and repairing checksums
-//! can produce a file that keeps the hashes of its original but contains other inputs. Every checkpoint is a hash of
-//! the state *and* of all inputs so far ([`checkpoint_hash`]), so that even an input that the game ignores is covered.
-//! To prove authorship, sign the file's bytes.
+//! who can run the game can write another valid replay. But a file with other inputs has other hashes than its
+//! original, even if the checksums are repaired: every checkpoint is a hash of the state *and* of all inputs so far
+//! ([`checkpoint_hash`]), so that it covers even an input that the game ignores. To prove authorship, sign the file's
+//! bytes.
 //!
 //! # Untrusted files
 //!

@@ -161,7 +161,7 @@ impl<'a, G: Game> RawReplay<'a, G> {
         Ok(done)
     }
 
-    /// Counts the tick whose inputs were read as played, for a tick that another game with the same state has played.
+    /// Skips the tick whose inputs were read, because another game with the same state has played it.
     pub(crate) fn skip(&mut self) {
         self.position.tick += 1;
     }
@@ -186,8 +186,8 @@ impl<'a, G: Game> RawReplay<'a, G> {
         &self.position
     }
 
-    /// Restores a state and position of this raw replay or of another one of the same file. [`RawReplay::inputs`] is
-    /// then empty.
+    /// Restores a state and a position, of this raw replay or of another one of the same file, and clears
+    /// [`RawReplay::inputs`].
     pub(super) fn go(&mut self, save: &G::Save, position: ReplayPosition<'a>) {
         self.game.load(save);
         self.position = position;

@@ -32,7 +32,7 @@ pub enum ReadError {
         /// The flaw at this offset.
         flaw: Flaw,
     },
-    /// The file is larger than the reader allows.
+    /// The file exceeds one of the reader's limits.
     LimitExceeded {
         /// The limit.
         limit: LimitKind,
@@ -112,7 +112,7 @@ pub struct InputBlock<'a> {
     pub ticks: u32,
     /// Checkpoint after the block's last tick.
     pub checkpoint: StateHash,
-    /// Digest of all inputs up to the block's last tick.
+    /// Digest of the setup and of all inputs up to the block's last tick.
     pub inputs_digest: StateHash,
     runs: Runs<'a>,
 }
@@ -212,7 +212,7 @@ impl<'a> Reader<'a> {
         self.offset as u64
     }
 
-    /// The next block, and `None` after a [`Part::Trailer`] or [`Part::Cut`].
+    /// Returns the next part of the file, or `None` after a [`Part::Trailer`] or [`Part::Cut`].
     ///
     /// # Errors
     /// [`ReadError`] when the block is malformed or exceeds a limit. Further calls return the same error.

@@ -113,7 +113,7 @@ impl fmt::Display for RecordError {
 
 impl core::error::Error for RecordError {}
 
-/// Writes the replay of a game that the caller steps; [`Recording`](super::Recording) does both.
+/// Writes the replay of a game that the caller steps. [`Recording`](super::Recording) steps the game as well.
 ///
 /// Finished bytes are fetched with [`Recorder::take_bytes`] and can be appended to a file at any time: after the header
 /// and after every block they are a valid prefix of a replay. In a game with rollback, record confirmed ticks only.
@@ -267,8 +267,9 @@ impl<G: Game> Recorder<G> {
         core::mem::take(&mut self.finished)
     }
 
-    /// The bytes that have not been taken yet, followed by the current block as if the game ended here with this state.
-    /// Appended to the bytes already taken, they are a replay of all ticks so far. The recorder is unchanged.
+    /// Returns the bytes that have not been taken yet, followed by the current block, which is finished with this
+    /// state. Appended to the bytes already taken, they are a replay of all ticks so far, without a trailer. The
+    /// recorder is unchanged.
     #[must_use]
     pub fn so_far(&self, state: StateHash) -> Vec<u8> {
         let mut copy = self.clone();

@@ -16,7 +16,7 @@ use super::reader::ReadError;
 /// # let file = recording.finish().expect("no claims");
 /// let mut reader = Reader::open(&file, &Limits::default())?;
 /// let Some(Part::Inputs(block)) = reader.next_part()? else { panic!("a block") };
-/// // An hour without any pressed button takes a few bytes.
+/// // All ticks of a block without a pressed button are one run of a few bytes.
 /// let mut runs: Runs = block.runs();
 /// let run: Run = runs.next_run()?.expect("a block is not empty");
 /// assert_eq!(run.ticks, 45);

@@ -24,8 +24,9 @@ use super::runs::{Run, Runs};
 #[derive(Clone, Debug)]
 pub struct TickInputs<'a> {
     reader: Reader<'a>,
-    /// The current block, and the number of its remaining ticks.
+    /// The current block.
     block: Option<InputBlock<'a>>,
+    /// Number of remaining ticks of the current block.
     block_left: u32,
     runs: Runs<'a>,
     /// The current run, with the number of its remaining ticks.

@@ -39,8 +39,8 @@ pub struct Trailer {
 }
 
 impl Trailer {
-    /// The first difference from the last state of a game: its hash, or the claim with the first name in ascending
-    /// order whose value differs.
+    /// Returns the first difference from the last state of a game: the final hash, or the first claim that differs, in
+    /// ascending order of names.
     #[must_use]
     pub fn difference(&self, hash: StateHash, claims: &[(String, i64)]) -> Option<ClaimDifference> {
         // The last checkpoint already covers this state, so a different final hash is a wrong statement in the trailer

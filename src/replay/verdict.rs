@@ -57,7 +57,7 @@ pub enum Verdict {
         /// The flaw at this offset.
         flaw: Flaw,
     },
-    /// The file is larger, or costs more computing, than the verifier allows.
+    /// The file exceeds one of the verifier's limits on size and computing.
     LimitExceeded {
         /// The limit.
         limit: LimitKind,
@@ -170,7 +170,7 @@ impl Verdict {
         }
     }
 
-    /// Number of ticks played to reach the verdict, as far as the verdict contains it.
+    /// Number of ticks played to reach the verdict; 0 if the verdict does not contain it.
     #[must_use]
     pub fn ticks(&self) -> u64 {
         match self {

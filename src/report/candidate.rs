@@ -18,15 +18,16 @@ use crate::inspect::{Difference, InspectError, Value, differences, fields};
 use crate::lockstep::Game;
 use crate::world::BodyField;
 
-/// Maximum work units spent on trying bit flips, which take about ten seconds. The limits may allow fewer.
+/// Maximum work units spent on trying bit flips: about ten seconds. The limits may allow fewer.
 pub(super) const WORK_MAX: u64 = 400_000_000;
 /// Minimum work units of one try, which cover loading and hashing the state.
 const TRY_WORK: u64 = 1000;
 
 /// A tick in which one side diverged.
 pub(super) struct WrongTick<G: Game> {
-    /// The last correct tick, and the state after it.
+    /// Number of ticks up to the last correct state.
     pub(super) tick: u64,
+    /// The last correct state.
     pub(super) before: G::Save,
     /// The inputs that led from that state to the wrong one.
     pub(super) inputs: Vec<G::Input>,
@@ -126,7 +127,7 @@ pub(super) fn explain<G: Game>(
     Ok(())
 }
 
-/// Whether a bit may have flipped before or after the tick.
+/// Time at which a candidate bit is flipped, relative to the tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum When {
     Before,
@@ -193,7 +194,7 @@ fn everybody<G: Game>(game: &mut G, before: &G::Save) -> Vec<Candidate> {
     candidates
 }
 
-/// The first candidate that leads to the wrong state.
+/// Returns the first candidate that leads to the wrong state. Tries cost at most `work` units together.
 fn search<G: Game>(
     wrong: &WrongTick<G>,
     game: &mut G,

@@ -72,7 +72,8 @@ impl From<InspectError> for CompareError {
 /// `G` may be any game.
 ///
 /// # Errors
-/// [`CompareError`] when the files cannot be compared at all. A part of the result that cannot be determined is a note.
+/// [`CompareError`] when the files cannot be compared at all. If only a part of the result cannot be determined, a note
+/// gives the reason.
 pub fn compare<G: Game>(a: &Evidence, b: &Evidence, limits: &Limits) -> Result<Comparison, CompareError> {
     if let (Evidence::World(a), Evidence::World(b)) = (a, b) {
         return compare_worlds(a, b);
@@ -91,8 +92,8 @@ pub(super) fn compare_worlds(a: &World, b: &World) -> Result<Comparison, Compare
     Ok(Comparison { subjects: candidate::subjects(found), ..Comparison::new() })
 }
 
-/// Collects the data of both sides (of the running engine, if there is no B) and the differences that need no
-/// simulation.
+/// Collects the data of both sides, and the differences that need no simulation. Without `b`, the second side is the
+/// running engine.
 pub(super) fn survey<'a, G: Game>(
     a: &'a Evidence,
     b: Option<&'a Evidence>,

@@ -85,7 +85,7 @@ pub enum Blame {
 pub struct Trajectory {
     /// The seats that this side plays, according to its report.
     pub seats: Vec<u32>,
-    /// The last tick at which the state of this side is known to equal the rerun, before the side diverges if it does.
+    /// The last tick, before a divergence of this side, at which its state is known to equal that of the rerun.
     pub equal_until: Option<u64>,
     /// The first tick at which its state is known to differ from the rerun.
     pub diverges: Option<u64>,
@@ -94,7 +94,7 @@ pub struct Trajectory {
 /// The first input that differs between two replays.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InputDifference {
-    /// Number of ticks before the one that the input belongs to.
+    /// Tick of the input, counted from 0.
     pub tick: u64,
     /// Seat of the input.
     pub seat: u32,

@@ -82,7 +82,7 @@ pub(super) struct Body {
     pub(super) history: Vec<(u64, StateHash)>,
     /// Canonical bytes of saves, in ascending order of ticks.
     pub(super) saves: Vec<(u64, Vec<u8>)>,
-    /// Phase digests of the steps that led to these ticks, in ascending order of ticks.
+    /// Phase digests of steps, by the tick that the step led to, in ascending order of ticks.
     pub(super) phases: Vec<(u64, TickPhases)>,
     pub(super) replay: Vec<u8>,
 }
@@ -91,8 +91,8 @@ impl DesyncReport {
     /// Creates the report of a peer. `replay` contains the inputs of the known ticks, for example from
     /// [`Recorder::so_far`](crate::replay::Recorder::so_far).
     ///
-    /// The report contains the hash of every tick, and as many saves as fit into [`SAVES_BYTES_MAX`]: first those of
-    /// the different tick and before it, newest first, then those after it.
+    /// The report contains the hash of every tick, and as many saves as fit into [`SAVES_BYTES_MAX`]: first those up to
+    /// the different tick, newest first, then those after it.
     #[must_use]
     pub fn new<G: Game>(found: &Desync, history: &History<G>, replay: Vec<u8>) -> Self {
         Self::within(SAVES_BYTES_MAX, found, history, replay)
@@ -157,14 +157,14 @@ impl DesyncReport {
         self.body.tick
     }
 
-    /// The hash that the peer of each seat had at that checkpoint, if known.
+    /// The hash that the peer of each seat had at the checkpoint [`DesyncReport::tick`], if known.
     #[must_use]
     pub fn hashes(&self) -> &[Option<StateHash>] {
         &self.body.hashes
     }
 
-    /// The seats that agree at that checkpoint, largest group first. With three peers or more, this shows which peer
-    /// diverged.
+    /// The seats that agree at the checkpoint [`DesyncReport::tick`], largest group first. With three peers or more,
+    /// this shows which peer diverged.
     #[must_use]
     pub fn groups(&self) -> Vec<Group> {
         let mut groups: BTreeMap<StateHash, Vec<u32>> = BTreeMap::new();

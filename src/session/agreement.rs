@@ -37,7 +37,7 @@ pub(super) struct Agreement {
     pub(super) wanted_since: Option<u64>,
 }
 
-/// Maximum number of transitions after one packet. Each view takes a few.
+/// Maximum number of steps in one call of [`Session::agree`]. A change of the view takes a few.
 const STEPS_MAX: usize = 64;
 
 impl Session {

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-/// The bytes are not a packet.
+/// Error: the bytes are not a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Malformed;
 
@@ -103,7 +103,7 @@ pub(super) trait Write {
     fn put_u64(&mut self, value: u64);
     fn put_u128(&mut self, value: u128);
     fn put_var64(&mut self, value: u64);
-    /// LEB128.
+    /// Writes a number in LEB128.
     fn put_var(&mut self, value: u32) {
         self.put_var64(u64::from(value));
     }
@@ -113,7 +113,7 @@ pub(super) trait Write {
         let below = u64::from(base.saturating_sub(value));
         self.put_var64(if below == 0 { above << 1 } else { (below - 1) << 1 | 1 });
     }
-    /// The length of a list. Lists are far shorter than 2^32.
+    /// Writes the length of a list. Lists are far shorter than 2^32.
     fn put_count(&mut self, count: usize) {
         self.put_var64(u64::try_from(count).unwrap_or(u64::MAX));
     }

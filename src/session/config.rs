@@ -99,7 +99,7 @@ pub struct Config {
     pub history: u16,
     /// Number of final ticks whose inputs are kept for peers that reconnect.
     pub log_ticks: u32,
-    /// Interval in ticks at which states are saved, at least 1.
+    /// Interval in ticks at which states are saved, from 1 to half of `history`.
     pub save_interval: u16,
     /// Interval in ticks at which states are compared: a multiple of `save_interval`.
     pub check_interval: u16,

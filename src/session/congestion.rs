@@ -6,16 +6,19 @@
 //! below an eighth is attributed to the link. Until the rate is too high for the first time, it grows by half in each
 //! period.
 
-/// Rates in bytes a second: at first, the smallest, and the largest over all receivers together.
+/// Initial rate in bytes a second.
 const RATE_START: u64 = 1_000_000;
+/// Smallest rate in bytes a second.
 const RATE_MIN: u64 = 128_000;
+/// Largest rate in bytes a second, for one receiver and for all receivers together.
 pub(super) const RATE_MAX: u64 = 16_000_000;
 /// Increase of the rate in a period, in bytes a second.
 const RATE_STEP: u64 = 100_000;
 /// Rise of the round trip above which a queue is assumed, in microseconds.
 const QUEUE: u64 = 60_000;
-/// Bounds of a period in microseconds.
+/// Minimum length of a period in microseconds.
 const PERIOD_MIN: u64 = 40_000;
+/// Maximum length of a period in microseconds.
 const PERIOD_MAX: u64 = 500_000;
 /// Largest burst, as the time in microseconds that it takes at the current rate. A game may update only once a frame.
 pub(super) const BURST: u64 = 25_000;
@@ -28,16 +31,21 @@ pub(super) struct Congestion {
     rate: u64,
     /// Whether the rate has not been too high in any period yet.
     is_starting: bool,
-    /// Bytes that may be sent now, and when they were last counted.
+    /// Number of bytes that may be sent now.
     budget: u64,
+    /// Time at which the budget was last increased.
     budget_at: u64,
-    /// Smallest round trip, and the last one.
+    /// Smallest round trip in microseconds.
     round_trip_min: u64,
+    /// Last round trip in microseconds.
     round_trip: u64,
-    /// Start of the period, chunks sent and lost in it, and whether the rate limited the number of chunks sent.
+    /// Start of the period.
     since: u64,
+    /// Number of chunks sent in the period.
     sent: u32,
+    /// Number of chunks lost in the period.
     lost: u32,
+    /// Whether the rate limited the number of chunks sent in the period.
     is_limiting: bool,
 }
 

@@ -19,7 +19,7 @@ const HELLO_INTERVAL: u64 = 200_000;
 /// Maximum number of addresses kept.
 const CONTACTS_MAX: usize = 128;
 
-/// A peer that is asked.
+/// A peer that is asked to serve this peer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PendingContact {
     pub(super) address: Address,

@@ -83,8 +83,8 @@ pub(super) enum Phase {
 /// One participant of a match.
 ///
 /// In a loop: pass packets to [`receive`](Endpoint::receive), call [`update`](Endpoint::update), offer a state while
-/// [`wants_state`](Endpoint::wants_state), drive the [`session`](Endpoint::session) as described there, and send what
-/// [`next_packet`](Endpoint::next_packet) returns.
+/// [`wants_state`](Endpoint::wants_state), drive the [`session`](Endpoint::session) as described at [`Session`], and
+/// send what [`next_packet`](Endpoint::next_packet) returns.
 ///
 /// ```
 /// use lockstep2d::session::{Address, Config, Endpoint, Identity, Key, PeerId, Role, Status};
@@ -281,7 +281,7 @@ impl Endpoint {
         self.packets.push_back((to, bytes));
     }
 
-    /// Whether a joining peer waits for a state. The game then calls [`offer_state`](Endpoint::offer_state).
+    /// Whether a joining peer waits for a state. If so, the game calls [`offer_state`](Endpoint::offer_state).
     #[must_use]
     pub fn wants_state(&self) -> bool {
         self.guests.anybody_waits()

@@ -34,7 +34,7 @@ pub enum Status {
     Paused,
     /// The others went on without this peer, which asks for its seat again.
     Dropped,
-    /// The others removed it for good.
+    /// The others removed this peer for good.
     Kicked,
     /// Announces its departure to the others.
     Leaving,
@@ -78,7 +78,7 @@ impl Status {
 pub enum Event {
     /// The status of the session has changed.
     Status(Status),
-    /// The seats change: a new view is in force.
+    /// The membership has changed: a new view is in force.
     View {
         /// Number of the view.
         number: u32,
@@ -122,11 +122,11 @@ pub enum Event {
         /// Number of ticks of the match.
         ticks: Tick,
     },
-    /// Two peers have different states at a final tick.
+    /// This peer and another one have different states at a final tick.
     Desync {
         /// The other peer.
         peer: PeerId,
-        /// Number of ticks played.
+        /// Number of ticks after which the states differ.
         tick: Tick,
         /// Hash of this peer.
         ours: u128,

@@ -1,5 +1,5 @@
-//! [`Guests`]: peers that follow the match without a vote, and the states that are sent to them. Nothing is stored for
-//! a peer whose address has not been confirmed by the handshake.
+//! [`Guests`]: peers that join or watch through this peer, until their first row arrives, and the states that are sent
+//! to them. Nothing is stored for a peer whose address has not been confirmed by the handshake.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -13,11 +13,11 @@ use super::siphash::Secret;
 use super::state::Session;
 use super::transfer::{Pinned, Upload};
 
-/// Largest number of peers that follow the match without a vote.
+/// Largest number of joining peers that one contact serves at a time.
 pub const GUESTS_MAX: usize = 64;
 /// Period of the cookies in microseconds. A cookie is valid for one to two periods.
 const COOKIE_LIFE: u64 = 15_000_000;
-/// A guest that sends no request for this time is removed, in microseconds.
+/// Time without a request after which a guest is removed, in microseconds.
 const GUEST_PATIENCE: u64 = 5_000_000;
 /// Time between announcements of a state to a guest that has not asked for it yet, in microseconds.
 const WELCOME_INTERVAL: u64 = 200_000;
@@ -28,10 +28,10 @@ struct Guest {
     id: PeerId,
     nonce: u64,
     upload: Option<Upload>,
-    /// Whether it has asked for chunks.
+    /// Whether the guest has asked for chunks.
     asked: bool,
     welcome_at: u64,
-    /// When it last asked for something.
+    /// Time of the guest's last request; before its first one, time at which its upload began.
     heard_at: Option<u64>,
 }
 
@@ -39,8 +39,9 @@ struct Guest {
 #[derive(Debug, Default)]
 pub(super) struct Guests {
     list: Vec<Guest>,
-    /// Bytes that may be sent now, and when they were last counted.
+    /// Number of bytes that may be sent now.
     budget: u64,
+    /// Time at which the budget was last increased.
     budget_at: u64,
 }
 
@@ -120,7 +121,8 @@ impl Guests {
         upload.take(now, next, window, masks);
     }
 
-    /// Returns packets to guests. Removes guests that take part in the match by now, and guests that have gone.
+    /// Returns the packets that are due to guests. Removes guests that take part in the match by now, and guests that
+    /// have gone.
     pub(super) fn update(&mut self, now: u64, session: &mut Session) -> Vec<(PeerId, JoinPacket)> {
         let passed = now.saturating_sub(self.budget_at).min(BURST);
         self.budget_at = now;

@@ -21,7 +21,7 @@ pub(super) const ADDRESS_LIST_MAX: usize = 24;
 pub enum RefusalReason {
     /// The offers differ: another game, setup or version.
     Offer,
-    /// Too many peers follow the match.
+    /// Too many peers are joining through this contact.
     Full,
     /// The requested incarnation belongs to another peer.
     Taken,
@@ -29,7 +29,7 @@ pub enum RefusalReason {
     NotReady,
 }
 
-/// A packet.
+/// A packet outside of the match.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum JoinPacket {
     /// A peer asks to join; the cookie is 0 at first.
@@ -39,8 +39,8 @@ pub(super) enum JoinPacket {
         cookie: u64,
         offer: Vec<u8>,
     },
-    /// Carries a cookie to the address of a hello, which the next hello returns to prove that its sender receives
-    /// packets there. Whoever sends a challenge stores nothing for it.
+    /// Carries a cookie to the address from which a hello came. The next hello returns the cookie, which proves that
+    /// its sender receives packets at this address. The sender of a challenge stores nothing for it.
     Challenge {
         nonce: u64,
         cookie: u64,
@@ -50,7 +50,7 @@ pub(super) enum JoinPacket {
         reason: RefusalReason,
         offer: Vec<u8>,
     },
-    /// The initial state.
+    /// Announces the start state, which follows in chunks.
     Welcome {
         nonce: u64,
         tick: Tick,

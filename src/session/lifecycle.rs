@@ -24,8 +24,8 @@ pub(super) struct Lifecycle {
     paused: alloc::vec::Vec<PeerId>,
 }
 
-/// Play stalls for the time of this many ticks, and at least for [`Timing::heard`](super::Timing::heard), before the
-/// game is told which peer play waits for.
+/// Length of a stall in ticks after which the game is told which peer play waits for, but not before
+/// [`Timing::heard`](super::Timing::heard) has passed.
 const WAITING_TICKS: u64 = 6;
 
 /// Time before the end of a match at which a peer proposes the end, in microseconds.

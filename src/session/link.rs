@@ -1,6 +1,6 @@
 //! [`Link`]: measurements of the network path to a peer.
 
-/// Unit of times in packets, in microseconds: a power of two.
+/// Binary logarithm of the unit of times in packets, which is 128 microseconds.
 const UNIT_SHIFT: u32 = 7;
 /// Longest round trip that is accepted, in microseconds. Times in packets wrap after 8.4 s.
 const ROUND_TRIP_MAX: u64 = 4_000_000;

@@ -34,7 +34,7 @@ pub(super) struct Pace {
 const AHEAD_MAX: i64 = 6;
 /// Largest lateness that is made up, in ticks. Any further lateness is dropped.
 const LATE_MAX: u64 = 3;
-/// Number of complete but unplayed ticks above which a peer catches up at once.
+/// Number of complete but unplayed ticks from which on a peer catches up at once.
 const CATCH_UP: Tick = 12;
 /// Time between changes of the delay, in microseconds.
 const DELAY_INTERVAL: u64 = 500_000;
@@ -158,8 +158,8 @@ impl Session {
         }
     }
 
-    /// Target of the input delay, from the slowest link to another player: half a round trip, its jitter, and the send
-    /// interval.
+    /// Target of the input delay in ticks, from the slowest link to another player: half a round trip, twice the jitter
+    /// and one tick, less [`Config::guess`].
     fn delay_aim(&self) -> u16 {
         let (least, most) = (self.config.delay_min, self.config.delay_max);
         let tick = self.pace.tick_micros.max(1);

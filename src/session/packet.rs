@@ -58,7 +58,7 @@ pub(super) struct Header {
 pub(super) struct Packet {
     pub(super) header: Header,
     pub(super) row: Row,
-    /// Changes that lead to consecutive views, and the number of the first of these.
+    /// Number of the view that the first change leads to, and changes that lead to consecutive views.
     pub(super) changes: (u32, Vec<Change>),
     pub(super) runs: Vec<Run>,
     pub(super) inputs: Vec<u8>,
@@ -72,7 +72,7 @@ pub(super) fn checksum(match_tag: u64, body: &[u8]) -> [u8; 4] {
     [digest[0], digest[1], digest[2], digest[3]]
 }
 
-/// The body of a packet whose checksum is right.
+/// Returns the body of a packet if its checksum is right.
 pub(super) fn open(match_tag: u64, bytes: &[u8]) -> Decoded<&[u8]> {
     let (sum, body) = bytes.split_first_chunk::<4>().ok_or(Malformed)?;
     if bytes.len() <= PACKET_BYTES_MAX && checksum(match_tag, body) == *sum {

@@ -18,8 +18,9 @@ const HASHES_MAX: usize = 16;
 pub(super) struct Play {
     pub(super) played: Tick,
     pub(super) confirmed: Tick,
-    /// Inputs of the ticks before `played` that may still change, and the first of these ticks.
+    /// Inputs of the ticks before `played` that may still change.
     used: VecDeque<TickInputs>,
+    /// First tick of `used`.
     used_from: Tick,
     /// Ticks before which states are kept.
     saves: VecDeque<Tick>,
@@ -30,9 +31,9 @@ pub(super) struct Play {
     /// Tick of the last requested hash.
     checked: Tick,
     seats: usize,
-    /// Ticks that were played again.
+    /// Number of ticks that were played again.
     pub(super) replayed: u64,
-    /// Most ticks that were played again at a time.
+    /// Largest number of ticks that one rollback played again.
     pub(super) replayed_max: Tick,
 }
 
@@ -51,9 +52,9 @@ pub(super) struct Play {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Statistics {
-    /// Ticks that were played again, because inputs had been guessed wrongly or a view changed.
+    /// Number of ticks that were played again, because inputs had been guessed wrongly or a view changed.
     pub replayed: u64,
-    /// Most ticks that were played again at a time.
+    /// Largest number of ticks that one rollback played again.
     pub replayed_max: Tick,
     /// Bytes of inputs that are kept.
     pub input_bytes: usize,
@@ -160,8 +161,8 @@ impl Session {
         spans.map(|(index, span)| (index, span.seat))
     }
 
-    /// First tick of an own span whose input is not issued yet. The inputs within the input delay after the start of a
-    /// span are issued at once, so that the others need not wait for them.
+    /// First tick of an own span whose input must not be issued yet. At the start of a span, the inputs of the first
+    /// ticks, as many as the input delay, are issued at once, so that the others need not wait for them.
     fn issue_limit(&self, span: usize) -> Tick {
         if !self.view.begun {
             return 0;

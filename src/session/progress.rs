@@ -2,8 +2,9 @@
 //!
 //! A tick is *complete* when this peer has all inputs of the view's spans for it. A tick that no peer plays is complete
 //! if a peer plays a later one. A complete tick is *acknowledged* unless this peer's promise of a ballot freezes the
-//! acknowledgement. A complete tick is *final* when a quorum of this view acknowledges it, or when it lies before the
-//! view's cut. A change of the view may revoke complete ticks, but never final ones.
+//! acknowledgement. A complete tick is *final* when a quorum of this view acknowledges it, when it lies before the
+//! view's cut, or when a voter's row in this view states it as final. A change of the view may revoke complete ticks,
+//! but never final ones.
 
 use alloc::vec::Vec;
 

@@ -16,16 +16,16 @@ use super::view::{Change, JOINS_MAX, Join, SEATS_MAX, SPANS_MAX, bit, bits, has_
 pub(super) struct Proposal {
     pub(super) ballot: Ballot,
     started_at: u64,
-    /// Time at which a quorum had promised the ballot.
+    /// Time at which this peer knew that a quorum had promised the ballot.
     quorum_at: Option<u64>,
     /// The change that is proposed, once it is chosen.
     change: Option<Arc<Change>>,
 }
 
-/// The time limit of a ballot grows with the number of rounds that led to no decision: linearly up to `ROUNDS_MAX`
-/// rounds, quadratically after that. Its upper bound is `BALLOT_MAX` microseconds or `ROUNDS_MAX` times the initial
-/// time, whichever is longer.
+/// Number of rounds without a decision up to which the time limit of a ballot grows linearly with the rounds. After
+/// that it grows quadratically.
 const ROUNDS_MAX: u64 = 4;
+/// Upper bound of the time limit of a ballot in microseconds, unless `ROUNDS_MAX` times the initial limit is longer.
 const BALLOT_MAX: u64 = 6_000_000;
 
 impl Session {
@@ -145,7 +145,7 @@ impl Session {
         self.peers.voters_that(|remote| silent(remote) && remote.key.is_some_and(wanted))
     }
 
-    /// Bit for each seat that is free once the voters in `leaves` have left.
+    /// Bit for each seat that is free once the voters in `leaves` and all replaced voters have left.
     fn free_after(&self, leaves: u64) -> u64 {
         let leaves = leaves | self.replaced();
         let voters = self.view.voters.iter().enumerate();

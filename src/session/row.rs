@@ -26,10 +26,10 @@ pub(super) struct Wants {
     pub(super) removals: Vec<Removal>,
 }
 
-/// Largest number of removals in a row.
+/// Largest number of removals in a [`Row`].
 pub(super) const REMOVALS_MAX: usize = 8;
 
-/// A peer that wants to play.
+/// A peer's request for seats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct SeatWant {
     pub(super) seats: u8,
@@ -76,7 +76,7 @@ pub(super) struct Row {
     pub(super) hash: Option<(Tick, u128)>,
 }
 
-/// Largest number of peers without a vote in a row.
+/// Largest length of [`Row::hears_others`].
 pub(super) const STRANGERS_MAX: usize = 8;
 
 impl Row {

@@ -1,4 +1,5 @@
-//! SipHash-2-4: a keyed hash whose results cannot be guessed without the key. It generates the handshake cookies.
+//! SipHash-2-4: a keyed hash whose results cannot be guessed without the key. It generates the cookies of the handshake
+//! and the tokens of probes.
 
 /// A secret key.
 #[derive(Clone, Copy)]

@@ -1,5 +1,5 @@
-//! [`StartState`]: the view, the addresses and the game's state that a joining peer receives. It receives the inputs of
-//! later ticks in packets of the match.
+//! [`StartState`]: the view, the addresses and the game's state that a joining peer receives. The inputs of later ticks
+//! reach the peer in packets of the match.
 
 use alloc::vec::Vec;
 

@@ -122,7 +122,7 @@ impl Random {
         Random(seed)
     }
 
-    /// A number below `bound`, or 0.
+    /// Returns a random number below `bound`; 0 if `bound` is 0.
     pub(super) fn below(&mut self, bound: u64) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mixed = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -148,8 +148,8 @@ impl Changes {
 }
 
 impl Session {
-    /// A session of a match whose first view is known. The peer is one of its voters, or follows the match from the
-    /// first tick on. `me` has to be a random number, different for each process; `seed` may be any number.
+    /// Creates the session of a match whose first view is known. The peer is one of its voters, or follows the match
+    /// from the first tick on. `me` has to be a random number, different for each process; `seed` may be any number.
     ///
     /// # Errors
     /// A parameter that is out of its range.
@@ -194,7 +194,7 @@ impl Session {
         Ok(session)
     }
 
-    /// A session that follows a match from the state after `tick` ticks, all of which are final.
+    /// Creates a session that follows a match from the state after `tick` ticks, all of which are final.
     pub(super) fn resume(
         config: Config,
         me: PeerId,

@@ -81,8 +81,8 @@ fn a_packet_of_eight_players_is_small() {
     assert_eq!(composer.finish(5).len(), 45);
 }
 
-/// Decoding a packet with any flipped bit, any prefix of a packet, or random bytes does not panic, and an accepted
-/// packet has one encoding.
+/// Decoding a packet with a flipped bit, a prefix of a packet, or a packet with a byte after its end does not panic.
+/// Prefixes and longer packets are refused.
 #[test]
 fn no_bytes_panic() {
     let bytes = packet_bytes();

@@ -10,11 +10,13 @@ use super::id::Tick;
 use super::join_packet::{CHUNK_BYTES, JoinPacket, MASKS_MAX};
 use super::view::has_bit;
 
-/// Smallest and largest number of chunks in flight.
+/// Initial window: number of chunks that may be in flight.
 const WINDOW_MIN: u32 = 56;
+/// Largest window in chunks.
 const WINDOW_MAX: u32 = 960;
-/// Time between two requests in microseconds, and number of chunks after which one is sent earlier.
+/// Time between two requests in microseconds.
 const WANT_INTERVAL: u64 = 20_000;
+/// Number of received chunks after which a request is sent before its time.
 const WANT_CHUNKS: u32 = 16;
 /// Round trip that is assumed before one is measured, in microseconds.
 const ROUND_TRIP: u64 = 250_000;
@@ -133,7 +135,7 @@ impl Upload {
 pub(super) struct Download {
     pub(super) hash: u64,
     length: u64,
-    /// The bytes up to the last chunk that has arrived. Nothing is allocated for an announced length.
+    /// The bytes up to the last chunk that has arrived. They are not allocated in advance for the announced length.
     bytes: Vec<u8>,
     have: Vec<bool>,
     next: u32,

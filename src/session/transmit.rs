@@ -25,15 +25,17 @@ pub(super) struct Outbox {
 
 /// Maximum number of packets waiting to be sent. Beyond it, the oldest ones are dropped.
 const PACKETS_MAX: usize = 4096;
-/// Peers without a vote are served for this many microseconds after their last packet.
+/// Time for which a peer without a vote is served after its last packet, in microseconds.
 const SERVED: u64 = 5_000_000;
-/// If a peer lacks more than this many ticks of another peer, third peers relay them even though it hears that peer.
+/// If a receiver lacks more than this many ticks of inputs of a peer, other peers relay them, even if the receiver
+/// hears that peer.
 const HELP_TICKS: Tick = 20;
-/// A peer that has lost contact sends every row whose version is a multiple of this to all peers that it knows.
+/// Interval, in versions of the row, at which a peer that has no vote or has lost contact to a quorum sends its row to
+/// all peers that it knows.
 const TRY_ROWS: u32 = 8;
-/// Longest time between packets in microseconds.
+/// Longest time between packets in microseconds, in a match of up to 16 peers.
 const INTERVAL_MAX: u64 = 100_000;
-/// A hash is in every row with a version that is a multiple of this.
+/// Interval, in versions of the row, at which the row contains a state hash.
 const HASH_ROWS: u32 = 4;
 
 impl Session {

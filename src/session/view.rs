@@ -98,7 +98,7 @@ pub(super) struct Change {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct View {
-    /// 0 at the start, and one more after each change.
+    /// Number of the view: 0 at the start, and one more after each change.
     pub number: u32,
     /// Whether enough seats were taken to begin.
     pub begun: bool,
@@ -108,7 +108,7 @@ pub struct View {
     pub end: Option<Tick>,
     /// Voter with the casting vote.
     pub tie_holder: PeerId,
-    /// In the order in which they joined; at most [`SEATS_MAX`].
+    /// The voters, in the order in which they joined; at most [`SEATS_MAX`].
     pub voters: Vec<Voter>,
     /// All spans of the match so far.
     pub spans: Vec<Span>,
@@ -151,12 +151,12 @@ impl View {
         self.voters.iter().position(|voter| voter.id == id)
     }
 
-    /// Doubled weight of a voter, to which the casting vote of the tie-holder adds half a vote.
+    /// Twice the weight of a voter, plus 1 for the casting vote of the tie-holder.
     fn weight(&self, voter: &Voter) -> u32 {
         2 * u32::from(voter.weight) + u32::from(voter.id == self.tie_holder)
     }
 
-    /// Doubled weight of the voters in a set, which has a bit for each index.
+    /// Sum of [`View::weight`] over the voters in a set, which has a bit for each index.
     pub(super) fn weight_of(&self, set: u64) -> u32 {
         let members = self.voters.iter().enumerate().filter(|(index, _)| has_bit(set, *index));
         members.map(|(_, voter)| self.weight(voter)).sum()
@@ -229,7 +229,7 @@ impl View {
     }
 }
 
-/// The set with one member.
+/// Returns the set that contains only `index`; the empty set for an index above 63.
 pub(super) const fn bit(index: usize) -> u64 {
     if index < 64 { 1 << index } else { 0 }
 }

@@ -92,7 +92,7 @@ impl Row {
         row.connected = has(flag::CONNECTED);
         row.paused = has(flag::PAUSED);
         if has(flag::OTHERS) {
-            let count = reader.count(STRANGERS_MAX)?.max(1);
+            let count = read_positive(reader, STRANGERS_MAX)?;
             row.hears_others = (0..count).map(|_| reader.u32().map(PeerId)).collect::<Decoded<_>>()?;
         }
         if has(flag::PROMISED) {
@@ -113,10 +113,18 @@ impl Row {
             row.wants.end = Some(reader.var()?);
         }
         if has(flag::REMOVALS) {
-            let count = reader.count(REMOVALS_MAX)?.max(1);
+            let count = read_positive(reader, REMOVALS_MAX)?;
             row.wants.removals = (0..count).map(|_| Removal::read(reader)).collect::<Decoded<_>>()?;
         }
         Ok(row)
+    }
+}
+
+/// The length of a list that is not empty: without elements its flag would not be set.
+fn read_positive(reader: &mut Reader, max: usize) -> Decoded<usize> {
+    match reader.count(max)? {
+        0 => Err(Malformed),
+        count => Ok(count),
     }
 }
 

@@ -54,7 +54,8 @@ impl Barrier {
     }
 }
 
-/// Breaks the barrier when it is dropped by a panic of its member. A member that finishes its work forgets its guard.
+/// Guard of a member, which breaks the barrier when it is dropped. Only a panic drops it: a member that finishes its
+/// work forgets its guard.
 pub(super) struct Guard<'a>(pub(super) &'a Barrier);
 
 impl Drop for Guard<'_> {

@@ -1,9 +1,9 @@
 //! Threads that share a tick. The number of threads changes the speed, never the result, because the threads work on
 //! parts that do not read each other's results.
 //!
-//! A stage of a tick that is divided is run by a team: the calling thread and the threads of a pool, each with a part
-//! of its own. Members of a team wait for each other at barriers, of which the sub-steps need a hundred in a tick. A
-//! barrier costs 0.1 microseconds. A fork and join of tasks in its place would cost 1 to 50 microseconds.
+//! A team runs the parallel stages of a tick: the calling thread and the threads of a pool, each on its own part. The
+//! members of a team wait for each other at barriers; the sub-steps of a tick need a hundred of them. A barrier costs
+//! 0.1 microseconds. A fork and join of tasks in its place would cost 1 to 50 microseconds.
 
 #[cfg(feature = "parallel")]
 mod barrier;
@@ -56,7 +56,7 @@ impl Member<'_> {
         true
     }
 
-    /// Waits until all members of the team have called this method as often as this one.
+    /// Waits until all members of the team have called this method as often as this member has.
     pub(crate) fn wait(self) {
         #[cfg(feature = "parallel")]
         if let Some(barrier) = self.barrier {
@@ -103,15 +103,15 @@ impl<T> TeamLock<T> {
     }
 }
 
-/// The part of `0..len` that one of `count` members works on. Only the last part has an end that is not a multiple of
-/// `unit`.
+/// Returns the part of `0..len` that `member` works on, one of `count` members. Each part ends at a multiple of `unit`
+/// or at `len`.
 pub(crate) fn part_of(len: usize, unit: usize, member: usize, count: usize) -> Range<usize> {
     let units = len.div_ceil(unit);
     let end = |member: usize| (units * member / count * unit).min(len);
     end(member)..end(member + 1)
 }
 
-/// Divides a slice at the given ends. A part whose end is beyond the slice ends with it.
+/// Divides a slice at the given ends. A part whose end is beyond the slice ends where the slice ends.
 pub(crate) fn split_at_ends<T>(
     slice: &mut [T],
     ends: impl Iterator<Item = usize>,
@@ -126,7 +126,7 @@ pub(crate) fn split_at_ends<T>(
 }
 
 impl Threads {
-    /// Starts the threads beside the calling one, for `count` threads in all. Returns `None` if they cannot be started.
+    /// Starts `count - 1` threads, which make `count` with the calling one. Returns `None` if they cannot be started.
     #[cfg(feature = "parallel")]
     pub(crate) fn new(count: usize) -> Option<Self> {
         match count {
@@ -148,7 +148,7 @@ impl Threads {
         1
     }
 
-    /// Runs a tick. Passes it the number of parts with which its stages call [`Self::run_team`].
+    /// Runs a tick. The argument of `tick` is the number of parts to pass to [`Self::run_team`].
     #[cfg(feature = "parallel")]
     pub(crate) fn run_tick<R>(&self, tick: impl FnOnce(usize) -> R) -> R {
         match &self.team {
@@ -157,7 +157,7 @@ impl Threads {
         }
     }
 
-    /// Runs a tick. Passes it the number of parts with which its stages call [`Self::run_team`]: one.
+    /// Runs a tick. The argument of `tick` is the number of parts to pass to [`Self::run_team`]: one.
     #[cfg(not(feature = "parallel"))]
     #[expect(clippy::unused_self, reason = "same signature as with the feature")]
     pub(crate) fn run_tick<R>(&self, tick: impl FnOnce(usize) -> R) -> R {

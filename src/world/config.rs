@@ -26,12 +26,12 @@ use crate::solver::{ContactTuning, RATE_MAX, SUB_STEPS_MAX, SolverSettings};
 /// | 1 cm | 37 | 277.5 Hz | 1 mm | 2.4 % |
 /// | 5 mm | 52 | 390 Hz | 1 mm | 2.4 % |
 ///
-/// The table depends on gravity divided by size: boxes of 10 cm under 1 m/s² need what boxes of 1 m need under 10
-/// m/s². Another unit of length than the metre changes nothing, because gravity changes with it. The smallest body has
-/// a radius of gyration of 2 mm: a square of 5 mm or a ball with a radius of 3 mm, and 10 mg. Speeds in settings are
-/// not adapted: a box of 1 cm hardly falls faster than the 0.05 m/s below which bodies
+/// The table depends on gravity divided by size: boxes of 10 cm under 1 m/s² need what boxes of 1 m need under 10 m/s².
+/// Another unit of length than the metre changes nothing, because gravity changes with it. The smallest body has a
+/// radius of gyration of 2 mm: a square of 5 mm or a ball with a radius of 3 mm, and 10 mg. Speeds in settings are not
+/// adapted: a box of 1 cm hardly falls faster than the 0.05 m/s below which bodies
 /// [sleep](crate::body::BodySettings::sleep_speed), or the 1 m/s below which they [do not
-/// bounce](SolverSettings::restitution_threshold), so that those may be set as well.
+/// bounce](SolverSettings::restitution_threshold), so those may have to be lowered as well.
 ///
 /// ```
 /// use lockstep2d::{fx, math::Vec2, world::{Config, World}};
@@ -51,7 +51,7 @@ pub struct Config {
     /// other get a larger margin, which follows from their speeds at the start of the tick.
     pub speculative_distance: Fx,
     /// Largest margin of the fat boxes in the broad phase in metres, 0.001 to 10. The margin of a shape is at most a
-    /// sixteenth of its own extent. A larger margin refits boxes less often, but gives more pairs.
+    /// sixteenth of half the larger side of its AABB. A larger margin refits boxes less often, but gives more pairs.
     pub fat_margin: Fx,
     /// Whether bodies at rest fall asleep.
     pub sleeping: bool,

@@ -78,12 +78,12 @@ pub struct HitEvent {
 
 /// A sensor that began or ceased to overlap a shape.
 ///
-/// A sensor overlaps the shapes that it overlaps at the end of the tick. A shape that crosses a sensor within a tick
-/// has both events in that tick, each with its fraction, at any speed and with any
-/// [`Continuous`](crate::body::Continuous) setting. Within a tick a body is taken to move on a straight line from its
-/// old pose to its new one and to rotate evenly. Therefore a ball that hits a wall and returns within the tick has no
-/// events with the sensors that it met only on the way to the wall, and a shape that leaves a sensor and returns within
-/// the tick has no events. Overlaps of less than 0.05 mm may be missed between two ticks.
+/// The overlaps of a sensor are those at the end of the tick. A shape that crosses a sensor within a tick has both
+/// events in that tick, each with its fraction, at any speed and with any [`Continuous`](crate::body::Continuous)
+/// setting. Within a tick a body is taken to move on a straight line from its old pose to its new one and to rotate
+/// evenly. Therefore a ball that hits a wall and returns within the tick has no events with the sensors that it met
+/// only on the way to the wall, and a shape that leaves a sensor and returns within the tick has no events. Overlaps of
+/// less than 0.05 mm may be missed between two ticks.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::World};
@@ -206,7 +206,8 @@ pub struct JointEvent {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Events {
-    /// Bodies that moved within the tick or fell asleep, in slot order. Bodies that only an edit has moved are not listed.
+    /// Bodies that moved within the tick or fell asleep, in slot order. Bodies that only an edit has moved are not
+    /// listed.
     pub moved: Vec<MoveEvent>,
     /// Pairs that came within [`super::Config::touching_distance`] or pushed each other in the tick. Sorted by shape A,
     /// then by shape B, like all lists of pairs.

@@ -20,7 +20,7 @@ pub(crate) struct Island {
     pub(crate) bodies: Vec<u32>,
 }
 
-/// A pair of shapes in the form in which events name it.
+/// A pair of shapes, named by handles as in the events.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Reported {
     pub(crate) shapes: ContactEvent,
@@ -133,7 +133,7 @@ impl State {
         a.acts_on(b) || b.acts_on(a)
     }
 
-    /// A contact in the form in which events name it, if its shapes have contact or sensor events.
+    /// The pair of a contact as events name it; `None` if it has neither a sensor nor a shape with contact events.
     pub(crate) fn reported(&self, contact: &Contact) -> Option<Reported> {
         let (a, b) = contact.shapes;
         let sensor = self.sensor_of(contact.shapes);

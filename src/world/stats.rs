@@ -64,13 +64,13 @@ pub struct StepStats {
     pub bodies: u32,
     /// Number of solved joints.
     pub joints: u32,
-    /// Number of pairs of shapes whose fat boxes overlap and of which one is active.
+    /// Number of pairs of shapes whose fat boxes overlap and of which at least one is on an active body.
     pub pairs: u32,
     /// Number of pairs with contact points. Sensors do not count.
     pub contacts: u32,
     /// Number of contact points.
     pub points: u32,
-    /// Number of contact points that were warm-started: that continue a point of the tick before and its impulse.
+    /// Number of contact points that were warm-started: each continues a point of the tick before, with its impulse.
     pub points_kept: u32,
     /// Number of contact points with an impulse in the tick before that are gone although their shapes still touch.
     pub points_lost: u32,

@@ -13,7 +13,7 @@ fn rectangle(half_width: Fx, half_height: Fx) -> ShapeDef {
     ShapeDef::new(Polygon::rectangle(half_width, half_height).unwrap())
 }
 
-/// A floor of 24 m between two walls.
+/// A floor of 24 m with a wall at each end.
 fn pit() -> World {
     let mut world = World::default();
     let parts = [
@@ -126,8 +126,8 @@ fn reject_and_axis_spare_a_hundred_polygons_most_searches() {
     assert!(spared, "{fast} points, {pairs} pairs, {counters:?}");
 }
 
-/// A pyramid of boxes, balls with rolling resistance on their way to it, and three chains of planks of which the first
-/// hinge of each has a motor.
+/// A pyramid of boxes, balls with rolling resistance on their way to it, and three chains of planks, each with a motor
+/// at its first hinge.
 fn boxes_balls_and_hinges() -> World {
     let (mut world, half) = (pit(), fx!(0.5));
     for (row, column) in (0..6).flat_map(|row| (row..6).map(move |column| (row, column))) {
@@ -197,8 +197,8 @@ fn contact_velocities_are_known_of_what_is_locked() {
     );
 }
 
-/// A tick that ends before joints are solved, because its budget does not cover them, changes nothing for the world that
-/// is restored after it.
+/// A tick that ends before joints are solved, because its budget does not cover them, changes nothing for the world
+/// that is restored after it.
 #[test]
 fn a_world_is_restored_after_a_tick_without_the_budget_for_its_joints() {
     let mut world = pit();

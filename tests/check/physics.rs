@@ -9,7 +9,7 @@ use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::world::{Config, Snapshot, World};
 use serde::{Deserialize, Serialize};
 
-/// The planted fault of a [`Pit`], which is its setup: one type for all faults is compiled once.
+/// Planted fault of a [`Pit`]. It is the setup, not a type parameter, so that the game is compiled only once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 enum Mistake {
     None,

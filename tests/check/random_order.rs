@@ -5,7 +5,7 @@ use lockstep2d::math::Rng;
 
 use super::harvest::Harvest;
 
-/// Random logs find the fault, and the minimised replay is little more than two fruits and a player who reaches for
+/// Random logs find the fault. The minimised replay contains little more than two fruits and a player who reaches for
 /// them.
 #[test]
 fn random_logs_find_the_order_of_a_hash_map() {

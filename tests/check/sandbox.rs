@@ -4,7 +4,8 @@ use lockstep2d::check::{CheckOptions, Phases, Variant, check, random_inputs};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::math::Rng;
 
-/// Largest number of shapes of a scene in this test: all variants together take twenty times as long as one.
+/// Largest number of shapes of a scene in this test: all variants together take twenty times as long as one
+/// run.
 const SHAPES_MAX: usize = 300;
 
 #[test]

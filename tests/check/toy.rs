@@ -7,7 +7,7 @@ use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use serde::{Deserialize, Serialize};
 
-/// The planted fault of a [`Toy`], which is its setup: one type for all faults is compiled once.
+/// Planted fault of a [`Toy`]. It is the setup, not a type parameter, so that the game is compiled only once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Mistake {
     None,
@@ -29,9 +29,9 @@ pub(crate) enum Mistake {
     HashTidies,
     /// The save contains an unordered set.
     SaveIsUnordered,
-    /// The claims contain the number of calls.
+    /// A claim is the number of calls of `state_hash`, `work` and `claims`.
     ClaimsCount,
-    /// The work is the number of calls.
+    /// The work is the number of calls of `state_hash`, `work` and `claims`.
     WorkCounts,
     /// Two claims have the same name.
     ClaimsTwice,
@@ -71,7 +71,7 @@ pub(crate) struct Save {
     flag: Flag,
 }
 
-/// A set without an order, and its encoding.
+/// A set without an order, which the module `unordered` encodes.
 #[expect(clippy::disallowed_types, reason = "a planted fault")]
 type Unordered = std::collections::HashSet<u64>;
 

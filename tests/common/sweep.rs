@@ -14,8 +14,9 @@ pub fn size<T>(full: T, sampled: T) -> T {
     if is_long() { full } else { sampled }
 }
 
-/// Returns all cases in the long run; otherwise the first, every `stride`th after it, and the last. A stride without a
-/// common divisor with the number of values on each axis meets all values of all axes.
+/// Returns all cases in the long run; otherwise the first, every `stride`th after it, and the last. If the cases are
+/// all combinations of some parameters, a sample that is large enough contains every value of every parameter, provided
+/// that the stride has no common divisor with any parameter's number of values.
 pub fn sample<T>(cases: impl IntoIterator<Item = T>, stride: usize) -> Vec<T> {
     let cases: Vec<T> = cases.into_iter().collect();
     let (last, stride) = (cases.len().saturating_sub(1), size(1, stride));

@@ -1,5 +1,5 @@
-// Runs a WebAssembly program in node that takes arguments and writes text: `node wasi.mjs FILE [ARGUMENT...]`. This
-// replaces `node:wasi`, which in some versions of node writes to a stale buffer after the program's memory has grown.
+// Runs a WebAssembly program that takes arguments and writes text: `node wasi.mjs FILE [ARGUMENT...]`. Replaces
+// `node:wasi`, which in some versions of node writes to a stale buffer after the program's memory has grown.
 import { readFileSync, writeSync } from "node:fs";
 import process from "node:process";
 

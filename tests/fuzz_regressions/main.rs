@@ -170,7 +170,7 @@ fn impulses_that_grow_over_sub_steps_are_no_overflow() {
 #[test]
 fn turns_and_levers_at_their_limits_are_no_overflow() {
     // Bodies that rotate about far-away centres and separate: nothing stops them within the tick. Their displacement is
-    // the sum of two products that fill 63 bits each, and a third one.
+    // the sum of three products, two of which fill 63 bits each.
     let sides = [1i64, -1];
     for (arm_a, arm_b, turn_a, turn_b) in sides
         .into_iter()
@@ -195,8 +195,8 @@ fn turns_and_levers_at_their_limits_are_no_overflow() {
 
 #[test]
 fn joints_that_pull_with_all_they_have_leave_no_velocity_at_the_end_of_its_format() {
-    // Both axes of a hinge push at once, and together change the velocity of one of them by more than 512 m/s. Such a
-    // sum saturates, and the magnitude of the smallest number does not fit a signed number.
+    // Both axes of a hinge push at once, and together change a body's velocity along one axis by more than 512 m/s.
+    // Such a sum saturates, and the magnitude of the most negative number does not fit a signed number.
     for turn in 0..64u32 {
         let mut world = weightless();
         let post = world.spawn(&BodyDef::fixed(), &[]).unwrap();
@@ -229,7 +229,8 @@ fn many_shapes_added_in_one_tick_are_work() {
 
 #[test]
 fn many_fixed_shapes_at_one_point_wake_nobody_for_long() {
-    // Each shape searched all earlier ones for bodies to wake and cached those that never sleep: a minute for 20 000.
+    // Each shape searched all earlier ones for bodies to wake, and cached even fixed bodies: a minute for 20 000
+    // shapes.
     let poses = vec![BodyPose { position: Vec2::ZERO, angle: Angle::ZERO }; 50_000];
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let spawn = Command::SpawnEach { body: BodyDef::fixed(), shapes: vec![ball], poses };

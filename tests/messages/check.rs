@@ -46,7 +46,7 @@ fn faults() {
         (Fault::SavedAgain, "saving the loaded state leads to other bytes"),
         (Fault::Unreadable { why: "a bad tag".into() }, "the save cannot be decoded: a bad tag"),
         (Fault::Refused { why: "no floor".into() }, "the setup can no longer start a game: no floor"),
-        (Fault::Answers { of: "work" }, "two consecutive calls of `work` return different results"),
+        (Fault::Answers { of: "work" }, "`work` returns different results for the same state"),
         (
             Fault::Unhashed,
             "two states with the same hash but different saves reach different hashes with the same inputs",

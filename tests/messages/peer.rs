@@ -28,7 +28,7 @@ fn peers() {
             PeerError::Parameters(differences),
             "the peers have different parameters: engine semantics 3 here and 2 there, number of seats 4 here and 2 there",
         ),
-        (PeerError::Refused { why: "too many peers watch" }, "refused: too many peers watch"),
+        (PeerError::Refused { why: "too many peers are joining" }, "refused: too many peers are joining"),
         (PeerError::State { why: "a bad tag".into() }, "the received state cannot be used: a bad tag"),
         (PeerError::NoState { tick: 12 }, "the state after 12 ticks is not kept"),
     ]);

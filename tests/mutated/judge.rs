@@ -10,12 +10,13 @@ use lockstep2d::replay::{Limits, Reader, TickInputs, Verdict, verify};
 use crate::memory;
 use crate::mutation::{below, mutate, repair};
 
-/// Time limit for one file: longer counts as a hang.
+/// Time limit for one file, in seconds. A longer time counts as a hang.
 const SECONDS_MAX: u64 = 5;
 /// Largest peak memory use for one file, in bytes.
 const MEMORY_MAX: usize = 32 << 20;
-/// Largest size of a small file in bytes; one mutation in `LARGE_ONE_IN` picks a larger file.
+/// Largest size of a small file, in bytes.
 const SMALL: usize = 6000;
+/// Number of files of which one is derived from a file that is not small.
 const LARGE_ONE_IN: u32 = 50;
 /// Decoded content of a replay, with its verdict.
 #[derive(PartialEq, Eq)]
@@ -43,8 +44,9 @@ impl Trajectory {
 pub(crate) struct Figures {
     pub(crate) answers: BTreeMap<String, u64>,
     slowest: Duration,
-    /// Peak memory use in bytes, and as a multiple of the file's size.
+    /// Largest peak memory use in bytes.
     memory: usize,
+    /// Largest peak memory use as a multiple of the file's size.
     multiple: usize,
 }
 

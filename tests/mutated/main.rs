@@ -21,7 +21,7 @@ use judge::{Figures, check_replays, files_wanted, mutated};
 const FILES: u64 = 2000;
 /// Largest size of a mutated file, in bytes: larger files only take longer.
 const LARGEST: usize = 60_000;
-/// Ticks that an accepted world must survive.
+/// Number of ticks that an accepted world must survive.
 const TICKS: u32 = 3;
 /// Largest memory use of reading a snapshot, as a multiple of its size.
 const SNAPSHOT_MULTIPLE: usize = 100;

@@ -3,11 +3,13 @@
 use lockstep2d::hash::StateHash;
 use lockstep2d::math::Rng;
 
-/// Size of a checksum in a replay, and of the hash at the end of a snapshot, in bytes.
+/// Size of a checksum in a replay, in bytes.
 const CHECKSUM: usize = 8;
+/// Size of the hash at the end of a snapshot, in bytes.
 const HASH: usize = 16;
-/// Size of magic, format, semantics and length, in bytes.
+/// Size of the header of a snapshot, in bytes: magic, format, semantics and length.
 const SNAPSHOT_HEADER: usize = 24;
+/// Kind of the last part of a replay.
 const TRAILER: u8 = 3;
 /// Range of the chain hash in the trailer's payload.
 const CHAIN: std::ops::Range<usize> = 24..40;

@@ -44,7 +44,7 @@ impl Table {
         Table { network, peers: Vec::new(), events: Vec::new(), replays: Vec::new() }
     }
 
-    /// The identity and the socket of the next peer.
+    /// Returns the identity and the port of the next peer.
     fn next(&self) -> (PeerIdentity, Port) {
         let number = u32::try_from(self.peers.len()).expect("valid");
         (identity(number), self.network.port(number))
@@ -137,7 +137,7 @@ fn all_have_the_same_replay_and_it_verifies() {
     }
 }
 
-/// A replay goes on through departures, joins and outages; late joiners and spectators follow the same states.
+/// The host's replay goes on through a late join and a departure. Late joiners and spectators follow the same states.
 #[test]
 fn late_joiners_and_spectators_follow() {
     for options in modes() {

@@ -1,4 +1,4 @@
-//! A sealed match, and an attacker that reads all of its packets and sends them again.
+//! A sealed match, and an attacker that reads all packets of the match and sends them again.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -10,7 +10,7 @@ use lockstep2d::session::Address;
 
 use super::pushers::{Pushers, Setup, bot};
 
-/// Packets that were sent.
+/// All packets that the peers have sent since the attacker last took them.
 type Heard = Rc<RefCell<Vec<Vec<u8>>>>;
 
 /// A port that records all packets that it sends.

@@ -205,7 +205,7 @@ fn bobbing_keeps_its_energy() {
     }
 }
 
-/// Balls on a circle and on an ellipse around a planet: energy and angular momentum are kept for a minute.
+/// Balls on a circle and on two ellipses around a planet: energy and angular momentum are kept for a minute.
 #[test]
 fn orbits_close() {
     let mut world = world(fx!(0));
@@ -238,7 +238,7 @@ fn orbits_close() {
     }
 }
 
-/// Inside a planet the pull grows evenly, which is an oscillator: `omega^2 = g / R`.
+/// Inside a planet the pull is proportional to the distance from the centre: an oscillator with `omega^2 = g / R`.
 #[test]
 fn a_tunnel_through_a_planet_is_an_oscillator() {
     let mut world = world(fx!(0));
@@ -341,7 +341,7 @@ fn a_command_sets_the_wind() {
     assert!(!world.body(body).expect("valid").is_asleep());
 }
 
-/// A body in the area of a dynamic body stays awake for as long as the dynamic body moves.
+/// The area of a moving dynamic body wakes a sleeping body when it reaches that body.
 #[test]
 fn a_moving_magnet_wakes_what_it_passes() {
     let mut world = world(fx!(-10));

@@ -1,4 +1,4 @@
-//! Random assemblies: bodies without shapes, joined in a star, a tree, a chain, a loop or a grid, and their energy.
+//! Random assemblies: bodies without shapes, joined in a star, a tree, a chain, a loop, a mesh or a grid.
 //!
 //! All joints are satisfied at the start, so that the start has no energy in the joints themselves. Masses are within a
 //! factor of 100 of each other, and arms within 16 radii of gyration.
@@ -41,7 +41,7 @@ pub(crate) enum Mix {
     Wheel,
     Rod,
     Friction,
-    /// Any of those above.
+    /// For each joint, a random mix of [`MIXES`].
     Every,
     /// Springs between two points and between two angles.
     MotorSpring,
@@ -54,7 +54,7 @@ pub(crate) enum Mix {
 pub(crate) enum Start {
     /// One body is hit.
     Hit,
-    /// All turn about one point as one rigid body.
+    /// All bodies turn about one point as one rigid body.
     Spin,
     /// Every body has its own velocity.
     Scatter,
@@ -64,7 +64,7 @@ pub(crate) enum Start {
 
 pub(crate) const SHAPES: [Shape; 6] =
     [Shape::Star, Shape::Tree, Shape::Chain, Shape::Loop, Shape::Mesh, Shape::Grid];
-/// The mixes of one kind.
+/// The mixes among which [`Mix::Every`] chooses.
 pub(crate) const MIXES: [Mix; 7] =
     [Mix::Weld, Mix::Hinge, Mix::SoftWeld, Mix::Prismatic, Mix::Wheel, Mix::Rod, Mix::Friction];
 pub(crate) const STARTS: [Start; 4] = [Start::Hit, Start::Spin, Start::Scatter, Start::Hang];
@@ -98,7 +98,7 @@ fn length(v: Vec2<Fx>) -> Fx {
 }
 
 impl Case {
-    /// Pairs of bodies that are joined, by index.
+    /// Returns the number of bodies, and the pairs of indices of joined bodies.
     fn links(&self, rng: &mut Rng) -> (usize, Vec<(usize, usize)>) {
         let few = |rng: &mut Rng, low: u32, high: u32| (low + rng.below(high - low + 1)) as usize;
         match self.shape {
@@ -177,7 +177,7 @@ impl Case {
                         Rot::from_angle(turn).apply_wide(Vec2::new(Fx::from_num(n) / 6, Fx::ZERO))
                     }
                     Shape::Grid => {
-                        // The width is found from the first link downwards.
+                        // The first link to the row below spans as many indices as a row has bodies.
                         let w = links.iter().find(|(a, b)| b - a > 1).map_or(2, |(a, b)| b - a);
                         let w = if links.contains(&(0, 2)) && w == 2 { 2 } else { w };
                         Vec2::new(Fx::from_num(i % w), -Fx::from_num(i / w))
@@ -329,11 +329,12 @@ impl Scaled for Vec2<Fx> {
 /// Measured result of an assembly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outcome {
-    /// Largest energy above that of the start, as a share of it.
+    /// Largest gain of energy since the start, as a share of the energy at the start, or of [`Assembly::scale`] for
+    /// [`Start::Hang`].
     pub(crate) gain: f64,
     pub(crate) faults: u64,
     pub(crate) gap: f64,
-    /// Energy at the end, as a share.
+    /// Change of energy from the start to the end, as a share of the same energy.
     pub(crate) left: f64,
 }
 

@@ -13,7 +13,8 @@ fn float(x: Fx) -> f64 {
 }
 
 impl Assembly {
-    /// Kinetic and potential energy and that of springs, in J. The potential energy is that above the origin.
+    /// Returns the sum of kinetic, potential and spring energy in J. Potential energy is zero at the height of the
+    /// origin.
     pub(crate) fn energy(&self) -> f64 {
         let gravity = float(self.world.config().gravity.y);
         let of = |body: &Body| {
@@ -26,7 +27,7 @@ impl Assembly {
         bodies + self.joints.iter().map(|&id| self.spring_energy(id)).sum::<f64>()
     }
 
-    /// Momentum, and angular momentum about the origin.
+    /// Returns the momentum, and the angular momentum about the origin.
     pub(crate) fn momentum(&self) -> Momentum {
         let mut sum = Momentum::default();
         for &id in &self.bodies {
@@ -42,7 +43,7 @@ impl Assembly {
         sum
     }
 
-    /// Sum of masses times the largest height that gravity could have given or taken: the scale of potential energy.
+    /// Returns the scale of potential energy in J: the weight of all bodies times a height of 1 m.
     pub(crate) fn scale(&self) -> f64 {
         let gravity = float(self.world.config().gravity.y).abs();
         self.bodies.iter().map(|&id| float(self.world.body(id).expect("there").mass()) * gravity).sum::<f64>()
@@ -63,7 +64,7 @@ impl Assembly {
         let gap = at_b - at_a;
         let gap = (float(gap.x), float(gap.y));
         let linear = |hertz: Fx, square: f64| omega(hertz).powi(2) * square / (im[0] + im[1]) / 2.0;
-        // A spring whose force is at most `max`.
+        // Energy of a spring whose force is at most `max`.
         let limited = |hertz: Fx, mobility: f64, x: f64, max: f64| {
             let stiffness = omega(hertz).powi(2) / mobility;
             let soft = x.min(max / stiffness);
@@ -98,7 +99,7 @@ impl Assembly {
         }
     }
 
-    /// Largest gap of a hinge or weld in metres.
+    /// Returns the largest error of a joint in metres.
     pub(crate) fn gap(&self) -> f64 {
         let error = |&id: &JointId| self.world.joint_error(id).map_or(0.0, float);
         self.joints.iter().map(error).fold(0.0, f64::max)
@@ -115,7 +116,7 @@ pub(crate) struct Momentum {
 }
 
 impl Momentum {
-    /// Changes of momentum and angular momentum, as shares of the sizes at the start.
+    /// Returns the changes of momentum and angular momentum, as shares of the sizes at the start.
     pub(crate) fn change(&self, end: &Self) -> [f64; 2] {
         let apart = (end.linear[0] - self.linear[0]).hypot(end.linear[1] - self.linear[1]);
         [apart / self.size, ((end.angular - self.angular) / self.angular).abs()]

@@ -102,7 +102,8 @@ fn a_house_of_cards_stands() {
     }
 }
 
-/// Spawns a semicircular arch of wedge-shaped stones, with a mean radius of 4 m.
+/// Spawns a semicircular arch of wedge-shaped stones, with a mean radius of 4 m. `thickness` is relative to this
+/// radius.
 fn spawn_arch(world: &mut World, stones: u32, thickness: Fx) {
     for stone in 0..stones {
         let place = |number: u32, radius: Fx| {
@@ -117,7 +118,7 @@ fn spawn_arch(world: &mut World, stones: u32, thickness: Fx) {
     }
 }
 
-/// A semicircular arch stands if its thickness is more than 0.1075 of its mean radius, if its stones do not slide
+/// A semicircular arch stands if its thickness is more than 0.1075 of its mean radius and its stones do not slide
 /// (J. Heyman, "The safety of masonry arches", 1969).
 #[test]
 fn an_arch_stands_if_it_is_thick_enough() {

@@ -154,7 +154,7 @@ fn balls_that_see_kinematic_bodies_do_not_pass_a_blade() {
     assert_eq!(seeing, 0, "{blind} pass without");
 }
 
-/// A body that rides on a fast platform or a turntable is not held back: the sweep changes no bit of its state.
+/// A body that rides on a fast platform or a turntable is not held back: the sweep changes no bit of its position.
 #[test]
 fn what_a_kinematic_body_carries_is_not_held_back() {
     let mut hashes = Vec::new();
@@ -190,7 +190,7 @@ fn what_a_kinematic_body_carries_is_not_held_back() {
     assert_eq!(hashes[0], hashes[1]);
 }
 
-/// Boxes in a drum that is as fast as the washer's, with thin walls: sweeping against it does not press them together.
+/// A drum as fast as the washer's, with thin walls: sweeping against the drum does not press the boxes in it together.
 #[test]
 fn boxes_in_a_drum_overlap_no_more_for_seeing_it() {
     let deepest = |continuous: Continuous| {

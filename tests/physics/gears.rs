@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! gear      NA wA + NB wB = 0;   torques NB TA = NA TB;   alpha_A = T / (IA + (NA / NB)^2 IB)
-//! planet    turns by (1 + N_sun / N_planet) of the turn of its arm about a sun at rest
+//! planet    turns by (1 + N_sun / N_planet) times the turn of its arm about a sun at rest
 //! rack      x = -r angle
 //! pulley    T = g (1 + q) / (1 / mA + q^2 / mB) with the ratio q
 //! ```
@@ -55,7 +55,7 @@ fn run(world: &mut World, ticks: u32) {
     assert_eq!(world.faults(), 0);
 }
 
-/// Trains of two and three wheels, outside and inside of each other, driven against a brake for a minute.
+/// Pairs of wheels, side by side or one inside the other, driven against a brake for a minute.
 #[test]
 fn the_ratio_is_kept_under_load() {
     for (teeth, x, radii) in [
@@ -213,7 +213,7 @@ fn a_rack_moves_as_its_wheel_rolls() {
     let ground = world.spawn(&BodyDef::fixed(), &[]).expect("valid");
     let pinion = wheel(&mut world, fx!(0.5), fx!(0));
     let crank = hinge(&mut world, ground, pinion, Revolute::new().motor(fx!(-2), fx!(300)));
-    // The rack is below the wheel and pulls a weight up a slope of 90 degrees: it hangs beside the wheel.
+    // The rack slides vertically and hangs to the right of the wheel.
     let bar = ShapeDef::new(Polygon::rectangle(fx!(0.1), fx!(3)).expect("valid"));
     let rack = BodyDef::dynamic().position((fx!(0.5), fx!(0))).never_sleeps();
     let rack = world.spawn(&rack, &[bar]).expect("valid");
@@ -259,7 +259,7 @@ fn a_wheel_rolls_along_a_rack_that_is_fixed() {
     close(crate::energy(&world), start, start / 200);
 }
 
-/// Spawns two weights that hang from a rope.
+/// Spawns two weights that hang from a rope, and returns them and the rope.
 fn atwood(world: &mut World, masses: [Fx; 2], ratio: Fx) -> ([BodyId; 2], JointId) {
     let disc = ShapeDef::new(Geometry::circle(fx!(0.3)).expect("valid"));
     let weights = [(fx!(-2), masses[0]), (fx!(2), masses[1])].map(|(x, mass)| {

@@ -31,8 +31,8 @@ fn kinetic(world: &World) -> Fx {
     dynamic.fold(Fx::ZERO, |sum, (_, body)| sum + body.kinetic_energy())
 }
 
-/// A disc with spin `w` that lands without sliding afterwards rolls at `r w / 3`: angular momentum about the point of
-/// contact, `m k^2 w = m (k^2 + r^2) w'` with `k^2 = r^2 / 2`.
+/// A disc that lands with spin `w`, and does not slide afterwards, rolls at `r w / 3`. It keeps its angular momentum
+/// about the point of contact: `m k^2 w = m (k^2 + r^2) w'` with `k^2 = r^2 / 2`.
 #[test]
 fn a_spinning_ball_rolls_at_a_third_of_its_surface_speed() {
     let speeds = [5, 10, 20, 40, 100, 200].into_iter();
@@ -178,8 +178,8 @@ fn a_closed_room_keeps_its_energy() {
     });
 }
 
-/// A ball thrown into a wedge of 27 degrees rests between the walls, not in them. With the friction of 0.35, it holds
-/// itself wherever it stops.
+/// A ball thrown into a wedge of 27 degrees rests between the walls, not in them. The combined friction of ball and
+/// walls is 0.35, which holds the ball wherever it stops.
 #[test]
 fn a_ball_in_a_wedge_rests_between_the_walls() {
     let speeds = [5, 20, 40, 100, 200].into_iter();

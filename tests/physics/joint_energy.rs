@@ -1,6 +1,6 @@
 //! Joints without motors feed no energy into an assembly: kinetic, potential and spring energy together stay within a
-//! hundredth of the start. Stars, trees, chains, loops and grids of 3 to 12 bodies with mass ratios up to 100 and arms
-//! up to 16 radii of gyration, of which one body is hit.
+//! hundredth of the start. The assemblies are stars, trees, chains, loops, meshes and grids of 3 to 12 bodies, with
+//! mass ratios up to 100 and arms up to 16 radii of gyration.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -14,7 +14,7 @@ use crate::assembly::{Case, Mix, SHAPES, Shape, Start};
 use crate::energy;
 use crate::sweep;
 
-/// 20 s.
+/// Duration of a run in ticks: 20 s.
 const TICKS: u32 = 1200;
 
 /// Assemblies that pull so hard at long arms that a body turns too far within a sub-step, `h^2 F r / I` above 1
@@ -55,7 +55,7 @@ fn assemblies_of_hinges_gain_no_energy() {
     never_gain(Mix::Hinge, Start::Hit);
 }
 
-/// Welds whose anchors, angles or both are springs. Before, the stiffness between the anchors depended on the
+/// Welds whose anchors, angles or both are springs. Formerly, the stiffness between the anchors depended on the
 /// directions of the arms, and 6 of 60 assemblies gained up to 5 times their energy.
 #[test]
 fn assemblies_of_soft_welds_gain_no_energy() {
@@ -77,7 +77,7 @@ fn assemblies_with_suspensions_gain_no_energy() {
     never_gain(Mix::Wheel, Start::Hit);
 }
 
-/// Before, hinges and welds pushed each body at its own anchor. Where the anchors were apart, angular momentum grew,
+/// Formerly, hinges and welds pushed each body at its own anchor. Where the anchors were apart, angular momentum grew,
 /// and with it energy: in 9 % of these assemblies by up to 50 times.
 #[test]
 fn assemblies_of_welds_that_turn_or_hang_gain_no_energy() {
@@ -85,8 +85,8 @@ fn assemblies_of_welds_that_turn_or_hang_gain_no_energy() {
     never_gain(Mix::Weld, Start::Hang);
 }
 
-/// Before, bodies answered hard pulls at long arms with their inertia alone, and an assembly that hangs gained up to
-/// 934 446 times its energy. Now the worst of the assemblies left out gains 23 %.
+/// Formerly, bodies answered hard pulls at long arms with their inertia alone, and a hanging assembly gained up to
+/// 934 446 times its energy. The worst assembly of hinges in [`BEYOND`], which this test leaves out, now gains 23 %.
 #[test]
 fn assemblies_of_hinges_that_turn_or_hang_gain_no_energy() {
     never_gain(Mix::Hinge, Start::Spin);
@@ -103,8 +103,8 @@ fn assemblies_beyond_the_engine_stay_together() {
     });
 }
 
-/// In free space nothing changes the momentum of an assembly of hinges or welds, and its angular momentum only where
-/// geometric stiffness acts: by up to 5 % in 20 s, in at most one of 50.
+/// In free space the momentum of an assembly of hinges or welds does not change. Its angular momentum changes only
+/// where geometric stiffness acts: by up to 5 % in 20 s, in at most one of 50 assemblies.
 #[test]
 fn assemblies_of_hinges_and_welds_keep_their_momentum() {
     let seeds = sweep::size(60, 2);
@@ -129,7 +129,7 @@ fn assemblies_of_hinges_and_welds_keep_their_momentum() {
     assert!(changed * 50 <= count, "the angular momentum of {changed} of {count} assemblies changed");
 }
 
-/// Before, springs along a line had a stiffness that depended on the pose: 10 of 60 assemblies of wheels or of rods,
+/// Formerly, springs along a line had a stiffness that depended on the pose: 10 of 60 assemblies of wheels or of rods,
 /// ropes and distance springs that turned or hung gained energy.
 #[test]
 fn assemblies_on_springs_that_turn_or_hang_gain_no_energy() {
@@ -139,7 +139,7 @@ fn assemblies_on_springs_that_turn_or_hang_gain_no_energy() {
     }
 }
 
-/// Before, sliders had no geometric stiffness, and these four gained up to 7600 times their energy.
+/// Formerly, sliders had no geometric stiffness, and these four gained up to 7600 times their energy.
 #[test]
 fn sliders_on_springs_that_pull_hard_gain_no_energy() {
     let slider = |shape, start, seed| Case { shape, mix: Mix::Prismatic, start, seed };
@@ -155,7 +155,7 @@ fn sliders_on_springs_that_pull_hard_gain_no_energy() {
     });
 }
 
-/// Before, springs of motors and those of limited force were solved one after the other, before the blocks: 6 of 720
+/// Formerly, springs of motors and those of limited force were solved one after the other, before the blocks: 6 of 720
 /// assemblies of motors gained up to 40 times their energy, and 10 of 720 on springs that only pull, only push or have
 /// a largest force.
 #[test]
@@ -195,7 +195,7 @@ fn limb(half_width: Fx, half_height: Fx) -> ShapeDef {
     shape.filter(Filter { category: 2, mask: !2, group: 0 })
 }
 
-/// Before, the energy of four planks of which one was hit rose to 90 000 times that of the start.
+/// Formerly, the energy of four planks of which one was hit rose to 90 000 times that of the start.
 #[test]
 fn a_star_of_welds_that_is_hit_gains_no_energy() {
     for limbs in 3..=8 {
@@ -238,7 +238,7 @@ fn a_star_of_welds_comes_to_rest_on_a_floor() {
 fn a_block_forgets_nothing_that_is_not_state() {
     let mixes = [Mix::Weld, Mix::Hinge, Mix::SoftWeld, Mix::Prismatic, Mix::Every];
     let hit = mixes.map(|mix| Case { shape: Shape::Mesh, mix, start: Start::Hit, seed: 1 });
-    // The last has geometric stiffness.
+    // The last case has geometric stiffness.
     for case in hit.into_iter().chain([BEYOND[1]]) {
         let build = || case.build().world;
         let (mut whole, mut dropped) = (build(), build());

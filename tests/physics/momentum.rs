@@ -56,7 +56,7 @@ impl Choice {
         self.0.range(-most, most)
     }
 
-    /// A limit of a force or torque: sometimes unlimited.
+    /// Returns a largest force or torque: in a quarter of all cases no limit.
     fn force(&mut self) -> Fx {
         if self.one_in(4) { Fx::MAX } else { self.0.range(fx!(0.1), fx!(300)) }
     }

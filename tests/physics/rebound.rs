@@ -11,7 +11,7 @@ fn rebounds(e: Fx, height: Fx, ticks: u32) -> Vec<Fx> {
     rebounds_above(e, None, height, ticks)
 }
 
-/// [`rebounds`] of a ball with a restitution threshold.
+/// Like [`rebounds`], for a ball with a restitution threshold.
 fn rebounds_above(e: Fx, threshold: Option<Fx>, height: Fx, ticks: u32) -> Vec<Fx> {
     let mut world = World::default();
     let floor = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).expect("valid"));
@@ -123,8 +123,8 @@ fn the_threshold_of_the_world_is_the_default_of_a_material() {
     }
 }
 
-/// At or above the threshold a ball bounces, below it does not. A ball and a floor with different thresholds have the
-/// smaller one.
+/// At or above the threshold a ball bounces, below it does not. If a ball and a floor have different thresholds, the
+/// smaller one applies.
 #[test]
 fn the_smaller_threshold_of_two_shapes_decides_whether_they_bounce() {
     let speed = fx!(0.5);
@@ -145,7 +145,7 @@ fn the_smaller_threshold_of_two_shapes_decides_whether_they_bounce() {
     }
 }
 
-/// The speed of a ball of restitution 1 a second after it has hit a floor without gravity.
+/// Returns the speed of a ball of restitution 1 in m/s, a second after it has hit a floor without gravity.
 fn speed_after_a_bounce(speed: Fx, thresholds: [Option<Fx>; 2]) -> Fx {
     let config = Config { gravity: Vec2::ZERO, sleeping: false, ..Config::default() };
     let mut world = World::new(config).expect("valid");

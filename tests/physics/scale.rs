@@ -30,7 +30,7 @@ impl Floor {
         self.world.spawn(&BodyDef::dynamic().position(position), &[shape]).expect("valid")
     }
 
-    /// The position of a box in units of its size.
+    /// Returns the position of a box in units of its size.
     fn place(&self, id: BodyId) -> Vec2<Fx> {
         let at = self.world.body(id).expect("there").position();
         let units = |x: Fx| fx_div(x, self.size).expect("positive");
@@ -49,7 +49,8 @@ impl Floor {
     }
 }
 
-/// By how much of its size a stack of 8 boxes, dropped from gaps of 1 % of their size, sinks in 10 s.
+/// Returns by how much the top of a stack of 8 boxes sinks in 10 s, in units of a box. The boxes start with gaps of 1 %
+/// of their size.
 fn sink(config: Config, size: Fx) -> Fx {
     let mut floor = Floor::new(config, size);
     let boxes: Vec<BodyId> = (0..8).map(|i| floor.add(fx!(0), fx!(0.5) + fx!(1.01) * i)).collect();
@@ -58,9 +59,9 @@ fn sink(config: Config, size: Fx) -> Fx {
     fx!(7.5) - floor.place(boxes[7]).y
 }
 
-/// A column of 20 boxes with offsets of 1 % of their size, and a pyramid of 10 rows, come to rest as they are. Small
-/// boxes fall asleep after the same half second as large ones, in which they sway more often: a column of boxes of 1 cm
-/// then leans by 0.11 of a box, one of 1 m by 0.002.
+/// A column of 20 boxes with offsets of 1 % of their size, and a pyramid of 10 rows, come to rest without losing their
+/// form. Small boxes fall asleep after the same half second as large ones, but sway more often in that time: a column
+/// of boxes of 1 cm leans by 0.11 of a box in the end, one of 1 m by 0.002.
 fn check_piles(config: Config, size: Fx) {
     let mut floor = Floor::new(config, size);
     let mut rng = Rng::new(5);
@@ -82,7 +83,7 @@ fn check_piles(config: Config, size: Fx) {
     assert!(floor.is_asleep() && top > fx!(9.4), "{size} m: the top of a pyramid is at {top}");
 }
 
-/// The smallest box, and the settings that the documentation of `Config` lists for it.
+/// Each row contains a size of the smallest box, and the settings that the documentation of `Config` lists for it.
 #[test]
 fn the_settings_of_each_size_are_those_of_the_table() {
     for (size, sub_steps, stiffness, distance) in [

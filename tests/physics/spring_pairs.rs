@@ -11,7 +11,8 @@ use lockstep2d::world::{Config, World};
 use crate::assembly::{Assembly, pick};
 use crate::sweep;
 
-/// The largest gain of energy of two free bodies with one spring along a line, and the energy at the start, in J.
+/// Returns the largest gain of energy of two free bodies with one spring along a line, and the energy at the start, in
+/// J.
 fn spring_pair_gain(seed: u64, ticks: u32) -> (f64, f64) {
     let mut rng = Rng::with_stream(seed, 77);
     let config = Config { gravity: Vec2::ZERO, sleeping: false, ..Config::default() };

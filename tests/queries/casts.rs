@@ -20,7 +20,7 @@ fn shapes() -> [Geometry; 4] {
     [pill, round.expect("valid").into(), square.into(), Geometry::circle(fx!(0.5)).expect("valid")]
 }
 
-/// A floor of 40 tiles or links of 0.5 m, at a slope, from the origin to both sides.
+/// Adds a sloping floor of 40 tiles or links of 0.5 m, which extends from the origin to both sides.
 fn floor(tiles: bool, slope: Angle, world: &mut World) {
     let turn = Rot::from_angle(slope);
     if tiles {

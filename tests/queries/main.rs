@@ -174,7 +174,8 @@ fn check(world: &World, filter: QueryFilter, query: Query, answer: &Answer, tall
     }
 }
 
-/// A list must contain all shapes nearer than the tolerance and none further away, in slot order.
+/// A list must contain all shapes that overlap and no others, in slot order. Shapes whose surface is within the
+/// tolerance are not checked.
 fn check_list(
     solids: &[Solid],
     found: &[ShapeId],
@@ -309,7 +310,7 @@ fn of_equals_the_first_slot_is_found() {
     assert!(ray.len() == 20 && ray.iter().all(|hit| hit.fraction == 0 && hit.normal == Vec2::ZERO));
 }
 
-/// For a one-sided link, the position of the probe's shape decides the side, not its origin.
+/// For a one-sided link, the position of the probe's shape decides the side, not the origin of the probe.
 #[test]
 fn a_probe_above_its_origin_lands_on_a_one_sided_chain() {
     use lockstep2d::body::{BodyDef, Chain, Geometry};

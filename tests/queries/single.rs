@@ -40,14 +40,14 @@ impl Outline {
         self.corners.len() > 2 && point_in_polygon(&self.corners, point)
     }
 
-    /// Distance of a point; negative inside.
+    /// Returns the distance of a point in metres; negative inside.
     fn gap_to(&self, point: Vec2<Fx>) -> Fx {
         let nearest = self.edges().map(|(a, b)| closest_point_on_segment(point, a, b).distance(point)).min();
         let nearest = nearest.expect("corners");
         (if self.holds(point) { -nearest } else { nearest }) - self.radius
     }
 
-    /// Distance of another outline; `None` if the corners overlap.
+    /// Returns the distance of another outline in metres; `None` if the polygons of the corners overlap.
     fn distance(&self, other: &Outline) -> Option<Fx> {
         if self.holds(other.corners[0]) || other.holds(self.corners[0]) {
             return None;
@@ -236,7 +236,7 @@ fn times_of_impact_are_the_first_touch_of_small_steps() {
     assert!(hits > 300 && misses > 300 && overlaps > 100, "{hits} {misses} {overlaps}");
 }
 
-/// A shape of the world is the probe that was put into it.
+/// A shape of the world gives the same answers as a probe with its geometry and pose.
 #[test]
 fn a_probe_of_a_shape_is_at_its_pose() {
     let mut rng = Rng::new(4);

@@ -105,7 +105,7 @@ fn memory_follows_the_file_and_not_its_length_fields() {
         let took = most_held(|| drop(verdict(damaged, &Limits::default())));
         assert!(took < bound, "{took} bytes for {what}");
     };
-    // Each four bytes are overwritten by a huge number, without and with repaired checksums.
+    // Every four consecutive bytes are overwritten by a huge number, without and with repaired checksums.
     for high in [0x7f, 0x3f, 0x00] {
         let huge = [0xff, 0xff, 0xff, high];
         for at in 0..file.len() - 4 {

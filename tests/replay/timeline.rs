@@ -51,7 +51,7 @@ fn any_tick_of_a_hundred_thousand_is_two_intervals_away() {
     const TICKS: u64 = 100_000;
     let file = record(TICKS, 60, inputs_at);
     let hashes = hashes::<Counter>(&file);
-    // Room for all keyframes, room for a hundred, and an interval that is not a multiple of the block length.
+    // Room for all keyframes, room for a hundred, and two intervals that are not multiples of the block length.
     for (interval, bytes) in [(300, 64 << 20), (60, 50_000), (37, 64 << 20), (1000, 64 << 20)] {
         let mut timeline = open::<Counter>(&file, interval, bytes);
         assert_eq!((timeline.simulated(), timeline.ticks()), (0, TICKS), "expected no simulation on opening");

@@ -60,7 +60,7 @@ fn flipped_bits(difference: &Difference) -> u32 {
     (bits(&difference.a) ^ bits(&difference.b)).count_ones()
 }
 
-/// The field and the bit of the explanation.
+/// Returns the field and the bit of the explanation.
 fn explained(found: &Comparison) -> Option<(BodyField, u32)> {
     let explanation = found.explanation.as_ref()?;
     let name = explanation.differences.first()?.field().name();
@@ -68,8 +68,8 @@ fn explained(found: &Comparison) -> Option<(BodyField, u32)> {
     Some((field, explanation.bit))
 }
 
-/// The state after the tick in which a bit flips. A ball that rolls may move on in exactly the same way whether its
-/// velocity or its spin was changed; no comparison can tell the two flips apart.
+/// Returns the state hash after the tick in which a bit flips. A ball that rolls may move on in exactly the same way
+/// whether its velocity or its spin was changed; no comparison can tell the two flips apart.
 fn state_after(seed: u64, flip: Flip) -> StateHash {
     let mut peer = Peer::new(seed, Some(flip));
     while peer.tick < flip.tick {

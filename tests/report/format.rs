@@ -45,7 +45,7 @@ fn a_report_comes_back() {
     assert_eq!(report.saves_left_out(), 0);
 }
 
-/// Saves are kept nearest to the differing checkpoint first, as these are the most informative.
+/// The saves nearest to the differing checkpoint are kept first, as they are the most informative.
 #[test]
 fn a_report_that_would_be_large_leaves_saves_out() {
     let peer = peer();

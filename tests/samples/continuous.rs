@@ -35,7 +35,7 @@ fn a_bullet_bounces_in_a_room() {
         });
         if is_ball {
             near(stage.velocity(body).length(), fx!(22.3607), fx!(0.02));
-            // 19 m across: 200 m and 400 m in 20 s.
+            // In 20 s the centre travels 200 m along one axis and 400 m along the other, 19 m from wall to wall.
             assert!((29..=33).contains(&hits), "{hits} hits");
         }
     }
@@ -232,7 +232,7 @@ fn thin_tiles_stop_what_drops_on_them() {
 }
 
 /// Safety Factor. A box that drops does not sink into the floor, from any height: contacts are made before the shapes
-/// meet, so that there is no speed below which a sweep would be needed.
+/// meet, so that slow bodies need no sweep.
 #[test]
 fn a_dropped_box_does_not_sink_in() {
     for height in (1..=80).map(|step| num(step) / 40) {

@@ -253,7 +253,8 @@ fn sensors_of_every_kind_of_body_detect() {
         }
     });
     assert_eq!(order, eyes);
-    // The solid part of the dynamic sensor's own body is not a visitor, nor is the ground, whose mask leaves it out.
+    // The solid part of the dynamic sensor's own body is not a visitor, nor is the ground, whose mask excludes
+    // the sensor.
     assert_eq!(stage.world.sensor_overlaps(eyes[2]).iter().filter(|&&id| id != visitor).count(), 0);
 }
 
@@ -347,8 +348,8 @@ fn a_projectile_explodes_on_impact() {
     assert!(stage.place(stack[7]).y < fx!(7), "the top is at {}", stage.place(stack[7]).y);
 }
 
-/// Circle Impulse. A ball of 1 kg hits at 25 m/s: the event has the speed and the impulse, and the bounce returns its
-/// fraction.
+/// Circle Impulse. A ball of 1 kg hits at 25 m/s: the event has the speed and the impulse, and the ball leaves at the
+/// fraction of the speed that its restitution says.
 #[test]
 fn a_hit_reports_its_speed() {
     for (restitution, returned) in [(fx!(0), fx!(0)), (fx!(0.25), fx!(6.25))] {

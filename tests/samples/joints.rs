@@ -10,7 +10,7 @@ use lockstep2d::solver::{
 
 use super::{Stage, ball, capsule, near, num, rect, square};
 
-/// The axis at 45 degrees.
+/// Returns the axis at 45 degrees.
 fn diagonal() -> Vec2<Fx> {
     at!(0.70710678, 0.70710678)
 }
@@ -95,7 +95,7 @@ fn a_motor_joint_follows_its_target() {
         stage.run(1);
         // The target accelerates by at most 24 and 4 m/s², next to gravity: sqrt(24^2 + 14^2) = 28 m/s².
         let bound = sag(fx!(28), fx!(4)) * 2;
-        // At first the target starts with 12 m/s at once.
+        // The first second is left out, because the target starts with 12 m/s at once.
         assert!(
             tick < 60 || stage.place(body).distance(place) < bound,
             "tick {tick}: {:?} of {place:?}",
@@ -172,7 +172,7 @@ fn a_hinge_has_motor_limit_and_spring() {
     let lever = stage.add(at!(20, 10), rect(fx!(10), fx!(0.5)).offset(at!(-10, 0)));
     let kind = Revolute::new().limit(fx!(-0.7854), fx!(0)).motor(fx!(0), fx!(1000));
     let joint = stage.join_at(ground, lever, kind, at!(19, 10));
-    // Its weight of 200 N at 9 m overcomes the motor, turning it counter-clockwise against the upper limit of 0.
+    // A weight of 200 N at 9 m overcomes the motor and turns the lever counter-clockwise to the upper limit of 0.
     stage.run(120);
     near(stage.world.joint_angle(joint).expect("there"), fx!(0), fx!(0.01));
     let (_, motor) = stage.world.joint_part_force(joint, JointPart::Motor).expect("there");
@@ -225,7 +225,7 @@ fn a_wheel_turns_on_its_spring() {
     near(stage.body(wheel).angular_velocity(), fx!(2), fx!(0.001));
 }
 
-/// Adds a box of 4 kg for each kind of joint, which holds the box at the ground. Returns the boxes.
+/// Adds a box of 4 kg for each of six kinds of joints, which join the boxes to a fixed body. Returns the boxes.
 fn held_boxes(stage: &mut Stage, locks: BodyDef, change: impl Fn(JointDef) -> JointDef) -> Vec<BodyId> {
     let ground = stage.spawn(BodyDef::fixed(), &[]);
     let wheel = Wheel::new().spring(fx!(1), fx!(0.7), fx!(0)).limit(fx!(-1), fx!(1)).motor(fx!(1), fx!(10));
@@ -268,8 +268,8 @@ fn locks_and_joints_agree() {
     }
 }
 
-/// Breakable, and Joint of the group "Events". A box weighs 40 N. A hinge beside it, let go, carries `m g (1 + 2 r^2 /
-/// (r^2 + k^2)) = 88 N` at the lowest point of its swing: 100 N hold all, 30 N none.
+/// Breakable, and Joint of the group "Events". A box weighs 40 N. A box that swings on a hinge loads it with
+/// `m g (1 + 2 r^2 / (r^2 + k^2)) = 88 N` at the lowest point: 100 N hold all, 30 N none.
 #[test]
 fn joints_break_above_their_threshold() {
     for action in [ThresholdAction::Break, ThresholdAction::Event] {
@@ -347,7 +347,8 @@ fn a_constraint_of_ones_own_holds_a_box() {
         let length = rope(&stage, corner);
         let lean = sqrt(fx_mul(length, length) - fx!(0.25)).expect("longer than half a metre");
         let tension = fx_div(fx_mul(fx!(200), length), lean).expect("positive");
-        // A part of it is damping: between the ticks the box is 1.5 sub-steps of gravity below its mean speed of 0.
+        // A part of the tension is damping: between the ticks the box is 1.5 sub-steps of gravity below its mean speed
+        // of 0.
         let damped = fx_div(fx_mul(damping, lean), length * 16).expect("positive");
         near(length, fx!(1) + fx_div(tension - damped, stiffness).expect("positive"), fx!(0.001));
     }

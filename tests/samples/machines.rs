@@ -69,8 +69,8 @@ fn cantilever(stage: &mut Stage, links: i32, weld: Weld) -> BodyId {
     before
 }
 
-/// Cantilever. A row of soft welds bends under its weight and comes to rest; a stiffer one bends less. That of the
-/// sample, which falls and swings, gains no energy.
+/// Cantilever. A row of soft welds bends under its weight and comes to rest; a stiffer one bends less. The cantilever
+/// of the sample, which falls and swings, gains no energy.
 #[test]
 fn a_stiffer_cantilever_bends_less() {
     let tip = |hertz: Fx| {
@@ -206,7 +206,8 @@ fn doohickeys_hold_together() {
 }
 
 /// Scissor Lift. A motor lengthens a strut; the platform rises level, as the geometry of the links says. The platform
-/// moves seven times as fast as the strut: the motor holds with one iteration, but the links give way by up to 0.23 m.
+/// moves seven times as fast as the strut: with one iteration, the motor would hold, but the links would give way by up
+/// to 0.23 m.
 #[test]
 fn a_scissor_lift_rises_level() {
     let solver = SolverSettings { sub_steps: 8, iterations: 8, ..SolverSettings::default() };
@@ -259,7 +260,7 @@ fn a_scissor_lift_rises_level() {
     near(stage.world.joint_length(strut).expect("there"), fx!(4.1459), fx!(0.1));
 }
 
-/// A disc with 16 teeth.
+/// Returns the shapes of a disc with 16 teeth.
 fn toothed(along: Fx) -> Vec<ShapeDef> {
     let tooth = |i: i32| {
         let angle = Angle::from_turns(num(i) / 16);

@@ -171,7 +171,7 @@ fn ball(radius: Fx) -> ShapeDef {
     ShapeDef::new(Geometry::circle(radius).expect("a valid circle"))
 }
 
-/// A rectangle of two half extents.
+/// A rectangle with the given half extents.
 fn rect(half_width: Fx, half_height: Fx) -> ShapeDef {
     ShapeDef::new(Polygon::rectangle(half_width, half_height).expect("a valid rectangle"))
 }
@@ -180,7 +180,7 @@ fn square(half: Fx) -> ShapeDef {
     rect(half, half)
 }
 
-/// A rectangle whose outline with a radius has the given half extents.
+/// A rounded rectangle. The half extents include the radius.
 fn rounded(half_width: Fx, half_height: Fx, radius: Fx) -> ShapeDef {
     let core = Polygon::rectangle(half_width - radius, half_height - radius);
     ShapeDef::new(core.and_then(|core| core.rounded(radius)).expect("a valid rectangle"))

@@ -22,7 +22,7 @@ fn disc(radius: Fx, place: Vec2<Fx>) -> Probe {
     probe(Geometry::circle(radius).expect("valid"), place)
 }
 
-/// Shape Distance, and its benchmark: two loose shapes with poses and radii.
+/// Shape Distance, and its benchmark: two shapes outside of a world, with poses and radii.
 #[test]
 fn distances_of_loose_shapes() {
     let triangle = Polygon::new(&[at!(-0.5, 0), at!(0.5, 0), at!(0, 1)]).expect("valid");
@@ -134,7 +134,7 @@ fn manifolds_of_loose_shapes() {
     let segment = probe(Geometry::segment(at!(-0.5, 0), at!(0.5, 0)).expect("valid"), at!(0, 0));
     let rounded = Polygon::square(fx!(0.4)).and_then(|core| core.rounded(fx!(0.1))).expect("valid");
     let wedge = Polygon::new(&[at!(-0.1, -0.5), at!(0.1, -0.5), at!(0, 0.5)]).expect("valid");
-    // B on A, their surfaces at the same height.
+    // B lies on A, and their surfaces touch.
     let cases = [
         ("ball, ball", disc(fx!(0.5), at!(0, 0)), disc(fx!(0.5), at!(0, 1)), 1),
         ("capsule, ball", pill(at!(0, 0)), disc(fx!(0.5), at!(0, 0.75)), 1),
@@ -178,7 +178,7 @@ fn links_have_no_sideways_normals() {
     }
 }
 
-/// Shape Cast and Time of Impact of two loose shapes.
+/// Shape Cast and Time of Impact of two shapes outside of a world.
 #[test]
 fn casts_and_times_of_impact_of_loose_shapes() {
     let target = block(fx!(0.5), at!(5, 0));
@@ -188,15 +188,15 @@ fn casts_and_times_of_impact_of_loose_shapes() {
     assert!(disc(fx!(0.5), at!(0, 0)).cast(at!(10, 5), &target).is_none());
     let moved = |translation| Displacement { translation, turns: fx!(0) };
     let body = block(fx!(0.5), at!(0, 0));
-    // Towards each other: 4 m at 10 m.
+    // The blocks approach each other by 10 m, and their gap is 4 m.
     let TimeOfImpact::Hit { fraction } = body.time_of_impact(moved(at!(5, 0)), &target, moved(at!(-5, 0)))
     else {
         panic!("expected a hit");
     };
     near(fraction, fx!(0.4), fx!(0.0001));
     assert_eq!(body.time_of_impact(moved(at!(-5, 0)), &target, moved(at!(5, 0))), TimeOfImpact::Separated);
-    // A plank of 2.5 m from its middle turns clockwise into a wall 2 m away, with the corner beside
-    // its end: asin(2 / 2.5) - atan(0.01 / 2.5) = 0.1469 turns.
+    // A plank, 5 m long and 2 cm wide, turns clockwise about its middle into a wall 2 m away, which its corner hits
+    // first: asin(2 / 2.5) - atan(0.01 / 2.5) = 0.1469 turns.
     let plank = probe(Polygon::rectangle(fx!(0.01), fx!(2.5)).expect("valid"), at!(0, 0));
     let wall = probe(Polygon::rectangle(fx!(1), fx!(9)).expect("valid"), at!(3, 0));
     let turn = Displacement { translation: Vec2::ZERO, turns: fx!(-0.25) };

@@ -108,7 +108,7 @@ fn damping_is_exponential() {
         let body =
             stage.spawn(def.linear_damping(num(i + 1)).angular_damping(num(10 - i)), &[square(fx!(0.2))]);
         stage.run(30);
-        // Sub-steps divide by 1 + c / 240, which is up to c^2 t / 480 slower.
+        // Each sub-step divides by 1 + c / 240. This decays more slowly, by a share of up to c^2 t / 480.
         near(stage.velocity(body).length(), slow * 10, fx!(0.04));
         near(stage.body(body).angular_velocity(), spin * 100, fx!(0.4));
     }
@@ -213,8 +213,8 @@ fn boxes_in_one_place_come_apart() {
     assert!(momentum.length() < fx!(0.01), "{momentum:?}");
 }
 
-/// inv_pyramid2. Each box carries one twice its size. A box of 1 kg carries five, or six with contacts of 120 Hz: with
-/// those of 30 Hz it would yield by 1364 g / (2 pi 30 Hz)^2 = 0.38 m.
+/// inv_pyramid2. Each box carries one twice its size. A box of 1 kg carries four, or five with contacts of 120 Hz: with
+/// contacts of 30 Hz it would yield by 1364 g / (2 pi 30 Hz)^2 = 0.38 m.
 #[test]
 fn an_inverted_pyramid_stands() {
     for (count, sub_steps, hertz) in [(5, 4, fx!(30)), (6, 16, fx!(120))] {
@@ -267,7 +267,7 @@ fn one_way_belts_pass_bodies_on() {
     assert!(rode && hung, "rode {rode}, hung {hung}: {:?}", stage.place(body));
 }
 
-/// platform2. A platform with a velocity and one that is moved to places carry boxes without losing any.
+/// platform2. A platform with a velocity and one that `move_to` moves carry boxes without losing any.
 #[test]
 fn platforms_carry_boxes() {
     for moved in [false, true] {

@@ -122,7 +122,7 @@ fn an_edge_does_not_kick() {
     }
 }
 
-/// Arch. Blocks whose joints point to a common line of thrust stand, with a load on top.
+/// Arch. Wedge-shaped blocks stand in a semicircle, with a load on top.
 #[test]
 fn an_arch_carries_a_load() {
     // A semicircle of 17 blocks between radii of 4 and 6 m.
@@ -151,8 +151,7 @@ fn all_dominoes_fall() {
         .collect();
     stage.world.apply_impulse(dominoes[0], at!(0.2, 0), at!(-7.5, 1)).expect("valid");
     stage.run(600);
-    // Each one lies on the next, a metre away: its lean is at least that of its height of 1 m across 1 m less its
-    // foot.
+    // Each one lies on the next, which is a metre away.
     for &id in &dominoes {
         assert!(stage.angle(id) < fx!(-1), "a domino stands at {} rad", stage.angle(id));
     }

@@ -102,7 +102,7 @@ fn each_link_of_a_chain_has_its_own_speed() {
     }
 }
 
-/// Explosion. Bars in a ring, held by soft welds, get equal pushes outwards and return; meanwhile the welds turn them.
+/// Explosion. Balls in a ring, held by soft welds, get equal pushes outwards and return; meanwhile the welds turn them.
 #[test]
 fn an_explosion_pushes_a_ring_evenly_and_welds_pull_it_back() {
     let mut stage = Stage::weightless();

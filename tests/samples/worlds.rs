@@ -19,7 +19,7 @@ fn tiles_carry() {
         let tiles: Vec<ShapeDef> = (0..height.round().to_num::<i32>() + 12).map(tile).collect();
         stage.spawn(BodyDef::fixed().position(Vec2::new(num(column), Fx::ZERO)), &tiles);
     }
-    // The valley is in the middle, its floor 8.5 m high.
+    // The valley is in the middle, with its floor at a height of 7.5 m.
     let place = |i: i32| Vec2::new(fx!(17) + fx!(0.6) * i64::from(i % 10), fx!(10) + num(i / 10) / 2);
     let boxes: Vec<_> = (0..50).map(|i| stage.add(place(i), rect(fx!(0.3), fx!(0.2)))).collect();
     for tick in 0..600 {
@@ -99,7 +99,7 @@ fn falling_hinges() -> World {
     stage.world
 }
 
-/// Runs until all bodies sleep. Returns that tick and the hash.
+/// Runs until all bodies sleep. Returns the number of ticks and the state hash.
 fn until_asleep(world: &mut World) -> (u64, lockstep2d::hash::StateHash) {
     while world.awake_body_count() > 0 && world.tick() < 3000 {
         world.step();

@@ -49,8 +49,7 @@ fn a_state_of_4_mb_takes_three_seconds_at_50_ms_and_5_percent_loss() {
     }
 }
 
-/// The players keep playing while a state of 40 MB is sent to a joining peer, over lines with a loss of 0
-/// and 1 %.
+/// The players keep playing while a state of 40 MB is sent to a joining peer, over links with a loss of 0 and 1 %.
 #[test]
 fn a_state_of_40_mb_takes_ten_seconds_at_20_ms() {
     for loss in [0, 1] {
@@ -124,7 +123,7 @@ fn other_games_are_refused_with_what_is_expected() {
     assert_eq!(net.nodes[1].events, [expected]);
 }
 
-/// Six spectators, each through the one before: only its own contact knows each of them.
+/// Six spectators, each through the one before. Each is known to its own contact only.
 #[test]
 fn spectators_feed_spectators() {
     let mut net = Net::new(15 * MS, 1, 5000);

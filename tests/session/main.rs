@@ -22,9 +22,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use lockstep2d_tests::sweep;
 
-/// Seeds of a full run. It may take 30 minutes on two cores.
+/// Number of seeds of a full run, which may take 30 minutes on two cores.
 const SEEDS: u64 = 100_000;
-/// Seeds of a sampled run.
+/// Number of seeds of a sampled run.
 const SAMPLE: u64 = 100;
 
 /// A match in which enough peers survive and are connected plays more ticks than this.

@@ -19,8 +19,9 @@ pub(super) struct Node {
     pub(super) events: Vec<JoinEvent>,
     pub(super) joined_at: Option<Us>,
     pub(super) desynced: bool,
-    /// Longest time between two ticks since the endpoint began to play, and the time of the last tick.
+    /// Longest time between two ticks since the endpoint began to play.
     pub(super) stall: Us,
+    /// Time of the last tick.
     pub(super) last_tick: Us,
 }
 
@@ -37,8 +38,9 @@ pub(super) struct Net {
     pub(super) latency: Us,
     pub(super) loss: u64,
     pub(super) state_bytes: usize,
-    /// Bytes that were sent to and received from addresses.
+    /// Number of bytes sent to each address.
     pub(super) sent_to: [u64; 256],
+    /// Number of bytes received from each address.
     pub(super) received_from: [u64; 256],
     pub(super) blocked: Vec<(u8, u8)>,
 }

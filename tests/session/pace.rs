@@ -29,7 +29,8 @@ pub(crate) fn link(latency: Us) -> LinkConditions {
     LinkConditions { exists: true, latency, jitter: 0, loss: 0, cut_until: 0 }
 }
 
-/// Confirmed ticks of the slowest peer over some seconds after a start of 5 s, in hundredths of a tick per second.
+/// Returns the pace of the slowest peer over some seconds after a start of 5 s, in hundredths of a confirmed tick per
+/// second.
 pub(crate) fn pace(sim: &mut Sim, seconds: u64) -> u64 {
     let played =
         |sim: &Sim| sim.peers.iter().map(|peer| u64::from(peer.session.confirmed())).min().unwrap_or(0);
@@ -40,7 +41,7 @@ pub(crate) fn pace(sim: &mut Sim, seconds: u64) -> u64 {
     (played(sim) - before) * 100 / seconds
 }
 
-/// The documented delay: the latency and a tick. The interval of the calls adds a millisecond.
+/// Returns the documented delay in ticks: the latency and a tick. The interval of the calls adds a millisecond.
 fn documented_delay(latency: Us) -> u16 {
     ((latency + MS) * 60).div_ceil(S) as u16 + 1
 }

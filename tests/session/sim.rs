@@ -99,9 +99,11 @@ pub(crate) struct Sim {
     free: Vec<usize>,
     pub(crate) peers: Vec<Peer>,
     pub(crate) links: Vec<Vec<LinkConditions>>,
-    /// Percentages of packets that are very late, of packets that are doubled, and of new views that kill a peer.
+    /// Percentage of packets that are very late.
     pub(crate) late: u64,
+    /// Percentage of packets that are doubled.
     pub(crate) doubled: u64,
+    /// Percentage of new views at which a peer crashes.
     pub(crate) assassin: u64,
     pub(crate) look: Us,
     /// State before each tick of the one history.

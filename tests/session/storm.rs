@@ -1,12 +1,12 @@
-//! Random matches: a seed gives the peers, the links, and what goes wrong when. All links heal after 20 s. From then on,
-//! every peer that still runs has to play, and to finish the match.
+//! Random matches: a seed gives the peers, the links, and what goes wrong when. All links heal after 20 s. From then
+//! on, every peer that still runs has to play, and to finish the match.
 
 use lockstep2d::session::{Config, Role, Timing, View};
 
 use super::game::mix;
 use super::sim::{LinkConditions, MS, Rng, S, Sim, Us, id, key};
 
-/// Kinds of matches; the last digit of the seed.
+/// Kind of a match, chosen by the last digit of the seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Class {
     ShortOutages,
@@ -97,11 +97,11 @@ pub(crate) struct Figures {
 }
 
 pub(super) const HEAL: Us = 20 * S;
-/// Time after `HEAL` in which all peers have to be seated, and time after which all must have advanced.
+/// Time after `HEAL` within which all peers must be seated.
 pub(super) const SEATED: Us = 12 * S;
-const MOVED: Us = 3 * S;
+const MOVED: Us = 3 * S; // Time within which all seated peers should advance.
 
-/// An event that is planned for this time happens when all else has been checked.
+/// Events that are planned for this time happen after all other checks.
 const LATE: Us = 100 * S;
 
 pub(super) struct Match {
@@ -112,7 +112,7 @@ pub(super) struct Match {
     pub(super) total: usize,
 }
 
-/// Plays the match of a seed, with a change of the configuration. Returns the first violation.
+/// Plays the match of a seed, with a change of the configuration. Returns the first violation, and figures.
 pub(crate) fn play(seed: u64, configure: impl Fn(&mut Config)) -> (Option<String>, Figures) {
     let mut game = Match::new(seed, configure);
     let mut figures = Figures::default();
@@ -234,7 +234,7 @@ impl Match {
             let what = self.describe();
             self.sim.fail(format!("L2 {index} does not move from {}: {what}", finals[index]));
         }
-        // The rest of the plan is the end.
+        // The remaining events end the match.
         let shift = self.sim.now;
         for (at, trouble, _, random) in after {
             if !self.run(shift + at - LATE) {

@@ -332,7 +332,7 @@ fn the_bytes_of_a_setup_are_those_of_the_document() {
     assert_eq!(encode(&setup), expected.u64(1).u32(14).fx(&[0, 0]).0);
 }
 
-/// Reports name every value of an area. A shape without one is shown as before.
+/// Reports name every value of an area. A sensor without an area is listed as `sensor` only.
 #[test]
 fn an_area_is_listed_by_its_names() {
     let paths = |def: &ShapeDef| -> Vec<String> {

@@ -75,7 +75,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Adjacent fixed-point numbers of 4 or 8 bytes each.
+    /// Reads adjacent fixed-point numbers of 4 or 8 bytes each.
     fn fixed(&mut self, name: &str, count: usize, bytes: usize, fraction_bits: u32) {
         self.take(count * bytes, name, |taken| {
             let number = |chunk: &[u8]| {
@@ -87,7 +87,7 @@ impl<'a> Reader<'a> {
         });
     }
 
-    /// A lever arm: `x + 2^16 y`.
+    /// Reads a lever arm: `x + 2^16 y`.
     fn arm(&mut self, name: &str) {
         self.take(4, name, |taken| {
             let word = i32::from_le_bytes(taken.try_into().expect("4 bytes"));

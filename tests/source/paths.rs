@@ -42,7 +42,7 @@ impl Crate {
         resolved.filter(|(used, _)| used != place && !used.is_empty()).collect()
     }
 
-    /// All modules, in order.
+    /// Returns all modules, in order.
     pub(crate) fn modules(&self) -> impl Iterator<Item = &Vec<String>> {
         self.modules.keys()
     }
@@ -66,7 +66,7 @@ impl Crate {
         place
     }
 
-    /// The groups of files that depend on each other in a circle: every group with more than one file.
+    /// Returns the groups of files that depend on each other in a circle: every group with more than one file.
     pub(crate) fn circles(&self) -> Vec<BTreeSet<Vec<String>>> {
         let reached = |from: &Vec<String>| {
             let (mut seen, mut open) = (BTreeSet::new(), vec![from.clone()]);
@@ -90,20 +90,20 @@ impl Crate {
     }
 }
 
-/// The module path of a file: `["world", "step"]` for `src/world/step.rs` and `src/world/step/mod.rs`. Empty for the
-/// root.
+/// Returns the module path of a file: `["world", "step"]` for `src/world/step.rs` and `src/world/step/mod.rs`. Empty
+/// for the root.
 pub(crate) fn module_of(path: &str) -> Vec<String> {
     let path = path.trim_start_matches("src/").trim_end_matches(".rs");
     let parts = path.split('/').filter(|part| !matches!(*part, "mod" | "lib"));
     parts.map(String::from).collect()
 }
 
-/// The module paths and texts of source files.
+/// Returns the module paths and texts of source files.
 pub(crate) fn modules(files: &[Source]) -> Vec<(Vec<String>, String)> {
     files.iter().map(|file| (module_of(&file.path), file.text.clone())).collect()
 }
 
-/// All paths in a file that start with `crate`, `super`, `self` or a child module.
+/// Returns all paths in a file that start with `crate`, `super`, `self` or a child module.
 fn paths_of(tokens: &[Token], place: &[String], is_module: &dyn Fn(&Vec<String>) -> bool) -> Vec<PathUse> {
     let text = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
     let mut found = Vec::new();

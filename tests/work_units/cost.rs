@@ -12,7 +12,7 @@ const MAX: u128 = if cfg!(debug_assertions) { 3000 } else { 1000 };
 /// Shortest time that is judged: below it, the overhead of a tick counts more than its work.
 const JUDGED: Duration = Duration::from_millis(10);
 
-/// Processor time of this thread; where the system does not tell it, as outside of Linux, the time of the clock.
+/// Returns the processor time of this thread, or elsewhere than on Linux the time of the clock.
 pub(super) fn computed() -> Duration {
     let known = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let nanoseconds = known.as_deref().and_then(|text| text.split(' ').next()?.parse().ok());
@@ -46,7 +46,7 @@ pub(super) fn setup(commands: Vec<Command>, config: Config) -> SandboxSetup {
     SandboxSetup { config, commands }
 }
 
-/// A replay of a case.
+/// Records a replay of a case.
 fn record(setup: &SandboxSetup, ticks: u64, script: &Script<'_>) -> Vec<u8> {
     let mut recording = Recording::<Sandbox>::start(setup, 60).expect("a setup that can start");
     for tick in 0..ticks {
@@ -55,7 +55,7 @@ fn record(setup: &SandboxSetup, ticks: u64, script: &Script<'_>) -> Vec<u8> {
     recording.finish().expect("a replay")
 }
 
-/// Limits of work only.
+/// Returns limits that restrict only the total work.
 fn limits(total_work: u64) -> Limits {
     Limits {
         tick_work: u64::MAX,
@@ -66,7 +66,7 @@ fn limits(total_work: u64) -> Limits {
     }
 }
 
-/// The costs of the setup and of the most expensive tick.
+/// Returns the costs of the setup and of the most expensive tick.
 fn costs(file: &[u8]) -> [Cost; 2] {
     let mut best: Option<[Cost; 2]> = None;
     for _ in 0..3 {
@@ -146,8 +146,8 @@ fn judge(name: &str, parts: [Cost; 2]) -> Option<String> {
     wrong
 }
 
-/// Verifies a file with parts of the work that it needs as the limit, some of which the setup already exceeds. Returns
-/// its name if the limit stops it later than the limit's units allow.
+/// Verifies a file with fractions of the work that it needs as the limit. The setup alone may exceed such a limit.
+/// Returns the name of the case if the limit stops verification later than its units allow.
 fn stopped_late(name: &str, file: &[u8]) -> Option<String> {
     let needed = {
         let limits = limits(u64::MAX);

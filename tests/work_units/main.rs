@@ -257,7 +257,7 @@ fn every_command_of_a_body(settled: bool) {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// The files that once took minutes within a limit of a tenth of a second.
+/// Files that once took minutes, although their limit allowed a tenth of a second.
 #[test]
 fn a_limit_ends_a_file_before_its_cost_is_paid() {
     let crowd = |count: i64, settings| {

@@ -120,7 +120,7 @@ impl Churn {
         Some(command)
     }
 
-    /// Settings with one change.
+    /// Returns settings with one change.
     fn changed_config(&mut self, mut config: Config) -> Config {
         let rng = &mut self.rng;
         match rng.below(8) {

@@ -64,7 +64,7 @@ fn visitor(rng: &mut Rng) -> Geometry {
     }
 }
 
-/// The times in ticks at which a path enters and leaves a sensor that stands still in a world.
+/// Returns the times in ticks at which a path enters and leaves a sensor that stands still in a world.
 fn visits(world: &World, sensor: ShapeId, geometry: Geometry, path: &Path, end: Fx) -> Vec<(Fx, bool)> {
     let filter = QueryFilter { sensors: true, ..QueryFilter::default() };
     let inside = |time: Fx| world.overlap_shape(&path.probe(geometry, time), filter).contains(&sensor);

@@ -186,7 +186,7 @@ fn churn_each(seeds: Vec<u64>) -> Seen {
     total.into_inner().expect("no check holds the lock")
 }
 
-/// To run a chosen range of seeds: `SEEDS=1000..3000 cargo test --test world -- --ignored many`.
+/// Runs seeds 0 to 29, or a sample of them. The next test runs other seeds.
 #[test]
 fn nothing_that_is_done_to_the_caches_is_seen() {
     let seeds = sweep::sample(0..30, 4);

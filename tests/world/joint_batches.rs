@@ -50,7 +50,7 @@ fn add_joint(world: &mut World, bodies: &[BodyId], rng: &mut Rng) {
     let anchor = body_a.transform().apply_inverse(body_b.position());
     let mut def = JointDef::new(a, b, random_kind(rng)).anchor_a(anchor);
     if body_a.kind() == BodyKind::Fixed && rng.chance(1, 2) {
-        // Far from the origin of A, which is moved to the other side.
+        // A is moved, so that the anchor is far from the origin of A.
         let offset = Vec2::new(fx!(1000), fx!(-300));
         let position = body_a.position() - offset;
         let angle = body_a.angle();

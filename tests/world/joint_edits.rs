@@ -91,7 +91,7 @@ fn a_joint_at_the_edge_of_the_world_holds() {
     assert!(at(&world, bob).distance(place) < fx!(0.001));
 }
 
-/// A platform on a hinge and a rod is made fixed, moved as a kinematic body, and let go again.
+/// A platform on a hinge is made kinematic, fixed and kinematic in turn, and then dynamic again.
 #[test]
 fn a_joint_rests_while_neither_body_is_dynamic() {
     let mut world = World::default();
@@ -348,7 +348,7 @@ fn motor_limit_and_spring_are_told_apart() {
     }
 }
 
-/// The weight of a body on a soft weld or on the spring of a motor joint is that of the spring.
+/// Spring and motor of a joint bear the weight of a body together, and the motor at most its largest force.
 #[test]
 fn the_springs_of_welds_and_motor_joints_are_told_apart() {
     let weld: JointKind = Weld::rigid().linear(fx!(4), fx!(1)).into();

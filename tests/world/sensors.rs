@@ -79,7 +79,7 @@ fn a_moving_sensor_notices_all_kinds() {
     }
 }
 
-/// A sensor contributes mass like any other shape; a given mass does not depend on the shape's size.
+/// Returns a given mass, because a sensor would otherwise contribute mass according to its size.
 fn mass() -> lockstep2d::body::MassSource {
     lockstep2d::body::MassSource::Given { mass: fx!(1), centre: Vec2::ZERO, gyration: fx!(1) }
 }

@@ -173,7 +173,7 @@ fn a_kinematic_body_goes_where_it_is_told_and_stops() {
     close(world.body(lift).expect("there").position().x, fx!(0.323));
 }
 
-/// A dynamic body that is pushed by a kinematic target motion gets the velocity of the pusher.
+/// A dynamic body that is pushed by a kinematic body with a target gets the velocity of the pusher.
 #[test]
 fn a_kinematic_body_pushes_on_its_way() {
     let mut world = weightless();

@@ -29,7 +29,7 @@ fn set(world: &mut World, change: impl Fn(&mut Config)) {
     assert_eq!(world.validate(), Ok(()));
 }
 
-/// Impulses are kept for the next tick, and those of a shorter sub-step are smaller.
+/// The impulses of a warm start are converted to the new length of sub-steps: those of a shorter sub-step are smaller.
 #[test]
 fn a_stack_stays_at_rest_when_the_length_of_sub_steps_changes() {
     for (from, to, tick_rate) in [(4, 8, 60), (4, 16, 60), (8, 4, 60), (16, 4, 60), (4, 4, 120), (4, 8, 30)] {
@@ -48,7 +48,7 @@ fn a_stack_stays_at_rest_when_the_length_of_sub_steps_changes() {
             // from 4 to 16 sub-steps.
             assert!(fastest < fx!(0.015), "from {from} to {to} at {tick_rate}: {fastest} m/s");
             for (now, then) in heights(&world).iter().zip(&before) {
-                // The contact stiffness of 30 Hz is the same in all, except for the limit of an eighth of the rate.
+                // Contacts have 30 Hz in all cases, except where an eighth of the sub-step rate is the limit.
                 let moved = (*now - *then).abs();
                 assert!(moved < fx!(0.005), "from {from} to {to} at {tick_rate}: moved by {moved}");
             }

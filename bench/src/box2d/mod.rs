@@ -23,8 +23,8 @@ pub struct Box2d {
     saves: [Vec<u8>; SAVES],
 }
 
-// SAFETY, for every block below: the world exists from `new` to `drop`, the handles in `bodies` refer to bodies that
-// exist in it, and no other code has access to them.
+// Invariant of `Box2d`, named by the SAFETY comments: the world exists from `new` to `drop`, the handles in `bodies`
+// refer to bodies that exist in the world, and no other code has access to the world or its bodies.
 
 impl Box2d {
     /// Creates an empty world.
@@ -58,7 +58,7 @@ impl Box2d {
 
 impl Drop for Box2d {
     fn drop(&mut self) {
-        // SAFETY: see above.
+        // SAFETY: by the invariant of `Box2d`.
         unsafe { b2DestroyWorld(self.world) };
     }
 }
@@ -68,7 +68,7 @@ impl Builder for Box2d {
 
     fn spawn(&mut self, id: BodyId, body: &BodyDef, shapes: &[ShapeDef], pose: BodyPose) -> Result<()> {
         let def = shapes::body_def(body, pose)?;
-        // SAFETY: see above.
+        // SAFETY: by the invariant of `Box2d`.
         let made = unsafe { b2CreateBody(self.world, &def) };
         self.bodies.insert(id, made);
         shapes.iter().try_for_each(|shape| shapes::add_shape(made, shape))
@@ -77,21 +77,21 @@ impl Builder for Box2d {
     fn join(&mut self, joint: &JointDef, (a, b): (BodyId, BodyId)) -> Result<()> {
         let ends = [self.bodies.get(a)?, self.bodies.get(b)?];
         let def = shapes::joint_def(joint, ends, &self.config)?;
-        // SAFETY: see above.
+        // SAFETY: by the invariant of `Box2d`.
         self.joints.push(unsafe { b2CreateRevoluteJoint(self.world, &def) });
         Ok(())
     }
 
     fn despawn(&mut self, body: BodyId) -> Result<()> {
         let body = self.bodies.remove(body)?;
-        // SAFETY: see above.
+        // SAFETY: by the invariant of `Box2d`.
         unsafe { b2DestroyBody(body) };
         Ok(())
     }
 
     fn enable(&mut self, body: BodyId) -> Result<()> {
         let body = self.bodies.get(body)?;
-        // SAFETY: see above.
+        // SAFETY: by the invariant of `Box2d`.
         unsafe { b2Body_Enable(body) };
         Ok(())
     }
@@ -99,7 +99,7 @@ impl Builder for Box2d {
     fn move_to(&mut self, body: BodyId, position: Vec2<Fx>, angle: Angle) -> Result<()> {
         let target = b2Transform { p: shapes::vector(position), q: shapes::rotation(angle) };
         let body = self.bodies.get(body)?;
-        // SAFETY: see above.
+        // SAFETY: by the invariant of `Box2d`.
         unsafe { b2Body_SetTargetTransform(body, target, self.time_step, true) };
         Ok(())
     }
@@ -112,13 +112,13 @@ impl Engine for Box2d {
 
     fn step(&mut self) {
         let sub_steps = i32::try_from(self.config.solver.sub_steps).unwrap_or(4);
-        // SAFETY: see above.
+        // SAFETY: by the invariant of `Box2d`.
         unsafe { b2World_Step(self.world, self.time_step, sub_steps) };
     }
 
     fn bodies(&self) -> Vec<BodyState> {
         let state = |id: b2BodyId| {
-            // SAFETY: see above.
+            // SAFETY: by the invariant of `Box2d`.
             let (kind, centre, velocity, mass, awake) = unsafe {
                 let awake = b2Body_IsEnabled(id) && b2Body_IsAwake(id);
                 let (centre, velocity) = (b2Body_GetWorldCenter(id), b2Body_GetLinearVelocity(id));
@@ -136,7 +136,7 @@ impl Engine for Box2d {
     }
 
     fn counts(&self) -> Counts {
-        // SAFETY: see above.
+        // SAFETY: by the invariant of `Box2d`.
         let counters = unsafe { b2World_GetCounters(self.world) };
         let number = |count: i32| usize::try_from(count).unwrap_or(0);
         Counts {
@@ -149,7 +149,7 @@ impl Engine for Box2d {
     fn contacts(&self) -> Contacts {
         let mut found = Contacts::default();
         for body in self.bodies.iter() {
-            // SAFETY: see above; the buffer has the capacity that is passed.
+            // SAFETY: by the invariant of `Box2d`; the buffer has the capacity that is passed.
             let contacts = unsafe {
                 if b2Body_GetType(body) == b2BodyType_b2_staticBody {
                     continue;
@@ -186,7 +186,7 @@ impl Engine for Box2d {
 
     fn save(&mut self, slot: usize) {
         let save = &mut self.saves[slot];
-        // SAFETY: see above; the buffer has the length that is passed.
+        // SAFETY: by the invariant of `Box2d`; the buffer has the length that is passed.
         unsafe {
             let needed = b2World_Snapshot(self.world, std::ptr::null_mut(), 0);
             save.resize(usize::try_from(needed).unwrap_or(0), 0);
@@ -201,7 +201,7 @@ impl Engine for Box2d {
     fn restore(&mut self, slot: usize) -> Result<()> {
         let save = &self.saves[slot];
         let length = i32::try_from(save.len())?;
-        // SAFETY: see above; the bytes are a snapshot of this world.
+        // SAFETY: by the invariant of `Box2d`; the bytes are a snapshot of this world.
         let restored = unsafe { b2World_Restore(self.world, save.as_ptr(), length) };
         ensure!(restored, "Box2D refused its own snapshot");
         Ok(())

@@ -33,7 +33,7 @@ pub const SINGLE: [(World, u32); 2] = [
     (World { name: "ragdoll", setup: worlds::ragdolls }, 6),
     (World { name: "stack", setup: worlds::stack }, 10),
 ];
-/// Numbers of bodies.
+/// Approximate numbers of bodies.
 pub const SIZES: [u32; 4] = [6, 24, 96, 384];
 /// Steps before the timed ones.
 const UNTIMED: usize = 120;

@@ -26,7 +26,7 @@ fn hinge(scene: &mut Builder, a: Placed, b: Placed, at: Vec2<Fx>, hinge: Revolut
     Ok(())
 }
 
-/// A floor between two walls, with its top at 0.
+/// Adds a floor between two walls. The top of the floor is at y = 0.
 fn room(scene: &mut Builder, half_width: Fx) -> Result<(), WorldError> {
     let wall =
         |x: Fx| Polygon::rectangle(fx!(0.5), fx!(60)).map(|wall| ShapeDef::new(wall).offset((x, fx!(60))));
@@ -113,7 +113,7 @@ pub fn ragdolls(bodies: u32) -> Setup {
     Ok(scene.finish())
 }
 
-/// A torso with a head, two arms and two legs.
+/// Adds a ragdoll: a torso with a head, two arms and two legs.
 fn ragdoll(scene: &mut Builder, at: Vec2<Fx>, index: u32) -> Result<(), WorldError> {
     let group = -i32::try_from(index + 1).unwrap_or(i32::MAX);
     let mut limb = |x: Fx, y: Fx, half: Fx, radius: Fx| {
@@ -150,7 +150,7 @@ pub fn stack(bodies: u32) -> Setup {
     Ok(scene.finish())
 }
 
-/// Bridges of 22 planks that hang on two posts, with a box and a ball on each.
+/// Bridges of 22 planks, fixed at both ends, with a box and a ball on each bridge.
 pub fn bridges(bodies: u32) -> Setup {
     let mut scene = Builder::new(config());
     let post = (scene.spawn(BodyDef::fixed(), &[])?, Vec2::ZERO);
@@ -193,7 +193,7 @@ pub fn cars(bodies: u32) -> Setup {
     Ok(scene.finish())
 }
 
-/// A closed chain: hills from x = -20 m to `width`, and a cellar below.
+/// Adds a closed chain: hills from x = -20 m to x = `width` - 1 m, and a bottom at y = -10 m.
 fn terrain(scene: &mut Builder, width: i64) -> Result<(), WorldError> {
     let heights = [fx!(0), fx!(0.3), fx!(0.6), fx!(0.3), fx!(0), fx!(-0.2)];
     let hills = (-20..width).zip(heights.into_iter().cycle());

@@ -133,9 +133,9 @@ typedef uint32_t ls2d_angle;
 /* A body of a world: its slot in the lowest 21 bits, above them the number of earlier bodies in that slot. Less
  * than 2^53, so that it fits a number of JavaScript. */
 typedef uint64_t ls2d_body;
-/* A shape of a world, like a body. */
+/* A shape of a world, numbered as a body is. */
 typedef uint64_t ls2d_shape;
-/* A joint of a world, like a body. */
+/* A joint of a world, numbered as a body is. */
 typedef uint64_t ls2d_joint;
 
 /* Kind of a body: does not move. */
@@ -204,9 +204,10 @@ typedef uint64_t ls2d_joint;
 #define LS2D_JOINT_ENABLED 2
 /* Flag of a joint: has `limit_lower` and `limit_upper` (revolute, prismatic, distance, wheel). */
 #define LS2D_JOINT_LIMIT 4
-/* Flag of a joint: has `motor_speed` and `motor_max` (revolute, prismatic, distance, wheel; the angle of a motor). */
+/* Flag of a joint: has `motor_speed` and `motor_max` (revolute, prismatic, distance, wheel; motor, for the angle). */
 #define LS2D_JOINT_MOTOR 8
-/* Flag of a joint: has `spring_hertz`, `spring_damping_ratio`, `spring_target` (as for limits). */
+/* Flag of a joint: has `spring_hertz`, `spring_damping_ratio`, `spring_target` (revolute, prismatic, distance,
+ * wheel). */
 #define LS2D_JOINT_SPRING 16
 /* Flag of a joint: has `spring_force_lower` and `spring_force_upper` (distance). */
 #define LS2D_JOINT_SPRING_FORCE 32
@@ -218,13 +219,13 @@ typedef uint64_t ls2d_joint;
 #define LS2D_JOINT_THRESHOLD_FORCE 256
 /* Flag of a joint: has `threshold_torque`. */
 #define LS2D_JOINT_THRESHOLD_TORQUE 512
-/* Flag of a joint: breaks beyond a threshold. Without it, it is reported. */
+/* Flag of a joint: breaks beyond a threshold, instead of only being reported. */
 #define LS2D_JOINT_BREAKS 1024
 /* Flag of a joint: has `linear_velocity` and `linear_motor_max` (motor). */
 #define LS2D_JOINT_LINEAR_MOTOR 2048
-/* Flag of a joint: has `linear_hertz`, `linear_damping_ratio` and, a motor, `linear_max` (weld, motor). */
+/* Flag of a joint: has `linear_hertz`, `linear_damping_ratio` and, for a motor, `linear_max` (weld, motor). */
 #define LS2D_JOINT_LINEAR_SPRING 4096
-/* Flag of a joint: has `angular_hertz`, `angular_damping_ratio` and, a motor, `angular_max` (weld, motor). */
+/* Flag of a joint: has `angular_hertz`, `angular_damping_ratio` and, for a motor, `angular_max` (weld, motor). */
 #define LS2D_JOINT_ANGULAR_SPRING 8192
 /* Verdict: the setup and the inputs lead to every checkpoint and to the end of the file. */
 #define LS2D_MATCH 0
@@ -250,9 +251,9 @@ typedef uint64_t ls2d_joint;
 #define LS2D_REQUEST_CHECKSUM 3
 /* Request: copies of states before `tick` are no longer needed. */
 #define LS2D_REQUEST_FORGET 4
-/* Event: the match stands somewhere else; `value` is a `LS2D_MATCH_` status. */
+/* Event: the status of the match has changed; `value` is the new `LS2D_MATCH_` status. */
 #define LS2D_EVENT_STATUS 0
-/* Event: who has which seats changes. */
+/* Event: the seats of the peers have changed. */
 #define LS2D_EVENT_VIEW 1
 /* Event: `peer` has `seat` from `tick` on. */
 #define LS2D_EVENT_SEATED 2
@@ -266,11 +267,11 @@ typedef uint64_t ls2d_joint;
 #define LS2D_EVENT_PAUSE 6
 /* Event: the match ends after `tick` ticks. */
 #define LS2D_EVENT_END 7
-/* Event: `peer` has another state at `tick`, with the hashes `ours` and `theirs`. */
+/* Event: after `tick` ticks, `peer` has another state; the hashes are `ours` and `theirs`. */
 #define LS2D_EVENT_DESYNC 8
 /* Event: `peer` has issued two inputs for `tick`. */
 #define LS2D_EVENT_CONFLICT 9
-/* Event: the match has gone on for too long; the peer has to join again. */
+/* Event: the others no longer keep the inputs that this peer lacks; it has to join again. */
 #define LS2D_EVENT_TOO_FAR_BEHIND 10
 /* Event: the contact refuses; `value` is a `LS2D_REFUSED_` reason. */
 #define LS2D_EVENT_REFUSED 11
@@ -283,7 +284,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_REFUSED_OFFER 0
 /* Reason: too many peers follow the match. */
 #define LS2D_REFUSED_FULL 1
-/* Reason: the number of the peer is that of another one. */
+/* Reason: another peer has the number of this peer. */
 #define LS2D_REFUSED_TAKEN 2
 /* Reason: the contact is not in a match yet. It is asked again. */
 #define LS2D_REFUSED_NOT_READY 3
@@ -508,7 +509,7 @@ typedef struct ls2d_body_info {
     ls2d_fx mass;
     /* Moment of inertia about the centre of mass in kg m². */
     ls2d_fx inertia;
-    /* The number of the game. */
+    /* Number that the game stores with the body. */
     uint64_t user_data;
 } ls2d_body_info;
 
@@ -578,7 +579,7 @@ typedef struct ls2d_shape_def {
     int32_t group;
     /* `LS2D_MIX_AVERAGE` and so on, for friction. */
     uint32_t friction_mixing;
-    /* The same for restitution. */
+    /* `LS2D_MIX_AVERAGE` and so on, for restitution. */
     uint32_t restitution_mixing;
     /* Direction in which others pass, in the body's frame, with `LS2D_SHAPE_ONE_WAY`. */
     ls2d_angle one_way;
@@ -594,9 +595,9 @@ typedef struct ls2d_shape_def {
     ls2d_fx area_angular_drag;
     /* Density of the medium in kg/m², for buoyancy. */
     ls2d_fx area_density;
-    /* Acceleration in m/s² towards the centre of the area at the radius below. */
+    /* Acceleration in m/s² towards the centre of the area, at the distance `attraction_radius`. */
     ls2d_fx attraction_acceleration;
-    /* Radius in metres. */
+    /* Distance in metres at which bodies have the acceleration `attraction_acceleration`. */
     ls2d_fx attraction_radius;
     /* `LS2D_FALLOFF_CONSTANT` and so on. */
     uint32_t attraction_falloff;
@@ -606,7 +607,8 @@ typedef struct ls2d_shape_def {
     uint64_t user_data;
 } ls2d_shape_def;
 
-/* Definition of a joint. `ls2d_joint_def_init` sets the defaults. Only the fields that the flags name are read. */
+/* Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field that a flag names is read only with that
+ * flag. */
 typedef struct ls2d_joint_def {
     /* Size of this struct in bytes. */
     uint32_t size;
@@ -666,15 +668,15 @@ typedef struct ls2d_joint_def {
     ls2d_fx linear_motor_max;
     /* Frequency in Hz of the spring between the anchors. */
     ls2d_fx linear_hertz;
-    /* Its damping ratio. */
+    /* Damping ratio of the spring between the anchors. */
     ls2d_fx linear_damping_ratio;
-    /* Its largest force in N (motor joint). */
+    /* Largest force of the spring between the anchors in N (motor joint). */
     ls2d_fx linear_max;
     /* Frequency in Hz of the spring on the angle. */
     ls2d_fx angular_hertz;
-    /* Its damping ratio. */
+    /* Damping ratio of the spring on the angle. */
     ls2d_fx angular_damping_ratio;
-    /* Its largest torque in N m (motor joint). */
+    /* Largest torque of the spring on the angle in N m (motor joint). */
     ls2d_fx angular_max;
     /* Radius of the wheel of a rack in metres. */
     ls2d_fx radius;
@@ -782,7 +784,7 @@ typedef struct ls2d_mover {
     ls2d_angle slope_max;
     /* Height in metres of steps that it climbs without a jump. */
     ls2d_fx step_height;
-    /* Distance in metres by which ground may fall within a tick while it still follows. */
+    /* Distance in metres by which the ground may descend within a tick while the character follows it. */
     ls2d_fx snap_distance;
     /* Its geometry; other fields of the definition do not matter. */
     ls2d_shape_def shape;
@@ -904,7 +906,7 @@ typedef struct ls2d_verdict {
     uint32_t reserved;
     /* Number of ticks that were played; of the first different checkpoint for `LS2D_DIVERGED`. */
     uint64_t ticks;
-    /* Hash of the last state, as far as all states agreed. */
+    /* Hash of the last state, if all states up to it agreed with the recording; otherwise 0. */
     ls2d_hash hash;
 } ls2d_verdict;
 
@@ -993,7 +995,7 @@ uint32_t ls2d_api_version(void);
 uint32_t ls2d_semantics(void);
 
 /* Copies the text of the last failure on this thread as UTF-8, and writes its length in bytes. It is not
- * terminated by a zero. The text of a shorter buffer is cut. */
+ * terminated by a zero. If the buffer is shorter, the text is cut. */
 ls2d_status ls2d_last_error(uint8_t *buffer, size_t capacity, size_t *length);
 
 /* Frees an object of any kind. Its handle is an error from now on, also if it is freed again. */
@@ -1082,7 +1084,8 @@ ls2d_status ls2d_joint_def_init(uint32_t kind, ls2d_joint_def *def);
 ls2d_status ls2d_chain_links(const ls2d_shape_def *base, const ls2d_vec2 *points, size_t point_count, uint32_t closed, uint32_t one_sided, ls2d_shape_def *links, size_t capacity, size_t *count);
 
 /* Mass, centre of mass and radius of gyration of a dynamic body with some shapes, for `mass`, `mass_centre` and
- * `mass_gyration` of its definition. Null pointers are not written. Without area and density it is an error. */
+ * `mass_gyration` of its definition. Null pointers are not written. It is an error if no shape has an area and a
+ * density. */
 ls2d_status ls2d_shapes_mass(const ls2d_shape_def *shapes, size_t shape_count, ls2d_fx *mass, ls2d_vec2 *centre, ls2d_fx *gyration);
 
 /* ---- Edits of a world, or of a list of commands ---- */
@@ -1164,7 +1167,7 @@ ls2d_status ls2d_set_velocity(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_f
 /* Places a body. */
 ls2d_status ls2d_set_transform(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_fx y, ls2d_angle angle);
 
-/* Gives a kinematic body the velocity with which it is at a place after the next tick. */
+/* Gives a kinematic body the velocity with which it reaches a pose in the next tick. */
 ls2d_status ls2d_move_to(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_fx y, ls2d_angle angle);
 
 /* Changes the settings of a body: damping, gravity scale, locks, sweeps, sleep. The other fields do not matter. */
@@ -1173,7 +1176,7 @@ ls2d_status ls2d_set_body(uint32_t target, ls2d_body body, const ls2d_body_def *
 /* Changes the kind of a body. */
 ls2d_status ls2d_set_kind(uint32_t target, ls2d_body body, uint32_t kind);
 
-/* Changes the mass of a body to the one of a definition, of which only the mass matters. */
+/* Changes the mass of a body to that of a definition. The other fields have no effect. */
 ls2d_status ls2d_set_mass(uint32_t target, ls2d_body body, const ls2d_body_def *def);
 
 /* Sets the number that the game stores with a body. */
@@ -1191,7 +1194,7 @@ ls2d_status ls2d_disable(uint32_t target, ls2d_body body);
 /* Wakes a body. */
 ls2d_status ls2d_wake(uint32_t target, ls2d_body body);
 
-/* Puts a body and all that touch it or are joined to it to sleep. */
+/* Puts a dynamic body to sleep, with all dynamic bodies that contacts and joints connect it to. */
 ls2d_status ls2d_sleep(uint32_t target, ls2d_body body);
 
 /* Sets the gravity in m/s². */
@@ -1382,7 +1385,7 @@ ls2d_status ls2d_replay_verify(const uint8_t *data, size_t size, const ls2d_limi
 /* ---- Timelines of replays of worlds ---- */
 
 /* Opens a replay of a world from any source, to go to any of its ticks: tick t is the state after t ticks. A null
- * pointer stands for the default limits. If it cannot be played, its verdict is written, and the result is
+ * pointer stands for the default limits. If the replay cannot be played, its verdict is written, and the result is
  * `LS2D_RECORD`. */
 ls2d_status ls2d_timeline_open(const uint8_t *data, size_t size, const ls2d_limits *limits, uint32_t *timeline, ls2d_verdict *verdict);
 
@@ -1409,8 +1412,8 @@ ls2d_status ls2d_timeline_world(uint32_t timeline, uint32_t *world);
 ls2d_status ls2d_recorder_new(const uint8_t *rules, size_t rules_length, uint32_t rules_version, uint32_t players, uint32_t tick_rate, uint32_t input_bytes, const uint8_t *setup, size_t setup_size, const ls2d_hash *start, uint32_t interval, uint32_t *recorder);
 
 /* Records the final inputs of the next tick: those of all players, one after another. `absent` has a bit for each
- * player that nobody plays, whose input is zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow
- * with the hash of the state after this tick. */
+ * absent player, whose input is zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow with the hash
+ * of the state after this tick. */
 ls2d_status ls2d_recorder_record(uint32_t recorder, const uint8_t *inputs, size_t size, uint64_t absent, uint32_t *due);
 
 /* Passes the hash of the state after the last recorded tick. Without a checkpoint due, nothing happens. */
@@ -1438,12 +1441,12 @@ ls2d_status ls2d_replay_rules(uint32_t replay, uint32_t *rules, uint32_t *rules_
 /* The setup of the game as bytes. */
 ls2d_status ls2d_replay_setup(uint32_t replay, uint32_t *bytes);
 
-/* Name, as bytes, and number of a result that the file states, in ascending order of names. It is true if the
- * verdict is `LS2D_MATCH`. `LS2D_NONE` after the last one. */
+/* Name, as bytes, and number of a result that the file states. Results are in ascending order of names, and true
+ * if the verdict is `LS2D_MATCH`. `LS2D_NONE` after the last one. */
 ls2d_status ls2d_replay_claim_at(uint32_t replay, uint32_t index, uint32_t *name, int64_t *number);
 
 /* The inputs of all players for the next tick, as `players` times `input_bytes` bytes, with a bit in `absent` for
- * each player that nobody plays; a null pointer is not written. `LS2D_NONE` at the end. */
+ * each absent player; a null pointer is not written. `LS2D_NONE` at the end. */
 ls2d_status ls2d_replay_next(uint32_t replay, uint8_t *inputs, size_t capacity, size_t *size, uint64_t *absent);
 
 /* Passes the hash of the state before the first tick, and after each tick; or answers `LS2D_REQUEST_CHECKSUM`. */
@@ -1532,8 +1535,8 @@ ls2d_status ls2d_match_seats(uint32_t handle, uint64_t *seats);
 /* The final inputs of all seats for a tick, while they are kept. `LS2D_NONE` otherwise. */
 ls2d_status ls2d_match_final_inputs(uint32_t handle, uint32_t tick, uint8_t *inputs, size_t capacity, size_t *size, uint64_t *absent);
 
-/* Delay of own inputs in ticks; to a peer, smoothed round trip in microseconds, and lost packets in thousandths.
- * Null pointers are not written. */
+/* Delay of own inputs in ticks, and smoothed round trip in microseconds and lost packets in thousandths of the
+ * link to a peer. Null pointers are not written. */
 ls2d_status ls2d_match_link(uint32_t handle, uint32_t peer, uint32_t *delay, uint64_t *round_trip, uint32_t *loss);
 
 /* Leaves the match. Call `ls2d_match_update` until the status is `LS2D_MATCH_CLOSED`. */
@@ -1543,7 +1546,7 @@ ls2d_status ls2d_match_leave(uint32_t handle);
  * join. */
 ls2d_status ls2d_match_end_at(uint32_t handle, uint32_t ticks);
 
-/* Asks all others to stop for now, or, with 0, no longer to. */
+/* Asks all others to pause, or, with 0, withdraws the request. */
 ls2d_status ls2d_match_pause(uint32_t handle, uint32_t paused);
 
 /* Votes for going on without a peer that is missing. */

@@ -13,7 +13,7 @@ use crate::status::{Failure, Outcome, Status, note};
 /// Types for which every byte pattern is a value and that have no padding, so that foreign memory may be read as them.
 ///
 /// # Safety
-/// Both conditions above have to hold for the type.
+/// Every byte pattern has to be a value of the type, and the type must have no padding.
 pub unsafe trait Plain: Copy + 'static {}
 
 // SAFETY: integers have neither padding nor invalid bytes.
@@ -94,7 +94,7 @@ impl<'a, T: Plain> In<'a, T> {
         Ok(unsafe { self.0.read() })
     }
 
-    /// The items. For no items, the pointer may be null.
+    /// Returns `count` items. If `count` is 0, the pointer may be null.
     pub(crate) fn slice(&self, count: usize) -> Outcome<&[T]> {
         if count == 0 {
             return Ok(&[]);
@@ -108,7 +108,7 @@ impl<'a, T: Plain> In<'a, T> {
 }
 
 impl In<'_, u8> {
-    /// UTF-8 text of a number of bytes.
+    /// Returns `bytes` bytes as UTF-8 text.
     pub(crate) fn text(&self, bytes: usize) -> Outcome<&str> {
         std::str::from_utf8(self.slice(bytes)?)
             .map_err(|error| Failure::new(Status::Text, format!("not UTF-8: {error}")))
@@ -185,7 +185,7 @@ impl<'a, T: Plain> Out<'a, T> {
 
 /// Runs the body of a function, and converts failures and panics to status codes.
 pub(crate) fn guard(body: impl FnOnce() -> Outcome) -> i32 {
-    // Objects that a panic has left in an unknown state are behind mutexes, which are poisoned then.
+    // Objects are behind mutexes. A panic poisons the mutexes of the objects that it leaves in an unknown state.
     let result = catch_unwind(AssertUnwindSafe(body));
     let status = match result {
         Ok(Ok(())) => Status::Ok,

@@ -213,7 +213,7 @@ macro_rules! api {
             docs: &[$($doc),+],
         }),+];
 
-        /// Calls of all functions of this module with drawn arguments.
+        /// Calls of all functions of this module with arguments drawn from bytes.
         #[cfg(any(test, feature = "fuzzing"))]
         pub(crate) const DRAWN: &[$crate::fuzzing::DrawnCall] = &[$(|caller| {
             $(let $argument = <$type as $crate::fuzzing::Drawn>::draw(caller, stringify!($argument));)*

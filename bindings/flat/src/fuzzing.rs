@@ -9,8 +9,9 @@ use crate::status::Status;
 /// A call of a function with drawn arguments.
 pub(crate) type DrawnCall = fn(&mut Caller<'_>);
 
-/// Largest number of items of a buffer, and of bytes of a byte buffer: counts that follow a pointer are at most these.
+/// Number of items in a buffer, and largest count that follows a pointer to it.
 const ITEMS: usize = 64;
+/// Number of items in a buffer of bytes, and largest count that follows a pointer to it.
 const BYTES: usize = 4096;
 
 /// Number of objects, and of ids, that a caller remembers. It forgets the oldest first.
@@ -112,7 +113,7 @@ impl Caller<'_> {
         (usize::from(self.byte()) << 8 | usize::from(self.byte())) % bound.max(1)
     }
 
-    /// A handle, mostly of the kind that a parameter of a name expects.
+    /// Draws a handle, mostly of the kind that the parameter `name` expects.
     fn handle(&mut self, name: &str) -> u32 {
         let index = usize::from(self.byte());
         let any = self.byte() < 16;
@@ -122,7 +123,7 @@ impl Caller<'_> {
         known.get(index % known.len().max(1)).copied().unwrap_or(0)
     }
 
-    /// A word of 32 fraction bits: a few metres, or anything.
+    /// Draws a number with 32 fraction bits: a few metres, or any value.
     fn number(&mut self) -> u64 {
         match self.byte() {
             0 => self.word(),
@@ -150,7 +151,7 @@ impl Caller<'_> {
         let mut words = known.unwrap_or_else(|| vec![0; (self.items * item).div_ceil(8) + 1].into());
         if !is_output {
             for _ in 0..self.byte() % 4 {
-                // The first items matter most.
+                // Only words of about the first two items change: they matter most.
                 let (place, value) = (self.below((item / 4).max(8)), self.number());
                 if let Some(word) = words.get_mut(place) {
                     *word = value;

@@ -8,8 +8,8 @@
 //! - Different objects may be used on different threads at the same time. Calls with the same object wait for each
 //!   other.
 //!
-//! `include/lockstep2d.h` and `layout.json`, from which other languages take offsets, are written by [`header`] and
-//! [`layout`]; a test compares them.
+//! `include/lockstep2d.h` and `bindings/npm/src/layout.js`, from which JavaScript takes offsets, are written by
+//! [`header`] and [`layout`]; a test compares them.
 
 mod border;
 mod describe;

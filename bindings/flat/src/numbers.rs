@@ -16,9 +16,9 @@ aliases! {
     /// A body of a world: its slot in the lowest 21 bits, above them the number of earlier bodies in that slot. Less
     /// than 2^53, so that it fits a number of JavaScript.
     RawBody(u64) = "ls2d_body";
-    /// A shape of a world, like a body.
+    /// A shape of a world, numbered as a body is.
     RawShape(u64) = "ls2d_shape";
-    /// A joint of a world, like a body.
+    /// A joint of a world, numbered as a body is.
     RawJoint(u64) = "ls2d_joint";
 }
 
@@ -92,7 +92,7 @@ impl RawVec2 {
         RawVec2 { x: RawFx::of_unit(value.x), y: RawFx::of_unit(value.y) }
     }
 
-    /// Components from -2 to 2, to which others are clamped.
+    /// Returns the components, clamped to the range -2 to 2.
     pub(crate) fn units(self) -> Vec2<Unit> {
         Vec2::new(narrow(self.x.fx()), narrow(self.y.fx()))
     }
@@ -129,7 +129,7 @@ fn unpack(packed: u64) -> Option<[u8; 8]> {
 macro_rules! identifiers {
     ($($raw:ident, $id:ident, $status:ident, $what:literal;)+) => {
         $(impl $raw {
-            /// The handle. A number that is not one refers to nothing, like a stale handle.
+            /// Returns the handle. A number that is not a handle is reported as a stale one.
             pub(crate) fn id(self) -> Outcome<$id> {
                 let stale = || Failure::new(Status::$status, concat!($what, " does not exist"));
                 let bytes = unpack(self.0).ok_or_else(stale)?;

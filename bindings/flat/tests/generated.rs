@@ -25,7 +25,7 @@ fn the_layout_is_that_of_the_api() {
     check("../npm/src/layout.js", &lockstep2d_flat::layout());
 }
 
-/// Every exported function is described, so that none is missing in the header.
+/// Functions of several modules are in the header.
 #[test]
 fn every_function_is_in_the_header() {
     let header = lockstep2d_flat::header();

@@ -85,7 +85,7 @@ async function matter() {
         box: (at, { half: [x, y] }) => M.Bodies.rectangle(...at, 2 * SCALE * number(x), 2 * SCALE * number(y)),
         ball: (at, { radius }) => M.Bodies.circle(...at, SCALE * number(radius)),
         polygon: (at, { points }) => M.Bodies.fromVertices(...at, [points.map((point) => pair(place(point)))]),
-        // The nearest shape that it has.
+        // Matter has no capsules; a rectangle with rounded corners is the nearest shape.
         capsule: (at, { half, radius }) => M.Bodies.rectangle(...at, 2 * SCALE * number(radius), 2 * SCALE * (number(half) + number(radius)),
             { chamfer: { radius: SCALE * number(radius) * 0.99 } }),
     };
@@ -124,7 +124,7 @@ export async function measure(make, ticks) {
         });
         return { times, hash: hash?.() };
     };
-    // The engine of JavaScript compiles a function again, with optimisations, once it is used often.
+    // Warm-up: JavaScript engines optimise a function only after many calls.
     Object.values(SCENES).forEach((scene) => play(scene, 60));
     return Object.entries(SCENES).map(([name, scene]) => ({ name, ...play(scene, ticks) }));
 }

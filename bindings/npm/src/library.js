@@ -224,8 +224,9 @@ export const giveText = (text, reserved = 64) => {
     return [give(data, reserved), data.length];
 };
 
-/** Writes bytes, or a raw number, into memory. */
+/** Writes bytes into memory. */
 export const putBytes = (at, data) => memory().set(data, at);
+/** Writes a raw 64-bit number into memory. */
 export const putRaw = (at, raw) => view.setBigInt64(at, raw, true);
 
 /** A copy of memory. */

@@ -38,7 +38,7 @@ export function encodeNativeState(world) {
     return bytes;
 }
 
-/** Decodes the world of such a state. The bytes may come from any source. */
+/** Decodes the world from a state of `encodeNativeState` or of a native game. The bytes may come from any source. */
 export function decodeNativeState(bytes) {
     const world = World.fromBytes(bytes.subarray(24));
     const hash = hashOf(world.hash());

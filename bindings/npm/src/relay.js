@@ -3,8 +3,9 @@ import { Lockstep2dError } from "./error.js";
 
 const ADDRESS = 8;
 const SECRET = 16;
-// Pause in milliseconds before connecting again: the first one, and the longest one.
+// First pause in milliseconds before connecting again. The pause doubles with each failure.
 const PAUSE_MIN = 250;
+// Longest pause in milliseconds before connecting again.
 const PAUSE_MAX = 8000;
 // Largest number of bytes that wait to be sent. Further packets are dropped, as in the buffer of a socket.
 const BUFFERED_MAX = 512 * 1024;
@@ -23,8 +24,9 @@ export class Relay {
     #timer;
     #closed = false;
     #ready;
-    /** This peer's own address, and those of the others in the room in the order in which they came. */
+    /** Address of this peer. */
     own;
+    /** Addresses of the others in the room, in the order in which they came. */
     others = [];
     /** Called with the sender and the bytes of each packet. */
     onPacket = () => {};

@@ -252,7 +252,7 @@ export class ReplayDriver {
     }
 
     /** Goes to a tick. Ticks that were played before cost less than an interval of simulation. Throws an error with the
-     * code RECORD if the game diverges from the file: it stays there, and earlier ticks can be reached. */
+     * code RECORD if the game diverges from the file: the driver stays there, and earlier ticks can be reached. */
     seek(tick) {
         this.#replay.seek(tick);
         for (let request = this.#replay.nextRequest(); request !== undefined; request = this.#replay.nextRequest()) {

@@ -174,7 +174,7 @@ test("files are opened and refused, although reading them moves the memory", () 
     for (let attempt = 0; attempt < 20; attempt++) {
         const before = library().memory.buffer;
         assert.throws(() => new L.Timeline(damaged), (error) => error.code === "RECORD" && error.verdict.verdict === "malformed");
-        // Takes the memory that was free, so that the next one needs more.
+        // A timeline that is kept takes the free memory, so that the next one makes the memory grow.
         kept.push(new L.Timeline(replay));
         assert.equal(kept.at(-1).ticks, 20);
         moved += library().memory.buffer === before ? 0 : 1;

@@ -183,7 +183,7 @@ test("a character walks, climbs a step, rides a lift and stops at a wall", () =>
         world.step();
         const velocity = [3, L.fx(state.velocity?.y ?? 0).sub("0.16")];
         const moved = L.moveCharacter(world, mover, { ...state, velocity });
-        // What is saved goes on as what is kept.
+        // A state that was encoded and decoded continues like one that was not.
         state = tick % 2 === 0 ? L.decodeMoverState(L.encodeMoverState(moved.state)) : moved.state;
         onGround += moved.state.isOnGround ? 1 : 0;
         met += moved.met.length;

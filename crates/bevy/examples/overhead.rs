@@ -12,7 +12,7 @@ use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::math::{Angle, Fx, Vec2, fx_mul};
 use lockstep2d::world::{BodyPose, Command};
 
-/// A pyramid with this many rows.
+/// Number of rows of the pyramid.
 const ROWS: i32 = 45;
 
 fn pyramid() -> Result<SandboxSetup, WorldError> {

@@ -11,7 +11,7 @@ use crate::game::LockstepGame;
 use crate::lockstep::Lockstep;
 use crate::plugin::LockstepStatus;
 
-/// Registers and measures the diagnostics below, which `LogDiagnosticsPlugin` prints, for example.
+/// Registers and measures the diagnostics that its constants name. `LogDiagnosticsPlugin` prints them, for example.
 #[derive(Clone, Copy, Debug)]
 pub struct LockstepDiagnosticsPlugin<G>(PhantomData<fn() -> G>);
 
@@ -22,11 +22,11 @@ impl<G> Default for LockstepDiagnosticsPlugin<G> {
 }
 
 impl<G> LockstepDiagnosticsPlugin<G> {
-    /// Time of the ticks of a frame in milliseconds.
+    /// Time in milliseconds that the ticks of a frame take.
     pub const STEP: DiagnosticPath = DiagnosticPath::const_new("lockstep/step");
     /// Ticks that a frame rolled back.
     pub const ROLLBACK: DiagnosticPath = DiagnosticPath::const_new("lockstep/rollback");
-    /// Ticks played that are not confirmed.
+    /// Number of played ticks that are not confirmed.
     pub const PREDICTED: DiagnosticPath = DiagnosticPath::const_new("lockstep/predicted");
     /// Bytes of a save, measured every 64 frames.
     pub const SAVE: DiagnosticPath = DiagnosticPath::const_new("lockstep/save");

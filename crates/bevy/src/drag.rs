@@ -99,8 +99,8 @@ pub(crate) fn pull(
         };
     }
     let Some(command) = hand.held.and_then(|held| pull_command(world, held, at)) else { return };
-    // After a frame without a tick, its force is still in the list, and is replaced. In a frame with two ticks only the
-    // first tick applies the force.
+    // After a frame without a tick, the force of that frame is still in the list, and is replaced. In a frame with two
+    // ticks only the first tick applies the force.
     let once = inputs.once(0);
     once.retain(|other| !is_same_pull(other, &command));
     once.push(command);
@@ -123,8 +123,9 @@ fn grip(world: &World, id: BodyId, at: Vec2<Fx>) -> Option<Held> {
     Some(Held { body: id, grip: body.transform().apply_inverse(at) })
 }
 
-/// Stiffness per mass in 1/s2, and damping per mass in 1/s: a critically damped spring of 2 Hz.
+/// Stiffness per mass in 1/s2: a spring of 2 Hz.
 const STIFFNESS: Fx = fx!(158);
+/// Damping per mass in 1/s: the spring is critically damped.
 const DAMPING: Fx = fx!(25);
 /// Largest acceleration in m/s2.
 const ACCELERATION_MAX: Fx = fx!(500);

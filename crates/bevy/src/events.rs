@@ -65,7 +65,7 @@ impl WorldEvent {
 /// An event with its tick and the bodies that take part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LoggedEvent {
-    /// Number of ticks played, with the one of the event.
+    /// Number of ticks played, including that of the event.
     pub(crate) tick: u64,
     pub(crate) event: WorldEvent,
     /// Bodies of the shapes, as far as they exist after the tick.
@@ -113,7 +113,7 @@ pub(crate) fn each_event(world: &World, tick: u64, found: &mut impl FnMut(Logged
 /// An event of a tick that is final. Each comes once.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ConfirmedEvent {
-    /// Number of ticks played, with the one of the event.
+    /// Number of ticks played, including that of the event.
     pub tick: u64,
     /// The event.
     pub event: WorldEvent,
@@ -126,7 +126,7 @@ pub struct ConfirmedEvent {
 /// rollback that moves it by a few ticks does not repeat it.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PredictedEvent {
-    /// Number of ticks played, with the one of the event.
+    /// Number of ticks played, including that of the event.
     pub tick: u64,
     /// The event.
     pub event: WorldEvent,
@@ -151,7 +151,7 @@ pub struct BodyEvent {
     pub entity: Entity,
     /// View of the other body, if there is one.
     pub other: Option<Entity>,
-    /// Number of ticks played, with the one of the event.
+    /// Number of ticks played, including that of the event.
     pub tick: u64,
     /// The event.
     pub event: WorldEvent,

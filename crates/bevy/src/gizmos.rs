@@ -127,9 +127,11 @@ fn draw_world<G: LockstepGame>(
     each_primitive(world, group.layers(), &mut |primitive| draw(&mut gizmos, &primitive, scale));
 }
 
-/// Sizes of marks, in units of `Transform`.
+/// Radius of a point, in units of `Transform`.
 const MARK: f32 = 3.0;
+/// Length of the arrow of a direction, in units of `Transform`.
 const DIRECTION: f32 = 15.0;
+/// Size of text, in units of `Transform`.
 const TEXT: f32 = 10.0;
 
 fn draw(gizmos: &mut Gizmos<LockstepGizmos>, primitive: &Primitive, scale: f32) {

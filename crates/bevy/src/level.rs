@@ -111,10 +111,10 @@ impl core::error::Error for LevelError {}
 /// not.
 ///
 /// # Errors
-/// [`LevelError`]. The entities are unchanged then.
+/// [`LevelError`]. It leaves all entities unchanged.
 pub fn build_level(app: &mut BevyWorld, config: Config) -> Result<Vec<Command>, LevelError> {
     let refused = |entity: Entity| move |error| LevelError::Refused { entity: Some(entity), error };
-    // The ids that the commands will lead to are those that they lead to here.
+    // The commands are executed in a scratch world: they will give the same ids in the game.
     let mut scratch = World::new(config).map_err(|error| LevelError::Refused { entity: None, error })?;
     let mut commands = Vec::new();
     let mut bodies = EntityHashMap::default();

@@ -87,7 +87,7 @@ pub mod prelude {
     };
 }
 
-// Its examples use gizmos.
+// The examples of README.md use gizmos.
 #[cfg(all(doctest, feature = "gizmos"))]
 #[doc = include_str!("../README.md")]
 mod readme {}

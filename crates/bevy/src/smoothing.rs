@@ -56,8 +56,9 @@ pub(crate) struct Offset {
     angle: f32,
 }
 
-/// Offsets below these are dropped, in metres and radians: they are less than a pixel.
+/// Displacement in metres below which an offset is dropped, if its angle is small, too: it is less than a pixel.
 const POSITION_MIN: f32 = 1e-3;
+/// Angle in radians below which an offset is dropped, if its displacement is small, too.
 const ANGLE_MIN: f32 = 1e-3;
 
 impl Offset {

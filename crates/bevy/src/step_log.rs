@@ -40,17 +40,20 @@ pub(crate) struct StepLog {
     pending: VecDeque<Entry>,
     /// Announced events whose ticks were rolled back, and that have not happened again.
     withdrawn: Vec<LoggedEvent>,
-    /// Poses before and after the last step.
+    /// Poses before the last step.
     pub(crate) before: Poses,
+    /// Poses after the last step.
     pub(crate) after: Poses,
     is_after_stale: bool,
-    /// Tick that the views show, and the poses of the same tick after it was played again.
+    /// Tick that the views show.
     shown: Option<Stamp>,
+    /// Poses of the tick `shown` after it was played again.
     pub(crate) shown_again: Option<Poses>,
     /// Bodies that were missing in a loaded state: a body with the same id may be another one now.
     pub(crate) missing: Vec<BodyId>,
-    /// Number of ticks played since the last frame, and number of those that were played again.
+    /// Number of ticks played since the last frame, including those played again.
     pub(crate) stepped: u32,
+    /// Largest number of ticks by which a load went back since the last frame.
     pub(crate) replayed: u32,
     /// The tick to return to, while the driver simulates ticks that are not part of the game's course.
     suspended_at: Option<Stamp>,

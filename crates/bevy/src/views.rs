@@ -11,7 +11,7 @@ use crate::smoothing::Offset;
 /// An entity that shows a body. The plugin spawns one for every body, with a [`Transform`], and despawns it with the
 /// body. Add components or children that draw the body, for example in an observer of `On<Add, BodyView>`.
 ///
-/// An entity that has the component already when its body appears becomes its view, instead of a new one.
+/// If an entity already has the component when the body appears, it becomes the view, and none is spawned.
 ///
 /// X, y and rotation of the `Transform` are written; z and scale are yours. Two bodies that exist one after the other
 /// have two views, even if a rollback gives them the same id.
@@ -53,8 +53,9 @@ pub struct BodyViews {
 pub(crate) struct View {
     pub(crate) body: BodyId,
     pub(crate) entity: Entity,
-    /// Poses before and after the last tick.
+    /// Pose before the last tick.
     pub(crate) previous: Pose,
+    /// Pose after the last tick.
     pub(crate) current: Pose,
     pub(crate) offset: Offset,
     /// Whether the `Transform` is that of `current`, so that nothing has to be written.

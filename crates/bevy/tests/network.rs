@@ -1,5 +1,5 @@
 //! Two apps that play over a network which loses, doubles, delays and reorders packets, and a third that watches from
-//! the middle on: they have the same states and the same confirmed events, and their views are the bodies.
+//! the middle on: they have the same states and the same confirmed events, and their views follow the bodies.
 
 mod common;
 

@@ -15,7 +15,7 @@ const CHANNEL: usize = 0;
 /// A member of a room of a matchbox signalling server, with a WebRTC data channel to each other member.
 ///
 /// The channels are unordered and unreliable, as UDP is. A member that connects again has another address: the session
-/// knows its peer by its key.
+/// recognises the peer by its key.
 pub struct Matchbox {
     socket: WebRtcSocket,
     received: VecDeque<(Address, Vec<u8>)>,

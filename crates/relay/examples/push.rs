@@ -120,7 +120,7 @@ struct Arguments {
     output: Option<PathBuf>,
 }
 
-/// Random bytes for the address in the room, from the operating system.
+/// Returns the secret of an identity as 16 bytes, from which the relay makes the address in the room.
 fn secret(me: &PeerIdentity) -> [u8; 16] {
     let mut bytes = [0; 16];
     for (to, from) in bytes.chunks_mut(8).zip(me.secret) {

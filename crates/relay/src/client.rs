@@ -16,14 +16,15 @@ use crate::frame::{ADDRESS_BYTES, Members, SECRET_BYTES, frame, of_text, unframe
 
 /// Time for connecting and for each step of the handshake.
 const CONNECT_MAX: Duration = Duration::from_secs(5);
-/// First and longest pause before connecting again.
+/// First pause before connecting again. The pause doubles with each failure.
 const PAUSE_MIN: Duration = Duration::from_millis(250);
+/// Longest pause before connecting again.
 const PAUSE_MAX: Duration = Duration::from_secs(8);
-/// Largest frame from the relay.
+/// Size of the largest frame from the relay in bytes.
 const FRAME_MAX: usize = 64 * 1024;
 /// Close code: another connection of the same member has replaced this one.
 const REPLACED: u16 = 4003;
-/// Bytes that wait to be sent. Further datagrams are dropped, as in the buffer of a socket.
+/// Largest number of bytes that wait to be sent. Further datagrams are dropped, as in the buffer of a socket.
 const WRITE_MAX: usize = 512 * 1024;
 
 /// Reason why a relay cannot be used.

@@ -14,7 +14,7 @@ use tungstenite::Message;
 const PATIENCE: Duration = Duration::from_secs(20);
 const STEP: Duration = Duration::from_millis(2);
 
-/// A relay in a thread, which ends with this value.
+/// A relay in a thread that ends when this value is dropped.
 struct Running {
     address: SocketAddr,
     stop: Option<tokio::sync::oneshot::Sender<()>>,

@@ -11,8 +11,9 @@ use lockstep2d::math::{Angle, Fx, PI, Vec2, fx_mul};
 use lockstep2d::solver::{JointDef, Revolute};
 use lockstep2d::world::Config;
 
-/// Collision categories of the ground and of ragdolls.
+/// Collision category of the ground.
 const GROUND: u64 = 1;
+/// Collision category of ragdolls.
 const RAGDOLL_CATEGORY: u64 = 2;
 
 /// A part of a ragdoll: a vertical capsule, and the hinge that connects it to its parent. Heights are in metres above

@@ -63,7 +63,7 @@ fn mill(scene: &mut Builder, ground: BodyId) -> Result<(), WorldError> {
         bodies.push(wheel);
     }
     let mesh = |teeth_a, teeth_b| Gear::new(teeth_a, teeth_b);
-    // Wheels at angle 0 meet tooth on tooth if both numbers are even multiples.
+    // The lines between the anchors and all frames are at angle 0, so the wheels are in mesh.
     scene.joint(JointDef::new(bodies[0], bodies[1], mesh(10, 20)))?;
     scene.joint(JointDef::new(bodies[1], bodies[2], mesh(20, 10)))?;
     let gate = BodyDef::dynamic().position((fx!(-4.5), fx!(6)));

@@ -8,7 +8,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().expect("the repository")
 }
 
-/// All documents below a folder.
+/// Adds all documents below a folder to `found`.
 fn documents(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
@@ -32,7 +32,7 @@ fn prose(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// The targets of the links in a document, without those to other sites.
+/// Returns the targets of the links in a document, except for links to other sites.
 fn links(text: &str) -> Vec<&str> {
     let parts = prose(text).flat_map(|line| line.split("](").skip(1));
     parts
@@ -42,7 +42,7 @@ fn links(text: &str) -> Vec<&str> {
         .collect()
 }
 
-/// The identifiers that the headings of a document get.
+/// Returns the anchors of the headings of a document, as links name them after `#`.
 fn headings(text: &str) -> BTreeSet<String> {
     let headings = prose(text).filter(|line| line.starts_with('#'));
     headings
@@ -54,7 +54,7 @@ fn headings(text: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// The links of a document that lead nowhere.
+/// Returns the links of a document whose file or heading does not exist.
 fn broken<'a>(path: &Path, text: &'a str) -> Vec<&'a str> {
     let is_broken = |link: &&str| {
         let (file, heading) = link.split_once('#').unwrap_or((link, ""));

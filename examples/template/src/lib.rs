@@ -11,7 +11,7 @@ use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::world::{Config, Snapshot, World};
 use serde::{Deserialize, Serialize};
 
-/// Goals that win the match.
+/// Number of goals that wins the match.
 const GOALS_TO_WIN: u32 = 5;
 /// Half of the length and of the height of the field, in metres.
 const FIELD: (Fx, Fx) = (fx!(8), fx!(4));
@@ -146,7 +146,7 @@ impl Game for MyGame {
 
     fn step(&mut self, inputs: &[Input]) {
         if !self.is_over() {
-            // The world refuses a change only after a hostile save, and then on every machine.
+            // Only a world from a hostile save refuses a change, and it does so on every machine.
             let _pushed = self.push(inputs);
         }
         self.world.step();

@@ -6,8 +6,8 @@ use lockstep2d::math::Rng;
 use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, Recording, verify};
 use my_game::{Input, MyGame, Setup};
 
-/// State hash after the last tick. It changes with the rules, and then their version is raised; it never changes with
-/// the machine, the compiler or the optimisation.
+/// State hash after the last tick. Raise the version of the rules when a change of the rules changes it. It never
+/// depends on the machine, the compiler or the optimisation.
 const GOLDEN: &str = "fcbab914942b158d9a1b9283ae34f629";
 
 /// Inputs of both players for some ticks: new directions twice a second.

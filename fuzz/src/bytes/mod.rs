@@ -1,8 +1,8 @@
 //! Targets whose input is a file or packets. Most inputs are refused within microseconds, so that millions can be
 //! tried.
 //!
-//! The first byte of an input determines the meaning of the rest: a file, or changes to a valid file, with or without
-//! repaired checksums.
+//! If the input is a file, its first byte determines the meaning of the rest: the bytes of a file, or changes to an
+//! original file, with or without repaired checksums.
 
 pub mod replay;
 pub mod report;
@@ -19,7 +19,7 @@ struct Attempt<'a> {
     original: Option<&'a [u8]>,
 }
 
-/// Makes a file from an input. `originals` are valid files, and `repair` corrects all checksums.
+/// Makes a file from an input. `originals` are the files that may be changed, and `repair` corrects all checksums.
 fn attempt<'a>(bytes: &[u8], originals: &'a [Vec<u8>], repair: impl Fn(&mut Vec<u8>)) -> Attempt<'a> {
     let Some((&mode, rest)) = bytes.split_first() else {
         return Attempt { file: Vec::new(), original: None };

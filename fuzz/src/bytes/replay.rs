@@ -36,7 +36,7 @@ static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     vec![memory, sandbox, empty, cut]
 });
 
-/// A setup of two balls, one above the other, of which one is pushed.
+/// A setup with a dynamic ball above a fixed one, and the inputs of five ticks, two of which set the gravity.
 pub(super) fn ball() -> (SandboxSetup, [[Vec<Command>; 1]; 5]) {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("a valid radius"));
     let low = spawn(BodyDef::fixed(), &[ball]);
@@ -58,7 +58,8 @@ pub(super) fn record<G: Game>(setup: &G::Setup, interval: u32, ticks: &[impl AsR
 /// Verifies a file and returns the name of the verdict.
 ///
 /// # Panics
-/// When the verdict is `Match`, but a recorder writes other bytes for the same inputs.
+/// When the verdict is `Match`, but the file is a changed original, or a recorder writes other bytes for the same
+/// inputs.
 pub fn run(bytes: &[u8]) -> &'static str {
     let attempt = attempt(bytes, &ORIGINALS, forge::repair);
     let verdict = match judge::<Memory>(&attempt.file) {
@@ -90,7 +91,7 @@ fn again<G: Game>(file: &[u8]) -> Vec<u8> {
     recording.finish().expect("a match")
 }
 
-/// The valid files, for seeds.
+/// The original files, for seeds. The last one is truncated.
 pub fn originals() -> &'static [Vec<u8>] {
     &ORIGINALS
 }

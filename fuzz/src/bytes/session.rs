@@ -1,4 +1,4 @@
-//! Sends changed packets to sessions: to one that plays, and to one that joins it.
+//! Sends changed packets to three peers: two that play, and one that joins them.
 //!
 //! A short match is played first, in which a third peer joins. An input is a list of attacks: which of the packets so
 //! far is taken, how it is changed, and who gets it, with the checksum as it is or repaired.
@@ -95,7 +95,7 @@ pub fn repair(tag: u64, bytes: &mut [u8]) {
     }
 }
 
-/// Runs an input. Returns whether all endpoints still play.
+/// Runs an input. Returns whether all endpoints have a session that has played more than 20 ticks.
 pub fn run(bytes: &[u8]) -> bool {
     let mut game = Match::new();
     let mut source = Source::new(bytes);

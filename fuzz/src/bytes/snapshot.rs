@@ -1,4 +1,4 @@
-//! Input of [`World::from_bytes`].
+//! Snapshot files for [`World::from_bytes`].
 
 use std::sync::LazyLock;
 

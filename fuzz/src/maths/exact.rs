@@ -52,7 +52,7 @@ pub(crate) fn root(value: &BigInt) -> BigInt {
     value.sqrt()
 }
 
-/// Number of fractional bits of the approximations below.
+/// Number of fractional bits of [`PI`] and of the results of [`sin_cos`].
 pub(crate) const PRECISION: u32 = 160;
 
 /// Half a turn in radians, by J. Machin: `pi / 4 = 4 atan(1/5) - atan(1/239)`.

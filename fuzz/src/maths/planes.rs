@@ -87,7 +87,7 @@ fn crossing(a0: Vec2<Fx>, a1: Vec2<Fx>, b0: Vec2<Fx>, b1: Vec2<Fx>) {
     assert_eq!(found.is_some(), reversed.is_some(), "{}", what());
     let determinant = &sides[0] - &sides[1];
     if determinant.is_zero() {
-        // Parallel segments share an end point or do not intersect.
+        // Parallel segments intersect only if an end point of one lies on the other.
         let ends = [(&c, &a, &b), (&d, &a, &b), (&a, &c, &d), (&b, &c, &d)];
         let shared = ends.iter().any(|(p, from, to)| on_segment(p, from, to));
         return assert_eq!(found.is_some(), shared, "{}", what());

@@ -19,7 +19,7 @@ pub(super) struct Arena<T> {
 }
 
 impl<T> Arena<T> {
-    /// The index of an occupied slot.
+    /// Picks the index of an occupied slot; `None` if no slot is occupied.
     pub(super) fn pick(&self, source: &mut Source<'_>) -> Option<usize> {
         let occupied = |(index, slot): (usize, &Slot<T>)| slot.value.is_some().then_some(index);
         let occupied: Vec<usize> = self.slots.iter().enumerate().filter_map(occupied).collect();

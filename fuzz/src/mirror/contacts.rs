@@ -61,7 +61,7 @@ impl State {
             3 => contacts[at].passing = !contacts[at].passing,
             4 => contacts[at].rolling = speed(source, IMPULSE_MAX),
             5 => {
-                // Points from the count on have no arms. A change of them there is refused.
+                // The arms of points after the first `count` must be zero: the world refuses other values.
                 for arm in &mut contacts[at].arms {
                     *arm = if source.one_in(2) { source.word() as i32 } else { *arm };
                 }

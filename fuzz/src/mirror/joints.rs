@@ -44,7 +44,7 @@ impl State {
         let joint = self.joints.get(index)?;
         match source.below(9) {
             0 | 1 => joint.impulses = [0; 6].map(|_: i32| speed(source, IMPULSE_MAX)),
-            // Beyond the reach of a moving body in one of eight cases.
+            // In one of eight cases the anchor may be beyond the limit for a moving body.
             2 => {
                 let reach = if source.one_in(8) { 1 << 62 } else { REACH_MAX };
                 joint.def.frame_a.anchor = vector(pair(source, -reach, reach));

@@ -44,11 +44,13 @@ pub struct State {
     rng: (u64, u64),
 }
 
-/// Maximum components of a velocity and of an impulse, in raw units of `Speed`.
+/// Maximum component of a velocity, in raw units of `Speed`.
 const SPEED_MAX: i64 = 511 << 21;
+/// Maximum of an impulse, in raw units of `Speed`.
 const IMPULSE_MAX: i64 = 1023 << 21;
-/// Maximum coordinates of a centre of mass, in raw units of `Fx`.
+/// Maximum coordinate of a centre of mass, in raw units of `Fx`.
 const CENTRE_MAX: i64 = ((1 << 30) + 1024) << 32;
+/// Maximum coordinate of a shape's offset, of a given centre of mass or of an anchor, in raw units of `Fx`.
 const REACH_MAX: i64 = 128 << 32;
 
 fn pair(source: &mut Source<'_>, low: i64, high: i64) -> (i64, i64) {

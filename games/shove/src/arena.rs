@@ -2,7 +2,7 @@
 //!
 //! Distances from the centre, in metres: the mill's flails reach to 4.4, bumpers stand at 5.4, the inner crates lie
 //! at 6.2, plates at 7.2, players start at 8.1, the outer crates lie at 10. The platform initially ends at 12. When it
-//! has crumbled completely, its edge is within the reach of the mill.
+//! has crumbled completely, its edge is at 4.5, and the mill reaches every player on it.
 
 use lockstep2d::body::{
     Body, BodyDef, BodyId, EventSwitches, Filter, Geometry, Polygon, ShapeDef, WorldError,

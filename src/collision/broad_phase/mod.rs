@@ -216,7 +216,7 @@ impl BroadPhase {
                     }
                 };
                 match structure {
-                    // Marking costs more than it saves if it concerns more than half of the boxes that are not fixed.
+                    // Marking more than half of the boxes that are not fixed costs more than it saves.
                     Structure::Trees(trees) if set.slots.len() < trees.moving_len() / 2 => {
                         trees.each_pair_of(&set.slots, found);
                     }
@@ -315,7 +315,7 @@ struct SmallestPairs<'a> {
 impl SmallestPairs<'_> {
     fn push(&mut self, pair: Pair) {
         self.pairs.push(pair);
-        // Trims at twice the limit, so that the cost of a sort is amortized over as many pushes.
+        // Trims at twice the limit, so that the cost of a sort is amortised over as many pushes.
         if self.pairs.len() >= self.limit.saturating_mul(2).max(64) {
             self.trim();
         }

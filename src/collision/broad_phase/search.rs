@@ -55,8 +55,8 @@ impl<F: FnMut(u32) -> Unit> Along<F> {
         Along { area, translation, fraction: Unit::ONE, around, visit }
     }
 
-    /// Separating axis test perpendicular to the motion: the line `t d` meets the Minkowski difference of the boxes
-    /// unless `d x p` has the same sign for all of its corners `p`.
+    /// Separating axis test perpendicular to the translation `d`: the line `t d` meets the Minkowski difference of the
+    /// boxes unless `d x p` has the same sign for all corners `p` of the difference.
     fn strip_meets(&self, aabb: Aabb) -> bool {
         let (lower, upper) = (coarse(self.area.lower), coarse(self.area.upper));
         let (box_lower, box_upper) = (coarse(aabb.lower), coarse(aabb.upper));
@@ -136,7 +136,8 @@ impl<F: FnMut(u32) -> Fx> Search for Near<F> {
         let Ok(radius) = u64::try_from(self.radius.to_bits()) else { return false };
         let square = |x: u64| u128::from(x) * u128::from(x);
         let (x, y) = self.distances(aabb);
-        // Distances saturate too. Each is below 2^63 when the squares are added.
+        // The largest radius reaches every box, because distances saturate at it. Under a smaller radius, each distance
+        // is below 2^63 when the squares are added.
         self.radius == Fx::MAX || (x <= radius && y <= radius && square(x) + square(y) <= square(radius))
     }
 

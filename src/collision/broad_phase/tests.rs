@@ -147,15 +147,15 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
                     crowd.set(slot, fat.translated(random_vector(&mut rng, 1 << 32)));
                 }
                 (19, Some(fat)) if rng.below(4) == 0 => crowd.put(slot, fat, !crowd.fixed[slot]),
-                // Most rounds change the class of few slots, some rounds that of nearly all slots.
+                // Every round changes the class of few slots, every tenth round that of about half of the slots.
                 (8, Some(_)) => crowd.set_collision_class(slot, random_class(&mut rng, 3)),
                 (9..19, Some(_)) if round % 10 == 0 => {
                     crowd.set_collision_class(slot, random_class(&mut rng, 1 + u32::from(round > 150)));
                 }
                 _ => {}
             }
-            // The tree searches for each moved box if there are few, and traverses itself against itself if there are
-            // many.
+            // The tree marks the moved boxes if they are few. If they are many, it finds the pairs of all boxes and
+            // filters them.
             if rng.below(if round % 2 == 0 { 40 } else { 4 }) == 0 {
                 moved.extend([rng.below(150), rng.below(150)]);
                 moved.push(moved[0]);
@@ -164,7 +164,7 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
         if round % 50 == 49 {
             crowd.refill();
         }
-        // The share of moved boxes varies from a few to all.
+        // The share of moved boxes varies from none to seven eighths.
         let share = rng.below(8);
         let many: Vec<_> = crowd.occupied().filter(|_| rng.below(8) < share).collect();
         let shift = random_vector(&mut rng, 1 << 32);

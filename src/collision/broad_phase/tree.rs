@@ -1,12 +1,12 @@
 //! Dynamic AABB tree. Every box is a leaf, and an inner node has the box around its two children, so that a search
 //! skips every subtree whose box it does not reach.
 //!
-//! The cost of a tree is the sum of its perimeters, to which the number of visits of a random search is proportional
-//! (J. Goldsmith, J. Salmon, 1987). A new leaf descends greedily to the place that adds the least cost. On the way back
-//! up, a child is exchanged with a child of its sibling if that reduces the perimeters, as in Box2D v3. Neither step
-//! bounds the height, and nested boxes would make a chain. The heights of siblings therefore differ by at most
-//! [`IMBALANCE_MAX`]: a relaxed AVL tree (G. Adelson-Velsky, E. Landis, 1962), in which an insertion or a removal
-//! changes heights by one, and one exchange on each level restores the balance.
+//! The cost of a tree is the sum of the perimeters of its inner boxes; the number of nodes that a random search visits
+//! is proportional to it (J. Goldsmith, J. Salmon, 1987). A new leaf descends greedily to the place that adds the least
+//! cost. On the way back up, a child is exchanged with a child of its sibling if that reduces the perimeters, as in
+//! Box2D v3. Neither step bounds the height, and nested boxes would make a chain. The heights of siblings therefore
+//! differ by at most [`IMBALANCE_MAX`]: a relaxed AVL tree (G. Adelson-Velsky, E. Landis, 1962), in which an insertion
+//! or a removal changes heights by one, and one exchange on each level restores the balance.
 //!
 //! A box that moves a little only enlarges its ancestors. Moving many boxes refits or rebuilds the tree (`rebuild.rs`).
 
@@ -25,11 +25,12 @@ mod rebuild;
 #[cfg(test)]
 mod tests;
 
-/// Index that stands for no node.
+/// Sentinel: the index of no node.
 const NONE: u32 = u32::MAX;
 
-/// Largest difference of the heights of two siblings. A long ground can stay near the root, where the perimeters favour
-/// it. With 4, finding the pairs of 10 000 boxes on some such grounds takes several times as long.
+/// Largest difference of the heights of two siblings. Large enough for a long ground to stay near the root, where the
+/// perimeters favour it. With a value of 4, finding the pairs of 10 000 boxes on some such grounds takes several times
+/// as long.
 const IMBALANCE_MAX: u8 = 16;
 
 /// Stack size of a search: one waiting node per level, plus one. Enough for 2^31 boxes, as a test proves.
@@ -48,7 +49,7 @@ pub(crate) struct Tree {
     /// Number of leaves relinked or removed since the last rebuild. While it is 0, every node is in use and stored
     /// before its children.
     relinked: u32,
-    /// Number of leaves that left their neighbourhood since the last rebuild without being relinked.
+    /// Number of leaves that left their neighbourhood since the last refit or rebuild without being relinked.
     strays: u32,
     rebuilt: Rebuilt,
 }
@@ -92,7 +93,8 @@ impl Tree {
         match self.leaf_of(slot) {
             Some(leaf) if self.at(leaf).aabb == fat => {}
             Some(leaf) if self.stays_near(leaf, fat) => self.enlarge(leaf, fat),
-            // A few leaves may be misplaced until the next rebuild: the nodes stay in order for the next refit.
+            // A few leaves may stay misplaced until the next rebuild: relinking them would take the nodes out of the
+            // order that a refit needs.
             Some(leaf) if self.strays < self.len / 8 => {
                 self.strays += 1;
                 self.enlarge(leaf, fat);
@@ -227,8 +229,9 @@ impl Tree {
         self.repair(grandparent);
     }
 
-    /// Best sibling for a new leaf: the one that adds the least perimeter of the new parent and the ancestors. Descends
-    /// to the child with the smaller bound while that bound is better, and until the node is low enough for a leaf.
+    /// Returns the best sibling for a new leaf: the node at which the new parent and the ancestors gain the least
+    /// perimeter. Descends to the child with the smaller bound while that bound is at most the best cost, or while the
+    /// best node is too high for a leaf as its sibling.
     fn best_sibling(&self, fat: Aabb) -> u32 {
         let own = perimeter(fat);
         let mut at = self.root;

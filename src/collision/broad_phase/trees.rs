@@ -23,7 +23,7 @@ impl Trees {
         self.moving.len()
     }
 
-    /// Inserts or moves a box, in the tree of the fixed ones or in the other.
+    /// Inserts or moves a box, in the tree of fixed bodies if `fixed` is true and in the other tree if not.
     pub(super) fn put(&mut self, slot: u32, fat: Aabb, fixed: bool) {
         let (own, other) = match fixed {
             true => (&mut self.fixed, &mut self.moving),

@@ -21,7 +21,8 @@ use crate::math::{Fx, Length, Step, Unit, Vec2, round_shift};
 /// Cosine between a face normal and the contact normal above which the contact is on that face; allows for rounding
 /// only.
 const SAME: Unit = Unit::lit("0.999999");
-/// Cosine above which a face counts as parallel to a contact that is on a face: 25 degrees.
+/// For a contact on a face: cosine between a face normal and the contact normal above which the face counts as the
+/// contact's own, 26 degrees.
 const OWN: Unit = Unit::lit("0.9");
 
 /// Relative motion of two shapes in a tick, and the tolerances of the filter.
@@ -37,8 +38,8 @@ pub(crate) struct GhostFilter {
     pub(crate) approach: Length,
     /// Contact normal, with either sign.
     pub(crate) normal: Vec2<Unit>,
-    /// Faces whose normals have a larger cosine with the contact normal are the contact's own. A shape does not pass by
-    /// the face on which it lies, whatever its rotation; a corner contact has no own face.
+    /// Faces whose normals have a larger cosine than this with the contact normal are the contact's own. A shape does
+    /// not pass by the face on which it lies, whatever its rotation; a corner contact has no own face.
     own: Unit,
 }
 

@@ -15,7 +15,7 @@ use crate::math::{Length, Step, Unit, Vec2};
 
 /// Margin in metres by which B's best face must beat A's to become the reference face. 0.5 mm prevents the choice from
 /// flickering between two equal faces: accumulated impulses survive a flicker, since features do not depend on the
-/// choice, but anchors would jump. The same distance separates disjoint polygons from touching ones.
+/// choice, but anchors would jump. Polygons whose separation exceeds this margin count as disjoint.
 pub(in crate::collision) const TOLERANCE: Step = Step::lit("0.0005");
 
 /// Fraction bits of the product of a length and a unit vector, such as the separation from a face.
@@ -208,7 +208,7 @@ fn product(n: Vec2<Unit>, v: Vec2<Length>) -> i64 {
     i64::from(n.x.to_bits()) * i64::from(v.x.to_bits()) + i64::from(n.y.to_bits()) * i64::from(v.y.to_bits())
 }
 
-/// Support of at least one vertex against a direction: `min n . v`, with 52 fraction bits.
+/// Smallest `n . v` over at least one vertex, with 52 fraction bits.
 #[inline]
 fn support(n: Vec2<Unit>, vertices: &[Vec2<Length>]) -> i64 {
     vertices.iter().fold(i64::MAX, |least, &vertex| least.min(product(n, vertex)))

@@ -95,7 +95,7 @@ impl Facing {
         })
     }
 
-    /// Decides about the normal that the shape and the link would have without the chain.
+    /// Tests the normal `n`, which the shape and the link would have without the chain, against the chain.
     fn judge(&self, n: Vec2<Unit>) -> Verdict {
         let own: Unit = self.normal.dot(n);
         let across: Unit = self.normal.cross(n);
@@ -213,7 +213,8 @@ impl Facing {
             Verdict::Neighbour | Verdict::Leave => Manifold::NONE,
             Verdict::Snap => {
                 let mut found = hull_hull::clip(a, b, Vec2::ZERO, self.face(b), false, margin);
-                // Beyond the end of the link its line only bounds an approach: a speculative point.
+                // Beyond the end of the link, its line only limits the approach: points are kept there only if they are
+                // speculative.
                 found.retain(|point| point.separation > 0 || self.is_beside(point.anchor, b.radius));
                 found
             }

@@ -22,12 +22,12 @@ use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
 use link::Facing;
 
-/// Pairs of bounding boxes whose distance exceeds the margin by more than this, in metres, are rejected early. The
-/// slack covers the rounding of vertices and the half millimetre by which nearly parallel edges count as nearer than
-/// they are, so that the early reject changes no result.
+/// Slack of the early reject in metres: a pair is rejected if the distance of the bounding boxes exceeds the margin by
+/// more than this. The slack covers the rounding of vertices and the half millimetre by which nearly parallel edges
+/// count as nearer than they are, so that the early reject changes no result.
 const REJECT_SLACK: Fx = fx!(0.001);
 
-/// Largest speculative margin in metres: the largest separation that the type can store.
+/// Largest speculative margin in metres, within the range of a separation (16 m).
 const MARGIN_MAX: Length = Length::lit("15");
 
 /// Speculative margin for two shapes that may approach each other by `closing` metres in the tick.
@@ -248,7 +248,7 @@ mod tests {
     }
 
     /// Compares the separation of disjoint outlines with the distance between vertices and edges, by brute force in 64
-    /// bits. A pair is skipped only if the outlines cross, where there is no such distance.
+    /// bits. Skips pairs of segments, and pairs whose outlines cross or are within 0.5 mm of each other.
     #[test]
     fn separation_is_the_distance_of_outlines_that_are_apart() {
         let mut rng = Rng::new(2);

@@ -5,8 +5,8 @@ use crate::collision::shape::posed::Hull;
 use crate::fx;
 use crate::math::{Fx, Vec2, div_round, saturate_wide};
 
-/// Half the side of the window in metres. It exceeds any shape's extent of 170 m with the margin of a fast shape, and
-/// is small enough that coordinates relative to the shape's centre, and the edge itself, fit `Length`.
+/// Half the side of the window in metres. Larger than the extent of any shape plus the largest margin (together 171 m),
+/// and small enough that coordinates relative to the shape's centre, and the edge itself, fit `Length`.
 const WINDOW: Fx = fx!(200);
 
 /// Outline of the segment from `a` to `b`, both relative to the other shape's centre; `None` if it misses the window.

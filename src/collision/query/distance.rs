@@ -143,7 +143,7 @@ fn nearest_of_triangle(p: Vertex, q: Vertex, s: Vertex) -> Option<Nearest> {
     }
 }
 
-/// Whether the origin is on the side of `p` of the line through `s` perpendicular to the edge `s p`.
+/// Whether the line through `s` perpendicular to the edge `s p` has the origin on the side of `p`.
 fn projects_inside(s: Vertex, p: Vertex) -> bool {
     dot(p.w - s.w, -s.w) > 0
 }

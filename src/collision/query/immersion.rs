@@ -4,8 +4,8 @@
 //! of the other one in turn (I. Sutherland, G. Hodgman, 1974). Cuts are rounded to 2^-32 m; areas and centres are exact
 //! sums over the cut ring, each rounded once.
 //!
-//! Rounded outlines become rings of 32 directions, whose corners are on a circle of the same area as a disc. Their
-//! outline is off by at most 0.4 % of the radius.
+//! Rounded outlines become rings with a corner in each of 32 directions. The corners are so far out that the ring of a
+//! disc has the area of the disc. The outline of a ring is off by at most 0.4 % of the radius.
 
 use smallvec::SmallVec;
 
@@ -179,7 +179,8 @@ mod tests {
         assert_eq!(above.extent(), None);
     }
 
-    /// A segment of a disc up to the height `h` below the centre: `r^2 (acos(h / r) - h / r sqrt(1 - (h / r)^2))`.
+    /// Area of the part of a disc below a surface, with the centre `h` above the surface:
+    /// `r^2 (acos(h / r) - h / r sqrt(1 - (h / r)^2))`.
     #[test]
     fn a_disc_is_cut_as_theory_says() {
         let sea = Ring::of(&square(fx!(50)), &pose(fx!(0), fx!(-50), Angle::ZERO));
@@ -206,8 +207,8 @@ mod tests {
         close(cut.centre.y, fx!(-0.5), fx!(0.000001));
     }
 
-    /// The parts of a shape that are in two adjacent areas add up to the whole shape, in size and centre, for every kind
-    /// of shape.
+    /// The parts of a shape that are in two adjacent areas add up to the whole shape, in size and centre, for every
+    /// kind of shape.
     #[test]
     fn neighbouring_areas_divide_a_shape() {
         let mut rng = Rng::new(7);

@@ -59,7 +59,8 @@ pub(in crate::collision) fn entry(
     if let Some(found) = edges(points).find_map(|(p, q)| enter_face(p, q, radius, o, d)) {
         return Some(found);
     }
-    // Without a radius there are no circles, but a ray along a segment, or towards a point, hits its end.
+    // Without a radius there are no circles, but a ray along a segment hits the segment's end, and a ray towards a
+    // point hits the point.
     if radius == 0 && points.len() > 2 {
         return None;
     }

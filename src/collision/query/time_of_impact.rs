@@ -32,9 +32,10 @@ const STEPS_MAX: u32 = 48;
 /// Largest number of steps of a query. Queries are few.
 const QUERY_STEPS_MAX: u32 = 512;
 
-/// Largest rotation in radians of a shape that is not a disc about its body's centre, and largest reach in metres of a
-/// rotating shape. With these limits `theta^2 |r|` fits its type.
+/// Largest rotation in radians of a shape that is not a disc about its body's centre. With this limit and
+/// [`REACH_MAX`], `theta^2 |r|` fits its type.
 const TURN_MAX: Fx = fx!(1024);
+/// Largest reach in metres of a rotating shape.
 const REACH_MAX: Fx = fx!(1024);
 
 /// Motion of a body in a tick.
@@ -69,7 +70,8 @@ pub(crate) enum TimeOfImpact {
     Separated,
     /// The shapes first come within the target after this fraction of the tick.
     Hit { fraction: Fx },
-    /// The shapes overlap so deeply at the start that no direction of separation is reliable.
+    /// The shapes overlap at the start, so deeply that no direction of separation is reliable; with
+    /// [`StartPolicy::Report`] at any depth.
     Overlapped,
     /// The search gave up: the shapes do not come within the target before this fraction of the tick.
     Failed { fraction: Fx },
@@ -89,8 +91,8 @@ pub(crate) enum StartPolicy {
 /// Time at which the surfaces of two shapes first come within `target` metres; a negative target is a depth. The
 /// support shapes are posed as at the start, each relative to its own body's centre of mass. B is the shape to protect.
 ///
-/// With a target of 0 or more a body that slides from one floor to the next, flush with it, stops at the seam. A depth
-/// such as a quarter of B's inner radius lets the body pass, and leaves the rest to the solver.
+/// With a target of 0 or more, a body that slides over the seam of two flush floors stops there. A depth such as a
+/// quarter of B's inner radius lets the body pass, and leaves the rest to the solver.
 ///
 /// Shapes that start within the target, in contact, may slide, roll, separate, or sink deeper, but not pass through.
 /// Their target is half-way from the initial separation to a depth of three quarters of the inner radius of B (of A if
@@ -120,14 +122,13 @@ pub(crate) fn first_impact(
     }
 }
 
-/// Largest number of steps to the first overlap. No step is short of the target by more than rounding, so that few
-/// searches need more than 48.
+/// Largest number of steps of a search for the first overlap. Few searches need more than 48.
 const OVERLAP_STEPS_MAX: u32 = 256;
 
 /// Fraction of the tick after which two shapes first overlap, to within 0.05 mm of depth; 0 if they do from the start.
-/// `None` if they do not within the tick, or only by less than 0.05 mm. Arguments as for [`time_of_impact`], but neither
-/// shape is protected. Two segments, which have no depth unless they cross, count as overlapping when they come within
-/// 0.05 mm of each other.
+/// `None` if they do not within the tick, or only by less than 0.05 mm. Arguments as for [`time_of_impact`], but
+/// neither shape is protected. Two segments, which have no depth unless they cross, count as overlapping when they come
+/// within 0.05 mm of each other.
 pub(crate) fn first_overlap(
     a: &SupportShape,
     sweep_a: &Sweep,

@@ -14,8 +14,8 @@ pub(crate) struct Link {
     pub(crate) directions: Directions,
 }
 
-/// Directions of a link and of its neighbours, which do not change while the chain is translated. `None` without a
-/// neighbour, or if it has no length.
+/// Directions of a link and of its neighbours, which do not change while the chain is translated. A direction is `None`
+/// if there is no such link or the link has no length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Directions {
     pub(crate) before: Option<Vec2<Unit>>,

@@ -130,7 +130,7 @@ impl Hull {
         self.vertices.first_chunk().zip(self.normals.first_chunk())
     }
 
-    /// Whether the outline qualifies for [`SmallBoxes`](super::SmallBoxes).
+    /// Whether the outline qualifies for [`SmallBoxes`](crate::collision::SmallBoxes).
     #[inline]
     pub(crate) fn is_small_box(&self) -> bool {
         self.is_small_box
@@ -310,7 +310,7 @@ impl PosedShape {
         SupportShape::of(&Self::of_geometry(geometry, Vec2::ZERO, Rot::IDENTITY), Vec2::ZERO).inner_radius()
     }
 
-    /// Faces of the shape, if it qualifies for [`SmallBoxes`](super::SmallBoxes).
+    /// Faces of the shape, if it qualifies for [`SmallBoxes`](crate::collision::SmallBoxes).
     #[inline]
     pub(crate) fn as_small_box(&self) -> Option<Faces> {
         match &self.outline {
@@ -319,8 +319,8 @@ impl PosedShape {
         }
     }
 
-    /// Faces of a small box in the shape's frame, if the shape's centre is its body's centre of mass. These and the
-    /// body's rotation are then enough to pose the shape.
+    /// Faces of a small box in the shape's frame, if the shape's centre is its body's centre of mass. The faces and the
+    /// body's pose are then enough to pose the shape.
     pub(crate) fn as_centred_box(&self, shape: &ShapeDef, body: &Body) -> Option<Faces> {
         let Geometry::Polygon(polygon) = &shape.geometry else { return None };
         self.as_small_box()?;

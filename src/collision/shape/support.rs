@@ -230,7 +230,7 @@ pub(in crate::collision) fn scaled(n: Vec2<Unit>, s: Grid) -> Vec2<Grid> {
 /// `cross / scaled_length`: the distance of a point from a line, from the cross product with a vector along the line
 /// and the length of that vector, as computed by [`scaled_along`].
 pub(in crate::collision) fn height(cross: i128, scaled_length: i128) -> Grid {
-    // Beyond 2^97 the height exceeds any distance of interest from the vector, and losing a few bits is harmless.
+    // If `cross` is 2^97 or more, the height exceeds any distance of interest, and losing a few bits is harmless.
     let bits = if cross.unsigned_abs() >> 97 == 0 {
         div_round(cross << Unit::FRAC_NBITS, scaled_length)
     } else {

@@ -23,7 +23,7 @@ pub(super) struct Costs<'a> {
 }
 
 impl<'a> Costs<'a> {
-    /// The costs in a world to which nothing is added.
+    /// Returns the costs in a world to which no command has added objects yet.
     pub(super) fn of(world: &'a World) -> Self {
         let rounds = rounds(&world.config().solver);
         Costs { world, added: AddedWork::default(), grown: 0, rounds }
@@ -44,7 +44,8 @@ impl<'a> Costs<'a> {
         }
     }
 
-    /// Work units of a command: it visits the shapes of its body, and a removal visits all contacts.
+    /// Returns the work units of a command. A command visits the shapes of its body, and a removal visits all contacts
+    /// and joints.
     pub(super) fn command(&self, command: &Command) -> u64 {
         match command {
             Command::Spawn { .. } | Command::SpawnEach { .. } => {

@@ -138,7 +138,7 @@ impl core::error::Error for SeekError {}
 /// timeline.seek(900).expect("it is as long");
 /// timeline.step_back().expect("there is one");
 /// assert_eq!(timeline.game().world().tick(), 899);
-/// // Nine hundred ticks forward, and the last of them again from the keyframe of tick 600.
+/// // Nine hundred ticks forward, then 299 ticks again from the keyframe of tick 600.
 /// assert_eq!(timeline.simulated(), 900 + 299);
 /// timeline.step_back().expect("there is another");
 /// assert_eq!(timeline.simulated(), 900 + 299);

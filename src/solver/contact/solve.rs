@@ -126,12 +126,15 @@ fn iterate<L: Lanes<N>, C: OverflowPolicy<L, N>, const N: usize>(
     };
     let points = [&batch.points[places[0]], &batch.points[places[1]]];
     let normals = Normals::<L, N>::new(batch, settings, n);
+    let every = every::<L, N>();
+    points[0].show_to(policy);
     let normal_lambdas = if batch.count == 2 {
-        let (every, both) = (every::<L, N>(), L::negative(L::load(&batch.both)));
+        points[1].show_to(policy);
+        let both = L::negative(L::load(&batch.both));
         let present = if places[0] == 0 { [every, both] } else { [both, every] };
         normals.solve_both(points, present, &mut pair, policy)
     } else {
-        [normals.solve_one(points[0], every::<L, N>(), &mut pair, policy), L::splat(0)]
+        [normals.solve(points[0], L::load(&points[0].normal_lambda), every, &mut pair, policy), L::splat(0)]
     };
     let mut surface_speed = L::splat(0);
     if let Some(extras) = extras {
@@ -151,6 +154,15 @@ fn iterate<L: Lanes<N>, C: OverflowPolicy<L, N>, const N: usize>(
     let tangent_lambda = clamp::<L, N>(C::sub(old, vt), limit);
     policy.apply(&mut pair, &batch.tangent, L::sub(tangent_lambda, old));
     Solved { places, normal_lambdas, tangent_lambda, pair }
+}
+
+impl<const N: usize> Point<N> {
+    /// Passes the impulse and the separation of the point to an overflow policy.
+    #[inline(always)]
+    fn show_to<L: Lanes<N>>(&self, policy: &mut impl OverflowPolicy<L, N>) {
+        policy.see_impulse(L::load(&self.normal_lambda));
+        policy.see_separation(L::load(&self.separation));
+    }
 }
 
 impl<L: Lanes<N>, const N: usize> Solved<L, N> {
@@ -205,25 +217,8 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
         }
     }
 
-    /// Solves a point for the first time, in the lanes that have it. Returns its impulse.
-    #[inline(always)]
-    fn solve_one<C: OverflowPolicy<L, N>>(
-        &self,
-        point: &Point<N>,
-        present: L::Mask,
-        pair: &mut BodyPairW<L, N>,
-        policy: &mut C,
-    ) -> L::Int {
-        let old = L::load(&point.normal_lambda);
-        policy.see_impulse(old);
-        policy.see_separation(L::load(&point.separation));
-        policy.count_faults_in(present);
-        let new = L::select(present, self.wanted(point, old, pair, policy), old);
-        policy.apply(pair, &point.normal, L::sub(new, old));
-        new
-    }
-
-    /// Solves two points against each other, until the second no longer affects the first. Returns their impulses.
+    /// Solves two points against each other, until the second no longer affects the first. `present` has the lanes that
+    /// have each point. Returns their impulses.
     #[inline(always)]
     fn solve_both<C: OverflowPolicy<L, N>>(
         &self,
@@ -232,47 +227,43 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
         pair: &mut BodyPairW<L, N>,
         policy: &mut C,
     ) -> [L::Int; 2] {
-        let one = self.solve_one(first, present[0], pair, policy);
+        policy.count_faults_in(present[0]);
+        let mut one = self.solve(first, L::load(&first.normal_lambda), present[0], pair, policy);
+        policy.count_faults_in(present[1]);
         let old = L::load(&second.normal_lambda);
-        let two = self.solve_one(second, present[1], pair, policy);
-        let mut lambdas = [one, two];
-        let settled = L::splat(SETTLED.to_bits() - 1);
-        let mut unsettled = beyond::<L, N>(L::sub(two, old), settled);
+        let mut two = self.solve(second, old, present[1], pair, policy);
         let both = L::both(present[0], present[1]);
-        unsettled = L::both(unsettled, both);
         policy.count_faults_in(both);
+        let settled = L::splat(SETTLED.to_bits() - 1);
+        let mut unsettled = L::both(beyond::<L, N>(L::sub(two, old), settled), both);
         for _ in 1..NORMAL_ROUNDS_MAX {
             if !L::any(unsettled) {
                 break;
             }
-            let wanted = self.wanted(first, lambdas[0], pair, policy);
-            let new = L::select(unsettled, wanted, lambdas[0]);
-            policy.apply(pair, &first.normal, L::sub(new, lambdas[0]));
-            lambdas[0] = new;
-            let wanted = self.wanted(second, lambdas[1], pair, policy);
-            let new = L::select(unsettled, wanted, lambdas[1]);
-            let d = L::sub(new, lambdas[1]);
-            policy.apply(pair, &second.normal, d);
-            lambdas[1] = new;
-            unsettled = L::both(unsettled, beyond::<L, N>(d, settled));
+            one = self.solve(first, one, unsettled, pair, policy);
+            let old = two;
+            two = self.solve(second, old, unsettled, pair, policy);
+            unsettled = L::both(unsettled, beyond::<L, N>(L::sub(two, old), settled));
         }
         policy.count_faults_in(every::<L, N>());
-        lambdas
+        [one, two]
     }
 
-    /// The contact equation: the accumulated impulse that a point should have.
+    /// The contact equation. Solves a point in the given lanes: computes the accumulated impulse that it should have
+    /// instead of `old`, and applies the difference. Returns the impulses of all lanes.
     #[inline(always)]
-    fn wanted<C: OverflowPolicy<L, N>>(
+    fn solve<C: OverflowPolicy<L, N>>(
         &self,
         point: &Point<N>,
         old: L::Int,
-        pair: &BodyPairW<L, N>,
+        lanes: L::Mask,
+        pair: &mut BodyPairW<L, N>,
         policy: &mut C,
     ) -> L::Int {
         let vn = pair.velocity(self.n, &point.normal, policy);
         let separation = L::load(&point.separation);
         let gap = L::greater(separation, L::splat(0));
-        match self.pass {
+        let wanted = match self.pass {
             Pass::Bias => {
                 let error = C::add(vn, self.bias::<C>(separation, gap));
                 let rigid = L::either(gap, L::greater(self.impact_speed, vn));
@@ -289,7 +280,10 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
                 let wanted = policy.impulse(L::max(C::sub(old, C::add(vn, speed)), L::splat(0)));
                 L::select(untouched, old, wanted)
             }
-        }
+        };
+        let new = L::select(lanes, wanted, old);
+        policy.apply(pair, &point.normal, L::sub(new, old));
+        new
     }
 
     /// The bias velocity for a separation. A gap may close within this sub-step, but not turn into an overlap. An

@@ -41,7 +41,7 @@ pub(crate) struct NarrowPhaseBuffers<'a> {
 pub(crate) struct NarrowPhaseOutput {
     /// Manifolds with at least one point.
     pub(crate) manifolds: Vec<Manifold>,
-    /// Displacements until the impact of the manifolds that refer to one.
+    /// Displacements up to the time of impact, for the manifolds that refer to one.
     pub(crate) impacts: Vec<Impact>,
     /// For each manifold, the index of its contact in the state.
     pub(crate) contacts: Vec<u32>,
@@ -101,7 +101,7 @@ impl ContactCache {
         &mut self.axes
     }
 
-    /// Starts a narrow phase over `contact_count` contacts with at least one part.
+    /// Starts a narrow phase over `contact_count` contacts in `part_count` parts, at least one.
     pub(crate) fn begin(&mut self, contact_count: usize, part_count: usize) -> NarrowPhaseBuffers<'_> {
         let ContactCache { output, parts, axes, touched, surfaces_changed } = self;
         axes.resize(contact_count, CachedAxis::default());

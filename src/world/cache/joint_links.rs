@@ -1,5 +1,5 @@
-//! The joints of each body, as doubly linked lists in two arrays: adding or removing a joint takes constant time and
-//! allocates nothing.
+//! The joints of each body, as doubly linked lists in two arrays: adding or removing a joint takes constant time, and
+//! no list has memory of its own.
 //!
 //! A cache of the state. The order within a list depends on the history of the world and is not visible outside.
 
@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use crate::body::{BodyId, Handle, JointId};
 use crate::world::state::State;
 
-/// Marks the ends of a list.
+/// Sentinel slot at the ends of a list.
 const NONE: u32 = u32::MAX;
 
 /// The joints of each body.

@@ -1,7 +1,7 @@
 //! Work units: [`WorkMeter`] counts work whose amount is known only when it is done, up to a budget.
 
-/// Pairs per body that are assumed to be solved in SIMD batches of eight. A heap that is not forced together has up to
-/// six pairs per body.
+/// Number of pairs per body up to which all pairs are assumed to be solved in SIMD batches of eight. A heap that is not
+/// forced together has up to six pairs per body.
 const PAIRS_PER_BODY: u64 = 32;
 
 /// Cost of a pair beyond [`PAIRS_PER_BODY`], in ordinary pairs: measured on a thousand squares at the same position.

@@ -170,9 +170,10 @@ impl ShapeMotion {
 
 /// Bounds and predicted motion of the bodies and shapes in ranges of slots.
 pub(crate) struct MotionRange<'a> {
-    /// The first slot of each range.
+    /// First slot of the bodies.
     first_body: u32,
     bodies: &'a mut [PredictedMotion],
+    /// First slot of the shapes.
     first_shape: u32,
     shapes: &'a mut [ShapeMotion],
 }
@@ -330,7 +331,7 @@ impl MotionCache {
         MotionRange { first_body: 0, bodies: &mut self.bodies, first_shape: 0, shapes: &mut self.shapes }
     }
 
-    /// Lists bodies whose motion has been predicted, for the next tick.
+    /// Records the bodies whose motion has been predicted, so that the next tick can reset it.
     pub(super) fn bodies_move(&mut self, bodies: &[u32]) {
         self.moving_bodies.extend_from_slice(bodies);
     }

@@ -14,7 +14,7 @@ pub(crate) struct PairCache {
     /// Record of changes since the last update that may affect pairs.
     pub(crate) changes: Changes,
     pub(crate) non_colliding: NonCollidingPairs,
-    /// Result: contacts whose pair has ended since the last tick's events.
+    /// Contacts whose pair has ended since the events of the last tick were reported.
     pub(crate) ended: Vec<Contact>,
     pub(crate) buffers: PairBuffers,
 }
@@ -109,8 +109,8 @@ impl NonCollidingPairs {
     }
 
     /// Whether two shapes may ever have a contact. They need different, enabled bodies and filters that accept each
-    /// other. Then either one of them is a sensor that may notice the other, or one body has mass and no joint keeps
-    /// the bodies from colliding.
+    /// other. If one of them is a sensor, one must detect the other, and not both bodies may be fixed. If neither is,
+    /// one body must have mass, and no joint may keep the bodies from colliding.
     pub(crate) fn may_touch(&self, state: &State, (a, b): Pair) -> bool {
         let (shape_a, shape_b) = (state.shapes.at(a), state.shapes.at(b));
         let (slot_a, slot_b) = (shape_a.body().slot(), shape_b.body().slot());

@@ -64,7 +64,7 @@ impl PoseRange<'_> {
             if let Some(faces) = self.boxes.turn(index, &rotation) {
                 posed.turn_box(&faces, body.centre);
             } else if self.motion[index].disc {
-                // Without reading the definition of the shape, a random access.
+                // Avoids a read of the shape's definition, which is a random access.
                 posed.shift(body.centre.wrapping_sub(posed.centre));
             } else {
                 posed.renew(&shapes.at(id.slot()).def, body, &rotation);

@@ -18,7 +18,7 @@ pub(crate) struct Poses {
     shapes: Vec<Option<PosedShape>>,
     /// Bounds and predicted motion of the same shapes.
     motion: MotionCache,
-    /// The small boxes among them, in the layout of the SIMD kernel.
+    /// The small boxes among the shapes, in the layout of the SIMD kernel.
     boxes: SmallBoxes,
     /// Extents of the shapes of each body, by body slot.
     extents: Vec<Extents>,

@@ -63,9 +63,9 @@ pub(crate) struct Finalised {
     pub(crate) left_boxes: Vec<u32>,
     /// Fast bodies that only fixed bodies stop.
     pub(crate) swept: Vec<SweptBody>,
-    /// The poses at which these bodies stop.
+    /// Poses of the bodies of `swept` after their sweep.
     pub(crate) moved: Vec<(u32, Pose)>,
-    /// Number of these bodies that were stopped.
+    /// Number of the bodies of `swept` that an impact has stopped.
     pub(crate) impacts: u32,
     /// Bodies that may be fast relative to kinematic bodies.
     pub(crate) relative: Vec<SweptBody>,

@@ -74,14 +74,14 @@ impl ShapeCache {
         self.poses.motion_mut().begin(body_slots, last_moving);
     }
 
-    /// The data for predicting motion: the motion cache, which is written, and the extents and the broad phase, which are
-    /// read.
+    /// The data for predicting motion: the motion cache, which is written, and the extents and the broad phase, which
+    /// are read.
     pub(crate) fn prediction(&mut self) -> (&mut MotionCache, &[Extents], &BroadPhase) {
         let (motion, extents) = self.poses.motion_and_extents();
         (motion, extents, &self.broad_phase)
     }
 
-    /// Lists bodies whose motion has been predicted.
+    /// Records the bodies whose motion has been predicted: see [`MotionCache::bodies_move`].
     pub(crate) fn bodies_move(&mut self, bodies: &[u32]) {
         self.poses.motion_mut().bodies_move(bodies);
     }
@@ -116,7 +116,8 @@ impl ShapeCache {
         self.poses.whole()
     }
 
-    /// Poses the shapes of a body that was added, changed or moved by an edit, and takes over their fat boxes.
+    /// Poses the shapes of a body that was added, changed or moved by an edit, and puts their fat boxes into the broad
+    /// phase.
     pub(crate) fn update_body(&mut self, state: &State, slot: u32) {
         self.poses.pose_body(state, slot);
         let body = state.bodies.at(slot);

@@ -24,8 +24,8 @@ const SLACK: Fx = fx!(0.000001);
 const SHAPE_WORK: u64 = 2;
 
 impl World {
-    /// Applies an impulse away from the explosion's centre to every dynamic body near it, shape by shape in slot order,
-    /// and wakes it. Sensors and disabled bodies are left out. Speeds are clamped to their range.
+    /// Applies an impulse away from the explosion's centre to every dynamic body in reach, shape by shape in slot
+    /// order, and wakes the body. Sensors and disabled bodies are left out. Speeds are clamped to their range.
     ///
     /// # Errors
     /// [`WorldError::Setting`] if a value of the explosion is out of range, [`WorldError::PositionOutOfRange`] if its

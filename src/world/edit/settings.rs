@@ -78,8 +78,8 @@ impl World {
         }
     }
 
-    /// Converts the impulses of sub-steps of one length to those of another, for the same forces: `rate` is the number
-    /// of sub-steps per second.
+    /// Converts impulses to another length of the sub-steps, so that the forces stay the same. The rates are in
+    /// sub-steps per second.
     fn convert_impulses(&mut self, old_rate: u32, new_rate: u32) {
         if old_rate == new_rate {
             return;

@@ -35,8 +35,8 @@ pub(crate) fn unite_connected(state: &State, scratch: &mut Scratch) {
     unite_touching(state, union, &state.contacts);
 }
 
-/// Unites the bodies of every contact that has points, and of every area and what is in it: a body in an area of a
-/// moving body is not at rest.
+/// Unites the bodies of every contact that has points, and the body of every area with the bodies in it: a body in an
+/// area of a moving body is not at rest.
 pub(crate) fn unite_touching(state: &State, union: &mut UnionFind, contacts: &[Contact]) {
     let connects =
         |contact: &&Contact| contact.count > 0 || (contact.touching && state.has_area(contact.shapes));

@@ -151,7 +151,7 @@ impl World {
         let moving = SupportShape::of(&posed, origin);
         let middle = origin + moving.middle();
         let area = posed.bounds.expanded(fx!(0.001));
-        // Most casts meet nothing.
+        // Evaluated lazily, because most casts meet nothing.
         let resting = LazyCell::new(|| self.resting(probe, translation, filter, rest, &accept));
         let mut closest: Option<Ordered<CastHit>> = None;
         let mut interest = Unit::ONE;

@@ -102,7 +102,7 @@ impl Mover {
         self
     }
 
-    /// Its geometry at a position in the world, in metres, for queries.
+    /// Returns the geometry at a position in the world, in metres, as a probe for queries.
     #[must_use]
     pub fn probe(&self, position: Vec2<Fx>) -> Probe {
         Probe::of(self.geometry, position)
@@ -250,7 +250,7 @@ impl World {
     }
 }
 
-/// The part of a speed that falls on one tick, in metres.
+/// Converts a velocity in m/s to the displacement in a tick, in metres.
 pub(super) fn in_tick(world: &World, velocity: Vec2<Fx>) -> Vec2<Fx> {
     let rate = Fx::from_num(world.state.config.tick_rate);
     let part = |speed: Fx| fx_div(speed, rate).unwrap_or(Fx::ZERO);

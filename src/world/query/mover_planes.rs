@@ -24,10 +24,10 @@ use crate::world::World;
 /// Largest number of rounds in which planes push in turn.
 const ITERATIONS_MAX: u32 = 64;
 
-/// The planes are solved when the pushes of a round change by less than this in total, in metres.
+/// Convergence threshold: total change of the pushes in a round, in metres, below which the planes count as solved.
 const TOLERANCE: Fx = fx!(0.000001);
 
-/// Planes count as parallel if the sine of the angle between them is below this.
+/// Sine of the angle between two planes below which they count as parallel.
 const PARALLEL: Fx = fx!(0.000001);
 
 /// A surface near a mover, as a plane.
@@ -149,9 +149,9 @@ pub(super) fn along_surface(normal: Vec2<Unit>, length: Fx) -> Vec2<Fx> {
 /// `push`.
 ///
 /// If all planes are rigid and leave room, the result is exact except for rounding. If some are soft, or there is no
-/// room, the planes push in turn. A round reduces the error of two planes with normals `n` and `m` to `(n . m)²` of it,
-/// so that 64 rounds are enough if their normals are 25 degrees or more apart. In a sharper corner, or between two
-/// walls, the result may lie inside a plane: follow it with a cast, as [`World::move_character`] does.
+/// room, the planes push in turn. A round multiplies the error of two planes with normals `n` and `m` by `(n . m)²`, so
+/// that 64 rounds are enough if their normals are 25 degrees or more apart. In a sharper corner, or between two walls,
+/// the result may lie inside a plane: follow it with a cast, as [`World::move_character`] does.
 #[must_use]
 pub fn solve_planes(wanted: Vec2<Fx>, planes: &mut [MoverPlane]) -> Vec2<Fx> {
     match nearest_outside(wanted, planes) {

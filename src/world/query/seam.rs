@@ -22,8 +22,8 @@ use crate::world::World;
 /// Tolerances of the position in which a shape rests on the surfaces that it touches.
 #[derive(Clone, Copy)]
 pub(super) struct Rest {
-    /// Distance in metres from these surfaces at which the second cast starts. Ledges up to the difference to the gap
-    /// of the first cast, 5 µm, count as seams: tiles of a ramp are flush to within a micrometre.
+    /// Distance in metres from the surfaces at which the second cast starts. Ledges of up to 5 µm, the difference to
+    /// the gap of the first cast, count as seams: tiles of a ramp are flush to within a micrometre.
     gap: Fx,
     /// Largest distance in metres by which the cast may in addition approach a surface that it slides along.
     grazing_max: Fx,
@@ -35,7 +35,7 @@ impl Rest {
     /// For casts that turn, whose gap is up to 0.15 mm.
     pub(super) const TURNING: Rest = Rest { gap: fx!(0.000155), grazing_max: fx!(0.00005) };
 
-    /// For characters, which would come closer to a surface with each move.
+    /// For characters: no approach, because each move would bring them closer to the surface.
     pub(super) const CHARACTER: Rest = Rest { gap: fx!(0.000105), grazing_max: Fx::ZERO };
 
     /// Distance in metres by which a cast along a translation may approach what it slides along: 1 µm per metre,
@@ -99,7 +99,7 @@ impl World {
                 planes.push(self.mover_plane(shape, start.normal, separation, origin));
             }
         });
-        // The broad phase finds them in no defined order.
+        // The broad phase finds the shapes in no defined order.
         planes.sort_unstable_by_key(|plane| plane.shape);
         let out = solve_planes(Vec2::ZERO, &mut planes);
         // From the resting position an obstacle may be further away, so the cast is longer by twice the displacement.

@@ -22,7 +22,7 @@ impl World {
     /// position, both at constant speed. The rotation is in turns, counter-clockwise, and may exceed a turn.
     ///
     /// The probe stops 0.1 to 0.15 mm before it touches. A shape that it touches at the start stops it when it comes
-    /// 0.05 mm deeper. A probe that turns by more than 160 turns, or reaches further than 1024 m from its position, is
+    /// 0.05 mm deeper. A probe that turns by 163 turns or more, or reaches further than 1024 m from its position, is
     /// stopped as soon as the disc in which it turns may reach the box around a shape.
     ///
     /// ```

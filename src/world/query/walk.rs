@@ -16,7 +16,7 @@ use crate::world::World;
 /// Largest number of deflections in a tick, and of attempts to push a character out of overlaps.
 const TURNS_MAX: u32 = 8;
 
-/// Translations shorter than this, in metres, are dropped.
+/// Length in metres below which the rest of a translation is dropped.
 const LEFT_OVER: Fx = fx!(0.000001);
 
 /// Distance in metres behind the edge of a step at which there has to be ground.
@@ -177,7 +177,7 @@ impl<'a> Walk<'a> {
         })
     }
 
-    /// The velocity that the surfaces leave over: relative to the ground if there is one.
+    /// The part of the velocity that the surfaces do not stop: relative to the ground if there is one.
     pub(super) fn velocity_left(&self, ground: Option<&MoverPlane>, carrier: Option<Carrier>) -> Vec2<Fx> {
         let left = clipped(self.stopped_by_steep(self.from.velocity), self.limits(false));
         match (&self.from.ground, ground) {

@@ -19,9 +19,11 @@ use crate::math::{Aabb, Angle, Fx, Speed, Vec2};
 use crate::world::derived::FAT_GRID_SHIFT;
 use crate::world::state::State;
 
-/// Flags for the optional parts of a body.
+/// Flag of a body with a force or torque.
 const FORCE: u8 = 1;
+/// Flag of a body in a sleeping island.
 const ISLAND: u8 = 2;
+/// Flag of a body with a target.
 const TARGET: u8 = 4;
 
 const BODY_BYTES: usize = 36;
@@ -145,8 +147,8 @@ fn put_place<const N: usize>(record: &mut Record<'_, N>, centre: Vec2<Fx>, angle
     record.put(angle.to_bits());
 }
 
-/// Restores the packed parts of the bodies. Calls `moved` with the slot of each body whose pose changes: with its
-/// displacement, or with `None` if its rotation changes too.
+/// Restores the packed parts of the bodies. Calls `moved` with the slot of each body whose pose changes: with `None` if
+/// its rotation changes, otherwise with its displacement.
 pub(super) fn unpack_bodies(bodies: &mut Bodies, bytes: &[u8], mut moved: impl FnMut(u32, Option<Vec2<Fx>>)) {
     let mut reader = Reader(bytes);
     let mut motions = reader.part(bodies.len() * BODY_BYTES);
@@ -246,7 +248,7 @@ fn about(fat: Aabb, centre: Vec2<Fx>) -> Option<[i32; 4]> {
     const GRID: i64 = 1 << FAT_GRID_SHIFT;
     /// Offset of the lowest coordinate that can be packed.
     const LOWEST: i64 = (i32::MIN as i64) << FAT_GRID_SHIFT;
-    /// Mask of the bits that a coordinate on the grid and in range has above the lowest one.
+    /// Mask of the bits that may be set in the difference of a packable coordinate and the lowest one.
     const NEAR: i64 = (u32::MAX as i64) << FAT_GRID_SHIFT;
     let lowest = |centre: Fx| (centre.to_bits() & -GRID) + LOWEST;
     let (x, y) = (lowest(centre.x), lowest(centre.y));
@@ -256,7 +258,7 @@ fn about(fat: Aabb, centre: Vec2<Fx>) -> Option<[i32; 4]> {
     let above = |bits: i64, lowest: i64| bits.wrapping_sub(lowest);
     let above = [above(left, x), above(bottom, y), above(right, x), above(top, y)];
     let [a, b, c, d] = above;
-    // The first coordinate also tells that the box is near, and so must not be the lowest one.
+    // The lowest value of the first coordinate is the marker `NOT_NEAR`, so that it cannot be packed.
     let bits = a | a.wrapping_sub(GRID) | b | c | d;
     (bits & !NEAR == 0).then(|| above.map(|above| low_half(above >> FAT_GRID_SHIFT) ^ i32::MIN))
 }

@@ -41,7 +41,7 @@ pub struct Snapshot {
     pub(super) islands: SharedArena<Island>,
     pub(super) sleeping_contacts: Arc<PackedContacts>,
     pub(super) packed: Packed,
-    /// Digest of all fields above.
+    /// Digest of all other fields except `changes`.
     pub(super) digest: WorldDigest,
     /// Record of changes since the last pair update that may affect pairs. It is not part of the state. With it, the
     /// next pair update of a restored world need not check every pair.
@@ -114,7 +114,7 @@ impl Snapshot {
         size_of::<Self>() + packed + lists
     }
 
-    /// A snapshot with the settings of a state and nothing else.
+    /// A snapshot with the [`Rest`] of a state, without the data of arenas and contacts.
     pub(super) fn empty(state: &State) -> Self {
         Snapshot {
             rest: Rest::of(state),

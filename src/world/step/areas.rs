@@ -12,8 +12,8 @@ use crate::solver::{AreaEffect, Tuning};
 use crate::world::cache::{Scratch, is_awake};
 use crate::world::state::State;
 
-/// A shape that may be in an area: the slots of its body, of the area and of the shape. Their order is that of the
-/// sums.
+/// A shape that may be in an area: the slots of its body, of the area and of the shape. Sorted visitors give the order
+/// in which effects are summed.
 type Visitor = [u32; 3];
 
 /// Lets every area act on the awake bodies in it, once the solver has their velocities.
@@ -85,11 +85,12 @@ struct Sum<'a> {
     /// Area of all shapes in m², or the length of all lines if they have no area.
     size: Fx,
     has_area: bool,
-    /// Mass in kg of the medium that the body displaces, and the first moment of this mass about the body's centre.
+    /// Mass in kg of the medium that the body displaces.
     displaced: Fx,
+    /// First moment of the displaced mass about the body's centre.
     moment: Vec2<Fx>,
     effect: AreaEffect,
-    /// Acceleration in m/s² that the medium feels as well as the body.
+    /// Acceleration in m/s² that acts on the medium as well as on the body.
     field: Vec2<Fx>,
     /// Whether one of the areas is moved by its kinematic body.
     is_on_moving_ground: bool,

@@ -59,7 +59,7 @@ fn is_with_sensor(motion: &MotionCache, contact: &Contact) -> bool {
     motion.shape(contact.shapes.0).sensor || motion.shape(contact.shapes.1).sensor
 }
 
-/// [`State::reported`]. For solid shapes from the motion cache, without reading the shapes.
+/// Like [`State::reported`], but reads the motion cache instead of the shapes if both are solid.
 fn reported(state: &State, motion: &MotionCache, contact: &Contact) -> Option<Reported> {
     if is_with_sensor(motion, contact) {
         return state.reported(contact);

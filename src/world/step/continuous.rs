@@ -20,17 +20,18 @@ use crate::world::cache::{Extents, Scratch, SweptBody, WorkMeter};
 use crate::world::movement::move_body;
 use crate::world::state::State;
 
-/// A body that moves less than this in a tick, in metres, is not swept, however thin it is.
+/// Displacement in a tick, in metres, below which a body is not swept, however thin it is.
 const SWEPT_MIN: Fx = fx!(0.0005);
 
-/// Work units of a time of impact: it takes some 2 us, and up to ten for long thin shapes that rotate.
+/// Work units of a time of impact: it takes some 2 µs, and up to 10 µs for long thin shapes that rotate.
 const IMPACT_WORK: u64 = 16;
 
 /// Number of shapes beside a sweep that cost one work unit.
 const VISITS_PER_WORK: u64 = 8;
 
-/// Returns the sweep of a body if it moves so far that it may pass through a shape: if any of its points moves further
-/// than half of the inner radius of its thinnest shape. `turn` is its rotation in units of 2^-32 turns.
+/// Returns the sweep of a body that is fast, or that may be fast relative to a kinematic body. A body is fast if it may
+/// pass through a shape: if any of its points moves further than half of the inner radius of the body's thinnest shape,
+/// and further than [`SWEPT_MIN`]. `turn` is the body's rotation in units of 2^-32 turns.
 pub(super) fn swept_body(
     slot: u32,
     body: &Body,
@@ -58,7 +59,8 @@ pub(super) fn swept_body(
     })
 }
 
-/// Whether a body moves so far from where a kinematic body would have taken it that it may pass through a shape of it.
+/// Whether a body moves so far from where a kinematic body would have taken it that it may pass through a shape of the
+/// kinematic body.
 fn is_fast_relative(scratch: &Scratch, swept: &SweptBody, obstacle: &Sweep) -> bool {
     let extents = scratch.shapes.poses().extents(swept.slot);
     let limit = SWEPT_MIN.max(extents.core / 2);
@@ -172,7 +174,7 @@ fn first_impact(
                 }
                 let &mut (support, target) = support_and_target.get_or_insert_with(|| {
                     let support = SupportShape::of(posed, body.centre);
-                    // A quarter of the depth at which its centre would be on the surface, and at most 5 mm.
+                    // A quarter of the depth at which the shape's centre would be on the surface, and at most 5 mm.
                     (support, -(support.inner_radius() / 4).min(fx!(0.005)))
                 });
                 if !meter.spend(IMPACT_WORK) {
@@ -195,8 +197,8 @@ fn first_impact(
         } else {
             shapes.broad_phase().each_fixed_overlap(area, visit);
         }
-        // Counted after the search for this shape, which it need not end: the budget already covers comparing all
-        // shapes of the world.
+        // Counted after the search for this shape, which an exhausted meter need not end: the budget already covers
+        // comparing all shapes of the world.
         meter.spend(1 + visited / VISITS_PER_WORK);
     }
     first

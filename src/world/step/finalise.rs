@@ -89,7 +89,7 @@ fn sweep_bodies(state: &State, scratch: &mut Scratch) {
 struct Sources<'a> {
     shapes: &'a Arena<Shape, ShapeId>,
     solver: &'a Solver,
-    /// By body slot.
+    /// Extents of the bodies, by slot.
     extents: &'a [Extents],
     broad_phase: &'a BroadPhase,
     is_continuous: bool,
@@ -170,8 +170,8 @@ fn complete(state: &mut State, scratch: &mut Scratch, finalised: &Finalised) {
     for &(slot, pose) in &finalised.others {
         move_body(state, scratch, slot, pose);
     }
-    // Empty if several threads have swept these bodies. A single thread sweeps and moves each one at once, while it is
-    // in the cache.
+    // `swept` is empty if several threads have swept its bodies. A single thread sweeps and moves each body at once,
+    // while it is in the cache.
     finalised.swept.iter().for_each(|swept| continuous::sweep(state, scratch, swept));
     scratch.results.stats.impacts += finalised.impacts;
     scratch.sweeps.relative.extend_from_slice(&finalised.relative);

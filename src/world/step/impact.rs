@@ -18,7 +18,7 @@ use crate::collision::{CachedAxis, Impact, Manifold, PosedShape, SatCounters, ar
 use crate::math::{Angle, Rot, Step, Unit, mul, round_shift_wide, saturate, saturate_wide, widen};
 use crate::world::cache::{MotionCache, PredictedMotion, Travel};
 
-/// Largest number of times at which the shapes are collided.
+/// Largest number of trial times at which the shapes are collided.
 const ROUNDS_MAX: u32 = 4;
 
 /// Largest distance in metres at which shapes count as touching.
@@ -124,8 +124,8 @@ fn soonest([a, b]: [&PredictedMotion; 2], manifold: &Manifold) -> Option<Closing
     })
 }
 
-/// The fraction of the tick at which a point has closed, in units of [`Unit`], from that at which its separation was
-/// measured. `None` after the end of the tick.
+/// The fraction of the tick at which a point closes, in units of [`Unit`]; `from` is the fraction at which its
+/// separation was measured. `None` if it does not close within the tick.
 fn time_of_touch(point: &ClosingPoint, from: i64) -> Option<i64> {
     let rest = (i64::from(point.separation.to_bits()) << Unit::FRAC_NBITS) / point.distance;
     let time = from.saturating_add(rest);

@@ -17,8 +17,8 @@ use crate::world::state::State;
 /// Smallest number of contacts for a thread.
 const CONTACTS_MIN: usize = 512;
 
-/// Contacts whose bounds are tested before the boxes among them are collided: enough that few SIMD lanes stay empty,
-/// few enough that their data stays in the cache.
+/// Number of contacts in a block. Their bounds are tested before the pairs of small boxes among them are collided.
+/// Enough that few SIMD lanes stay empty, and few enough that the data of a block stays in the cache.
 const BLOCK: usize = 64;
 
 /// Prefetch distance in contacts: shape B is a random access.
@@ -284,8 +284,8 @@ fn surface_of(state: &State, poses: &Poses, (a, b): Pair) -> Surface {
     Surface::between(side(a), side(b), state.config.solver.restitution_threshold)
 }
 
-/// Returns the hit event that a contact causes if its shapes push each other in this tick: if they approach at the hit
-/// speed or faster.
+/// Returns the hit event of a contact whose shapes approach at the hit speed or faster. It is reported only if they
+/// push each other in this tick.
 fn fast_approach(
     state: &State,
     motion: &MotionCache,

@@ -21,8 +21,8 @@ use crate::world::state::State;
 /// was fast would keep a large fat box with many pairs for ever.
 const MARGINS_MAX: i64 = 4;
 
-/// Predicts the motion of all awake bodies and their shapes, and gives every shape that may leave its fat box within
-/// the tick, or whose fat box has become too large, a new one.
+/// Predicts the motion of all awake bodies and their shapes. Gives a new fat box to every shape that may leave its own
+/// within the tick, or whose fat box has become too large.
 pub(super) fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
     let Scratch { awake, shapes: cache, pairs, solver, predicted, .. } = scratch;
     let last_moving = predicted.iter_mut().flat_map(|predicted| predicted.moving.drain(..));
@@ -41,7 +41,7 @@ pub(super) fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
     cache.apply_refits();
 }
 
-/// Predicts motion, each thread that of its bodies.
+/// Predicts the motion of the bodies; each thread takes its share.
 fn predict(
     state: &State,
     cache: &mut ShapeCache,

@@ -2,8 +2,8 @@
 //!
 //! Every pair with a sensor is followed from the poses at the start of the tick to those at its end. The pairs are
 //! those of overlapping fat boxes, which cover the motion that the velocities at the start of the tick predict. A shape
-//! that has left its fat box, because it was deflected or accelerated within the tick, is compared with everything
-//! along its way in addition.
+//! that has left its fat box, because it was deflected or accelerated within the tick, is also compared with everything
+//! along its way.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -74,9 +74,9 @@ struct Visit {
 }
 
 impl Visit {
-    /// Follows a pair that did or did not overlap at the end of the last tick.
+    /// Follows a pair through the tick. `was_inside` is whether its shapes overlapped at the end of the last tick.
     fn of(state: &State, scratch: &Scratch, pair: Pair, was_inside: bool) -> Self {
-        // A long segment can only belong to a fixed body. The search clips the first shape.
+        // The search clips the first shape. Only fixed bodies can have the long segments that need it.
         let (a, b) = match state.body_of(pair.1).kind() {
             BodyKind::Fixed => (pair.1, pair.0),
             BodyKind::Kinematic | BodyKind::Dynamic => pair,
@@ -166,7 +166,7 @@ impl MovedShape {
         first_overlap(&a, &sweep_a, &b, &sweep_b)
     }
 
-    /// The shape about its body's centre where its motion in a direction of time starts, and that motion.
+    /// The shape about its body's centre at the start of its motion in a direction of time, and that motion.
     fn sweep_in(&self, scratch: &Scratch, direction: Direction) -> (SupportShape, Sweep) {
         let Sweep { start, end, turn } = self.sweep;
         let at_end = SupportShape::of(scratch.shapes.poses().at(self.shape), end);
@@ -181,8 +181,8 @@ impl MovedShape {
     }
 }
 
-/// Reports the crossings of shapes that have left their fat box in this tick with shapes with which they do not form a
-/// pair yet. If two such shapes overlap at the end of the tick, the pair becomes a contact at once.
+/// Reports the crossings between shapes that have left their fat box in this tick and shapes with which they do not
+/// form a pair yet. If two such shapes overlap at the end of the tick, the pair becomes a contact at once.
 fn report_unforeseen(state: &mut State, scratch: &mut Scratch) {
     if scratch.sweeps.left_boxes.is_empty() {
         return;
@@ -215,7 +215,7 @@ fn report_unforeseen(state: &mut State, scratch: &mut Scratch) {
     scratch.pairs.buffers.pairs = pairs;
 }
 
-/// Lists the pairs with a sensor that are no contacts, of shapes that have left their fat boxes, in order.
+/// Lists, in order, the pairs with a sensor of which a shape has left its fat box and which are not contacts yet.
 fn list_unforeseen(state: &State, scratch: &Scratch, pairs: &mut Vec<Pair>) {
     pairs.clear();
     let left = &scratch.sweeps.left_boxes;

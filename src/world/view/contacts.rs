@@ -103,7 +103,7 @@ impl World {
 
 impl ContactView<'_> {
     /// Returns the force of each of the manifold's points in the last sub-step of the tick: 0 if the point did not
-    /// push. Between resting bodies it is the constant load.
+    /// push. Between resting bodies the force is the constant load.
     pub fn forces(&self) -> impl Iterator<Item = (&ManifoldPoint, ContactForce)> {
         let mass = self.reduced_mass();
         self.accelerations().map(move |(point, [normal, friction])| {
@@ -129,8 +129,8 @@ impl ContactView<'_> {
     pub fn solver_colour(&self) -> Option<SolverColour> {
         let touching = &self.world.scratch.contacts.output().touching;
         let place = touching.binary_search_by_key(&self.contact.shapes, |pair| pair.shapes).ok()?;
-        // Every manifold of the tick belonged to a touching pair, so its index there is that of the pair in the
-        // solver's list, from which pairs may have been removed since.
+        // Every manifold of the tick belonged to a touching pair, so that the index of the manifold is also that of the
+        // pair in the solver's list. The place in `touching` may differ: pairs may have been removed from it since.
         self.world.scratch.solver.contact_colour(touching.get(place)?.manifold as usize)
     }
 

@@ -71,7 +71,7 @@ impl World {
         if !sensor.is_sensor() || !self.state.body_of(id.slot()).enabled {
             return found;
         }
-        // Fat boxes of shapes that overlap do so as well.
+        // If two shapes overlap, so do their fat boxes.
         self.scratch.shapes.broad_phase().each_overlap(sensor.fat, |other| {
             let pair = (other.min(id.slot()), other.max(id.slot()));
             let is_inside = [&self.state.contacts, &*self.state.sleeping_contacts].iter().any(|list| {

@@ -16,11 +16,12 @@ pub(crate) struct AddedWork {
 }
 
 impl World {
-    /// Returns an upper bound of the cost of the next tick in work units, if at most `bodies` bodies with `shapes`
-    /// shapes altogether are added before it. [`Game::work`](crate::lockstep::Game::work) can be based on it. It counts
-    /// bodies, shapes, pairs and joints, times the solver's sub-steps and iterations, 4 more for each pair, and 8 for
-    /// the tick. Because shapes may be added on top of each other, it assumes as many new pairs as the world allows,
-    /// for which every shape is compared with every other.
+    /// Returns an upper bound of the cost of the next tick in work units, as far as it is known before the tick, if at
+    /// most `bodies` bodies with `shapes` shapes altogether are added before it.
+    /// [`Game::work`](crate::lockstep::Game::work) can be based on it. It counts bodies, shapes, pairs and joints, times
+    /// the solver's sub-steps and iterations, 4 more for each pair, and 8 for the tick. Because shapes may be added on
+    /// top of each other, it assumes that as many pairs begin as the world allows, for which every shape is compared
+    /// with every other. The work of solving these pairs is known only in the tick, and verification counts it there.
     ///
     /// ```
     /// # use lockstep2d::world::World;
@@ -52,9 +53,10 @@ impl World {
         [solved, found, narrow_phase].into_iter().fold(TICK_WORK, u64::saturating_add)
     }
 
-    /// Starts to count work whose amount is known only when it is done: sweeps of fast bodies, shapes in reach of an
-    /// explosion, and shapes that cross a sensor outside of their fat boxes. Work beyond `max` units is skipped, and
-    /// the state is wrong from then on. Otherwise no result changes. Without a call there is no bound.
+    /// Starts to count work whose amount is known only when it is done: sweeps of fast bodies, pairs that begin in a
+    /// tick, joints in blocks, shapes in reach of an explosion or of an edit that wakes bodies, and shapes that cross a
+    /// sensor outside of their fat boxes. Work beyond `max` units is skipped, and the state is wrong from then on.
+    /// Otherwise no result changes. Without a call there is no bound.
     pub(crate) fn start_work_meter(&mut self, max: u64) {
         self.scratch.meter = WorkMeter::start(max);
     }

@@ -9,7 +9,7 @@ use crate::numbers::{RawFx, RawVec2};
 use crate::records::{RawBodyDef, RawJointDef, RawShapeDef, body_kind};
 use crate::status::Outcome;
 
-/// Largest number of shapes of one call.
+/// Largest number of shapes in one call.
 const SHAPES_MAX: usize = 4096;
 
 pub(super) fn shapes_of(shapes: &In<'_, RawShapeDef>, count: usize) -> Outcome<Vec<ShapeDef>> {
@@ -75,7 +75,8 @@ api! {
     }
 
     /// Mass, centre of mass and radius of gyration of a dynamic body with some shapes, for `mass`, `mass_centre` and
-    /// `mass_gyration` of its definition. Null pointers are not written. Without area and density it is an error.
+    /// `mass_gyration` of its definition. Null pointers are not written. It is an error if no shape has an area and a
+    /// density.
     fn ls2d_shapes_mass(
         shapes: In<'_, RawShapeDef>,
         shape_count: usize,

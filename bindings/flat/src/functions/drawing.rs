@@ -21,10 +21,10 @@ impl CType for f64 {
     const BASE: &'static str = "double";
 }
 
-/// One unit of a number of the world.
+/// Resolution of the numbers of a world: 2^-32.
 const UNIT: f64 = 1.0 / 4_294_967_296.0;
 
-/// A number of the world, rounded to a float.
+/// Converts a number of a world to the nearest float.
 #[expect(clippy::cast_precision_loss, reason = "rounded to nearest, for drawing")]
 fn float(value: Fx) -> f64 {
     value.to_bits() as f64 * UNIT

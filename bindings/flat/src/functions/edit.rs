@@ -251,7 +251,7 @@ api! {
         edit(target, Command::SetTransform { body: body.id()?, position, angle }).map(|_| ())
     }
 
-    /// Gives a kinematic body the velocity with which it is at a place after the next tick.
+    /// Gives a kinematic body the velocity with which it reaches a pose in the next tick.
     fn ls2d_move_to(target: u32, body: RawBody, x: RawFx, y: RawFx, angle: RawAngle) {
         let (position, angle) = (vector(x, y), angle.angle());
         edit(target, Command::MoveTo { body: body.id()?, position, angle }).map(|_| ())
@@ -267,7 +267,7 @@ api! {
         edit(target, Command::SetKind { body: body.id()?, kind: body_kind(kind)? }).map(|_| ())
     }
 
-    /// Changes the mass of a body to the one of a definition, of which only the mass matters.
+    /// Changes the mass of a body to that of a definition. The other fields have no effect.
     fn ls2d_set_mass(target: u32, body: RawBody, def: In<'_, RawBodyDef>) {
         let def = def.get()?;
         def.settings()?;
@@ -294,7 +294,7 @@ api! {
     /// Wakes a body.
     fn ls2d_wake(target: u32, body: RawBody) { body_commands!(target, body, Wake) }
 
-    /// Puts a body and all that touch it or are joined to it to sleep.
+    /// Puts a dynamic body to sleep, with all dynamic bodies that contacts and joints connect it to.
     fn ls2d_sleep(target: u32, body: RawBody) { body_commands!(target, body, Sleep) }
 
     /// Sets the gravity in m/s².

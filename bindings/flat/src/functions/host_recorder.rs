@@ -80,7 +80,8 @@ impl HostRecorder {
         self.recorder.as_mut().ok_or_else(finished)
     }
 
-    /// The inputs of all players from their bytes. Those of absent players have no bytes in the file.
+    /// Splits `bytes` into the inputs of all players. The file stores no bytes for an absent player: its input is
+    /// empty.
     fn inputs(&self, bytes: &[u8], absent: u64) -> Outcome<Vec<Vec<u8>>> {
         let players = usize::try_from(self.game.players).unwrap_or(usize::MAX);
         let expected = players.saturating_mul(self.input_bytes);
@@ -152,8 +153,8 @@ api! {
     }
 
     /// Records the final inputs of the next tick: those of all players, one after another. `absent` has a bit for each
-    /// player that nobody plays, whose input is zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow
-    /// with the hash of the state after this tick.
+    /// absent player, whose input is zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow with the hash
+    /// of the state after this tick.
     fn ls2d_recorder_record(
         recorder: u32,
         inputs: In<'_, u8>,

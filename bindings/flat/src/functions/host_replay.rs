@@ -16,9 +16,9 @@ use crate::records::{RawLimits, RawVerdict};
 use crate::status::{Failure, Outcome, Status, note, value};
 use crate::table::{self, Bytes, with};
 
-/// Most states that seeking asks to save, unless the caller sets the interval.
+/// Largest number of states that seeking asks the game to save, unless the caller sets the interval.
 const SAVES: u64 = 256;
-/// Least ticks between saved states, unless the caller sets the interval.
+/// Smallest number of ticks between saved states, unless the caller sets the interval.
 const SAVE_INTERVAL: u64 = 60;
 
 /// Ticks with the same inputs.
@@ -32,8 +32,8 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// Inputs of all players, zeros for those that are absent. Kept without these, because a file of seats without
-    /// players would need 64 times its size.
+    /// Returns the inputs of all players, zeros for those that are absent. A run stores only the inputs of present
+    /// players: with the zeros, a file without players could take 64 times its size in memory.
     fn inputs_of_all(&self, players: u32, input_bytes: usize) -> Vec<u8> {
         let mut present = self.inputs.chunks_exact(input_bytes);
         let zeros = vec![0; input_bytes];
@@ -58,7 +58,7 @@ pub(crate) struct HostReplay {
     pub(super) ticks: u64,
     /// Number of ticks that the game has played.
     pub(super) tick: u64,
-    /// Tick whose state has been compared with a checkpoint since the game has been there.
+    /// Tick of the last comparison with a checkpoint; `None` before the first, and after a saved state was loaded.
     pub(super) compared: Option<u64>,
     /// Number of checkpoints, from the start, that have been equal.
     equal: usize,
@@ -249,8 +249,8 @@ api! {
         bytes.set(table::add(Bytes(setup))?)
     }
 
-    /// Name, as bytes, and number of a result that the file states, in ascending order of names. It is true if the
-    /// verdict is `LS2D_MATCH`. `LS2D_NONE` after the last one.
+    /// Name, as bytes, and number of a result that the file states. Results are in ascending order of names, and true
+    /// if the verdict is `LS2D_MATCH`. `LS2D_NONE` after the last one.
     fn ls2d_replay_claim_at(replay: u32, index: u32, name: Out<'_, u32>, number: Out<'_, i64>) {
         let (mut name, mut number) = (name, number);
         name.check()?;
@@ -265,7 +265,7 @@ api! {
     }
 
     /// The inputs of all players for the next tick, as `players` times `input_bytes` bytes, with a bit in `absent` for
-    /// each player that nobody plays; a null pointer is not written. `LS2D_NONE` at the end.
+    /// each absent player; a null pointer is not written. `LS2D_NONE` at the end.
     fn ls2d_replay_next(
         replay: u32,
         inputs: Out<'_, u8>,

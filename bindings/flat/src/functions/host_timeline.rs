@@ -1,5 +1,5 @@
-//! Any tick of a replay of a game whose rules are in another language: the game fulfils requests, as in a match. It
-//! saves, restores and advances its state, and passes its hash at the checkpoints.
+//! Seeking in replays of games whose rules are in another language: the game fulfils requests, as in a match. It saves,
+//! restores and advances its state, and passes its hash at the checkpoints.
 
 use super::host_replay::HostReplay;
 use crate::border::Out;
@@ -21,7 +21,7 @@ impl HostReplay {
             let failure = || value("the tick to go to, without a saved state before it,", self.target);
             return request(REQUEST_LOAD, latest.ok_or_else(failure)?, 0);
         }
-        // A single step is always played, for what happens in it.
+        // A single tick is always played, never loaded, so that the game shows what happens in it.
         if let Some(latest) = latest.filter(|&latest| latest > self.tick && self.target - self.tick > 1) {
             return request(REQUEST_LOAD, latest, 0);
         }

@@ -22,7 +22,7 @@ api! {
     fn ls2d_semantics() -> u32 { lockstep2d::SEMANTICS }
 
     /// Copies the text of the last failure on this thread as UTF-8, and writes its length in bytes. It is not
-    /// terminated by a zero. The text of a shorter buffer is cut.
+    /// terminated by a zero. If the buffer is shorter, the text is cut.
     fn ls2d_last_error(buffer: Out<'_, u8>, capacity: usize, length: Out<'_, usize>) {
         let (mut buffer, mut length) = (buffer, length);
         let text = last_text();

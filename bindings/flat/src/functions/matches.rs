@@ -20,8 +20,9 @@ use crate::table::{self, Bytes, with};
 /// A participant of a match.
 pub(crate) struct Match {
     endpoint: Endpoint,
-    /// A packet and a request that did not fit into the caller's buffer, kept for the next call.
+    /// Packet that did not fit into the caller's buffer, kept for the next call.
     packet: Option<(Address, Vec<u8>)>,
+    /// Request whose inputs did not fit into the caller's buffer, kept for the next call.
     request: Option<Request>,
     events: VecDeque<Happened>,
 }
@@ -326,8 +327,8 @@ api! {
         })
     }
 
-    /// Delay of own inputs in ticks; to a peer, smoothed round trip in microseconds, and lost packets in thousandths.
-    /// Null pointers are not written.
+    /// Delay of own inputs in ticks, and smoothed round trip in microseconds and lost packets in thousandths of the
+    /// link to a peer. Null pointers are not written.
     fn ls2d_match_link(
         handle: u32,
         peer: u32,
@@ -362,7 +363,7 @@ api! {
         })
     }
 
-    /// Asks all others to stop for now, or, with 0, no longer to.
+    /// Asks all others to pause, or, with 0, withdraws the request.
     fn ls2d_match_pause(handle: u32, paused: u32) {
         with(handle, |game: &mut Match| {
             game.session()?.pause(paused != 0);

@@ -77,7 +77,7 @@ pub(crate) const FUNCTIONS: &[(&str, &[Function])] = &[
     ("Mathematics", maths::FUNCTIONS),
 ];
 
-/// Calls of all functions with drawn arguments.
+/// Calls of all functions with arguments drawn from bytes.
 #[cfg(any(test, feature = "fuzzing"))]
 pub(crate) const DRAWN: &[&[crate::fuzzing::DrawnCall]] = &[
     library::DRAWN,

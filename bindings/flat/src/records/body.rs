@@ -114,7 +114,7 @@ records! {
         mass: RawFx,
         /// Moment of inertia about the centre of mass in kg m².
         inertia: RawFx,
-        /// The number of the game.
+        /// Number that the game stores with the body.
         user_data: u64,
     }
 

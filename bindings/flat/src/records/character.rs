@@ -26,7 +26,7 @@ records! {
         slope_max: RawAngle,
         /// Height in metres of steps that it climbs without a jump.
         step_height: RawFx,
-        /// Distance in metres by which ground may fall within a tick while it still follows.
+        /// Distance in metres by which the ground may descend within a tick while the character follows it.
         snap_distance: RawFx,
         /// Its geometry; other fields of the definition do not matter.
         shape: RawShapeDef,

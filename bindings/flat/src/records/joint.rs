@@ -35,9 +35,10 @@ constants! {
     JOINT_ENABLED = 2, "LS2D_JOINT_ENABLED";
     /// Flag of a joint: has `limit_lower` and `limit_upper` (revolute, prismatic, distance, wheel).
     JOINT_LIMIT = 4, "LS2D_JOINT_LIMIT";
-    /// Flag of a joint: has `motor_speed` and `motor_max` (revolute, prismatic, distance, wheel; the angle of a motor).
+    /// Flag of a joint: has `motor_speed` and `motor_max` (revolute, prismatic, distance, wheel; motor, for the angle).
     JOINT_MOTOR = 8, "LS2D_JOINT_MOTOR";
-    /// Flag of a joint: has `spring_hertz`, `spring_damping_ratio`, `spring_target` (as for limits).
+    /// Flag of a joint: has `spring_hertz`, `spring_damping_ratio`, `spring_target` (revolute, prismatic, distance,
+    /// wheel).
     JOINT_SPRING = 16, "LS2D_JOINT_SPRING";
     /// Flag of a joint: has `spring_force_lower` and `spring_force_upper` (distance).
     JOINT_SPRING_FORCE = 32, "LS2D_JOINT_SPRING_FORCE";
@@ -49,18 +50,19 @@ constants! {
     JOINT_THRESHOLD_FORCE = 256, "LS2D_JOINT_THRESHOLD_FORCE";
     /// Flag of a joint: has `threshold_torque`.
     JOINT_THRESHOLD_TORQUE = 512, "LS2D_JOINT_THRESHOLD_TORQUE";
-    /// Flag of a joint: breaks beyond a threshold. Without it, it is reported.
+    /// Flag of a joint: breaks beyond a threshold, instead of only being reported.
     JOINT_BREAKS = 1024, "LS2D_JOINT_BREAKS";
     /// Flag of a joint: has `linear_velocity` and `linear_motor_max` (motor).
     JOINT_LINEAR_MOTOR = 2048, "LS2D_JOINT_LINEAR_MOTOR";
-    /// Flag of a joint: has `linear_hertz`, `linear_damping_ratio` and, a motor, `linear_max` (weld, motor).
+    /// Flag of a joint: has `linear_hertz`, `linear_damping_ratio` and, for a motor, `linear_max` (weld, motor).
     JOINT_LINEAR_SPRING = 4096, "LS2D_JOINT_LINEAR_SPRING";
-    /// Flag of a joint: has `angular_hertz`, `angular_damping_ratio` and, a motor, `angular_max` (weld, motor).
+    /// Flag of a joint: has `angular_hertz`, `angular_damping_ratio` and, for a motor, `angular_max` (weld, motor).
     JOINT_ANGULAR_SPRING = 8192, "LS2D_JOINT_ANGULAR_SPRING";
 }
 
 records! {
-    /// Definition of a joint. `ls2d_joint_def_init` sets the defaults. Only the fields that the flags name are read.
+    /// Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field that a flag names is read only with that
+    /// flag.
     struct RawJointDef = "ls2d_joint_def" {
         /// Size of this struct in bytes.
         size: u32,
@@ -120,15 +122,15 @@ records! {
         linear_motor_max: RawFx,
         /// Frequency in Hz of the spring between the anchors.
         linear_hertz: RawFx,
-        /// Its damping ratio.
+        /// Damping ratio of the spring between the anchors.
         linear_damping_ratio: RawFx,
-        /// Its largest force in N (motor joint).
+        /// Largest force of the spring between the anchors in N (motor joint).
         linear_max: RawFx,
         /// Frequency in Hz of the spring on the angle.
         angular_hertz: RawFx,
-        /// Its damping ratio.
+        /// Damping ratio of the spring on the angle.
         angular_damping_ratio: RawFx,
-        /// Its largest torque in N m (motor joint).
+        /// Largest torque of the spring on the angle in N m (motor joint).
         angular_max: RawFx,
         /// Radius of the wheel of a rack in metres.
         radius: RawFx,

@@ -18,7 +18,7 @@ const COMMON: u32 = JOINT_COLLIDE
     | JOINT_THRESHOLD_FORCE
     | JOINT_THRESHOLD_TORQUE
     | JOINT_BREAKS;
-/// Flags of hinges, sliders and wheels.
+/// Flags of revolute, prismatic, distance and wheel joints.
 const DRIVEN: u32 = JOINT_LIMIT | JOINT_MOTOR | JOINT_SPRING;
 
 /// Options that most kinds have.

@@ -33,9 +33,9 @@ constants! {
     REQUEST_CHECKSUM = 3, "LS2D_REQUEST_CHECKSUM";
     /// Request: copies of states before `tick` are no longer needed.
     REQUEST_FORGET = 4, "LS2D_REQUEST_FORGET";
-    /// Event: the match stands somewhere else; `value` is a `LS2D_MATCH_` status.
+    /// Event: the status of the match has changed; `value` is the new `LS2D_MATCH_` status.
     EVENT_STATUS = 0, "LS2D_EVENT_STATUS";
-    /// Event: who has which seats changes.
+    /// Event: the seats of the peers have changed.
     EVENT_VIEW = 1, "LS2D_EVENT_VIEW";
     /// Event: `peer` has `seat` from `tick` on.
     EVENT_SEATED = 2, "LS2D_EVENT_SEATED";
@@ -49,11 +49,11 @@ constants! {
     EVENT_PAUSE = 6, "LS2D_EVENT_PAUSE";
     /// Event: the match ends after `tick` ticks.
     EVENT_END = 7, "LS2D_EVENT_END";
-    /// Event: `peer` has another state at `tick`, with the hashes `ours` and `theirs`.
+    /// Event: after `tick` ticks, `peer` has another state; the hashes are `ours` and `theirs`.
     EVENT_DESYNC = 8, "LS2D_EVENT_DESYNC";
     /// Event: `peer` has issued two inputs for `tick`.
     EVENT_CONFLICT = 9, "LS2D_EVENT_CONFLICT";
-    /// Event: the match has gone on for too long; the peer has to join again.
+    /// Event: the others no longer keep the inputs that this peer lacks; it has to join again.
     EVENT_TOO_FAR_BEHIND = 10, "LS2D_EVENT_TOO_FAR_BEHIND";
     /// Event: the contact refuses; `value` is a `LS2D_REFUSED_` reason.
     EVENT_REFUSED = 11, "LS2D_EVENT_REFUSED";
@@ -66,7 +66,7 @@ constants! {
     REFUSED_OFFER = 0, "LS2D_REFUSED_OFFER";
     /// Reason: too many peers follow the match.
     REFUSED_FULL = 1, "LS2D_REFUSED_FULL";
-    /// Reason: the number of the peer is that of another one.
+    /// Reason: another peer has the number of this peer.
     REFUSED_TAKEN = 2, "LS2D_REFUSED_TAKEN";
     /// Reason: the contact is not in a match yet. It is asked again.
     REFUSED_NOT_READY = 3, "LS2D_REFUSED_NOT_READY";
@@ -131,7 +131,7 @@ records! {
         reserved: u32,
         /// Number of ticks that were played; of the first different checkpoint for `LS2D_DIVERGED`.
         ticks: u64,
-        /// Hash of the last state, as far as all states agreed.
+        /// Hash of the last state, if all states up to it agreed with the recording; otherwise 0.
         hash: RawHash,
     }
 

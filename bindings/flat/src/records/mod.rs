@@ -88,7 +88,7 @@ const fn has(flags: u32, flag: u32) -> bool {
     flags & flag != 0
 }
 
-/// The flag if a condition holds.
+/// Returns `flag` if the condition holds, otherwise 0.
 const fn flag(holds: bool, flag: u32) -> u32 {
     if holds { flag } else { 0 }
 }

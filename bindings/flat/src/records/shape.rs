@@ -110,7 +110,7 @@ records! {
         group: i32,
         /// `LS2D_MIX_AVERAGE` and so on, for friction.
         friction_mixing: u32,
-        /// The same for restitution.
+        /// `LS2D_MIX_AVERAGE` and so on, for restitution.
         restitution_mixing: u32,
         /// Direction in which others pass, in the body's frame, with `LS2D_SHAPE_ONE_WAY`.
         one_way: RawAngle,
@@ -126,9 +126,9 @@ records! {
         area_angular_drag: RawFx,
         /// Density of the medium in kg/m², for buoyancy.
         area_density: RawFx,
-        /// Acceleration in m/s² towards the centre of the area at the radius below.
+        /// Acceleration in m/s² towards the centre of the area, at the distance `attraction_radius`.
         attraction_acceleration: RawFx,
-        /// Radius in metres.
+        /// Distance in metres at which bodies have the acceleration `attraction_acceleration`.
         attraction_radius: RawFx,
         /// `LS2D_FALLOFF_CONSTANT` and so on.
         attraction_falloff: u32,

@@ -1,4 +1,4 @@
-//! A game with rules of its own is recorded, verified, and goes to any tick of its replay.
+//! Recording and verifying a game with rules of its own, and seeking in its replay.
 
 use std::collections::BTreeMap;
 
@@ -200,7 +200,7 @@ fn any_tick_is_reached_from_the_nearest_saved_state() {
             assert_eq!(player.seek(tick), Status::None as i32);
             assert_eq!(player.game, states[usize::try_from(tick).unwrap()], "tick {tick}");
             reached = reached.max(tick);
-            // Ticks that were never played, and less than an interval of others.
+            // Seeking plays the ticks that were never played before, and fewer than `interval` others.
             let new = reached - from;
             assert!(
                 player.played - before < new + interval,

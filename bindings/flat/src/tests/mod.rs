@@ -32,7 +32,7 @@ fn take(bytes: u32) -> Vec<u8> {
     copy
 }
 
-/// A list of commands made of encoded ones.
+/// Makes a list of commands from encoded ones.
 fn list_of(encoded: &[u8]) -> u32 {
     let mut list = 0;
     done(crate::ls2d_commands_new(Out::of(&mut list)));

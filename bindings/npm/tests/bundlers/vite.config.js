@@ -1,2 +1,2 @@
-// Modules in workers, as `type: "module"` says; the default of Vite cannot split code.
+// Workers are modules, as `type: "module"` says: the default worker format of Vite cannot split code.
 export default { base: "./", build: { target: "es2022", outDir: "dist-vite" }, worker: { format: "es" } };

@@ -1,6 +1,6 @@
 import { fileURLToPath } from "node:url";
 
-// The TypeScript is compiled by tsc before.
+// tsc compiles the TypeScript before webpack runs.
 export default {
     mode: "production",
     entry: "./build/page.js",

@@ -23,8 +23,9 @@ use crate::observed::Observed;
 pub(crate) struct FrameTime {
     /// Game time since the last frame: it can be paused and scaled.
     pub(crate) delta: Duration,
-    /// Real time since the last frame, and since the start of the program.
+    /// Real time since the last frame.
     pub(crate) real_delta: Duration,
+    /// Real time since the start of the program.
     pub(crate) real_elapsed: Duration,
 }
 

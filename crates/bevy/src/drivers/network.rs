@@ -38,7 +38,7 @@ impl Transport for AnyTransport {
     }
 }
 
-/// Ticks that one frame plays at most, while a peer catches up after it has joined.
+/// Largest number of ticks that one frame plays, while a peer catches up after it has joined.
 const TICKS_PER_FRAME: u32 = 64;
 
 pub(crate) struct MatchDriver<G: LockstepGame> {

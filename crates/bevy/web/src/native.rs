@@ -21,5 +21,5 @@ pub fn show(text: &str, windows: &mut Query<&mut Window>) {
     }
 }
 
-/// A program that ends is not started again with the same room.
+/// Does nothing: a page keeps the room in its address, but a program gets it as an argument.
 pub const fn enter(_room: &str) {}

@@ -65,7 +65,7 @@ fn joints(count: usize, kind: impl Into<JointKind>) -> Vec<Edit> {
     commands
 }
 
-/// A joint that no block has.
+/// Returns a motor joint without springs, which the solver never solves in a block.
 fn motor() -> Motor {
     Motor::new().linear(Vec2::ZERO, fx!(1)).angular(fx!(0), fx!(1))
 }

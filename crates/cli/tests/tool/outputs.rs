@@ -136,7 +136,7 @@ fn a_device_is_written_directly() {
     assert!(piped.status.success() && piped.stdout.starts_with(b"<svg"), "{}", message(&piped));
 }
 
-/// A recorder that writes for minutes, once its temporary file has bytes.
+/// Starts a recorder that writes for minutes, and waits until its temporary file has bytes.
 fn long_recorder(to: &str, extra: &[&str]) -> Child {
     let arguments = ["record", "box_stack", "--ticks", "10000000", "-o", to];
     let child = Command::new(TOOL).args(arguments).args(extra).stdout(Stdio::null()).spawn().unwrap();
@@ -160,7 +160,7 @@ fn a_killed_process_leaves_the_old_file_and_what_it_recorded() {
     let rescued = folder.path("rescued.replay");
     let trimmed = tool(&["trim", &format!("{to}.unfinished"), "-o", &rescued].map(String::from));
     assert_eq!(trimmed.status.code(), Some(0), "{}", message(&trimmed));
-    // It blocks no later writer.
+    // The temporary file blocks no later writer.
     let again = tool(&["record", "box_stack", "--ticks", "9", "--force", "-o", &to].map(String::from));
     assert_eq!(again.status.code(), Some(0), "{}", message(&again));
     assert_eq!(names(&folder), ["rescued.replay", "x.replay"]);

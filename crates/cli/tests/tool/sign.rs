@@ -269,7 +269,7 @@ fn mutate(bytes: &mut Vec<u8>, state: &mut u64) {
 
 #[test]
 fn no_mutated_signature_is_accepted() {
-    // Fixed keys, so that the counts below are the same in every run.
+    // Fixed keys, so that `parsed` and `forged` are the same in every run.
     let key = |digits: &str| format!("lockstep2d secret key 1 {}", digits.repeat(32)).parse::<SecretKey>();
     let (secret, other) = (key("a1").unwrap(), key("b2").unwrap());
     let game = GameDigest::of_replay::<Counter>(&replay(12), &Limits::default()).unwrap();

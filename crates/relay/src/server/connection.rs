@@ -23,10 +23,10 @@ use crate::frame::{ADDRESS_BYTES, Member, SECRET_BYTES, frame, unframe};
 const HANDSHAKE_MAX: Duration = Duration::from_secs(5);
 /// Largest number of characters of a room code.
 const CODE_MAX: usize = 32;
-/// Pings within the idle time.
+/// Number of pings within the idle time.
 const PINGS: u32 = 3;
 
-/// Reasons to close a connection: code and text.
+// Reasons to close a connection: code and text.
 const CLOSE_SECRET: (u16, &str) = (4000, "expected a secret of 16 bytes");
 const CLOSE_ROOM_FULL: (u16, &str) = (4001, "the room is full");
 const CLOSE_RELAY_FULL: (u16, &str) = (4002, "the relay is full");

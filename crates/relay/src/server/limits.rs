@@ -15,8 +15,8 @@ pub struct Limits {
     pub datagram_bytes: usize,
     /// Bytes that wait for one member. When there are more, the oldest datagrams are dropped.
     pub queue_bytes: usize,
-    /// Bytes per second from one member, with a burst of a second. Datagrams above it are dropped; a member that sends
-    /// eight times as much is disconnected.
+    /// Bytes per second from one member, with a burst of a second. Datagrams above this rate are dropped; a member that
+    /// sends eight times as much is disconnected.
     pub bytes_per_second: u32,
     /// Datagrams per second from one member, likewise.
     pub datagrams_per_second: u32,

@@ -46,8 +46,9 @@ impl Bucket {
 /// Measures bytes and datagrams of a member. Time is an argument.
 #[derive(Clone, Debug)]
 pub(super) struct Meter {
-    /// For bytes and datagrams, the rates at which datagrams are dropped and those at which the connection is closed.
+    /// Buckets of bytes and of datagrams. A datagram that exceeds one of them is dropped.
     allowed: [Bucket; 2],
+    /// Buckets with [`EXCESS`] times these rates. A datagram that exceeds one of them closes the connection.
     tolerated: [Bucket; 2],
     last: Duration,
 }

@@ -15,8 +15,9 @@ use super::presentation::Presentation;
 use crate::event::{Event, Key};
 use crate::source::{Source, SourceError};
 
-/// Maximum time for which closing waits until the others know that this peer leaves, and time between two updates.
+/// Maximum time for which closing waits until the others know that this peer leaves.
 const LEAVE_TIME: Duration = Duration::from_millis(500);
+/// Time between two updates while closing waits.
 const LEAVE_STEP: Duration = Duration::from_millis(5);
 
 /// Participant of a network match: its host, another player or a spectator.

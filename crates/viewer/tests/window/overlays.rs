@@ -63,9 +63,9 @@ fn is_near(places: &BTreeSet<[usize; 2]>, [x, y]: [usize; 2]) -> bool {
     (y.saturating_sub(1)..=y + 1).any(|y| (x.saturating_sub(1)..=x + 1).any(|x| places.contains(&[x, y])))
 }
 
-/// One pixel in this many may differ by a large amount, because of crossing lines. Layers with small text may have more
-/// such pixels, because only one of the two rasterisers aligns letters to whole pixels.
+/// One pixel in this many may differ by a large amount, because of crossing lines.
 const SHAPES: usize = 1000;
+/// The same for layers with small text, because only one of the two rasterisers aligns letters to whole pixels.
 const LABELS: usize = 200;
 
 /// Asserts that the pictures of two rasterisers agree, apart from the antialiasing of edges.

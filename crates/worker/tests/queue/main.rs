@@ -211,8 +211,8 @@ fn the_same_bytes_have_one_result_and_are_not_simulated_again() {
     assert_eq!(queued, [true, false]);
     assert_eq!(submitted[0]["blake3"], submitted[1]["blake3"]);
 
-    // Two queues with the same results cannot be told apart from a job that comes again: the second worker has
-    // other limits, which are another key.
+    // The second worker has other limits, so that its results have other keys. It adds none, because the queue has no
+    // second job for these bytes.
     for (arguments, count) in [(&["--max-ticks", "30"][..], 1), (&["--max-ticks", "29"], 1)] {
         let mut child = program.work(arguments);
         wait_until("there is a result", || program.results().len() == count);

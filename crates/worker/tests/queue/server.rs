@@ -22,13 +22,13 @@ impl Drop for Process {
 }
 
 impl Process {
-    /// SIGKILL.
+    /// Kills the process by SIGKILL.
     pub(crate) fn kill(&mut self) {
         let _ = self.0.kill();
         self.0.wait().unwrap();
     }
 
-    /// SIGTERM. Returns the exit code.
+    /// Ends the process by SIGTERM. Returns its exit code.
     pub(crate) fn terminate(&mut self) -> Option<i32> {
         assert!(Command::new("kill").arg(self.0.id().to_string()).status().unwrap().success());
         self.0.wait().unwrap().code()

@@ -15,7 +15,7 @@ use libfuzzer_sys::fuzz_target;
 use lockstep2d::check::{CheckError, CheckOptions, check, inputs_from_bytes};
 use lockstep2d::lockstep::Game;
 
-/// Longer logs are slower and rarely find more.
+/// Largest number of ticks of an input log. Longer logs are slower and rarely find more.
 const TICKS_MAX: usize = 300;
 
 fuzz_target!(|bytes: &[u8]| {

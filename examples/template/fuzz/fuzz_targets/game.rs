@@ -10,7 +10,7 @@ use my_game::{MyGame, Setup};
 
 /// Number of players of the game.
 const PLAYERS: u32 = 2;
-/// Longer logs are slower and rarely find more.
+/// Largest number of ticks of an input log. Longer logs are slower and rarely find more.
 const TICKS_MAX: usize = 300;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -15,7 +15,7 @@ impl Tree {
     }
 
     /// Exchanges a child with a child of its sibling if that shrinks the sibling; the box of the node itself stays the
-    /// same. The height may differ by one from before, which the ancestors can compensate.
+    /// same. The height may differ by one from `height_before`, which the ancestors can compensate.
     pub(super) fn tighten(&mut self, at: u32, height_before: u8) {
         let [a, b] = self.at(at).children;
         let (mut best_gain, mut best) = (0, None);

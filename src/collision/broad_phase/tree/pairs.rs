@@ -99,7 +99,8 @@ impl Meetings {
         self.found.tell(&mut found);
     }
 
-    /// Visits a pair of overlapping nodes: meets the children of both, or those of one if the other is a leaf.
+    /// Visits a pair of overlapping nodes: tests the children of both against each other, or the children of one
+    /// against the other node if that is a leaf.
     #[inline(always)]
     fn visit(
         &mut self,

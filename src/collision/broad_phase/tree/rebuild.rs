@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 use super::{NONE, Node, Tree, perimeter};
 use crate::math::Aabb;
 
-/// Cost of the last rebuild, and buffers that are reused.
+/// Cost of the tree after the last rebuild, and reused buffers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rebuilt {
     /// Cost of the tree after the last rebuild.

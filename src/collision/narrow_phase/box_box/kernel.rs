@@ -1,5 +1,5 @@
-//! SIMD kernel of [`hull_hull`](crate::collision::hull_hull) for boxes: separating axis test and clipping of eight
-//! pairs at a time.
+//! SIMD kernel of [`hull_hull`](crate::collision::narrow_phase::hull_hull) for boxes: separating axis test and clipping
+//! of eight pairs at a time.
 //!
 //! For the face normal `n` of a box centred at `-d` from another box, with `v` a vertex on that face and `w` the
 //! vertices of the other box,
@@ -58,13 +58,14 @@ struct ClipPoint<T> {
     above: T,
 }
 
-/// Reference edge, in the form that contact points need.
+/// Reference edge, in the form that contact points need. Radii and margin are steps.
 struct Reference<T> {
     n: Vector<T>,
     /// Start of the edge, from the centre of A.
     start: Vector<T>,
-    /// As steps: sum of both radii, radius of the reference minus radius of the incident box, and speculative margin.
+    /// Sum of both radii.
     radii: T,
+    /// Radius of the reference box minus radius of the incident box.
     difference: T,
     margin: T,
 }
@@ -241,7 +242,7 @@ fn further_of_opposite<L: Lanes<WIDTH>>(
     (L::greater_wide(nothing::<L>(), towards), separation)
 }
 
-/// Edge whose normal is most opposed to `n`. Ties go to the edge with the lower index.
+/// Edge whose normal is most opposed to `n`. Ties go to edge 0 or 2.
 #[inline(always)]
 fn most_opposed<L: Lanes<WIDTH>>(of: &Corners<L::Int>, n: Vector<L::Int>) -> Choice<L::Mask> {
     let [cosine_0, cosine_1] = [dot::<L>(of.n[0], n), dot::<L>(of.n[1], n)];
@@ -263,7 +264,7 @@ fn edge<L: Lanes<WIDTH>>(of: &Corners<L::Int>, Choice { second, opposite }: Choi
     }
 }
 
-/// Index of the edge after an edge, of four.
+/// Index of the next of the four edges.
 #[inline(always)]
 fn next<L: Lanes<WIDTH>>(edge: L::Int) -> L::Int {
     L::select(L::greater(edge, L::splat(2)), L::splat(0), L::add(edge, L::splat(1)))
@@ -306,8 +307,8 @@ fn nearest_at_corner<L: Lanes<WIDTH>>(
     L::either(before, behind)
 }
 
-/// Height above the reference edge of an end, after moving it by `past` along its own edge if `past` is positive. The
-/// incident edge spans `span` along the reference edge, which is more than `past`.
+/// Height of an end above the reference edge, clipped by `past` if that is positive. Both `past` and `span`, the larger
+/// extent of the incident edge, are measured along the reference edge.
 #[inline(always)]
 fn clipped<L: Lanes<WIDTH>>(
     end: ClipPoint<L::Int>,

@@ -15,7 +15,7 @@ fn random_box(rng: &mut Rng) -> (Polygon, Vec2<Fx>) {
     let size_max = [1850, 1850, 500, 250][rng.below(4) as usize];
     let mut size = || i64::from(50 + rng.below(size_max - 50));
     let (width, height) = (size(), size());
-    // Some boxes have the largest allowed length.
+    // Some boxes are nearly as long as the limit allows.
     let (width, height) = if rng.below(8) == 0 { (2750, 50) } else { (width, height) };
     let slant = if rng.below(4) == 0 { height / 20 } else { 0 };
     let corner = |x: i64, y: i64| Vec2::new(fx!(1) * x / 1024, fx!(1) * y / 1024);
@@ -63,7 +63,7 @@ fn lanes_find_what_is_found_one_by_one() {
     let (mut pairs_seen, mut points, mut left) = (0, [0; 3], 0);
     let mut batch = BoxPairs::default();
     for _ in 0..20_000 {
-        // One to ten pairs: more than a batch.
+        // One to ten pairs: up to two batches.
         let pairs: Vec<_> = (0..=rng.below(10)).map(|_| random_pair(&mut rng)).collect();
         let widest = if rng.below(16) == 0 { fx!(2) } else { fx!(0.2) };
         let margins: Vec<_> = pairs.iter().map(|_| narrow(rng.range(fx!(0.005), widest))).collect();

@@ -76,8 +76,8 @@ pub(in crate::collision) fn clip(
     let context = Clip { a, b, d, face: face.edge, margin };
     let corners = if apart { nearest_corners(first, last, upper, lower) } else { None };
     if upper.along < first.along || lower.along > last.along {
-        // Deeply overlapping outlines may have no incident edge beside the face. Their deepest corner still pushes them
-        // apart.
+        // Deeply overlapping outlines may have no incident edge in front of the face. Their deepest corner still pushes
+        // them apart.
         let (end_a, end_b) = if upper.along < first.along { (first, upper) } else { (last, lower) };
         return match corners {
             Some((vertex_a, vertex_b)) => context.corner(&Gap::between(&context, vertex_a, vertex_b)),
@@ -125,7 +125,7 @@ fn nearest_corners(
     })
 }
 
-/// Edge whose normal is most opposed to `normal`; the first one in case of a tie.
+/// Edge whose normal is most opposed to `normal`. Ties go to the first edge, in a box to edge 0 or 2.
 #[inline]
 fn incident_edge(b: &Hull, normal: Vec2<Unit>) -> usize {
     let cosine = |n: Vec2<Unit>| dot(n, normal);

@@ -89,8 +89,8 @@ fn random_line(rng: &mut Rng) -> Vec<Vec2<Fx>> {
     points
 }
 
-/// If a shape is near a chain and does not cross it, some link has a contact that is no further than the chain; for a
-/// circle the nearest contact is exactly as far as the chain.
+/// If a shape is near a chain and does not cross it, some link has a contact that is no further than the chain. If a
+/// circle overlaps the chain, its deepest contact has the depth of the overlap.
 #[test]
 fn a_chain_has_no_holes() {
     let mut rng = Rng::new(1);

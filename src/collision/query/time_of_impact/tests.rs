@@ -84,7 +84,8 @@ fn no_contact_is_passed_and_none_is_invented() {
     );
 }
 
-/// Starting in contact, the fraction that is reported as free never lets the centre of B pass the surface of A.
+/// For shapes that start in contact, the fraction that is reported as free never lets the centre of B pass the surface
+/// of A.
 #[test]
 fn contact_is_left_or_deepened_but_not_passed() {
     let mut rng = Rng::new(2);

@@ -1,4 +1,4 @@
-// The same world on the page and in a worker. Bundlers see TypeScript without types of their own; tsc checks them.
+// The same world on the page and in a worker. Bundlers remove the types without checking them; tsc checks them.
 import { play } from "./play.js";
 
 declare global {

@@ -50,5 +50,5 @@ export function record(): string {
 }
 
 export const codeOf = (error: unknown): string => (error as Lockstep2dError).code;
-// @ts-expect-error A float may be text, not a number with a fraction that the types cannot see; an object is refused.
+// @ts-expect-error The types cannot refuse a number with a fraction, but they refuse a wrong object.
 world.setGravity({ wrong: true });

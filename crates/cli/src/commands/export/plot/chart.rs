@@ -13,22 +13,26 @@ const PANEL: u32 = 150;
 const TOP: u32 = 30;
 /// Space below the panels in pixels, for the time axis.
 const BOTTOM: u32 = 42;
-/// Space left of the curves in pixels, for labels, and right of them.
+/// Space left of the curves in pixels, for labels.
 const LEFT: f64 = 72.0;
+/// Space right of the curves in pixels.
 const RIGHT: f64 = 16.0;
-/// Space above the curves of a panel in pixels, for its title, and below them.
+/// Space above the curves of a panel in pixels, for its title.
 const TITLE: f64 = 22.0;
+/// Space below the curves of a panel in pixels.
 const GAP: f64 = 14.0;
-/// Maximum number of steps of the vertical axis, and of the time axis.
+/// Maximum number of steps of the vertical axis.
 const STEPS_UP: i64 = 4;
+/// Maximum number of steps of the time axis.
 const STEPS_ALONG: i64 = 10;
 
 /// Panels of curves over a range of ticks, one below the other.
 pub(super) struct Chart {
     pub(super) title: String,
     pub(super) panels: Vec<Panel>,
-    /// The first and the last tick.
+    /// The first tick.
     pub(super) first: u64,
+    /// The last tick.
     pub(super) last: u64,
     /// Ticks per second.
     pub(super) rate: u32,
