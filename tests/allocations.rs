@@ -87,7 +87,7 @@ fn the_counter_counts() {
 
 #[test]
 fn piles_and_joints_at_rest_allocate_nothing() {
-    // The hundred polygons need several seconds to come to rest. They fall asleep after 5.3 s, later than here.
+    // The hundred polygons come to rest in several seconds. They fall asleep after 5.3 s, later than the test ends.
     for (name, warm_up) in
         [("pyramid", 60), ("large_pyramid", 60), ("joint_grid", 60), ("hundred_polygons", 290)]
     {

@@ -89,7 +89,6 @@ fn ten_thousand_bodies_come_and_go() {
     let mut churn = Churn::new();
     let mut twin: Option<World> = None;
     while churn.spawned < 10_000 {
-        let rng_before = churn.rng.clone();
         // The number of bodies is limited, because the test is about handles, not about large piles.
         while churn.alive.len() > 150 {
             churn.despawn();
@@ -102,7 +101,6 @@ fn ten_thousand_bodies_come_and_go() {
             churn.check();
         }
         if churn.spawned == 5000 && twin.is_none() {
-            let _ = rng_before;
             twin = Some(World::from_bytes(&churn.world.to_bytes()).expect("its own bytes"));
             replay_on_twin(&mut churn, twin.as_mut().expect("just made"));
         }

@@ -148,7 +148,7 @@ fn a_rollback_shows_before_it_has_happened() {
 
 /// The wind is lost before the step begins, so no phase of the step differs first.
 #[test]
-fn phases_are_compared() {
+fn a_loss_before_the_step_is_the_fault_of_no_phase() {
     let options =
         CheckOptions { phases: Phases::Compared, ..CheckOptions::default() }.only(&[Variant::Reloaded]);
     let error = check::<Pit>(&Mistake::Wind, &inputs(), &options).unwrap_err();

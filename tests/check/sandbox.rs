@@ -4,8 +4,7 @@ use lockstep2d::check::{CheckOptions, Phases, Variant, check, random_inputs};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::math::Rng;
 
-/// Largest number of shapes of a scene in this test: all variants together take twenty times as long as one
-/// run.
+/// Largest number of shapes of a scene in this test: all variants together take as long as twenty runs.
 const SHAPES_MAX: usize = 300;
 
 #[test]

@@ -265,9 +265,8 @@ fn a_dedicated_server_plays_no_seat() {
     assert!(matches!(verify::<Pushers>(&replays[0], &Limits::default()), Verdict::Match { .. }));
 }
 
-/// Passing more inputs than the peer has seats is an error.
 #[test]
-fn an_input_that_is_too_long_is_an_error() {
+fn more_inputs_than_seats_are_an_error() {
     let mut table = Table::new(1, 0);
     let options = PeerOptions { start_with: 1, ..PeerOptions::lockstep() };
     table.host(options);

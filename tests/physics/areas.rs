@@ -343,7 +343,7 @@ fn a_command_sets_the_wind() {
 
 /// The area of a moving dynamic body wakes a sleeping body when it reaches that body.
 #[test]
-fn a_moving_magnet_wakes_what_it_passes() {
+fn a_moving_magnet_wakes_a_box_that_it_reaches() {
     let mut world = world(fx!(-10));
     let floor = ShapeDef::new(Polygon::rectangle(fx!(50), fx!(1)).expect("valid"));
     world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor]).expect("valid");

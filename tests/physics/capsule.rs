@@ -97,7 +97,7 @@ fn capsules_in_line_exchange_velocities() {
 
 /// A nearly upright capsule rests on one point, falls over, and rolls.
 #[test]
-fn an_upright_capsule_rolls_along_when_it_is_pushed() {
+fn a_capsule_that_leans_falls_over_to_that_side() {
     let mut world = World::default();
     floor(&mut world);
     let def = BodyDef::dynamic().position((fx!(0), fx!(1))).angle(Angle::from_degrees(fx!(85)));

@@ -235,7 +235,7 @@ fn a_star_of_welds_comes_to_rest_on_a_floor() {
 
 /// Dropping the scratch memory and restoring an earlier state change no bit of a world with blocks.
 #[test]
-fn a_block_forgets_nothing_that_is_not_state() {
+fn a_block_depends_on_nothing_but_the_state() {
     let mixes = [Mix::Weld, Mix::Hinge, Mix::SoftWeld, Mix::Prismatic, Mix::Every];
     let hit = mixes.map(|mix| Case { shape: Shape::Mesh, mix, start: Start::Hit, seed: 1 });
     // The last case has geometric stiffness.

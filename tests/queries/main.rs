@@ -174,8 +174,8 @@ fn check(world: &World, filter: QueryFilter, query: Query, answer: &Answer, tall
     }
 }
 
-/// A list must contain all shapes that overlap and no others, in slot order. Shapes whose surface is within the
-/// tolerance are not checked.
+/// A list must contain all shapes that overlap and no others, in slot order. Shapes within the tolerance of touching
+/// are not checked.
 fn check_list(
     solids: &[Solid],
     found: &[ShapeId],

@@ -111,17 +111,17 @@ fn an_explosion_pushes_a_ring_evenly_and_welds_pull_it_back() {
     let mut ring = Vec::new();
     for i in 0..12 {
         let place = Angle::from_turns(num(i) / 12).direction().widen().scale(fx!(8));
-        let bar = stage.add(place, ball(fx!(0.5)));
-        let joint = stage.join(JointDef::new(ground, bar, weld).anchor_a(place));
-        ring.push((bar, joint, place));
+        let body = stage.add(place, ball(fx!(0.5)));
+        let joint = stage.join(JointDef::new(ground, body, weld).anchor_a(place));
+        ring.push((body, joint, place));
     }
     let blast = Explosion { radius: fx!(7), falloff: fx!(3), ..Explosion::new(Vec2::ZERO, fx!(10)) };
     stage.world.explode(&blast).expect("valid");
     // The nearest point is 7.5 m away: 10 N s/m times (1 - 0.5 / 3), times a width of 1 m.
     let speed = fx_div(fx!(25 / 3), stage.body(ring[0].0).mass()).expect("positive");
-    for &(bar, _, place) in &ring {
-        near(stage.velocity(bar).length(), speed, fx!(0.01));
-        near(stage.velocity(bar).dot(place), speed * 8, fx!(0.1));
+    for &(body, _, place) in &ring {
+        near(stage.velocity(body).length(), speed, fx!(0.01));
+        near(stage.velocity(body).dot(place), speed * 8, fx!(0.1));
     }
     for tick in 0..600 {
         let angle = Angle::from_turns(num(tick) / 360);
@@ -134,9 +134,9 @@ fn an_explosion_pushes_a_ring_evenly_and_welds_pull_it_back() {
     }
     // A sixth of a turn per second.
     let turn = lockstep2d::math::PI / 3;
-    for &(bar, _, place) in &ring {
-        near(stage.place(bar).distance(place), fx!(0), fx!(0.01));
-        near(stage.body(bar).angular_velocity(), turn, fx!(0.01));
+    for &(body, _, place) in &ring {
+        near(stage.place(body).distance(place), fx!(0), fx!(0.01));
+        near(stage.body(body).angular_velocity(), turn, fx!(0.01));
     }
 }
 

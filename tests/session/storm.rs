@@ -99,9 +99,9 @@ pub(crate) struct Figures {
 pub(super) const HEAL: Us = 20 * S;
 /// Time after `HEAL` within which all peers must be seated.
 pub(super) const SEATED: Us = 12 * S;
-const MOVED: Us = 3 * S; // Time within which all seated peers should advance.
-
-/// Events that are planned for this time happen after all other checks.
+/// Time within which all seated peers should advance.
+const MOVED: Us = 3 * S;
+/// Events that are planned for this time happen after the match has been checked for healing.
 const LATE: Us = 100 * S;
 
 pub(super) struct Match {

@@ -12,7 +12,7 @@ const MAX: u128 = if cfg!(debug_assertions) { 3000 } else { 1000 };
 /// Shortest time that is judged: below it, the overhead of a tick counts more than its work.
 const JUDGED: Duration = Duration::from_millis(10);
 
-/// Returns the processor time of this thread, or elsewhere than on Linux the time of the clock.
+/// Returns the processor time of this thread or, where the system does not report it, the time of the clock.
 pub(super) fn computed() -> Duration {
     let known = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let nanoseconds = known.as_deref().and_then(|text| text.split(' ').next()?.parse().ok());

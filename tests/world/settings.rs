@@ -48,7 +48,7 @@ fn a_stack_stays_at_rest_when_the_length_of_sub_steps_changes() {
             // from 4 to 16 sub-steps.
             assert!(fastest < fx!(0.015), "from {from} to {to} at {tick_rate}: {fastest} m/s");
             for (now, then) in heights(&world).iter().zip(&before) {
-                // Contacts have 30 Hz in all cases, except where an eighth of the sub-step rate is the limit.
+                // The contact stiffness is 30 Hz in all cases, unless an eighth of the sub-step rate is less.
                 let moved = (*now - *then).abs();
                 assert!(moved < fx!(0.005), "from {from} to {to} at {tick_rate}: moved by {moved}");
             }
