@@ -10,9 +10,10 @@
 //! dw/dt = A (c - x) x (force - density field) / (M k^2)  - s angular_drag (w - w_medium)
 //! ```
 //!
-//! `field` is the acceleration that the medium feels as well: gravity and the accelerations and attractions of all
-//! areas at the body. `u` is the velocity of the medium: the sum of `flow` and the velocity of the area's body. The
-//! effects of several areas add up.
+//! `x` is the body's centre of mass, and `k` its radius of gyration. `field` is the acceleration that acts on the
+//! medium as well as on the body: gravity and the accelerations and attractions of all areas at the body. `u` is the
+//! velocity of the medium, the sum of `flow` and the velocity of the area's body, and `w_medium` is the angular
+//! velocity of the area's body. The effects of several areas add up.
 
 use serde::{Deserialize, Serialize};
 
@@ -125,13 +126,13 @@ pub enum Falloff {
 }
 
 impl Area {
-    /// An area without any effect.
+    /// Creates an area without any effect.
     #[must_use]
     pub fn new() -> Self {
         Area::default()
     }
 
-    /// A fluid of a density in kg/m², without drag.
+    /// Creates a fluid with a density in kg/m², without drag.
     #[must_use]
     pub fn fluid(density: Fx) -> Self {
         Area { density, ..Area::default() }

@@ -131,7 +131,7 @@ define_handle! {
     /// let door = world.spawn(&BodyDef::dynamic(), &[])?;
     /// let hinge: JointId = world.add_joint(&JointDef::new(frame, door, Revolute::new()))?;
     /// assert_eq!(world.joints_of(door), [hinge]);
-    /// // A joint goes with either of its bodies.
+    /// // A joint is removed with either of its bodies.
     /// world.despawn(door)?;
     /// assert!(world.joint(hinge).is_none());
     /// # Ok::<(), lockstep2d::body::WorldError>(())
@@ -179,8 +179,8 @@ impl<T> ArenaRange<'_, T> {
     }
 }
 
-/// Largest number of slots that is decoded: the capacity of a world plus some retired slots. A vacant slot takes 5
-/// bytes in a file and hundreds in memory, so the length of a file alone does not bound the allocation.
+/// Largest number of slots that decoding accepts: the capacity of a world plus some retired slots. A vacant slot takes
+/// 5 bytes in a file and hundreds in memory, so the length of a file alone does not bound the allocation.
 const DECODED_SLOTS_MAX: usize = (1 << 20) + (1 << 12);
 
 fn slots_within_limit<'de, T, D>(deserializer: D) -> Result<Vec<Slot<T>>, D::Error>

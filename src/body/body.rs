@@ -351,8 +351,8 @@ impl Body {
         self.clamp_velocity();
     }
 
-    /// Velocity change in one sub-step, of `v` by the applied force and of `u` by the applied torque, at `rate`
-    /// sub-steps per second: `dv = F / (m rate)`, `du = torque / (m k rate)`.
+    /// Returns the changes of `v` and `u` by the applied force and torque in one sub-step, at `rate` sub-steps per
+    /// second: `dv = F / (m rate)`, `du = torque / (m k rate)`.
     pub(crate) fn acceleration_step(&self, rate: u32) -> (Vec2<Speed>, Speed) {
         self.step_by(self.force, self.torque, rate)
     }

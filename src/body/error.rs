@@ -32,7 +32,7 @@ pub enum GeometryError {
     },
     /// The outline is concave, clockwise, collinear, or crosses itself.
     NotConvex {
-        /// First vertex of an edge that has another vertex on its outer side.
+        /// First vertex of an edge that has another vertex on its outer side or on its line.
         vertex: u64,
     },
     /// The chain has fewer than 2 points (3 if it is closed), or more than 4096 links.
@@ -119,7 +119,8 @@ pub enum WorldError {
         /// The coordinate in metres.
         value: Fx,
     },
-    /// A speed exceeds the limit of the world, in m/s; for angular velocity, in rad/s times the radius of gyration.
+    /// A speed exceeds the limit of the world, or a sleep speed is not within 0 to 400 m/s. The speed of a rotation is
+    /// the angular velocity in rad/s times the radius of gyration.
     SpeedOutOfRange {
         /// The requested speed.
         value: Fx,
@@ -159,7 +160,7 @@ pub enum WorldError {
     },
     /// A joint connects a body to itself.
     JointToItself(BodyId),
-    /// The new definition of a joint has other bodies than the joint, which cannot be changed.
+    /// The new definition of a joint names other bodies. The bodies of a joint cannot be changed.
     JointOfOtherBodies(JointId),
     /// The joint does not have the part that the change addresses, such as a motor.
     JointWithout {

@@ -123,7 +123,7 @@ impl MassProperties {
         fx_mul(fx_mul(self.mass, self.gyration), self.gyration)
     }
 
-    /// Another mass with the same centre and radius of gyration: a body of another density.
+    /// Returns the properties with another mass but the same centre and radius of gyration, as for another density.
     #[must_use]
     pub const fn with_mass(self, mass: Fx) -> Self {
         MassProperties { mass, ..self }

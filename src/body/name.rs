@@ -42,7 +42,7 @@ impl Name {
     /// Creates a name.
     ///
     /// # Errors
-    /// [`WorldError::NameInvalid`] if it is empty, longer than 16 bytes, or has another character.
+    /// [`WorldError::NameInvalid`] if the text is empty, longer than 16 bytes, or contains any other character.
     pub fn new(text: &str) -> Result<Self, WorldError> {
         let mut bytes = [0; LENGTH_MAX];
         let room = bytes.get_mut(..text.len()).ok_or(WorldError::NameInvalid)?;

@@ -12,7 +12,7 @@ pub const POLYGON_VERTICES_MAX: usize = 8;
 
 /// Largest extent of a shape from its centre on each axis of its own frame, radius included, in metres. Rotated by any
 /// angle, the shape stays within 156 m. If the boxes of two shapes are at most 15 m apart, a vertex of one is at most
-/// three times 156 m plus 15 m from a vertex of the other, which is within the range of [`Length`].
+/// three times 156 m plus 15 m from the centre of the other on each axis, which is within the range of [`Length`].
 pub const SHAPE_EXTENT_MAX: Fx = crate::fx!(110);
 
 /// Smallest edge length in metres, about 2000 units of [`Length`]: a shorter edge has no reliable direction.
@@ -66,9 +66,9 @@ impl TryFrom<Repr> for Polygon {
 impl Polygon {
     /// Creates a polygon from its vertices in counter-clockwise order, in metres from the shape's centre.
     ///
-    /// Avoid corners that are nearly flat and spikes that are nearly closed. Below an angle of about 0.0001 rad the
-    /// directions of the two edges are hard to distinguish, and a point beside one edge may be classified as beside the
-    /// other, over a range of some centimetres.
+    /// Avoid corners that are nearly flat and spikes that are nearly closed. If the lines of the two edges differ by
+    /// less than about 0.0001 rad, a point beside one edge may be classified as beside the other, over a range of some
+    /// centimetres.
     ///
     /// # Errors
     /// If there are not 3 to 8 vertices, or vertices are out of range, closer than 0.5 mm, clockwise, collinear or not

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Counter in the state of how long a body has been at rest. Its meaning depends on the kind of body:
+/// Counter of the ticks for which a body has been at rest; part of the state. Its meaning depends on the kind of body:
 ///
 /// | kind | value |
 /// |---|---|
@@ -19,7 +19,7 @@ impl RestTicks {
     /// Not at rest.
     pub(crate) const NONE: Self = RestTicks(0);
 
-    /// The number in the state.
+    /// Returns the counter as stored in the state.
     pub(crate) const fn to_bits(self) -> u32 {
         self.0
     }

@@ -95,8 +95,8 @@ pub struct BodySettings {
     pub continuous: Continuous,
     /// Whether the body may fall asleep.
     pub may_sleep: bool,
-    /// Speed in m/s below which the body becomes ready to sleep, 0 to 400. It also limits twice the angular velocity
-    /// times the radius of gyration, which is about the speed of the body's outline.
+    /// Speed in m/s below which the body becomes ready to sleep, 0 to 400. The same limit applies to twice the angular
+    /// velocity times the radius of gyration, which is about the speed of the body's outline.
     pub sleep_speed: Fx,
 }
 

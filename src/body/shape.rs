@@ -19,9 +19,9 @@ use crate::math::{Aabb, Angle, Fx, Vec2};
 /// overflow.
 pub const WORLD_EXTENT_MAX: Fx = fx!(1073741824);
 
-/// Largest distance in metres, on each axis of the body's frame, of a shape of a movable body or of a joint anchor from
-/// the body's origin. The centre of mass is within the same range, so lever arms are at most 363 m long at any rotation
-/// of the body, and fit `Length`.
+/// Largest distance in metres of a shape or a joint anchor from the origin of a movable body, on each axis of the
+/// body's frame. The centre of mass is within the same range, so lever arms are at most 363 m long at any rotation of
+/// the body, and fit `Length`.
 pub const REACH_MAX: Fx = fx!(128);
 
 /// Largest number of shapes of one body: the cost of a change to a body grows with its shapes.
@@ -329,12 +329,12 @@ impl Shape {
         self.def.area.as_ref()
     }
 
-    /// Whether the shape is an area that acts on another shape, if that belongs to a dynamic body.
+    /// Whether the shape is an area that acts on another shape, provided that the body of the other shape is dynamic.
     pub(crate) fn acts_on(&self, other: &Shape) -> bool {
         self.def.area.is_some() && !other.is_sensor() && self.detects(other)
     }
 
-    /// Whether the shape is a sensor whose switches, and those of another shape, let it detect the other one.
+    /// Whether the shape is a sensor, and the event switches of both shapes let it detect the other shape.
     pub(crate) fn detects(&self, other: &Shape) -> bool {
         let (own, seen) = (&*self.def, &*other.def);
         own.sensor && seen.events.sensor && (!seen.sensor || own.events.detect_sensors)

@@ -19,7 +19,7 @@ use super::vec2::Vec2;
 pub const PI: Fx = Fx::from_bits(13_493_037_705);
 /// 2 pi: radians in a turn.
 pub const TAU: Fx = Fx::from_bits(26_986_075_409);
-/// Radians in a degree. Each multiplication scales its rounding error: prefer [`Angle::from_degrees`].
+/// Radians in a degree. A product with it multiplies the constant's rounding error: prefer [`Angle::from_degrees`].
 pub const DEGREE: Fx = Fx::from_bits(74_961_321);
 
 /// An angle, counter-clockwise, as a fraction of a turn. Sums and differences wrap.

@@ -28,7 +28,7 @@ pub type Unit = FixedI32<U30>;
 pub type Ratio = FixedI32<U24>;
 /// Rate at which a constraint error is turned into speed, in 1/s: ±8192, resolution 3.8e-6.
 pub type Rate = FixedI32<U18>;
-/// Friction limit of a tangent row per unit of its normal row, `mu Dt / Dn`: ±2048, resolution 9.5e-7.
+/// Friction limit of a tangent row per unit of the normal impulse, `mu Dt / Dn`: ±2048, resolution 9.5e-7.
 pub type FrictionRatio = FixedI32<U20>;
 
 /// `x / 2^shift`, rounded to nearest, ties towards +infinity. `shift` may be 0.
@@ -162,7 +162,7 @@ pub const fn fx_mul(a: Fx, b: Fx) -> Fx {
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "the truncated bits are compared")]
 pub(super) const fn round_product(x: i128) -> i64 {
-    // `halves` is in units of half the resolution. Nearly always it fits 64 bits, and is rounded there.
+    // `halves` is in units of half the resolution. It nearly always fits 64 bits, where rounding is fast.
     let halves = x >> 31;
     let low = halves as i64;
     if low as i128 == halves { (low >> 1) + (low & 1) } else { saturate_wide(round_shift_wide(x, 32)) }

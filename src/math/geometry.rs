@@ -49,8 +49,8 @@ pub fn orientation(a: Vec2<Fx>, b: Vec2<Fx>, c: Vec2<Fx>) -> Orientation {
 /// Whether a point lies in a simple polygon, convex or not, of either winding: exact. The border and the corners belong
 /// to the polygon. Fewer than three corners are a segment, a point or the empty set.
 ///
-/// Counts the edges that a ray to the right crosses. An edge includes its lower end and not its upper one, so a ray
-/// through a corner counts it once where the border crosses the ray, and twice or never where the border turns back.
+/// Counts the edges that a ray to the right crosses. An edge includes its lower end and not its upper one, so a corner
+/// on the ray counts once where the border crosses the ray, and twice or not at all where the border turns back.
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Vec2, point_in_polygon}};

@@ -84,7 +84,7 @@ impl Mat2<Fx> {
         let Mat2 { a11, a12, a21, a22 } = self;
         let plus = a11.to_bits() as i128 * a22.to_bits() as i128;
         let minus = a12.to_bits() as i128 * a21.to_bits() as i128;
-        // The determinant in units of 2^-64. It exceeds i128 by one unit if all entries are at the ends of their range.
+        // The determinant in units of 2^-64. Its magnitude is at most 2^127 - 2^63, so that it always fits.
         let determinant = plus.saturating_sub(minus);
         if determinant == 0 {
             return None;

@@ -77,7 +77,7 @@ impl Reciprocal {
         Fx::from_bits(saturate_wide(rounded))
     }
 
-    /// Mantissa, 0 or 2^30 to 2^31 - 1, and exponent, 0 to 63: the reciprocal is `mantissa / 2^shift`.
+    /// Returns the mantissa, 0 or 2^30 to 2^31 - 1, and the shift, 0 to 63: the reciprocal is `mantissa / 2^shift`.
     #[inline]
     #[expect(clippy::cast_possible_wrap, reason = "at most 63")]
     pub(crate) const fn parts(self) -> (i32, i32) {

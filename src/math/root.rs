@@ -245,8 +245,8 @@ const fn root_wide(n: u128) -> u128 {
     if n == 0 {
         return 0;
     }
-    // `m / sqrt(m)` for the upper half of `n 2^shift` has 32 bits. The rest of `n` extends it to 63 bits, as
-    // `(n - r^2) / (2 sqrt(n))`. The loops below compare exact squares to correct the last unit.
+    // `m` is the upper half of `n 2^shift`. `m / sqrt(m)` gives 32 bits of the root `r`, and the correction
+    // `(n - r^2) / (2 sqrt(n))` extends them to 63. The two loops correct the last unit by comparing exact squares.
     let shift = n.leading_zeros() & !1;
     let m = high_half(n << shift);
     let inverse = inverse_root(m); // 2^63 / sqrt(m)

@@ -86,7 +86,7 @@ impl Rot {
         self.inverse().apply_wide(v)
     }
 
-    /// Rotation by this and then by another rotation, which adds the angles; each component is rounded once.
+    /// Returns this rotation followed by another, which adds the angles; each component is rounded once.
     #[inline]
     #[must_use]
     pub fn then(self, other: Self) -> Self {

@@ -136,8 +136,8 @@ mod tests {
             let (sin, _) = slow_sin_cos(angle);
             largest = largest.max((i128::from(sine(angle)) * (1 << 30) - sin).abs());
         }
-        // The error in thousandths of 2^-30. Its limit is below that of the module's docs, as this sweep is not
-        // exhaustive.
+        // The error in thousandths of 2^-30. The limit is just below the documented 0.79 units, because this sweep is
+        // not exhaustive.
         let thousandths = (largest * 1000) >> 30;
         assert!(
             (500..=789).contains(&thousandths),

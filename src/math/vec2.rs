@@ -223,7 +223,7 @@ impl Vec2<Fx> {
 const fn sum_of_products(a: Fx, x: Fx, b: Fx, y: Fx, sign: i128) -> Fx {
     let ax = a.to_bits() as i128 * x.to_bits() as i128;
     let by = b.to_bits() as i128 * y.to_bits() as i128;
-    // Two products of 64-bit numbers stay within 127 bits, except if all four numbers are `i64::MIN`.
+    // The sum of two products of 64-bit numbers fits an `i128`, unless all four numbers are `i64::MIN`.
     Fx::from_bits(round_product(ax.saturating_add(sign * by)))
 }
 

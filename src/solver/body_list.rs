@@ -64,7 +64,7 @@ impl BodyFacts {
     }
 }
 
-/// Tolerance of bodies that contacts do not turn: a quarter of the range of a kept arm.
+/// Tolerance of bodies that contacts do not turn, in units of 2^-17 m: a quarter of the range of a kept arm.
 const ARM_TOLERANCE_MAX: u16 = 1 << 14;
 
 /// The arm tolerance of a body: between a 32nd and a 16th of its radius of gyration, in units of 2^-17 m, at most
@@ -169,7 +169,7 @@ impl BodyList {
         &self.facts[index as usize]
     }
 
-    /// The body of a slot.
+    /// Returns the body in a slot, or the ground if that body is not among the bodies of the tick.
     pub(super) fn body(&self, slot: u32) -> &SolverBody {
         &self.bodies[self.index_of(slot) as usize]
     }

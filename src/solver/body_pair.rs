@@ -88,7 +88,7 @@ impl Remainder {
     }
 }
 
-/// A speed after a change, saturated. Adds the remainder to the change and replaces it by the new one.
+/// Returns the speed after a change, saturated. Adds the last remainder to the change, and stores the new remainder.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "the remainder is at most half a unit, 2^29")]
 fn rounded_sum(speed: Speed, change: i64, remainder: &mut i32) -> Speed {

@@ -101,8 +101,9 @@ pub(crate) struct PointBlock {
     e_b: Vec2<Ratio>,
     g_a: Symmetric<Unit>,
     g_b: Symmetric<Unit>,
-    /// `f` with 30 fraction bits, in 64 bits, because it may be as large as `e` in a soft block.
+    /// `f` of A with 30 fraction bits, in 64 bits, because it may be as large as `e` in a soft block.
     f_a: Vec2<i64>,
+    /// `f` of B, in the same format.
     f_b: Vec2<i64>,
 }
 

@@ -72,7 +72,7 @@ impl MassFractions {
     }
 }
 
-/// `a e e'` with 30 fraction bits, at most 16 129. Rounding `a e` first would cost 7 of the 24 bits of `e`.
+/// `a e e'` with 30 fraction bits, at most 2^14. Rounding `a e` first would cost 7 of the 24 bits of `e`.
 #[inline]
 pub(super) fn turning(fraction: Unit, e: Ratio, other: Ratio) -> i64 {
     let square = i64::from(e.to_bits()) * i64::from(other.to_bits());

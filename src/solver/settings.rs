@@ -150,14 +150,16 @@ pub(crate) struct Tuning {
     /// Sub-steps per second.
     pub(crate) rate: u32,
     pub(crate) iterations: u32,
-    /// Softness of contacts between two dynamic bodies, and of contacts with a body that is not dynamic.
+    /// Softness of contacts between two dynamic bodies.
     pub(crate) contact: Softness,
+    /// Softness of contacts with a body that is not dynamic.
     pub(crate) contact_immovable: Softness,
     pub(crate) slop: Step,
     pub(crate) push_speed: Speed,
-    /// Softness of joints, and of the anchors of anchored hinges, which hold a body without any other joint to a body
-    /// that is not dynamic.
+    /// Softness of joints.
     pub(crate) joint: Softness,
+    /// Softness of the anchors of anchored hinges, which hold a body without any other joint to a body that is not
+    /// dynamic.
     pub(crate) anchored: Softness,
     pub(crate) relax: bool,
     pub(crate) speed_max: Speed,

@@ -65,7 +65,7 @@ impl Softness {
         narrow(Fx::ONE.saturating_add(give.min(fx!(0.9))))
     }
 
-    /// A sort key.
+    /// Returns the bits of the coefficients, as a sort key.
     pub(crate) fn to_bits(self) -> [i32; 3] {
         [self.bias_rate.to_bits(), self.mass_scale.to_bits(), self.impulse_scale.to_bits()]
     }

@@ -286,7 +286,7 @@ impl Lanes<WIDTH> for Avx512 {
     }
 }
 
-/// Products of the lower halves, in inline assembly for the reason given in [`super::avx2`].
+/// Products of the lower halves, in inline assembly for the reason given at `multiplied` in `avx2.rs`.
 #[inline]
 #[target_feature(enable = "avx512f")]
 unsafe fn multiplied(a: __m512i, b: __m512i) -> __m512i {

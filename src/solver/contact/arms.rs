@@ -10,7 +10,8 @@ use crate::simd::{Ints, Lanes, Quad, shift};
 /// so that sums and differences wrap as kept arms do.
 const LENGTH_TO_ARM: i32 = shift(17 + 16 - Length::FRAC_NBITS);
 
-/// The words of [`KeptArms`](crate::collision::KeptArms), and the bound below which the arms have changed little.
+/// Returns the words of [`KeptArms`](crate::collision::KeptArms), and the bound on the change of an arm that is kept: 0
+/// if the points are not those of the last tick.
 #[inline(always)]
 pub(super) fn last_arms(memory: &Contact, manifold: &Manifold, tolerance: u16) -> Quad {
     let [a, b] = manifold.both_points();
@@ -62,7 +63,7 @@ impl<L: Lanes<N>, const N: usize> Places<L, N> {
 }
 
 /// Moves a place so that its arm equals that of the last tick, in each coordinate whose difference is below the bound.
-/// Returns whether both are. Stores the arm to be kept.
+/// Stores the arm to be kept. Returns whether both coordinates are those of the last tick.
 #[inline(always)]
 fn keep<L: Lanes<N>, const N: usize>(
     last: L::Int,
@@ -79,7 +80,7 @@ fn keep<L: Lanes<N>, const N: usize>(
     L::both(x_kept, y_kept)
 }
 
-/// [`keep`] along one axis. Returns the coordinate to be kept. `last` is in the high bits.
+/// [`keep`] along one axis. Returns the coordinate to be kept, and whether it is `last`, which is in the high bits.
 #[inline(always)]
 fn keep_axis<L: Lanes<N>, const N: usize>(
     last: L::Int,

@@ -1,5 +1,5 @@
-//! Restitution, moving surfaces, rolling resistance and hit events. Few contacts have any of these. Their data is stored
-//! separately from the batches, so that it does not use cache space for all other contacts.
+//! Restitution, moving surfaces, rolling resistance and hit events. Few contacts have any of these. Their data is
+//! stored separately from the batches, so that it does not use cache space for all other contacts.
 
 use super::batch::Batch;
 use super::input::ContactSource;
@@ -20,7 +20,7 @@ pub(in crate::solver) struct ContactExtras<const N: usize> {
     pub(super) pushed: [Ints<N>; 2],
     /// For each point, the impulse of restitution in this sub-step.
     pub(super) bounce: [Ints<N>; 2],
-    /// Relative speed of the surfaces by themselves, against the tangent.
+    /// Sum of the surface speeds of the two shapes, against the tangent.
     pub(super) surface_speed: Ints<N>,
     /// Whether any lane has rolling resistance.
     pub(super) rolls: bool,

@@ -4,8 +4,8 @@
 //! L_tick = sum of (L + L_restitution) over the sub-steps
 //! ```
 //!
-//! Every sub-step applies the whole accumulated impulse `L`: first the part that the warm start applies, then what the
-//! passes change of it.
+//! Every sub-step applies the whole accumulated impulse `L`: the warm start applies the value of the last sub-step, and
+//! the passes apply its changes.
 
 use super::super::batches::{BatchParts, Operation};
 use super::Contacts;

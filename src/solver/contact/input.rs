@@ -23,10 +23,10 @@ pub(crate) struct ActiveContact {
     pub(crate) shapes: Pair,
     pub(crate) bodies: (u32, u32),
     pub(crate) surface: Surface,
-    /// Whether the shapes may approach each other so fast that the impulses of the last tick are no guess for those of
-    /// this tick.
+    /// Whether the shapes may approach each other so fast that the impulses of the last tick are no initial guess for
+    /// those of this tick.
     pub(crate) is_impact: bool,
-    /// Whether the shapes approach each other fast enough for a hit event, which tells the impulse of the tick.
+    /// Whether the shapes approach each other fast enough for a hit event, which reports the impulse of the tick.
     pub(crate) is_hit: bool,
     /// Whether the contact needs more than rows along the normal and the tangent: if its surface has extras or it is a
     /// hit.
@@ -53,13 +53,13 @@ impl Prospect {
         self.0 = (self.0 | flags | Self::CONTACT) + walls * Self::FLAGS;
     }
 
-    /// Whether the body has contacts, and for none of them the impulses of the last tick are a guess for those of this
-    /// tick.
+    /// Whether the body has contacts, but no initial guess of their impulses.
     fn is_cold(self) -> bool {
         self.0 & Self::CONTACT != 0 && !self.has_guess()
     }
 
-    /// Whether the impulses of the last tick are a guess for those of this tick.
+    /// Whether the impulses of the last tick are an initial guess for those of this tick: a contact of the body had
+    /// points, and the body is not wedged.
     fn has_guess(self) -> bool {
         self.0 & Self::WARM != 0 && !self.is_wedged()
     }
@@ -101,7 +101,7 @@ pub(super) struct Input {
     pub(super) extras: bool,
     /// The normal, and the mass fractions of A and B.
     pub(super) shares: Quad,
-    /// `1 / k` of A and B: their mantissas, and their exponents.
+    /// `1 / k` of A and B: the two mantissas, then the two shifts.
     pub(super) gyrations: Quad,
     /// Vectors from the centres of mass of A and B to the manifold's origin.
     pub(super) to_origin: Quad,
@@ -109,8 +109,8 @@ pub(super) struct Input {
     pub(super) anchors: Quad,
     /// The arms of the last tick: see [`last_arms`].
     pub(super) last_arms: Quad,
-    /// Impulses of the last tick, `p = L / D`: along the normal of each point, and along the tangent. The number of
-    /// points.
+    /// Impulses of the last tick, `p = L / D`: along the normal of each point, and along the tangent. The last number
+    /// is the number of points.
     pub(super) carried: Quad,
     /// The separations of the points, in the format of a step, the friction, and the distance of the surfaces half-way
     /// between the points.

@@ -9,9 +9,9 @@
 //! vA -= gA d n,  uA -= fA d,  vB += gB d n,  uB += fB d
 //! ```
 //!
-//! Each operation on a batch has a file of its own: `warm_start`, `solve` (which has the equation above), `relax`,
-//! `restitution` and `hit`. `prepare` fills the batches of a tick, `rows` computes their rows, and `store` returns the impulses
-//! to the state. `overflow_policy` has the two ways to keep numbers within their formats.
+//! Each operation on a batch has a file of its own: `warm_start`, `solve` (the equations for `w` and `L'`), `relax`,
+//! `restitution` and `hit`. `prepare` fills the batches of a tick, `rows` computes their rows, and `store` returns the
+//! impulses to the state. `overflow_policy` has the two ways to keep numbers within their formats.
 //!
 //! Differences of two velocities fit because each velocity is below 512 m/s. A sum that may not fit saturates. Lanes
 //! without a contact have gains of 0, so that their other numbers do not matter.
@@ -59,14 +59,14 @@ pub(super) use warm_start::WarmStart;
 /// Largest impulse of friction and of rolling resistance. The difference of two such impulses fits the format.
 const TANGENT_MAX: Speed = Speed::lit("511");
 
-/// Number of passes in which elastic contacts that bounce at the same time are solved against each other: a body in a
-/// corner. With one pass a box in a closed room gained half of its energy within a minute.
+/// Number of passes in which elastic contacts that bounce at the same time, such as those of a body in a corner, are
+/// solved against each other. With one pass a box in a closed room gained half of its energy within a minute.
 const RESTITUTION_PASSES: u32 = 12;
 
 /// All contacts of a tick.
 ///
-/// A contact is cold if for neither of its bodies the impulses of the last tick are a guess for those of this tick: it
-/// has none, or one of its contacts is an impact. Cold contacts need more iterations.
+/// A contact is cold if neither of its bodies has an initial guess of its impulses: the body had no contact points in
+/// the last tick, or an impact may drive it between two walls. Cold contacts need more iterations.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactSet {
     warm: BatchList<Contacts>,
@@ -110,7 +110,7 @@ impl ContactSet {
         self.features.hits
     }
 
-    /// Whether a contact of a body of the tick may bounce, by index.
+    /// Whether any contact of a body may bounce. `body` is its index among the bodies of the tick.
     pub(super) fn bounces(&self, body: u32) -> bool {
         self.prospects[body as usize].bounces()
     }

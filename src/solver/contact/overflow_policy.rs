@@ -27,8 +27,9 @@ use crate::simd::{Lanes, VelocityW};
 
 pub(super) const FRICTION_RATIO: i32 = shift(FrictionRatio::FRAC_NBITS);
 
-/// Largest lever ratio and largest friction ratio of unchecked contacts.
+/// Largest lever ratio of unchecked contacts.
 const UNCHECKED_RATIO: Ratio = Ratio::lit("3");
+/// Largest friction ratio of unchecked contacts.
 const UNCHECKED_FRICTION_RATIO: FrictionRatio = FrictionRatio::lit("3.5");
 /// Largest factor between a separation and a speed in unchecked contacts.
 const UNCHECKED_RATE: Rate = Rate::lit("512");
@@ -36,7 +37,8 @@ const UNCHECKED_RATE: Rate = Rate::lit("512");
 /// Base-2 logarithm of the bound of speeds and impulses, 64 m/s, and of displacements, 2 m, in units of their formats.
 const LARGE_BITS: u32 = 6 + Speed::FRAC_NBITS;
 const _: () = assert!(LARGE_BITS == 1 + Shift::FRAC_NBITS);
-/// Bits of the bound on changes of an impulse, 4 m/s, and on separations in a solve, 1/8 m.
+/// Base-2 logarithm of the bound of changes of an impulse, 4 m/s, and of separations in a solve, 1/8 m, in the same
+/// units.
 const SMALL_BITS: u32 = 2 + Speed::FRAC_NBITS;
 const _: () = assert!(SMALL_BITS + 3 == Shift::FRAC_NBITS);
 
@@ -90,7 +92,7 @@ impl<'a, L: Lanes<N>, const N: usize> Saturating<'a, L, N> {
         Saturating { faults, counted: L::greater(L::splat(1), L::splat(0)) }
     }
 
-    /// Counts the faults among some lanes.
+    /// Counts a fault for each lane of the mask that is among the counted lanes.
     #[inline(always)]
     fn count(&mut self, out: L::Mask) {
         if L::any(out) {
@@ -180,9 +182,10 @@ fn apply_in_steps<L: Lanes<N>, const N: usize>(
 
 /// Does not check sums. Records whether all numbers were within their bounds; see [`Unchecked::held`].
 pub(super) struct Unchecked<L: Lanes<N>, const N: usize> {
-    /// Bitwise OR of all numbers so far that must be within a bound, with the bound added to each. The bound is a power
-    /// of two, so that a number within it sets no bit at or above twice the bound.
+    /// Bitwise OR of all numbers so far that must be within the bound of [`LARGE_BITS`], with the bound added to each.
+    /// The bound is a power of two, so that a number within it sets no bit at or above twice the bound.
     large: L::Int,
+    /// The same for the bound of [`SMALL_BITS`].
     small: L::Int,
 }
 

@@ -13,8 +13,9 @@ use crate::math::Unit;
 use crate::simd::{Kernel, Lanes, Machine, Scalar, prefetch};
 use crate::threads::Threads;
 
-/// Prefetch distances in batches, for the touching pairs and for the data that they refer to.
+/// Prefetch distance in batches, for the touching pairs.
 const PAIRS_AHEAD: usize = 4;
+/// Prefetch distance in batches, for the manifolds and contacts of the pairs.
 const MANIFOLDS_AHEAD: usize = 2;
 
 impl ContactSet {
@@ -50,7 +51,7 @@ impl ContactSet {
         }
         let shares = warm.coloured.iter_mut().zip(&mut cold.coloured).zip(&mut *warm_starts).enumerate();
         threads.run_team(shares, |(part, ((warm, cold), warm_starts)), _| {
-            // Counted here, because the counts of all threads are in one cache line.
+            // Counted in a local variable, because the counts of all threads are in one cache line.
             let mut own = WarmStarts::default();
             for (batches, is_cold) in [(warm, false), (cold, true)] {
                 let colours = colouring.colours(is_cold, part);

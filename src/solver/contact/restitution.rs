@@ -51,7 +51,7 @@ impl Operation<Contacts> for ObserveApproach {
 /// Applies restitution.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct ApplyRestitution {
-    /// Whether all contacts have bounced in this sub-step. Only elastic ones then bounce again.
+    /// Whether this is not the first pass of the sub-step: in later passes, only elastic contacts bounce again.
     pub(in crate::solver) again: bool,
 }
 
@@ -64,7 +64,7 @@ impl Operation<Contacts> for ApplyRestitution {
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
         let BatchParts { batch, record, extra: Some(extras), bodies, faults } = parts else { return };
         let policy = &mut Saturating::<L, N>::new(faults);
-        // Only clamps of impulses count: whether a lane is read here depends on the other lanes.
+        // Only clamps of impulses count as faults: whether a lane is read here depends on the other lanes.
         let mut unread = 0;
         let reader = &mut Saturating::<L, N>::new(&mut unread);
         let restitution = L::load(&extras.restitution);
@@ -76,7 +76,7 @@ impl Operation<Contacts> for ApplyRestitution {
         }
         let masks = [bounces::<L, N>(batch, extras, 0), bounces::<L, N>(batch, extras, 1)];
         let masks = [L::both(masks[0], takes_part), L::both(masks[1], takes_part)];
-        // All other lanes keep their bits.
+        // Lanes that are not active keep their bits.
         let active = L::either(masks[0], masks[1]);
         if !L::any(active) {
             return;
@@ -142,7 +142,7 @@ impl<const N: usize> Rebound<N> {
     const NONE: Self = Rebound { old: Ints::ZERO, new: Ints::ZERO, before: Ints::ZERO, after: Ints::ZERO };
 }
 
-/// The share of the rebound of each lane with which the impulses of its points over the tick do no work,
+/// Returns the share of each lane's rebound at which the impulses of its points in the sub-step add no energy:
 ///
 /// ```text
 /// W = sum P (v+ + v-) / 2 <= 0        P = L / D
@@ -151,7 +151,7 @@ impl<const N: usize> Rebound<N> {
 /// A restitution above 1 is meant to do work, and is not limited.
 ///
 /// Newton's restitution gains energy where the rebound of one point adds to that of another. `W` is convex in the
-/// share, so that a line between no rebound and all of it is above it.
+/// share, so that it is at most the line from its value without a rebound to its value with the full rebound.
 fn shares_without_gain<const N: usize>(
     batch: &Batch<N>,
     extras: &ContactExtras<N>,

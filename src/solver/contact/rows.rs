@@ -31,8 +31,9 @@ struct ContactSide<L: Lanes<N>, const N: usize> {
     fraction: L::Int,
     /// Vector from the centre of mass to the origin of the manifold.
     to_origin: [L::Int; 2],
-    /// `1 / k`, and the shift from a product with it to the format of a lever ratio.
+    /// Mantissa of `1 / k`.
     mantissa: L::Int,
+    /// Shift from a product with the mantissa to the format of a lever ratio.
     shift: L::Int,
 }
 
@@ -85,7 +86,7 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
         2 => [half_way::<L, N>(first[0], second[0]), half_way::<L, N>(first[1], second[1])],
         _ => first,
     };
-    // The surfaces slide on each other at two places while there is a gap.
+    // While there is a gap, friction acts on the surfaces of A and B at different points.
     let half = L::narrow::<1>(L::mul(gap, one));
     let lift_x = L::narrow::<RATIO>(L::mul(n[0], half));
     let lift_y = L::narrow::<RATIO>(L::mul(n[1], half));

@@ -30,7 +30,7 @@ use crate::simd::{Ints, Lanes};
 /// rounds by 1 mm. In a pile at rest the first round is usually enough: a pyramid of 5050 boxes costs a tenth more.
 const NORMAL_ROUNDS_MAX: u32 = 4;
 
-/// Change of the second point's impulse, in m/s, below which it does not affect the first point.
+/// Change of the second point's impulse, in m/s, below which the points are not solved again.
 const SETTLED: Speed = Speed::lit("0.005");
 
 /// Normal velocity below which an overlap with a body that no impulse moves is as rigid as a gap. A soft contact would

@@ -120,7 +120,7 @@ pub(crate) struct ContactResults {
     pub(crate) hit_impulses: Vec<Speed>,
 }
 
-/// Where impulses are stored: the contacts of the state, and the results of the tick.
+/// Destination of the impulses: the contacts of the state, and the results of the tick.
 #[derive(Clone, Copy)]
 pub(in crate::solver) struct ContactStore<'a> {
     contacts: Shared<'a, Contact>,
@@ -129,7 +129,7 @@ pub(in crate::solver) struct ContactStore<'a> {
 }
 
 impl<'a> ContactStore<'a> {
-    /// Each contact is in one batch, and so belongs to one thread.
+    /// Creates the store, and clears the results. Each contact is in one batch, and so belongs to one thread.
     pub(in crate::solver) fn new(
         contacts: &'a mut [Contact],
         results: &'a mut ContactResults,
@@ -215,7 +215,7 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
 }
 
 /// The part of a wedged body's impulse that carries a load: at most the impulse of the last tick. The rest comes from
-/// the impact. In a narrow wedge friction would keep it for ever as a stress between the walls.
+/// the impact. In a narrow wedge, friction would keep this rest for ever as a stress between the walls.
 fn load_of(impulse: PointImpulse, old: &Contact) -> PointImpulse {
     let load = old.impulse_of(Feature(impulse.feature)).unwrap_or_default();
     let most = load.tangent.abs();

@@ -10,7 +10,7 @@ pub(crate) struct Surface {
     pub(crate) restitution: Unit,
     /// Approach speed below which the shapes do not bounce.
     pub(crate) restitution_threshold: Speed,
-    /// Relative speed of the two surfaces by themselves, in m/s.
+    /// Sum of the surface speeds of the two shapes, in m/s.
     pub(crate) surface_speed: Speed,
     /// Largest torque per unit of normal force, in metres.
     pub(crate) rolling_resistance: Fx,

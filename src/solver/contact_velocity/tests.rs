@@ -1,5 +1,5 @@
-//! The velocity change that the warm start applies to a body is the one that contacts have caused. The tests of
-//! `world::tests` checks the same property for whole worlds with `contact_velocity_error`.
+//! The velocity change that the warm start applies to a body is the one that contacts have caused. `world::tests`
+//! checks the same property for whole worlds with `contact_velocity_error`.
 
 use std::vec::Vec;
 

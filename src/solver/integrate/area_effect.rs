@@ -29,7 +29,7 @@ pub(crate) struct AreaEffect {
 }
 
 impl MovingBody {
-    /// A dynamic body in areas.
+    /// Prepares a dynamic body on which areas act.
     pub(in crate::solver) fn in_areas(index: u32, body: &Body, effect: &AreaEffect, tuning: &Tuning) -> Self {
         let AreaEffect { acceleration, angular_acceleration, force, torque, linear_drag, angular_drag } =
             *effect;

@@ -12,8 +12,9 @@ pub(super) struct CacheKey {
     definitions: Option<Definitions>,
     /// Number of times that joints have been restored.
     returns: u64,
-    /// The slots of the joints and of the bodies of the tick.
+    /// The slots of the joints of the tick.
     joints: Vec<u32>,
+    /// The slots of the bodies of the tick.
     bodies: Vec<u32>,
 }
 

@@ -176,9 +176,9 @@ fn pitch_per_tooth(gear: &Gear, gap: Vec2<Fx>) -> Option<Fx> {
     (teeth != 0 && distance >= DISTANCE_MIN).then(|| distance / teeth.abs())
 }
 
-/// `s` is the length of the row for each tooth and radian. The direction of the row then has the length
-/// `(NA + NB) s / distance` along the tangent. `s` is the length on the pitch line, or that of a row on the angle if it
-/// is shorter: with a longer `s` the row would hardly move the wheels.
+/// Measures a gear. `s` is the length of the row for each tooth and radian, so that the direction of the row has the
+/// length `(NA + NB) s / distance` along the tangent. `s` is the length on the pitch line, or that of a row on the
+/// angle if the latter is shorter: with a longer `s` the row would hardly move the wheels.
 fn gear_measure(gear: &Gear, angles: [Angle; 2], inverse: [Reciprocal; 2], pose: &JointPose) -> Measure {
     let Gear { teeth_a, teeth_b } = *gear;
     let turning = widen(angular_scale(inverse, pose.fractions));
@@ -201,7 +201,7 @@ fn gear_measure(gear: &Gear, angles: [Angle; 2], inverse: [Reciprocal; 2], pose:
     measured([n, n], arms, pose, -fx_mul(scale, apart), Fx::ONE)
 }
 
-/// `rolled` is the radius times the angle of the rack relative to the wheel.
+/// Measures a rack. `rolled` is the radius times the angle of the rack relative to the wheel.
 fn rack_measure(radius: Fx, along: Vec2<Unit>, rolled: Fx, pose: &JointPose) -> Measure {
     let direction = along.widen();
     let across = |arm: Vec2<Fx>| arm.cross(direction);
@@ -211,8 +211,8 @@ fn rack_measure(radius: Fx, along: Vec2<Unit>, rolled: Fx, pose: &JointPose) -> 
     measured([along, along], arms, pose, position, Fx::ONE)
 }
 
-/// `ropes` lead from the wheels to the anchors. Both directions are scaled by one factor of at most 1, so that the
-/// direction on B, which is `ratio` times as long, fits [`Unit`].
+/// Measures a pulley. `ropes` lead from the wheels to the anchors. Both directions are scaled by one factor of at most
+/// 1, so that the direction on B, which is `ratio` times as long, fits [`Unit`].
 fn pulley_measure(ratio: Fx, ropes: [Vec2<Fx>; 2], pose: &JointPose) -> Measure {
     let [(to_a, length_a), (to_b, length_b)] = ropes
         // If an anchor coincides with its wheel, the rope counts as hanging down.

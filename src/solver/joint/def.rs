@@ -210,7 +210,7 @@ impl JointFrame {
 }
 
 impl JointDef {
-    /// A joint between the origins of two bodies, which then do not collide with each other.
+    /// Creates a joint between the origins of two bodies. The bodies do not collide with each other.
     #[must_use]
     pub fn new(body_a: BodyId, body_b: BodyId, kind: impl Into<JointKind>) -> Self {
         JointDef {

@@ -34,8 +34,8 @@ pub struct Distance {
     pub rod: Option<Fx>,
     /// Range of the length in metres, 0 or more.
     pub limit: Option<JointLimit>,
-    /// Motor along the line. A positive speed, in m/s, moves the anchors apart. The limit is a force in N.
-    /// It does not drive beyond `rod` or `limit`.
+    /// Motor along the line. A positive speed, in m/s, moves the anchors apart; `max` is a force in N. The motor does
+    /// not drive beyond `rod` or `limit`.
     pub motor: Option<Drive>,
     /// Spring with a length in metres, 0 or more.
     pub spring: Option<Spring>,

@@ -22,8 +22,9 @@ use crate::math::Fx;
 
 /// Largest number of teeth of a wheel.
 const TEETH_MAX: i32 = 1000;
-/// Smallest and largest radius of a wheel on a rack, in metres.
+/// Smallest radius of a wheel on a rack, in metres.
 const RADIUS_MIN: Fx = fx!(0.001);
+/// Largest radius of a wheel on a rack, in metres.
 const RADIUS_MAX: Fx = fx!(128);
 
 /// A gear: two wheels about the anchors, whose teeth mesh. B turns by `-teeth_a / teeth_b` of the turn of A, both

@@ -75,8 +75,8 @@ impl Parts<'_> {
         self.drive_within(direction, drive, None);
     }
 
-    /// Adds a motor that does not drive beyond a limit along the same direction, if there is one. A motor of unlimited
-    /// force and a limit that act against each other would add to their impulses in every sub-step.
+    /// Adds a motor, if there is one. It does not drive beyond `limit`, which is along the same direction: a motor of
+    /// unlimited force and a limit that act against each other would add to their impulses in every sub-step.
     pub(super) fn drive_within(
         &mut self,
         direction: Direction,
@@ -89,7 +89,7 @@ impl Parts<'_> {
         }
     }
 
-    /// Adds a lower and an upper limit, if there is one.
+    /// Adds the rows of a lower and an upper limit, if there is a limit.
     pub(super) fn limit(&mut self, direction: Direction, limit: Option<JointLimit>) {
         if let Some(JointLimit { lower, upper }) = limit {
             self.row(slot::LIMIT, direction, RowTask::Lower { bound: lower });

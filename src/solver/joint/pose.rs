@@ -28,8 +28,9 @@ pub(super) struct BodyRotation {
 pub(super) struct Ends {
     body_a: u32,
     body_b: u32,
-    /// Anchors from the centres of mass, in the frames of the bodies.
+    /// Vector from the centre of mass of A to the anchor, in the frame of A.
     local_a: Vec2<Length>,
+    /// Vector from the centre of mass of B to the anchor, in the frame of B.
     local_b: Vec2<Length>,
     inverse_gyration_a: Reciprocal,
     inverse_gyration_b: Reciprocal,

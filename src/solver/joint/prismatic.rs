@@ -41,7 +41,7 @@ use crate::math::Fx;
 pub struct Prismatic {
     /// Range of the translation in metres.
     pub limit: Option<JointLimit>,
-    /// Motor along the axis: speed in m/s, limit in N. It does not drive beyond the limit.
+    /// Motor along the axis: speed in m/s, largest force in N. It does not drive beyond `limit`.
     pub motor: Option<Drive>,
     /// Spring with a target translation in metres.
     pub spring: Option<Spring>,

@@ -9,8 +9,9 @@ use crate::body::{WORLD_EXTENT_MAX, WorldError};
 use crate::fx;
 use crate::math::{Fx, Vec2, fx_mul};
 
-/// Smallest and largest ratio.
+/// Smallest ratio.
 const RATIO_MIN: Fx = fx!(0.25);
+/// Largest ratio.
 const RATIO_MAX: Fx = fx!(4);
 
 /// A pulley: a rope from A's anchor over two wheels to B's anchor. The length on A's side and `ratio` times that on B's

@@ -44,7 +44,7 @@ use crate::math::Fx;
 pub struct Revolute {
     /// Range of the angle in radians.
     pub limit: Option<JointLimit>,
-    /// Motor on the angle: angular velocity in rad/s, limit in N m.
+    /// Motor on the angle: angular velocity in rad/s, largest torque in N m.
     pub motor: Option<Drive>,
     /// Spring with a target angle in radians.
     pub spring: Option<Spring>,

@@ -265,9 +265,9 @@ impl JointRow {
     }
 }
 
-/// The largest speed in m/s at which a limit at a distance of `gap` is approached: the limit is reached after a
-/// sub-step, of which there are `rate` per second. Beyond the limit the speed is negative: that at which the limit is
-/// restored.
+/// Returns the largest speed in m/s at which a limit may be approached from a distance of `gap`: at this speed the
+/// limit is reached in one sub-step, of which there are `rate` per second. Beyond the limit, `gap` and the speed are
+/// negative: the joint returns to the limit at `bias_rate` times the gap.
 fn approach(gap: Fx, bias_rate: Fx, rate: u32) -> Fx {
     fx_mul(gap, if gap > Fx::ZERO { Fx::from_num(rate) } else { bias_rate })
 }

@@ -1,6 +1,6 @@
 //! The joints that each thread solves in the sub-steps of a tick.
 //!
-//! Every thread has hinges of each colour. One of them also solves all other joints, while the others wait.
+//! Every thread has hinges of each colour. One thread also solves all other joints, while the other threads wait.
 
 use super::super::context::{Pass, StepContext};
 use super::block::Blocks;

@@ -23,7 +23,7 @@ use crate::math::Fx;
 pub struct Wheel {
     /// Range of the translation in metres.
     pub limit: Option<JointLimit>,
-    /// Motor on the angle: angular velocity in rad/s, limit in N m.
+    /// Motor on the angle: angular velocity in rad/s, largest torque in N m.
     pub motor: Option<Drive>,
     /// The suspension: a spring with a target translation in metres.
     pub spring: Option<Spring>,

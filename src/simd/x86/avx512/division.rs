@@ -33,7 +33,7 @@ const CURVE: ([i32; CHORDS], [i32; CHORDS]) = {
     (starts, falls)
 };
 
-/// `2^60 / d` for an integer `d` of up to 2^46, which represents a number with 30 fraction bits: like
+/// `2^60 / d`, rounded down, for a number `d` with 30 fraction bits, given as an integer of up to 2^46: like
 /// [`super::super::super::division::reciprocal`].
 #[inline(always)]
 pub(super) fn reciprocal(d: __m512i) -> __m512i {

@@ -103,7 +103,7 @@ struct Naive {
     inverse: i32,
 }
 
-/// Where the surfaces of A and of B touch the tangent: half the gap before and behind the anchor.
+/// Points at which friction acts on the surfaces of A and of B: half the gap before and behind the anchor.
 fn surfaces(input: &Input, anchor: [i32; 2], [x, y]: [i32; 2]) -> [[i32; 2]; 2] {
     let half = rounded(input.rest.0[3].into(), 1);
     let lift = [x, y].map(|n| limited(rounded(i128::from(n) * half, 24), i32::MAX));

@@ -31,7 +31,7 @@ const OPEN_SCALE: i64 = ONE - (1 << 20);
 /// the error of the speed is the impulse times `1 - S^2`.
 const DRIVE_SCALE: i64 = ONE - (1 << 16);
 
-/// Number of rounds in which only the motors that are furthest beyond their force are held at it.
+/// Number of rounds in which, of the motors beyond their largest force, only the furthest beyond it are deactivated.
 const ROUNDS_MAX: u32 = 4;
 
 impl Block {

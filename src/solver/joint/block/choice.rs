@@ -39,7 +39,7 @@ pub(in super::super) struct Candidate {
     /// Number of rows that a block would solve: those that hold the bodies, springs, limits, and motors along one
     /// direction. A joint without such rows takes no part.
     pub(in super::super) rows: u32,
-    /// Whether it has more rows than that of a motor, which crowds no body.
+    /// Whether it has rows besides that of a motor. A motor alone crowds no body.
     pub(in super::super) holds: bool,
     /// Whether it is a revolute joint, which holds nothing but a point.
     pub(in super::super) is_hinge: bool,

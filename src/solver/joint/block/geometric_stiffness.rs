@@ -38,7 +38,7 @@ pub(super) enum Leverage {
 }
 
 impl Leverage {
-    /// The change of torque per radian, divided by the radius of gyration, by an impulse on the body of a side.
+    /// Returns the change of the torque of an impulse on the body of a side, per radian, over the radius of gyration.
     fn stiffness(&self, side: usize, impulse: [i64; 2]) -> i64 {
         let [x, y] = impulse.map(i128::from);
         let product = match self {

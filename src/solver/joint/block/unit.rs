@@ -122,7 +122,7 @@ impl Unit {
         self.row..self.row + self.rows().count()
     }
 
-    /// The entries of its first two rows in a list with one number for each row of the block.
+    /// Returns the numbers of the unit's first two rows from a list with one number for each row of the block.
     pub(super) fn impulses(&self, numbers: &[i64]) -> [i64; 2] {
         let mut own = [0; 2];
         self.range().zip(&mut own).for_each(|(row, number)| *number = numbers[row]);
@@ -134,7 +134,7 @@ impl Unit {
         self.common_sides(other).iter().any(Option::is_some)
     }
 
-    /// The sides of both units with a common body.
+    /// Returns the pairs of a side of this unit and a side of the other unit that have a common body.
     pub(super) fn common_sides(&self, other: &Unit) -> [Option<(usize, usize)>; 2] {
         [0, 1].map(|side: usize| {
             let body = self.bodies[side];
@@ -228,7 +228,7 @@ impl Unit {
         matches!(self.source, Source::Part(ListPart::Point(_)))
     }
 
-    /// The impulses by which the rows yield, times their impulse scales: `L`, or `p` of a spring between two points.
+    /// Returns the factors of the impulse scales in the equations: `L` of a row, or `p` of a spring between two points.
     pub(super) fn yielding(&self, [x, y, angle]: [i64; 3]) -> [i64; 3] {
         match (self.source, self.softness[0]) {
             (Source::Part(ListPart::Point(_)), Some(softness)) => {

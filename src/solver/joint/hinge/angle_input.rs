@@ -148,11 +148,13 @@ pub(super) struct DriveInput {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LimitInput {
-    /// Limits in units of 2^-32 turn.
+    /// Lower limit in units of 2^-32 turn.
     pub(super) lower: i64,
+    /// Upper limit in units of 2^-32 turn.
     pub(super) upper: i64,
-    /// Speed per turn beyond a limit, and per turn before it.
+    /// Speed per turn beyond a limit.
     pub(super) closed: Fx,
+    /// Speed per turn before a limit.
     pub(super) open: Fx,
     /// Largest impulse. 0 if neither body turns.
     pub(super) max: Speed,

@@ -203,7 +203,7 @@ impl HingeSet {
         [core::mem::take(&mut x.0[0]), core::mem::take(&mut y.0[0]), angle]
     }
 
-    /// Returns the impulses of a hinge from its block, for the next tick. They are within the limits of its format.
+    /// Returns the impulses of a hinge from its block, for the next tick. They must be within the limits of the state.
     pub(in super::super) fn return_impulses(&mut self, number: usize, [x, y, angle]: [i32; 3]) {
         let HingeSet { blocked, blocked_extras, .. } = self;
         let batch = &mut blocked.batches[number];

@@ -147,8 +147,9 @@ pub(in super::super) struct Input {
     /// The angle of the joint while neither body is rotated.
     pub(super) rest: Angle,
     pub(super) lambda: [i32; 2],
-    /// The softness of what the joint holds rigidly, and whether it is its own instead of that of the world.
+    /// The softness of what the joint holds rigidly.
     pub(super) softness: Softness,
+    /// Whether the softness is the joint's own instead of that of the world.
     pub(super) is_tuned: bool,
 }
 
@@ -182,8 +183,8 @@ impl Input {
         }
     }
 
-    /// The index of the body that it holds, if no impulse moves the other body and the joint has no softness of its
-    /// own.
+    /// The index of the body that the hinge holds, if no impulse moves the other body and the joint has no softness of
+    /// its own.
     pub(super) fn anchored_body(&self) -> Option<u32> {
         match self.changed {
             _ if self.is_tuned => None,

@@ -9,7 +9,7 @@ use crate::simd::{Ints, Lanes, VelocityW};
 const PLAIN_MAX: i32 = 362 << 21;
 
 impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
-    /// Changes the velocities by impulses `d` of at most 512 at a point.
+    /// Changes the velocities by impulses `d` of at most 512 m/s at a point.
     #[inline(always)]
     pub(super) fn apply_at_point(&mut self, batch: &Batch<N>, d: [L::Int; 2], faults: &mut Faults) {
         let [g_a, g_b] = &batch.g;
@@ -39,7 +39,7 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
         self.b = VelocityW { x: add(x, b.x), y: add(y, b.y), turn: add(turn, b.turn) };
     }
 
-    /// Changes the spins by impulses on the angle, of less than 1024.
+    /// Changes the spins by impulses on the angle of less than 1024 m/s.
     #[inline(always)]
     pub(super) fn turn(&mut self, f: &[Ints<N>; 2], d: L::Int, faults: &mut Faults) {
         if L::any(beyond::<L, N>(d, L::splat(HALF - 1))) {

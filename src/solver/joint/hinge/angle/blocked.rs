@@ -1,4 +1,4 @@
-//! The rows on the angle of a hinge in a block (`joint/block`), which computes their impulses.
+//! The rows on the angle of a hinge in a block. The block (`joint/block`) computes their impulses.
 
 use super::super::super::super::context::Pass;
 use super::super::super::super::limits::Faults;
