@@ -65,7 +65,8 @@ fn is_near(places: &BTreeSet<[usize; 2]>, [x, y]: [usize; 2]) -> bool {
 
 /// One pixel in this many may differ by a large amount, because of crossing lines.
 const SHAPES: usize = 1000;
-/// The same for layers with small text, because only one of the two rasterisers aligns letters to whole pixels.
+/// One pixel in this many may differ in layers with small text, because only one of the two rasterisers aligns letters
+/// to whole pixels.
 const LABELS: usize = 200;
 
 /// Asserts that the pictures of two rasterisers agree, apart from the antialiasing of edges.
