@@ -8,7 +8,8 @@ use crate::fx;
 use crate::math::{Aabb, Fx, Vec2};
 use crate::world::World;
 
-/// Minimum radius of a scene in metres: bodies within four times this distance of the median always belong to it.
+/// Smallest distance in metres of which a scene includes four times: a body within 64 m of the median always belongs to
+/// it.
 const SCENE_REACH_MIN: Fx = fx!(16);
 /// Maximum distance, in scene sizes, at which ground is included.
 const GROUND_SIZES: i64 = 12;

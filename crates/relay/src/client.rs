@@ -81,7 +81,7 @@ enum State {
 /// use lockstep2d_relay::Relay;
 ///
 /// let mut relay = Relay::connect("ws://127.0.0.1:7010", "ABCD", rand_bytes())?;
-/// // A member that is in the room already is asked to join; the first member opens the match.
+/// // If another member is in the room, this peer joins the match through it; the first member opens the match.
 /// let (options, me) = (PeerOptions { input_bytes: Some(64), ..PeerOptions::lockstep() }, PeerIdentity::random());
 /// let setup = SandboxSetup::default();
 /// let peer = match relay.others().first().cloned() {

@@ -14,10 +14,10 @@ use crate::math::{Fx, Vec2};
 /// With a speed of 0 it acts as friction between B and A, as on a table seen from above. With springs it pulls the
 /// frames onto each other: if A is a kinematic or fixed body that follows a pointer, B is dragged by the pointer.
 ///
-/// Forces act on both bodies at one point, B's anchor, as if A reached there: a force that moves B beside A also turns
-/// A. Momentum and angular momentum of the two bodies are kept. An arm of A that is longer than 88 of its radii of
-/// gyration is shortened, and B's arm reaches to its end. Where neither body reaches the other, forces act along the
-/// line between their centres only.
+/// Forces act on both bodies at one point, B's anchor, as if A reached there: a sideways force on B also turns A.
+/// Momentum and angular momentum of the two bodies are kept. A's arm is limited to 88 times its radius of gyration. If
+/// it is shortened, forces act on both bodies at its end. If that point is out of reach of B as well, they act only
+/// along the line between the two centres.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};

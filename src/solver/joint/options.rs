@@ -102,12 +102,12 @@ pub struct Spring {
 
 /// Softness of a joint that is not rigid.
 ///
-/// Between angles, the frequency is the one for two free bodies. Between anchors, it is the one for the two bodies as
-/// points of mass: the stiffness is `(2 pi hertz)^2 m` N/m in all directions, with `m = mA mB / (mA + mB)`, or the mass
-/// of the one that moves if the other does not. A body that hangs on a fixed one sags by `g / (2 pi hertz)^2`, wherever
-/// its anchor is. With an anchor at a distance `r` from its centre of mass, across the pull, it also turns: it swings
-/// `sqrt(1 + r^2 / k^2)` times as fast, with `k` its radius of gyration, and its damping ratio is larger by the same
-/// factor.
+/// An angular spring has this frequency if both bodies are free. A linear spring, between anchors, has it if both bodies
+/// are points of mass: its stiffness is `(2 pi hertz)^2 m` N/m in all directions, with the masses
+/// `m = MA MB / (MA + MB)`, or the mass of the one that moves if the other does not. A body that hangs on a fixed one
+/// sags by `g / (2 pi hertz)^2`, wherever its anchor is. If the anchor is off the centre of mass by `r`, across the pull,
+/// the body also turns: it swings `sqrt(1 + r^2 / k^2)` times as fast, with `k` its radius of gyration, and its damping
+/// ratio is larger by the same factor.
 ///
 /// A spring between anchors that is stretched by `x` turns a body of mass `M` too fast for the time step if
 /// `(2 pi hertz / rate)^2 m x r / (M k^2)` is above about 1, where `rate` is the sub-step rate. Then the body gains

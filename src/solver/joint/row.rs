@@ -6,14 +6,14 @@
 //! ```text
 //! spring   d = -massScale (vn + biasRate (x - target)) - impulseScale L      bias pass only
 //! motor    d = -(vn - speed),  |L| <= F h (mA + mB) D                        (over s: torque)
-//!          speed is limited to what the limits of the joint allow, C / h or biasRate C
+//!          speed is clamped: to C / h before a limit of the joint, to biasRate C, back to the limit, beyond it
 //! limit    d = -massScale (vn + biasRate C) - impulseScale L,  L >= 0        C = x - lower or upper - x
 //!          d = -(vn + C / h)                                                 while C > 0
 //! hold     as a limit that is reached, with L of either sign
 //! ```
 //!
 //! A spring along a line has the stiffness `omega^2 m` and the damping `2 zeta omega m` of the bodies as points of
-//! mass, `m = 1 / (mA + mB)`, at every pose, so that its force follows from a potential. Where it also turns the
+//! mass, `m = 1 / (mA + mB)` with the inverse masses, at every pose, so that its force follows from a potential. Where it also turns the
 //! bodies, its scales are therefore those of the mobility `D` ([`Softness::at_mobility`]). With the same scales at
 //! every pose it would have the same frequency at every pose, and its stiffness `omega^2 m / D` would change as the
 //! arms turn.

@@ -162,6 +162,6 @@ struct Stretch {
     sixth: Unit,
 }
 
-/// Largest predicted rotation, in radians. Beyond a quarter of a radian the third order is not better than the second,
-/// and adds energy to chains that one iteration does not solve.
+/// Largest predicted rotation, in radians. Beyond a quarter of a radian, lever ratios averaged to the third order are no
+/// better than those of the second, and add energy to chains for which one iteration is not enough.
 const TURN_MAX: Unit = Unit::lit("0.25");

@@ -11,8 +11,8 @@ use bevy_rapier2d::rapier::geometry::{DefaultBroadPhase, NarrowPhase};
 use crate::ggrs::{self, GgrsApp, Tick};
 use crate::scene;
 
-/// `RapierContextSimulation` cannot be cloned as a whole: its state is copied field by field. The pipeline has only
-/// workspaces.
+/// `RapierContextSimulation` cannot be cloned as a whole: its state is copied field by field. The pipeline
+/// is not copied, because it holds only working memory.
 struct Simulation;
 
 /// The state in a `RapierContextSimulation`.

@@ -66,7 +66,7 @@ impl<G: LockstepGame> MatchDriver<G> {
                 break;
             }
             let own = self.peer.session().map_or(0, |session| session.seats().count_ones());
-            // Inputs that were not issued are used again.
+            // Inputs that were not issued are kept for the next attempt.
             if !self.peer.advance(&inputs.next(own as usize))? {
                 break;
             }
