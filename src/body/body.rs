@@ -107,6 +107,10 @@ impl Body {
         body
     }
 
+    pub(crate) fn pose(&self) -> Pose {
+        Pose { centre: self.centre, angle: self.angle }
+    }
+
     /// Whether the body is fixed, kinematic or dynamic.
     #[must_use]
     pub const fn kind(&self) -> BodyKind {

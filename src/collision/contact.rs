@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::manifold::Feature;
-#[cfg(doc)]
-use crate::math::Length;
-use crate::math::Speed;
+use super::kept_manifold::KeptManifold;
+use super::manifold::{Feature, Manifold, ManifoldPoint};
+use crate::body::Body;
+use crate::math::{Fx, Length, Speed, Step, Vec2};
 
 /// A pair of shape slots, the smaller one first.
 pub(crate) type Pair = (u32, u32);
@@ -22,8 +22,7 @@ pub(crate) struct Contact {
     /// Number of points with accumulated impulses.
     pub(crate) count: u8,
     pub(crate) points: [PointImpulse; 2],
-    /// Lever arms of the points, which are kept from tick to tick.
-    pub(crate) arms: KeptArms,
+    pub(crate) kept: KeptManifold,
     /// Accumulated angular impulse of rolling resistance, times `(mA + mB) / s`: see `solver/contact/rolling.rs`.
     pub(crate) rolling: Speed,
 }
@@ -38,16 +37,6 @@ pub(crate) struct PointImpulse {
     pub(crate) tangent: Speed,
 }
 
-/// The lever arms of a contact, in world axes: the vectors from A's centre of mass to both points, and the vector from
-/// B's centre of mass to A's. Each coordinate is in units of 2^-17 m, of which the low 16 bits are stored as a signed
-/// number. A vector is stored as `x + 2^16 y`.
-///
-/// The arms are kept while the shapes hardly move relative to each other. With arms that follow every movement, a stack
-/// that leans would turn itself further: columns of more than 40 boxes fall. With kept arms, columns of 100 boxes stand
-/// (`docs/DESIGN.md`).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct KeptArms(pub(crate) [i32; 3]);
-
 impl Contact {
     pub(crate) fn new(shapes: Pair) -> Self {
         Contact {
@@ -56,7 +45,7 @@ impl Contact {
             passing: false,
             count: 0,
             points: [PointImpulse::default(); 2],
-            arms: KeptArms::default(),
+            kept: KeptManifold::NONE,
             rolling: Speed::ZERO,
         }
     }
@@ -81,8 +70,32 @@ impl Contact {
     pub(crate) fn clear_points(&mut self) {
         self.count = 0;
         self.points = [PointImpulse::default(); 2];
-        self.arms = KeptArms::default();
+        self.kept = KeptManifold::NONE;
         self.rolling = Speed::ZERO;
+    }
+
+    /// Keeps a manifold of the shapes, and the lever arms of the last one if it has the same points and they have
+    /// changed by at most `tolerances`, which are those of A and B in metres.
+    #[inline]
+    pub(crate) fn keep(&mut self, manifold: &Manifold, bodies: [&Body; 2], tolerances: [Length; 2]) {
+        let last = self.kept;
+        self.kept = KeptManifold::new(manifold, bodies.map(Body::pose));
+        let features = self.points().iter().map(|point| point.feature);
+        if features.eq(manifold.points().iter().map(|point| point.feature.0)) {
+            self.kept.keep_arms_of(&last, tolerances);
+        }
+    }
+
+    /// The kept manifold with other separations, and its first point at `origin`.
+    #[inline]
+    pub(crate) fn kept_manifold(&self, origin: Vec2<Fx>, separations: [Step; 2]) -> Manifold {
+        let point = |i: usize, anchor: Vec2<Length>| ManifoldPoint {
+            anchor,
+            separation: separations[i],
+            feature: Feature(self.points[i].feature),
+        };
+        let points = [point(0, Vec2::ZERO), point(1, self.kept.to_second)];
+        Manifold::of_points(self.kept.normal, origin, points, self.count)
     }
 
     /// Stores the accumulated impulses of up to two points.

@@ -75,17 +75,6 @@ pub struct Manifold {
     pub origin: Vec2<Fx>,
     points: [ManifoldPoint; 2],
     count: u8,
-    /// Index of the [`Impact`] of a manifold of the time of impact, counted from 1; 0 for a manifold of the start of
-    /// the tick.
-    pub(crate) impact: u32,
-}
-
-/// Displacements of two bodies from the start of the tick to the time of impact. The manifold has the normal, the
-/// anchors and the origin of the time of impact, and the separations of the start of the tick.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Impact {
-    /// Displacements of the centres of mass of A and of B in metres.
-    pub(crate) moved: [Vec2<Length>; 2],
 }
 
 impl Manifold {
@@ -97,7 +86,7 @@ impl Manifold {
 
     pub(crate) const fn new(normal: Vec2<Unit>) -> Self {
         let origin = Vec2::new(Fx::ZERO, Fx::ZERO);
-        Manifold { normal, origin, points: [Self::NO_POINT; 2], count: 0, impact: 0 }
+        Manifold { normal, origin, points: [Self::NO_POINT; 2], count: 0 }
     }
 
     /// Creates a manifold with one point.
@@ -116,7 +105,7 @@ impl Manifold {
         points: [ManifoldPoint; 2],
         count: u8,
     ) -> Self {
-        Manifold { normal, origin, points, count, impact: 0 }
+        Manifold { normal, origin, points, count }
     }
 
     /// Contact points, none to two.
@@ -168,12 +157,6 @@ impl Manifold {
         if keeps.iter().filter(|&&kept| kept).count() < self.points().len() {
             self.keep(keeps);
         }
-    }
-
-    /// Index of the [`Impact`], for a manifold of the time of impact.
-    #[inline]
-    pub(crate) fn impact(&self) -> Option<usize> {
-        self.impact.checked_sub(1).map(|index| index as usize)
     }
 
     /// Sets the separation of each point.

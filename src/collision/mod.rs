@@ -3,6 +3,7 @@
 
 mod broad_phase;
 mod contact;
+mod kept_manifold;
 mod manifold;
 mod narrow_phase;
 mod query;
@@ -10,8 +11,8 @@ mod shape;
 
 pub use broad_phase::BroadPhaseKind;
 pub(crate) use broad_phase::{BroadPhase, Moved};
-pub(crate) use contact::{Contact, KeptArms, Pair, PointImpulse};
-pub(crate) use manifold::Impact;
+pub(crate) use contact::{Contact, Pair, PointImpulse};
+pub(crate) use kept_manifold::{KeptManifold, KeptSide};
 pub use manifold::{Feature, Manifold, ManifoldPoint};
 pub(crate) use narrow_phase::{
     BoxPairs, CachedAxis, GhostFilter, OneWay, SatCounters, SmallBoxes, SmallBoxesRange, collide,

@@ -78,10 +78,6 @@ pub(crate) trait Lanes<const N: usize>: Copy {
     fn min(a: Self::Int, b: Self::Int) -> Self::Int;
     fn max(a: Self::Int, b: Self::Int) -> Self::Int;
     fn or(a: Self::Int, b: Self::Int) -> Self::Int;
-    /// The bits shifted left by `SHIFT`, which is 1 to 31.
-    fn shift_left<const SHIFT: i32>(a: Self::Int) -> Self::Int;
-    /// `a / 2^SHIFT`, rounded down. `SHIFT` is 1 to 31.
-    fn shift_right<const SHIFT: i32>(a: Self::Int) -> Self::Int;
 
     /// `a > b`.
     fn greater(a: Self::Int, b: Self::Int) -> Self::Mask;

@@ -106,18 +106,6 @@ impl Lanes<WIDTH> for Neon {
     }
 
     #[inline(always)]
-    fn shift_left<const SHIFT: i32>(a: Ints32) -> Ints32 {
-        // SAFETY: see `Neon`.
-        a.map(|a| unsafe { vshlq_n_s32::<SHIFT>(a) })
-    }
-
-    #[inline(always)]
-    fn shift_right<const SHIFT: i32>(a: Ints32) -> Ints32 {
-        // SAFETY: see `Neon`.
-        a.map(|a| unsafe { vshrq_n_s32::<SHIFT>(a) })
-    }
-
-    #[inline(always)]
     fn greater(a: Ints32, b: Ints32) -> Masks {
         // SAFETY: see `Neon`.
         map(a, b, |a, b| unsafe { vcgtq_s32(a, b) })

@@ -75,16 +75,6 @@ impl<const N: usize> Lanes<N> for Scalar<N> {
     }
 
     #[inline(always)]
-    fn shift_left<const SHIFT: i32>(a: [i32; N]) -> [i32; N] {
-        a.map(|a| a << SHIFT)
-    }
-
-    #[inline(always)]
-    fn shift_right<const SHIFT: i32>(a: [i32; N]) -> [i32; N] {
-        a.map(|a| a >> SHIFT)
-    }
-
-    #[inline(always)]
     fn greater(a: [i32; N], b: [i32; N]) -> [bool; N] {
         map(a, b, |a, b| a > b)
     }

@@ -104,16 +104,6 @@ impl Lanes<WIDTH> for Simd128 {
     }
 
     #[inline(always)]
-    fn shift_left<const SHIFT: i32>(a: Ints32) -> Ints32 {
-        a.map(|a| i32x4_shl(a, SHIFT.unsigned_abs()))
-    }
-
-    #[inline(always)]
-    fn shift_right<const SHIFT: i32>(a: Ints32) -> Ints32 {
-        a.map(|a| i32x4_shr(a, SHIFT.unsigned_abs()))
-    }
-
-    #[inline(always)]
     fn greater(a: Ints32, b: Ints32) -> Ints32 {
         map(a, b, |a, b| i32x4_gt(a, b))
     }

@@ -39,9 +39,6 @@ impl Kernel<WIDTH> for Operations<'_> {
         for value in [L::min(a, b), L::max(a, b), L::or(a, b), L::splat(7)] {
             keep(value);
         }
-        for value in [L::shift_left::<11>(a), L::shift_right::<16>(a), L::shift_right::<31>(b)] {
-            keep(value);
-        }
         let (greater, negative) = (L::greater(a, b), L::negative(a));
         for mask in [greater, negative, L::both(greater, negative), L::either(greater, negative)] {
             keep(L::select(mask, a, b));

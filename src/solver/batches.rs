@@ -148,8 +148,8 @@ impl<K: BatchKind> BatchList<K> {
 
 impl<K: BatchKind> BatchShare<'_, K> {
     /// The overflow, if this thread solves it.
-    pub(super) fn own_overflow(&self) -> Option<&Batches<K, 1>> {
-        match &self.overflow {
+    pub(super) fn own_overflow(&mut self) -> Option<&mut Batches<K, 1>> {
+        match &mut self.overflow {
             Some(Overflow::Own(batches)) => Some(batches),
             Some(Overflow::OfAnotherThread) | None => None,
         }

@@ -7,7 +7,7 @@ use super::row::RATIO_MAX;
 #[cfg(test)]
 use crate::body::{Arena, BodyId};
 use crate::body::{Body, Pose};
-use crate::math::{Angle, Fx, Length, Ratio, Reciprocal, Vec2, round_shift, saturate};
+use crate::math::{Angle, Fx, Ratio, Reciprocal, Vec2, round_shift, saturate};
 pub(super) use crate::simd::GROUND;
 
 /// The ground, then the active bodies in the order in which they were added, then the bodies that only joints need.
@@ -27,53 +27,17 @@ pub(crate) struct BodyList {
 /// The properties of a body that do not change within a tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BodyFacts {
-    centre: Vec2<Fx>,
     /// Mass in kg; 0 if no impulse moves the body.
     pub(super) mass: Fx,
     pub(super) inverse_gyration: Reciprocal,
-    /// Largest change of a lever arm for which a contact keeps the arm of the last tick: see [`arm_tolerance`].
-    pub(super) arm_tolerance: u16,
 }
 
 impl BodyFacts {
-    const GROUND: Self = BodyFacts {
-        centre: Vec2::ZERO,
-        mass: Fx::ZERO,
-        inverse_gyration: Reciprocal::ZERO,
-        arm_tolerance: ARM_TOLERANCE_MAX,
-    };
+    const GROUND: Self = BodyFacts { mass: Fx::ZERO, inverse_gyration: Reciprocal::ZERO };
 
     fn of(body: &Body) -> Self {
         let mass = if body.is_dynamic() { body.mass() } else { Fx::ZERO };
-        BodyFacts {
-            centre: body.centre_of_mass(),
-            mass,
-            inverse_gyration: body.mass.inverse_gyration,
-            arm_tolerance: if mass > 0 {
-                arm_tolerance(body.mass.inverse_gyration)
-            } else {
-                ARM_TOLERANCE_MAX
-            },
-        }
-    }
-
-    /// Vector from the centre of mass to a position. For bodies that do not turn the result does not matter.
-    pub(super) fn arm_to(&self, place: Vec2<Fx>) -> Vec2<Length> {
-        // Both points are within the world, so that the difference fits.
-        place.wrapping_sub(self.centre).narrow()
-    }
-}
-
-/// Tolerance of bodies that contacts do not turn, in units of 2^-17 m: a quarter of the range of a kept arm.
-const ARM_TOLERANCE_MAX: u16 = 1 << 14;
-
-/// The arm tolerance of a body: between a 32nd and a 16th of its radius of gyration, in units of 2^-17 m, at most
-/// [`ARM_TOLERANCE_MAX`].
-fn arm_tolerance(inverse_gyration: Reciprocal) -> u16 {
-    match inverse_gyration.parts() {
-        (0, _) => ARM_TOLERANCE_MAX,
-        // The radius is at least 2^(exponent - 31) m.
-        (_, exponent) => 1 << (exponent - 31 + 13).clamp(0, 14),
+        BodyFacts { mass, inverse_gyration: body.mass.inverse_gyration }
     }
 }
 
@@ -121,7 +85,7 @@ impl BodyList {
         self.indices[slot as usize] = u32::try_from(self.bodies.len()).expect("fewer than 2^32 bodies");
         self.slots.push(slot);
         self.bodies.push(body);
-        self.poses.push(Pose { centre: source.centre, angle: source.angle });
+        self.poses.push(source.pose());
         self.facts.push(facts);
     }
 

@@ -51,7 +51,7 @@ pub use settings::{ContactTuning, DISTANCE_MAX, SolverSettings};
 pub(crate) use settings::{RATE_MAX, SUB_STEPS_MAX, Tuning};
 
 use crate::body::{Arena, Body, BodyId, JointId};
-use crate::collision::{Contact, Impact, Manifold};
+use crate::collision::{Contact, Manifold};
 use crate::math::{Fx, Vec2};
 use crate::simd::{Shared, WIDTH};
 use crate::threads::{Threads, part_of};
@@ -159,12 +159,11 @@ impl Solver {
         &mut self,
         pairs: &[ActiveContact],
         manifolds: &[Manifold],
-        impacts: &[Impact],
         contacts: &[Contact],
     ) {
         let parts = self.parts;
         let Solver { list, moving, joints, colouring, contacts: set, machine, threads, .. } = self;
-        let source = ContactSource { pairs, manifolds, impacts, contacts, list };
+        let source = ContactSource { pairs, manifolds, contacts, list };
         set.sort(&source, colouring, parts);
         self.warm_starts = set.fill(&source, colouring, threads, parts, *machine);
         self.contact_velocities.resize_with(parts, ContactVelocities::default);

@@ -92,6 +92,21 @@ impl State {
         (self.body_of(a), self.body_of(b))
     }
 
+    /// Has the contacts of a body collided anew in the next tick, because its shapes or its centre of mass change.
+    pub(crate) fn forget_manifolds(&mut self, body: u32) {
+        let shapes = self.bodies.at(body).shapes();
+        let is_own = |shape: u32| shapes.iter().any(|own| own.slot() == shape);
+        let has_own = |contact: &Contact| is_own(contact.shapes.0) || is_own(contact.shapes.1);
+        let forget = |contacts: &mut [Contact]| {
+            contacts.iter_mut().filter(|contact| has_own(contact)).for_each(|contact| contact.kept.forget());
+        };
+        forget(&mut self.contacts);
+        // The contacts of a body that has just been woken are still among these. Changing them copies the list.
+        if self.sleeping_contacts.iter().any(has_own) {
+            forget(&mut self.sleeping_contacts);
+        }
+    }
+
     /// The mass that a force between the bodies of two shapes accelerates: `mA mB / (mA + mB)` in kg.
     pub(crate) fn reduced_mass(&self, shapes: Pair) -> Fx {
         let (a, b) = self.bodies_of(shapes);

@@ -27,6 +27,7 @@ mod momentum;
 mod one_way;
 mod piles;
 mod rebound;
+mod rolling;
 mod scale;
 mod seams;
 mod slope;

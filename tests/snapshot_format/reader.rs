@@ -87,15 +87,6 @@ impl<'a> Reader<'a> {
         });
     }
 
-    /// Reads a lever arm: `x + 2^16 y`.
-    fn arm(&mut self, name: &str) {
-        self.take(4, name, |taken| {
-            let word = i32::from_le_bytes(taken.try_into().expect("4 bytes"));
-            let x = word << 16 >> 16;
-            [x, (word - x) >> 16].map(|axis| decimal(axis.into(), 17)).join(", ")
-        });
-    }
-
     fn fx(&mut self, name: &str) {
         self.fixed(name, 1, 8, 32);
     }
@@ -334,9 +325,13 @@ impl<'a> Reader<'a> {
                 self.fixed("normal impulse", 1, 4, 21);
                 self.fixed("tangential impulse", 1, 4, 21);
             }
-            for arm in ["arm of the first point", "arm of the second point", "arm from B to A"] {
-                self.arm(arm);
+            self.fixed("kept manifold: normal", 2, 4, 30);
+            for length in ["arm of A", "arm of B", "from the first point to the second", "from A to B"] {
+                self.fixed(length, 2, 4, 22);
             }
+            self.u32("angle of A");
+            self.u32("angle of B");
+            self.fixed("separations", 2, 4, 27);
             self.fixed("impulse against rolling", 1, 4, 21);
         }
     }
@@ -357,7 +352,7 @@ impl<'a> Reader<'a> {
     /// Reads the whole file and returns the byte range of each section of the state.
     pub(crate) fn world(&mut self) -> Vec<(Section, Range<usize>)> {
         self.take(8, "magic, LS2DWRLD", |_| String::new());
-        assert_eq!(self.u32("format version"), 3);
+        assert_eq!(self.u32("format version"), 4);
         assert_eq!(self.u32("semantics id"), lockstep2d::SEMANTICS);
         let length = self.u64("bytes of the state");
         let start = self.at;

@@ -165,7 +165,7 @@ fn snapshots_of_every_scene_are_small_and_come_back() {
         let world = game.world();
         let snapshot = world.save();
         let dynamic = world.bodies().filter(|(_, body)| body.is_dynamic()).count();
-        let limit = 96 * dynamic + 40 * world.pair_count() + 16 * world.joint_count() + 2048;
+        let limit = 96 * dynamic + 88 * world.pair_count() + 16 * world.joint_count() + 2048;
         let size = snapshot.rollback_bytes();
         assert!(size <= limit, "{}: {size} bytes, at most {limit}", scene.name);
         let run = |game: &mut Sandbox| -> Vec<_> {

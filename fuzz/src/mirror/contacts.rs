@@ -12,6 +12,53 @@ struct Point {
     tangent: i32,
 }
 
+/// A vector in world axes.
+type Vector = [i32; 2];
+
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct KeptManifold {
+    normal: Vector,
+    arm_a: Vector,
+    arm_b: Vector,
+    to_second: Vector,
+    between: Vector,
+    angles: [u32; 2],
+    separations: [i32; 2],
+}
+
+impl KeptManifold {
+    /// Normals, most of which the world accepts: multiples of the unit are refused.
+    const NORMALS: [Vector; 6] =
+        [[0, 0], [0, 1 << 30], [-(1 << 30), 0], [759_250_125, 759_250_125], [1 << 30, 1 << 30], [i32::MIN, 1]];
+
+    /// Changes some numbers.
+    fn alter(&mut self, source: &mut Source<'_>) {
+        if source.one_in(2) {
+            self.normal = source.pick(&Self::NORMALS);
+        }
+        let KeptManifold { normal: _, arm_a, arm_b, to_second, between, angles, separations } = self;
+        for vector in [arm_a, arm_b, to_second, between, separations] {
+            let small = source.one_in(2);
+            for number in vector {
+                let word = source.word() as i32;
+                *number = if small { number.wrapping_add(word >> 16) } else { word };
+            }
+        }
+        for angle in angles {
+            *angle = angle.wrapping_add(source.word() as u32 >> source.below(32));
+        }
+    }
+
+    /// Zeroes what a contact of `count` points does not have.
+    fn cut(&mut self, count: u8) {
+        match count {
+            0 => *self = KeptManifold::default(),
+            1 => (self.to_second, self.separations[1]) = ([0; 2], 0),
+            _ => {}
+        }
+    }
+}
+
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Contact {
     pub(super) shapes: (u32, u32),
@@ -19,7 +66,7 @@ pub(super) struct Contact {
     passing: bool,
     count: u8,
     points: [Point; 2],
-    arms: [i32; 3],
+    kept: KeptManifold,
     rolling: i32,
 }
 
@@ -51,8 +98,8 @@ impl State {
                 let at = contacts.binary_search_by_key(&shapes, |contact| contact.shapes).err()?;
                 let (touching, passing) = (source.one_in(2), source.one_in(4));
                 let points = Default::default();
-                let contact =
-                    Contact { shapes, touching, passing, count: 0, points, arms: [0; 3], rolling: 0 };
+                let kept = KeptManifold::default();
+                let contact = Contact { shapes, touching, passing, count: 0, points, kept, rolling: 0 };
                 contacts.insert(at, contact);
             }
             _ if contacts.is_empty() => return None,
@@ -61,9 +108,10 @@ impl State {
             3 => contacts[at].passing = !contacts[at].passing,
             4 => contacts[at].rolling = speed(source, IMPULSE_MAX),
             5 => {
-                // The arms of points after the first `count` must be zero: the world refuses other values.
-                for arm in &mut contacts[at].arms {
-                    *arm = if source.one_in(2) { source.word() as i32 } else { *arm };
+                let contact = &mut contacts[at];
+                contact.kept.alter(source);
+                if !source.one_in(4) {
+                    contact.kept.cut(contact.count);
                 }
             }
             _ => {
@@ -75,11 +123,7 @@ impl State {
                     let normal = source.within(0, IMPULSE_MAX) as i32;
                     *point = Point { feature, normal, tangent: speed(source, IMPULSE_MAX) };
                 }
-                match contact.count {
-                    0 => contact.arms = [0; 3],
-                    1 => contact.arms[1] = 0,
-                    _ => {}
-                }
+                contact.kept.cut(contact.count);
             }
         }
         Some(())

@@ -105,18 +105,6 @@ impl Lanes<WIDTH> for Avx2 {
     }
 
     #[inline(always)]
-    fn shift_left<const SHIFT: i32>(a: __m256i) -> __m256i {
-        // SAFETY: see `Avx2`.
-        unsafe { _mm256_slli_epi32::<SHIFT>(a) }
-    }
-
-    #[inline(always)]
-    fn shift_right<const SHIFT: i32>(a: __m256i) -> __m256i {
-        // SAFETY: see `Avx2`.
-        unsafe { _mm256_srai_epi32::<SHIFT>(a) }
-    }
-
-    #[inline(always)]
     fn greater(a: __m256i, b: __m256i) -> __m256i {
         // SAFETY: see `Avx2`.
         unsafe { _mm256_cmpgt_epi32(a, b) }

@@ -95,18 +95,6 @@ impl Lanes<WIDTH> for Avx512 {
     }
 
     #[inline(always)]
-    fn shift_left<const SHIFT: i32>(a: __m512i) -> __m512i {
-        // SAFETY: see `Avx512`.
-        unsafe { _mm512_sll_epi32(a, _mm_cvtsi32_si128(SHIFT)) }
-    }
-
-    #[inline(always)]
-    fn shift_right<const SHIFT: i32>(a: __m512i) -> __m512i {
-        // SAFETY: see `Avx512`.
-        unsafe { _mm512_sra_epi32(a, _mm_cvtsi32_si128(SHIFT)) }
-    }
-
-    #[inline(always)]
     fn greater(a: __m512i, b: __m512i) -> __mmask16 {
         // SAFETY: see `Avx512`.
         unsafe { _mm512_cmpgt_epi32_mask(a, b) }

@@ -1,5 +1,7 @@
 //! Batches of contacts: `N` at a time, as a structure of arrays.
 
+use super::super::pair::shift;
+use crate::math::{Shift, Step};
 use crate::simd::{Ints, Lanes};
 
 /// `N` contacts for one tick, of which no two change the same body. Lanes without a contact have gains of 0, and the
@@ -104,6 +106,18 @@ impl<const N: usize> Batch<N> {
     pub(super) fn directions<L: Lanes<N>>(&self) -> ([L::Int; 2], [L::Int; 2]) {
         let (x, y) = (L::load(&self.n_x), L::load(&self.n_y));
         ([x, y], [L::sub(L::splat(0), y), x])
+    }
+
+    /// Sets the separations of the points at the start of the tick, in the format of a step.
+    #[inline(always)]
+    pub(super) fn separate<L: Lanes<N>>(&mut self, [first, second]: [L::Int; 2]) {
+        const STEP_TO_SHIFT: i32 = shift(Step::FRAC_NBITS - Shift::FRAC_NBITS);
+        let second = L::select(L::negative(L::load(&self.both)), second, first);
+        for (point, separation) in self.points[..self.count].iter_mut().zip([first, second]) {
+            let separation = L::narrow::<STEP_TO_SHIFT>(L::mul(separation, L::splat(1)));
+            L::store(separation, &mut point.first_separation);
+            L::store(separation, &mut point.separation);
+        }
     }
 
     /// Sets the normal impulse of a point.

@@ -3,12 +3,11 @@
 use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::{Colouring, Node, Size};
 use super::super::row::MassFractions;
-use super::arms::last_arms;
 use super::restitution::ELASTIC;
 use super::{Features, Surface, WarmStarts};
 use alloc::vec::Vec;
 
-use crate::collision::{Contact, Impact, Manifold, Pair, PointImpulse};
+use crate::collision::{Contact, KeptManifold, Manifold, Pair, PointImpulse};
 use crate::math::{Length, Step, convert};
 use crate::simd::{Lanes, Quad, prefetch};
 
@@ -31,6 +30,8 @@ pub(crate) struct ActiveContact {
     /// Whether the contact needs more than rows along the normal and the tangent: if its surface has extras or it is a
     /// hit.
     pub(crate) extras: bool,
+    /// Whether the rows are those of the last tick: the contact has kept its manifold and its surface.
+    pub(crate) keeps_rows: bool,
 }
 
 /// Properties of a body that follow from all of its contacts: flags that each contact sets, and in the bits above them
@@ -65,7 +66,7 @@ impl Prospect {
     }
 
     /// Whether an impact may drive the body between two walls. Neither of them gives way.
-    fn is_wedged(self) -> bool {
+    pub(super) fn is_wedged(self) -> bool {
         self.0 & Self::IMPACT != 0 && self.0 >= 2 * Self::FLAGS
     }
 
@@ -79,7 +80,6 @@ impl Prospect {
 pub(in crate::solver) struct ContactSource<'a> {
     pub(in crate::solver) pairs: &'a [ActiveContact],
     pub(in crate::solver) manifolds: &'a [Manifold],
-    pub(in crate::solver) impacts: &'a [Impact],
     /// The contacts of the state, with the impulses of the last tick.
     pub(in crate::solver) contacts: &'a [Contact],
     pub(in crate::solver) list: &'a BodyList,
@@ -93,6 +93,7 @@ pub(super) struct Input {
     /// The bodies that impulses change. The ground replaces a body that no impulse moves.
     pub(super) changed: [u32; 2],
     pub(super) contact: u32,
+    pub(super) shapes: Pair,
     pub(super) features: [u16; 2],
     /// Whether one of the bodies is wedged.
     pub(super) wedged: bool,
@@ -103,12 +104,10 @@ pub(super) struct Input {
     pub(super) shares: Quad,
     /// `1 / k` of A and B: the two mantissas, then the two shifts.
     pub(super) gyrations: Quad,
-    /// Vectors from the centres of mass of A and B to the manifold's origin.
+    /// Vectors from the centres of mass of A and B to the origin of the contact, its first point.
     pub(super) to_origin: Quad,
-    /// Vectors from the manifold's origin to the two points.
+    /// Vectors from the origin to the two points.
     pub(super) anchors: Quad,
-    /// The arms of the last tick: see [`last_arms`].
-    pub(super) last_arms: Quad,
     /// Impulses of the last tick, `p = L / D`: along the normal of each point, and along the tangent. The last number
     /// is the number of points.
     pub(super) carried: Quad,
@@ -123,6 +122,7 @@ impl Input {
         bodies: [GROUND; 2],
         changed: [GROUND; 2],
         contact: 0,
+        shapes: (0, 0),
         features: [0; 2],
         wedged: false,
         count: 0,
@@ -131,7 +131,6 @@ impl Input {
         gyrations: Quad([0; 4]),
         to_origin: Quad([0; 4]),
         anchors: Quad([0; 4]),
-        last_arms: Quad([0; 4]),
         carried: Quad([0; 4]),
         rest: Quad([0; 4]),
     };
@@ -193,17 +192,15 @@ impl ContactSource<'_> {
         let n = manifold.normal;
         let (inverse_a, inverse_b) = (a.inverse_gyration.parts(), b.inverse_gyration.parts());
         let [first, second] = manifold.both_points();
-        let (mut to_a, mut to_b) = (a.arm_to(manifold.origin), b.arm_to(manifold.origin));
-        let gap = match manifold.count() {
-            2 => (first.separation >> 1) + (second.separation >> 1),
-            _ => first.separation,
-        };
-        let mut gap: Length = convert(gap.max(Step::ZERO));
-        if let Some(&Impact { moved }) = manifold.impact().and_then(|index| self.impacts.get(index)) {
-            (to_a, to_b) = (to_a - moved[0], to_b - moved[1]);
-            gap = Length::ZERO;
-        }
         let memory = &self.contacts[pair.contact as usize];
+        let KeptManifold { arm_a: to_a, arm_b: to_b, to_second, .. } = memory.kept;
+        let gap = match memory.kept.separations {
+            // A manifold of the time of impact has no gap.
+            _ if !memory.kept.is_some() => Step::ZERO,
+            [first, second] if manifold.count() == 2 => (first >> 1) + (second >> 1),
+            [first, _] => first,
+        };
+        let gap: Length = convert(gap.max(Step::ZERO));
         let [old_first, old_second] = carried_over(manifold, memory, warm);
         let tangent = old_first.tangent.saturating_add(old_second.tangent);
         let changed = self.changed(bodies);
@@ -211,20 +208,15 @@ impl ContactSource<'_> {
             bodies,
             changed,
             contact: pair.contact,
+            shapes: pair.shapes,
             features: [first.feature.0, second.feature.0],
-            wedged: prospects[changed[0] as usize].is_wedged() || prospects[changed[1] as usize].is_wedged(),
+            wedged: changed.iter().any(|&body| prospects[body as usize].is_wedged()),
             count: manifold.count(),
             extras: pair.extras,
             shares: Quad([n.x.to_bits(), n.y.to_bits(), fractions.a.to_bits(), fractions.b.to_bits()]),
             gyrations: Quad([inverse_a.0, inverse_b.0, inverse_a.1, inverse_b.1]),
             to_origin: Quad([to_a.x.to_bits(), to_a.y.to_bits(), to_b.x.to_bits(), to_b.y.to_bits()]),
-            anchors: Quad([
-                first.anchor.x.to_bits(),
-                first.anchor.y.to_bits(),
-                second.anchor.x.to_bits(),
-                second.anchor.y.to_bits(),
-            ]),
-            last_arms: last_arms(memory, manifold, a.arm_tolerance.min(b.arm_tolerance)),
+            anchors: Quad([0, 0, to_second.x.to_bits(), to_second.y.to_bits()]),
             carried: Quad([
                 old_first.normal.to_bits(),
                 old_second.normal.to_bits(),
@@ -241,14 +233,14 @@ impl ContactSource<'_> {
     }
 
     #[inline(always)]
-    fn bodies_of(&self, pair: &ActiveContact) -> [u32; 2] {
+    pub(super) fn bodies_of(&self, pair: &ActiveContact) -> [u32; 2] {
         [self.list.index_of(pair.bodies.0), self.list.index_of(pair.bodies.1)]
     }
 
     /// The bodies that impulses change. A body counts as changed even if it is so heavy that its share of an impulse
     /// rounds to 0: other contacts of the body may change it, and must not get the same colour.
     #[inline(always)]
-    fn changed(&self, bodies: [u32; 2]) -> [u32; 2] {
+    pub(super) fn changed(&self, bodies: [u32; 2]) -> [u32; 2] {
         bodies.map(|index| if self.list.facts(index).mass.is_positive() { index } else { GROUND })
     }
 }
@@ -319,11 +311,11 @@ mod tests {
             is_impact: false,
             is_hit: false,
             extras: false,
+            keeps_rows: false,
         };
         let source = ContactSource {
             pairs: &[pair],
             manifolds: &[Manifold::new(Vec2::Y)],
-            impacts: &[],
             contacts: &[Contact::new((0, 1))],
             list: &list,
         };

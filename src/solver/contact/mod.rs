@@ -16,7 +16,6 @@
 //! Differences of two velocities fit because each velocity is below 512 m/s. A sum that may not fit saturates. Lanes
 //! without a contact have gains of 0, so that their other numbers do not matter.
 
-mod arms;
 mod batch;
 mod constants;
 mod extras;

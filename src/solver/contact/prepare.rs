@@ -10,7 +10,7 @@ use super::rows;
 use super::store::Records;
 use super::{ContactSet, Contacts, WarmStarts};
 use crate::math::Unit;
-use crate::simd::{Kernel, Lanes, Machine, Scalar, prefetch};
+use crate::simd::{Kernel, Lanes, Machine, Quad, Scalar, prefetch};
 use crate::threads::Threads;
 
 /// Prefetch distance in batches, for the touching pairs.
@@ -119,6 +119,9 @@ impl<const N: usize> Batches<Contacts, N> {
             records.push(Records::NONE);
         }
         let (batch, records) = (&mut batches[number], &mut records[number]);
+        if keep::<L, N>(batch, records, source, prospects, indices, warm_starts) {
+            return;
+        }
         batch.begin();
         records.begin();
         let mut inputs = [Input::NONE; N];
@@ -132,16 +135,59 @@ impl<const N: usize> Batches<Contacts, N> {
             }
             records.take(lane, input);
         }
-        rows::fill::<L, N>(&inputs, batch, &mut records.inverses, &mut records.arms);
+        rows::fill::<L, N>(&inputs, batch, &mut records.denominators);
         let mut extra = None;
         if batch.extras {
             let extra = extra.insert(ContactExtras::NONE);
             for (lane, &index) in indices.iter().enumerate() {
-                let inverses = [0, 1].map(|point| Unit::from_bits(records.inverses.normals[point].0[lane]));
+                let inverses =
+                    [0, 1].map(|point| Unit::from_bits(records.denominators.normals[point].inverse.0[lane]));
                 extra.fill(lane, source, index as usize, inverses);
             }
         }
         batch.unchecked = Unchecked::<L, N>::suits(batch, extra.as_ref());
         extras.extend(extra);
     }
+}
+
+/// Keeps the rows of a batch, if it had the same contacts in the last tick and their rows have not changed. Only the
+/// separations are new: the impulses for the warm start are in the batch.
+#[inline(always)]
+fn keep<L: Lanes<N>, const N: usize>(
+    batch: &mut Batch<N>,
+    records: &mut Records<N>,
+    source: &ContactSource<'_>,
+    prospects: &[Prospect],
+    indices: &[u32],
+    warm_starts: &mut WarmStarts,
+) -> bool {
+    if batch.extras || records.unwedged_len() != Some(indices.len()) {
+        return false;
+    }
+    let mut separations = [Quad([0; 4]); N];
+    let mut points = 0;
+    for (lane, (separations, &index)) in separations.iter_mut().zip(indices).enumerate() {
+        let pair = &source.pairs[index as usize];
+        if !pair.keeps_rows || !records.keep(lane, pair) {
+            return false;
+        }
+        let bodies = source.bodies_of(pair);
+        let changed = source.changed(bodies);
+        let is_wedged = changed.iter().any(|&body| prospects[body as usize].is_wedged());
+        let has = |of: &[[u32; N]; 2], bodies: [u32; 2]| [of[0][lane], of[1][lane]] == bodies;
+        if is_wedged || !has(&batch.bodies, bodies) || !has(&batch.changed, changed) {
+            return false;
+        }
+        let manifold = &source.manifolds[pair.manifold as usize];
+        let [first, second] = manifold.both_points();
+        *separations = Quad([first.separation.to_bits(), second.separation.to_bits(), 0, 0]);
+        points += u32::from(manifold.count());
+    }
+    warm_starts.points += points;
+    warm_starts.kept += points;
+    let [first, second, ..] = L::transposed(separations.each_ref());
+    batch.separate::<L>([first, second]);
+    batch.pushed = [0; 2];
+    batch.unchecked = Unchecked::<L, N>::suits(batch, None);
+    true
 }

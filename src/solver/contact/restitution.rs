@@ -17,7 +17,7 @@ use super::Contacts;
 use super::batch::Batch;
 use super::extras::ContactExtras;
 use super::overflow_policy::{OverflowPolicy, Saturating};
-use super::rows::Inverses;
+use super::rows::Denominators;
 use crate::math::{Shift, Unit, saturate, saturate_wide};
 use crate::simd::{Ints, Lanes};
 
@@ -114,7 +114,7 @@ impl Operation<Contacts> for ApplyRestitution {
         for (point, rebound) in batch.points[..batch.count].iter().zip(&mut rebound) {
             L::store(pair.velocity(n, &point.normal, reader), &mut rebound.after);
         }
-        let share = L::load(&shares_without_gain(batch, extras, &record.inverses, &rebound));
+        let share = L::load(&shares_without_gain(batch, extras, &record.denominators, &rebound));
         let limited = L::both(active, L::greater(L::splat(Unit::ONE.to_bits()), share));
         let mut part = stopped;
         for (i, (point, rebound)) in batch.points[..batch.count].iter().zip(&rebound).enumerate() {
@@ -155,7 +155,7 @@ impl<const N: usize> Rebound<N> {
 fn shares_without_gain<const N: usize>(
     batch: &Batch<N>,
     extras: &ContactExtras<N>,
-    inverses: &Inverses<N>,
+    denominators: &Denominators<N>,
     rebound: &[Rebound<N>; 2],
 ) -> Ints<N> {
     let wide = |x: i32| i128::from(x);
@@ -163,7 +163,7 @@ fn shares_without_gain<const N: usize>(
         let (mut none, mut all) = (0, 0);
         for (i, point) in rebound.iter().enumerate().take(batch.count) {
             let Rebound { old, new, before, after } = point;
-            let inverse = wide(inverses.normals[i].0[lane]);
+            let inverse = wide(denominators.normals[i].inverse.0[lane]);
             let approach = wide(extras.approach[i].0[lane]);
             none += inverse * wide(old.0[lane]) * (wide(before.0[lane]) + approach);
             all += inverse * wide(new.0[lane]) * (wide(after.0[lane]) + approach);

@@ -13,17 +13,13 @@ use super::super::limits::IMPULSE_MAX;
 use super::super::pair::{RATIO, UNIT, clamp, shift};
 use super::super::row::RATIO_MAX;
 use super::TANGENT_MAX;
-use super::arms::{Places, RenewedArms};
 use super::batch::{Batch, Row};
 use super::input::{Input, columns};
-use crate::math::{
-    FrictionRatio, Fx, Length, Ratio, Shift, Step, narrow, round_shift_wide, saturate, saturate_wide,
-};
+use crate::math::{FrictionRatio, Fx, Length, Ratio, narrow, round_shift_wide, saturate, saturate_wide};
 use crate::simd::{Ints, Lanes};
 
 /// Shift from the format of a unit vector to that of a lever ratio.
 const UNIT_TO_RATIO: i32 = UNIT - RATIO;
-const STEP_TO_SHIFT: i32 = shift(Step::FRAC_NBITS - Shift::FRAC_NBITS);
 
 /// One body of each contact.
 #[derive(Clone, Copy)]
@@ -37,24 +33,61 @@ struct ContactSide<L: Lanes<N>, const N: usize> {
     shift: L::Int,
 }
 
-/// The reciprocals of the denominators of a batch's rows.
+/// The denominators of a batch's rows.
 #[derive(Clone, Debug)]
-pub(super) struct Inverses<const N: usize> {
-    pub(super) normals: [Ints<N>; 2],
-    pub(super) tangent: Ints<N>,
+pub(super) struct Denominators<const N: usize> {
+    pub(super) normals: [Denominator<N>; 2],
+    pub(super) tangent: Denominator<N>,
 }
 
-impl<const N: usize> Inverses<N> {
-    pub(super) const NONE: Self = Inverses { normals: [Ints::ZERO; 2], tangent: Ints::ZERO };
+/// `D` of a row, and its reciprocal.
+#[derive(Clone, Debug)]
+pub(super) struct Denominator<const N: usize> {
+    pub(super) inverse: Ints<N>,
+    whole: Ints<N>,
+    part: Ints<N>,
 }
 
-/// Computes the rows of a batch, and the arms that have changed.
+impl<const N: usize> Denominators<N> {
+    pub(super) const NONE: Self =
+        Denominators { normals: [Denominator::NONE; 2], tangent: Denominator::NONE };
+}
+
+impl<const N: usize> Denominator<N> {
+    const NONE: Self = Denominator { inverse: Ints::ZERO, whole: Ints::ZERO, part: Ints::ZERO };
+
+    /// `p = L / D`.
+    #[inline(always)]
+    pub(super) fn impulse<L: Lanes<N>>(&self, lambda: L::Int) -> L::Int {
+        L::narrow::<UNIT>(L::mul(L::load(&self.inverse), lambda))
+    }
+
+    /// `L = p D`, for an initial guess: saturated to the largest impulse along the normal.
+    #[inline(always)]
+    pub(super) fn normal_lambda<L: Lanes<N>>(&self, impulse: L::Int) -> L::Int {
+        let lambda = product::<L, N>(impulse, &self.long::<L>());
+        L::min(L::max(lambda, L::splat(0)), L::splat(IMPULSE_MAX.to_bits()))
+    }
+
+    /// `L = p D`, for an initial guess: saturated to the largest impulse along the tangent.
+    #[inline(always)]
+    pub(super) fn tangent_lambda<L: Lanes<N>>(&self, impulse: L::Int) -> L::Int {
+        let lambda = product::<L, N>(impulse, &self.long::<L>());
+        clamp::<L, N>(lambda, L::splat(TANGENT_MAX.to_bits()))
+    }
+
+    #[inline(always)]
+    fn long<L: Lanes<N>>(&self) -> Long<L, N> {
+        Long { whole: L::load(&self.whole), part: L::load(&self.part) }
+    }
+}
+
+/// Computes the rows of a batch.
 #[inline(always)]
 pub(super) fn fill<L: Lanes<N>, const N: usize>(
     inputs: &[Input; N],
     batch: &mut Batch<N>,
-    inverses: &mut Inverses<N>,
-    arms: &mut RenewedArms<N>,
+    denominators: &mut Denominators<N>,
 ) {
     let one = L::splat(1);
     let [x, y, fraction_a, fraction_b] = columns::<L, N>(inputs, |input| &input.shares);
@@ -63,21 +96,18 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
     let [mantissa_a, mantissa_b, shift_a, shift_b] = columns::<L, N>(inputs, |input| &input.gyrations);
     let [ax, ay, bx, by] = columns::<L, N>(inputs, |input| &input.to_origin);
     let [x0, y0, x1, y1] = columns::<L, N>(inputs, |input| &input.anchors);
-    let mut places = Places::<L, N> { to_origin: [[ax, ay], [bx, by]], anchors: [[x0, y0], [x1, y1]] };
-    places.keep_arms(inputs, batch.count, arms);
-    let Places { to_origin: [to_a, to_b], anchors: [first, mut second] } = places;
+    let (first, mut second) = ([x0, y0], [x1, y1]);
     let ends = [
-        ContactSide::<L, N>::new(fraction_a, to_a, mantissa_a, shift_a),
-        ContactSide::<L, N>::new(fraction_b, to_b, mantissa_b, shift_b),
+        ContactSide::<L, N>::new(fraction_a, [ax, ay], mantissa_a, shift_a),
+        ContactSide::<L, N>::new(fraction_b, [bx, by], mantissa_b, shift_b),
     ];
     let [normal_0, normal_1, carried, counts] = columns::<L, N>(inputs, |input| &input.carried);
-    let [separation_0, mut separation_1, friction, gap] = columns::<L, N>(inputs, |input| &input.rest);
+    let [separation_0, separation_1, friction, gap] = columns::<L, N>(inputs, |input| &input.rest);
     let both = L::greater(counts, one);
     L::store(L::to_int(both), &mut batch.both);
     for (second, first) in second.iter_mut().zip(first) {
         *second = L::select(both, *second, first);
     }
-    separation_1 = L::select(both, separation_1, separation_0);
     L::store(n[0], &mut batch.n_x);
     L::store(n[1], &mut batch.n_y);
     let stiff = L::either(L::greater(one, fraction_a), L::greater(one, fraction_b));
@@ -92,24 +122,19 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
     let lift_y = L::narrow::<RATIO>(L::mul(n[1], half));
     let surface_a = [L::sub(middle[0], lift_x), L::sub(middle[1], lift_y)];
     let surface_b = [L::add(middle[0], lift_x), L::add(middle[1], lift_y)];
-    let tangent =
-        fill_row::<L, N>(&mut batch.tangent, t, &ends, [surface_a, surface_b], &mut inverses.tangent);
+    let Denominators { normals, tangent: denominator } = denominators;
+    fill_row::<L, N>(&mut batch.tangent, t, &ends, [surface_a, surface_b], denominator);
+    let tangent = denominator.long::<L>();
     // Impulses of the last tick are only initial guesses, so that clamping them is not a fault.
-    let tangent_lambda = product::<L, N>(carried, &tangent);
-    L::store(clamp::<L, N>(tangent_lambda, L::splat(TANGENT_MAX.to_bits())), &mut batch.tangent_lambda);
-    let given = [(first, separation_0, normal_0), (second, separation_1, normal_1)];
-    let points = batch.points.iter_mut().zip(&mut inverses.normals).take(batch.count);
-    for ((point, inverses), (anchor, separation, carried)) in points.zip(given) {
-        let separation = L::narrow::<STEP_TO_SHIFT>(L::mul(separation, one));
-        L::store(separation, &mut point.first_separation);
-        L::store(separation, &mut point.separation);
-        let normal = fill_row::<L, N>(&mut point.normal, n, &ends, [anchor; 2], inverses);
-        let ratio = ratio::<L, N>(&tangent, L::load(inverses));
+    L::store(denominator.tangent_lambda::<L>(carried), &mut batch.tangent_lambda);
+    let points = batch.points.iter_mut().zip(normals).take(batch.count);
+    for ((point, denominator), (anchor, carried)) in points.zip([(first, normal_0), (second, normal_1)]) {
+        fill_row::<L, N>(&mut point.normal, n, &ends, [anchor; 2], denominator);
+        let ratio = ratio::<L, N>(&tangent, L::load(&denominator.inverse));
         L::store(product::<L, N>(friction, &ratio), &mut point.friction_ratio);
-        let normal_lambda = product::<L, N>(carried, &normal);
-        let normal_lambda = L::min(L::max(normal_lambda, L::splat(0)), L::splat(IMPULSE_MAX.to_bits()));
-        L::store(normal_lambda, &mut point.normal_lambda);
+        L::store(denominator.normal_lambda::<L>(carried), &mut point.normal_lambda);
     }
+    batch.separate::<L>([separation_0, separation_1]);
 }
 
 /// The mean of two numbers, rounded to nearest.
@@ -157,15 +182,15 @@ impl<L: Lanes<N>, const N: usize> ContactSide<L, N> {
     }
 }
 
-/// Computes a row, given where its impulses act on A and on B. Returns the denominators of all lanes.
+/// Computes a row and its denominators, given where its impulses act on A and on B.
 #[inline(always)]
 fn fill_row<L: Lanes<N>, const N: usize>(
     row: &mut Row<N>,
     n: [L::Int; 2],
     ends: &[ContactSide<L, N>; 2],
     anchors: [[L::Int; 2]; 2],
-    inverses: &mut Ints<N>,
-) -> Long<L, N> {
+    denominator: &mut Denominator<N>,
+) {
     let [e_a, e_b] = [ends[0].lever_ratio(anchors[0], n), ends[1].lever_ratio(anchors[1], n)];
     L::store(e_a, &mut row.e_a);
     L::store(e_b, &mut row.e_b);
@@ -177,14 +202,16 @@ fn fill_row<L: Lanes<N>, const N: usize>(
     let ones = L::mul(L::add(fractions[0], fractions[1]), L::splat(1 << 18));
     let denominators = L::shift_down::<18>(L::add_wide(squares, ones));
     let inverse = L::reciprocal(denominators);
-    L::store(inverse, inverses);
+    L::store(inverse, &mut denominator.inverse);
+    let Long { whole, part } = Long::<L, N>::of(denominators);
+    L::store(whole, &mut denominator.whole);
+    L::store(part, &mut denominator.part);
     for (gains, fraction, e) in [(&mut row.a, fractions[0], e_a), (&mut row.b, fractions[1], e_b)] {
         let g = L::narrow::<UNIT>(L::mul(fraction, inverse));
         L::store(L::narrow::<RATIO>(L::mul(g, n[0])), &mut gains[0]);
         L::store(L::narrow::<RATIO>(L::mul(g, n[1])), &mut gains[1]);
         L::store(L::narrow::<RATIO>(L::mul(g, e)), &mut gains[2]);
     }
-    Long::of(denominators)
 }
 
 /// Numbers from 0 to 2^45 with 30 fraction bits. They are stored in two parts, because they do not fit a lane.

@@ -3,15 +3,14 @@
 use alloc::vec::Vec;
 
 use super::super::batches::Batches;
-use super::super::pair::{UNIT, clamp};
-use super::arms::RenewedArms;
+use super::super::pair::clamp;
 use super::batch::Batch;
 use super::extras::ContactExtras;
-use super::input::Input;
+use super::input::{ActiveContact, Input};
 use super::overflow_policy::FRICTION_RATIO;
-use super::rows::Inverses;
+use super::rows::Denominators;
 use super::{ContactShare, Contacts};
-use crate::collision::{Contact, Feature, KeptArms, PointImpulse};
+use crate::collision::{Contact, Feature, Pair, PointImpulse};
 use crate::math::Speed;
 use crate::simd::{Ints, Kernel, Lanes, Machine, Scalar, Shared, prefetch};
 
@@ -25,31 +24,32 @@ pub(in crate::solver) struct Records<const N: usize> {
     len: u32,
     /// The indices of the contacts in the state.
     contacts: [u32; N],
+    /// The slots of the shapes.
+    shapes: [Pair; N],
     /// Number of points of each contact.
     counts: [u8; N],
     features: [[u16; 2]; N],
-    pub(super) arms: RenewedArms<N>,
     /// Whether one of the bodies is wedged.
     wedged: [bool; N],
-    /// `1 / D` of the rows.
-    pub(super) inverses: Inverses<N>,
+    pub(super) denominators: Denominators<N>,
 }
 
 impl<const N: usize> Records<N> {
     pub(super) const NONE: Self = Records {
         len: 0,
         contacts: [0; N],
+        shapes: [(0, 0); N],
         counts: [0; N],
         features: [[0; 2]; N],
-        arms: RenewedArms::NONE,
         wedged: [false; N],
-        inverses: Inverses::NONE,
+        denominators: Denominators::NONE,
     };
 
     /// Removes the contacts of an earlier batch.
     #[inline(always)]
     pub(super) fn begin(&mut self) {
         self.len = 0;
+        self.wedged = [false; N];
     }
 
     /// Puts a contact into the next lane.
@@ -57,6 +57,7 @@ impl<const N: usize> Records<N> {
     pub(super) fn take(&mut self, lane: usize, input: &Input) {
         self.len += 1;
         self.contacts[lane] = input.contact;
+        self.shapes[lane] = input.shapes;
         self.counts[lane] = input.count;
         self.features[lane] = input.features;
         self.wedged[lane] = input.wedged;
@@ -68,26 +69,45 @@ impl<const N: usize> Records<N> {
         lanes.enumerate().map(|(lane, (&contact, &count))| (lane, contact as usize, count))
     }
 
-    /// The impulses of each point for the warm start in the next tick: `p = L / D`, along the normal and the tangent.
+    /// Number of lanes with a contact, if none of them is wedged.
     #[inline(always)]
-    fn impulses<L: Lanes<N>>(&self, batch: &Batch<N>) -> [[Ints<N>; 2]; 2] {
-        let shares = shares_of_friction::<L, N>(batch);
+    pub(super) fn unwedged_len(&self) -> Option<usize> {
+        (self.wedged == [false; N]).then_some(self.len as usize)
+    }
+
+    /// Updates the index of the contact in a lane. Returns whether it is the contact of the given shapes.
+    #[inline(always)]
+    pub(super) fn keep(&mut self, lane: usize, pair: &ActiveContact) -> bool {
+        self.contacts[lane] = pair.contact;
+        self.shapes[lane] == pair.shapes
+    }
+
+    /// The impulses of each point for the warm start in the next tick, along the normal and the tangent. Replaces the
+    /// impulses of the batch by those with which it would be filled in the next tick, for a batch that is kept.
+    #[inline(always)]
+    fn impulses<L: Lanes<N>>(&self, batch: &mut Batch<N>) -> [[Ints<N>; 2]; 2] {
+        let Denominators { normals, tangent } = &self.denominators;
+        let shares = shares_of_friction::<L, N>(batch).map(|share| tangent.impulse::<L>(share));
         let mut impulses = [[Ints::ZERO; 2]; 2];
-        for (i, [normal, tangent]) in impulses.iter_mut().enumerate() {
-            let lambda = L::load(&batch.points[i].normal_lambda);
-            L::store(L::narrow::<UNIT>(L::mul(L::load(&self.inverses.normals[i]), lambda)), normal);
-            L::store(L::narrow::<UNIT>(L::mul(L::load(&self.inverses.tangent), shares[i])), tangent);
+        let points = batch.points.iter_mut().zip(normals).zip(shares).zip(&mut impulses).take(batch.count);
+        for (((point, denominator), share), [normal, tangent]) in points {
+            let impulse = denominator.impulse::<L>(L::load(&point.normal_lambda));
+            L::store(impulse, normal);
+            L::store(share, tangent);
+            L::store(denominator.normal_lambda::<L>(impulse), &mut point.normal_lambda);
         }
+        let whole = L::add_saturating(shares[0], shares[1]);
+        L::store(tangent.tangent_lambda::<L>(whole), &mut batch.tangent_lambda);
         impulses
     }
 
-    /// The normal impulse of each point over the tick, `p = L / D`.
+    /// The normal impulse of each point over the tick.
     #[inline(always)]
     fn hit_impulses<L: Lanes<N>>(&self, extras: &ContactExtras<N>) -> [Ints<N>; 2] {
         let mut impulses = [Ints::ZERO; 2];
         for (i, impulse) in impulses.iter_mut().enumerate() {
             let lambda = L::load(&extras.hit_lambda[i]);
-            L::store(L::narrow::<UNIT>(L::mul(L::load(&self.inverses.normals[i]), lambda)), impulse);
+            L::store(self.denominators.normals[i].impulse::<L>(lambda), impulse);
         }
         impulses
     }
@@ -150,8 +170,8 @@ impl<'a> ContactStore<'a> {
 
 impl ContactShare<'_> {
     /// Stores the impulses for the next tick.
-    pub(in crate::solver) fn store(&self, store: ContactStore<'_>, machine: Machine) {
-        for share in [&self.warm, &self.cold] {
+    pub(in crate::solver) fn store(&mut self, store: ContactStore<'_>, machine: Machine) {
+        for share in [&mut self.warm, &mut self.cold] {
             if let Some(batches) = share.own_overflow() {
                 Store { batches, store }.run::<Scalar<1>>();
             }
@@ -162,7 +182,7 @@ impl ContactShare<'_> {
 
 /// Stores the impulses of batches.
 struct Store<'a, const N: usize> {
-    batches: &'a Batches<Contacts, N>,
+    batches: &'a mut Batches<Contacts, N>,
     store: ContactStore<'a>,
 }
 
@@ -173,7 +193,7 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
         let (contacts, pushed) = (store.contacts.cells(), store.pushed.cells());
         let hit_impulses = store.hit_impulses.cells();
         let mut extras = extras.iter();
-        for (number, (batch, record)) in batches.iter().zip(records).enumerate() {
+        for (number, (batch, record)) in batches.iter_mut().zip(&*records).enumerate() {
             for (_, index, _) in records.get(number + CONTACTS_AHEAD).into_iter().flat_map(Records::lanes) {
                 prefetch(&contacts[index]);
             }
@@ -194,11 +214,6 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
                 let second = if count > 1 { point(1) } else { PointImpulse::default() };
                 let rolling = extras.map_or(Speed::ZERO, |extras| extras.rolling.impulse(lane));
                 contact.store_impulses([point(0), second], count, rolling);
-                if record.arms.lanes >> lane & 1 != 0 {
-                    let [a, b, between] = &record.arms.words;
-                    let second = if count > 1 { b.0[lane] } else { 0 };
-                    contact.arms = KeptArms([a.0[lane], second, between.0[lane]]);
-                }
                 contacts[index].set(contact);
                 let has_pushed = |point: usize| batch.pushed[point] >> lane & 1 != 0;
                 pushed[index].set(has_pushed(0) || count > 1 && has_pushed(1));

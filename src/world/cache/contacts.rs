@@ -2,7 +2,8 @@
 
 use alloc::vec::Vec;
 
-use crate::collision::{BoxPairs, CachedAxis, Contact, Impact, Manifold, SatCounters};
+use crate::collision::{BoxPairs, CachedAxis, Contact, Manifold, SatCounters};
+use crate::math::{Fx, Step, Vec2};
 use crate::solver::ActiveContact;
 use crate::threads::Threads;
 use crate::world::events::HitEvent;
@@ -41,8 +42,6 @@ pub(crate) struct NarrowPhaseBuffers<'a> {
 pub(crate) struct NarrowPhaseOutput {
     /// Manifolds with at least one point.
     pub(crate) manifolds: Vec<Manifold>,
-    /// Displacements up to the time of impact, for the manifolds that refer to one.
-    pub(crate) impacts: Vec<Impact>,
     /// For each manifold, the index of its contact in the state.
     pub(crate) contacts: Vec<u32>,
     /// Contacts with a manifold that the solver has to solve.
@@ -52,6 +51,16 @@ pub(crate) struct NarrowPhaseOutput {
     pub(crate) sat: SatCounters,
     /// Buffer: box pairs of the current block.
     pub(crate) boxes: BoxPairs,
+    /// Buffer: the contacts of the current block that keep their manifold.
+    pub(crate) recycled: Vec<Recycled>,
+}
+
+/// What a manifold that is kept for another tick takes from the poses of the bodies.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Recycled {
+    /// Position of the first point.
+    pub(crate) origin: Vec2<Fx>,
+    pub(crate) separations: [Step; 2],
 }
 
 /// A contact whose shapes approach fast enough for a hit event.
@@ -179,18 +188,18 @@ impl NarrowPhaseOutput {
     /// Empties all lists and keeps their memory.
     fn clear(&mut self) {
         self.manifolds.clear();
-        self.impacts.clear();
         self.contacts.clear();
         self.touching.clear();
         self.approaches.clear();
         self.boxes.clear();
+        self.recycled.clear();
         self.sat = SatCounters::default();
     }
 
     /// Joins the outputs of several parts in order. Each thread copies the output that it has written.
     fn join(&mut self, parts: &[Self], threads: &Threads) {
-        let NarrowPhaseOutput { manifolds, impacts, contacts, touching, approaches, sat, boxes: _ } = self;
-        impacts.clear();
+        let NarrowPhaseOutput { manifolds, contacts, touching, approaches, sat, boxes: _, recycled: _ } =
+            self;
         approaches.clear();
         *sat = SatCounters::default();
         make_room(manifolds, parts.iter().map(|part| &*part.manifolds));
@@ -203,13 +212,11 @@ impl NarrowPhaseOutput {
             let copy = Copy {
                 part,
                 first_manifold,
-                first_impact: count(impacts),
                 manifolds: split_off(&mut manifolds, part.manifolds.len()),
                 contacts: split_off(&mut contacts, part.contacts.len()),
                 touching: split_off(&mut touching, part.touching.len()),
             };
             first_manifold += count(&part.manifolds);
-            impacts.extend_from_slice(&part.impacts);
             approaches.extend_from_slice(&part.approaches);
             sat.cached_axis_hits += part.sat.cached_axis_hits;
             sat.searches += part.sat.searches;
@@ -226,7 +233,6 @@ impl NarrowPhaseOutput {
 struct Copy<'a> {
     part: &'a NarrowPhaseOutput,
     first_manifold: u32,
-    first_impact: u32,
     manifolds: &'a mut [Manifold],
     contacts: &'a mut [u32],
     touching: &'a mut [ActiveContact],
@@ -235,12 +241,7 @@ struct Copy<'a> {
 impl Copy<'_> {
     fn run(self) {
         self.contacts.copy_from_slice(&self.part.contacts);
-        for (to, from) in self.manifolds.iter_mut().zip(&self.part.manifolds) {
-            *to = *from;
-            if to.impact > 0 {
-                to.impact += self.first_impact;
-            }
-        }
+        self.manifolds.copy_from_slice(&self.part.manifolds);
         for (to, from) in self.touching.iter_mut().zip(&self.part.touching) {
             *to = ActiveContact { manifold: self.first_manifold + from.manifold, ..*from };
         }

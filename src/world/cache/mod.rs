@@ -28,7 +28,7 @@ mod union_find;
 
 pub(crate) use awake::{AwakeSet, SlotShare, is_awake};
 pub(crate) use changes::Changes;
-pub(crate) use contacts::{ContactCache, NarrowPhaseBuffers, NarrowPhaseOutput, PendingHit};
+pub(crate) use contacts::{ContactCache, NarrowPhaseBuffers, NarrowPhaseOutput, PendingHit, Recycled};
 pub(crate) use joint_links::JointLinks;
 pub(crate) use meter::{NARROW_PHASE_WORK, NEW_PAIR_WORK, WorkMeter, pair_work};
 pub(crate) use motion::{

@@ -8,7 +8,9 @@ use alloc::vec::Vec;
 use crate::body::{Body, Geometry, Handle, Shape};
 use crate::collision::{PosedShape, arm_of, margin_for, may_meet};
 use crate::fx;
-use crate::math::{Aabb, Fx, Length, Reciprocal, Speed, Step, Unit, Vec2, fx_mul, narrow, saturate, widen};
+use crate::math::{
+    Aabb, Fx, Length, Reciprocal, Speed, Step, Unit, Vec2, convert, fx_mul, narrow, saturate, widen,
+};
 use crate::simd::prefetch;
 use crate::threads::split_at_ends;
 use crate::world::config::Config;
@@ -159,6 +161,14 @@ impl ShapeMotion {
         Vec2::new(x >> 1, y >> 1)
     }
 
+    /// Half the sum of the sides of the bounds in metres, saturated: no point is farther from their centre.
+    #[inline]
+    pub(crate) fn extent(&self) -> Length {
+        // The shape is in the world, so that no sum overflows.
+        let size = self.bounds.upper.wrapping_sub(self.bounds.lower);
+        narrow(size.x.wrapping_add(size.y) >> 1)
+    }
+
     /// Bound of the distance by which any two points of two shapes approach each other within the tick, in metres.
     #[inline]
     fn closing(&self, other: &ShapeMotion) -> Travel {
@@ -212,6 +222,8 @@ pub(crate) struct Margins {
     pub(crate) touching: Step,
     /// Distance in metres by which shapes approach each other in a tick at [`IMPACT_SPEED`].
     pub(crate) impact: Step,
+    /// Largest movement of two shapes against each other for which a contact keeps its manifold, in metres.
+    pub(crate) kept: Length,
 }
 
 /// Approach speed in m/s from which a contact is an impact.
@@ -223,6 +235,7 @@ impl Margins {
             speculative: narrow(config.speculative_distance),
             touching: narrow(config.touching_distance()),
             impact: narrow(IMPACT_SPEED / i64::from(config.tick_rate)),
+            kept: narrow(config.speculative_distance / 4),
         }
     }
 }
@@ -245,6 +258,12 @@ impl ClosingBound {
     pub(crate) fn of(margins: &Margins, a: &ShapeMotion, b: &ShapeMotion) -> Self {
         let distance = a.closing(b);
         ClosingBound { distance, margin: margin_for(margins.speculative, distance) }
+    }
+
+    /// The rest of a distance when the movement of this tick is subtracted.
+    #[inline]
+    pub(crate) fn rest_of(self, distance: Length) -> Length {
+        distance.saturating_sub(convert(self.distance))
     }
 
     /// Whether the shapes approach each other so fast that the ghost-collision filter may apply.

@@ -117,7 +117,7 @@ impl World {
         self.check_spin(owner, &mass)?;
         wake_body(&mut self.state, &mut self.scratch, body.slot());
         self.prepare_mass(body, &mass);
-        self.state.bodies.redefine(body.slot()).set_mass(mass);
+        self.replace_mass(body.slot(), mass);
         let id = self.insert_shape(body, shape);
         // The centre of mass may have moved, which changes the rounding of the positions of all other shapes.
         self.scratch.update_body(&self.state, body.slot());

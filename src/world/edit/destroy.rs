@@ -45,7 +45,7 @@ impl World {
         self.delete_shapes(&[id]);
         let owner = self.state.bodies.redefine(body.slot());
         owner.shapes.retain(|other| *other != id);
-        owner.set_mass(mass);
+        self.replace_mass(body.slot(), mass);
         // The centre of mass has moved, which changes the rounding of the positions of all other shapes.
         self.scratch.update_body(&self.state, body.slot());
         Ok(())

@@ -26,10 +26,9 @@ impl World {
         settings.validate()?;
         let mass = mass_of(body.kind(), *body.mass_source, settings, self.shape_defs(body))?;
         wake_body(&mut self.state, &mut self.scratch, id.slot());
-        let body = self.state.bodies.redefine(id.slot());
-        body.settings = *settings;
-        body.set_mass(mass);
-        body.hold_locked_axes();
+        self.state.bodies.redefine(id.slot()).settings = *settings;
+        self.replace_mass(id.slot(), mass);
+        self.state.bodies.redefine(id.slot()).hold_locked_axes();
         self.scratch.update_body(&self.state, id.slot());
         Ok(())
     }
@@ -67,9 +66,8 @@ impl World {
         self.check_spin(body, &mass)?;
         wake_body(&mut self.state, &mut self.scratch, id.slot());
         self.prepare_mass(id, &mass);
-        let body = self.state.bodies.redefine(id.slot());
-        *body.mass_source = source;
-        body.set_mass(mass);
+        *self.state.bodies.redefine(id.slot()).mass_source = source;
+        self.replace_mass(id.slot(), mass);
         self.scratch.update_body(&self.state, id.slot());
         Ok(())
     }
@@ -110,7 +108,8 @@ impl World {
         let body = self.state.bodies.redefine(id.slot());
         body.kind = kind;
         body.target = None;
-        body.set_mass(mass);
+        self.replace_mass(id.slot(), mass);
+        let body = self.state.bodies.redefine(id.slot());
         if kind != BodyKind::Dynamic {
             (body.force, body.torque) = (Vec2::ZERO, Fx::ZERO);
         }
@@ -227,7 +226,8 @@ impl World {
             self.end_contacts(&[id]);
         }
         *self.state.shapes.redefine(id.slot()).def = *def;
-        self.state.bodies.redefine(slot).set_mass(mass);
+        self.state.forget_manifolds(slot);
+        self.replace_mass(slot, mass);
         self.refit_body(slot);
         self.scratch.pairs.changes.rules_changed();
         wake_overlapping(&mut self.state, &mut self.scratch, slot);
@@ -293,6 +293,14 @@ impl World {
             wake_joined(&mut self.state, &mut self.scratch, id);
             self.scratch.pairs.changes.rules_changed();
         }
+    }
+
+    /// Replaces the mass of a body. Lever arms begin at its centre of mass, so that its contacts are collided anew.
+    pub(super) fn replace_mass(&mut self, body: u32, mass: MassProperties) {
+        if self.state.bodies.at(body).mass != mass {
+            self.state.forget_manifolds(body);
+        }
+        self.state.bodies.redefine(body).set_mass(mass);
     }
 
     /// Replaces the definition of a shape by a changed copy.

@@ -13,7 +13,7 @@ use crate::world::state::State;
 /// The first bytes of every world.
 const MAGIC: [u8; 8] = *b"LS2DWRLD";
 /// Version of the layout.
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 const ENVELOPE: Envelope = Envelope { magic: MAGIC, format: FORMAT };
 
 /// Reason why bytes were refused as a world.

@@ -1,8 +1,8 @@
 //! Packed contacts and joints: the parts of them that a tick changes.
 //!
 //! Each contact takes 8 bytes, its head: shape A (30 bits), shape B (29 bits), touching, passing, number of points (2
-//! bits), whether it has impulses. A second buffer has 36 bytes for each contact with impulses: normal and tangential
-//! impulse of both points and the rolling impulse (5 x i32), features (2 x u16), kept arms (3 x i32).
+//! bits), whether it has impulses. A second buffer has 72 bytes for each contact with impulses: normal and tangential
+//! impulse of both points and the rolling impulse (5 x i32), features (2 x u16), the kept manifold (12 x i32).
 //!
 //! Each joint takes one byte of flags, which tell which of its six impulses are not 0 and whether its turns take 8
 //! bytes, then these impulses (i32 each) and the turns (i32 or i64).
@@ -11,12 +11,12 @@ use alloc::vec::Vec;
 
 use super::packing::{Fields, Reader, Record, Writer, low_half, put_records};
 use crate::body::{Arena, JointId};
-use crate::collision::{Contact, PointImpulse};
+use crate::collision::{Contact, KeptManifold, PointImpulse};
 use crate::math::Speed;
 use crate::solver::Joint;
 
 const HEAD_BYTES: usize = 8;
-const IMPULSES_BYTES: usize = 36;
+const IMPULSES_BYTES: usize = 24 + 4 * KeptManifold::WORDS;
 /// Largest size of a joint.
 const JOINT_BYTES: usize = 1 + 6 * 4 + 8;
 /// Flag for turns of 8 bytes.
@@ -37,7 +37,7 @@ pub(super) fn pack_contacts(contacts: &[Contact], heads: &mut Vec<u8>, impulses:
                 }
                 record.put(contact.rolling.to_bits());
                 contact.points.iter().for_each(|point| record.put(point.feature));
-                contact.arms.0.iter().for_each(|&arm| record.put(arm));
+                contact.kept.to_words().into_iter().for_each(|word| record.put(word));
             });
         }
     });
@@ -85,7 +85,7 @@ fn unpack_contact(mut head: Fields<'_, HEAD_BYTES>, impulses: &mut Reader<'_>) -
         }
         contact.rolling = Speed::from_bits(impulses.take());
         contact.points.iter_mut().for_each(|point| point.feature = impulses.take());
-        contact.arms.0.iter_mut().for_each(|arm| *arm = impulses.take());
+        contact.kept = KeptManifold::from_words(core::array::from_fn(|_| impulses.take()));
     }
     contact
 }

@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use crate::body::{BodyDef, BodyId, Geometry, Handle, ShapeDef};
-use crate::collision::{Contact, KeptArms, PointImpulse};
+use crate::collision::{Contact, KeptManifold, PointImpulse};
 use crate::fx;
 use crate::math::{Aabb, Fx, Speed, Vec2};
 use crate::solver::{JointDef, Revolute};
@@ -82,11 +82,12 @@ fn contacts_of_every_kind_come_back() {
             0 => contact.rolling = rolling,
             1 => {
                 contact.store_impulses([points[0], PointImpulse::default()], 1, rolling);
-                contact.arms = KeptArms([-1, 0, i32::MIN]);
+                contact.kept = KeptManifold::from_words([1, -1, -1, i32::MIN, 0, 0, 3, 4, -5, 6, 7, 0, 1, 2]);
             }
             _ => {
                 contact.store_impulses(points, 2, rolling);
-                contact.arms = KeptArms([1, 2, i32::MAX]);
+                contact.kept =
+                    KeptManifold::from_words([1, 2, 3, 4, 5, i32::MAX, 7, 8, 9, 10, 11, -12, 13, 14]);
             }
         }
         if slot % 2 == 0 { &mut state.contacts } else { &mut *state.sleeping_contacts }.push(contact);

@@ -227,12 +227,7 @@ fn check_contacts(state: &State, contacts: &[Contact]) -> Result<(), Violation> 
             check(pushes && (-limit..=limit).contains(&point.tangent), || at("an impulse is out of range"))?;
         }
         check((-limit..=limit).contains(&contact.rolling), || at("the rolling impulse is out of range"))?;
-        let unused_arms = match contact.count {
-            0 => &contact.arms.0[..],
-            1 => &contact.arms.0[1..2],
-            _ => &[],
-        };
-        check(unused_arms.iter().all(|&arm| arm == 0), || at("an arm without a point"))?;
+        check(contact.kept.is_valid(contact.count), || at("the kept manifold is out of range"))?;
         let unused = &contact.points[usize::from(contact.count)..];
         check(unused.iter().all(|point| *point == Default::default()), || at("an impulse without a point"))?;
     }

@@ -14,8 +14,10 @@
 //! of the distance.
 
 use super::speculative::{Side, SpeculativePair, approach};
-use crate::collision::{CachedAxis, Impact, Manifold, PosedShape, SatCounters, arm_of, collide_near};
-use crate::math::{Angle, Rot, Step, Unit, mul, round_shift_wide, saturate, saturate_wide, widen};
+use crate::collision::{CachedAxis, Manifold, PosedShape, SatCounters, arm_of, collide_near};
+use crate::math::{
+    Angle, Length, Rot, Step, Unit, Vec2, mul, round_shift_wide, saturate, saturate_wide, widen,
+};
 use crate::world::cache::{MotionCache, PredictedMotion, Travel};
 
 /// Largest number of trial times at which the shapes are collided.
@@ -57,7 +59,7 @@ impl SpeculativePair<'_> {
     }
 
     /// Replaces the manifold of the start of the tick by that of the time of impact, if the shapes touch within the
-    /// tick.
+    /// tick. Returns the displacements of the bodies until then.
     #[cold]
     pub(super) fn move_to_impact(
         &self,
@@ -65,7 +67,7 @@ impl SpeculativePair<'_> {
         motion: &MotionCache,
         manifold: &mut Manifold,
         counters: &mut SatCounters,
-    ) -> Option<Impact> {
+    ) -> Option<[Vec2<Length>; 2]> {
         let motions = [motion.motion(self.a), motion.motion(self.b)];
         let shapes = [(self.a, 0), (self.b, 1)].map(|(shape, side)| MovingShape {
             side: sides[side],
@@ -98,7 +100,7 @@ impl SpeculativePair<'_> {
             Step::from_bits(saturate(closed.saturating_add(point.separation.to_bits().into())))
         });
         *manifold = at_impact;
-        Some(Impact { moved: motions.map(|motion| motion.shift_until(fraction).narrow()) })
+        Some(motions.map(|motion| motion.shift_until(fraction).narrow()))
     }
 }
 

@@ -9,6 +9,7 @@ mod joint_thresholds;
 mod narrow_phase;
 mod pair_update;
 mod phases;
+mod recycle;
 mod refit;
 mod report;
 mod sensor_events;
@@ -89,7 +90,7 @@ impl World {
         let output = contacts.output();
         solver.prepare_bodies(&state.bodies, awake.bodies(), &tuning);
         solver.prepare_joints(&state.joints, awake.joints(), &state.bodies, &tuning);
-        solver.prepare_contacts(&output.touching, &output.manifolds, &output.impacts, &state.contacts);
+        solver.prepare_contacts(&output.touching, &output.manifolds, &state.contacts);
         areas::apply_areas(state, scratch, &tuning);
         let can_solve = solver_work::spend(state, scratch, pairs_before);
         let Scratch { solver, .. } = scratch;

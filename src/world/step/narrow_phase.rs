@@ -3,6 +3,7 @@
 
 use core::ops::Range;
 
+use super::recycle::Recycling;
 use super::speculative::{Side, SpeculativePair, approach};
 use crate::collision::{CachedAxis, Contact, Manifold, Pair, SatCounters, collide_near};
 use crate::math::{Fx, Step, saturate, widen};
@@ -71,26 +72,45 @@ struct NearContacts {
     near: u64,
     /// The near contacts that are pairs of small boxes.
     box_pairs: u64,
+    /// The near contacts that keep their manifold.
+    kept: u64,
+}
+
+/// Where the manifold of a near contact comes from.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum ManifoldSource {
+    /// The contact keeps its manifold.
+    Kept,
+    /// The block of box pairs.
+    BoxPair,
+    /// The shapes have to be collided.
+    Shapes,
 }
 
 const _: () = assert!(BLOCK <= u64::BITS as usize);
 
 impl NearContacts {
     #[inline]
-    fn add(&mut self, index: usize, is_box_pair: bool) {
+    fn add(&mut self, index: usize, source: ManifoldSource) {
         let bit = index - self.start;
         self.near |= 1 << bit;
-        self.box_pairs |= u64::from(is_box_pair) << bit;
+        self.box_pairs |= u64::from(source == ManifoldSource::BoxPair) << bit;
+        self.kept |= u64::from(source == ManifoldSource::Kept) << bit;
     }
 
-    /// The indices in the job, and whether each contact is a pair of small boxes.
+    /// The indices in the job, and the source of each manifold.
     #[inline]
-    fn iter(self) -> impl Iterator<Item = (usize, bool)> {
-        let (mut near, NearContacts { start, box_pairs, .. }) = (self.near, self);
+    fn iter(self) -> impl Iterator<Item = (usize, ManifoldSource)> {
+        let (mut near, NearContacts { start, box_pairs, kept, .. }) = (self.near, self);
         core::iter::from_fn(move || {
             let bit = near.trailing_zeros();
             near &= near.checked_sub(1)?;
-            Some((start + bit as usize, box_pairs >> bit & 1 == 1))
+            let source = match (kept >> bit & 1, box_pairs >> bit & 1) {
+                (1, _) => ManifoldSource::Kept,
+                (_, 1) => ManifoldSource::BoxPair,
+                _ => ManifoldSource::Shapes,
+            };
+            Some((start + bit as usize, source))
         })
     }
 }
@@ -106,18 +126,20 @@ impl NarrowPhase<'_> {
         }
     }
 
-    /// Finds the contacts of a block whose shapes may meet, and collides the pairs of small boxes among them.
+    /// Finds the contacts of a block whose shapes may meet: those that keep their manifold, the pairs of small boxes,
+    /// which are collided, and others.
     fn find_near(
         &self,
         job: &mut Job<'_>,
         block: Range<usize>,
         output: &mut NarrowPhaseOutput,
     ) -> NearContacts {
-        let NarrowPhase { poses, margins, machine, .. } = self;
-        let boxes = &mut output.boxes;
+        let NarrowPhase { state, poses, margins, machine, .. } = self;
+        let NarrowPhaseOutput { boxes, recycled, .. } = output;
         let motion = poses.motion();
         boxes.clear();
-        let mut near = NearContacts { start: block.start, near: 0, box_pairs: 0 };
+        recycled.clear();
+        let mut near = NearContacts { start: block.start, near: 0, box_pairs: 0, kept: 0 };
         for index in block {
             if let Some(ahead) = job.contacts.get(index + CONTACTS_AHEAD) {
                 motion.prefetch(ahead.shapes.1);
@@ -126,6 +148,14 @@ impl NarrowPhase<'_> {
             let contact = &mut job.contacts[index];
             let (shape_a, shape_b) = (motion.shape(contact.shapes.0), motion.shape(contact.shapes.1));
             let closing = ClosingBound::of(margins, shape_a, shape_b);
+            if contact.count > 0 && contact.kept.is_some() {
+                let recycling = Recycling::new(state, margins, closing, [shape_a, shape_b], contact.count);
+                if let Some(found) = recycling.recycle(contact) {
+                    recycled.push(found);
+                    near.add(index, ManifoldSource::Kept);
+                    continue;
+                }
+            }
             if !closing.may_meet(shape_a, shape_b) {
                 contact.passing = false;
                 continue;
@@ -140,7 +170,7 @@ impl NarrowPhase<'_> {
             if closing.is_fast() {
                 motion.prefetch_motions(shape_a, shape_b);
             }
-            near.add(index, is_box_pair);
+            near.add(index, if is_box_pair { ManifoldSource::BoxPair } else { ManifoldSource::Shapes });
         }
         boxes.collide(*machine, poses.boxes());
         near
@@ -156,10 +186,10 @@ impl NarrowPhase<'_> {
         output: &mut NarrowPhaseOutput,
     ) -> &'t [ActiveContact] {
         let NarrowPhase { state, poses, margins, .. } = self;
-        let NarrowPhaseOutput { boxes, contacts, manifolds, impacts, touching, approaches, sat } = output;
+        let NarrowPhaseOutput { boxes, recycled, contacts, manifolds, touching, approaches, sat } = output;
         let motion = poses.motion();
-        let mut box_pairs = 0..;
-        for (index, is_box_pair) in near.iter() {
+        let (mut box_pairs, mut recycled) = (0.., recycled.iter().peekable());
+        for (index, source) in near.iter() {
             let (contact, axis) = (&mut job.contacts[index], &mut job.axes[index]);
             let (shape_a, shape_b) = (motion.shape(contact.shapes.0), motion.shape(contact.shapes.1));
             if shape_a.sensor || shape_b.sensor {
@@ -168,29 +198,34 @@ impl NarrowPhase<'_> {
             }
             let closing = ClosingBound::of(margins, shape_a, shape_b);
             let pair = SpeculativePair { margins, a: shape_a, b: shape_b, closing };
-            let box_pair = if is_box_pair { box_pairs.next() } else { None };
-            let is_found = box_pair.is_some_and(|at| boxes.append_to(manifolds, at, shape_a.centre()));
-            if is_found {
-                sat.searches += 1;
-            } else {
-                manifolds.push(manifold_of(poses, &pair, contact.shapes, axis, sat));
+            let is_kept = source == ManifoldSource::Kept;
+            let box_pair = if source == ManifoldSource::BoxPair { box_pairs.next() } else { None };
+            match recycled.next_if(|_| is_kept) {
+                Some(found) => manifolds.push(contact.kept_manifold(found.origin, found.separations)),
+                None if box_pair.is_some_and(|at| boxes.append_to(manifolds, at, shape_a.centre())) => {
+                    sat.searches += 1;
+                }
+                None => manifolds.push(manifold_of(poses, &pair, contact.shapes, axis, sat)),
             }
             let place = u32::try_from(manifolds.len()).expect("fewer than 2^32 contacts") - 1;
             let Some(manifold) = manifolds.last_mut() else { continue };
-            keep_reachable(state, poses, &pair, contact, manifold);
-            if manifold.points().is_empty() {
-                manifolds.pop();
-                continue;
+            if !is_kept {
+                keep_reachable(state, poses, &pair, contact, manifold);
+                if manifold.points().is_empty() {
+                    manifolds.pop();
+                    continue;
+                }
+                let recycling = Recycling::new(state, margins, closing, [shape_a, shape_b], manifold.count());
+                recycling.keep(contact, manifold);
+                if pair.may_impact(manifold) {
+                    let sides = [contact.shapes.0, contact.shapes.1].map(|slot| Side::of(state, poses, slot));
+                    if let Some(moved) = pair.move_to_impact(sides, motion, manifold, sat) {
+                        recycling.keep_impact(contact, manifold, moved);
+                    }
+                }
             }
             let index = job.first + u32::try_from(index).expect("fewer than 2^32 contacts");
             contacts.push(index);
-            if pair.may_impact(manifold) {
-                let sides = [contact.shapes.0, contact.shapes.1].map(|slot| Side::of(state, poses, slot));
-                if let Some(impact) = pair.move_to_impact(sides, motion, manifold, sat) {
-                    impacts.push(impact);
-                    manifold.impact = u32::try_from(impacts.len()).expect("fewer than 2^32 contacts");
-                }
-            }
             let mut is_hit = false;
             if (shape_a.hit_events || shape_b.hit_events)
                 && let Some(approach) = fast_approach(state, motion, index, contact, manifold)
@@ -201,10 +236,9 @@ impl NarrowPhase<'_> {
             while touched.first().is_some_and(|touched| touched.shapes < contact.shapes) {
                 touched = &touched[1..];
             }
-            let surface = match touched.first() {
-                Some(touched) if touched.shapes == contact.shapes => touched.surface,
-                _ => surface_of(state, poses, contact.shapes),
-            };
+            let last = touched.first().filter(|touched| touched.shapes == contact.shapes);
+            let surface = last.map_or_else(|| surface_of(state, poses, contact.shapes), |last| last.surface);
+            let extras = surface.has_extras() || is_hit;
             touching.push(ActiveContact {
                 contact: index,
                 manifold: place,
@@ -213,7 +247,8 @@ impl NarrowPhase<'_> {
                 surface,
                 is_impact: closing.is_longer_than(margins.impact),
                 is_hit,
-                extras: surface.has_extras() || is_hit,
+                extras,
+                keeps_rows: is_kept && last.is_some() && !extras,
             });
         }
         touched

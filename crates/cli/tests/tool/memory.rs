@@ -123,7 +123,7 @@ fn no_tool_takes_more_memory_than_is_documented() {
     fs::write(&wide, replay_of(field(50_000), 10)).unwrap();
     let (honest, mut wrong) = (golden("box_stack"), Vec::new());
     // Some tools take seconds for the field.
-    let files = sweep::sample([(&dense, 65_000), (&wide, 130_000), (&honest, 10_000)], 2);
+    let files = sweep::sample([(&dense, 75_000), (&wide, 130_000), (&honest, 10_000)], 2);
     for (file, most) in files {
         for (times, arguments) in [
             (1, &["verify"][..]),

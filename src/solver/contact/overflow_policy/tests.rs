@@ -97,7 +97,7 @@ impl Kernel<WIDTH> for &mut Trial<'_> {
         let mut batch = Batch::<WIDTH> { count, ..Batch::NONE };
         let mut record = Records::NONE;
         let inputs = core::array::from_fn(|lane| self.inputs[lane]);
-        fill::<L, WIDTH>(&inputs, &mut batch, &mut record.inverses, &mut record.arms);
+        fill::<L, WIDTH>(&inputs, &mut batch, &mut record.denominators);
         for lane in 0..WIDTH {
             let index = u32::try_from(lane).expect("eight");
             (batch.bodies[0][lane], batch.bodies[1][lane]) = (1 + 2 * index, 2 + 2 * index);

@@ -27,12 +27,12 @@ struct FillRows<'a, const N: usize> {
 
 struct Made<const N: usize> {
     batch: Batch<N>,
-    inverses: Inverses<N>,
+    denominators: Denominators<N>,
 }
 
 impl<const N: usize> Made<N> {
     fn of_points(count: usize) -> Self {
-        Made { batch: Batch { count, ..Batch::NONE }, inverses: Inverses::NONE }
+        Made { batch: Batch { count, ..Batch::NONE }, denominators: Denominators::NONE }
     }
 }
 
@@ -41,8 +41,7 @@ impl<const N: usize> Kernel<N> for FillRows<'_, N> {
     fn run<L: Lanes<N>>(self) {
         let FillRows { inputs, made } = self;
         let inputs = core::array::from_fn(|lane| inputs[lane]);
-        let mut arms = RenewedArms::NONE;
-        fill::<L, N>(&inputs, &mut made.batch, &mut made.inverses, &mut arms);
+        fill::<L, N>(&inputs, &mut made.batch, &mut made.denominators);
     }
 }
 
@@ -142,7 +141,7 @@ fn naive_row(input: &Input, anchors: [[i32; 2]; 2], n: [i32; 2]) -> Naive {
 /// Checks that every number of a lane equals the one from the equations. The second point of a contact with one is a
 /// copy of the first.
 fn check<const N: usize>(input: &Input, lane: usize, made: &Made<N>) {
-    let Made { batch, inverses } = made;
+    let Made { batch, denominators } = made;
     let mut input = *input;
     let Quad([_, _, _, count]) = input.carried;
     assert_eq!(batch.both.0[lane], -i32::from(count == 2));
@@ -166,14 +165,14 @@ fn check<const N: usize>(input: &Input, lane: usize, made: &Made<N>) {
     };
     let half_way = anchor(input, &[0, 1][..batch.count]);
     let tangent = naive_row(input, surfaces(input, half_way, [x, y]), [-y, x]);
-    check_row(&batch.tangent, &inverses.tangent, &tangent);
+    check_row(&batch.tangent, &denominators.tangent.inverse, &tangent);
     assert_eq!(batch.tangent_lambda.0[lane], lambda(2, &tangent, TANGENT_MAX));
     let friction = input.rest.0[2];
     for (i, point) in batch.points.iter().enumerate().take(batch.count) {
         let separation = limited(rounded(input.rest.0[i].into(), 1), i32::MAX);
         assert_eq!([point.separation.0[lane], point.first_separation.0[lane]], [separation; 2]);
         let normal = naive_row(input, [anchor(input, &[i]); 2], [x, y]);
-        check_row(&point.normal, &inverses.normals[i], &normal);
+        check_row(&point.normal, &denominators.normals[i].inverse, &normal);
         let ratio = rounded(tangent.denominator * i128::from(normal.inverse), 30);
         assert_eq!(
             point.friction_ratio.0[lane],

@@ -1,0 +1,379 @@
+//! Contact recycling: a contact keeps its manifold while its shapes hardly move against each other.
+
+use serde::{Deserialize, Serialize};
+
+use super::manifold::Manifold;
+use crate::body::Pose;
+use crate::math::{Angle, Fx, Length, Step, TAU, Unit, Vec2, round_shift, saturate};
+
+/// The manifold of a contact, with the poses of the bodies for which it was computed.
+///
+/// The lever arms stay as they are, in world axes, while the shapes hardly move against each other. With arms that
+/// follow every movement, a stack that leans would turn itself further: columns of more than 40 boxes fall. With kept
+/// arms, columns of 100 boxes stand (`docs/DESIGN.md`). The normal stays as well, and the separations follow from the
+/// poses, so that the shapes need not be collided again.
+///
+/// Lengths wrap around at 1024 m, so that they are exact if one of the bodies has a centre of mass far from the
+/// contact. Such a body is fixed, and its arms do not matter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct KeptManifold {
+    /// Zero if the manifold cannot be kept: it is one of the time of impact, or a shape has changed.
+    pub(crate) normal: Vec2<Unit>,
+    /// Vector from A's centre of mass to the first point.
+    pub(crate) arm_a: Vec2<Length>,
+    /// Vector from B's centre of mass to the first point.
+    pub(crate) arm_b: Vec2<Length>,
+    /// Vector from the first point to the second, or zero.
+    pub(crate) to_second: Vec2<Length>,
+    /// Vector from A's centre of mass to B's at these poses.
+    pub(crate) between: Vec2<Length>,
+    pub(crate) angles: [Angle; 2],
+    /// Separations of the points at these poses. Unused ones are zero.
+    pub(crate) separations: [Step; 2],
+}
+
+/// Largest rotation of a body, in units of 2^-32 turn, for which the movement of a point is computed: 0.1 rad.
+const TURN_MAX: i32 = 1 << 26;
+
+/// One of the two shapes of a contact, for [`KeptManifold::separations_at`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct KeptSide {
+    pub(crate) pose: Pose,
+    /// Distance in metres from the middle of the shape within which all of its points are, or 0 for a circle about the
+    /// body's centre of mass, which rotation does not change.
+    pub(crate) reach: Length,
+}
+
+impl KeptManifold {
+    /// Number of [`Self::to_words`].
+    pub(crate) const WORDS: usize = 14;
+
+    /// No manifold.
+    pub(crate) const NONE: Self = KeptManifold {
+        normal: Vec2::ZERO,
+        arm_a: Vec2::ZERO,
+        arm_b: Vec2::ZERO,
+        to_second: Vec2::ZERO,
+        between: Vec2::ZERO,
+        angles: [Angle::ZERO; 2],
+        separations: [Step::ZERO; 2],
+    };
+
+    /// The manifold of shapes whose bodies are at the given poses.
+    pub(crate) fn new(manifold: &Manifold, poses: [Pose; 2]) -> Self {
+        KeptManifold { normal: manifold.normal, ..Self::at_impact(manifold, poses, [Vec2::ZERO; 2]) }
+    }
+
+    /// The manifold of the time of impact. `moved` has the displacements until then from the given poses. It cannot be
+    /// kept.
+    pub(crate) fn at_impact(manifold: &Manifold, [a, b]: [Pose; 2], moved: [Vec2<Length>; 2]) -> Self {
+        let [first, second] = manifold.both_points();
+        let arm = |body: Pose, moved: Vec2<Length>| {
+            let to_origin = wrapping_sub(wrapped_difference(manifold.origin, body.centre), moved);
+            wrapping_add(to_origin, first.anchor)
+        };
+        let to_second = wrapping_sub(second.anchor, first.anchor);
+        KeptManifold {
+            normal: Vec2::ZERO,
+            arm_a: arm(a, moved[0]),
+            arm_b: arm(b, moved[1]),
+            to_second: if manifold.count() > 1 { to_second } else { Vec2::ZERO },
+            between: wrapped_difference(b.centre, a.centre),
+            angles: [a.angle, b.angle],
+            separations: [first.separation, second.separation],
+        }
+    }
+
+    /// Replaces the lever arms by those of an earlier manifold with the same points, in each coordinate whose difference
+    /// is at most the tolerance of the body in metres.
+    pub(crate) fn keep_arms_of(&mut self, last: &Self, [tolerance_a, tolerance_b]: [Length; 2]) {
+        let keep = |new: &mut Vec2<Length>, old: Vec2<Length>, tolerance: Length| {
+            for (new, old) in [(&mut new.x, old.x), (&mut new.y, old.y)] {
+                if old.wrapping_sub(*new).unsigned_abs() <= tolerance.unsigned_abs() {
+                    *new = old;
+                }
+            }
+        };
+        keep(&mut self.arm_a, last.arm_a, tolerance_a);
+        keep(&mut self.arm_b, last.arm_b, tolerance_b);
+        keep(&mut self.to_second, last.to_second, tolerance_a.min(tolerance_b));
+    }
+
+    /// The numbers of the manifold as they are stored.
+    pub(crate) fn to_words(self) -> [i32; Self::WORDS] {
+        let KeptManifold { normal, arm_a, arm_b, to_second, between, angles, separations } = self;
+        let [angle_a, angle_b] = angles.map(|angle| angle.to_bits().cast_signed());
+        let [s0, s1] = separations.map(Step::to_bits);
+        let lengths = [arm_a, arm_b, to_second, between].map(|v| [v.x.to_bits(), v.y.to_bits()]);
+        let [[a_x, a_y], [b_x, b_y], [x, y], [between_x, between_y]] = lengths;
+        let [n_x, n_y] = [normal.x.to_bits(), normal.y.to_bits()];
+        [n_x, n_y, a_x, a_y, b_x, b_y, x, y, between_x, between_y, angle_a, angle_b, s0, s1]
+    }
+
+    /// The manifold that [`Self::to_words`] has stored.
+    pub(crate) fn from_words(words: [i32; Self::WORDS]) -> Self {
+        let [n_x, n_y, a_x, a_y, b_x, b_y, x, y, between_x, between_y, angle_a, angle_b, s0, s1] = words;
+        let vector = |x: i32, y: i32| Vec2::new(Length::from_bits(x), Length::from_bits(y));
+        KeptManifold {
+            normal: Vec2::new(Unit::from_bits(n_x), Unit::from_bits(n_y)),
+            arm_a: vector(a_x, a_y),
+            arm_b: vector(b_x, b_y),
+            to_second: vector(x, y),
+            between: vector(between_x, between_y),
+            angles: [angle_a, angle_b].map(|angle| Angle::from_bits(angle.cast_unsigned())),
+            separations: [s0, s1].map(Step::from_bits),
+        }
+    }
+
+    /// Whether this is a manifold that can be kept.
+    #[inline]
+    pub(crate) fn is_some(&self) -> bool {
+        self.normal != Vec2::ZERO
+    }
+
+    /// Prevents the manifold from being kept.
+    pub(crate) fn forget(&mut self) {
+        self.normal = Vec2::ZERO;
+    }
+
+    /// Whether the normal is zero or a unit vector, and everything beyond the first `count` points is zero.
+    pub(crate) fn is_valid(&self, count: u8) -> bool {
+        /// Largest error of the square of a normal's length, in units of 2^-60.
+        const ERROR_MAX: u64 = 1 << 34;
+        let square = |unit: Unit| i64::from(unit.to_bits()).unsigned_abs().pow(2);
+        let length = square(self.normal.x).saturating_add(square(self.normal.y));
+        (!self.is_some() || length.abs_diff(1 << 60) <= ERROR_MAX)
+            && (count > 1 || self.to_second == Vec2::ZERO && self.separations[1] == Step::ZERO)
+            && (count > 0 || *self == Self::NONE)
+    }
+
+    /// The separations of the first `count` points when the bodies are at other poses, or `None` if the shapes have
+    /// moved against each other by more than `limit` metres. To first order in the rotations:
+    ///
+    /// ```text
+    /// d = change of between + thetaB x rB - thetaA x rA,   s' = s + n . d
+    /// |d|_1 + reachA |thetaA| + reachB |thetaB| <= limit
+    /// ```
+    #[inline]
+    pub(crate) fn separations_at(
+        &self,
+        [a, b]: [KeptSide; 2],
+        count: u8,
+        limit: Length,
+    ) -> Option<[Step; 2]> {
+        let shift = wrapping_sub(wrapped_difference(b.pose.centre, a.pose.centre), self.between);
+        let (theta_a, theta_b) = (a.rotation_since(self.angles[0])?, b.rotation_since(self.angles[1])?);
+        let (r_a, r_b, to_second) = (self.arm_a, self.arm_b, self.to_second);
+        let turned = theta_a.abs() * wide(a.reach) + theta_b.abs() * wide(b.reach);
+        let limit = wide(limit) - round_shift(turned, Unit::FRAC_NBITS);
+        // With 52 fraction bits. A shift is below 2^31 and a rotation below 2^27, so that the sums are below 2^62.
+        let mut d_x = (wide(shift.x) << Unit::FRAC_NBITS) - theta_b * wide(r_b.y) + theta_a * wide(r_a.y);
+        let mut d_y = (wide(shift.y) << Unit::FRAC_NBITS) + theta_b * wide(r_b.x) - theta_a * wide(r_a.x);
+        let mut separations = [Step::ZERO; 2];
+        for (separation, moved) in self.separations.iter().zip(&mut separations).take(usize::from(count)) {
+            let (x, y) = (round_shift(d_x, Unit::FRAC_NBITS), round_shift(d_y, Unit::FRAC_NBITS));
+            if x.abs() + y.abs() > limit {
+                return None;
+            }
+            let along = i64::from(self.normal.x.to_bits()) * x + i64::from(self.normal.y.to_bits()) * y;
+            let change =
+                saturate(round_shift(along, Unit::FRAC_NBITS + Length::FRAC_NBITS - Step::FRAC_NBITS));
+            *moved = separation.saturating_add(Step::from_bits(change));
+            d_x -= (theta_b - theta_a) * wide(to_second.y);
+            d_y += (theta_b - theta_a) * wide(to_second.x);
+        }
+        Some(separations)
+    }
+}
+
+impl KeptSide {
+    /// The rotation since an angle, in radians with 30 fraction bits, or `None` if it exceeds [`TURN_MAX`].
+    #[inline]
+    fn rotation_since(&self, angle: Angle) -> Option<i64> {
+        if self.reach == Length::ZERO {
+            return Some(0);
+        }
+        let turn = (self.pose.angle - angle).to_bits().cast_signed();
+        // TAU has 35 bits, and the turn at most 27.
+        let radians = || round_shift(i64::from(turn) * TAU.to_bits(), 34);
+        (-TURN_MAX..=TURN_MAX).contains(&turn).then(radians)
+    }
+}
+
+#[inline]
+fn wide(length: Length) -> i64 {
+    length.to_bits().into()
+}
+
+/// `to - from`, modulo 1024 m.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "wraps around")]
+fn wrapped_difference(to: Vec2<Fx>, from: Vec2<Fx>) -> Vec2<Length> {
+    let axis = |to: Fx, from: Fx| {
+        Length::from_bits(round_shift(to.wrapping_sub(from).to_bits(), 32 - Length::FRAC_NBITS) as i32)
+    };
+    Vec2::new(axis(to.x, from.x), axis(to.y, from.y))
+}
+
+#[inline]
+fn wrapping_add(a: Vec2<Length>, b: Vec2<Length>) -> Vec2<Length> {
+    Vec2::new(a.x.wrapping_add(b.x), a.y.wrapping_add(b.y))
+}
+
+#[inline]
+fn wrapping_sub(a: Vec2<Length>, b: Vec2<Length>) -> Vec2<Length> {
+    Vec2::new(a.x.wrapping_sub(b.x), a.y.wrapping_sub(b.y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{Body, BodyDef, MassProperties, Polygon, ShapeDef};
+    use crate::collision::{CachedAxis, PosedShape, SatCounters, collide_near};
+    use crate::fx;
+    use crate::math::{Rng, narrow};
+
+    /// Two bodies, each with a box at a distance from its centre of mass.
+    struct Boxes {
+        bodies: [Body; 2],
+        shapes: [ShapeDef; 2],
+    }
+
+    impl Boxes {
+        /// A box with an offset of up to 3 m on top of another one, up to 5 mm deep.
+        fn random(rng: &mut Rng) -> Self {
+            let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));
+            let mut offset = || Vec2::new(rng.range(fx!(-3), fx!(3)), rng.range(fx!(-3), fx!(3)));
+            let offsets = [offset(), offset()];
+            let top = Vec2::new(rng.range(fx!(-0.9), fx!(0.9)), rng.range(fx!(0.995), fx!(1)));
+            let body = |position: Vec2<Fx>| {
+                Body::new(&BodyDef::dynamic().position(position), MassProperties::immovable())
+            };
+            Boxes {
+                bodies: [body(-offsets[0]), body(top - offsets[1])],
+                shapes: offsets.map(|offset| square.offset(offset)),
+            }
+        }
+
+        fn manifold(&self) -> Manifold {
+            let [a, b] = [0, 1].map(|i| {
+                let body = &self.bodies[i];
+                PosedShape::new(&self.shapes[i], body, body.rotation())
+            });
+            collide_near(&a, &b, Length::lit("0.02"), &mut CachedAxis::default(), &mut SatCounters::default())
+        }
+
+        fn poses(&self) -> [Pose; 2] {
+            self.bodies.each_ref().map(Body::pose)
+        }
+
+        fn sides(&self, reach: Length) -> [KeptSide; 2] {
+            self.poses().map(|pose| KeptSide { pose, reach })
+        }
+    }
+
+    /// The separations follow the movements of both bodies as those of a new manifold do: up to the square of the
+    /// rotation, times the arm.
+    #[test]
+    fn separations_follow_the_bodies() {
+        let mut rng = Rng::new(3);
+        let mut kept_points = 0;
+        for _ in 0..5000 {
+            let mut boxes = Boxes::random(&mut rng);
+            let first = boxes.manifold();
+            let kept = KeptManifold::new(&first, boxes.poses());
+            for body in &mut boxes.bodies {
+                let moved = Vec2::new(rng.range(fx!(-0.001), fx!(0.001)), rng.range(fx!(-0.001), fx!(0.001)));
+                let turned = Angle::from_radians(rng.range(fx!(-0.0003), fx!(0.0003)));
+                body.set_transform(body.position() + moved, body.angle() + turned);
+            }
+            let manifold = boxes.manifold();
+            let sides = boxes.sides(Length::lit("1"));
+            let Some(separations) = kept.separations_at(sides, manifold.count(), Length::lit("0.005")) else {
+                continue;
+            };
+            for (separation, old) in separations.iter().zip(first.points()) {
+                // Which point is the first depends on which box has the reference edge.
+                let Some(point) = manifold.points().iter().find(|point| point.feature == old.feature) else {
+                    continue;
+                };
+                let error = separation.dist(point.separation);
+                // The normal turns by up to 0.0006 rad, and so does the edge along which the end of the overlap moves.
+                assert!(error < Step::lit("0.000007"), "{separation} instead of {}", point.separation);
+                kept_points += 1;
+            }
+        }
+        assert!(kept_points > 4000, "{kept_points}");
+    }
+
+    #[test]
+    fn a_manifold_is_kept_up_to_the_limit() {
+        let mut rng = Rng::new(5);
+        let boxes = Boxes::random(&mut rng);
+        let kept = KeptManifold::new(&boxes.manifold(), boxes.poses());
+        let limit = Length::lit("0.005");
+        let at = |side: usize, moved: Vec2<Fx>, turned: Fx, reach: Length| {
+            let mut sides = boxes.sides(reach);
+            sides[side].pose.centre += moved;
+            sides[side].pose.angle += Angle::from_radians(turned);
+            kept.separations_at(sides, 2, limit)
+        };
+        for side in [0, 1] {
+            assert!(at(side, Vec2::new(fx!(0.0049), fx!(0)), fx!(0), Length::ONE).is_some());
+            assert!(at(side, Vec2::new(fx!(0.0026), fx!(-0.0026)), fx!(0), Length::ONE).is_none());
+            assert!(at(side, Vec2::new(fx!(0), fx!(-0.0051)), fx!(0), Length::ONE).is_none());
+            for turned in [fx!(0.006), fx!(-0.006), fx!(0.2), fx!(3.1)] {
+                assert!(at(side, Vec2::ZERO, turned, Length::ONE).is_none(), "{turned}");
+                assert_eq!(
+                    at(side, Vec2::ZERO, turned, Length::ZERO),
+                    Some(kept.separations),
+                    "rotation does not change a circle"
+                );
+            }
+            // Only movements relative to the other body count.
+            let mut sides = boxes.sides(Length::ONE);
+            sides.iter_mut().for_each(|side| side.pose.centre += Vec2::new(fx!(500), fx!(-700)));
+            assert_eq!(kept.separations_at(sides, 2, limit), Some(kept.separations));
+        }
+    }
+
+    /// A fixed body may have its centre of mass far away, where its arm is out of range. The other body's arm and the
+    /// separations are still right.
+    #[test]
+    fn a_level_may_be_far_from_its_origin() {
+        for far in [fx!(0), fx!(511.9), fx!(700), fx!(123456.789)] {
+            let mut manifold = Manifold::new(Vec2::Y);
+            let point = |x| crate::collision::ManifoldPoint {
+                anchor: Vec2::new(x, Length::ZERO),
+                separation: Step::ZERO,
+                feature: crate::collision::Feature::SINGLE,
+            };
+            manifold.push(point(Length::ZERO));
+            manifold.push(point(Length::ONE));
+            let poses = [-far, fx!(0.25)].map(|x| Pose { centre: Vec2::new(x, fx!(0)), angle: Angle::ZERO });
+            let kept = KeptManifold::new(&manifold, poses);
+            assert_eq!(kept.arm_b, Vec2::new(Length::lit("-0.25"), Length::ZERO));
+            let mut sides = poses.map(|pose| KeptSide { pose, reach: Length::ONE });
+            sides[1].pose.centre.y = fx!(-0.001);
+            let moved = kept.separations_at(sides, 2, Length::lit("0.005")).expect("within the limit");
+            for separation in moved {
+                let expected: Step = narrow(fx!(-0.001));
+                assert!(separation.dist(expected) < Step::lit("0.0000005"), "{separation} at {far} m");
+            }
+        }
+    }
+
+    #[test]
+    fn stored_words_come_back_and_nonsense_is_invalid() {
+        let mut rng = Rng::new(9);
+        for _ in 0..100 {
+            let words = core::array::from_fn(|_| rng.next_u32().cast_signed());
+            let kept = KeptManifold::from_words(words);
+            assert_eq!(kept.to_words(), words);
+            assert!(!kept.is_valid(2), "a normal of another length than 1: {kept:?}");
+            let kept = KeptManifold { normal: Vec2::X, ..kept };
+            assert!(kept.is_valid(2) && !kept.is_valid(1) && !kept.is_valid(0));
+        }
+        assert!(KeptManifold::NONE.is_valid(0));
+    }
+}

@@ -1,0 +1,81 @@
+//! Contact recycling: how far shapes may move before their contact gets a new manifold.
+
+use crate::body::Body;
+use crate::collision::{Contact, KeptManifold, KeptSide, Manifold};
+use crate::math::{Length, Vec2};
+use crate::world::cache::{ClosingBound, Margins, Recycled, ShapeMotion};
+use crate::world::state::State;
+
+/// The shapes of a contact, and the limits within which it keeps its manifold and its lever arms.
+pub(super) struct Recycling<'a> {
+    bodies: [&'a Body; 2],
+    shapes: [&'a ShapeMotion; 2],
+    extents: [Length; 2],
+    /// Largest changes of the lever arms of A and B that are kept, in metres.
+    arm_tolerances: [Length; 2],
+    /// How far the shapes may have moved against each other since their manifold was computed, in metres, for the
+    /// contact to keep it for another tick. Negative if they move too fast.
+    movement_max: Length,
+}
+
+impl<'a> Recycling<'a> {
+    /// The limits of two shapes that touch at `count` points. Arms are kept while they change by at most a 64th of the
+    /// smaller shape's extent. Manifolds are kept if the movement, including that of this tick, is also at most a
+    /// quarter of the speculative distance.
+    ///
+    /// If a round shape may roll on a body that no impulse moves, both limits are 256 times smaller: a normal that lags
+    /// behind stops a slow ball at a seam between two blocks, and lets a weeble lean. Between bodies that move they are
+    /// not, because plates on rollers stand only on kept arms.
+    #[inline]
+    pub(super) fn new(
+        state: &'a State,
+        margins: &Margins,
+        closing: ClosingBound,
+        shapes: [&'a ShapeMotion; 2],
+        count: u8,
+    ) -> Self {
+        let bodies = shapes.map(|shape| state.bodies.at(shape.body));
+        let extents = shapes.map(ShapeMotion::extent);
+        let is_round = count < 2 && (shapes[0].radius > 0 || shapes[1].radius > 0);
+        let rolls = is_round && !(bodies[0].is_dynamic() && bodies[1].is_dynamic());
+        let tolerance: Length = extents[0].min(extents[1]) >> 6;
+        let most = if rolls { tolerance >> 8 } else { tolerance.min(margins.kept) };
+        let movement_max = closing.rest_of(most);
+        // The arm of a circle follows from the normal, so that it is kept only together with it.
+        let arm_tolerance = |shape: &ShapeMotion| match shape.disc || rolls {
+            true => movement_max.max(Length::ZERO),
+            false => tolerance,
+        };
+        Recycling { bodies, shapes, extents, arm_tolerances: shapes.map(arm_tolerance), movement_max }
+    }
+
+    /// The changes of a contact's manifold, or `None` if the shapes have to be collided.
+    #[inline]
+    pub(super) fn recycle(&self, contact: &Contact) -> Option<Recycled> {
+        let [a, b] = self.shapes;
+        if self.movement_max <= 0 || a.one_way || b.one_way {
+            return None;
+        }
+        let side = |side: usize| KeptSide {
+            pose: self.bodies[side].pose(),
+            reach: if self.shapes[side].disc { Length::ZERO } else { self.extents[side] },
+        };
+        let kept = &contact.kept;
+        let separations = kept.separations_at([side(0), side(1)], contact.count, self.movement_max)?;
+        // The point is placed by the arm of a body that moves: that of a fixed body may be out of range.
+        let [a, b] = self.bodies;
+        let (centre, arm) = if b.is_dynamic() { (b.centre, kept.arm_b) } else { (a.centre, kept.arm_a) };
+        Some(Recycled { origin: centre.wrapping_add(arm.widen()), separations })
+    }
+
+    /// Stores a new manifold in a contact.
+    #[inline]
+    pub(super) fn keep(&self, contact: &mut Contact, manifold: &Manifold) {
+        contact.keep(manifold, self.bodies, self.arm_tolerances);
+    }
+
+    /// Stores a manifold of the time of impact in a contact. `moved` has the displacements of the bodies until then.
+    pub(super) fn keep_impact(&self, contact: &mut Contact, manifold: &Manifold, moved: [Vec2<Length>; 2]) {
+        contact.kept = KeptManifold::at_impact(manifold, self.bodies.map(Body::pose), moved);
+    }
+}

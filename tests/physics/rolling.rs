@@ -1,0 +1,58 @@
+//! Balls that roll on level ground keep their speed, at any speed and tick rate.
+
+use lockstep2d::body::{BodyDef, Chain, Geometry, Polygon, ShapeDef};
+use lockstep2d::fx;
+use lockstep2d::math::{Fx, Vec2};
+use lockstep2d::world::{Config, World};
+
+const RATES: [u32; 3] = [60, 120, 240];
+
+/// The speed of a ball of radius 0.5 m that has rolled at `speed` m/s for 16 seconds.
+fn speed_after(rate: u32, speed: Fx, start: Fx, spawn_ground: impl FnOnce(&mut World)) -> Fx {
+    let config = Config { tick_rate: rate, sleeping: false, ..Config::default() };
+    let mut world = World::new(config).expect("valid");
+    spawn_ground(&mut world);
+    let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid"));
+    let def = BodyDef::dynamic().position((start, fx!(0.5))).velocity((speed, fx!(0)));
+    let ball = world.spawn(&def.angular_velocity(-speed * 2), &[ball]).expect("valid");
+    (0..rate * 16).for_each(|_| world.step());
+    world.body(ball).expect("there").velocity().x
+}
+
+fn spawn_blocks(world: &mut World, centres: impl Iterator<Item = i32>, half_width: Fx) {
+    let block = ShapeDef::new(Polygon::rectangle(half_width, fx!(0.5)).expect("valid"));
+    for x in centres {
+        world.spawn(&BodyDef::fixed().position((Fx::from(x), fx!(-0.5))), &[block]).expect("valid");
+    }
+}
+
+#[test]
+fn a_ball_keeps_its_speed_on_a_plane_and_on_a_chain() {
+    for rate in RATES {
+        for speed in [fx!(0.02), fx!(0.2), fx!(1.6), fx!(5)] {
+            let plane = speed_after(rate, speed, fx!(0), |world| spawn_blocks(world, 0..1, fx!(100)));
+            let chain = speed_after(rate, speed, fx!(0), |world| {
+                let points: Vec<_> = (-5..100).rev().map(|x| Vec2::new(Fx::from(x), fx!(0))).collect();
+                let links = Chain::new(&points).links().expect("valid");
+                world.spawn(&BodyDef::fixed(), &links).expect("valid");
+            });
+            for (name, end) in [("plane", plane), ("chain", chain)] {
+                assert!((end - speed).abs() <= speed / 500, "{name}, {rate} Hz: {end} of {speed} m/s");
+            }
+        }
+    }
+}
+
+/// At a seam the ball stands on two blocks for a moment, and the corner of the one ahead takes over its weight: it loses
+/// a little of its speed there, and never stops.
+#[test]
+fn a_ball_rolls_over_flush_blocks() {
+    for rate in RATES {
+        for (speed, rest) in
+            [(fx!(0.02), fx!(0.6)), (fx!(0.06), fx!(0.9)), (fx!(0.2), fx!(0.94)), (fx!(1.6), fx!(0.99))]
+        {
+            let end = speed_after(rate, speed, fx!(0.45), |world| spawn_blocks(world, -2..40, fx!(0.5)));
+            assert!(end >= speed * rest && end <= speed * fx!(1.01), "{rate} Hz: {end} of {speed} m/s");
+        }
+    }
+}
