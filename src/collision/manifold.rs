@@ -52,6 +52,9 @@ pub struct ManifoldPoint {
 /// Contact manifold of shape A and shape B: that of the start of the tick, or of the time of impact for shapes that
 /// first touch later in the tick. The separations are always those of the start.
 ///
+/// While shapes hardly move against each other, their contact keeps the normal and the points of an earlier tick. The
+/// points move with the bodies, and may be off by a 64th of the smaller shape's extent.
+///
 /// ```
 /// use lockstep2d::{body::Polygon, fx, math::Vec2, world::Probe};
 /// use lockstep2d::collision::{Manifold, ManifoldPoint};

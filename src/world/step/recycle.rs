@@ -11,8 +11,10 @@ pub(super) struct Recycling<'a> {
     bodies: [&'a Body; 2],
     shapes: [&'a ShapeMotion; 2],
     extents: [Length; 2],
-    /// Largest changes of the lever arms of A and B that are kept, in metres.
-    arm_tolerances: [Length; 2],
+    /// Whether a round shape may roll on a body that no impulse moves.
+    rolls: bool,
+    /// Largest change of a lever arm that is kept, in metres.
+    arm_tolerance: Length,
     /// How far the shapes may have moved against each other since their manifold was computed, in metres, for the
     /// contact to keep it for another tick. Negative if they move too fast.
     movement_max: Length,
@@ -23,7 +25,7 @@ impl<'a> Recycling<'a> {
     /// smaller shape's extent. Manifolds are kept if the movement, including that of this tick, is also at most a
     /// quarter of the speculative distance.
     ///
-    /// If a round shape may roll on a body that no impulse moves, both limits are 256 times smaller: a normal that lags
+    /// If a round shape may roll on a body that no impulse moves, the limits are 256 times smaller: a normal that lags
     /// behind stops a slow ball at a seam between two blocks, and lets a weeble lean. Between bodies that move they are
     /// not, because plates on rollers stand only on kept arms.
     #[inline]
@@ -38,15 +40,9 @@ impl<'a> Recycling<'a> {
         let extents = shapes.map(ShapeMotion::extent);
         let is_round = count < 2 && (shapes[0].radius > 0 || shapes[1].radius > 0);
         let rolls = is_round && !(bodies[0].is_dynamic() && bodies[1].is_dynamic());
-        let tolerance: Length = extents[0].min(extents[1]) >> 6;
-        let most = if rolls { tolerance >> 8 } else { tolerance.min(margins.kept) };
-        let movement_max = closing.rest_of(most);
-        // The arm of a circle follows from the normal, so that it is kept only together with it.
-        let arm_tolerance = |shape: &ShapeMotion| match shape.disc || rolls {
-            true => movement_max.max(Length::ZERO),
-            false => tolerance,
-        };
-        Recycling { bodies, shapes, extents, arm_tolerances: shapes.map(arm_tolerance), movement_max }
+        let arm_tolerance: Length = extents[0].min(extents[1]) >> 6;
+        let most = if rolls { arm_tolerance >> 8 } else { arm_tolerance.min(margins.kept) };
+        Recycling { bodies, shapes, extents, rolls, arm_tolerance, movement_max: closing.rest_of(most) }
     }
 
     /// The changes of a contact's manifold, or `None` if the shapes have to be collided.
@@ -71,7 +67,12 @@ impl<'a> Recycling<'a> {
     /// Stores a new manifold in a contact.
     #[inline]
     pub(super) fn keep(&self, contact: &mut Contact, manifold: &Manifold) {
-        contact.keep(manifold, self.bodies, self.arm_tolerances);
+        let tolerance = |shape: &ShapeMotion| match shape.disc || self.rolls {
+            // The arm of a circle follows from the normal, so that it is kept only together with it.
+            true => self.movement_max.max(Length::ZERO),
+            false => self.arm_tolerance,
+        };
+        contact.keep(manifold, self.bodies, self.shapes.map(tolerance));
     }
 
     /// Stores a manifold of the time of impact in a contact. `moved` has the displacements of the bodies until then.
