@@ -94,8 +94,8 @@ impl State {
 
     /// Has the contacts of a body collided anew in the next tick, because its shapes or its centre of mass change.
     pub(crate) fn forget_manifolds(&mut self, body: u32) {
-        let shapes = self.bodies.at(body).shapes();
-        let is_own = |shape: u32| shapes.iter().any(|own| own.slot() == shape);
+        let shapes = &self.shapes;
+        let is_own = |shape: u32| shapes.get_slot(shape).is_some_and(|shape| shape.body().slot() == body);
         let has_own = |contact: &Contact| is_own(contact.shapes.0) || is_own(contact.shapes.1);
         let forget = |contacts: &mut [Contact]| {
             contacts.iter_mut().filter(|contact| has_own(contact)).for_each(|contact| contact.kept.forget());

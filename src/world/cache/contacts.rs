@@ -55,7 +55,7 @@ pub(crate) struct NarrowPhaseOutput {
     pub(crate) recycled: Vec<Recycled>,
 }
 
-/// What a manifold that is kept for another tick takes from the poses of the bodies.
+/// Origin and separations of a kept manifold at the current poses of the bodies.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Recycled {
     /// Position of the first point.

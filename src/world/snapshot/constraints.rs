@@ -1,8 +1,8 @@
 //! Packed contacts and joints: the parts of them that a tick changes.
 //!
 //! Each contact takes 8 bytes, its head: shape A (30 bits), shape B (29 bits), touching, passing, number of points (2
-//! bits), whether it has impulses. A second buffer has 72 bytes for each contact with impulses: normal and tangential
-//! impulse of both points and the rolling impulse (5 x i32), features (2 x u16), the kept manifold (12 x i32).
+//! bits), whether it has impulses. A second buffer has 80 bytes for each contact with impulses: normal and tangential
+//! impulse of both points and the rolling impulse (5 x i32), features (2 x u16), the kept manifold (14 x i32).
 //!
 //! Each joint takes one byte of flags, which tell which of its six impulses are not 0 and whether its turns take 8
 //! bytes, then these impulses (i32 each) and the turns (i32 or i64).

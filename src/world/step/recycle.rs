@@ -15,8 +15,8 @@ pub(super) struct Recycling<'a> {
     rolls: bool,
     /// Largest change of a lever arm that is kept, in metres.
     arm_tolerance: Length,
-    /// How far the shapes may have moved against each other since their manifold was computed, in metres, for the
-    /// contact to keep it for another tick. Negative if they move too fast.
+    /// Largest movement of the shapes against each other since their manifold was computed, in metres, with which the
+    /// contact keeps it for another tick. Negative if they move too fast.
     movement_max: Length,
 }
 
