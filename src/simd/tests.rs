@@ -39,13 +39,9 @@ impl Kernel<WIDTH> for Operations<'_> {
         for value in [L::min(a, b), L::max(a, b), L::or(a, b), L::splat(7)] {
             keep(value);
         }
-        let (greater, negative) = (L::greater(a, b), L::negative(a));
-        for mask in [greater, negative, L::both(greater, negative), L::either(greater, negative)] {
+        for mask in masks::<L>(a, b) {
             keep(L::select(mask, a, b));
             keep(L::to_int(mask));
-            keep(L::splat(i32::try_from(L::count(mask)).unwrap()));
-            keep(L::splat(i32::try_from(L::bits(mask)).unwrap()));
-            keep(L::splat(i32::from(L::any(mask))));
         }
         // Sums of products stay below 2^62, as they do in the kernels.
         let quarter = L::narrow::<2>(L::mul(L::splat(1), b));
@@ -83,6 +79,28 @@ impl Kernel<WIDTH> for Operations<'_> {
         L::quads(&quads, &[7, 0, 3, 3, 1, 2, 6, 5]).into_iter().for_each(&mut keep);
         // A result that fits 32 bits.
         keep(L::narrow::<30>(L::mul(quarter, L::splat(1 << 30))));
+    }
+}
+
+#[inline(always)]
+fn masks<L: Lanes<WIDTH>>(a: L::Int, b: L::Int) -> [L::Mask; 4] {
+    let (greater, negative) = (L::greater(a, b), L::negative(a));
+    [greater, negative, L::both(greater, negative), L::either(greater, negative)]
+}
+
+/// Kernel of the operations that combine all lanes of a mask.
+struct Masks<'a> {
+    a: Ints<WIDTH>,
+    b: Ints<WIDTH>,
+    results: &'a mut std::vec::Vec<(u32, u32, bool)>,
+}
+
+impl Kernel<WIDTH> for Masks<'_> {
+    #[inline(always)]
+    fn run<L: Lanes<WIDTH>>(self) {
+        for mask in masks::<L>(L::load(&self.a), L::load(&self.b)) {
+            self.results.push((L::count(mask), L::bits(mask), L::any(mask)));
+        }
     }
 }
 
@@ -137,6 +155,10 @@ fn every_backend_divides_as_plain_integers_do() {
         });
         let results: std::vec::Vec<_> = results.collect();
         assert!(results.iter().all(|result| *result == results[0]), "{divisors:?} {entries:?}: {results:?}");
+        let mut one = [Ints::ZERO; 4];
+        Divisions { divisors, entries, results: &mut one }.run::<Scalar<1>>();
+        let first = results[0].map(|[first, ..]| [first, 0, 0, 0, 0, 0, 0, 0]);
+        assert_eq!(one.map(|ints| ints.0), first, "one lane: {divisors:?} {entries:?}");
         for (quotient, d) in results[0][0].into_iter().zip(divisors) {
             let (quotient, d) = (i128::from(quotient), i128::from(d.max(1 << 30)));
             assert!(
@@ -153,14 +175,34 @@ fn every_backend_computes_what_plain_integers_do() {
     for _ in 0..20_000 {
         let (a, b) = (randoms(&mut rng), randoms(&mut rng));
         let results = Backend::available().map(|backend| {
-            let mut results = std::vec::Vec::new();
+            let (mut results, mut masks) = (std::vec::Vec::new(), std::vec::Vec::new());
             let machine = Machine::new(backend).expect("available");
             assert_eq!(machine.backend(), backend);
             machine.run(Operations { a, b, results: &mut results });
-            results
+            machine.run(Masks { a, b, results: &mut masks });
+            (results, masks)
         });
         let results: std::vec::Vec<_> = results.collect();
         assert!(results.iter().all(|result| *result == results[0]), "{a:?} {b:?}: {results:?}");
+    }
+}
+
+/// `Scalar<1>` computes the first lane of eight, and stores no other lane.
+#[test]
+fn one_lane_computes_what_the_first_of_eight_does() {
+    let mut rng = Rng::new(3);
+    for _ in 0..20_000 {
+        let (a, b) = (randoms(&mut rng), randoms(&mut rng));
+        let (mut one, mut eight) = (std::vec::Vec::new(), std::vec::Vec::new());
+        Operations { a, b, results: &mut one }.run::<Scalar<1>>();
+        Operations { a, b, results: &mut eight }.run::<Scalar<WIDTH>>();
+        let first = eight.iter().map(|&[first, ..]| [first, 0, 0, 0, 0, 0, 0, 0]);
+        assert!(one.iter().copied().eq(first), "{a:?} {b:?}: {one:?} and {eight:?}");
+        let (mut one, mut eight) = (std::vec::Vec::new(), std::vec::Vec::new());
+        Masks { a, b, results: &mut one }.run::<Scalar<1>>();
+        Masks { a, b, results: &mut eight }.run::<Scalar<WIDTH>>();
+        let first = eight.iter().map(|&(_, bits, _)| (bits & 1, bits & 1, bits & 1 == 1));
+        assert!(one.iter().copied().eq(first), "{a:?} {b:?}: {one:?} and {eight:?}");
     }
 }
 

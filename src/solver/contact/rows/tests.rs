@@ -195,12 +195,12 @@ fn every_backend_makes_the_rows_of_the_equations() {
         let inputs: Vec<Input> = (0..WIDTH).map(&mut input).collect();
         let count = usize::try_from(points).expect("1 or 2");
         for backend in Backend::available() {
-            let mut made = Made::of_points(count);
+            let mut made = Made::<WIDTH>::of_points(count);
             let machine = Machine::new(backend).expect("available");
             machine.run(FillRows { inputs: &inputs, made: &mut made });
             inputs.iter().enumerate().for_each(|(lane, input)| check(input, lane, &made));
         }
-        let mut made = Made::of_points(count);
+        let mut made = Made::<1>::of_points(count);
         FillRows { inputs: &inputs, made: &mut made }.run::<Scalar<1>>();
         check(&inputs[0], 0, &made);
     }
