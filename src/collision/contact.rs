@@ -74,14 +74,14 @@ impl Contact {
         self.rolling = Speed::ZERO;
     }
 
-    /// Keeps a manifold of the shapes, and the lever arms of the last one if it has the same points and they have
-    /// changed by at most `tolerances`, which are those of A and B in metres.
+    /// Keeps a manifold of the shapes, and the lever arms of the last one if it could be kept, has the same points, and
+    /// they have changed by at most `tolerances`, which are those of A and B in metres.
     #[inline]
     pub(crate) fn keep(&mut self, manifold: &Manifold, bodies: [&Body; 2], tolerances: [Length; 2]) {
         let last = self.kept;
         self.kept = KeptManifold::new(manifold, bodies.map(Body::pose));
         let features = self.points().iter().map(|point| point.feature);
-        if features.eq(manifold.points().iter().map(|point| point.feature.0)) {
+        if last.can_be_kept() && features.eq(manifold.points().iter().map(|point| point.feature.0)) {
             self.kept.keep_arms_of(&last, tolerances);
         }
     }

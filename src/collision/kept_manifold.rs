@@ -127,12 +127,12 @@ impl KeptManifold {
 
     /// Whether this is a manifold that can be kept.
     #[inline]
-    pub(crate) fn is_some(&self) -> bool {
+    pub(crate) fn can_be_kept(&self) -> bool {
         self.normal != Vec2::ZERO
     }
 
-    /// Prevents the manifold from being kept.
-    pub(crate) fn forget(&mut self) {
+    /// Prevents the manifold and its arms from being kept.
+    pub(crate) fn end(&mut self) {
         self.normal = Vec2::ZERO;
     }
 
@@ -142,7 +142,7 @@ impl KeptManifold {
         const ERROR_MAX: u64 = 1 << 34;
         let square = |unit: Unit| i64::from(unit.to_bits()).unsigned_abs().pow(2);
         let length = square(self.normal.x).saturating_add(square(self.normal.y));
-        (!self.is_some() || length.abs_diff(1 << 60) <= ERROR_MAX)
+        (!self.can_be_kept() || length.abs_diff(1 << 60) <= ERROR_MAX)
             && (count > 1 || self.to_second == Vec2::ZERO && self.separations[1] == Step::ZERO)
             && (count > 0 || *self == Self::NONE)
     }

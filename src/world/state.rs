@@ -93,17 +93,17 @@ impl State {
     }
 
     /// Has the contacts of a body collided anew in the next tick, because its shapes or its centre of mass change.
-    pub(crate) fn forget_manifolds(&mut self, body: u32) {
+    pub(crate) fn end_manifolds(&mut self, body: u32) {
         let shapes = &self.shapes;
         let is_own = |shape: u32| shapes.get_slot(shape).is_some_and(|shape| shape.body().slot() == body);
         let has_own = |contact: &Contact| is_own(contact.shapes.0) || is_own(contact.shapes.1);
-        let forget = |contacts: &mut [Contact]| {
-            contacts.iter_mut().filter(|contact| has_own(contact)).for_each(|contact| contact.kept.forget());
+        let end = |contacts: &mut [Contact]| {
+            contacts.iter_mut().filter(|contact| has_own(contact)).for_each(|contact| contact.kept.end());
         };
-        forget(&mut self.contacts);
+        end(&mut self.contacts);
         // The contacts of a body that has just been woken are still among these. Changing them copies the list.
         if self.sleeping_contacts.iter().any(has_own) {
-            forget(&mut self.sleeping_contacts);
+            end(&mut self.sleeping_contacts);
         }
     }
 

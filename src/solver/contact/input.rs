@@ -196,7 +196,7 @@ impl ContactSource<'_> {
         let KeptManifold { arm_a: to_a, arm_b: to_b, to_second, .. } = memory.kept;
         let gap = match memory.kept.separations {
             // A manifold of the time of impact has no gap.
-            _ if !memory.kept.is_some() => Step::ZERO,
+            _ if !memory.kept.can_be_kept() => Step::ZERO,
             [first, second] if manifold.count() == 2 => (first >> 1) + (second >> 1),
             [first, _] => first,
         };

@@ -135,9 +135,9 @@ impl OwnJoints<'_> {
     fn predict_rotations(&self, rotations: &mut BodyRotations<'_>, context: &StepContext<'_>) {
         let &StepContext { bodies, tuning, .. } = context;
         let OwnJoints { turning, places, anchored, .. } = self;
-        let mut predict = |body: &Turning, stretch: Stretch| {
+        let mut predict = |body: &Turning, stretch: Stretch, turn_max: Unit| {
             let spin = bodies[body.index as usize].get().spin;
-            let turn = body.ahead_of(spin).clamp(-TURN_MAX, TURN_MAX);
+            let turn = body.ahead_of(spin).clamp(-turn_max, turn_max);
             let (across, squared): (Unit, Unit) = (mul(stretch.half, turn), mul(turn, turn));
             let along: Unit = mul(stretch.sixth, squared);
             let Quad(numbers) = &mut rotations.quads[body.index as usize];
@@ -147,9 +147,9 @@ impl OwnJoints<'_> {
             let stretch = softness.stretch();
             Stretch { half: stretch / 2, sixth: stretch / 6 }
         });
-        turning.iter().for_each(|body| predict(body, joint));
+        turning.iter().for_each(|body| predict(body, joint, TURN_MAX));
         for &index in *anchored {
-            predict(&turning[places[index as usize] as usize - 1], anchored_joint);
+            predict(&turning[places[index as usize] as usize - 1], anchored_joint, ANCHORED_TURN_MAX);
         }
     }
 }
@@ -162,6 +162,9 @@ struct Stretch {
     sixth: Unit,
 }
 
-/// Largest predicted rotation, in radians. Beyond a quarter of a radian, lever ratios averaged to the third order are no
-/// better than those of the second, and add energy to chains for which one iteration is not enough.
-const TURN_MAX: Unit = Unit::lit("0.25");
+/// Largest predicted rotation of a body, in radians. Impulses do not act along the averaged lever ratios, so that an
+/// iteration may add energy to joints that it does not solve exactly. Up to this rotation, none does.
+const TURN_MAX: Unit = Unit::lit("0.04");
+
+/// The same for a body whose only joint holds it to one that no impulse moves. One iteration solves this joint exactly.
+const ANCHORED_TURN_MAX: Unit = Unit::lit("0.25");

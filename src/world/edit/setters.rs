@@ -226,7 +226,7 @@ impl World {
             self.end_contacts(&[id]);
         }
         *self.state.shapes.redefine(id.slot()).def = *def;
-        self.state.forget_manifolds(slot);
+        self.state.end_manifolds(slot);
         self.replace_mass(slot, mass);
         self.refit_body(slot);
         self.scratch.pairs.changes.rules_changed();
@@ -298,7 +298,7 @@ impl World {
     /// Replaces the mass of a body. Lever arms begin at its centre of mass, so that its contacts are collided anew.
     pub(super) fn replace_mass(&mut self, body: u32, mass: MassProperties) {
         if self.state.bodies.at(body).mass != mass {
-            self.state.forget_manifolds(body);
+            self.state.end_manifolds(body);
         }
         self.state.bodies.redefine(body).set_mass(mass);
     }

@@ -148,7 +148,7 @@ impl NarrowPhase<'_> {
             let contact = &mut job.contacts[index];
             let (shape_a, shape_b) = (motion.shape(contact.shapes.0), motion.shape(contact.shapes.1));
             let closing = ClosingBound::of(margins, shape_a, shape_b);
-            if contact.count > 0 && contact.kept.is_some() {
+            if contact.count > 0 && contact.kept.can_be_kept() {
                 let recycling = Recycling::new(state, margins, closing, [shape_a, shape_b], contact.count);
                 if let Some(found) = recycling.recycle(contact) {
                     recycled.push(found);
