@@ -2,9 +2,9 @@
 //!
 //! A kernel is one generic function over [`Lanes`]; a backend is one implementation of that trait. `Scalar<1>`
 //! processes one row, or the first of eight; the others process eight rows that share no body, and no lane depends on
-//! another. Every backend therefore gives the same bits, and the scalar backend is the test oracle of the others. Only 32-bit numbers and their 64-bit
-//! products occur, because all processors have the widening multiplication 32 x 32 -> 64 (`vpmuldq`, `smull`,
-//! `i64x2.extmul`).
+//! another. Every backend therefore gives the same bits, and the scalar backend is the test oracle of the others. Only
+//! 32-bit numbers and their 64-bit products occur, because all processors have the widening multiplication 32 x 32 -> 64
+//! (`vpmuldq`, `smull`, `i64x2.extmul`).
 
 // Besides the scalar backend, only the vector backends of the target architecture are compiled.
 mod body;

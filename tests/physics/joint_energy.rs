@@ -28,6 +28,15 @@ const BEYOND: [Case; 6] = [
     Case { shape: Shape::Tree, mix: Mix::Prismatic, start: Start::Hang, seed: 45 },
 ];
 
+/// Assemblies in which heavy bodies pull a light one so hard that joints open by metres, until values are clamped. They
+/// gain no energy.
+const GAPING: [Case; 2] = [
+    // 300 kg hang on a disc of 1 kg, at an arm of 15 radii of gyration.
+    Case { shape: Shape::Tree, mix: Mix::Wheel, start: Start::Hang, seed: 0 },
+    // Three bodies of 100 kg on springs jerk at one of 1 kg at 21 m/s in tick 112.
+    Case { shape: Shape::Mesh, mix: Mix::LimitedSpring, start: Start::Hang, seed: 5 },
+];
+
 fn never_gain(mix: Mix, start: Start) {
     let seeds = sweep::size(60, 2);
     let cases = SHAPES
@@ -38,10 +47,7 @@ fn never_gain(mix: Mix, start: Start) {
     sweep::for_each(cases, |case| {
         let outcome = case.run(TICKS);
         assert!(outcome.gain <= 0.01, "{case:?}: {outcome:?}");
-        // 300 kg that hang on a disc of 1 kg, at an arm of 15 radii of gyration, pull their joints apart by more than a
-        // metre, until lever ratios and impulses are clamped.
-        let gapes = case == Case { shape: Shape::Tree, mix: Mix::Wheel, start: Start::Hang, seed: 0 };
-        assert!(outcome.faults == 0 || gapes, "{case:?}: expected no clamped value");
+        assert!(outcome.faults == 0 || GAPING.contains(&case), "{case:?}: expected no clamped value");
     });
 }
 
