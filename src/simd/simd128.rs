@@ -204,7 +204,7 @@ impl Lanes<WIDTH> for Simd128 {
         // There is no shift with a count per lane.
         let mut shifts = Ints::ZERO;
         Self::store(shift, &mut shifts);
-        Self::load(&Ints(Scalar::<WIDTH>::narrow_by(Self::to_array(a), shifts.0)))
+        Self::load(&Ints(<Scalar<WIDTH> as Lanes<WIDTH>>::narrow_by(Self::to_array(a), shifts.0)))
     }
 
     #[inline(always)]
