@@ -163,8 +163,10 @@ struct Stretch {
 }
 
 /// Largest predicted rotation of a body, in radians. Impulses do not act along the averaged lever ratios, so that an
-/// iteration may add energy to joints that it does not solve exactly. Up to this rotation, none does.
+/// iteration may add energy to joints that it does not solve exactly. With this limit, no star of hinges gains any
+/// (`docs/DESIGN.md`).
 const TURN_MAX: Unit = Unit::lit("0.04");
 
-/// The same for a body whose only joint holds it to one that no impulse moves. One iteration solves this joint exactly.
+/// Largest predicted rotation, in radians, of a body whose only joint is an anchored hinge. One iteration solves such a
+/// joint exactly.
 const ANCHORED_TURN_MAX: Unit = Unit::lit("0.25");
