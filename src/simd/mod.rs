@@ -1,14 +1,15 @@
 //! SIMD abstraction: the integer operations in which the wide kernels are written.
 //!
-//! A kernel is one generic function over [`Lanes`]; a backend is one implementation of that trait. `Scalar<1>`
-//! processes one row, or the first of eight; the others process eight rows that share no body, and no lane depends on
-//! another. Every backend therefore gives the same bits, and the scalar backend is the test oracle of the others. Only
-//! 32-bit numbers and their 64-bit products occur, because all processors have the widening multiplication 32 x 32 -> 64
-//! (`vpmuldq`, `smull`, `i64x2.extmul`).
+//! A kernel is one generic function over [`Lanes`]; a backend is one implementation of that trait. The scalar backend
+//! processes one row at a time (`Scalar<1>`, which is also used for the first of eight rows); the others process eight
+//! rows that share no body, and no lane depends on another. Every backend therefore gives the same bits. Data that
+//! kernels process is laid out for the backend ([`Layout`]). Only 32-bit numbers and their 64-bit products occur,
+//! because all processors have the widening multiplication 32 x 32 -> 64 (`vpmuldq`, `smull`, `i64x2.extmul`).
 
 // Besides the scalar backend, only the vector backends of the target architecture are compiled.
 mod body;
 mod division;
+mod layout;
 #[cfg_attr(target_arch = "x86_64", path = "x86.rs")]
 #[cfg_attr(all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"), path = "neon.rs")]
 #[cfg_attr(all(target_arch = "wasm32", target_feature = "simd128"), path = "simd128.rs")]
@@ -20,7 +21,8 @@ mod shared;
 mod tests;
 
 pub(crate) use body::{GROUND, SolverBody};
-use native::Native;
+pub(crate) use layout::{Layout, with_data};
+use native::Vectors;
 pub(crate) use prefetch::prefetch;
 pub(crate) use scalar::Scalar;
 pub(crate) use shared::Shared;
@@ -176,7 +178,7 @@ pub(crate) trait Kernel<const N: usize> {
 }
 
 /// A backend that is available on this machine; by default the best one.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Machine(Backend);
 
 impl Machine {
@@ -189,18 +191,27 @@ impl Machine {
         self.0
     }
 
-    /// Whether kernels are faster with eight lanes than with one.
-    pub(crate) fn has_vectors(self) -> bool {
-        (Native::IS_SOLE && Native::HAS_VECTORS) || self.0 != Backend::Scalar
+    /// The vectors of the backend. `None` for the scalar backend.
+    #[inline]
+    pub(crate) fn vectors(self) -> Option<Vectors> {
+        Vectors::of(self.0)
     }
 
-    /// Runs a kernel with the backend.
+    /// Runs a kernel whose data does not depend on the number of lanes.
     #[inline]
-    pub(crate) fn run(self, kernel: impl Kernel<WIDTH>) {
-        // Kernels are large. If `IS_SOLE` is true, there is only one backend, and each kernel is compiled only once.
-        match self.0 {
-            Backend::Scalar if !Native::IS_SOLE => kernel.run::<Scalar<WIDTH>>(),
-            backend => Native::run(backend, kernel),
+    pub(crate) fn run(self, kernel: impl Kernel<WIDTH> + Kernel<1>) {
+        match self.vectors() {
+            Some(vectors) => vectors.run(kernel),
+            None => Kernel::<1>::run::<Scalar<1>>(kernel),
+        }
+    }
+
+    /// Runs a kernel of eight lanes. Without vectors, it runs on arrays of eight numbers.
+    #[cfg(test)]
+    pub(crate) fn run_wide(self, kernel: impl Kernel<WIDTH>) {
+        match self.vectors() {
+            Some(vectors) => vectors.run(kernel),
+            None => kernel.run::<Scalar<WIDTH>>(),
         }
     }
 }
@@ -245,8 +256,8 @@ impl Backend {
     /// Every backend that is compiled in and that this machine can run, the best one last. Without the feature `std`
     /// only backends whose target features are enabled at compile time are listed.
     pub fn available() -> impl Iterator<Item = Backend> {
-        let scalar = !(Native::IS_SOLE && Native::HAS_VECTORS);
-        scalar.then_some(Backend::Scalar).into_iter().chain(Native::backends())
+        let scalar = Vectors::ARE_OPTIONAL.then_some(Backend::Scalar);
+        scalar.into_iter().chain(Vectors::backends())
     }
 
     /// The best backend of this machine.

@@ -1,18 +1,23 @@
-//! Fallback without vectors, for target architectures that have no backend.
+//! For target architectures that have no vector backend.
 
-use super::{Backend, Kernel, Scalar, WIDTH};
+use super::{Backend, Kernel, WIDTH};
 
-pub(super) struct Native;
+/// There are no vectors.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Vectors {}
 
-impl Native {
-    pub(super) const IS_SOLE: bool = true;
-    pub(super) const HAS_VECTORS: bool = false;
+impl Vectors {
+    pub(super) const ARE_OPTIONAL: bool = true;
 
     pub(super) fn backends() -> impl Iterator<Item = Backend> {
         core::iter::empty()
     }
 
-    pub(super) fn run(_: Backend, kernel: impl Kernel<WIDTH>) {
-        kernel.run::<Scalar<WIDTH>>();
+    pub(super) fn of(_: Backend) -> Option<Self> {
+        None
+    }
+
+    pub(crate) fn run(self, _: impl Kernel<WIDTH>) {
+        match self {}
     }
 }

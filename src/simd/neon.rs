@@ -11,19 +11,25 @@ use super::{Backend, Ints, Kernel, Lanes, Quad, VelocityW, WIDTH};
 /// NEON instructions. This file is only compiled for targets that have them, so every intrinsic in an `unsafe` block is
 /// available.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Neon;
+pub(crate) struct Neon;
 
-pub(super) use Neon as Native;
+pub(crate) use Neon as Vectors;
 
 impl Neon {
-    pub(super) const IS_SOLE: bool = false;
-    pub(super) const HAS_VECTORS: bool = true;
+    /// Whether the scalar backend is compiled in as well.
+    pub(super) const ARE_OPTIONAL: bool = true;
 
     pub(super) fn backends() -> impl Iterator<Item = Backend> {
         core::iter::once(Backend::Neon)
     }
 
-    pub(super) fn run(_: Backend, kernel: impl Kernel<WIDTH>) {
+    #[inline]
+    pub(super) fn of(backend: Backend) -> Option<Self> {
+        (backend == Backend::Neon).then_some(Neon)
+    }
+
+    /// Runs a kernel.
+    pub(crate) fn run(self, kernel: impl Kernel<WIDTH>) {
         kernel.run::<Neon>();
     }
 }

@@ -11,19 +11,25 @@ use super::{Backend, Ints, Kernel, Lanes, Quad, VelocityW, WIDTH};
 /// Vector instructions of WebAssembly. This file is only compiled for programs that use them; a machine without them
 /// rejects such a program as a whole.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Simd128;
+pub(crate) struct Simd128;
 
-pub(super) use Simd128 as Native;
+pub(crate) use Simd128 as Vectors;
 
 impl Simd128 {
-    pub(super) const IS_SOLE: bool = cfg!(feature = "sole_backend");
-    pub(super) const HAS_VECTORS: bool = true;
+    /// Whether the scalar backend is compiled in as well.
+    pub(super) const ARE_OPTIONAL: bool = !cfg!(feature = "sole_backend");
 
     pub(super) fn backends() -> impl Iterator<Item = Backend> {
         core::iter::once(Backend::Simd128)
     }
 
-    pub(super) fn run(_: Backend, kernel: impl Kernel<WIDTH>) {
+    #[inline]
+    pub(super) fn of(backend: Backend) -> Option<Self> {
+        (!Self::ARE_OPTIONAL || backend == Backend::Simd128).then_some(Simd128)
+    }
+
+    /// Runs a kernel.
+    pub(crate) fn run(self, kernel: impl Kernel<WIDTH>) {
         kernel.run::<Simd128>();
     }
 }

@@ -150,7 +150,7 @@ fn every_backend_divides_as_plain_integers_do() {
         let results = Backend::available().map(|backend| {
             let mut results = [Ints::ZERO; 4];
             let machine = Machine::new(backend).expect("available");
-            machine.run(Divisions { divisors, entries, results: &mut results });
+            machine.run_wide(Divisions { divisors, entries, results: &mut results });
             results.map(|ints| ints.0)
         });
         let results: std::vec::Vec<_> = results.collect();
@@ -178,8 +178,8 @@ fn every_backend_computes_what_plain_integers_do() {
             let (mut results, mut masks) = (std::vec::Vec::new(), std::vec::Vec::new());
             let machine = Machine::new(backend).expect("available");
             assert_eq!(machine.backend(), backend);
-            machine.run(Operations { a, b, results: &mut results });
-            machine.run(Masks { a, b, results: &mut masks });
+            machine.run_wide(Operations { a, b, results: &mut results });
+            machine.run_wide(Masks { a, b, results: &mut masks });
             (results, masks)
         });
         let results: std::vec::Vec<_> = results.collect();
@@ -233,7 +233,7 @@ fn places_that_are_not_there_are_refused() {
         let is_refused = |quads: u32, bodies: u32, at: [u32; WIDTH]| {
             let quads: std::vec::Vec<_> = (0..quads).map(|_| Quad::default()).collect();
             let bodies: std::vec::Vec<_> = (0..bodies).map(|_| Cell::new(SolverBody::default())).collect();
-            let run = || machine.run(Places { quads: &quads, bodies: &bodies, at });
+            let run = || machine.run_wide(Places { quads: &quads, bodies: &bodies, at });
             std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).is_err()
         };
         for (quads, bodies) in [(10, 10), (0, 10)] {

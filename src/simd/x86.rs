@@ -12,7 +12,12 @@ use super::{Backend, Kernel, WIDTH};
 use avx2::Avx2;
 use avx512::Avx512;
 
-pub(super) struct Native;
+/// The vectors of a backend that the processor has.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Vectors {
+    Avx2,
+    Avx512,
+}
 
 /// Whether the processor has all of these features: detected at run time with `std`, otherwise by the target features.
 macro_rules! has {
@@ -25,9 +30,9 @@ macro_rules! has {
     }};
 }
 
-impl Native {
-    pub(super) const IS_SOLE: bool = false;
-    pub(super) const HAS_VECTORS: bool = true;
+impl Vectors {
+    /// Whether the scalar backend is compiled in as well.
+    pub(super) const ARE_OPTIONAL: bool = true;
 
     pub(super) fn backends() -> impl Iterator<Item = Backend> {
         let avx2 = has!("avx2").then_some(Backend::Avx2);
@@ -35,8 +40,18 @@ impl Native {
         avx2.into_iter().chain(wide.then_some(Backend::Avx512))
     }
 
-    /// Runs a kernel with a backend that has been detected to be available on the processor.
-    pub(super) fn run(backend: Backend, kernel: impl Kernel<WIDTH>) {
+    /// The vectors of a backend. The caller ensures that the processor has them.
+    #[inline]
+    pub(super) fn of(backend: Backend) -> Option<Self> {
+        match backend {
+            Backend::Avx2 => Some(Vectors::Avx2),
+            Backend::Avx512 => Some(Vectors::Avx512),
+            _ => None,
+        }
+    }
+
+    /// Runs a kernel.
+    pub(crate) fn run(self, kernel: impl Kernel<WIDTH>) {
         #[target_feature(enable = "avx2")]
         unsafe fn with_avx2(kernel: impl Kernel<WIDTH>) {
             kernel.run::<Avx2>();
@@ -47,9 +62,9 @@ impl Native {
         }
         // SAFETY: a `Machine` is only created for a backend that the processor has.
         unsafe {
-            match backend {
-                Backend::Avx512 => with_avx512(kernel),
-                _ => with_avx2(kernel),
+            match self {
+                Vectors::Avx2 => with_avx2(kernel),
+                Vectors::Avx512 => with_avx512(kernel),
             }
         }
     }

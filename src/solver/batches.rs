@@ -15,7 +15,7 @@ use core::fmt::Debug;
 use super::body::SolverBody;
 use super::context::StepContext;
 use super::limits::Faults;
-use crate::simd::{GROUND, Kernel, Lanes, Scalar, WIDTH, prefetch};
+use crate::simd::{GROUND, Kernel, Lanes, Layout, Scalar, WIDTH, prefetch, with_data};
 
 /// A kind of constraint. `N` constraints of the kind are solved at a time.
 pub(super) trait BatchKind: Clone + Debug + 'static {
@@ -55,8 +55,11 @@ pub(super) struct BatchList<K: BatchKind> {
     /// The overflow: the constraints that fit no colour, in the order in which they are solved.
     pub(super) overflow: Batches<K, 1>,
     /// For each thread, its batches of all other constraints, colour by colour.
-    pub(super) coloured: Vec<Batches<K, WIDTH>>,
+    pub(super) coloured: Vec<Coloured<K>>,
 }
+
+/// The coloured constraints of a thread.
+pub(super) type Coloured<K> = Layout<Batches<K, WIDTH>, Batches<K, 1>>;
 
 /// The constraints of a kind that one thread solves.
 #[derive(Debug)]
@@ -64,7 +67,7 @@ pub(super) struct BatchShare<'a, K: BatchKind> {
     /// `None` if there is no overflow.
     overflow: Option<Overflow<'a, K>>,
     /// The coloured constraints of the thread.
-    pub(super) coloured: &'a mut Batches<K, WIDTH>,
+    pub(super) coloured: &'a mut Coloured<K>,
 }
 
 /// The constraints that fit no colour, which one of the threads solves.
@@ -95,7 +98,7 @@ struct ColourEnd {
 
 impl<K: BatchKind> Default for BatchList<K> {
     fn default() -> Self {
-        BatchList { overflow: Batches::default(), coloured: Vec::from([Batches::default()]) }
+        BatchList { overflow: Batches::default(), coloured: Vec::from([Coloured::default()]) }
     }
 }
 
@@ -127,12 +130,12 @@ impl<K: BatchKind, const N: usize> Batches<K, N> {
 impl<K: BatchKind> BatchList<K> {
     /// Whether there are no constraints.
     pub(super) fn is_empty(&self) -> bool {
-        self.overflow.batches.is_empty() && self.coloured.iter().all(|coloured| coloured.batches.is_empty())
+        self.overflow.batches.is_empty() && self.coloured.iter().all(Coloured::is_empty)
     }
 
     /// Whether any batch has an extra.
     pub(super) fn has_extras(&self) -> bool {
-        !self.overflow.extras.is_empty() || self.coloured.iter().any(|coloured| !coloured.extras.is_empty())
+        !self.overflow.extras.is_empty() || self.coloured.iter().any(Coloured::has_extras)
     }
 
     /// Divides the constraints into one share for each thread.
@@ -180,9 +183,36 @@ impl<K: BatchKind> Batches<K, 1> {
     }
 }
 
-impl<K: BatchKind> Batches<K, WIDTH> {
+impl<K: BatchKind> Coloured<K> {
+    fn is_empty(&self) -> bool {
+        with_data!(self, batches => batches.batches.is_empty())
+    }
+
+    fn has_extras(&self) -> bool {
+        with_data!(self, batches => !batches.extras.is_empty())
+    }
+
     /// Runs an operation over the batches of a thread, and waits after each colour for the other threads.
     pub(super) fn run_coloured(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
+        match self {
+            Layout::Wide(batches, vectors) => {
+                batches.run_coloured(operation, context, |kernel| vectors.run(kernel));
+            }
+            Layout::Single(batches) => {
+                batches.run_coloured(operation, context, |kernel| kernel.run::<Scalar<1>>());
+            }
+        }
+    }
+}
+
+impl<K: BatchKind, const N: usize> Batches<K, N> {
+    /// Runs an operation colour by colour. `run` runs it on the batches of a colour.
+    fn run_coloured<O: Operation<K>>(
+        &mut self,
+        operation: O,
+        context: &StepContext<'_>,
+        run: impl Fn(Run<'_, K, O, N>),
+    ) {
         let Batches { batches, records, extras, colour_ends } = self;
         // A thread that works alone need not wait: the batches are in the order of the colours.
         let all = [ColourEnd { batches: batches.len(), extras: extras.len() }];
@@ -194,7 +224,7 @@ impl<K: BatchKind> Batches<K, WIDTH> {
                 let records = &records[start.batches..end.batches];
                 let extras = &mut extras[start.extras..end.extras];
                 let (bodies, faults) = (context.bodies, &mut faults);
-                context.machine.run(Run { batches, records, extras, operation, bodies, faults });
+                run(Run { batches, records, extras, operation, bodies, faults });
             }
             start = end;
             context.wait();

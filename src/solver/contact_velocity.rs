@@ -22,17 +22,19 @@ use super::body::SolverBody;
 use super::context::StepContext;
 use super::limits::Faults;
 use super::pair::BodyPairW;
-use crate::simd::{GROUND, Ints, Kernel, Lanes, VelocityW, WIDTH};
+use crate::simd::{GROUND, Ints, Kernel, Lanes, Layout, Machine, Scalar, VelocityW, WIDTH, with_data};
 
 /// The velocity changes that contacts have caused, for those bodies with contacts that one thread integrates.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactVelocities {
-    groups: Vec<Group<WIDTH>>,
+    groups: Layout<Groups<WIDTH>, Groups<1>>,
     /// Whether the tick has had a sub-step, so that velocity changes can be measured.
     known: bool,
     /// Whether any group is shared, of this or of another thread.
     pub(super) shared: bool,
 }
+
+type Groups<const N: usize> = Vec<Group<N>>;
 
 /// Bodies that are processed together: as many as there are lanes.
 #[derive(Clone, Debug)]
@@ -71,21 +73,10 @@ pub(super) struct PushedBody {
 
 impl ContactVelocities {
     /// Starts a tick with the bodies that contacts change.
-    pub(super) fn begin(&mut self, bodies: impl Iterator<Item = PushedBody>) {
-        let ContactVelocities { groups, shared, known } = self;
-        (*shared, *known) = (false, false);
-        groups.clear();
-        for (number, body) in bodies.enumerate() {
-            let lane = number % WIDTH;
-            if lane == 0 {
-                groups.push(Group::NONE);
-            }
-            if let Some(group) = groups.last_mut() {
-                group.at[lane] = body.index;
-                group.shared |= body.shared;
-            }
-            *shared |= body.shared;
-        }
+    pub(super) fn begin(&mut self, machine: Machine, bodies: impl Iterator<Item = PushedBody>) {
+        self.known = false;
+        self.groups.fit(machine);
+        self.shared = with_data!(&mut self.groups, groups => arrange(groups, bodies));
     }
 
     /// Measures the velocity changes by contacts in the last sub-step, unless this is the first sub-step of the tick.
@@ -118,8 +109,15 @@ impl ContactVelocities {
 
     fn perform(&mut self, task: Task, context: &StepContext<'_>) {
         let mut faults = 0;
-        let (groups, bodies, faults_of_run) = (&mut self.groups, context.bodies, &mut faults);
-        context.machine.run(Perform { groups, task, bodies, faults: faults_of_run });
+        let (bodies, faults_of_run) = (context.bodies, &mut faults);
+        match &mut self.groups {
+            Layout::Wide(groups, vectors) => {
+                vectors.run(Perform { groups, task, bodies, faults: faults_of_run });
+            }
+            Layout::Single(groups) => {
+                Perform { groups, task, bodies, faults: faults_of_run }.run::<Scalar<1>>();
+            }
+        }
         context.add_faults(faults);
     }
 }
@@ -127,6 +125,24 @@ impl ContactVelocities {
 impl<const N: usize> Group<N> {
     const NONE: Self = Group { at: [GROUND; N], shared: false, free: Self::STILL, change: Self::STILL };
     const STILL: VelocityW<Ints<N>> = VelocityW { x: Ints::ZERO, y: Ints::ZERO, turn: Ints::ZERO };
+}
+
+/// Arranges bodies in groups. Returns whether any body is shared.
+fn arrange<const N: usize>(groups: &mut Groups<N>, bodies: impl Iterator<Item = PushedBody>) -> bool {
+    groups.clear();
+    let mut shared = false;
+    for (number, body) in bodies.enumerate() {
+        let lane = number % N;
+        if lane == 0 {
+            groups.push(Group::NONE);
+        }
+        if let Some(group) = groups.last_mut() {
+            group.at[lane] = body.index;
+            group.shared |= body.shared;
+        }
+        shared |= body.shared;
+    }
+    shared
 }
 
 struct Perform<'a, const N: usize> {

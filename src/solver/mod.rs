@@ -127,8 +127,8 @@ impl Solver {
         tuning: &Tuning,
     ) {
         let parts = self.parts;
-        let Solver { list, joints: set, colouring, .. } = self;
-        set.prepare(&JointSource { joints, slots, bodies, tuning }, list, colouring, parts);
+        let Solver { list, joints: set, colouring, machine, .. } = self;
+        set.prepare(&JointSource { joints, slots, bodies, tuning }, list, colouring, parts, *machine);
     }
 
     /// Number of joints that are solved in blocks in this tick.
@@ -170,10 +170,11 @@ impl Solver {
         for (part, velocities) in self.contact_velocities.iter_mut().enumerate() {
             let moving = &moving[part_of(moving.len(), WIDTH, part, parts)];
             let touched = moving.iter().filter(|moving| colouring.holds(moving.index()));
-            velocities.begin(touched.map(|moving| PushedBody {
+            let pushed = touched.map(|moving| PushedBody {
                 index: moving.index(),
                 shared: set.bounces(moving.index()) || moving.has_extras() || joints.holds(moving.index()),
-            }));
+            });
+            velocities.begin(*machine, pushed);
         }
         let is_shared = self.contact_velocities.iter().any(|velocities| velocities.shared);
         self.contact_velocities.iter_mut().for_each(|velocities| velocities.shared = is_shared);
@@ -206,7 +207,7 @@ impl Solver {
             for index in 0..count {
                 share.sub_step(first.wrapping_add(index.into()), &context);
             }
-            share.contacts.store(store, machine);
+            share.contacts.store(store);
             faults
         });
     }

@@ -176,11 +176,11 @@ impl BoxPairs {
         true
     }
 
-    /// Computes the manifolds of all pairs.
+    /// Computes the manifolds of all pairs. The machine has vectors: without them, no pairs are added.
     pub(crate) fn collide(&mut self, machine: Machine, boxes: &SmallBoxes) {
         let batches = &mut self.batches[..self.count.div_ceil(WIDTH)];
-        if !batches.is_empty() {
-            machine.run(kernel::Collide { batches, boxes: &boxes.turned });
+        if let (false, Some(vectors)) = (batches.is_empty(), machine.vectors()) {
+            vectors.run(kernel::Collide { batches, boxes: &boxes.turned });
         }
     }
 

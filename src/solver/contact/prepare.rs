@@ -1,6 +1,6 @@
 //! Fills batches with the contacts of a tick, in the order in which they are solved.
 
-use super::super::batches::Batches;
+use super::super::batches::{Batches, Coloured};
 use super::super::colour::{Colouring, Group};
 use super::batch::Batch;
 use super::extras::ContactExtras;
@@ -10,7 +10,7 @@ use super::rows;
 use super::store::Records;
 use super::{ContactSet, Contacts, WarmStarts};
 use crate::math::Unit;
-use crate::simd::{Kernel, Lanes, Machine, Quad, Scalar, prefetch};
+use crate::simd::{Kernel, Lanes, Layout, Machine, Quad, Scalar, prefetch};
 use crate::threads::Threads;
 
 /// Prefetch distance in batches, for the touching pairs.
@@ -44,7 +44,7 @@ impl ContactSet {
         warm_starts.clear();
         warm_starts.resize(parts, WarmStarts::default());
         for (list, is_cold) in [(&mut *warm, false), (&mut *cold, true)] {
-            list.coloured.resize_with(parts, Batches::default);
+            list.coloured.resize_with(parts, Coloured::default);
             let colours = core::iter::once(Group::of_singles(colouring.overflow(is_cold)));
             let (batches, warm_starts) = (&mut list.overflow, &mut warm_starts[0]);
             Fill { batches, source, prospects, colours, warm_starts }.run::<Scalar<1>>();
@@ -53,9 +53,17 @@ impl ContactSet {
         threads.run_team(shares, |(part, ((warm, cold), warm_starts)), _| {
             // Counted in a local variable, because the counts of all threads are in one cache line.
             let mut own = WarmStarts::default();
-            for (batches, is_cold) in [(warm, false), (cold, true)] {
-                let colours = colouring.colours(is_cold, part);
-                machine.run(Fill { batches, source, prospects, colours, warm_starts: &mut own });
+            for (coloured, is_cold) in [(warm, false), (cold, true)] {
+                let (colours, warm_starts) = (colouring.colours(is_cold, part), &mut own);
+                coloured.fit(machine);
+                match coloured {
+                    Layout::Wide(batches, vectors) => {
+                        vectors.run(Fill { batches, source, prospects, colours, warm_starts });
+                    }
+                    Layout::Single(batches) => {
+                        Fill { batches, source, prospects, colours, warm_starts }.run::<Scalar<1>>();
+                    }
+                }
             }
             *warm_starts = [*warm_starts, own].into_iter().sum();
             0

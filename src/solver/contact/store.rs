@@ -12,7 +12,7 @@ use super::rows::Denominators;
 use super::{ContactShare, Contacts};
 use crate::collision::{Contact, Feature, Pair, PointImpulse};
 use crate::math::Speed;
-use crate::simd::{Ints, Kernel, Lanes, Machine, Scalar, Shared, prefetch};
+use crate::simd::{Ints, Kernel, Lanes, Layout, Scalar, Shared, prefetch};
 
 /// Prefetch distance in batches: in the order of colours, contacts are random accesses.
 const CONTACTS_AHEAD: usize = 2;
@@ -170,12 +170,15 @@ impl<'a> ContactStore<'a> {
 
 impl ContactShare<'_> {
     /// Stores the impulses for the next tick.
-    pub(in crate::solver) fn store(&mut self, store: ContactStore<'_>, machine: Machine) {
+    pub(in crate::solver) fn store(&mut self, store: ContactStore<'_>) {
         for share in [&mut self.warm, &mut self.cold] {
             if let Some(batches) = share.own_overflow() {
                 Store { batches, store }.run::<Scalar<1>>();
             }
-            machine.run(Store { batches: share.coloured, store });
+            match share.coloured {
+                Layout::Wide(batches, vectors) => vectors.run(Store { batches, store }),
+                Layout::Single(batches) => Store { batches, store }.run::<Scalar<1>>(),
+            }
         }
     }
 }

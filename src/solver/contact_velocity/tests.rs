@@ -58,6 +58,7 @@ fn what_contacts_have_changed_is_changed_again() {
         change(&mut bodies, &start);
         let (mut contact_velocities, mut faults) = (ContactVelocities::default(), 0);
         contact_velocities.begin(
+            machine,
             (1..=COUNT)
                 .map(|index| PushedBody { index: u32::try_from(index).expect("few"), shared: index > 10 }),
         );
@@ -93,9 +94,9 @@ fn what_contacts_have_changed_is_changed_again() {
 fn what_is_too_fast_is_a_fault() {
     let mut bodies = Vec::from([SolverBody::default(); 2]);
     let (mut contact_velocities, mut faults) = (ContactVelocities::default(), 0);
-    contact_velocities.begin([PushedBody { index: 1, shared: false }].into_iter());
     let fast = [[Speed::ZERO; 3], [Speed::lit("300"), Speed::ZERO, Speed::ZERO]];
     let machine = Machine::default();
+    contact_velocities.begin(machine, [PushedBody { index: 1, shared: false }].into_iter());
     with_context(machine, &mut bodies, &mut faults, |context| contact_velocities.apply(context));
     change(&mut bodies, &fast);
     with_context(machine, &mut bodies, &mut faults, |context| {
@@ -119,17 +120,25 @@ impl Solver {
             share.run_coloured(contact::WarmStart, context);
         }
         let (mut error, mut largest) = (0, 0);
-        for group in self.contact_velocities.iter().flat_map(|velocities| &velocities.groups) {
-            for (lane, &index) in group.at.iter().enumerate() {
-                let body = &self.list.bodies[index as usize];
-                let rows = [body.velocity.x, body.velocity.y, body.spin].map(Speed::to_bits);
-                let VelocityW { x, y, turn } = &group.change;
-                for (row, change) in rows.into_iter().zip([x.0[lane], y.0[lane], turn.0[lane]]) {
-                    error = error.max((row - change).abs());
-                    largest = largest.max(row.abs());
-                }
+        let changes = self.contact_velocities.iter().flat_map(|velocities| {
+            with_data!(&velocities.groups, groups => groups.iter().flat_map(Group::changes).collect::<Vec<_>>())
+        });
+        for (index, changes) in changes {
+            let body = &self.list.bodies[index as usize];
+            let rows = [body.velocity.x, body.velocity.y, body.spin].map(Speed::to_bits);
+            for (row, change) in rows.into_iter().zip(changes) {
+                error = error.max((row - change).abs());
+                largest = largest.max(row.abs());
             }
         }
         (error, largest)
+    }
+}
+
+impl<const N: usize> Group<N> {
+    /// The index of each body, and the changes of its velocity.
+    fn changes(&self) -> impl Iterator<Item = (u32, [i32; 3])> {
+        let Group { at, change: VelocityW { x, y, turn }, .. } = self;
+        at.iter().enumerate().map(|(lane, &index)| (index, [x.0[lane], y.0[lane], turn.0[lane]]))
     }
 }

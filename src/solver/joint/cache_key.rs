@@ -3,6 +3,7 @@
 use alloc::vec::Vec;
 
 use super::super::settings::Tuning;
+use crate::simd::Machine;
 
 /// Everything that the arrangement of joints depends on. The arrangement is the order in which joints are solved, the
 /// kind of constraint of each joint, and the masses.
@@ -28,14 +29,15 @@ pub(super) enum Validity {
     Nothing,
 }
 
-/// The revisions of joints and bodies, the settings, and the number of threads.
+/// The revisions of joints and bodies, the settings, the number of threads and the backend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Definitions {
-    pub(super) joints: u64,
-    pub(super) bodies: u64,
+    /// The revisions of joints and of bodies.
+    pub(super) revisions: [u64; 2],
     pub(super) tuning: Tuning,
     /// Number of threads that solve the joints.
     pub(super) parts: usize,
+    pub(super) machine: Machine,
 }
 
 impl CacheKey {

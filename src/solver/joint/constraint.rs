@@ -17,7 +17,7 @@ use super::pose::BodyRotation;
 use super::share::{BodyRotations, JointSplit, OwnJoints};
 use super::state::Joint;
 use crate::body::{Arena, Body, BodyId, JointId};
-use crate::simd::Quad;
+use crate::simd::{Machine, Quad};
 use crate::threads::TeamLock;
 
 /// All joints, for one tick.
@@ -136,14 +136,16 @@ impl JointSet {
         list: &mut BodyList,
         colouring: &mut Colouring,
         parts: usize,
+        machine: Machine,
     ) {
         let &JointSource { joints, slots, bodies, tuning } = source;
-        let definitions =
-            Definitions { joints: joints.revision(), bodies: bodies.revision(), tuning: *tuning, parts };
+        let (revisions, tuning) = ([joints.revision(), bodies.revision()], *tuning);
+        let definitions = Definitions { revisions, tuning, parts, machine };
         let validity = self.cache_key.renew(definitions, joints.returns(), slots, list.slots());
         if validity == Validity::Nothing || !self.blocks.is_arranged() {
             self.parts.resize_with(parts, HingeShare::default);
             self.clear();
+            self.parts.iter_mut().for_each(|part| part.fit(machine));
             self.arrange(source, list, colouring);
             self.sort(colouring);
         } else {
@@ -265,7 +267,7 @@ impl JointSet {
             for group in colouring.colours(false, number) {
                 hinges.push_colour(part, group.indices.iter().filter_map(input_of), is_alone);
             }
-            anchored.extend(part.anchored_bodies());
+            part.add_anchored_bodies(anchored);
         }
         others.extend(colouring.order().iter().filter_map(|&index| match entries[index as usize] {
             Entry::Hinge(_) => None,

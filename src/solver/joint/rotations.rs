@@ -9,7 +9,7 @@ use crate::math::{Angle, Fx, Rot};
 use crate::simd::{Kernel, Lanes, Quad};
 
 /// Number of bodies that one vectorised loop processes.
-const BLOCK: usize = 32;
+const BLOCK: usize = 16;
 
 /// Computes the rotations of bodies at their current poses.
 pub(super) struct Rotations<'a> {

@@ -160,7 +160,7 @@ impl NarrowPhase<'_> {
                 contact.passing = false;
                 continue;
             }
-            let is_box_pair = machine.has_vectors() && shape_a.small_box && shape_b.small_box && {
+            let is_box_pair = machine.vectors().is_some() && shape_a.small_box && shape_b.small_box && {
                 let radii = [shape_a.radius, shape_b.radius];
                 boxes.push(contact.shapes, shape_a.offset_to(shape_b), radii, closing.margin)
             };

@@ -150,7 +150,7 @@ fn unchecked_contacts_end_as_checked_ones() {
             let run = |unchecked: bool| {
                 let mut trial =
                     Trial { inputs: &inputs, bodies: bodies.clone(), unchecked, constants, end: None };
-                machine.run(&mut trial);
+                machine.run_wide(&mut trial);
                 trial.end.expect("run")
             };
             let (fast, checked) = (run(true), run(false));

@@ -197,7 +197,7 @@ fn every_backend_makes_the_rows_of_the_equations() {
         for backend in Backend::available() {
             let mut made = Made::<WIDTH>::of_points(count);
             let machine = Machine::new(backend).expect("available");
-            machine.run(FillRows { inputs: &inputs, made: &mut made });
+            machine.run_wide(FillRows { inputs: &inputs, made: &mut made });
             inputs.iter().enumerate().for_each(|(lane, input)| check(input, lane, &made));
         }
         let mut made = Made::<1>::of_points(count);

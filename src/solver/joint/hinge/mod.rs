@@ -21,10 +21,10 @@ mod warm_start;
 use alloc::vec::Vec;
 use core::mem;
 
-use super::super::batches::{BatchKind, Batches};
+use super::super::batches::{BatchKind, Batches, Coloured};
 use super::super::context::{Pass, StepContext};
 use super::pose::BodyRotation;
-use crate::simd::{Quad, WIDTH};
+use crate::simd::Quad;
 use angle::AngleRows;
 pub(super) use angle_input::{ANGLE_MAX, AngleParts};
 use angle_input::{AngleInput, Memo};
@@ -110,10 +110,10 @@ impl HingeSet {
 /// The coloured hinges that one thread solves.
 #[derive(Clone, Debug, Default)]
 pub(super) struct HingeShare {
-    ordinary: Batches<Hinges, WIDTH>,
+    ordinary: Coloured<Hinges>,
     /// Anchored hinges, whose points are stiffer: they connect a body that has no other joint to a body that no impulse
     /// moves.
-    anchored: Batches<Hinges, WIDTH>,
+    anchored: Coloured<Hinges>,
     /// Whether bodies have moved since the batches were refreshed.
     is_stale: bool,
 }

@@ -42,6 +42,10 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
     /// Changes the spins by impulses on the angle of less than 1024 m/s.
     #[inline(always)]
     pub(super) fn turn(&mut self, f: &[Ints<N>; 2], d: L::Int, faults: &mut Faults) {
+        // Most rows on the angle are limits that are not reached.
+        if !L::any(beyond::<L, N>(d, L::splat(0))) {
+            return;
+        }
         if L::any(beyond::<L, N>(d, L::splat(HALF - 1))) {
             self.turn_in_steps(f, d, faults);
         } else {

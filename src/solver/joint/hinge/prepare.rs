@@ -1,6 +1,8 @@
 //! Fills batches with hinges in the order in which they are solved, and returns their impulses to the state.
 
-use super::super::super::batches::Batches;
+use alloc::vec::Vec;
+
+use super::super::super::batches::{Batches, Coloured};
 use super::super::super::body_list::GROUND;
 use super::super::super::settings::Tuning;
 use super::super::parts::slot;
@@ -11,6 +13,7 @@ use super::batch::{Batch, Records, Shape};
 use super::{AngleInput, AngleParts, HingeBody, HingeSet, HingeShare, Hinges, Input};
 use crate::body::{Arena, JointId, Pose};
 use crate::math::{Fx, Length, Speed, Unit, Vec2};
+use crate::simd::{Machine, with_data};
 
 impl HingeSet {
     pub(in super::super) fn clear(&mut self) {
@@ -82,9 +85,8 @@ impl HingeSet {
                 batches.push(inputs, angles, equal.iter().copied());
             }
         }
-        for batches in [batches, anchored] {
-            batches.end_colour(batches.batches.len());
-        }
+        batches.end_colour();
+        anchored.end_colour();
     }
 
     /// Replaces the impulses and angles of the last tick by those of joints that have been restored.
@@ -114,16 +116,19 @@ impl HingeShare {
     pub(in super::super) fn clear(&mut self) {
         let HingeShare { ordinary, anchored, is_stale } = self;
         *is_stale = true;
-        ordinary.clear();
-        anchored.clear();
+        with_data!(ordinary, batches => batches.clear());
+        with_data!(anchored, batches => batches.clear());
     }
 
-    /// The indices of the bodies of anchored hinges.
-    pub(in super::super) fn anchored_bodies(&self) -> impl Iterator<Item = u32> {
-        let Batches { batches, records, .. } = &self.anchored;
-        batches.iter().zip(records).flat_map(|(Batch { changed: [a, b], .. }, records)| {
-            a.iter().zip(b).take(records.len).map(|(&a, &b)| if a == GROUND { b } else { a })
-        })
+    /// Chooses the layout of the batches, which must be empty, for a machine.
+    pub(in super::super) fn fit(&mut self, machine: Machine) {
+        self.ordinary.fit(machine);
+        self.anchored.fit(machine);
+    }
+
+    /// Adds the indices of the bodies of anchored hinges to a list.
+    pub(in super::super) fn add_anchored_bodies(&self, all: &mut Vec<u32>) {
+        with_data!(&self.anchored, batches => batches.add_anchored_bodies(all));
     }
 
     /// Replaces the impulses and angles of the last tick by those of joints that have been restored.
@@ -153,7 +158,36 @@ fn count<T>(parts: &[T]) -> u32 {
     u32::try_from(parts.len()).expect("fewer than 2^32 joints")
 }
 
+impl Coloured<Hinges> {
+    fn push(&mut self, inputs: &[Input], angle_inputs: &[AngleInput], indices: impl Iterator<Item = u32>) {
+        with_data!(self, batches => batches.push(inputs, angle_inputs, indices));
+    }
+
+    fn end_colour(&mut self) {
+        with_data!(self, batches => batches.end_colour(batches.batches.len()));
+    }
+
+    fn reload(&mut self, joints: &Arena<Joint, JointId>) {
+        with_data!(self, batches => batches.reload(joints));
+    }
+
+    fn resume(&mut self, poses: &[Pose]) {
+        with_data!(self, batches => batches.resume(poses));
+    }
+
+    fn store(&mut self, joints: &mut Arena<Joint, JointId>, body_rotations: &[BodyRotation]) {
+        with_data!(self, batches => batches.store(joints, body_rotations));
+    }
+}
+
 impl<const N: usize> Batches<Hinges, N> {
+    /// Adds the indices of the bodies to a list. The hinges are anchored.
+    fn add_anchored_bodies(&self, all: &mut Vec<u32>) {
+        for (Batch { changed: [a, b], .. }, records) in self.batches.iter().zip(&self.records) {
+            all.extend(a.iter().zip(b).take(records.len).map(|(&a, &b)| if a == GROUND { b } else { a }));
+        }
+    }
+
     /// Adds batches of hinges. The caller ensures that no two of `N` successive hinges share a body that impulses
     /// change, that either all hinges or none have rows on the angle, and that all have the same softness.
     pub(super) fn push(

@@ -18,7 +18,7 @@ use super::refresh::{FACTOR, gap_factors};
 use super::*;
 use crate::fx;
 use crate::math::{Angle, Fx, Length, Reciprocal, Rng, Rot, Shift, Speed, Unit, Vec2, narrow};
-use crate::simd::{Backend, Machine};
+use crate::simd::{Backend, Machine, with_data};
 
 /// Eight hinges in random poses, each between two bodies of its own.
 #[derive(Clone)]
@@ -178,8 +178,8 @@ impl Setting {
     fn impulses(&self) -> Vec<(u32, Vec<i32>)> {
         let mut all = Vec::new();
         self.hinges.overflow.collect(&mut all);
-        self.part.ordinary.collect(&mut all);
-        self.part.anchored.collect(&mut all);
+        with_data!(&self.part.ordinary, batches => batches.collect(&mut all));
+        with_data!(&self.part.anchored, batches => batches.collect(&mut all));
         all.sort();
         all
     }
@@ -247,9 +247,11 @@ fn every_machine_solves_as_one_hinge_at_a_time() {
         faulty += u32::from(faults > 0);
         assert!(alone.bodies.iter().all(|body| body.velocity.x.abs() <= 511 && body.spin.abs() <= 511));
         for backend in Backend::available() {
+            let machine = Machine::new(backend).expect("available");
             let mut wide = setting.clone();
+            wide.part.fit(machine);
             wide.hinges.push_colour(&mut wide.part, order.into_iter(), |body| body % 3 == 0);
-            assert_eq!(wide.solve(Machine::new(backend).expect("available")), faults);
+            assert_eq!(wide.solve(machine), faults);
             assert_eq!(wide.impulses(), alone.impulses());
             for (wide, alone) in wide.bodies.iter().zip(&alone.bodies) {
                 assert_eq!((wide.velocity, wide.spin), (alone.velocity, alone.spin));

@@ -1,0 +1,40 @@
+//! Data for kernels, laid out for the backend of the machine.
+
+use super::{Machine, Vectors};
+
+/// Data that kernels process in `WIDTH` lanes with vectors, and in one lane without. Arrays of eight plain integers
+/// instead of vectors would be slower than single integers, and are the largest code that a kernel can compile to.
+#[derive(Clone, Debug)]
+pub(crate) enum Layout<W, S> {
+    Wide(W, Vectors),
+    Single(S),
+}
+
+/// Evaluates an expression for the data of either layout.
+macro_rules! with_data {
+    ($layout:expr, $data:pat => $value:expr) => {
+        match $layout {
+            $crate::simd::Layout::Wide($data, _) => $value,
+            $crate::simd::Layout::Single($data) => $value,
+        }
+    };
+}
+pub(crate) use with_data;
+
+impl<W, S: Default> Default for Layout<W, S> {
+    fn default() -> Self {
+        Layout::Single(S::default())
+    }
+}
+
+impl<W: Default, S: Default> Layout<W, S> {
+    /// Chooses the layout for a machine. If the layout changes, the data is empty afterwards.
+    pub(crate) fn fit(&mut self, machine: Machine) {
+        match (machine.vectors(), &mut *self) {
+            (Some(new), Layout::Wide(_, vectors)) => *vectors = new,
+            (Some(vectors), Layout::Single(_)) => *self = Layout::Wide(W::default(), vectors),
+            (None, Layout::Wide(..)) => *self = Layout::default(),
+            (None, Layout::Single(_)) => {}
+        }
+    }
+}
