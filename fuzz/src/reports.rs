@@ -60,7 +60,8 @@ struct Trajectory {
 /// followed the rules. Returns the result as one word.
 ///
 /// # Panics
-/// When a changed report is read without its hash repaired, or when a side that followed the rules is blamed.
+/// If a report that was changed without correcting its hash is accepted, or if a side that followed the rules is
+/// blamed.
 pub fn run(bytes: &[u8]) -> &'static str {
     let mut source = Source::new(bytes);
     let way = source.below(8);

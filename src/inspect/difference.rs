@@ -35,7 +35,7 @@ impl Difference {
         Difference { field: field.clone(), a: a.map(value), b: b.map(value) }
     }
 
-    /// The field, with its path and names: see [`Field::path`]. From the second list if the first does not have it.
+    /// The field that differs, with its path and names ([`Field::path`]): that of the first list if it is in both.
     #[must_use]
     pub fn field(&self) -> &Field {
         &self.field

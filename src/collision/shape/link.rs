@@ -56,7 +56,7 @@ impl Link {
         self.sides == Sides::Both || self.has_on_right(place)
     }
 
-    /// Whether a point is on the right of the chain, as far as this link and its neighbours can tell.
+    /// Whether a point is on the right of the chain, judged by this link and its neighbours only.
     pub(crate) fn has_on_right(&self, place: Vec2<Fx>) -> bool {
         let Link { a, b, before, after, .. } = *self;
         let own = right_of(a, b, place);

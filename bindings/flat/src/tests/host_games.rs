@@ -11,7 +11,7 @@ use crate::*;
 const TICKS: u64 = 500;
 const PLAYERS: usize = 3;
 
-/// Adds up what the players say, and counts the ticks in which nobody played a seat.
+/// Sums the inputs of the players, and counts the ticks in which nobody played a seat.
 #[derive(Clone, Default, PartialEq, Eq, Debug)]
 struct Sums {
     sums: [u64; PLAYERS],
