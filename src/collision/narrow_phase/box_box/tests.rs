@@ -59,6 +59,12 @@ fn random_pair(rng: &mut Rng) -> (PosedShape, PosedShape) {
 
 #[test]
 fn lanes_find_what_is_found_one_by_one() {
+    let machines =
+        || Backend::available().filter_map(Machine::new).filter(|machine| machine.vectors().is_some());
+    if machines().next().is_none() {
+        // Without vectors, no pairs are collided in lanes.
+        return;
+    }
     let mut rng = Rng::new(5);
     let (mut pairs_seen, mut points, mut left) = (0, [0; 3], 0);
     let mut batch = BoxPairs::default();
@@ -81,8 +87,7 @@ fn lanes_find_what_is_found_one_by_one() {
             boxes.place(slot_a, a, None);
             boxes.place(slot_b, b, None);
         }
-        let machines = Backend::available().filter_map(Machine::new);
-        for machine in machines.filter(|machine| machine.vectors().is_some()) {
+        for machine in machines() {
             let backend = machine.backend();
             batch.clear();
             let mut indices = 0..;
