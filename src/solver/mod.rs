@@ -205,7 +205,7 @@ impl Solver {
             let mut faults = 0;
             let context = StepContext::of_member(machine, member, tuning, bodies.cells(), &mut faults);
             for index in 0..count {
-                share.sub_step(first.wrapping_add(index.into()), &context);
+                share.sub_step(first.wrapping_add(index.into()), index == 0, &context);
             }
             share.contacts.store(store);
             faults

@@ -4,7 +4,7 @@
 //! reads bodies of other threads begins after a barrier: [`StepContext::wait`]. Stages over constraints end with one.
 
 use super::COLD_ROUNDS;
-use super::contact::{self, Constants, ContactShare, Measure, ObserveApproach, PointOrder};
+use super::contact::{self, Constants, ContactShare, Measure, MeasureApproach, PointOrder, PredictImpacts};
 use super::contact_velocity::ContactVelocities;
 use super::context::{Pass, StepContext};
 use super::integrate::{MovingBody, integrate_displacements, integrate_velocities};
@@ -19,8 +19,9 @@ pub(super) struct SolverShare<'a, 'set> {
 }
 
 impl SolverShare<'_, '_> {
-    /// Performs one sub-step. `index` is the number of sub-steps since the world was created.
-    pub(super) fn sub_step(&mut self, index: u64, context: &StepContext<'_>) {
+    /// Performs one sub-step. `index` is the number of sub-steps since the world was created. `is_first` says whether it
+    /// is the first one of the tick.
+    pub(super) fn sub_step(&mut self, index: u64, is_first: bool, context: &StepContext<'_>) {
         let SolverShare { moving, contacts, velocities, joints } = self;
         let tuning = context.tuning;
         let iterations = tuning.iterations;
@@ -28,6 +29,10 @@ impl SolverShare<'_, '_> {
         let constants = Constants::new(tuning);
 
         // Integrate velocities.
+        if is_first && contacts.has_extras() {
+            contacts.run_overflow(MeasureApproach, context);
+            contacts.run_coloured(MeasureApproach, context);
+        }
         joints.predict_rotations(context);
         velocities.measure(context);
         integrate_velocities(moving, context);
@@ -35,8 +40,8 @@ impl SolverShare<'_, '_> {
 
         // Warm start.
         if contacts.has_extras() {
-            contacts.run_overflow(ObserveApproach, context);
-            contacts.run_coloured(ObserveApproach, context);
+            contacts.run_overflow(PredictImpacts { constants, is_first }, context);
+            contacts.run_coloured(PredictImpacts { constants, is_first }, context);
         }
         joints.warm_start(context);
         let is_warm = velocities.apply(context);

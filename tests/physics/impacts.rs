@@ -3,7 +3,7 @@
 
 use lockstep2d::body::{BodyDef, BodyId, BodyKind, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
-use lockstep2d::math::{Angle, Fx, PI, Vec2, fx_div, fx_mul};
+use lockstep2d::math::{Angle, Fx, PI, Rot, Vec2, fx_div, fx_mul};
 use lockstep2d::world::{Config, World};
 
 use crate::sweep;
@@ -58,29 +58,35 @@ fn a_spinning_ball_rolls_at_a_third_of_its_surface_speed() {
 fn colliding_balls_keep_their_angular_momentum() {
     let speeds = [5, 10, 20].into_iter();
     let cases = speeds.flat_map(|speed| [fx!(0.05), fx!(0.3), fx!(0.6)].map(|offset| (speed, offset)));
-    let cases = cases.flat_map(|(speed, offset)| (0..16).map(move |phase| (speed, offset, phase)));
-    sweep::for_each(sweep::sample(cases, 5), |(speed, offset, phase): (i32, Fx, i32)| {
-        let mut world = world_with(60, fx!(0));
-        let speed = Fx::from(speed);
-        let x = fx!(1.5) + speed * i64::from(phase) / 960;
-        let spins =
-            BodyDef::dynamic().position((-x, fx!(0))).velocity((speed, fx!(0))).angular_velocity(fx!(20));
-        world.spawn(&spins, &[circle(fx!(0.5))]).expect("valid");
-        let def = BodyDef::dynamic().position((x, offset)).velocity((-speed, fx!(0)));
-        world.spawn(&def, &[circle(fx!(0.5))]).expect("valid");
-        // The sum, and the sum of absolute values.
-        let momentum = |world: &World| {
-            world.bodies().fold((Fx::ZERO, Fx::ZERO), |(sum, all), (_, body)| {
-                let orbital = fx_mul(body.mass(), body.centre_of_mass().cross(body.velocity()));
-                let spin = fx_mul(body.inertia(), body.angular_velocity());
-                (sum + orbital + spin, all + orbital.abs() + spin.abs())
-            })
-        };
-        let (before, all) = momentum(&world);
-        (0..60).for_each(|_| world.step());
-        let change = (momentum(&world).0 - before).abs();
-        assert!(change <= all / 100, "{speed} m/s, offset {offset}, {phase}: {change} of {all}");
-    });
+    let cases = cases.flat_map(|case| [fx!(0), fx!(0.5), fx!(1)].map(|restitution| (case, restitution)));
+    let cases = cases.flat_map(|(case, restitution)| (0..16).map(move |phase| (case, restitution, phase)));
+    sweep::for_each(
+        sweep::sample(cases, 5),
+        |((speed, offset), restitution, phase): ((i32, Fx), Fx, i32)| {
+            let mut world = world_with(60, fx!(0));
+            let speed = Fx::from(speed);
+            let x = fx!(1.5) + speed * i64::from(phase) / 960;
+            let spins =
+                BodyDef::dynamic().position((-x, fx!(0))).velocity((speed, fx!(0))).angular_velocity(fx!(20));
+            let ball = circle(fx!(0.5)).restitution(restitution);
+            world.spawn(&spins, &[ball]).expect("valid");
+            let def = BodyDef::dynamic().position((x, offset)).velocity((-speed, fx!(0)));
+            world.spawn(&def, &[ball]).expect("valid");
+            // The sum, and the sum of absolute values.
+            let momentum = |world: &World| {
+                world.bodies().fold((Fx::ZERO, Fx::ZERO), |(sum, all), (_, body)| {
+                    let orbital = fx_mul(body.mass(), body.centre_of_mass().cross(body.velocity()));
+                    let spin = fx_mul(body.inertia(), body.angular_velocity());
+                    (sum + orbital + spin, all + orbital.abs() + spin.abs())
+                })
+            };
+            let (before, all) = momentum(&world);
+            (0..60).for_each(|_| world.step());
+            let change = (momentum(&world).0 - before).abs();
+            let case = format!("{speed} m/s, offset {offset}, restitution {restitution}, {phase}");
+            assert!(change <= all / 100, "{case}: {change} of {all}");
+        },
+    );
 }
 
 /// A bar that falls flat onto a ledge below one half of it starts to turn. The impulse that turns it points upwards,
@@ -140,7 +146,7 @@ fn a_spinning_rod_gains_no_energy() {
     }
 }
 
-/// A body in a closed room with restitution 1 never has more energy than at the start, corners included.
+/// A body in a closed room with restitution 1 never has more energy than at the start, corners and friction included.
 #[test]
 fn a_closed_room_keeps_its_energy() {
     let shapes = |at: usize| match at {
@@ -153,29 +159,86 @@ fn a_closed_room_keeps_its_energy() {
             Geometry::capsule((fx!(-0.6), fx!(0)), (fx!(0.6), fx!(0)), fx!(0.2)).expect("valid"),
         ),
     };
-    let cases =
-        (0..6).flat_map(|shape| [60u32, 120].map(|rate| (0..8).map(move |start| (shape, rate, start))));
-    sweep::for_each(sweep::sample(cases.flatten(), 7), |(shape, rate, start): (usize, u32, i32)| {
+    let cases = (0..6).flat_map(|shape| [60u32, 120].map(|rate| (shape, rate)));
+    let cases = cases.flat_map(|case| [fx!(0), fx!(0.2), fx!(0.6)].map(|friction| (case, friction)));
+    let cases = cases.flat_map(|(case, friction)| (0..8).map(move |start| (case, friction, start)));
+    sweep::for_each(sweep::sample(cases, 13), |((shape, rate), friction, start): ((usize, u32), Fx, i32)| {
         let mut world = world_with(rate, fx!(0));
-        let slippery = |shape: ShapeDef| shape.friction(fx!(0)).restitution(fx!(1));
+        let elastic = |shape: ShapeDef| shape.friction(friction).restitution(fx!(1));
         for (x, y, half_width, half_height) in [(0, -6, 7, 1), (0, 6, 7, 1), (-6, 0, 1, 7), (6, 0, 1, 7)] {
             let def = BodyDef::fixed().position((Fx::from(x), Fx::from(y)));
             let wall = rectangle(Fx::from(half_width), Fx::from(half_height));
-            world.spawn(&def, &[slippery(wall)]).expect("valid");
+            world.spawn(&def, &[elastic(wall)]).expect("valid");
         }
         let speed = [fx!(5), fx!(10), fx!(20), fx!(40)][start.unsigned_abs() as usize % 4];
-        let direction = lockstep2d::math::Rot::from_angle(Angle::from_radians(fx!(0.3) + Fx::from(start)));
+        let direction = Rot::from_angle(Angle::from_radians(fx!(0.3) + Fx::from(start)));
         let velocity = direction.apply_wide(Vec2::new(speed, fx!(0)));
         let def = BodyDef::dynamic().position((fx!(0.3), fx!(0.1))).velocity(velocity);
         let def = def.angular_velocity(Fx::from(5 + start));
-        world.spawn(&def, &[slippery(shapes(shape))]).expect("valid");
+        world.spawn(&def, &[elastic(shapes(shape))]).expect("valid");
         let before = kinetic(&world);
         for tick in 0..rate * 60 {
             world.step();
             let ratio = fx_div(kinetic(&world), before).expect("moving");
-            assert!(ratio <= fx!(1.01), "shape {shape}, {rate} Hz, start {start}, tick {tick}: {ratio}");
+            let case = format!("shape {shape}, {rate} Hz, friction {friction}, start {start}");
+            assert!(ratio <= fx!(1.001), "{case}, tick {tick}: {ratio}");
         }
     });
+}
+
+/// A ball of restitution 1 that is shot into a corner with friction has no more energy afterwards.
+#[test]
+fn a_corner_with_friction_adds_no_energy() {
+    let cases =
+        [fx!(0.2), fx!(0.6)].into_iter().flat_map(|friction| (0..1200).map(move |shot| (friction, shot)));
+    sweep::for_each(sweep::sample(cases, 17), |(friction, shot): (Fx, i32)| {
+        let mut world = world_with(60, fx!(0));
+        let elastic = |shape: ShapeDef| shape.friction(friction).restitution(fx!(1));
+        for (x, y, half_width, half_height) in [(0, -1, 30, 1), (-1, 0, 1, 30)] {
+            let def = BodyDef::fixed().position((Fx::from(x), Fx::from(y)));
+            let wall = rectangle(Fx::from(half_width), Fx::from(half_height));
+            world.spawn(&def, &[elastic(wall)]).expect("valid");
+        }
+        let speed = [fx!(5), fx!(10), fx!(20), fx!(40)][shot.unsigned_abs() as usize % 4];
+        let angle = Angle::from_radians(PI + fx!(0.05) + fx!(0.0049) * i64::from(shot % 300));
+        let velocity = Rot::from_angle(angle).apply_wide(Vec2::new(speed, fx!(0)));
+        // The ball touches both walls after a time, or one of them a little earlier.
+        let seconds = fx!(0.3) + fx!(0.0013) * i64::from(shot % 53);
+        let aside = fx!(0.01) * i64::from(shot % 11 - 5);
+        let start = Vec2::new(fx!(0.5) + aside.max(Fx::ZERO), fx!(0.5) - aside.min(Fx::ZERO));
+        let start = start - velocity.scale(seconds);
+        let def =
+            BodyDef::dynamic().position(start).velocity(velocity).angular_velocity(Fx::from(shot % 41 - 20));
+        world.spawn(&def, &[elastic(circle(fx!(0.5)))]).expect("valid");
+        let before = kinetic(&world);
+        (0..60).for_each(|_| world.step());
+        let ratio = fx_div(kinetic(&world), before).expect("moving");
+        assert!(ratio <= fx!(1.0001), "friction {friction}, shot {shot}: {ratio}");
+    });
+}
+
+/// A ball of restitution 1 flies to and fro between two walls. It is where it would be if every rebound took place at the
+/// time of the impact.
+#[test]
+fn a_ball_between_walls_keeps_time() {
+    for speed in [fx!(3), fx!(10), fx!(40), fx!(123)] {
+        let mut world = world_with(60, fx!(0));
+        let (left, right) = (fx!(-5.17), fx!(5));
+        for x in [left - fx!(1), right + fx!(1)] {
+            let wall = rectangle(fx!(1), fx!(5));
+            world.spawn(&BodyDef::fixed().position((x, fx!(0))), &[wall]).expect("valid");
+        }
+        let def = BodyDef::dynamic().velocity((speed, fx!(0)));
+        let ball = world.spawn(&def, &[circle(fx!(0.5)).restitution(fx!(1))]).expect("valid");
+        let way = right - left - fx!(1);
+        for tick in 1..=1200 {
+            world.step();
+            let path = (speed * tick / 60 - left - fx!(0.5)) % (way * 2);
+            let expected = left + fx!(0.5) + path.min(way * 2 - path);
+            let error = (world.body(ball).expect("there").position().x - expected).abs();
+            assert!(error < fx!(0.005), "{speed} m/s, tick {tick}: off by {error} m");
+        }
+    }
 }
 
 /// A ball thrown into a wedge of 27 degrees rests between the walls, not in them. The combined friction of ball and

@@ -1,11 +1,11 @@
 //! Restitution, moving surfaces, rolling resistance and hit events. Few contacts have any of these. Their data is
 //! stored separately from the batches, so that it does not use cache space for all other contacts.
 
-use super::batch::Batch;
+use super::impact::Impacts;
 use super::input::ContactSource;
 use super::rolling::RollingRows;
 use crate::math::Unit;
-use crate::simd::{Ints, Lanes};
+use crate::simd::Ints;
 
 /// Additional data of a batch in which some contact has extras.
 #[derive(Clone, Debug)]
@@ -14,10 +14,7 @@ pub(in crate::solver) struct ContactExtras<const N: usize> {
     pub(super) restitution: Ints<N>,
     /// Approach speed below which restitution is not applied.
     pub(super) restitution_threshold: Ints<N>,
-    /// For each point, the relative normal velocity at the start of the sub-step.
-    pub(super) approach: [Ints<N>; 2],
-    /// For each point, -1 where the shapes have pushed each other in this sub-step.
-    pub(super) pushed: [Ints<N>; 2],
+    pub(super) impacts: Impacts<N>,
     /// For each point, the impulse of restitution in this sub-step.
     pub(super) bounce: [Ints<N>; 2],
     /// Sum of the surface speeds of the two shapes, against the tangent.
@@ -36,8 +33,7 @@ impl<const N: usize> ContactExtras<N> {
     pub(super) const NONE: Self = ContactExtras {
         restitution: Ints::ZERO,
         restitution_threshold: Ints::ZERO,
-        approach: [Ints::ZERO; 2],
-        pushed: [Ints::ZERO; 2],
+        impacts: Impacts::NONE,
         bounce: [Ints::ZERO; 2],
         surface_speed: Ints::ZERO,
         rolls: false,
@@ -64,15 +60,6 @@ impl<const N: usize> ContactExtras<N> {
             self.rolls = true;
             let carried = source.contacts[pair.contact as usize].rolling;
             self.rolling.fill(lane, pair, carried, source.list, inverse_normals);
-        }
-    }
-
-    /// Records which points have pushed.
-    #[inline(always)]
-    pub(super) fn record_pushes<L: Lanes<N>>(&mut self, batch: &Batch<N>) {
-        for (point, pushed) in batch.points[..batch.count].iter().zip(&mut self.pushed) {
-            let pushes = L::to_int(L::greater(L::load(&point.normal_lambda), L::splat(0)));
-            L::store(L::or(L::load(pushed), pushes), pushed);
         }
     }
 }

@@ -1,11 +1,12 @@
-//! Restitution: a point that approached faster than the threshold of its surface and was pushed separates at `e` times
-//! the approach speed.
+//! Restitution: a point that approached faster than the threshold of its surface and is pushed separates at `e` times the
+//! approach speed.
 //!
 //! ```text
-//! L' = max(L - (vn + e v_approach), 0)          in the sub-step in which it was pushed, after both passes
+//! L' = max(L - (vn + e va + drift), 0)          in the sub-step in which it is pushed, after both passes
 //! ```
 //!
-//! The impulse is not part of the accumulated impulse, which the next sub-step would apply again.
+//! The impulse is not part of the accumulated impulse, which the next sub-step would apply again. `impact.rs` has `va`
+//! and the drift, and the rebound that the bias pass takes into account.
 //!
 //! The approach speed is measured before any contact is warm-started. Otherwise the impulse of one contact would look
 //! like an approach at the next contact, and balls in a groove would bounce for ever.
@@ -18,35 +19,13 @@ use super::batch::Batch;
 use super::extras::ContactExtras;
 use super::overflow_policy::{OverflowPolicy, Saturating};
 use super::rows::Denominators;
-use crate::math::{Shift, Unit, saturate, saturate_wide};
+use crate::math::{Unit, saturate, saturate_wide};
 use crate::simd::{Ints, Lanes};
 
 /// Number of iterations in which two points that bounce are solved against each other. With one iteration, the first
 /// point would separate too fast: a tall box that was dropped flat gained a third of its energy, and spun. For boxes
 /// with an aspect ratio of up to 3, an iteration removes at least 3/4 of the error.
 const RESTITUTION_ITERATIONS: u32 = 12;
-
-/// Gap in metres at which a point bounces together with one that touches.
-const NEAR: Shift = Shift::lit("0.005");
-
-/// Records the relative normal velocity of shapes with restitution at the start of a sub-step.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct ObserveApproach;
-
-impl Operation<Contacts> for ObserveApproach {
-    #[inline(always)]
-    fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
-        let BatchParts { batch, extra: Some(extras), bodies, faults, .. } = parts else { return };
-        let policy = &mut Saturating::<L, N>::new(faults);
-        let pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
-        let (n, _) = batch.directions::<L>();
-        for (point, approach) in batch.points[..batch.count].iter().zip(&mut extras.approach) {
-            L::store(pair.velocity(n, &point.normal, policy), approach);
-        }
-        extras.pushed = [Ints::ZERO; 2];
-        extras.bounce = [Ints::ZERO; 2];
-    }
-}
 
 /// Applies restitution.
 #[derive(Clone, Copy, Debug)]
@@ -68,7 +47,7 @@ impl Operation<Contacts> for ApplyRestitution {
         let mut unread = 0;
         let reader = &mut Saturating::<L, N>::new(&mut unread);
         let restitution = L::load(&extras.restitution);
-        let (n, _) = batch.directions::<L>();
+        let (n, t) = batch.directions::<L>();
         let least = if self.again { ELASTIC } else { Unit::ZERO };
         let takes_part = L::greater(restitution, L::splat(least.to_bits()));
         if !L::any(takes_part) {
@@ -88,6 +67,8 @@ impl Operation<Contacts> for ApplyRestitution {
             policy.apply(&mut pair, &point.normal, L::select(active, back, L::splat(0)));
         }
         let stopped = pair.copy();
+        let mut slides = [Ints::ZERO; 2];
+        L::store(pair.velocity(t, &batch.tangent, reader), &mut slides[0]);
         for (point, rebound) in batch.points[..batch.count].iter().zip(&mut rebound) {
             L::store(pair.velocity(n, &point.normal, reader), &mut rebound.before);
             (rebound.old, rebound.new) = (point.normal_lambda, point.normal_lambda);
@@ -100,9 +81,11 @@ impl Operation<Contacts> for ApplyRestitution {
         for _ in 0..if batch.count == 2 { RESTITUTION_ITERATIONS } else { 1 } {
             for (i, &mask) in masks.iter().enumerate().take(batch.count) {
                 let point = &batch.points[i];
-                let bounce = L::mul(restitution, L::load(&extras.approach[i]));
+                let bounce = L::mul(restitution, L::load(&extras.impacts.approach[i]));
                 // A restitution above 1 may exceed the format of speeds.
                 let (bounce, _) = L::narrow_saturating::<UNIT>(bounce);
+                let bounce =
+                    L::min(L::add_saturating(bounce, L::load(&extras.impacts.drift[i])), L::splat(0));
                 let error = L::add_saturating(pair.velocity(n, &point.normal, reader), bounce);
                 let old = L::load(&rebound[i].new);
                 let wanted = L::max(L::sub_saturating(old, error), L::splat(0));
@@ -114,7 +97,13 @@ impl Operation<Contacts> for ApplyRestitution {
         for (point, rebound) in batch.points[..batch.count].iter().zip(&mut rebound) {
             L::store(pair.velocity(n, &point.normal, reader), &mut rebound.after);
         }
-        let share = L::load(&shares_without_gain(batch, extras, &record.denominators, &rebound));
+        L::store(pair.velocity(t, &batch.tangent, reader), &mut slides[1]);
+        let mut shares = Ints([Unit::ONE.to_bits(); N]);
+        let lanes = L::bits(active);
+        for (lane, share) in shares.0.iter_mut().enumerate().filter(|(lane, _)| lanes >> lane & 1 == 1) {
+            *share = share_without_gain(lane, batch, extras, &record.denominators, &rebound, &slides);
+        }
+        let share = L::load(&shares);
         let limited = L::both(active, L::greater(L::splat(Unit::ONE.to_bits()), share));
         let mut part = stopped;
         for (i, (point, rebound)) in batch.points[..batch.count].iter().zip(&rebound).enumerate() {
@@ -142,51 +131,62 @@ impl<const N: usize> Rebound<N> {
     const NONE: Self = Rebound { old: Ints::ZERO, new: Ints::ZERO, before: Ints::ZERO, after: Ints::ZERO };
 }
 
-/// Returns the share of each lane's rebound at which the impulses of its points in the sub-step add no energy:
+/// Returns the share of a lane's rebound at which the impulses of its contact in the sub-step add no energy:
 ///
 /// ```text
-/// W = sum P (v+ + v-) / 2 <= 0        P = L / D
+/// W = sum P (v+ + drift + va) / 2 <= 0          P = L / D
 /// ```
 ///
-/// A restitution above 1 is meant to do work, and is not limited.
+/// over its normal rows and its friction row, where `v+` is the velocity after the rebound. A moving surface counts as at
+/// rest. A restitution above 1 is meant to do work, and is not limited.
 ///
-/// Newton's restitution gains energy where the rebound of one point adds to that of another. `W` is convex in the
-/// share, so that it is at most the line from its value without a rebound to its value with the full rebound.
-fn shares_without_gain<const N: usize>(
+/// Newton's restitution gains energy where the rebound of one point adds to that of another, and in a corner, where the
+/// rebound from one wall reverses the sliding along the other. `W` is convex in the share, so that it is at most the line
+/// from its value without a rebound to its value with the full rebound. `slides` are the tangential velocities of both.
+fn share_without_gain<const N: usize>(
+    lane: usize,
     batch: &Batch<N>,
     extras: &ContactExtras<N>,
     denominators: &Denominators<N>,
     rebound: &[Rebound<N>; 2],
-) -> Ints<N> {
-    let wide = |x: i32| i128::from(x);
-    Ints(core::array::from_fn(|lane| {
-        let (mut none, mut all) = (0, 0);
-        for (i, point) in rebound.iter().enumerate().take(batch.count) {
-            let Rebound { old, new, before, after } = point;
-            let inverse = wide(denominators.normals[i].inverse.0[lane]);
-            let approach = wide(extras.approach[i].0[lane]);
-            none += inverse * wide(old.0[lane]) * (wide(before.0[lane]) + approach);
-            all += inverse * wide(new.0[lane]) * (wide(after.0[lane]) + approach);
-        }
-        if all <= 0 || extras.restitution.0[lane] > Unit::ONE.to_bits() {
-            Unit::ONE.to_bits()
-        } else if none >= 0 {
-            0
-        } else {
-            // At most 2^97 and shifted by 30 bits.
-            saturate(saturate_wide((-none << Unit::FRAC_NBITS) / (all - none)))
-        }
-    }))
+    slides: &[Ints<N>; 2],
+) -> i32 {
+    let at = |ints: &Ints<N>| i128::from(ints.0[lane]);
+    let impacts = &extras.impacts;
+    let friction = at(&denominators.tangent.inverse) * at(&batch.tangent_lambda);
+    let slide = at(&impacts.slide) + 2 * at(&extras.surface_speed);
+    let mut none = friction * (at(&slides[0]) + slide);
+    let mut all = friction * (at(&slides[1]) + slide);
+    for (i, Rebound { old, new, before, after }) in rebound.iter().enumerate().take(batch.count) {
+        let inverse = at(&denominators.normals[i].inverse);
+        let approach = at(&impacts.approach[i]) + at(&impacts.drift[i]);
+        none += inverse * at(old) * (at(before) + approach);
+        all += inverse * at(new) * (at(after) + approach);
+    }
+    if all <= 0 || extras.restitution.0[lane] > Unit::ONE.to_bits() {
+        Unit::ONE.to_bits()
+    } else if none >= 0 {
+        0
+    } else {
+        // At most 2^98 and shifted by 30 bits.
+        saturate(saturate_wide((-none << Unit::FRAC_NBITS) / (all - none)))
+    }
 }
 
-/// Mask of the lanes in which a point approached fast enough and was pushed. A point that is as near as [`NEAR`]
-/// bounces together with the other one. Otherwise a box that lands not quite flat would spin.
+/// Mask of the lanes in which a point approached fast enough and is pushed, or the point with which it bounces together.
 #[inline(always)]
 fn bounces<L: Lanes<N>, const N: usize>(batch: &Batch<N>, extras: &ContactExtras<N>, i: usize) -> L::Mask {
+    if i >= batch.count {
+        return L::greater(L::splat(0), L::splat(0));
+    }
     let threshold = L::sub(L::splat(1), L::load(&extras.restitution_threshold));
-    let fast = L::greater(threshold, L::load(&extras.approach[i]));
-    let near = L::greater(L::splat(NEAR.to_bits()), L::load(&batch.points[i].separation));
-    let other = L::negative(L::load(&extras.pushed[1 - i]));
-    let pushed = L::either(L::negative(L::load(&extras.pushed[i])), L::both(near, other));
+    let fast = L::greater(threshold, L::load(&extras.impacts.approach[i]));
+    let is_pushed = |i: usize| L::greater(L::load(&batch.points[i].normal_lambda), L::splat(0));
+    let mut pushed = is_pushed(i);
+    if batch.count == 2 {
+        let both = L::negative(L::load(&batch.both));
+        let together = L::both(L::greater(L::load(&extras.impacts.rebound[i]), L::splat(0)), both);
+        pushed = L::either(pushed, L::both(together, is_pushed(1 - i)));
+    }
     L::both(fast, pushed)
 }

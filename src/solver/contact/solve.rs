@@ -4,7 +4,7 @@
 //! ```text
 //! bias pass    w = massScale (vn + bias(s)) + impulseScale L        bias(s) = s / h            for a gap
 //!                                                                   max(rate (s + slop), -push) for an overlap
-//!              a gap is rigid: massScale = 1, impulseScale = 0
+//!              a gap is rigid: massScale = 1, impulseScale = 0; a point that bounces opens by `rebound` as well
 //! relax pass   w = vn + s / h for a gap with an impulse, vn for an overlap
 //! normal       L' = max(L - w, 0)
 //! friction     |L'| <= sum of (mu Dt / Dn) Ln over the points,   w = vt + surface speed
@@ -19,6 +19,7 @@ use super::super::context::Pass;
 use super::super::pair::{BodyPairW, UNIT, beyond, clamp, shift};
 use super::batch::{Batch, Point};
 use super::extras::ContactExtras;
+use super::impact::PointImpact;
 use super::overflow_policy::{OverflowPolicy, Saturating, Unchecked};
 use super::relax::measure;
 use super::{Constants, Contacts, TANGENT_MAX};
@@ -84,7 +85,7 @@ pub(super) fn solve<L: Lanes<N>, const N: usize>(parts: BatchParts<'_, Contacts,
         let mut unchecked = Unchecked::<L, N>::new();
         let solved = iterate(batch, None, settings, bodies, &mut unchecked);
         if unchecked.held() {
-            solved.store(batch, extras, bodies);
+            solved.store(batch, bodies);
             return;
         }
         // A batch that was out of bounds once is likely to be out of bounds again in this tick.
@@ -92,7 +93,10 @@ pub(super) fn solve<L: Lanes<N>, const N: usize>(parts: BatchParts<'_, Contacts,
     }
     let saturating = &mut Saturating::<L, N>::new(faults);
     let solved: Solved<L, N> = iterate(batch, extras.as_deref_mut(), settings, bodies, saturating);
-    solved.store(batch, extras, bodies);
+    solved.store(batch, bodies);
+    if let (Some(extras), Pass::Bias) = (extras, settings.pass) {
+        extras.impacts.record_touches::<L>(batch);
+    }
 }
 
 /// The result of an iteration, before it is stored.
@@ -128,27 +132,44 @@ fn iterate<L: Lanes<N>, C: OverflowPolicy<L, N>, const N: usize>(
     let normals = Normals::<L, N>::new(batch, settings, n);
     let every = every::<L, N>();
     points[0].show_to(policy);
+    let impacts = match &extras {
+        Some(extras) => {
+            let [first, second] = places;
+            let impacts = &extras.impacts;
+            [impacts.of_point::<L>(first, settings.pass), impacts.of_point::<L>(second, settings.pass)]
+        }
+        None => [PointImpact::none(); 2],
+    };
     let normal_lambdas = if batch.count == 2 {
         points[1].show_to(policy);
         let both = L::negative(L::load(&batch.both));
         let present = if places[0] == 0 { [every, both] } else { [both, every] };
-        normals.solve_both(points, present, &mut pair, policy)
+        normals.solve_both(points, impacts, present, &mut pair, policy)
     } else {
-        [normals.solve(points[0], L::load(&points[0].normal_lambda), every, &mut pair, policy), L::splat(0)]
+        let old = L::load(&points[0].normal_lambda);
+        [normals.solve((points[0], impacts[0]), [old, L::splat(0)], every, &mut pair, policy), L::splat(0)]
     };
     let mut surface_speed = L::splat(0);
+    let mut pressing = normal_lambdas;
     if let Some(extras) = extras {
         surface_speed = L::load(&extras.surface_speed);
+        if settings.pass == Pass::Bias {
+            // Friction moves the bodies only from the impact on. Restitution does not add to it.
+            surface_speed = C::sub(surface_speed, L::load(&extras.impacts.slip));
+            for (pressing, impact) in pressing.iter_mut().zip(&impacts) {
+                *pressing = L::max(C::sub(*pressing, impact.rebound), L::splat(0));
+            }
+        }
         if extras.rolls {
             let friction_ratios =
                 [&extras.rolling.friction_ratios[places[0]], &extras.rolling.friction_ratios[places[1]]];
-            let limit = limit::<L, C, N>(friction_ratios, normal_lambdas);
+            let limit = limit::<L, C, N>(friction_ratios, pressing);
             extras.rolling.solve(limit, &mut pair, policy);
         }
     }
     // Coulomb friction: an impulse against sliding, at most as large as the normal impulses allow.
     let vt = C::add(pair.velocity(t, &batch.tangent, policy), surface_speed);
-    let limit = limit::<L, C, N>([&points[0].friction_ratio, &points[1].friction_ratio], normal_lambdas);
+    let limit = limit::<L, C, N>([&points[0].friction_ratio, &points[1].friction_ratio], pressing);
     let old = L::load(&batch.tangent_lambda);
     policy.see_impulse(old);
     let tangent_lambda = clamp::<L, N>(C::sub(old, vt), limit);
@@ -168,7 +189,7 @@ impl<const N: usize> Point<N> {
 impl<L: Lanes<N>, const N: usize> Solved<L, N> {
     /// Stores the impulses in the batch, and the velocities in its bodies.
     #[inline(always)]
-    fn store(self, batch: &mut Batch<N>, extras: Option<&mut ContactExtras<N>>, bodies: &[Cell<SolverBody>]) {
+    fn store(self, batch: &mut Batch<N>, bodies: &[Cell<SolverBody>]) {
         let Solved { places, normal_lambdas, tangent_lambda, pair } = self;
         batch.push::<L>(places[0], normal_lambdas[0]);
         if batch.count == 2 {
@@ -176,9 +197,6 @@ impl<L: Lanes<N>, const N: usize> Solved<L, N> {
         }
         L::store(tangent_lambda, &mut batch.tangent_lambda);
         pair.store(bodies, &batch.changed);
-        if let Some(extras) = extras {
-            extras.record_pushes::<L>(batch);
-        }
     }
 }
 
@@ -223,15 +241,17 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
     fn solve_both<C: OverflowPolicy<L, N>>(
         &self,
         [first, second]: [&Point<N>; 2],
+        impacts: [PointImpact<L, N>; 2],
         present: [L::Mask; 2],
         pair: &mut BodyPairW<L, N>,
         policy: &mut C,
     ) -> [L::Int; 2] {
+        let (first, second) = ((first, impacts[0]), (second, impacts[1]));
         policy.count_faults_in(present[0]);
-        let mut one = self.solve(first, L::load(&first.normal_lambda), present[0], pair, policy);
+        let old = L::load(&second.0.normal_lambda);
+        let mut one = self.solve(first, [L::load(&first.0.normal_lambda), old], present[0], pair, policy);
         policy.count_faults_in(present[1]);
-        let old = L::load(&second.normal_lambda);
-        let mut two = self.solve(second, old, present[1], pair, policy);
+        let mut two = self.solve(second, [old, one], present[1], pair, policy);
         let both = L::both(present[0], present[1]);
         policy.count_faults_in(both);
         let settled = L::splat(SETTLED.to_bits() - 1);
@@ -240,9 +260,9 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
             if !L::any(unsettled) {
                 break;
             }
-            one = self.solve(first, one, unsettled, pair, policy);
+            one = self.solve(first, [one, two], unsettled, pair, policy);
             let old = two;
-            two = self.solve(second, old, unsettled, pair, policy);
+            two = self.solve(second, [old, one], unsettled, pair, policy);
             unsettled = L::both(unsettled, beyond::<L, N>(L::sub(two, old), settled));
         }
         policy.count_faults_in(every::<L, N>());
@@ -254,8 +274,8 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
     #[inline(always)]
     fn solve<C: OverflowPolicy<L, N>>(
         &self,
-        point: &Point<N>,
-        old: L::Int,
+        (point, PointImpact { rebound, late }): (&Point<N>, PointImpact<L, N>),
+        [old, other]: [L::Int; 2],
         lanes: L::Mask,
         pair: &mut BodyPairW<L, N>,
         policy: &mut C,
@@ -266,7 +286,10 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
         let wanted = match self.pass {
             Pass::Bias => {
                 let error = C::add(vn, self.bias::<C>(separation, gap));
-                let rigid = L::either(gap, L::greater(self.impact_speed, vn));
+                let touches = L::either(L::negative(error), L::greater(L::max(old, other), L::splat(0)));
+                let bounces = L::both(L::greater(rebound, L::splat(0)), touches);
+                let error = L::select(bounces, C::sub(error, rebound), error);
+                let rigid = L::either(L::either(gap, bounces), L::greater(self.impact_speed, vn));
                 let mass_scale = L::select(rigid, L::splat(Unit::ONE.to_bits()), self.mass_scale);
                 let impulse_scale = L::select(rigid, L::splat(0), self.impulse_scale);
                 let wide = L::add_wide(L::mul(mass_scale, error), L::mul(impulse_scale, old));
@@ -275,10 +298,11 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
             // A gap without an impulse is left to the next sub-step. Slowing down the approach before the gap is closed
             // would make a ball rebound from above the floor.
             Pass::Relax => {
-                let speed = L::select(gap, self.speed_of::<C>(separation, self.rate), L::splat(0));
-                let untouched = L::both(gap, L::greater(L::splat(1), old));
+                let approaches = L::both(gap, L::greater(L::splat(1), rebound));
+                let speed = L::select(approaches, self.speed_of::<C>(separation, self.rate), L::splat(0));
+                let untouched = L::both(approaches, L::greater(L::splat(1), old));
                 let wanted = policy.impulse(L::max(C::sub(old, C::add(vn, speed)), L::splat(0)));
-                L::select(untouched, old, wanted)
+                L::select(untouched, old, L::select(late, L::splat(0), wanted))
             }
         };
         let new = L::select(lanes, wanted, old);

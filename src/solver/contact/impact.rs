@@ -1,0 +1,289 @@
+//! Impacts of points with restitution: when a point hits within a sub-step, and how far it rebounds by the end of it.
+//!
+//! Semi-implicit Euler is a leapfrog scheme: the velocity that moves a body in a sub-step is the one at its middle. With
+//! the relative normal velocity `v` of the point, its change `a` by forces in the sub-step, and the separation `s`:
+//!
+//! ```text
+//! f  = s / (-v h)                 time of impact, as a fraction of the sub-step
+//! va = v + a (f - 1/2)            velocity of approach at the impact
+//! vs = -e va - a (f - 1/2)        velocity after the impact, at the middle of the sub-step
+//! s' = s + v f h + vs (1 - f) h   gap at the end of the sub-step
+//! ```
+//!
+//! With `e = 1` and a constant force this conserves the energy of the leapfrog scheme, `v^2 / 2 + g x - g h v / 2`,
+//! exactly. Bodies move as if the impulse had acted at the time of impact, so that it also conserves angular momentum.
+
+use super::super::batches::{BatchParts, Operation};
+use super::super::context::Pass;
+use super::super::pair::BodyPairW;
+use super::batch::Batch;
+use super::extras::ContactExtras;
+use super::overflow_policy::Saturating;
+use super::restitution::ELASTIC;
+use super::{Constants, Contacts};
+use crate::math::{Rate, Shift, Speed, Unit, mul};
+use crate::simd::{Ints, Lanes};
+
+/// Gap in metres at which a point bounces together with one that hits. Otherwise a box that lands not quite flat would
+/// spin.
+const NEAR: Shift = Shift::lit("0.005");
+
+/// The impacts of a batch in a sub-step.
+#[derive(Clone, Debug)]
+pub(super) struct Impacts<const N: usize> {
+    /// For each point, the change `a` of its relative normal velocity by forces in the first sub-step of the tick. Until
+    /// then, the velocity before it.
+    forced: [Ints<N>; 2],
+    /// For each point, the relative normal velocity before contacts act: `va` for a point that hits, else `v`.
+    pub(super) approach: [Ints<N>; 2],
+    /// For each point that hits, `a (f - 1/2)`.
+    pub(super) drift: [Ints<N>; 2],
+    /// For each point that hits, the gap `s'` over the sub-step.
+    pub(super) rebound: [Ints<N>; 2],
+    /// For each point, -1 where it has pushed in the bias pass.
+    touches: [Ints<N>; 2],
+    /// For each point of an elastic contact, -1 where the shapes are apart and do not approach.
+    late: [Ints<N>; 2],
+    /// The tangential velocity before contacts act.
+    pub(super) slide: Ints<N>,
+    /// The tangential motion before the impact over the sub-step.
+    pub(super) slip: Ints<N>,
+}
+
+impl<const N: usize> Impacts<N> {
+    pub(super) const NONE: Self = Impacts {
+        forced: [Ints::ZERO; 2],
+        approach: [Ints::ZERO; 2],
+        drift: [Ints::ZERO; 2],
+        rebound: [Ints::ZERO; 2],
+        touches: [Ints::ZERO; 2],
+        late: [Ints::ZERO; 2],
+        slide: Ints::ZERO,
+        slip: Ints::ZERO,
+    };
+
+    /// Records which points push in the bias pass.
+    #[inline(always)]
+    pub(super) fn record_touches<L: Lanes<N>>(&mut self, batch: &Batch<N>) {
+        for (point, touches) in batch.points[..batch.count].iter().zip(&mut self.touches) {
+            L::store(L::to_int(L::greater(L::load(&point.normal_lambda), L::splat(0))), touches);
+        }
+    }
+
+    /// The impact of a point. In the relax pass, only points that have pushed rebound.
+    #[inline(always)]
+    pub(super) fn of_point<L: Lanes<N>>(&self, i: usize, pass: Pass) -> PointImpact<L, N> {
+        let rebound = L::load(&self.rebound[i]);
+        let rebound = match pass {
+            Pass::Bias => rebound,
+            Pass::Relax => L::select(L::negative(L::load(&self.touches[i])), rebound, L::splat(0)),
+        };
+        PointImpact { rebound, late: L::negative(L::load(&self.late[i])) }
+    }
+}
+
+/// The impact of a point in each lane.
+#[derive(Clone, Copy)]
+pub(super) struct PointImpact<L: Lanes<N>, const N: usize> {
+    /// The gap at the end of the sub-step, over the sub-step. 0 for a point that does not hit.
+    pub(super) rebound: L::Int,
+    /// Whether the point hits late, because the impulse of another point drives it: its relax pass is left to the next
+    /// sub-step, in which it approaches and may bounce.
+    pub(super) late: L::Mask,
+}
+
+impl<L: Lanes<N>, const N: usize> PointImpact<L, N> {
+    #[inline(always)]
+    pub(super) fn none() -> Self {
+        PointImpact { rebound: L::splat(0), late: L::greater(L::splat(0), L::splat(0)) }
+    }
+}
+
+/// Measures relative normal velocities before forces act in a tick.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct MeasureApproach;
+
+impl Operation<Contacts> for MeasureApproach {
+    #[inline(always)]
+    fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
+        let BatchParts { batch, extra: Some(extras), bodies, faults, .. } = parts else { return };
+        let policy = &mut Saturating::<L, N>::new(faults);
+        let pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
+        let (n, _) = batch.directions::<L>();
+        for (point, forced) in batch.points[..batch.count].iter().zip(&mut extras.impacts.forced) {
+            L::store(pair.velocity(n, &point.normal, policy), forced);
+        }
+    }
+}
+
+/// Predicts the impacts of a sub-step, from the velocities after forces have acted.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct PredictImpacts {
+    pub(in crate::solver) constants: Constants,
+    /// Whether this is the first sub-step of the tick.
+    pub(in crate::solver) is_first: bool,
+}
+
+impl Operation<Contacts> for PredictImpacts {
+    #[inline(always)]
+    fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
+        let BatchParts { batch, extra: Some(extras), bodies, faults, .. } = parts else { return };
+        let policy = &mut Saturating::<L, N>::new(faults);
+        let pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
+        let (n, t) = batch.directions::<L>();
+        let restitution = L::load(&extras.restitution);
+        let elastic = L::greater(restitution, L::splat(ELASTIC.to_bits()));
+        let bounces = L::greater(restitution, L::splat(0));
+        let threshold = L::sub(L::splat(1), L::load(&extras.restitution_threshold));
+        extras.begin_sub_step();
+        let mut fast = L::greater(L::splat(0), L::splat(0));
+        let mut late = fast;
+        for (i, point) in batch.points[..batch.count].iter().enumerate() {
+            let v = pair.velocity(n, &point.normal, policy);
+            L::store(v, &mut extras.impacts.approach[i]);
+            if self.is_first {
+                let forced = L::sub_saturating(v, L::load(&extras.impacts.forced[i]));
+                L::store(forced, &mut extras.impacts.forced[i]);
+            }
+            fast = L::either(fast, L::both(bounces, L::greater(threshold, v)));
+            let gap = L::greater(L::load(&point.separation), L::splat(0));
+            let is_late = L::both(elastic, L::both(gap, L::greater(v, L::splat(-1))));
+            L::store(L::to_int(is_late), &mut extras.impacts.late[i]);
+            late = L::either(late, is_late);
+        }
+        // Unchecked batches have no impacts.
+        batch.unchecked &= !L::any(L::either(fast, late));
+        if !L::any(fast) {
+            return;
+        }
+        L::store(pair.velocity(t, &batch.tangent, policy), &mut extras.impacts.slide);
+        let rate = Rate::from_bits(self.constants.rate);
+        let fast = L::bits(fast);
+        for lane in (0..N).filter(|lane| fast >> lane & 1 == 1) {
+            extras.predict(batch, lane, rate);
+        }
+    }
+}
+
+impl<const N: usize> ContactExtras<N> {
+    /// Forgets the impacts of the last sub-step. Numbers that only points that hit have are left.
+    #[inline(always)]
+    fn begin_sub_step(&mut self) {
+        self.impacts.drift = [Ints::ZERO; 2];
+        self.impacts.rebound = [Ints::ZERO; 2];
+        self.impacts.slip = Ints::ZERO;
+        self.bounce = [Ints::ZERO; 2];
+    }
+
+    /// Predicts the impact of a contact. Points that are near at the time of the first impact bounce together.
+    fn predict(&mut self, batch: &Batch<N>, lane: usize, rate: Rate) {
+        let speed = |of: &Ints<N>| Speed::from_bits(of.0[lane]);
+        let restitution = Unit::from_bits(self.restitution.0[lane]);
+        let threshold = speed(&self.restitution_threshold);
+        let impacts = &mut self.impacts;
+        let is_fast = |v: Speed| v.is_negative() && v <= -threshold;
+        let velocities = [speed(&impacts.approach[0]), speed(&impacts.approach[1])];
+        let points = (0..batch.count).filter(|&i| restitution > 0 && is_fast(velocities[i]));
+        let closing = |i: usize| -> Speed { mul(Shift::from_bits(batch.points[i].separation.0[lane]), rate) };
+        let Some(time) = points.clone().map(|i| time_of_impact(closing(i), velocities[i])).min() else {
+            return;
+        };
+        let near: Speed = mul(NEAR, rate);
+        for i in points {
+            let v = velocities[i];
+            let gap = closing(i).saturating_add(mul(v, time));
+            if gap >= near {
+                continue;
+            }
+            let impact = Impact::of(v, speed(&impacts.forced[i]), time, restitution);
+            impacts.approach[i].0[lane] = impact.approach.to_bits();
+            impacts.drift[i].0[lane] = impact.drift.to_bits();
+            if is_fast(impact.approach) && time < Unit::ONE {
+                let rebound = gap.saturating_add(mul(impact.after, Unit::ONE - time));
+                impacts.rebound[i].0[lane] = rebound.to_bits();
+                let slip: Speed = mul(speed(&impacts.slide), time);
+                impacts.slip.0[lane] = slip.to_bits();
+            }
+        }
+    }
+}
+
+/// `f`, from 0 to 1: 1 for a point that does not hit in this sub-step unless other impulses drive it. `closing` is its
+/// separation over the sub-step, and `v` is negative.
+fn time_of_impact(closing: Speed, v: Speed) -> Unit {
+    let one = i64::from(Unit::ONE.to_bits());
+    let time = i64::from(closing.to_bits()) * one / -i64::from(v.to_bits());
+    #[expect(clippy::cast_possible_truncation, reason = "clamped to the bits of a number from 0 to 1")]
+    Unit::from_bits(time.clamp(0, one) as i32)
+}
+
+/// The velocities of a point that hits.
+#[derive(Clone, Copy, Debug)]
+struct Impact {
+    /// `va`.
+    approach: Speed,
+    /// `a (f - 1/2)`.
+    drift: Speed,
+    /// `vs`.
+    after: Speed,
+}
+
+impl Impact {
+    /// Predicts the velocities at the time `f` for the velocity `v`, of which forces have added `forced`.
+    fn of(v: Speed, forced: Speed, time: Unit, restitution: Unit) -> Self {
+        let drift: Speed = mul(forced, time - Unit::lit("0.5"));
+        let approach = v.saturating_add(drift);
+        let bounce: Speed = mul(restitution, approach);
+        // Rounding must not add energy.
+        let drift = drift.saturating_add(Speed::DELTA);
+        let after = bounce.saturating_add(drift).saturating_neg().max(Speed::ZERO);
+        Impact { approach, drift, after }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fx;
+    use crate::math::{Fx, Rng, fx_mul, narrow, widen};
+
+    /// Energy of the leapfrog scheme before and after the sub-step in which a ball hits a floor.
+    #[test]
+    fn an_elastic_impact_conserves_the_energy_of_the_scheme() {
+        let mut rng = Rng::new(1);
+        for _ in 0..1000 {
+            let g = rng.range(fx!(0), fx!(100));
+            let before: Speed = narrow(rng.range(fx!(-100), fx!(-1)));
+            let forced: Speed = narrow(-g / 256);
+            let v = before + forced;
+            let closing: Speed = mul(-v, narrow::<fixed::types::extra::U30>(rng.range(fx!(0), fx!(1))));
+            let time = time_of_impact(closing, v);
+            let Impact { after, .. } = Impact::of(v, forced, time, Unit::ONE);
+            let rebound = mul(after, Unit::ONE - time);
+            // Heights in units of the distance per sub-step.
+            let energy = |v: Speed, height: Speed| {
+                let (v, forced) = (widen(v), widen(forced));
+                fx_mul(v, v) / 2 - fx_mul(forced, widen(height)) + fx_mul(forced, v) / 2
+            };
+            let change = energy(after, rebound) - energy(before, closing);
+            let least = -fx_mul(widen(Speed::DELTA), widen(after) * 2 + fx!(1));
+            assert!((least..=Fx::ZERO).contains(&change), "{g}, {v}, {closing}: {change} J/kg");
+        }
+    }
+
+    /// A point at rest on a floor does not rebound from the speed that gravity adds in a sub-step.
+    #[test]
+    fn a_point_at_rest_does_not_rebound() {
+        let v = Speed::lit("-0.0417");
+        let time = time_of_impact(Speed::ZERO, v);
+        assert_eq!(time, Unit::ZERO);
+        assert_eq!(Impact::of(v, v, time, Unit::ONE).after, Speed::ZERO);
+    }
+
+    #[test]
+    fn a_point_that_does_not_touch_is_at_the_end_of_the_sub_step() {
+        assert_eq!(time_of_impact(Speed::lit("12"), Speed::lit("-10")), Unit::ONE);
+        assert_eq!(time_of_impact(Speed::lit("-12"), Speed::lit("-10")), Unit::ZERO);
+        assert_eq!(time_of_impact(Speed::lit("5"), Speed::lit("-10")), Unit::lit("0.5"));
+    }
+}
