@@ -1,7 +1,8 @@
 //! Impacts of points with restitution: when a point hits within a sub-step, and how far it rebounds by the end of it.
 //!
-//! Semi-implicit Euler is a leapfrog scheme: the velocity that moves a body in a sub-step is the one at its middle. With
-//! the relative normal velocity `v` of the point, its change `a` by forces in the sub-step, and the separation `s`:
+//! Semi-implicit Euler is a leapfrog scheme: the velocity that moves a body in a sub-step is the one at its middle.
+//! With the relative normal velocity `v` of the point, its change `a` by forces in the sub-step, and the separation
+//! `s`:
 //!
 //! ```text
 //! f  = s / (-v h)                 time of impact, as a fraction of the sub-step
@@ -31,8 +32,8 @@ const NEAR: Shift = Shift::lit("0.005");
 /// The impacts of a batch in a sub-step.
 #[derive(Clone, Debug)]
 pub(super) struct Impacts<const N: usize> {
-    /// For each point, the change `a` of its relative normal velocity by forces in the first sub-step of the tick. Until
-    /// then, the velocity before it.
+    /// For each point, the change `a` of its relative normal velocity by forces in the first sub-step of the tick.
+    /// Until then, the velocity before it.
     forced: [Ints<N>; 2],
     /// For each point, the relative normal velocity before contacts act: `va` for a point that hits, else `v`.
     pub(super) approach: [Ints<N>; 2],
@@ -166,7 +167,7 @@ impl Operation<Contacts> for PredictImpacts {
 }
 
 impl<const N: usize> ContactExtras<N> {
-    /// Forgets the impacts of the last sub-step. Numbers that only points that hit have are left.
+    /// Resets the numbers that are also read of points without an impact.
     #[inline(always)]
     fn begin_sub_step(&mut self) {
         self.impacts.drift = [Ints::ZERO; 2];

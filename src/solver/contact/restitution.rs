@@ -1,5 +1,5 @@
-//! Restitution: a point that approached faster than the threshold of its surface and is pushed separates at `e` times the
-//! approach speed.
+//! Restitution: a point that approached faster than the threshold of its surface and is pushed separates at `e` times
+//! the approach speed.
 //!
 //! ```text
 //! L' = max(L - (vn + e va + drift), 0)          in the sub-step in which it is pushed, after both passes
@@ -137,12 +137,13 @@ impl<const N: usize> Rebound<N> {
 /// W = sum P (v+ + drift + va) / 2 <= 0          P = L / D
 /// ```
 ///
-/// over its normal rows and its friction row, where `v+` is the velocity after the rebound. A moving surface counts as at
-/// rest. A restitution above 1 is meant to do work, and is not limited.
+/// over its normal rows and its friction row, where `v+` is the velocity after the rebound. A moving surface counts as
+/// at rest. A restitution above 1 is meant to do work, and is not limited.
 ///
 /// Newton's restitution gains energy where the rebound of one point adds to that of another, and in a corner, where the
-/// rebound from one wall reverses the sliding along the other. `W` is convex in the share, so that it is at most the line
-/// from its value without a rebound to its value with the full rebound. `slides` are the tangential velocities of both.
+/// rebound from one wall reverses the sliding along the other. `W` is convex in the share, so that it is at most the
+/// line from its value without a rebound to its value with the full rebound. `slides` are the tangential velocities of
+/// both.
 fn share_without_gain<const N: usize>(
     lane: usize,
     batch: &Batch<N>,
@@ -173,7 +174,8 @@ fn share_without_gain<const N: usize>(
     }
 }
 
-/// Mask of the lanes in which a point approached fast enough and is pushed, or the point with which it bounces together.
+/// Mask of the lanes in which a point approached fast enough and is pushed, or the point with which it bounces
+/// together.
 #[inline(always)]
 fn bounces<L: Lanes<N>, const N: usize>(batch: &Batch<N>, extras: &ContactExtras<N>, i: usize) -> L::Mask {
     if i >= batch.count {

@@ -270,7 +270,8 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
     }
 
     /// The contact equation. Solves a point in the given lanes: computes the accumulated impulse that it should have
-    /// instead of `old`, and applies the difference. Returns the impulses of all lanes.
+    /// instead of `old`, and applies the difference. `other` is the impulse of the other point, with which it bounces
+    /// together. Returns the impulses of all lanes.
     #[inline(always)]
     fn solve<C: OverflowPolicy<L, N>>(
         &self,
