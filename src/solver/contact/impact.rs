@@ -39,7 +39,7 @@ pub(super) struct Impacts<const N: usize> {
     pub(super) approach: [Ints<N>; 2],
     /// For each point that hits, `a (f - 1/2)`.
     pub(super) drift: [Ints<N>; 2],
-    /// For each point that hits, the gap `s'` over the sub-step.
+    /// For each point that hits, `s' / h`: the speed that opens the gap within a sub-step.
     pub(super) rebound: [Ints<N>; 2],
     /// For each point, -1 where it has pushed in the bias pass.
     touches: [Ints<N>; 2],
@@ -47,7 +47,7 @@ pub(super) struct Impacts<const N: usize> {
     late: [Ints<N>; 2],
     /// The tangential velocity before contacts act.
     pub(super) slide: Ints<N>,
-    /// The tangential motion before the impact over the sub-step.
+    /// `f` times the tangential velocity: the sliding before the impact, on which friction does not act.
     pub(super) slip: Ints<N>,
 }
 
@@ -86,7 +86,7 @@ impl<const N: usize> Impacts<N> {
 /// The impact of a point in each lane.
 #[derive(Clone, Copy)]
 pub(super) struct PointImpact<L: Lanes<N>, const N: usize> {
-    /// The gap at the end of the sub-step, over the sub-step. 0 for a point that does not hit.
+    /// `s' / h`. 0 for a point that does not hit.
     pub(super) rebound: L::Int,
     /// Whether the point hits late, because the impulse of another point drives it: its relax pass is left to the next
     /// sub-step, in which it approaches and may bounce.
@@ -209,8 +209,8 @@ impl<const N: usize> ContactExtras<N> {
     }
 }
 
-/// `f`, from 0 to 1: 1 for a point that does not hit in this sub-step unless other impulses drive it. `closing` is its
-/// separation over the sub-step, and `v` is negative.
+/// `f`, from 0 to 1: 1 for a point that does not hit in this sub-step unless other impulses drive it. `closing` is
+/// `s / h`, and `v` is negative.
 fn time_of_impact(closing: Speed, v: Speed) -> Unit {
     let one = i64::from(Unit::ONE.to_bits());
     let time = i64::from(closing.to_bits()) * one / -i64::from(v.to_bits());
