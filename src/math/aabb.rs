@@ -41,8 +41,7 @@ impl Aabb {
         points.into_iter().map(|point| Aabb::new(point, point)).reduce(Self::union)
     }
 
-    /// Whether no coordinate of the lower corner exceeds that of the upper corner. The other methods require valid
-    /// boxes.
+    /// Whether the lower corner is at most the upper corner in both coordinates. The other methods require valid boxes.
     #[inline]
     #[must_use]
     pub fn is_valid(self) -> bool {

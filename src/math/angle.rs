@@ -242,7 +242,8 @@ mod tests {
         assert_eq!(Angle::from_bits((1 << 31) + 1).to_turns(), fx!(-0.5) + Fx::DELTA);
         assert!((DEGREE * 180 - PI).abs().to_bits() <= 90 && (PI * 2 - TAU).abs().to_bits() <= 1);
 
-        // One unit is 8.4e-8 degrees: 179 of 360 parts round down, 180 parts round away from zero.
+        // One unit of an angle is 360 * 2^-32 degrees: 179 * 2^-32 degrees round to 0, and 180 * 2^-32 degrees round
+        // away from zero.
         let units = |degrees: i64| Angle::from_degrees(Fx::from_bits(degrees)).to_bits();
         assert_eq!([179, 180, -179, -180].map(units), [0, 1, 0, u32::MAX]);
 
@@ -271,8 +272,9 @@ mod tests {
             let angle = rng.angle();
             let (sin, cos) = angle.sin_cos();
             let apart = (Angle::of(Vec2::new(cos, sin).widen()) - angle).to_turns();
-            // Sine and cosine are off by at most 0.79 sqrt 2 units of 2^-30 across the direction, which is 0.71 units of
-            // 2^-32 turn, and `Angle::of` by 0.68. The sum is below 2, so that the whole difference is at most 1.
+            // Perpendicular to the direction, the error of sine and cosine is at most 0.79 sqrt 2 units of 2^-30, which
+            // is 0.71 units of 2^-32 turn. The error of `Angle::of` is at most 0.68. The sum is below 2, and the
+            // difference is an integer, so it is at most 1.
             assert!(apart.abs().to_bits() <= 1, "{angle:?} {apart}");
         }
     }

@@ -1,9 +1,9 @@
 //! Exact planar predicates: orientation, point in polygon, segment intersection.
 //!
-//! All are based on the sign of `(b - a) x (c - a)`, computed without rounding for any world coordinates, so that
-//! results for neighbouring inputs never contradict each other (J. R. Shewchuk, "Adaptive Precision Floating-Point
-//! Arithmetic and Fast Robust Geometric Predicates", 1997, describes how rounded predicates fail). Only points that are
-//! returned are rounded: once, to nearest, ties towards +infinity.
+//! Every predicate uses the sign of `(b - a) x (c - a)`, computed without rounding for any world coordinates, so
+//! results for neighbouring inputs never contradict each other. J. R. Shewchuk, "Adaptive Precision Floating-Point
+//! Arithmetic and Fast Robust Geometric Predicates", 1997, describes how rounded predicates fail. Only returned points
+//! are rounded: once, to nearest, ties towards +infinity.
 
 use super::formats::Fx;
 use super::vec2::Vec2;
@@ -82,8 +82,8 @@ pub fn point_in_polygon(corners: &[Vec2<Fx>], point: Vec2<Fx>) -> bool {
 }
 
 /// Intersection of two segments, ends included: `None` exactly if they share no point. The point is rounded to nearest,
-/// and does not depend on the order of the segments or of their ends. If the segments overlap along a line, it is the
-/// first shared point on the way from `a0` to `a1`.
+/// and does not depend on the order of the segments or of their ends. If the segments overlap along a line, the result
+/// is the shared point nearest to `a0`.
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Vec2, segment_intersection}};
@@ -111,7 +111,7 @@ fn parallel_intersection(a0: Vec2<Fx>, a1: Vec2<Fx>, b0: Vec2<Fx>, b1: Vec2<Fx>)
     if on_segment(a0, b0, b1) {
         return Some(a0);
     }
-    // Since a0 is outside of b, a shared part begins at the nearer end of b.
+    // `a0` is not on segment b, so a shared part begins at the end of b that is nearer to `a0`.
     [b0, b1]
         .into_iter()
         .filter(|&end| on_segment(end, a0, a1))

@@ -1,7 +1,8 @@
 //! `1 / x` with 31 significant bits for any size of `x`.
 //!
-//! A fixed binary point would give the reciprocal of a 500 m radius 15 bits and overflow at 2 mm. A mantissa and a
-//! shift cover both, and a multiplication by them is one widening 32-bit product on any machine.
+//! In a format with a fixed binary point, the reciprocal of a 500 m radius would have 15 significant bits, and the
+//! reciprocal of a 2 mm radius would overflow. A mantissa and a shift cover both, and a multiplication by them is one
+//! widening 32-bit product on any machine.
 
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
@@ -42,7 +43,7 @@ impl Reciprocal {
         // 2^(width-1) <= bits < 2^width, so 2^(width+30) / bits is above 2^30 and at most 2^31.
         let width = 64 - bits.leading_zeros();
         let quotient = div_round(1 << (width + 30), bits as i128);
-        // The quotient 2^31, of a power of two, becomes 2^31 - 1.
+        // For a power of two the quotient is 2^31, which saturates to 2^31 - 1.
         let mantissa = saturate(super::formats::saturate_wide(quotient));
         Reciprocal { mantissa, shift: width + 30 - 32 }
     }

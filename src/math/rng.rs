@@ -52,7 +52,7 @@ impl Rng {
     pub const fn next_u32(&mut self) -> u32 {
         let state = self.state;
         self.step();
-        // The top five bits give the rotation of 32 of the other bits.
+        // The top five bits are the rotation count for 32 of the other bits.
         low_half(((state >> 18) ^ state) >> 27).rotate_right((state >> 59) as u32)
     }
 
@@ -153,7 +153,7 @@ mod tests {
     #[test]
     fn every_remainder_is_equally_likely() {
         let mut rng = Rng::new(1);
-        // The first bound rejects nearly half of the draws; without rejection, results below 2^30 would be twice as
+        // The first bound rejects a quarter of the draws. Without rejection, every third result would be twice as
         // likely.
         for (bound, buckets) in [(3 << 30, 3), (6, 6), (1000, 10)] {
             let mut counts = [0_i64; 10];

@@ -127,8 +127,8 @@ impl<A: LeEqU32> Vec2<FixedI32<A>> {
         self.normalized_with_length().map(|(direction, _)| direction)
     }
 
-    /// Returns [`normalized`](Self::normalized) and [`length`](Self::length) at little more than the cost of the
-    /// former; `None` for zero.
+    /// Returns [`normalized`](Self::normalized) and [`length`](Self::length) at little more than the cost of
+    /// `normalized`; `None` for zero.
     #[inline]
     #[must_use]
     pub fn normalized_with_length(self) -> Option<(Vec2<Unit>, FixedI32<A>)> {
@@ -187,8 +187,8 @@ const fn unit(magnitude: u64, negative: bool) -> Unit {
 
 /// `2^63 / sqrt(n)` with an error of at most 0.51, for `n >= 2^62`.
 ///
-/// With `m = n / 2^64` this is `1 / sqrt(m)` between 1 and 2. The initial parabola has a relative error of 2.4e-2; each
-/// step turns an error `e` into `1.5 e^2`: 8.7e-4, 1.2e-6, 2e-12.
+/// With `m = n / 2^64`, the result is `1 / sqrt(m)` in units of 2^-31, between 1 and 2. The initial parabola has a
+/// relative error of 2.4e-2; each step turns an error `e` into `1.5 e^2`: 8.7e-4, 1.2e-6, 2e-12.
 #[inline]
 #[expect(
     clippy::cast_possible_wrap,
@@ -203,7 +203,8 @@ const fn inverse_root(n: u64) -> u64 {
     y = (y * ((3 << 30) - ((((y * y) >> 30) * m) >> 32))) >> 31;
     y = (y * ((3 << 30) - ((((y * y) >> 30) * m) >> 32))) >> 31;
 
-    // The last step uses the residual `1 - m y^2`, which is small and therefore exact modulo 2^64; the 1 is 2^76.
+    // The last step uses the residual `1 - m y^2`, which is small and therefore exact modulo 2^64. The term 1 is 2^76,
+    // which is 0 modulo 2^64.
     let root = m * y + (((n & 0xffff_ffff) * y) >> 32); // m y in units of 2^-62
     let residual = (root >> 16).wrapping_mul(y).wrapping_neg() as i64; // units of 2^-76
     let correction = (y as i64 * (residual >> 32) + (1 << 43)) >> 44; // y residual / 2 in units of 2^-31

@@ -5,10 +5,10 @@
 //! quarter turns. `atan(t) = t (c0 - c1 z + ... + c6 z^6)` for `|t| <= tan(1/16 turn)`. The plane is folded at the
 //! diagonal and by `atan t = pi/4 - atan((1 - t) / (1 + t))`.
 //!
-//! The coefficients are minimax (Remez exchange with 50 digits, weighted by the absolute error of the result; those of
-//! the sine under the constraint that it is 1 at the quarter turn), then rounded to the scale given at each. The two
-//! leading coefficients of the sine were moved by one unit where a sweep showed a smaller error. A table with
-//! interpolation would need 130 KiB for the same error; CORDIC takes 30 iterations.
+//! The coefficients are minimax, from a Remez exchange with 50 digits that is weighted by the absolute error of the
+//! result. The sine is constrained to 1 at the quarter turn. Each coefficient is then rounded to the scale given at its
+//! table. The two leading coefficients of the sine were moved by one unit where a sweep showed a smaller error. A table
+//! with interpolation would need 130 KiB for the same error; CORDIC takes 30 iterations.
 //!
 //! Largest error: 0.79 units of 2^-30 for sine and cosine (over all 2^32 angles), 0.68 units of 2^-32 turn for the arc
 //! tangent (over 2e8 random vectors).
@@ -30,8 +30,9 @@ pub(super) const fn sine(angle: u32) -> i32 {
 /// Sine of an angle from 0 to one quarter turn, `0 <= angle <= 2^30`, in units of 2^-30.
 #[inline]
 const fn sine_of_quarter_turn(angle: u32) -> i32 {
-    /// In units of 2^-33, 2^-32, 2^-35, 2^-39, 2^-44 and 2^-48: each product below just fits 64 bits. All but the last
-    /// coefficient contain the rounding constant of one half, so that dropping bits rounds to nearest.
+    /// Coefficients in units of 2^-33, 2^-32, 2^-35, 2^-39, 2^-44 and 2^-48. With these units, each product below just
+    /// fits 64 bits. All but the last coefficient contain the rounding constant of one half, so that dropping bits
+    /// rounds to nearest.
     const C: [u64; 6] =
         [13_493_037_702, 2_774_394_650, 2_738_216_371, 2_573_744_741, 2_818_456_289, 961_408_605];
     let x = angle as u64;
@@ -57,7 +58,7 @@ pub(super) const fn arc_tangent(x: i64, y: i64) -> u32 {
 
 /// `atan(short / long)` in units of 2^-32 turn, for `short <= long`; 0 if both are 0.
 const fn eighth_turn(short: u64, long: u64) -> u32 {
-    /// In units of 2^-35.
+    /// Coefficients in units of 2^-35.
     const C: [u64; 7] =
         [5_468_522_204, 1_822_840_555, 1_093_692_894, 780_888_461, 602_750_356, 457_771_138, 249_084_370];
     if long == 0 {
