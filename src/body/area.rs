@@ -1,9 +1,9 @@
 //! Areas: effects of a sensor on the bodies in it.
 //!
 //! An area fills its shape with a medium. The effects on a body depend on two numbers: `A`, the area in m² of the parts
-//! of the body's shapes that are inside, and `s`, the share of `A` in the area of the whole body. For a body without
-//! area, lengths of lines take the place of areas. With the centre of area `c` of the parts inside and the body's mass
-//! `M`:
+//! of the body's shapes that are inside, and `s`, the ratio of `A` to the area of the whole body. For a body that
+//! consists of lines, lengths in m replace the areas. `c` is the centre of area of the parts inside, and `M` is the
+//! body's mass:
 //!
 //! ```text
 //! dv/dt = s acceleration + s attraction + A force / M - s linear_drag (v - u) - A density field / M

@@ -317,7 +317,7 @@ impl<T, H: Handle> Arena<T, H> {
         self.slots.get(slot as usize)?.value.as_ref()
     }
 
-    /// Handle of a slot: that of its value or, if the slot is vacant, that of its next value.
+    /// Handle of the value in a slot or, if the slot is vacant, of the next value that the slot gets.
     pub(crate) fn handle_at(&self, slot: u32) -> H {
         H::from_parts(slot, self.slots[slot as usize].generation)
     }

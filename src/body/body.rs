@@ -16,8 +16,8 @@ use crate::math::{
     widen,
 };
 
-/// Largest velocity component in m/s, of the linear velocity and of `u = k w`. The difference of two such components
-/// fits [`Speed`].
+/// Limit in m/s of each component of the linear velocity, and of `u = k w`. The difference of two such components fits
+/// [`Speed`].
 pub(crate) const SPEED_MAX: Speed = Speed::lit("511");
 
 /// Centre of mass in the world, and rotation.
@@ -181,14 +181,14 @@ impl Body {
         self.velocity() + (point - self.centre).perp().scale(self.angular_velocity())
     }
 
-    /// Mass in kg; 0 unless the body is dynamic, and for a dynamic body without mass
+    /// Mass in kg; 0 for fixed and kinematic bodies, and for a dynamic body whose shapes have no mass
     /// ([`MassSource::Shapes`](super::MassSource::Shapes)).
     #[must_use]
     pub const fn mass(&self) -> Fx {
         self.mass.mass
     }
 
-    /// Whether forces and impulses change the body's velocity: it is dynamic and not without mass.
+    /// Whether forces and impulses change the body's velocity: it is dynamic, and its mass is not 0.
     pub(crate) fn has_mass(&self) -> bool {
         self.mass.mass > 0
     }
@@ -361,7 +361,7 @@ impl Body {
         self.step_by(self.force, self.torque, rate)
     }
 
-    /// [`Self::acceleration_step`] with a force in N and a torque in N m in addition.
+    /// [`Self::acceleration_step`] with an additional force in N and an additional torque in N m.
     pub(crate) fn step_with(&self, force: Vec2<Fx>, torque: Fx, rate: u32) -> (Vec2<Speed>, Speed) {
         self.step_by(self.force + force, self.torque.saturating_add(torque), rate)
     }
@@ -374,12 +374,12 @@ impl Body {
     }
 }
 
-/// `a / b` of world quantities, rounded to nearest and saturated; 0 for a body without mass.
+/// `a / b` of world quantities, rounded to nearest and saturated; 0 if `b` is 0, as for a body without mass.
 fn divide(a: Fx, b: Fx) -> Fx {
     crate::math::fx_div(a, b).unwrap_or(Fx::ZERO)
 }
 
-/// `force / (mass rate)` as a speed, rounded to nearest and saturated; 0 without mass.
+/// `force / (mass rate)` as a speed, rounded to nearest and saturated; 0 if the mass is 0.
 fn over_mass(force: Fx, mass: Fx, rate: u32) -> Speed {
     if force == Fx::ZERO || mass == Fx::ZERO {
         return Speed::ZERO;

@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 /// Collision filter. Two shapes in the same non-zero group collide if the group is positive and never if it is
 /// negative. Otherwise they collide if each shape's mask includes at least one of the other shape's categories.
 ///
-/// Large sets of shapes that do not collide among themselves are cheap: the broad phase does not search for pairs
-/// within one negative group down to -32 768, nor within one category that its own shapes exclude from their masks.
-/// This suits bullets, debris, nets and ragdolls:
+/// The broad phase does not search for pairs within a negative group from -1 to -32 768, nor within a single category
+/// that its own shapes exclude from their masks. Use either for a large set of shapes that do not collide with each
+/// other: bullets, debris, nets or ragdolls.
 ///
 /// ```
 /// # use lockstep2d::body::Filter;
@@ -61,7 +61,7 @@ impl Filter {
 pub(crate) struct CollisionClass(i16);
 
 impl CollisionClass {
-    /// Class of a shape that may collide with any other, and of a set of shapes that are not all of one class.
+    /// Class of a shape that may collide with shapes of any class, and of a set that contains several classes.
     pub(crate) const NONE: Self = CollisionClass(0);
 
     /// Class of the union of two sets.

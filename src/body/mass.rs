@@ -93,8 +93,8 @@ impl MassProperties {
     /// Properties of a dynamic body with these shapes, from their areas and densities.
     ///
     /// # Errors
-    /// [`WorldError::MassOutOfRange`] if the mass is not 1e-5 to 2^30 kg, also if no shape has an area and a density;
-    /// [`WorldError::GyrationOutOfRange`] if the radius of gyration is not 0.002 to 512 m.
+    /// [`WorldError::MassOutOfRange`] if the mass is not 1e-5 to 2^30 kg, for example 0 because no shape has both an
+    /// area and a density; [`WorldError::GyrationOutOfRange`] if the radius of gyration is not 0.002 to 512 m.
     pub fn of_shapes(shapes: &[ShapeDef]) -> Result<Self, WorldError> {
         Self::from_parts(shapes.iter().map(Part::of_shape))
     }
@@ -189,7 +189,8 @@ impl MassProperties {
             Fx::from_bits(saturate_wide(div_round(sum, mass)))
         };
         let centre = Vec2::new(weighted(|part| part.centre.x), weighted(|part| part.centre.y));
-        // Products of two lengths have 44 fraction bits. Mass has at most 62 bits and k² + d² 63, well within 128.
+        // Squares of lengths have 44 fraction bits. A mass has at most 62 bits and k² + d² at most 63, so that their
+        // products fit 128 bits.
         let moment: i128 = parts
             .map(|part| {
                 let arm = part.centre - centre;
@@ -263,7 +264,7 @@ impl Part {
         let area = rectangle + disc;
         let of_rectangle = (ll + rr * 4) / 12;
         let of_disc = rr / 2 + ll / 4 + fx_mul(rl, fx!(0.424413181578));
-        // Weights and squares of lengths have 32 fraction bits each; the mean has 44.
+        // Areas and squares of lengths have 32 fraction bits each; the mean of the squares, weighted by area, has 44.
         let product = |weight: Fx, square: Fx| i128::from(weight.to_bits()) * i128::from(square.to_bits());
         let moment = product(rectangle, of_rectangle) + product(disc, of_disc);
         let gyration_squared = div_round(moment << 12, area.to_bits().max(1).into());

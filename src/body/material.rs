@@ -43,7 +43,7 @@ impl Mixing {
     }
 }
 
-/// `sqrt(a b)` of two non-negative values, rounded down: the square root of 64 fraction bits has 32.
+/// `sqrt(a b)` of two non-negative values, rounded down. The product has 64 fraction bits, so its square root has 32.
 fn geometric_mean(a: Fx, b: Fx) -> Fx {
     let product = u128::from(a.to_bits().unsigned_abs()) * u128::from(b.to_bits().unsigned_abs());
     Fx::from_bits(i64::try_from(product.isqrt()).expect("the mean of two Fx is an Fx"))
@@ -65,8 +65,8 @@ pub struct Material {
     /// Fraction of the approach speed that a bounce returns, 0 to 1.5. Above 1 a bounce adds energy, as with the
     /// bumpers of a pinball machine; the combined value of a pair is clamped to 2, whatever its mixing rule. A bounce
     /// that would change a velocity by more than 511 m/s is clamped, and counts as a fault. Shapes that approach more
-    /// slowly than [`Material::restitution_threshold`] do not bounce; the default is the threshold of the world, 1 m/s. A
-    /// ball that falls from a height `H` of metres rebounds to `e^2 H` within 0.1 %.
+    /// slowly than [`Material::restitution_threshold`] do not bounce; the default is the threshold of the world, 1 m/s.
+    /// A ball that falls from a height of `H` metres rebounds to `e^2 H` within 0.1 %.
     pub restitution: Fx,
     /// Rule that combines the restitution of two shapes.
     pub restitution_mixing: Mixing,
@@ -76,8 +76,8 @@ pub struct Material {
     /// speed. Such a ball may take long to come to rest, and a pile of such balls does not come to rest.
     pub restitution_threshold: Option<Fx>,
     /// Rolling resistance of a round shape, 0 to 1: the offset of the ground reaction ahead of the axle, as a fraction
-    /// of the radius. A pair uses the larger value and the larger radius of its two shapes, where the radius is that of
-    /// a circle or capsule, or the rounding radius of a polygon. A wheel that rolls freely on level ground loses
+    /// of the radius of the circle or capsule, or of the rounding radius of the polygon. A pair uses the larger value
+    /// and the larger radius of its two shapes. A wheel that rolls freely on level ground loses
     /// `rolling_resistance g / (1 + k^2 / r^2)` of speed per second.
     pub rolling_resistance: Fx,
     /// Surface speed: the speed of the surface around the shape, clockwise, in m/s, ±400. The upper side of a conveyor

@@ -42,7 +42,8 @@ impl Name {
     /// Creates a name.
     ///
     /// # Errors
-    /// [`WorldError::NameInvalid`] if the text is empty, longer than 16 bytes, or contains any other character.
+    /// [`WorldError::NameInvalid`] if the text is empty, is longer than 16 bytes, or contains a character that is not
+    /// allowed.
     pub fn new(text: &str) -> Result<Self, WorldError> {
         let mut bytes = [0; LENGTH_MAX];
         let room = bytes.get_mut(..text.len()).ok_or(WorldError::NameInvalid)?;
@@ -81,7 +82,7 @@ impl fmt::Debug for Name {
     }
 }
 
-/// As text in a human-readable format, as 16 bytes in a binary one.
+/// Serializes the name as text in a human-readable format, and as 16 bytes in a binary format.
 impl Serialize for Name {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         if serializer.is_human_readable() {

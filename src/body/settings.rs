@@ -61,9 +61,9 @@ pub enum Continuous {
     Fixed,
     /// All bodies that are not bullets themselves.
     Bullet,
-    /// Fixed bodies, and kinematic bodies relative to which the body is fast. A kinematic body that carries it along,
-    /// such as a moving platform, does not stop it. The check has a small cost in every tick of a world with kinematic
-    /// bodies, even while the body is slow.
+    /// Fixed bodies, and kinematic bodies relative to which the body is fast. A kinematic body that carries the body
+    /// along, such as a moving platform, does not stop it. The check has a small cost in every tick of a world with
+    /// kinematic bodies, even while the body is slow.
     Kinematic,
 }
 

@@ -148,7 +148,7 @@ mod tests {
         }
     }
 
-    /// The byte of a shape without an area is that of a `bool`.
+    /// The byte of a shape without an area equals the encoding of a `bool`.
     #[test]
     fn unknown_flags_are_refused() {
         let solid = encode(&shape());

@@ -41,14 +41,15 @@ struct Whole<T> {
     digests: Vec<StateHash>,
 }
 
-/// Copies that still equal the arena, where such copies exist. A cache, not part of the state.
+/// Copies of the pages, of the vacancies and of the whole arena. A cell is empty if its part of the arena has changed
+/// since the last copy. A cache, not part of the state.
 #[derive(Debug)]
 pub(super) struct Kept<T> {
     pages: Vec<OnceBox<Arc<Page<T>>>>,
     vacancies: OnceBox<Arc<Vacancies>>,
     /// Copy of the whole arena, assembled from `pages` and `vacancies`.
     whole: OnceBox<Arc<Whole<T>>>,
-    /// Number of changes to values that pages copy.
+    /// Revision number: see [`Arena::revision`].
     revision: u64,
     /// Number of times the arena was restored from a shared copy.
     returns: u64,
@@ -151,8 +152,8 @@ impl<T, H> Arena<T, H> {
         self.kept.fit(self.slots.len());
     }
 
-    /// Shares the arena. Copies, value by value, only the pages that have changed since they were last shared; costs
-    /// nothing if none has.
+    /// Shares the arena with a snapshot. Copies, value by value, only the pages that have changed since they were last
+    /// shared.
     pub(crate) fn share_into(&self, shared: &mut SharedArena<T>, copy: impl Fn(&T) -> T)
     where
         T: PartialEq + Serialize,
@@ -184,8 +185,7 @@ impl<T, H> Arena<T, H> {
     }
 
     /// Restores the arena from a shared copy, and calls `changed` with every slot that was removed or whose value may
-    /// differ. Restored values are as they were copied; the caller restores the fields that every step changes, in all
-    /// values.
+    /// differ. Restored values are the copies; the caller restores the fields that every step changes, in all values.
     pub(crate) fn restore(&mut self, shared: &SharedArena<T>, mut changed: impl FnMut(u32))
     where
         T: Clone,

@@ -22,11 +22,11 @@
 //! k'²  = J / A' - |m / A'|²
 //! ```
 //!
-//! The first line is J. Steiner's formula (1840). No normals or bisectors remain: the first moment of a rectangle
-//! has `r² l_i n_i / 2` across its edge, where `l_i n_i` is the edge rotated by a quarter turn, and that of a sector
-//! about its vertex is `r³ (n_i - n_(i-1)) / 3` rotated by a quarter turn. Both cancel around the outline. The mixed
-//! terms of the second moment are `r² c_i` and `2/3 r³ v_i x (n_i - n_(i-1))`, with sums `2 r² A` and `2/3 r³ l`;
-//! the rectangles' own `1/3 r³ l` completes the latter to `r³ l`.
+//! The first line is J. Steiner's formula (1840). No normals or bisectors remain, because their terms cancel around the
+//! outline. The first moment of a rectangle has the term `r² l_i n_i / 2` across its edge, where `l_i n_i` is the edge
+//! rotated by a quarter turn. The first moment of a sector about its vertex is `r³ (n_i - n_(i-1)) / 3`, rotated by a
+//! quarter turn. The mixed terms of the second moment are `r² c_i` and `2/3 r³ v_i x (n_i - n_(i-1))`, with the sums
+//! `2 r² A` and `2/3 r³ l`. The second sum and the rectangles' own `1/3 r³ l` add up to `r³ l`.
 
 use crate::math::{Angle, Fx, Length, Vec2, div_round, fx_mul, round_shift_wide};
 
@@ -123,7 +123,8 @@ impl Figure {
     }
 }
 
-/// Angle from one edge to the next, which equals the angle between their normals. Over an outline they sum to one turn.
+/// Angle from one edge to the next, which equals the angle between their normals. Around an outline, these angles sum
+/// to one turn.
 fn turn_between(before: Vec2<Length>, after: Vec2<Length>) -> Angle {
     let product = |a: Length, b: Length| i64::from(a.to_bits()) * i64::from(b.to_bits());
     // Exact: edges are shorter than 220 m on each axis, so a sum of two products has at most 61 bits.

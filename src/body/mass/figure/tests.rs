@@ -171,7 +171,7 @@ fn a_polygon_along_the_outline_has_the_same_mass() {
     assert!(compared > 250, "expected over 250 hulls, got {compared}");
 }
 
-/// Whether a point is within the radius of the polygon. All in raw units of `Length`.
+/// Whether a point lies in the rounded polygon. All lengths are in units of 2^-22 m.
 fn contains(polygon: &Polygon, (x, y): (i128, i128)) -> bool {
     let vertices = polygon.vertices();
     let r = i128::from(polygon.radius().to_bits());
