@@ -219,8 +219,8 @@ impl fmt::Display for WorldError {
             WorldError::DensityOutOfRange { value } => write!(f, "density {value} kg/m² is out of range"),
             WorldError::MaterialOutOfRange => write!(
                 f,
-                "friction is 0 to 16, restitution 0 to 1.5, rolling resistance 0 to 1, a restitution threshold 0 to 400 m/s, \
-                 and surface speed is within ±400 m/s"
+                "friction is 0 to 16, restitution 0 to 1.5, rolling resistance 0 to 1, \
+                 a restitution threshold 0 to 400 m/s, and surface speed is within ±400 m/s"
             ),
             WorldError::MassOutOfRange { value } => {
                 write!(f, "a dynamic body's mass is 1e-5 to 2^30 kg, not {value}")

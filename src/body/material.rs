@@ -70,10 +70,10 @@ pub struct Material {
     pub restitution: Fx,
     /// Rule that combines the restitution of two shapes.
     pub restitution_mixing: Mixing,
-    /// Approach speed in m/s below which the shape does not bounce, 0 to 400. `None` stands for the threshold of the
-    /// world, [`SolverSettings::restitution_threshold`](crate::solver::SolverSettings::restitution_threshold). A pair
-    /// uses the smaller value of its two shapes, so that a ball with a threshold of 0 bounces on every shape at any
-    /// speed. Such a ball may take long to come to rest, and a pile of such balls does not come to rest.
+    /// Approach speed in m/s below which the shape does not bounce, 0 to 400. `None` means the threshold of the world,
+    /// [`SolverSettings::restitution_threshold`](crate::solver::SolverSettings::restitution_threshold). A pair uses the
+    /// smaller value of its two shapes, so that a ball with a threshold of 0 bounces on every shape at any speed. Such
+    /// a ball may take long to come to rest, and a pile of such balls does not come to rest.
     pub restitution_threshold: Option<Fx>,
     /// Rolling resistance of a round shape, 0 to 1: the offset of the ground reaction ahead of the axle, as a fraction
     /// of the radius of the circle or capsule, or of the rounding radius of the polygon. A pair uses the larger value
@@ -148,7 +148,7 @@ impl Material {
     }
 
     /// Combined restitution threshold of two surfaces in a world with the threshold `world`: the smaller of the two
-    /// thresholds, where `None` stands for `world`.
+    /// thresholds, where `None` means `world`.
     #[must_use]
     pub fn mixed_restitution_threshold(&self, other: &Material, world: Fx) -> Fx {
         let [a, b] = [self, other].map(|material| material.restitution_threshold.unwrap_or(world));
@@ -172,7 +172,7 @@ mod tests {
         ];
         for (rule, value) in expected {
             assert_eq!(rule.mix(a, b), value, "{rule:?}");
-            assert_eq!(rule.mix(b, a), value, "{rule:?} is symmetric");
+            assert_eq!(rule.mix(b, a), value, "{rule:?} should be symmetric");
         }
         let average = Material { friction: a, friction_mixing: Mixing::Average, ..Material::default() };
         let maximum = Material { friction: b, friction_mixing: Mixing::Maximum, ..Material::default() };

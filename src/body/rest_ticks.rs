@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// | kind | value |
 /// |---|---|
 /// | fixed | 0 |
-/// | kinematic | 0 while it moves and until the first tick in which it stands still, then 1 |
+/// | kinematic | 0 while it moves and until the first tick in which it is at rest, then 1 |
 /// | dynamic | ticks for which it has been slow enough to sleep, at most [`ticks_to_sleep`]; 0 while it sleeps |
 ///
 /// [`ticks_to_sleep`]: crate::world::Config::ticks_to_sleep
@@ -43,12 +43,12 @@ impl RestTicks {
         self.0 == limit
     }
 
-    /// Records a tick in which a kinematic body stood still.
+    /// Records a tick in which a kinematic body was at rest.
     pub(crate) fn settle(&mut self) {
         self.0 = 1;
     }
 
-    /// Whether a kinematic body has stood still for a tick.
+    /// Whether a kinematic body has been at rest for a tick.
     pub(crate) const fn has_settled(self) -> bool {
         self.0 != 0
     }

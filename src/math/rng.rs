@@ -56,7 +56,7 @@ impl Rng {
         low_half(((state >> 18) ^ state) >> 27).rotate_right((state >> 59) as u32)
     }
 
-    /// Draws a uniform 64-bit number from two 32-bit draws, the first of which is the upper half.
+    /// Draws a uniform 64-bit number from two 32-bit draws. The first draw is the upper half.
     #[inline]
     pub const fn next_u64(&mut self) -> u64 {
         let high = self.next_u32() as u64;
