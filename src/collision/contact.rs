@@ -74,8 +74,9 @@ impl Contact {
         self.rolling = Speed::ZERO;
     }
 
-    /// Keeps a manifold of the shapes, and the lever arms of the last one if it could be kept, has the same points, and
-    /// they have changed by at most `tolerances`, which are those of A and B in metres.
+    /// Stores a manifold of the shapes for the next ticks. If the last manifold can be kept and has the same points,
+    /// each coordinate of its lever arms that has changed by at most the tolerance is kept. `tolerances` are in metres,
+    /// for A and B.
     #[inline]
     pub(crate) fn keep(&mut self, manifold: &Manifold, bodies: [&Body; 2], tolerances: [Length; 2]) {
         let last = self.kept;
@@ -86,7 +87,7 @@ impl Contact {
         }
     }
 
-    /// The kept manifold with other separations, and its first point at `origin`.
+    /// Returns the kept manifold with the given separations, and with its first point at `origin`.
     #[inline]
     pub(crate) fn kept_manifold(&self, origin: Vec2<Fx>, separations: [Step; 2]) -> Manifold {
         let point = |i: usize, anchor: Vec2<Length>| ManifoldPoint {

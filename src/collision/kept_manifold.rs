@@ -1,4 +1,4 @@
-//! Contact recycling: a contact keeps its manifold while its shapes hardly move against each other.
+//! Contact recycling: a contact keeps its manifold while its shapes hardly move relative to each other.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,16 +8,17 @@ use crate::math::{Angle, Fx, Length, Step, TAU, Unit, Vec2, round_shift, saturat
 
 /// The manifold of a contact, with the poses of the bodies for which it was computed.
 ///
-/// The lever arms stay as they are, in world axes, while the shapes hardly move against each other. With arms that
-/// follow every movement, a stack that leans would turn itself further: columns of more than 40 boxes fall. With kept
-/// arms, columns of 100 boxes stand (`docs/DESIGN.md`). The normal stays as well, and the separations follow from the
-/// poses, so that the shapes need not be collided again.
+/// The lever arms stay constant, in world axes, while the shapes hardly move relative to each other. With arms that
+/// follow every movement, a leaning stack leans further by itself: columns of more than 40 boxes fall. With constant
+/// arms, columns of 100 boxes stay upright (`docs/DESIGN.md`). The normal stays constant as well, and the separations
+/// follow from the poses, so that the narrow phase need not run again.
 ///
-/// Lengths wrap around at 1024 m, so that they are exact if one of the bodies has a centre of mass far from the
-/// contact. Such a body is fixed, and its arms do not matter.
+/// Lengths wrap around at 1024 m, so that their differences are exact even if the centre of mass of one body is far
+/// from the contact. Such a body is fixed, and its arms do not matter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct KeptManifold {
-    /// Zero if the manifold cannot be kept: it is one of the time of impact, or a shape has changed.
+    /// Contact normal; zero if the manifold cannot be kept, because it is the manifold of a time of impact or because a
+    /// shape has changed.
     pub(crate) normal: Vec2<Unit>,
     /// Vector from A's centre of mass to the first point.
     pub(crate) arm_a: Vec2<Length>,
@@ -39,13 +40,13 @@ const TURN_MAX: i32 = 1 << 26;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct KeptSide {
     pub(crate) pose: Pose,
-    /// Distance in metres from the middle of the shape within which all of its points are, or 0 for a circle about the
-    /// body's centre of mass, which rotation does not change.
+    /// Radius in metres of a circle about the middle of the shape that contains the shape. It is 0 for a circle about
+    /// the body's centre of mass, which rotation does not change.
     pub(crate) reach: Length,
 }
 
 impl KeptManifold {
-    /// Number of [`Self::to_words`].
+    /// Number of words that [`Self::to_words`] returns.
     pub(crate) const WORDS: usize = 14;
 
     /// No manifold.
@@ -64,8 +65,8 @@ impl KeptManifold {
         KeptManifold { normal: manifold.normal, ..Self::at_impact(manifold, poses, [Vec2::ZERO; 2]) }
     }
 
-    /// The manifold of the time of impact. `moved` has the displacements until then from the given poses. It cannot be
-    /// kept.
+    /// The manifold of a time of impact, which cannot be kept. `moved` are the displacements of the bodies from the
+    /// given poses to that time.
     pub(crate) fn at_impact(manifold: &Manifold, [a, b]: [Pose; 2], moved: [Vec2<Length>; 2]) -> Self {
         let [first, second] = manifold.both_points();
         let arm = |body: Pose, moved: Vec2<Length>| {
@@ -84,8 +85,8 @@ impl KeptManifold {
         }
     }
 
-    /// Replaces the lever arms by those of an earlier manifold with the same points, in each coordinate whose difference
-    /// is at most the tolerance of the body in metres.
+    /// Keeps each coordinate of the lever arms of an earlier manifold with the same points that differs from the new
+    /// one by at most the tolerance of the body in metres.
     pub(crate) fn keep_arms_of(&mut self, last: &Self, [tolerance_a, tolerance_b]: [Length; 2]) {
         let keep = |new: &mut Vec2<Length>, old: Vec2<Length>, tolerance: Length| {
             for (new, old) in [(&mut new.x, old.x), (&mut new.y, old.y)] {
@@ -99,7 +100,7 @@ impl KeptManifold {
         keep(&mut self.to_second, last.to_second, tolerance_a.min(tolerance_b));
     }
 
-    /// The numbers of the manifold as they are stored.
+    /// Returns the manifold as the words that are stored.
     pub(crate) fn to_words(self) -> [i32; Self::WORDS] {
         let KeptManifold { normal, arm_a, arm_b, to_second, between, angles, separations } = self;
         let [angle_a, angle_b] = angles.map(|angle| angle.to_bits().cast_signed());
@@ -110,7 +111,7 @@ impl KeptManifold {
         [n_x, n_y, a_x, a_y, b_x, b_y, x, y, between_x, between_y, angle_a, angle_b, s0, s1]
     }
 
-    /// The manifold that [`Self::to_words`] has stored.
+    /// Inverse of [`Self::to_words`].
     pub(crate) fn from_words(words: [i32; Self::WORDS]) -> Self {
         let [n_x, n_y, a_x, a_y, b_x, b_y, x, y, between_x, between_y, angle_a, angle_b, s0, s1] = words;
         let vector = |x: i32, y: i32| Vec2::new(Length::from_bits(x), Length::from_bits(y));
@@ -125,7 +126,7 @@ impl KeptManifold {
         }
     }
 
-    /// Whether this is a manifold that can be kept.
+    /// Whether the manifold can be kept.
     #[inline]
     pub(crate) fn can_be_kept(&self) -> bool {
         self.normal != Vec2::ZERO
@@ -148,7 +149,7 @@ impl KeptManifold {
     }
 
     /// The separations of the first `count` points when the bodies are at other poses, or `None` if the shapes have
-    /// moved against each other by more than `limit` metres. To first order in the rotations:
+    /// moved relative to each other by more than `limit` metres. To first order in the rotations:
     ///
     /// ```text
     /// d = change of between + thetaB x rB - thetaA x rA,   s' = s + n . d
@@ -166,7 +167,8 @@ impl KeptManifold {
         let (r_a, r_b, to_second) = (self.arm_a, self.arm_b, self.to_second);
         let turned = theta_a.abs() * wide(a.reach) + theta_b.abs() * wide(b.reach);
         let limit = wide(limit) - round_shift(turned, Unit::FRAC_NBITS);
-        // With 52 fraction bits. A shift is below 2^31 and a rotation below 2^27, so that the sums are below 2^62.
+        // `d_x` and `d_y` have 52 fraction bits. A shift is below 2^31 and a rotation below 2^27, so that the sums are
+        // below 2^62.
         let mut d_x = (wide(shift.x) << Unit::FRAC_NBITS) - theta_b * wide(r_b.y) + theta_a * wide(r_a.y);
         let mut d_y = (wide(shift.y) << Unit::FRAC_NBITS) + theta_b * wide(r_b.x) - theta_a * wide(r_a.x);
         let mut separations = [Step::ZERO; 2];
@@ -272,8 +274,8 @@ mod tests {
         }
     }
 
-    /// The separations follow the movements of both bodies as those of a new manifold do: up to the square of the
-    /// rotation, times the arm.
+    /// The separations follow the movements of both bodies like the separations of a new manifold, with an error of the
+    /// order of the squared rotation times the arm.
     #[test]
     fn separations_follow_the_bodies() {
         let mut rng = Rng::new(3);
@@ -293,7 +295,7 @@ mod tests {
                 continue;
             };
             for (separation, old) in separations.iter().zip(first.points()) {
-                // Which point is the first depends on which box has the reference edge.
+                // The order of the points depends on which box has the reference edge.
                 let Some(point) = manifold.points().iter().find(|point| point.feature == old.feature) else {
                     continue;
                 };
@@ -327,7 +329,7 @@ mod tests {
                 assert_eq!(
                     at(side, Vec2::ZERO, turned, Length::ZERO),
                     Some(kept.separations),
-                    "rotation does not change a circle"
+                    "rotation should not change a circle"
                 );
             }
             // Only movements relative to the other body count.
@@ -370,7 +372,7 @@ mod tests {
             let words = core::array::from_fn(|_| rng.next_u32().cast_signed());
             let kept = KeptManifold::from_words(words);
             assert_eq!(kept.to_words(), words);
-            assert!(!kept.is_valid(2), "a normal of another length than 1: {kept:?}");
+            assert!(!kept.is_valid(2), "a normal whose length is not 1 should be invalid: {kept:?}");
             let kept = KeptManifold { normal: Vec2::X, ..kept };
             assert!(kept.is_valid(2) && !kept.is_valid(1) && !kept.is_valid(0));
         }

@@ -5,8 +5,8 @@ use crate::math::{Fx, Length, Step, Unit, Vec2};
 /// Identifies a contact point across ticks, so that its accumulated impulse can be carried over: the pair of the
 /// vertices of A and B that meet at the point, independent of which shape has the reference edge and of the clipping.
 ///
-/// Identifiers that encode the clipping as well change while a pile settles. Every change loses a warm start, and the
-/// pile sinks (`docs/DESIGN.md` has the figures).
+/// Identifiers that also encoded the clipping would change while a pile settles. Every change would lose a warm start,
+/// and the pile would sink (`docs/DESIGN.md` has the figures).
 ///
 /// ```
 /// use lockstep2d::{body::Polygon, fx, math::Vec2, world::Probe};
@@ -49,11 +49,11 @@ pub struct ManifoldPoint {
     pub feature: Feature,
 }
 
-/// Contact manifold of shape A and shape B: that of the start of the tick, or of the time of impact for shapes that
-/// first touch later in the tick. The separations are always those of the start.
+/// Contact manifold of shape A and shape B at the start of the tick, or at the time of impact for shapes that first
+/// touch later in the tick. The separations are always those at the start of the tick.
 ///
-/// While shapes hardly move against each other, their contact keeps the normal and the points of an earlier tick. The
-/// points move with the bodies, and may be off by a 64th of the smaller shape's extent.
+/// While shapes hardly move relative to each other, their contact keeps the normal and the points of an earlier tick.
+/// The points move with the bodies, and may be off by a 64th of the smaller shape's extent.
 ///
 /// ```
 /// use lockstep2d::{body::Polygon, fx, math::Vec2, world::Probe};

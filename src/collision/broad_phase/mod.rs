@@ -32,7 +32,7 @@ mod tests;
 /// # world.spawn(&BodyDef::fixed(), &[square])?;
 /// # world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(2))), &[square])?;
 /// let mut other = world.clone();
-/// // Worth a try in a world in which nearly everything moves a little.
+/// // Suitable for a world in which most boxes move by small distances.
 /// other.set_broad_phase(BroadPhaseKind::SweepAndPrune);
 /// (0..60).for_each(|_| [&mut world, &mut other].into_iter().for_each(World::step));
 /// assert_eq!(world.state_hash(), other.state_hash());
@@ -113,7 +113,7 @@ impl BroadPhase {
         self.boxes[slot as usize] = fat;
     }
 
-    /// Inserts or moves the box of a slot. `fixed` tells whether its body is fixed.
+    /// Inserts or moves the box of a slot. `fixed` is true if its body is fixed.
     pub(crate) fn put(&mut self, slot: u32, fat: Aabb, fixed: bool) {
         self.record_box(slot, fat);
         self.fixed[slot as usize] = fixed;
@@ -184,9 +184,9 @@ impl BroadPhase {
         }
     }
 
-    /// Finds all overlapping pairs with at least one moved box that `accept` returns true for, sorted. If there are
-    /// more than `limit`, keeps the smallest and returns true. `accept` must reject every pair within one collision
-    /// class, and every pair of fixed bodies.
+    /// Finds the overlapping pairs that have at least one moved box and for which `accept` returns true, in sorted
+    /// order. If there are more than `limit` pairs, keeps the smallest ones and returns true. `accept` must reject
+    /// every pair within one collision class, and every pair of fixed bodies.
     pub(crate) fn pairs(
         &mut self,
         moved: Moved<'_>,
@@ -315,7 +315,7 @@ struct SmallestPairs<'a> {
 impl SmallestPairs<'_> {
     fn push(&mut self, pair: Pair) {
         self.pairs.push(pair);
-        // Trims at twice the limit, so that the cost of a sort is amortised over as many pushes.
+        // Trims at twice the limit, so that the cost of a sort is amortised over many pushes.
         if self.pairs.len() >= self.limit.saturating_mul(2).max(64) {
             self.trim();
         }

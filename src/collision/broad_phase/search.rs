@@ -117,7 +117,7 @@ fn area_around(area: Aabb, translation: Vec2<Fx>, fraction: Unit) -> Aabb {
 /// Search for boxes within a distance of a point. Nearer boxes tend to come first.
 pub(crate) struct Near<F> {
     pub(crate) point: Vec2<Fx>,
-    /// Radius in metres. A negative radius reaches no box; the largest number reaches every box.
+    /// Radius in metres. A negative radius reaches no box; `Fx::MAX` reaches every box.
     pub(crate) radius: Fx,
     /// Visits a slot and returns the radius that is still of interest.
     pub(crate) visit: F,
@@ -136,8 +136,8 @@ impl<F: FnMut(u32) -> Fx> Search for Near<F> {
         let Ok(radius) = u64::try_from(self.radius.to_bits()) else { return false };
         let square = |x: u64| u128::from(x) * u128::from(x);
         let (x, y) = self.distances(aabb);
-        // The largest radius reaches every box, because distances saturate at it. Under a smaller radius, each distance
-        // is below 2^63 when the squares are added.
+        // `Fx::MAX` reaches every box, because distances saturate at that value. With a smaller radius, each distance
+        // is below 2^63 when the squares are added, so that the sum fits.
         self.radius == Fx::MAX || (x <= radius && y <= radius && square(x) + square(y) <= square(radius))
     }
 

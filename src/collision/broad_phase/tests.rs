@@ -35,7 +35,7 @@ fn random_box(rng: &mut Rng, world: i64) -> Aabb {
 const WORLDS: [i64; 3] = [8 << 32, 1 << 62, i64::MAX];
 
 fn random_class(rng: &mut Rng, count: u32) -> CollisionClass {
-    let group = -i32::try_from(rng.below(count + 1)).expect("few");
+    let group = -i32::try_from(rng.below(count + 1)).expect("a small index");
     Filter { group, ..Filter::default() }.collision_class()
 }
 
@@ -75,7 +75,7 @@ impl Crowd {
         let is_new = self.boxes[slot].is_none() || self.fixed[slot] != fixed;
         (self.boxes[slot], self.fixed[slot]) = (Some(fat), fixed);
         for kind in &mut self.kinds {
-            match u32::try_from(slot).expect("few") {
+            match u32::try_from(slot).expect("a small index") {
                 slot if is_new => kind.put(slot, fat, fixed),
                 slot => kind.set(slot, fat),
             }
@@ -91,12 +91,12 @@ impl Crowd {
         self.class[slot] = class;
         self.kinds
             .iter_mut()
-            .for_each(|kind| kind.set_collision_class(u32::try_from(slot).expect("few"), class));
+            .for_each(|kind| kind.set_collision_class(u32::try_from(slot).expect("a small index"), class));
     }
 
     fn remove(&mut self, slot: usize) {
         (self.boxes[slot], self.class[slot]) = (None, CollisionClass::NONE);
-        self.kinds.iter_mut().for_each(|kind| kind.remove(u32::try_from(slot).expect("few")));
+        self.kinds.iter_mut().for_each(|kind| kind.remove(u32::try_from(slot).expect("a small index")));
     }
 
     fn refill(&mut self) {
@@ -147,7 +147,8 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
                     crowd.set(slot, fat.translated(random_vector(&mut rng, 1 << 32)));
                 }
                 (19, Some(fat)) if rng.below(4) == 0 => crowd.put(slot, fat, !crowd.fixed[slot]),
-                // Every round changes the class of few slots, every tenth round that of about half of the slots.
+                // Every round changes the class of a few slots. Every tenth round changes the class of about half of
+                // the slots.
                 (8, Some(_)) => crowd.set_collision_class(slot, random_class(&mut rng, 3)),
                 (9..19, Some(_)) if round % 10 == 0 => {
                     crowd.set_collision_class(slot, random_class(&mut rng, 1 + u32::from(round > 150)));

@@ -28,9 +28,9 @@ mod tests;
 /// Sentinel: the index of no node.
 const NONE: u32 = u32::MAX;
 
-/// Largest difference of the heights of two siblings. Large enough for a long ground to stay near the root, where the
-/// perimeters favour it. With a value of 4, finding the pairs of 10 000 boxes on some such grounds takes several times
-/// as long.
+/// Largest difference of the heights of two siblings. The value is large enough for a long ground box to stay near the
+/// root, where the sum of the perimeters is smallest. With a value of 4, finding the pairs of 10 000 boxes on some long
+/// ground boxes takes several times as long.
 const IMBALANCE_MAX: u8 = 16;
 
 /// Stack size of a search: one waiting node per level, plus one. Enough for 2^31 boxes, as a test proves.
@@ -230,8 +230,8 @@ impl Tree {
     }
 
     /// Returns the best sibling for a new leaf: the node at which the new parent and the ancestors gain the least
-    /// perimeter. Descends to the child with the smaller bound while that bound is at most the best cost, or while the
-    /// best node is too high for a leaf as its sibling.
+    /// perimeter. Descends to the child with the smaller lower bound of the cost, as long as that bound is at most the
+    /// best cost or the best node is too high to have a leaf as its sibling.
     fn best_sibling(&self, fat: Aabb) -> u32 {
         let own = perimeter(fat);
         let mut at = self.root;
@@ -244,11 +244,11 @@ impl Tree {
                 let node = self.at(child);
                 let around = perimeter(node.aabb.union(fat));
                 let cost = grown.saturating_add(around);
-                // Any deeper sibling adds at least the leaf itself and the growth of the child.
+                // Any deeper sibling adds at least the perimeter of the leaf and the growth of the child.
                 let bound = cost.saturating_sub(perimeter(node.aabb).saturating_sub(own));
                 (if node.is_leaf() { cost } else { bound }, node.height, child, around)
             });
-            // Ties go to the lower child, so that coincident boxes make a bushy tree and not a chain.
+            // Ties go to the lower child, so that coincident boxes form a balanced tree and not a chain.
             let (bound, _, child, child_around) = options[0].min(options[1]);
             if bound > best_cost && self.at(best).height <= IMBALANCE_MAX {
                 break;
@@ -262,7 +262,8 @@ impl Tree {
         best
     }
 
-    /// Whether a leaf may stay in place with a new box: no ancestor above a small neighbourhood grows.
+    /// Whether a leaf may stay in place with a new box: the ancestor four levels above the leaf contains the box, so no
+    /// node higher up grows.
     fn stays_near(&self, leaf: u32, fat: Aabb) -> bool {
         let parent_of = |&at: &u32| Some(self.at(at).parent).filter(|&parent| parent != NONE);
         // With a lower level most moved boxes would be reinserted; with a higher one the tree would degrade.

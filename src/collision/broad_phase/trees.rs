@@ -1,5 +1,5 @@
-//! The boxes in two trees, one for fixed bodies and one for all others. Pairs of fixed bodies are never wanted. The
-//! tree of the terrain does not change while bodies move over it, and the other tree stays small.
+//! The boxes in two trees, one for fixed bodies and one for all others. Pairs of fixed bodies are not searched for. The
+//! tree of fixed bodies does not change while other bodies move, and the other tree stays small.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -79,7 +79,7 @@ impl Trees {
         self.fixed.refill(those(true));
     }
 
-    /// Calls `found` with every pair of overlapping boxes once, except for pairs of fixed ones and for most pairs
+    /// Calls `found` with every pair of overlapping boxes once, except for pairs of fixed bodies and for most pairs
     /// within one collision class.
     pub(super) fn each_pair(&mut self, found: impl FnMut(Pair)) {
         self.meet(|_| true, found);

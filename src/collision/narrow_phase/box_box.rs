@@ -17,8 +17,8 @@ use crate::math::{Fx, Length, Rot, Step, Unit, Vec2};
 use crate::simd::{Ints, Machine, Quad, WIDTH, prefetch};
 use crate::threads::split_at_ends;
 
-/// Largest distance in metres of the two centres along either axis for the SIMD path. No corner of one box is then more
-/// than `5 sqrt(2) + 2 * 3 < 14` m from a corner of the other, which fits a `Step` (16 m).
+/// Largest distance in metres between the two centres along either axis for the SIMD path. No corner of one box is then
+/// more than `5 sqrt(2) + 2 * 3 < 14` m from a corner of the other, which fits a `Step` (16 m).
 const DISTANCE_MAX: Fx = fx!(5);
 
 /// Largest speculative margin in metres of a pair for the SIMD path.
@@ -119,7 +119,7 @@ pub(crate) struct BoxPairs {
 struct Batch {
     /// Slots of the two boxes of each pair.
     at: [[u32; WIDTH]; 2],
-    /// Vectors from the centres of A to those of B.
+    /// Vectors from the centres of A to the centres of B.
     d: [Ints<WIDTH>; 2],
     radius: [Ints<WIDTH>; 2],
     margin: Ints<WIDTH>,
@@ -149,8 +149,8 @@ impl BoxPairs {
         self.count = 0;
     }
 
-    /// Adds a pair of small boxes by slot, with the vector from the centre of the first to that of the second. Returns
-    /// whether the pair is in the range of the SIMD path; if not, it is not added.
+    /// Adds a pair of small boxes by slot, with the vector from the centre of the first box to the centre of the
+    /// second. Returns whether the pair is in the range of the SIMD path; if not, it is not added.
     #[inline]
     pub(crate) fn push(&mut self, (a, b): Pair, d: Vec2<Fx>, radii: [Length; 2], margin: Length) -> bool {
         if d.x.saturating_abs().max(d.y.saturating_abs()) > DISTANCE_MAX || margin > MARGIN_MAX {
@@ -176,7 +176,7 @@ impl BoxPairs {
         true
     }
 
-    /// Computes the manifolds of all pairs. The machine has vectors: without them, no pairs are added.
+    /// Computes the manifolds of all pairs. `machine` must have vector instructions if pairs were added.
     pub(crate) fn collide(&mut self, machine: Machine, boxes: &SmallBoxes) {
         let batches = &mut self.batches[..self.count.div_ceil(WIDTH)];
         if let (false, Some(vectors)) = (batches.is_empty(), machine.vectors()) {

@@ -1,7 +1,7 @@
 //! Ghost-collision filter: finds a direction in which two shapes stay apart while they move past each other.
 //!
-//! A contact is a plane that is fixed for a tick. The corner of the next block of a flush floor gives such a plane too,
-//! and it would stop a shape that slides along, although the shape would slide over the block. Along a fixed axis `m`
+//! A contact is a plane that is fixed for a tick. The corner of the next block of a flush floor also gives such a
+//! plane. It would stop a sliding shape, although the shape would in fact slide over the block. Along a fixed axis `m`
 //! the separation of two shapes that do not rotate is linear in time,
 //!
 //! ```text
@@ -34,7 +34,7 @@ pub(crate) struct GhostFilter {
     pub(crate) turn: Length,
     /// Overlap that may be left to the next tick.
     pub(crate) slack: Length,
-    /// Largest approach along the axis: a shape that falls onto a face does not pass it.
+    /// Largest approach along the axis in metres: a shape that falls onto a face does not pass by.
     pub(crate) approach: Length,
     /// Contact normal, with either sign.
     pub(crate) normal: Vec2<Unit>,
@@ -96,7 +96,7 @@ fn hull_about<'a>(shape: &'a PosedShape, other: &PosedShape, room: &'a mut Optio
     room.as_ref()
 }
 
-/// Whether a face of `a` separates the hulls. `d` is the vector from the centre of A to that of B.
+/// Whether a face of `a` separates the hulls. `d` is the vector from the centre of A to the centre of B.
 fn some_face_parts(a: &Hull, b: &Hull, d: Vec2<Length>, filter: &GhostFilter) -> bool {
     let radii = step_bits(a.radius) + step_bits(b.radius);
     // The test that rejects most faces comes first.

@@ -5,8 +5,8 @@
 //! Gauss map of the outline):
 //!
 //! ```text
-//! convex vertex    normals between those of the two links; each link has the half nearer to its own
-//! flat or concave  only the two links' normals: a link pushes along its own
+//! convex vertex    normals between the normals of the two links; each link has the half nearer to its own normal
+//! flat or concave  only the two links' normals: a link pushes along its own normal
 //! free end         every direction
 //! ```
 //!
@@ -95,7 +95,7 @@ impl Facing {
         })
     }
 
-    /// Tests the normal `n`, which the shape and the link would have without the chain, against the chain.
+    /// Tests whether the chain allows `n`, the contact normal that the shape and the link alone would have.
     fn judge(&self, n: Vec2<Unit>) -> Verdict {
         let own: Unit = self.normal.dot(n);
         let across: Unit = self.normal.cross(n);

@@ -42,8 +42,8 @@ pub(crate) fn may_meet(a: Aabb, b: Aabb, margin: Length) -> bool {
     a.expanded_nearby(widen(margin).wrapping_add(REJECT_SLACK)).overlaps(b)
 }
 
-/// Contact manifold of two posed shapes whose surfaces are at most `margin` metres apart, with the early reject of the
-/// narrow phase.
+/// Contact manifold of two posed shapes whose surfaces are at most `margin` metres apart. Pairs whose bounding boxes
+/// are too far apart are rejected early.
 pub(crate) fn collide(
     a: &PosedShape,
     b: &PosedShape,
@@ -189,8 +189,8 @@ mod tests {
             let margin = narrow(rng.range(fx!(0.005), fx!(0.2)));
             let mut cached_axis = CachedAxis::default();
             let plain = collide_near(&a, &b, margin, &mut cached_axis, &mut SatCounters::default());
-            // `cached_axis` now contains the separating axis, if there is one. In the second round it contains that of
-            // another pair.
+            // In the first round, `cached_axis` contains the separating axis of the pair, if there is one. In the
+            // second round it contains the separating axis of another pair.
             for _ in 0..2 {
                 let found = collide(&a, &b, margin, &mut cached_axis, &mut counters);
                 assert_eq!(found.points(), plain.points());

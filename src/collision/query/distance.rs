@@ -1,5 +1,6 @@
-//! Distance of two cores: the point of the Minkowski difference `B - A` nearest to the origin, by the algorithm of
-//! E. Gilbert, D. Johnson and S. Keerthi ("A Fast Procedure for Computing the Distance Between Complex Objects", 1988).
+//! Distance of two cores, which are shapes without their radii: the point of the Minkowski difference `B - A` nearest
+//! to the origin, by the algorithm of E. Gilbert, D. Johnson and S. Keerthi ("A Fast Procedure for Computing the
+//! Distance Between Complex Objects", 1988).
 //!
 //! In two dimensions a search direction is a vertex of `B - A` or the perpendicular of an edge, which needs no
 //! rounding. With exact signs each step comes strictly nearer, so the search ends without a tolerance and cannot cycle.
@@ -14,8 +15,9 @@ use crate::math::{Fx, Unit, Vec2};
 /// Distance of two shapes, with the nearest points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Distance {
-    /// Distance between the surfaces in metres. Negative for overlapping shapes: the depth, the shortest translation
-    /// that separates them. The error is at most 20 nm for separate cores and 1e-9 of the size for overlapping cores.
+    /// Distance between the surfaces in metres. For overlapping shapes it is the negative depth, where the depth is the
+    /// length of the shortest translation that separates them. The error is at most 20 nm for separate cores and 1e-9
+    /// of the size for overlapping cores.
     pub(crate) distance: Fx,
     /// Nearest point on the surface of A, or the deepest point of A inside B; relative to the origin of the support
     /// shapes.
@@ -94,7 +96,7 @@ enum Nearest {
     Edge(Vertex, Vertex),
 }
 
-/// Nearest points of two support shapes without their radii; `None` if these share a point.
+/// Nearest points of the cores of two support shapes; `None` if the cores share a point.
 fn nearest(a: &SupportShape, b: &SupportShape) -> Option<Axis> {
     let (first_a, first_b) = (a.points()[0], b.points()[0]);
     let mut found = Nearest::Vertex(Vertex { a: first_a, b: first_b, w: first_b - first_a });

@@ -69,14 +69,15 @@ impl Ring {
         }
     }
 
-    /// The outline at a distance from convex points. Directions are those of the world, so that a disc does not turn.
+    /// The outline at a distance `radius` from the hull of the points. The corners are in fixed world directions, so
+    /// that the ring of a disc does not rotate.
     fn rounded(points: &[Vec2<Fx>], radius: Fx) -> Self {
         let radius = fx_mul(radius, CORNER_RADIUS);
         let corner = |index: u32| {
             let (sin, cos) = Angle::from_bits(index * (u32::MAX / CORNERS + 1)).sin_cos();
             let direction: Vec2<Unit> = Vec2::new(cos, sin);
             let along = |point: &Vec2<Fx>| point.dot(direction.widen());
-            // If several points are furthest, any of them will do.
+            // If several points are furthest, the choice among them does not matter.
             let support = points.iter().copied().reduce(|a, b| if along(&b) > along(&a) { b } else { a });
             support.map(|support| support + direction.widen().scale(radius))
         };
@@ -126,7 +127,7 @@ impl Ring {
             return Some(Extent { size: first.distance(*last), centre: middle }).filter(|line| line.size > 0);
         }
         // Twice the area and six times its first moments, with 64 and 96 fraction bits. Points are within a few hundred
-        // metres of each other, so that all of it fits.
+        // metres of each other, so that the sums fit 128 bits.
         let (mut double, mut moment) = (0i128, [0i128; 2]);
         for pair in rest.windows(2) {
             let [a, b] = [pair[0], pair[1]].map(|point| {

@@ -4,8 +4,8 @@
 //!
 //! A moving shape stops at a distance of [`SKIN`] before contact. Its next move starts there, and must not be stopped
 //! by a surface that it slides along or leaves: if it starts within the skin, or overlapping, only a movement against
-//! the normal is a hit. A movement without a hit never comes deeper than where it began, since along the normal the
-//! separation of convex shapes does not shrink.
+//! the normal is a hit. A movement without a hit never deepens the initial overlap, because the separation of convex
+//! shapes along the normal does not shrink.
 
 use super::distance::{Distance, distance};
 use super::ray::{approach, entry};
@@ -31,7 +31,7 @@ pub(crate) struct ShapeHit {
     pub(crate) fraction: Fx,
     /// The fraction with more bits, enough to order two hits.
     pub(crate) order: Fraction,
-    /// Displacement up to the hit: exact, where the fraction of a long translation is not.
+    /// Displacement up to the hit. For a long translation it is more exact than the fraction.
     pub(crate) travelled: Vec2<Fx>,
     /// Nearest point on the surface of A, relative to the origin of the support shapes.
     pub(crate) point: Vec2<Fx>,
@@ -56,8 +56,8 @@ pub(crate) fn goes_against(normal: Vec2<Unit>, translation: Vec2<Fx>) -> bool {
 }
 
 /// Casts B along `translation` until it is within [`SKIN`] of A; `None` if it never is. If B starts within the skin or
-/// overlapping, the fraction is 0 if B moves against the normal, which is the shortest way out; otherwise there is no
-/// hit.
+/// overlapping, a movement against the normal is a hit with the fraction 0, and any other movement has no hit. The
+/// normal is then the direction of the shortest way out.
 pub(crate) fn cast_shape(a: &SupportShape, b: &SupportShape, translation: Vec2<Fx>) -> Option<ShapeHit> {
     let start = distance(a, b);
     if start.distance <= SKIN + TOLERANCE {
@@ -116,7 +116,7 @@ fn difference(a: &[Vec2<Grid>], b: &[Vec2<Grid>]) -> ([Vec2<Grid>; 2 * POLYGON_V
     (merged, count.max(1))
 }
 
-/// Whether the angle of `u`, from 0 to below a full turn, is less than that of `v`.
+/// Whether the angle of `u`, from 0 to below a full turn, is less than the angle of `v`.
 fn is_before(u: Vec2<Grid>, v: Vec2<Grid>) -> bool {
     let lower_half = |v: Vec2<Grid>| v.y < 0 || (v.y == 0 && v.x < 0);
     match (lower_half(u), lower_half(v)) {

@@ -29,7 +29,7 @@ pub(crate) const TOLERANCE: Fx = fx!(0.00005);
 /// contact.
 const STEPS_MAX: u32 = 48;
 
-/// Largest number of steps of a query. Queries are few.
+/// Largest number of steps of a query. Queries are rare, so the limit can be higher.
 const QUERY_STEPS_MAX: u32 = 512;
 
 /// Largest rotation in radians of a shape that is not a disc about its body's centre. With this limit and
@@ -70,8 +70,8 @@ pub(crate) enum TimeOfImpact {
     Separated,
     /// The shapes first come within the target after this fraction of the tick.
     Hit { fraction: Fx },
-    /// The shapes overlap at the start, so deeply that no direction of separation is reliable; with
-    /// [`StartPolicy::Report`] at any depth.
+    /// The shapes overlap at the start, so deeply that no direction of separation is reliable. With
+    /// [`StartPolicy::Report`], an overlap of any depth gives this result.
     Overlapped,
     /// The search gave up: the shapes do not come within the target before this fraction of the tick.
     Failed { fraction: Fx },
@@ -80,9 +80,10 @@ pub(crate) enum TimeOfImpact {
 /// Treatment of shapes that start within the target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StartPolicy {
-    /// Continuous collision: they may go deeper, but not pass: see [`time_of_impact`].
+    /// Continuous collision: the shapes may come closer and overlap more deeply, but not pass through each other. See
+    /// [`time_of_impact`].
     Protect,
-    /// They may slide, roll and separate, but go no more than [`TOLERANCE`] deeper.
+    /// The shapes may slide, roll and separate, but come closer by at most [`TOLERANCE`].
     Resist,
     /// The result is a hit at fraction 0, or that the shapes overlap.
     Report,
@@ -125,10 +126,10 @@ pub(crate) fn first_impact(
 /// Largest number of steps of a search for the first overlap. Few searches need more than 48.
 const OVERLAP_STEPS_MAX: u32 = 256;
 
-/// Fraction of the tick after which two shapes first overlap, to within 0.05 mm of depth; 0 if they do from the start.
-/// `None` if they do not within the tick, or only by less than 0.05 mm. Arguments as for [`time_of_impact`], but
-/// neither shape is protected. Two segments, which have no depth unless they cross, count as overlapping when they come
-/// within 0.05 mm of each other.
+/// Fraction of the tick after which two shapes first overlap, to within 0.05 mm of depth; 0 if they overlap at the
+/// start. `None` if they do not overlap within the tick, or only by less than 0.05 mm. Arguments as for
+/// [`time_of_impact`], but neither shape is protected. Two segments, which have no depth unless they cross, count as
+/// overlapping when they come within 0.05 mm of each other.
 pub(crate) fn first_overlap(
     a: &SupportShape,
     sweep_a: &Sweep,
@@ -159,13 +160,13 @@ pub(crate) fn first_overlap(
 
 /// Reason why the motion of two shapes is not followed.
 enum Unswept {
-    /// They do not come near each other.
+    /// The shapes do not come near each other.
     Apart,
-    /// One of them rotates too far.
+    /// One of the shapes rotates too far.
     TooFast,
 }
 
-/// The moving shapes about B's centre at the start, if they may come within `target` metres.
+/// Returns the moving shapes, relative to B's centre at the start, if they may come within `target` metres.
 fn swept_pair(
     a: &SupportShape,
     sweep_a: &Sweep,
@@ -231,7 +232,7 @@ fn radii(a: &SupportShape, b: &SupportShape) -> Fx {
     to_fx(a.radius + b.radius)
 }
 
-/// Target for shapes that start in contact: see [`time_of_impact`]. `None` if they are too deep already.
+/// Target for shapes that start in contact: see [`time_of_impact`]. `None` if they overlap too deeply already.
 fn target_of_contact(a: &SupportShape, b: &SupportShape, separation: Fx) -> Option<Fx> {
     let inner = Some(b.inner_radius()).filter(|&inner| inner > 0).unwrap_or_else(|| a.inner_radius());
     let deepest = fx_mul(inner, fx!(-0.75));
@@ -254,7 +255,7 @@ fn near(a: &SupportShape, sweep: &Sweep, b: Vec2<Fx>, window: Fx) -> Option<Supp
 struct SweptShape {
     support: SupportShape,
     sweep: Sweep,
-    /// Centre of its body at the start, relative to that of B.
+    /// Centre of its body at the start, relative to the centre of B's body.
     centre: Vec2<Fx>,
     displacement: Vec2<Fx>,
     /// Rotation in radians; 0 for a disc that rotates about its centre.

@@ -74,7 +74,7 @@ impl Link {
         if orientation(p, q, r) == Orientation::CounterClockwise {
             return own || other;
         }
-        // Beyond the neighbour's own extent its line says nothing about the chain.
+        // Beyond the ends of the neighbour, its line does not decide on which side of the chain a point is.
         let stretch = to - from;
         let beside = (place - from).dot(stretch) >= 0 && (place - to).dot(stretch) <= 0;
         own && (other || !beside)

@@ -103,13 +103,11 @@ impl Hull {
         &self.normals[..self.count]
     }
 
-    /// Vertex `i`.
     #[inline]
     pub(crate) fn vertex(&self, i: usize) -> Vec2<Length> {
         self.vertices[i % POLYGON_VERTICES_MAX]
     }
 
-    /// Normal `i`.
     #[inline]
     pub(crate) fn normal(&self, i: usize) -> Vec2<Unit> {
         self.normals[i % POLYGON_VERTICES_MAX]
@@ -212,7 +210,7 @@ impl Hull {
             && cosine.saturating_abs() < Unit::lit("0.1")
     }
 
-    /// Sets the vertices and normals to those of a polygon at a rotation.
+    /// Sets the vertices and normals to the rotated vertices and normals of a polygon.
     #[inline(always)]
     fn rotate(&mut self, polygon: &Polygon, rotation: Rot) {
         if let (true, Some(faces)) = (self.is_box, Faces::of(polygon.vertices(), polygon.normals())) {
@@ -261,7 +259,7 @@ impl Hull {
 }
 
 impl PosedShape {
-    /// Poses a shape of `body`, whose rotation is passed in because its shapes share it.
+    /// Poses a shape of `body`. `rotation` is the rotation of the body, computed once for all of its shapes.
     pub(crate) fn new(shape: &ShapeDef, body: &Body, rotation: Rot) -> Self {
         Self::of_geometry(&shape.geometry, centre_of(shape, body, || rotation), rotation)
     }

@@ -19,8 +19,8 @@ use crate::math::{Fx, Rot, Unit, Vec2, div_round, round_shift, round_shift_wide,
 /// A coordinate in metres with 28 fraction bits.
 pub(crate) type Grid = FixedI64<U28>;
 
-/// Largest radius of a support shape in metres, larger than that of any shape. Products of this radius and a cross
-/// product of world coordinates fit 128 bits.
+/// Largest radius of a support shape in metres, larger than the radius of any shape. Products of this radius and a
+/// cross product of world coordinates fit 128 bits.
 pub(crate) const RADIUS_MAX: Fx = fx!(512);
 
 /// Number of fraction bits of a world coordinate beyond those of the grid.

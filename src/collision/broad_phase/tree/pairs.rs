@@ -9,8 +9,8 @@ use crate::collision::contact::Pair;
 /// Number of found pairs that are buffered before they are reported.
 const FOUND_MAX: usize = 256;
 
-/// Branch-free list of pairs. Whether two boxes overlap is nearly random, and a mispredicted branch costs more than an
-/// unnecessary store: a pair is always written, and counted only if it is wanted.
+/// List of pairs with a branch-free push. Whether two boxes overlap is nearly random, and a mispredicted branch costs
+/// more than an unnecessary store. A pair is therefore always written, and counted only if it is wanted.
 #[derive(Clone, Debug, Default)]
 struct PairList {
     pairs: Vec<Pair>,
@@ -48,14 +48,14 @@ impl PairList {
 /// Stack of node pairs to visit, and buffer of slot pairs found.
 #[derive(Clone, Debug, Default)]
 pub(in crate::collision::broad_phase) struct Meetings {
-    /// Pairs of overlapping nodes of which at least one is an inner node, and inner nodes paired with themselves.
+    /// Pairs of overlapping nodes with at least one inner node, and inner nodes paired with themselves.
     waiting: PairList,
     found: PairList,
 }
 
 impl Meetings {
     /// Calls `found` with every pair of overlapping boxes of a tree once, except for most pairs within one collision
-    /// class. Skips pairs of nodes of which neither is wanted.
+    /// class. Skips pairs of nodes without a wanted node.
     pub(in crate::collision::broad_phase) fn within(
         &mut self,
         tree: &Tree,
@@ -124,8 +124,8 @@ impl Meetings {
         }
     }
 
-    /// Lists the pairs of nodes that overlap and of which at least one is wanted: pairs of leaves as found, all others
-    /// as waiting.
+    /// Selects the pairs of nodes that overlap and include a wanted node. Pairs of leaves are added to `found`, and all
+    /// others to `waiting`.
     #[inline(always)]
     fn meet<const N: usize>(&mut self, pairs: [[(u32, &Node); 2]; N], wanted: &impl Fn(&Node) -> bool) {
         let (mut found, mut waiting) = ([((NONE, NONE), false); N], [((NONE, NONE), false); N]);

@@ -65,7 +65,8 @@ impl Tree {
                 None => self.set(slot, fat),
             }
         }
-        // Rebuilds a tree of which more than a quarter was relinked, or whose cost has grown by a quarter.
+        // Rebuilds the tree if more than a quarter of its leaves have been relinked, or if its cost has grown by a
+        // quarter.
         if self.relinked > self.len / 4 || self.refit_all() / 5 > self.rebuilt.cost / 4 {
             self.rebuild();
         }
@@ -116,7 +117,7 @@ impl Tree {
         (self.root, self.vacant) = (NONE, NONE);
         self.len = u32::try_from(rebuilt.loose.len()).expect("fewer than 2^31 shapes");
         self.build(&mut rebuilt);
-        // Children are stored after their parents.
+        // Children are stored after their parents, so that `refit_all` can visit the nodes in reverse order of storage.
         (self.relinked, self.strays) = (0, 0);
         rebuilt.cost = self.refit_all();
         self.rebuilt = rebuilt;

@@ -71,7 +71,7 @@ impl Tree {
 }
 
 fn random_class(rng: &mut Rng) -> CollisionClass {
-    let group = -i32::try_from(rng.below(3)).expect("few");
+    let group = -i32::try_from(rng.below(3)).expect("a small index");
     Filter { group, ..Filter::default() }.collision_class()
 }
 
@@ -203,7 +203,7 @@ fn many_boxes_at_once_keep_the_tree_sound_and_tight() {
         tree.set_many(boxes[..some].iter().copied());
         (0..30).for_each(|_| tree.set_collision_class(rng.below(1000), random_class(&mut rng)));
         tree.validate();
-        // A few strays wait for the next refit.
+        // A few strays stay misplaced until the next refit.
         assert!(
             tree.strays > 0 || tree.cost() < fresh * 3 / 2,
             "round {round}: cost {} of {fresh}",

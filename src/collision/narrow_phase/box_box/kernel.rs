@@ -1,14 +1,14 @@
 //! SIMD kernel of [`hull_hull`](crate::collision::narrow_phase::hull_hull) for boxes: separating axis test and clipping
 //! of eight pairs at a time.
 //!
-//! For the face normal `n` of a box centred at `-d` from another box, with `v` a vertex on that face and `w` the
-//! vertices of the other box,
+//! Let `n` be a face normal of a box, `v` a vertex on that face, `d` the vector from the centre of the box to the
+//! centre of another box, and `w` the vertices of the other box. Then
 //!
 //! ```text
 //! separation = |n . d| - n . v - max |n . w|
 //! ```
 //!
-//! is the separation from the face or from its opposite, whichever faces the other box.
+//! is the separation of the other box from the face or from the opposite face, whichever faces the other box.
 
 use super::{Batch, Manifolds, Turned};
 use crate::collision::narrow_phase::hull_hull::{CLIP_BITS, FACE_BITS, FINER, TOLERANCE};
@@ -50,15 +50,15 @@ struct Edge<T> {
     end: Vector<T>,
 }
 
-/// End of the incident edge: its position along the reference edge, as a length from the start of that edge, and its
-/// height above it, as a step.
+/// End of the incident edge: its position along the reference edge from the start of that edge, in units of `Length`,
+/// and its height above the reference edge, in units of `Step`.
 #[derive(Clone, Copy)]
 struct ClipPoint<T> {
     along: T,
     above: T,
 }
 
-/// Reference edge, in the form that contact points need. Radii and margin are steps.
+/// Reference edge, in the form that contact points need. Radii and margin are in units of `Step`.
 struct Reference<T> {
     n: Vector<T>,
     /// Start of the edge, from the centre of A.
@@ -228,7 +228,7 @@ fn best_face<L: Lanes<WIDTH>>(
     (Choice { second, opposite }, L::max_wide(separation_0, separation_1))
 }
 
-/// Whether the opposite of a face faces `b`, and the separation of the face or its opposite, whichever faces `b`.
+/// Whether `b` is on the side of the opposite face, and the separation of `b` from the face on its side.
 #[inline(always)]
 fn further_of_opposite<L: Lanes<WIDTH>>(
     n: Vector<L::Int>,
@@ -277,7 +277,7 @@ fn index<L: Lanes<WIDTH>>(Choice { second, opposite }: Choice<L::Mask>) -> L::In
     L::sub(L::sub(L::sub(L::splat(0), second), opposite), opposite)
 }
 
-/// Coordinates of a position, given from the start of the reference edge.
+/// Coordinates of a position that is relative to the start of the reference edge.
 #[inline(always)]
 fn end<L: Lanes<WIDTH>>(n: Vector<L::Int>, place: Vector<L::Int>) -> ClipPoint<L::Int> {
     ClipPoint { along: along::<L>(n, place), above: L::narrow::<TO_STEP>(dot::<L>(n, place)) }
@@ -307,8 +307,8 @@ fn nearest_at_corner<L: Lanes<WIDTH>>(
     L::either(before, behind)
 }
 
-/// Height of an end above the reference edge, clipped by `past` if that is positive. Both `past` and `span`, the larger
-/// extent of the incident edge, are measured along the reference edge.
+/// Height of an end above the reference edge, after the end has been clipped by `past` if `past` is positive. `past`
+/// and `span`, the extent of the incident edge, are measured along the reference edge.
 #[inline(always)]
 fn clipped<L: Lanes<WIDTH>>(
     end: ClipPoint<L::Int>,

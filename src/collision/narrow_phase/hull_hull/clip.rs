@@ -87,8 +87,9 @@ pub(in crate::collision) fn clip(
     let low = if lower.along < first.along { clipped(lower, upper, first.along) } else { lower };
     let high = if upper.along > last.along { clipped(upper, lower, last.along) } else { upper };
     if let Some((vertex_a, vertex_b)) = corners {
-        // Rounded edges that are nearly parallel are nearest at corners too, but rest on both ends: there the corners
-        // are no nearer than the clipped edge, and no further than the face.
+        // Nearly parallel rounded edges are nearest at corners too, but need a contact point at each end. In this case,
+        // within the tolerance, the distance of the corners is at least the distance of the clipped edge and at most
+        // the separation from the face.
         let gap = Gap::between(&context, vertex_a, vertex_b);
         let distance = step_bits(gap.distance);
         let nearer = low.above.min(high.above);
@@ -229,8 +230,8 @@ impl Clip<'_> {
         manifold
     }
 
-    /// Adds the contact point at an end of B, given relative to a point on A's outline without radii, if it is within
-    /// the margin.
+    /// Adds the contact point at an end of B if it is within the margin. The end is relative to `start`, a point on A's
+    /// outline without radii.
     #[inline(always)]
     fn push(&self, manifold: &mut Manifold, start: Vec2<Length>, vertex: usize, end: ClipPoint) {
         let (radius_a, radius_b) = (step_bits(self.a.radius), step_bits(self.b.radius));

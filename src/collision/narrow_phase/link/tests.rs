@@ -57,7 +57,7 @@ fn corners(shape: &PosedShape) -> (Vec<Vec2<Fx>>, Fx) {
     }
 }
 
-/// Smallest distance between the vertices and edges of an outline and those of a polyline.
+/// Smallest distance between an outline and a polyline, over all pairs of a vertex and an edge.
 fn distance(outline: &[Vec2<Fx>], line: &[Vec2<Fx>]) -> Fx {
     let from_line = outline.iter().flat_map(|&corner| {
         line.windows(2).map(move |link| closest_point_on_segment(corner, link[0], link[1]).distance(corner))
