@@ -8,23 +8,23 @@ use crate::fx;
 use crate::math::{Aabb, Fx, Vec2};
 use crate::world::World;
 
-/// Smallest distance in metres of which a scene includes four times: a body within 64 m of the median always belongs to
-/// it.
+/// Smallest reach of a scene in metres. Bodies within four times the reach of the median belong to the scene, hence all
+/// bodies within 64 m.
 const SCENE_REACH_MIN: Fx = fx!(16);
 /// Maximum distance, in scene sizes, at which ground is included.
 const GROUND_SIZES: i64 = 12;
-/// Search distance for ground, in metres. For a scene larger than this, the distance is the size of the scene; for a
-/// small scene, [`GROUND_SIZES`] limits it. A falling ball should be shown with the floor below it, but not with a
-/// floor so far away that the ball becomes invisible.
+/// Search distance for ground, in metres. For a scene larger than 16 m, the distance is the size of the scene; for a
+/// small scene, [`GROUND_SIZES`] limits the distance. A falling ball should be shown with the floor below it, but not
+/// with a floor so far away that the ball becomes invisible.
 const GROUND_REACH: Fx = fx!(16);
 /// Maximum size, in metres, of a fixed shape that is shown if no body can move.
 const FIXED_SIZE_MAX: Fx = fx!(512);
 
 /// Returns the window around all bodies that can move, their joints, and the ground near them, with a margin.
 ///
-/// A body far away from all others is left out, because it would make the rest too small to see. Of a fixed shape
-/// larger than the distance up to which ground is included, only the nearest point is in the window. The window depends
-/// on the current positions, so it moves with the bodies.
+/// A body far away from all others is left out, because it would make the rest too small to see. A fixed shape larger
+/// than the distance up to which ground is included contributes only its nearest point. The window depends on the
+/// current positions, so it moves with the bodies.
 #[must_use]
 pub fn fit(world: &World) -> Aabb {
     let moving = world.bodies().filter(|(_, body)| body.kind() != BodyKind::Fixed);
@@ -50,9 +50,9 @@ fn bounds_of(world: &World, body: &Body) -> Aabb {
     boxes.reduce(Aabb::union).unwrap_or(Aabb::new(centre, centre))
 }
 
-/// The box around the bodies that form the scene. Bodies are sorted by distance from the median. A body is left out,
-/// together with all bodies after it, if it is more than four times as far away as all bodies before it and as
-/// [`SCENE_REACH_MIN`].
+/// The box around the bodies that form the scene. Bodies are sorted by distance from the median. The scene ends before
+/// the first body whose distance exceeds four times [`SCENE_REACH_MIN`] and four times the distance of the body before
+/// it.
 fn scene_of(mut boxes: Vec<Aabb>) -> Option<Aabb> {
     let middle = |component: fn(Vec2<Fx>) -> Fx| {
         let mut values: Vec<Fx> = boxes.iter().map(|aabb| component(aabb.centre())).collect();

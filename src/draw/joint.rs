@@ -40,7 +40,7 @@ pub(super) fn add(world: &World, id: JointId, layers: Layers, found: Sink<'_>) {
                 add(Style::JointArm, Form::Line { from, to });
             }
         }
-        // The anchors of gears and racks are meant to be apart.
+        // The anchors of gears and racks are apart by design.
         JointKind::Gear(_) | JointKind::Rack(_) => {}
         _ => {
             let meant = nearest_allowed(joint, world, (anchor_a, anchor_b));

@@ -126,7 +126,7 @@ impl Default for Layers {
 /// # use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, math::Vec2, world::World};
 /// # let mut world = World::default();
 /// world.spawn(&BodyDef::dynamic(), &[ShapeDef::new(Geometry::circle(fx!(1))?)])?;
-/// // The painter of a game: it knows three forms, and highlights the body that was clicked.
+/// // A game's renderer, which supports three forms and highlights the body that was clicked.
 /// let clicked = world.overlap_point(Vec2::ZERO, Default::default());
 /// let clicked = clicked.first().and_then(|&shape| Some(world.shape(shape)?.body()));
 /// let mut highlighted = 0;

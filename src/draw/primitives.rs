@@ -16,7 +16,7 @@ const VELOCITY_TIME: Fx = fx!(0.1);
 
 /// Drawn length of the force that accelerates by [`FORCE_UNIT`], in metres: shorter than a typical body.
 const FORCE_LENGTH: Fx = fx!(0.2);
-/// Approximate gravity, in m/s².
+/// Unit of drawn accelerations in m/s²: approximately gravity.
 const FORCE_UNIT: i64 = 10;
 
 /// Returns the primitives of the given layers of a world: the boxes of the broad phase, then the bodies, islands,
@@ -28,8 +28,8 @@ pub fn primitives(world: &World, layers: Layers) -> Vec<Primitive> {
     found
 }
 
-/// Same as [`primitives`], but passes the primitives to `found` one by one instead of storing them. A large world has a
-/// hundred thousand.
+/// Same as [`primitives`], but passes the primitives to `found` one by one instead of storing them. A large world has
+/// about a hundred thousand primitives.
 pub fn each_primitive(world: &World, layers: Layers, found: Sink<'_>) {
     if layers.broad_phase {
         for (aabb, _) in world.broad_phase_boxes() {

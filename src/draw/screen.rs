@@ -128,7 +128,7 @@ mod tests {
         assert_eq!(screen.length(fx!(0.5)), Pixel(2500));
         assert!(
             screen.seen.contains_point(Vec2::new(fx!(10), fx!(-5))),
-            "the window has the aspect ratio of the picture"
+            "the window should have the aspect ratio of the picture"
         );
     }
 

@@ -51,7 +51,7 @@ impl Default for View {
 pub enum Frame {
     /// The window chosen by [`fit`](super::fit()).
     Fit,
-    /// This window, centred. If the picture has other proportions, it shows more of the world on its longer side. A
+    /// This window, centred. If the picture has another aspect ratio, it shows more of the world on its longer side. A
     /// window narrower than 2 cm is shown as 2 cm wide.
     ///
     /// Use the same window for several ticks of one scene.
