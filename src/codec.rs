@@ -86,9 +86,9 @@ pub fn encode<T: Serialize + ?Sized>(value: &T) -> Vec<u8> {
 /// Largest number of bytes that [`decode`] accepts: 256 MiB.
 pub const DECODE_BYTES_MAX: usize = 256 << 20;
 
-/// Slack of the decoder's limit in bytes. If the announced length of a string exceeds the bytes given by at most the
-/// slack, the error is that bytes are missing; if it exceeds them by more, that the length is too large. 16 is the size
-/// of the largest number, a u128.
+/// Slack of the decoder's limit in bytes: the size of the largest number, a `u128`. If the announced length of a string
+/// exceeds the bytes given by at most the slack, the error is that bytes are missing. If the length exceeds them by
+/// more, the error is that it is too large.
 const SLACK: usize = 16;
 
 /// Decodes a value whose canonical encoding is all of `bytes`.

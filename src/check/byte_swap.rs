@@ -47,7 +47,7 @@ impl<G: Game> Default for ByteSwaps<G> {
 }
 
 impl<G: Game> ByteSwaps<G> {
-    /// Keeps the save after a tick if it is due, and examines the saves whose future is known.
+    /// Keeps the save after a tick if it is due, and examines the saves that [`FUTURE`] ticks have followed.
     pub(super) fn perturb(
         &mut self,
         game: &G,
@@ -89,7 +89,7 @@ impl<G: Game> ByteSwaps<G> {
         let mut byte_swaps: Vec<_> = byte_swaps.filter(|(range, _)| !overlap(range, &world)).collect();
         byte_swaps.sort_by(|a, b| (a.0.start, a.0.end, &a.1).cmp(&(b.0.start, b.0.end, &b.1)));
         byte_swaps.dedup();
-        // If there are more swaps than are tried, each save starts at a different one.
+        // If there are more than [`TRIES_MAX`] swaps, each save starts at a different swap.
         let turn = usize::try_from(moment.tick).unwrap_or(0).wrapping_mul(7) % byte_swaps.len().max(1);
         byte_swaps.rotate_left(turn);
         for (range, replacement) in byte_swaps.into_iter().take(TRIES_MAX) {
@@ -104,7 +104,7 @@ impl<G: Game> ByteSwaps<G> {
     }
 
     /// Plays two states with the same hash. Returns the number of ticks after which their hashes differ, and the saves
-    /// at the start; `None` if they do not differ, or if the changed bytes are no other state with this hash.
+    /// at the start; `None` if they do not differ, or if the changed bytes are not another state with the same hash.
     #[expect(clippy::type_complexity, reason = "it is taken apart at once")]
     fn futures_differ(
         &self,

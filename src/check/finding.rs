@@ -15,7 +15,7 @@ use crate::world::Phase;
 ///
 /// ```
 /// use lockstep2d::check::Fault;
-/// // Names what to look at first.
+/// // The most frequent cause of a fault.
 /// let cause = |fault: &Fault| match fault {
 ///     Fault::Hash => "a field that `save` or `load` leaves out, a clock, a hash map",
 ///     Fault::Unhashed => "a field that `state_hash` leaves out",
@@ -88,7 +88,7 @@ impl Guess {
 ///     rollback: Some((3, Guess::Held)),
 ///     differences: vec![],
 /// };
-/// // What a failed test prints.
+/// // The text that a failed test prints.
 /// let text = finding.to_string();
 /// assert!(text.contains("40") && text.contains('3'), "{text}");
 /// ```

@@ -50,8 +50,8 @@ use log::{INTERVAL, Log, Logged};
 
 /// Plays a game from a setup with the inputs of every tick, in every variant ([`Variant`]) of the options.
 ///
-/// With the default options this costs about twenty plain runs of the log. `inputs` has a list for each tick, with an
-/// input for each player.
+/// With the default options, a check takes as long as about twenty plain runs of the log. `inputs` has a list for each
+/// tick, with an input for each player.
 ///
 /// # Errors
 /// [`CheckError::Failed`] with the fault of the game; [`CheckError::Record`] if the setup cannot start a game, or if

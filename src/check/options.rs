@@ -18,7 +18,7 @@ use crate::world::Backend;
 /// // A short test for every build: the two variants that find most mistakes.
 /// let quick = CheckOptions::default().only(&[Variant::Reloaded, Variant::RolledBack]);
 /// assert_eq!(quick.variants.len(), 2);
-/// // All that this machine can play, for the night.
+/// // All variants that this machine supports, for a nightly test.
 /// assert!(Variant::all().contains(&Variant::ByteSwapped));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +42,8 @@ pub enum Variant {
     BroadPhase(BroadPhaseKind),
     /// A tick runs on another number of threads; skipped without the feature `parallel`.
     Threads(usize),
-    /// Bytes of a save are swapped for those of another tick: if the hash does not change, the future must not either.
+    /// Bytes of a save are replaced by bytes of another tick's save. If the hash does not change, future states must
+    /// not change.
     ByteSwapped,
     /// The game is recorded and its replay verified, claims included.
     Recorded,

@@ -62,7 +62,7 @@ impl<G: Game> Replica<G> {
     pub(super) fn step(&mut self, now: &Now<'_, G>) -> Result<(), Box<Finding>> {
         self.arrange();
         if self.variant == Variant::Again {
-            // The reference run was polled for its work, and this replica must match it exactly.
+            // The reference run has called `work` before this tick, and this replica must make the same calls.
             let _work = self.game.work(now.inputs);
         }
         let phases = step(&mut self.game, now.inputs, now.options.phases);

@@ -10,8 +10,8 @@ use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, Visitor};
 use crate::lockstep::{EncodedInputs, Game};
 use crate::math::Rng;
 
-/// Generates inputs for some players, tick by tick, from bytes. Every byte string is a log, and a small change of the
-/// bytes mostly makes a small change of the log.
+/// Generates inputs for some players, tick by tick, from bytes. Every byte string gives a log, and a small change of
+/// the bytes usually causes a small change of the log.
 ///
 /// The first byte of a tick decides whether inputs are held, for up to 16 ticks, or whether one player or all players
 /// get new ones. New inputs are made by the input's own `Deserialize`: the bytes choose variants, lengths and numbers,

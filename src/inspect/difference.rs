@@ -35,7 +35,8 @@ impl Difference {
         Difference { field: field.clone(), a: a.map(value), b: b.map(value) }
     }
 
-    /// The field that differs, with its path and names ([`Field::path`]): that of the first list if it is in both.
+    /// The field that differs, with its path and names ([`Field::path`]). If both lists contain it, this is the field
+    /// of the first list.
     #[must_use]
     pub fn field(&self) -> &Field {
         &self.field

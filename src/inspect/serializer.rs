@@ -115,7 +115,7 @@ impl Collector {
         result
     }
 
-    /// Number of fraction bits of the current fixed-point number. Its type name spells the number as binary digits,
+    /// Number of fraction bits of the current fixed-point number. The type name contains this number as binary digits,
     /// `B1` and `B0`.
     pub(super) fn fraction_bits(&self) -> Option<u32> {
         let name = self.kind.trim_start_matches('&').strip_prefix("fixed::")?;

@@ -87,7 +87,7 @@ fn every_kind_of_value_has_its_fields() {
     assert_eq!(lines(&Kind::One(1)), [" = One", "One = 1"]);
 }
 
-/// Type names spell the number of fraction bits.
+/// Type names contain the number of fraction bits.
 #[test]
 fn every_format_is_known_by_its_fraction_bits() {
     fn bits<T: Serialize>(value: T) -> Option<u32> {

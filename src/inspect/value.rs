@@ -38,7 +38,7 @@ pub enum Value {
     },
     /// An angle.
     Angle(Angle),
-    /// A floating-point number, by its bits. A game may display one, though none belongs in its state.
+    /// A floating-point number, as its bits. A game may use one for display, but not in its state.
     Float(u64),
     /// Text.
     Text(String),
@@ -129,7 +129,8 @@ impl fmt::Display for Value {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
     pub(super) path: String,
-    /// Lengths in bytes of two prefixes of the path: that of the enclosing object, and that of its section.
+    /// Lengths in bytes of two prefixes of the path: the path of the enclosing object, and the path of the object's
+    /// section.
     pub(super) subject: Option<(usize, usize)>,
     /// Value of the field.
     pub value: Value,

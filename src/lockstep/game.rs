@@ -135,7 +135,7 @@ impl core::error::Error for SetupError {}
 ///     fn world_mut(&mut self) -> Option<&mut World> { Some(&mut self.world) }
 /// }
 ///
-/// // This gives: recording, verification, tools, matches, and a check of determinism.
+/// // The trait provides recording, verification, tools, matches, and a check of determinism.
 /// use lockstep2d::check::{CheckOptions, check, random_inputs};
 /// let inputs = random_inputs::<Lift>(1, 30, &mut Rng::new(1));
 /// check::<Lift>(&(), &inputs, &CheckOptions::default())?;
@@ -146,8 +146,8 @@ pub trait Game: Sized {
     type Setup: Serialize + DeserializeOwned;
     /// Input of one player for one tick. `Default` is "nothing pressed".
     type Input: Clone + Default + PartialEq + Serialize + DeserializeOwned;
-    /// Complete copy of the state, which [`Game::load`] restores. Saves are sent to late joiners and compared with
-    /// those of other machines. Desync reports show the field names of the human-readable serialization.
+    /// Complete copy of the state, which [`Game::load`] restores. Saves are sent to late joiners and compared with the
+    /// saves of other machines. Desync reports show the field names of the human-readable serialization.
     type Save: Clone + Serialize + DeserializeOwned;
 
     /// The name and version of the rules.

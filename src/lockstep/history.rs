@@ -1,4 +1,4 @@
-//! [`History`]: saves of the last seconds of a game, with which a divergence that is detected late is examined at its
+//! [`History`]: saves of the last seconds of a game. A divergence that is detected late can be examined in them at its
 //! first tick.
 
 use alloc::collections::VecDeque;

@@ -54,7 +54,7 @@ impl core::error::Error for InputError {}
 /// # impl Clone for Stick { fn clone(&self) -> Self { Stick(self.0) } }
 /// impl From<i8> for Stick { fn from(sent: i8) -> Self { Stick(sent * 16) } }
 /// impl From<Stick> for i8 { fn from(stick: Stick) -> i8 { stick.0 / 16 } }
-/// // The player's own machine, too, plays what the others receive.
+/// // The player's own machine also simulates the decoded inputs.
 /// let inputs = EncodedInputs::new(&[Stick(100)], 1)?;
 /// assert_eq!((inputs.bytes(), inputs.inputs()), (&[6][..], &[Stick(96)][..]));
 /// # Ok::<(), lockstep2d::lockstep::InputError>(())
@@ -84,7 +84,8 @@ impl<I: Serialize + DeserializeOwned> EncodedInputs<I> {
         Ok(EncodedInputs { bytes, inputs })
     }
 
-    /// Encodes the inputs of all players. Returns `None` if the bytes equal those of `last`; otherwise decodes them.
+    /// Encodes the inputs of all players. Returns `None` if the bytes equal the bytes of `last`; otherwise decodes the
+    /// bytes.
     ///
     /// # Errors
     /// Same as [`EncodedInputs::new`].
@@ -215,7 +216,8 @@ impl<I: Serialize + DeserializeOwned> InputLog<I> {
         Ok(self.extend((!is_same).then(|| inputs.clone())))
     }
 
-    /// Adds a tick with new inputs, or with those of the tick before, and returns its inputs.
+    /// Adds a tick with the inputs `new`, or with the inputs of the previous tick if `new` is `None`, and returns its
+    /// inputs.
     fn extend(&mut self, new: Option<EncodedInputs<I>>) -> &[I] {
         let end = self.ticks() + 1;
         match (new, self.runs.last_mut()) {
@@ -263,7 +265,7 @@ mod tests {
     }
 
     fn values_of(log: &InputLog<u8>) -> Vec<u8> {
-        assert_eq!(log.get(log.ticks()), None, "the log ends at `ticks()`");
+        assert_eq!(log.get(log.ticks()), None, "the log should end at `ticks()`");
         (0..log.ticks()).map(|tick| log.get(tick).expect("a logged tick")[0]).collect()
     }
 

@@ -104,8 +104,8 @@ impl Game for Sandbox {
 
     const RULES: RulesId = RulesId { name: "sandbox", version: 1 };
 
-    /// Refuses a setup if its settings or any of its commands are refused: unlike a player's commands, the commands of
-    /// a setup are not predictions that may fail.
+    /// Refuses a setup if the world refuses its settings or any of its commands. Only a player's commands are skipped
+    /// if the world refuses them, because they may be wrong predictions.
     fn new(setup: &SandboxSetup) -> Result<Self, SetupError> {
         match Self::new_within(setup, SETUP_WORK_MAX) {
             Ok((game, _)) => Ok(game),
