@@ -59,9 +59,9 @@ pub struct ShapeDef {
     ///
     /// A shape that touches the platform is stopped if the contact normal, from the platform to the other shape, is
     /// within 60 degrees of the direction, and passes otherwise: from above the platform is solid, from below and from
-    /// the sides it is not. A passing pair continues to pass while the shapes overlap by more than a quarter of the
-    /// world's speculative distance along the direction, so a shape that turns round half-way falls back. A pair that
-    /// passes does not touch.
+    /// the sides it is not. A passing pair continues to pass while the shapes overlap along the direction by more than
+    /// a quarter of the world's speculative distance or, for small shapes, a 32nd of the smaller shape's extent. A
+    /// shape that turns round half-way therefore falls back. A pair that passes does not touch.
     pub one_way: Option<Angle>,
     /// Whether the shape is a sensor, which detects overlaps and generates no contact response. It also detects shapes
     /// that cross it within a tick: see [`SensorEvent`](crate::world::SensorEvent). A sensor detects other sensors only

@@ -85,7 +85,7 @@ impl KeptManifold {
         }
     }
 
-    /// Keeps each coordinate of the lever arms of an earlier manifold with the same points that differs from the new
+    /// Takes over the lever arms of an earlier manifold with the same points: each coordinate that differs from the new
     /// one by at most the tolerance of the body in metres.
     pub(crate) fn keep_arms_of(&mut self, last: &Self, [tolerance_a, tolerance_b]: [Length; 2]) {
         let keep = |new: &mut Vec2<Length>, old: Vec2<Length>, tolerance: Length| {
