@@ -35,7 +35,7 @@ fn random_box(rng: &mut Rng, world: i64) -> Aabb {
 const WORLDS: [i64; 3] = [8 << 32, 1 << 62, i64::MAX];
 
 fn random_class(rng: &mut Rng, count: u32) -> CollisionClass {
-    let group = -i32::try_from(rng.below(count + 1)).expect("a small index");
+    let group = -i32::try_from(rng.below(count + 1)).expect("a small number");
     Filter { group, ..Filter::default() }.collision_class()
 }
 
@@ -75,7 +75,7 @@ impl Crowd {
         let is_new = self.boxes[slot].is_none() || self.fixed[slot] != fixed;
         (self.boxes[slot], self.fixed[slot]) = (Some(fat), fixed);
         for kind in &mut self.kinds {
-            match u32::try_from(slot).expect("a small index") {
+            match u32::try_from(slot).expect("a small number") {
                 slot if is_new => kind.put(slot, fat, fixed),
                 slot => kind.set(slot, fat),
             }
@@ -91,12 +91,12 @@ impl Crowd {
         self.class[slot] = class;
         self.kinds
             .iter_mut()
-            .for_each(|kind| kind.set_collision_class(u32::try_from(slot).expect("a small index"), class));
+            .for_each(|kind| kind.set_collision_class(u32::try_from(slot).expect("a small number"), class));
     }
 
     fn remove(&mut self, slot: usize) {
         (self.boxes[slot], self.class[slot]) = (None, CollisionClass::NONE);
-        self.kinds.iter_mut().for_each(|kind| kind.remove(u32::try_from(slot).expect("a small index")));
+        self.kinds.iter_mut().for_each(|kind| kind.remove(u32::try_from(slot).expect("a small number")));
     }
 
     fn refill(&mut self) {

@@ -71,7 +71,7 @@ impl Tree {
 }
 
 fn random_class(rng: &mut Rng) -> CollisionClass {
-    let group = -i32::try_from(rng.below(3)).expect("a small index");
+    let group = -i32::try_from(rng.below(3)).expect("a small number");
     Filter { group, ..Filter::default() }.collision_class()
 }
 
