@@ -4,7 +4,7 @@ use super::super::pair::shift;
 use crate::math::{Shift, Step};
 use crate::simd::{Ints, Lanes};
 
-/// `N` contacts for one tick, of which no two change the same body. Lanes without a contact have gains of 0, and the
+/// `N` contacts for one tick, no two of which change the same body. Lanes without a contact have gains of 0, and the
 /// ground as both bodies.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
@@ -36,7 +36,7 @@ pub(in crate::solver) struct Batch<const N: usize> {
     pub(super) pushed: [u32; 2],
 }
 
-/// The same point of `N` contacts.
+/// One point of each of `N` contacts.
 #[derive(Clone, Debug)]
 pub(super) struct Point<const N: usize> {
     pub(super) normal: Row<N>,
@@ -49,8 +49,8 @@ pub(super) struct Point<const N: usize> {
     pub(super) normal_lambda: Ints<N>,
 }
 
-/// `N` rows: lever ratios, and the velocity changes by an impulse of 1. The linear part of the Jacobian is the
-/// direction, which all rows of a contact along the same direction share.
+/// `N` rows: lever ratios, and the velocity changes by an impulse of 1. The linear part of the Jacobian is the normal
+/// or the tangent, which is stored once in the batch.
 #[derive(Clone, Debug)]
 pub(super) struct Row<const N: usize> {
     pub(super) e_a: Ints<N>,
