@@ -3,9 +3,9 @@
 //! A force `F` that pulls a body outwards at an arm `r` returns the body like a pendulum with the stiffness `F . r`.
 //! Computed from the pose at the start of each sub-step, this is a kicked rotor with the kick `kappa = h^2 F . r / I`,
 //! and its energy grows if `kappa` is above about 1 (B. Chirikov, "A universal instability of many-dimensional
-//! oscillator systems", 1979). A body above [`KICK_MIN`] therefore answers the impulses of its block with the inertia
-//! `I + h^2 F . r`, as in a step that is implicit in the rotation (S. Andrews, M. Teichmann and P. Kry, "Geometric
-//! Stiffness for Real-time Constrained Multibody Dynamics", 2017). `F` is the force of the last sub-step.
+//! oscillator systems", 1979). A body above [`KICK_MIN`] therefore responds to the impulses of its block with the
+//! inertia `I + h^2 F . r`, as in a step that is implicit in the rotation (S. Andrews, M. Teichmann and P. Kry,
+//! "Geometric Stiffness for Real-time Constrained Multibody Dynamics", 2017). `F` is the force of the last sub-step.
 
 use super::super::hinge::HingeSet;
 use super::super::list::JointList;
@@ -14,8 +14,8 @@ use super::scaling::{length, product};
 use super::{Block, Blocks};
 use crate::math::{Ratio, Vec2, round_shift_wide, saturate_wide};
 
-/// Smallest kick that changes the inertia, with 30 fraction bits. The larger inertia costs angular momentum, so that
-/// bodies below the instability keep theirs.
+/// Smallest kick that changes the inertia, with 30 fraction bits. The larger inertia does not conserve angular
+/// momentum, so that it is not applied to bodies that are stable without it.
 const KICK_MIN: i64 = ONE / 2;
 
 /// Limit to which kicks are clamped.
@@ -60,7 +60,7 @@ impl Blocks {
         list: &JointList,
         rotation_of: impl Fn(u32, i64) -> i64,
     ) {
-        // The impulses of the last tick are known, but not yet the rows on which they act.
+        // The impulses of the last tick are known, but the rows on which they act have not been computed yet.
         if core::mem::take(&mut self.is_first_sub_step) {
             self.refresh(hinges, list);
         }

@@ -65,8 +65,8 @@ fn roots_and_inverses_are_those_of_theory() {
 }
 
 /// Joints store the impulses of a block scaled by other denominators. Dividing and multiplying again is exact to 2^-18:
-/// the 30 fraction bits of a root, times the largest condition of the matrix, 2^9, and a few roundings. A body that
-/// keeps less of its rotation takes less of an impulse across its arm.
+/// the 30 fraction bits of a root, times the largest condition number of the matrix, 2^9, and a few roundings. A body
+/// that keeps less of its rotation takes less of an impulse across its arm.
 #[test]
 fn impulses_are_the_same_whatever_the_denominator() {
     let mut rng = Rng::new(23);
