@@ -35,7 +35,7 @@ pub(super) struct ContactVelocities {
 
 type Groups<const N: usize> = Vec<Group<N>>;
 
-/// Bodies that are processed together: as many as there are lanes.
+/// Bodies that are processed together, one in each lane.
 #[derive(Clone, Debug)]
 #[repr(align(32))]
 struct Group<const N: usize> {

@@ -74,16 +74,17 @@ pub struct SolverSettings {
     /// Method by which contacts remove overlap.
     pub contact: ContactTuning,
     /// Stiffness in Hz of joints that have no [softness of their own](crate::solver::JointDef::softness), at most a
-    /// quarter of the sub-step rate. It is doubled for the anchors of an anchored hinge or rigid weld, which connects a
-    /// body without any other joint to a body that is not dynamic.
+    /// quarter of the sub-step rate. It is doubled for the anchors of an anchored hinge or rigid weld. Such a joint
+    /// connects a body without any other joint to a body that is not dynamic, so that its stiffness disturbs no other
+    /// joint.
     pub joint_hertz: Fx,
     /// Damping ratio of joints, 0 to 100.
     pub joint_damping_ratio: Fx,
     /// Approach speed in m/s below which restitution is not applied, 0 to 400, for shapes without a threshold of their
     /// own ([`Material::restitution_threshold`](crate::body::Material::restitution_threshold)).
     pub restitution_threshold: Fx,
-    /// Speed limit in m/s, at most 400. It also limits the radius of gyration times the angular velocity. With fewer
-    /// than 27 ticks per second, the limit is [`DISTANCE_MAX`] per tick instead, which is lower than 400 m/s.
+    /// Speed limit in m/s, at most 400. It also limits the radius of gyration times the angular velocity. At fewer than
+    /// 27 ticks per second, the limit is also at most [`DISTANCE_MAX`] in a tick.
     pub speed_max: Fx,
 }
 

@@ -175,8 +175,8 @@ fn share_without_gain<const N: usize>(
     }
 }
 
-/// Mask of the lanes in which a point approached fast enough, and the point or another point with which it bounces
-/// together is pushed.
+/// Mask of the lanes in which a point approached fast enough, and either it or the other point, if both bounce
+/// together, is pushed.
 #[inline(always)]
 fn bounces<L: Lanes<N>, const N: usize>(batch: &Batch<N>, extras: &ContactExtras<N>, i: usize) -> L::Mask {
     if i >= batch.count {
