@@ -61,7 +61,7 @@ pub(crate) struct VelocityW<T> {
     pub(crate) turn: T,
 }
 
-/// `N` lanes of 32-bit integers. Sums and differences wrap unless they are named otherwise.
+/// `N` lanes of 32-bit integers. Sums and differences wrap, except those that are named `saturating`.
 pub(crate) trait Lanes<const N: usize>: Copy {
     type Int: Copy;
     /// 64-bit products.

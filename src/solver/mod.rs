@@ -112,7 +112,7 @@ impl Solver {
         }
     }
 
-    /// The body of a slot at the end of the sub-steps.
+    /// The body in a slot at the end of the sub-steps.
     pub(crate) fn body(&self, slot: u32) -> &SolverBody {
         self.list.body(slot)
     }

@@ -15,7 +15,7 @@
 //! vA -= GA d,  uA -= fA.d,  vB += GB d,  uB += fB.d
 //! ```
 //!
-//! `p` is the impulse times `mA + mB`, the inverse masses. For a rigid block, `s = 1`, `L` is the change of the
+//! `p` is the impulse times `mA + mB`, the inverse masses. For a rigid block (`s = 1`), `L` is the change of the
 //! relative velocity of the anchors by the impulse.
 //!
 //! **A soft block is an isotropic spring.** Without arms it is the spring of `softness.rs`. With arms,
@@ -38,9 +38,9 @@
 //! vr = vB - vA + eMB uB - eMA uA
 //! ```
 //!
-//! The impulse still acts along the arm at the start, so that it costs no energy (the position constraint of RATTLE,
-//! H. Andersen 1983). `M` compensates for the softness, which would yield to the centrifugal force. The relax pass
-//! measures with the arm at the start. Hinges use the same equations in batches (`joint/hinge`).
+//! The impulse still acts along the arm at the start, so that it dissipates no energy (the position constraint of
+//! RATTLE, H. Andersen 1983). `M` compensates for the softness, which would yield to the centrifugal force. The relax
+//! pass measures with the arm at the start. Hinges use the same equations in batches (`joint/hinge`).
 
 #[cfg(test)]
 mod tests;

@@ -66,7 +66,7 @@ pub const DISTANCE_MAX: Fx = fx!(15);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SolverSettings {
-    /// Sub-steps in a tick, 1 to 64. Ticks per second times sub-steps is 60 to 4000. Small bodies need more of them:
+    /// Sub-steps in a tick, 1 to 64. Ticks per second times sub-steps is 60 to 4000. Small bodies need more sub-steps:
     /// see [`Config::for_smallest`](crate::world::Config::for_smallest).
     pub sub_steps: u32,
     /// Iterations in a sub-step, 1 to 16. Additional sub-steps improve the result more than additional iterations.

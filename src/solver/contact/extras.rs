@@ -1,5 +1,5 @@
-//! Restitution, moving surfaces, rolling resistance and hit events. Few contacts have any of these. Their data is
-//! stored separately from the batches, so that all other contacts do not use cache space for it.
+//! Restitution, moving surfaces, rolling resistance and hit events. Few contacts have any of these. The data for them
+//! is stored separately from the batches, so that it takes no cache space from all other contacts.
 
 use super::impact::Impacts;
 use super::input::ContactSource;

@@ -11,8 +11,9 @@
 //! s' = s + v f h + vs (1 - f) h   gap at the end of the sub-step
 //! ```
 //!
-//! With `e = 1` and a constant force this conserves the energy of the leapfrog scheme, `v^2 / 2 + g x - g h v / 2`,
-//! exactly. Bodies move as if the impulse had acted at the time of impact, so that it also conserves angular momentum.
+//! With `e = 1` and a constant force, these equations conserve the energy of the leapfrog scheme,
+//! `v^2 / 2 + g x - g h v / 2`, exactly. Bodies move as if the impulse had acted at the time of impact, so that angular
+//! momentum is conserved as well.
 
 use super::super::batches::{BatchParts, Operation};
 use super::super::context::Pass;
@@ -33,7 +34,7 @@ const NEAR: Shift = Shift::lit("0.005");
 #[derive(Clone, Debug)]
 pub(super) struct Impacts<const N: usize> {
     /// For each point, the change `a` of its relative normal velocity by forces in the first sub-step of the tick.
-    /// Before that sub-step is predicted: the relative normal velocity before forces act.
+    /// Until [`PredictImpacts`] runs in that sub-step, the relative normal velocity before forces act.
     forced: [Ints<N>; 2],
     /// For each point, the relative normal velocity before contacts act: `va` for a point that hits, else `v`.
     pub(super) approach: [Ints<N>; 2],

@@ -163,7 +163,7 @@ impl ContactShare<'_> {
     }
 }
 
-/// The kind of constraint that a contact is.
+/// Contacts as a kind of constraint.
 #[derive(Clone, Debug)]
 pub(super) enum Contacts {}
 

@@ -33,7 +33,7 @@ pub(super) enum Direction {
     AcrossBalanced,
     /// The distance between the anchors.
     Apart,
-    /// The coordinate of the coupling of the joint with this index.
+    /// The position that the coupling with this index measures.
     Coupled(u32),
 }
 

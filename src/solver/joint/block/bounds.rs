@@ -1,7 +1,8 @@
 //! Units with bounds in a block: limits, which may only push, and motors and springs of limited force. An active-set
 //! method finds the bounds that are reached. At first, all motors are active, as are the limits and springs that would
 //! be within their bounds if no other unit acted on their two bodies. Each round solves the equations of the active
-//! units. A unit whose impulse would be beyond a bound is held at that bound, until no active unit is beyond a bound.
+//! units. A unit whose impulse would be beyond a bound is then held at that bound. The rounds end when no active unit
+//! is beyond a bound.
 
 use super::super::super::context::{Pass, StepContext};
 use super::super::hinge::{HingeSet, Poses};
@@ -30,7 +31,8 @@ const OPEN_SCALE: i64 = ONE - (1 << 20);
 /// the impulse times `1 - S^2`, and the impulse is large under leverage.
 const DRIVE_SCALE: i64 = ONE - (1 << 16);
 
-/// Number of rounds in which motors are deactivated only if they are the furthest beyond their largest force.
+/// Number of initial rounds in which a motor is deactivated only if it is among those furthest beyond their largest
+/// force.
 const ROUNDS_MAX: u32 = 4;
 
 impl Block {

@@ -4,12 +4,12 @@
 //! disturb each other, where it may even add energy. A body is *crowded* if two or more joints hold it and
 //!
 //! - one of them holds more than a point: a weld, a slider, a spring, or
-//! - it is so light, or its arms are so long, that it has a large share in the mobility of the points of two hinges, or
-//!   in the sum over all hinges but one.
+//! - it is so light, or its arms are so long, that its share in the mobility of the points of two hinges is large, or
+//!   the sum of its shares over all hinges but one.
 //!
 //! All joints of a crowded body are solved in a block. Two crowded bodies with a common joint share a block, as long as
-//! it does not grow beyond [`ROWS_MAX`]. The choice depends on the joints of a body alone, so that a joint elsewhere
-//! changes nothing.
+//! it does not grow beyond [`ROWS_MAX`]. The choice depends on the joints of a body alone, so that joints elsewhere do
+//! not affect it.
 
 use alloc::vec::Vec;
 
@@ -92,7 +92,7 @@ impl Candidate {
 struct Crowd {
     /// Number of joints.
     joints: u32,
-    /// Number of joints that hold it.
+    /// Number of joints that hold the body.
     holds: u32,
     others: bool,
     sum: i64,

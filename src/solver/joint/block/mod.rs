@@ -2,8 +2,8 @@
 //!
 //! Warm-started iterations over joints that meet at one body may diverge: they are the heavy-ball method of B. Polyak
 //! (1964) with momentum 1, which diverges if joints disturb each other in a cycle. `choice.rs` finds such joints. All
-//! their rows, `i`, that are not held at a bound (`bounds.rs`) then get the changes `d` that satisfy the softness of
-//! every row at once, instead of the changes `w` that each row by itself would make:
+//! rows `i` of these joints that are not held at a bound (`bounds.rs`) then get the changes `d` that satisfy the
+//! softness of every row at once, instead of the changes `w` that each row by itself would make:
 //!
 //! ```text
 //! w_i = -massScale_i (v_i + bias_i) - impulseScale_i L_i           as for a single row

@@ -134,7 +134,7 @@ impl Unit {
         self.common_sides(other).iter().any(Option::is_some)
     }
 
-    /// Returns the pairs of a side of this unit and a side of the other unit that have a common body.
+    /// Returns the pairs of sides, one of this unit and one of the other, that have a common body.
     pub(super) fn common_sides(&self, other: &Unit) -> [Option<(usize, usize)>; 2] {
         [0, 1].map(|side: usize| {
             let body = self.bodies[side];
