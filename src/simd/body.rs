@@ -4,8 +4,8 @@ use core::cell::Cell;
 
 use crate::math::{Shift, Speed, Vec2};
 
-/// Index of the ground. This one body stands for all bodies that are not among the bodies of a tick. Where constraints
-/// write velocities, it also stands for each body that no impulse changes, because the kernels never write the ground.
+/// Index of the ground. This one body represents all bodies that are not among the bodies of a tick. Where constraints
+/// write velocities, it also represents each body that no impulse changes, because the kernels never write the ground.
 pub(crate) const GROUND: u32 = 0;
 
 /// A body in the solver. A body that no impulse moves has mass fraction 0 in every row, so kernels process it like any

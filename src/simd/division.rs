@@ -5,7 +5,7 @@
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "d is 1 or more, so it is at most 1"
+    reason = "d is 1 or more, so that 1 / d is at most 1"
 )]
 pub(super) fn reciprocal(d: i64) -> i32 {
     ((1u64 << 60) / d.max(1 << 30) as u64) as i32

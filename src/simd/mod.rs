@@ -1,10 +1,10 @@
 //! SIMD abstraction: the integer operations in which the wide kernels are written.
 //!
-//! A kernel is one generic function over [`Lanes`]; a backend is one implementation of that trait. The scalar backend
-//! processes one row at a time (`Scalar<1>`, which is also used for the first of eight rows); the others process eight
-//! rows that share no body, and no lane depends on another. Every backend therefore gives the same bits. Data that
-//! kernels process is laid out for the backend ([`Layout`]). Only 32-bit numbers and their 64-bit products occur,
-//! because all processors have the widening multiplication 32 x 32 -> 64 (`vpmuldq`, `smull`, `i64x2.extmul`).
+//! A kernel is one generic function over [`Lanes`]; a backend is one implementation of that trait. The scalar backend,
+//! `Scalar<1>`, processes one row at a time. The other backends process eight rows that share no body, and no lane
+//! depends on another. They use `Scalar<1>` for batches with a single row. Every backend therefore gives the same bits.
+//! Data that kernels process is laid out for the backend ([`Layout`]). Only 32-bit numbers and their 64-bit products
+//! occur, because all processors have the widening multiplication 32 x 32 -> 64 (`vpmuldq`, `smull`, `i64x2.extmul`).
 
 // Besides the scalar backend, only the vector backends of the target architecture are compiled.
 mod body;
@@ -61,7 +61,7 @@ pub(crate) struct VelocityW<T> {
     pub(crate) turn: T,
 }
 
-/// `N` lanes of 32-bit integers. Sums and differences wrap unless they are named otherwise.
+/// `N` lanes of 32-bit integers. Sums and differences wrap, except those that are named `saturating`.
 pub(crate) trait Lanes<const N: usize>: Copy {
     type Int: Copy;
     /// 64-bit products.

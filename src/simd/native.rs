@@ -1,8 +1,8 @@
-//! For target architectures that have no vector backend.
+//! Placeholder for target architectures that have no vector backend.
 
 use super::{Backend, Kernel, WIDTH};
 
-/// There are no vectors.
+/// Uninhabited, because there are no vectors.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Vectors {}
 

@@ -6,10 +6,11 @@ use core::cell::Cell;
 /// A slice shared between the threads of a team, under the condition that no thread writes an element that another
 /// thread accesses between the same two barriers.
 ///
-/// The shared slices are the bodies of the solver (`Solver::sub_steps`), each of which is in at most one constraint of
-/// a colour and is integrated by one thread; and the contacts of the state with their results (`ContactStore::new`), of
-/// which each thread writes only the elements of the contacts that it solves. `new` is not an `unsafe` function, since
-/// each access, not the sharing, has to meet the condition. Tests compare the results of 1, 2, 4 and 8 threads.
+/// The shared slices are the bodies of the solver (`Solver::sub_steps`), and the contacts of the state with their
+/// results (`ContactStore::new`). Each body is in at most one constraint of a colour, and is integrated by one thread.
+/// Each contact and its results are written only by the thread that solves the contact. `new` is not an `unsafe`
+/// function, because each access, not the sharing, has to meet the condition. Tests compare the results of 1, 2, 4 and
+/// 8 threads.
 pub(crate) struct Shared<'a, T>(&'a [Cell<T>]);
 
 impl<T> Clone for Shared<'_, T> {

@@ -1,12 +1,12 @@
 //! Batches of constraints of one kind, and the loops that run a stage of the solver over them.
 //!
 //! Contacts and hinges are solved in batches. No two constraints of a colour change the same body, so that the batches
-//! of a colour may be solved in any order and on several threads: each thread has batches of its own of every colour.
-//! Constraints that fit no colour are the overflow: they are solved one after the other, by the same code with one
-//! lane. So is the constraint of a batch that has no other.
+//! of a colour may be solved in any order and on several threads. Each thread has its own batches of every colour.
+//! Constraints that fit no colour form the overflow, which is solved one constraint after the other, by the same code
+//! with one lane. A batch with a single constraint is also solved with one lane.
 //!
-//! Each kind of constraint defines the parts of its batches ([`BatchKind`]), and each stage of the solver an operation
-//! on one batch ([`Operation`]).
+//! Each kind of constraint defines the parts of its batches ([`BatchKind`]), and each stage of the solver defines an
+//! operation on one batch ([`Operation`]).
 
 use alloc::vec::Vec;
 use core::cell::Cell;
@@ -27,7 +27,7 @@ pub(super) trait BatchKind: Clone + Debug + 'static {
     /// The part that only some batches have.
     type Extra<const N: usize>: Clone + Debug + Send;
 
-    /// The indices of the bodies of each lane: those of A and those of B.
+    /// The body indices of all lanes, for A and for B.
     fn bodies<const N: usize>(batch: &Self::Batch<N>) -> &[[u32; N]; 2];
 
     /// Whether a batch has an extra.
@@ -214,7 +214,7 @@ impl<K: BatchKind, const N: usize> Batches<K, N> {
         run: impl Fn(Run<'_, K, O, N>),
     ) {
         let Batches { batches, records, extras, colour_ends } = self;
-        // A thread that works alone need not wait: the batches are in the order of the colours.
+        // A single thread needs no barriers between colours, because the batches are in the order of the colours.
         let all = [ColourEnd { batches: batches.len(), extras: extras.len() }];
         let ends = if context.is_alone() { &all } else { colour_ends.as_slice() };
         let (mut start, mut faults) = (ColourEnd::default(), 0);
@@ -252,7 +252,7 @@ impl<K: BatchKind, O: Operation<K>, const N: usize> Kernel<N> for Run<'_, K, O, 
         while let ([batch, others @ ..], Some(record)) = (rest, records.next()) {
             rest = others;
             if let Some(next) = rest.first() {
-                // The bodies of the next batch are read through these indices.
+                // The next batch gathers its bodies at these indices.
                 prefetch(K::bodies(next));
             }
             let extra = if K::has_extra(batch) { extras.next() } else { None };

@@ -1,10 +1,10 @@
 //! The two bodies of a joint while it is solved.
 //!
-//! A change of velocity is rounded to the resolution of [`Speed`]. Over the thousands of updates of a joint that is at
-//! work all the time, the roundings would add up to a force: a spring and a motor that hold each other would turn the
-//! heavier body by a unit in every sub-step. The part that rounding leaves out is therefore carried over to the next
-//! change by the same joint (error feedback, as in first-order noise shaping), so that the sum of all changes in a tick
-//! is rounded once.
+//! A change of velocity is rounded to the resolution of [`Speed`]. Over the thousands of updates of a joint that acts
+//! in every sub-step, the roundings would add up to a force: a spring and a motor that balance each other would turn
+//! the heavier body by a unit in every sub-step. The part that rounding leaves out is therefore carried over to the
+//! next change by the same joint (error feedback, as in first-order noise shaping), so that the sum of all changes in a
+//! tick is rounded once.
 
 use super::body::SolverBody;
 use super::limits::Faults;

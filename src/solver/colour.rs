@@ -4,8 +4,9 @@
 //! The constraints of a colour are divided among the threads of a tick by their bodies, so that a body is seldom passed
 //! from one processor to another.
 //!
-//! Constraints are coloured greedily, in the order of a hash of their shapes or of their joint. In sorted order the
-//! solver would always sweep the same way: a pyramid then sways by 0.1 to 0.4 m, in hashed order by 0.006 m.
+//! Constraints are coloured greedily, in the order of a hash of their shapes or of their joint. In sorted order, the
+//! solver would always sweep in the same direction: a pyramid would sway by 0.1 to 0.4 m, instead of 0.006 m in hashed
+//! order.
 
 use alloc::vec::Vec;
 
@@ -102,7 +103,7 @@ impl<'a> Group<'a> {
     }
 }
 
-/// Sorts constraints into colours. Keeps the last order, in case the constraints do not change.
+/// Sorts constraints into colours. Reuses the last order while the constraints do not change.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Colouring {
     /// The constraints to be sorted.
@@ -134,7 +135,7 @@ impl Colouring {
         self.nodes.push(node);
     }
 
-    /// Sets which constraints are cold: those for whose bodies `is_cold` holds.
+    /// Marks each constraint as cold if `is_cold` holds for its bodies.
     pub(super) fn set_cold(&mut self, is_cold: impl Fn([u32; 2]) -> bool) {
         self.nodes.iter_mut().for_each(|node| node.cold = is_cold(node.bodies));
     }
@@ -161,7 +162,7 @@ impl Colouring {
             let colour = taken.trailing_ones().min(COLOURS_MAX.into());
             used[a as usize] |= 1 << colour;
             used[b as usize] |= 1 << colour;
-            // The ground does not change, so that constraints with it need no different colours.
+            // The ground does not change, so that constraints with it may have the same colour.
             used[GROUND as usize] = 0;
             let place = place_of(colour, size);
             *colour_count = (*colour_count).max(place.div_ceil(2));
@@ -190,8 +191,7 @@ impl Colouring {
         &self.order
     }
 
-    /// The overflow of the last order: the cold or the other constraints that fit no colour and are solved one after
-    /// the other.
+    /// The overflow of the last order: the constraints that fit no colour, either the cold ones or all others.
     pub(super) fn overflow(&self, cold: bool) -> &[u32] {
         let place = if cold { PLACES } else { 0 };
         &self.order[self.start(place, 0)..self.end(place, 0)]
@@ -258,7 +258,7 @@ impl Ranks {
     }
 }
 
-/// Number of places of warm constraints. Cold constraints have as many, after them.
+/// Number of places of warm constraints. Cold constraints have the same number of places, after these.
 const PLACES: u8 = 1 + 2 * COLOURS_MAX;
 
 /// The place of a constraint in the order of a single thread: the overflow comes first, then the large and the small

@@ -1,16 +1,15 @@
-//! Warm start of contacts, body by body: applies the velocity change by the accumulated impulses of all contacts of a
-//! body at once.
+//! Warm start of contacts, body by body: one sum applies the accumulated impulses of all contacts of a body.
 //!
-//! The rows of contacts do not change within a tick. The velocity change by all accumulated impulses is therefore the
-//! one that contacts have caused in the last sub-step, from their warm start to the end of the sub-step:
+//! The rows of contacts do not change within a tick. The accumulated impulses therefore cause the same velocity change
+//! that contacts caused in the last sub-step, from their warm start to the end of the sub-step:
 //!
 //! ```text
 //! change = v - v_free,    v' = v_free' + change
 //! ```
 //!
-//! where `v_free` is the velocity that the body would have without contacts. This takes one sum for each body instead
-//! of a pass over the rows of all contacts. Joints, whose rows turn with their bodies, and locked axes also change
-//! velocities within a sub-step: their changes are added to `v_free`.
+//! where `v_free` is the velocity that the body would have without contacts. The warm start takes one sum for each body
+//! instead of a pass over the rows of all contacts. Joints, whose rows turn with their bodies, and locked axes also
+//! change velocities within a sub-step: their changes are added to `v_free`.
 
 #[cfg(test)]
 mod tests;
@@ -24,19 +23,19 @@ use super::limits::Faults;
 use super::pair::BodyPairW;
 use crate::simd::{GROUND, Ints, Kernel, Lanes, Layout, Machine, Scalar, VelocityW, WIDTH, with_data};
 
-/// The velocity changes that contacts have caused, for those bodies with contacts that one thread integrates.
+/// The velocity changes that contacts have caused, for the bodies with contacts that one thread integrates.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactVelocities {
     groups: Layout<Groups<WIDTH>, Groups<1>>,
     /// Whether the tick has had a sub-step, so that velocity changes can be measured.
     known: bool,
-    /// Whether any group is shared, of this or of another thread.
+    /// Whether any group of any thread is shared.
     pub(super) shared: bool,
 }
 
 type Groups<const N: usize> = Vec<Group<N>>;
 
-/// Bodies that are processed together: as many as there are lanes.
+/// Bodies that are processed together, one in each lane.
 #[derive(Clone, Debug)]
 #[repr(align(32))]
 struct Group<const N: usize> {

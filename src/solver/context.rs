@@ -56,7 +56,7 @@ impl<'a> StepContext<'a> {
         self.member.is_alone()
     }
 
-    /// Waits for all other threads: they may then read what this one has written.
+    /// Waits for all other threads, which may then read the results of this one.
     pub(super) fn wait(&self) {
         self.member.wait();
     }

@@ -15,7 +15,7 @@
 //! vA -= GA d,  uA -= fA.d,  vB += GB d,  uB += fB.d
 //! ```
 //!
-//! `p` is the impulse times `mA + mB`, the inverse masses. For a rigid block, `s = 1`, `L` is the change of the
+//! `p` is the impulse times `mA + mB`, the inverse masses. For a rigid block (`s = 1`), `L` is the change of the
 //! relative velocity of the anchors by the impulse.
 //!
 //! **A soft block is an isotropic spring.** Without arms it is the spring of `softness.rs`. With arms,
@@ -29,18 +29,18 @@
 //! Carrying over the impulse `p = G L` instead would multiply that part by up to `e^2` (1100 m/s on a rod 40 radii of
 //! gyration long). Two scalar rows instead of the block would gain energy in a swinging chain.
 //!
-//! **The bias pass measures along the chord.** Displacements are straight while arms turn. This opens the joint by
-//! about half the square of the rotation. To keep it closed, the velocity is measured with the arm averaged over the
-//! predicted rotation `t = h u / k`, to third order:
+//! **The bias pass measures along the chord.** Displacements are straight while arms turn, which opens the joint by
+//! about half the square of the rotation. To keep the joint closed, the velocity is measured with the arm averaged over
+//! the predicted rotation `t = h u / k`, to third order:
 //!
 //! ```text
 //! eM = e + M (t/2 (-e_y, e_x) - t^2/6 e),   M = 1 + 0.6 impulseScale / massScale
 //! vr = vB - vA + eMB uB - eMA uA
 //! ```
 //!
-//! The impulse still acts along the arm at the start, so that it costs no energy (the position constraint of RATTLE,
-//! H. Andersen 1983). `M` compensates for the softness, which would yield to the centrifugal force. The relax pass
-//! measures with the arm at the start. Hinges use the same equations in batches (`joint/hinge`).
+//! The impulse still acts along the arm at the start, so that it dissipates no energy (the position constraint of
+//! RATTLE, H. Andersen 1983). `M` compensates for the softness, which would yield to the centrifugal force. The relax
+//! pass measures with the arm at the start. Hinges use the same equations in batches (`joint/hinge`).
 
 #[cfg(test)]
 mod tests;
@@ -120,7 +120,7 @@ impl PointBlock {
         };
         let (xx, xy, yy) = (sum(|e| e.x, |e| e.x), sum(|e| e.x, |e| e.y), sum(|e| e.y, |e| e.y));
         let product = |a: Ratio, b: Ratio| i128::from(a.to_bits()) * i128::from(b.to_bits());
-        // 24 fraction bits of `eA x eB` are enough, because this term is never the smallest one.
+        // 24 fraction bits of `eA x eB` are enough: rounding it changes the determinant by less than a 2^-25 part.
         let cross = round_shift_wide(product(e_a.x, e_b.y) - product(e_a.y, e_b.x), 24);
         let shares = product_of_fractions(fractions);
         let square = saturate_wide(round_shift_wide(cross * cross, 24));
@@ -133,7 +133,8 @@ impl PointBlock {
         PointBlock { e_a, e_b, g_a, g_b, f_a: g_a.apply_ratio(e_a), f_b: g_b.apply_ratio(e_b) }
     }
 
-    /// The block of bodies that are moved along a direction through both centres only: `G = n n^T`.
+    /// The block of bodies that impulses move only along `n`, the direction of the line through both centres:
+    /// `G = n n^T`.
     pub(crate) fn along(n: Vec2<Unit>, fractions: MassFractions) -> Self {
         let g = Symmetric { m11: mul(n.x, n.x), m12: mul(n.x, n.y), m22: mul(n.y, n.y) };
         PointBlock { g_a: g.scale(fractions.a), g_b: g.scale(fractions.b), ..PointBlock::default() }
@@ -215,7 +216,7 @@ impl PointBlock {
         self.apply(d, bodies);
     }
 
-    /// The change of `L` that one iteration wants.
+    /// The change of `L` in one iteration, before it is limited.
     #[inline]
     pub(crate) fn wanted(
         &self,

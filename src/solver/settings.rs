@@ -37,7 +37,7 @@ pub enum ContactTuning {
     Baumgarte {
         /// Share of the overlap removed in a sub-step, 0 to 1.
         share: Fx,
-        /// Overlap that is not removed, in metres, so that contacts do not flicker.
+        /// Overlap that is not removed, in metres, so that contacts persist from tick to tick.
         slop: Fx,
         /// Largest speed at which overlap is pushed out, in m/s.
         push_speed: Fx,
@@ -50,8 +50,8 @@ pub(crate) const SUB_STEPS_MAX: u32 = 64;
 /// Largest number of sub-steps in a second.
 pub(crate) const RATE_MAX: u32 = 4000;
 
-/// Largest displacement of a body in a tick at the speed limit, in metres. It lowers the limit at low tick rates: see
-/// [`SolverSettings::speed_max`].
+/// Largest displacement of a body in a tick at the speed limit, in metres. It lowers the speed limit at low tick rates:
+/// see [`SolverSettings::speed_max`].
 pub const DISTANCE_MAX: Fx = fx!(15);
 
 /// Settings of the solver.
@@ -66,7 +66,7 @@ pub const DISTANCE_MAX: Fx = fx!(15);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SolverSettings {
-    /// Sub-steps in a tick, 1 to 64. Ticks per second times sub-steps is 60 to 4000. Small bodies need more of them:
+    /// Sub-steps in a tick, 1 to 64. Ticks per second times sub-steps is 60 to 4000. Small bodies need more sub-steps:
     /// see [`Config::for_smallest`](crate::world::Config::for_smallest).
     pub sub_steps: u32,
     /// Iterations in a sub-step, 1 to 16. Additional sub-steps improve the result more than additional iterations.
@@ -74,17 +74,17 @@ pub struct SolverSettings {
     /// Method by which contacts remove overlap.
     pub contact: ContactTuning,
     /// Stiffness in Hz of joints that have no [softness of their own](crate::solver::JointDef::softness), at most a
-    /// quarter of the sub-step rate. It is doubled for the anchors of an anchored hinge or rigid weld: one between a
-    /// body that is not dynamic and a body without any other joint. In this case no other joint of the body has to
-    /// yield.
+    /// quarter of the sub-step rate. It is doubled for the anchors of an anchored hinge or rigid weld. Such a joint
+    /// connects a body without any other joint to a body that is not dynamic, so that its stiffness disturbs no other
+    /// joint.
     pub joint_hertz: Fx,
     /// Damping ratio of joints, 0 to 100.
     pub joint_damping_ratio: Fx,
     /// Approach speed in m/s below which restitution is not applied, 0 to 400, for shapes without a threshold of their
     /// own ([`Material::restitution_threshold`](crate::body::Material::restitution_threshold)).
     pub restitution_threshold: Fx,
-    /// Speed limit in m/s, at most 400. It also limits the radius of gyration times the angular velocity. With fewer
-    /// than 27 ticks per second the limit is [`DISTANCE_MAX`] in a tick, which is lower.
+    /// Speed limit in m/s, at most 400. It also limits the radius of gyration times the angular velocity. At fewer than
+    /// 27 ticks per second, the limit is also at most [`DISTANCE_MAX`] in a tick.
     pub speed_max: Fx,
 }
 

@@ -56,9 +56,9 @@ impl Softness {
     }
 
     /// The factor by which a joint overestimates the predicted rotation, so that its softness yields to only 0.4 of the
-    /// centrifugal force: `1 + 0.6 impulseScale / massScale`, at most 1.9. On a rod with its anchor 40 radii of
-    /// gyration away at 20 rad/s, 0.5 leaves a gap of 8.4 mm and 0.6 a gap of 6.9 mm; with 1, chains of free bodies
-    /// gain energy.
+    /// centrifugal force: `1 + 0.6 impulseScale / massScale`, at most 1.9. On a rod that turns at 20 rad/s about an
+    /// anchor 40 radii of gyration away, a coefficient of 0.5 instead of 0.6 leaves a gap of 8.4 mm instead of 6.9 mm.
+    /// With a coefficient of 1, chains of free bodies gain energy.
     pub(crate) fn stretch(&self) -> Unit {
         let (impulse, mass) = (Fx::from(self.impulse_scale), Fx::from(self.mass_scale));
         let give = fx_mul(fx!(0.6), fx_div(impulse, mass).unwrap_or(Fx::ZERO));
@@ -70,8 +70,8 @@ impl Softness {
         [self.bias_rate.to_bits(), self.mass_scale.to_bits(), self.impulse_scale.to_bits()]
     }
 
-    /// The part of a spring's impulse that comes from its stretch, reversed: `massScale biasRate x`, about `h omega^2
-    /// x`. The bias rate alone times a long stretch would overflow.
+    /// The part of a spring's impulse that comes from its stretch, reversed: `massScale biasRate x`, about
+    /// `h omega^2 x`. The product of the bias rate and a long stretch would overflow.
     pub(crate) fn push(&self, stretch: Fx) -> Speed {
         narrow(fx_mul(fx_mul(stretch, self.bias_rate.into()), self.mass_scale.into()))
     }

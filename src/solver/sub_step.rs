@@ -1,7 +1,8 @@
 //! One sub-step: the stages of E. Catto's soft step (Solver2D, `solve_soft_step.c`).
 //!
 //! The threads of a tick run every stage at the same time, each on bodies and constraints of its own. A stage that
-//! reads bodies of other threads begins after a barrier: [`StepContext::wait`]. Stages over constraints end with one.
+//! reads bodies of other threads begins after a barrier: [`StepContext::wait`]. Stages over constraints end with a
+//! barrier.
 
 use super::COLD_ROUNDS;
 use super::contact::{self, Constants, ContactShare, Measure, MeasureApproach, PointOrder, PredictImpacts};
@@ -19,8 +20,8 @@ pub(super) struct SolverShare<'a, 'set> {
 }
 
 impl SolverShare<'_, '_> {
-    /// Performs one sub-step. `index` is the number of sub-steps since the world was created. `is_first` says whether it
-    /// is the first one of the tick.
+    /// Performs one sub-step. `index` is the number of sub-steps since the world was created. `is_first` is whether it
+    /// is the first sub-step of the tick.
     pub(super) fn sub_step(&mut self, index: u64, is_first: bool, context: &StepContext<'_>) {
         let SolverShare { moving, contacts, velocities, joints } = self;
         let tuning = context.tuning;

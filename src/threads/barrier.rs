@@ -1,4 +1,4 @@
-//! A barrier that spins.
+//! Spin barrier.
 
 use core::hint;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

@@ -126,7 +126,8 @@ pub(crate) fn split_at_ends<T>(
 }
 
 impl Threads {
-    /// Starts `count - 1` threads, which make `count` with the calling one. Returns `None` if they cannot be started.
+    /// Starts `count - 1` threads, which are `count` together with the calling one. Returns `None` if they cannot be
+    /// started.
     #[cfg(feature = "parallel")]
     pub(crate) fn new(count: usize) -> Option<Self> {
         match count {

@@ -317,8 +317,8 @@ fn magnitude(a: __m256i) -> __m256i {
 }
 
 /// Products of the even lanes, in inline assembly. The compiler models the intrinsic as a product of sign-extended
-/// numbers, hoists the extension out of loops and past branches, and then no longer recognises that a full 64-bit
-/// product is not needed. That costs a fifth of the time of a kernel.
+/// numbers, and hoists the extension out of loops and past branches. It then computes a full product of 64-bit numbers,
+/// which costs a fifth of the time of a kernel.
 #[inline]
 #[target_feature(enable = "avx2")]
 unsafe fn multiplied(a: __m256i, b: __m256i) -> __m256i {

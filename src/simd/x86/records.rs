@@ -13,7 +13,7 @@ pub(super) struct Records<'a, T> {
 }
 
 impl<'a, T> Records<'a, T> {
-    /// Checks all eight indices at once, because a check of each index took as long as processing the record.
+    /// Checks all eight indices at once, because a check of each index takes as long as processing the record.
     #[inline(always)]
     #[expect(clippy::cast_possible_wrap, reason = "compared as unsigned")]
     pub(super) fn new(all: &'a [T], at: &'a [u32; WIDTH]) -> Self {
@@ -42,7 +42,7 @@ impl<'a, T> Records<'a, T> {
     #[inline(always)]
     pub(super) fn get(&self, lane: usize) -> &'a T {
         // A volatile read: otherwise the compiler would extract the index from the vector that `new` has checked, which
-        // occupies the execution units on which the kernels depend.
+        // would occupy the execution units on which the kernels depend.
         let at: *const u32 = &self.at[lane];
         // SAFETY: the index can be read, and `new` has checked that it is within the slice.
         unsafe { self.all.get_unchecked(at.read_volatile() as usize) }

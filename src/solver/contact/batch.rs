@@ -4,7 +4,7 @@ use super::super::pair::shift;
 use crate::math::{Shift, Step};
 use crate::simd::{Ints, Lanes};
 
-/// `N` contacts for one tick, of which no two change the same body. Lanes without a contact have gains of 0, and the
+/// `N` contacts for one tick, no two of which change the same body. Lanes without a contact have gains of 0, and the
 /// ground as both bodies.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
@@ -16,7 +16,7 @@ pub(in crate::solver) struct Batch<const N: usize> {
     /// The normal, from A to B, with the fraction bits of a lever ratio. The tangent is perpendicular to it.
     pub(super) n_x: Ints<N>,
     pub(super) n_y: Ints<N>,
-    /// -1 in lanes where no impulse moves one of the bodies. These contacts are stiffer.
+    /// -1 in lanes in which one of the bodies is not moved by impulses. These contacts are stiffer.
     pub(super) immovable: Ints<N>,
     /// -1 in lanes with two points. In the other lanes of a batch of two points, the second is a copy of the first
     /// without an impulse.
@@ -36,7 +36,7 @@ pub(in crate::solver) struct Batch<const N: usize> {
     pub(super) pushed: [u32; 2],
 }
 
-/// The same point of `N` contacts.
+/// One point of each of `N` contacts.
 #[derive(Clone, Debug)]
 pub(super) struct Point<const N: usize> {
     pub(super) normal: Row<N>,
@@ -49,8 +49,8 @@ pub(super) struct Point<const N: usize> {
     pub(super) normal_lambda: Ints<N>,
 }
 
-/// `N` rows: lever ratios, and the velocity changes by an impulse of 1. The linear part of the Jacobian is the
-/// direction, which all rows of a contact along the same direction share.
+/// `N` rows: lever ratios, and the velocity changes by an impulse of 1. The linear part of the Jacobian is the normal
+/// or the tangent, which is stored once in the batch.
 #[derive(Clone, Debug)]
 pub(super) struct Row<const N: usize> {
     pub(super) e_a: Ints<N>,

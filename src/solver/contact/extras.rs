@@ -1,5 +1,5 @@
-//! Restitution, moving surfaces, rolling resistance and hit events. Few contacts have any of these. Their data is
-//! stored separately from the batches, so that it does not use cache space for all other contacts.
+//! Restitution, moving surfaces, rolling resistance and hit events. Few contacts have any of these. The data for them
+//! is stored separately from the batches, so that it takes no cache space from all other contacts.
 
 use super::impact::Impacts;
 use super::input::ContactSource;
@@ -17,7 +17,7 @@ pub(in crate::solver) struct ContactExtras<const N: usize> {
     pub(super) impacts: Impacts<N>,
     /// For each point, the impulse of restitution in this sub-step.
     pub(super) bounce: [Ints<N>; 2],
-    /// Sum of the surface speeds of the two shapes, against the tangent.
+    /// Sum of the surface speeds of the two shapes. Friction drives the tangential velocity to its negative.
     pub(super) surface_speed: Ints<N>,
     /// Whether any lane has rolling resistance.
     pub(super) rolls: bool,
@@ -42,7 +42,7 @@ impl<const N: usize> ContactExtras<N> {
         hit_lambda: [Ints::ZERO; 2],
     };
 
-    /// Puts a contact into a lane. `inverse_normals` are the reciprocals of its points' denominators. The one of a
+    /// Puts a contact into a lane. `inverse_normals` are the reciprocals of its points' denominators. The value for a
     /// missing point does not matter, because the point has no impulse.
     pub(super) fn fill(
         &mut self,

@@ -1,8 +1,8 @@
 //! Impacts of points with restitution: when a point hits within a sub-step, and how far it rebounds by the end of it.
 //!
-//! Semi-implicit Euler is a leapfrog scheme: the velocity that moves a body in a sub-step is the one at its middle.
-//! With the relative normal velocity `v` of the point, its change `a` by forces in the sub-step, and the separation
-//! `s`:
+//! Semi-implicit Euler is a leapfrog scheme: the velocity that moves a body in a sub-step is the velocity at the middle
+//! of the sub-step. With the relative normal velocity `v` of the point, its change `a` by forces in the sub-step, and
+//! the separation `s`:
 //!
 //! ```text
 //! f  = s / (-v h)                 time of impact, as a fraction of the sub-step
@@ -11,8 +11,9 @@
 //! s' = s + v f h + vs (1 - f) h   gap at the end of the sub-step
 //! ```
 //!
-//! With `e = 1` and a constant force this conserves the energy of the leapfrog scheme, `v^2 / 2 + g x - g h v / 2`,
-//! exactly. Bodies move as if the impulse had acted at the time of impact, so that it also conserves angular momentum.
+//! With `e = 1` and a constant force, these equations conserve the energy of the leapfrog scheme,
+//! `v^2 / 2 + g x - g h v / 2`, exactly. Bodies move as if the impulse had acted at the time of impact, so that angular
+//! momentum is conserved as well.
 
 use super::super::batches::{BatchParts, Operation};
 use super::super::context::Pass;
@@ -25,15 +26,15 @@ use super::{Constants, Contacts};
 use crate::math::{Rate, Shift, Speed, Unit, mul};
 use crate::simd::{Ints, Lanes};
 
-/// Gap in metres at which a point bounces together with one that hits. Otherwise a box that lands not quite flat would
-/// spin.
+/// Gap in metres below which a point bounces together with another point that hits. Otherwise a box that lands not
+/// quite flat would spin.
 const NEAR: Shift = Shift::lit("0.005");
 
 /// The impacts of a batch in a sub-step.
 #[derive(Clone, Debug)]
 pub(super) struct Impacts<const N: usize> {
     /// For each point, the change `a` of its relative normal velocity by forces in the first sub-step of the tick.
-    /// Until then, the velocity before it.
+    /// Until [`PredictImpacts`] runs in that sub-step, the relative normal velocity before forces act.
     forced: [Ints<N>; 2],
     /// For each point, the relative normal velocity before contacts act: `va` for a point that hits, else `v`.
     pub(super) approach: [Ints<N>; 2],
@@ -88,8 +89,8 @@ impl<const N: usize> Impacts<N> {
 pub(super) struct PointImpact<L: Lanes<N>, const N: usize> {
     /// `s' / h`. 0 for a point that does not hit.
     pub(super) rebound: L::Int,
-    /// Whether the point hits late, because the impulse of another point drives it: its relax pass is left to the next
-    /// sub-step, in which it approaches and may bounce.
+    /// Whether the point is apart and does not approach before contacts act. If the impulse of another point closes its
+    /// gap, the relax pass removes its own impulse. In the next sub-step the point approaches and may bounce.
     pub(super) late: L::Mask,
 }
 
@@ -167,7 +168,7 @@ impl Operation<Contacts> for PredictImpacts {
 }
 
 impl<const N: usize> ContactExtras<N> {
-    /// Resets the numbers that are also read of points without an impact.
+    /// Resets the numbers that are also read for points without an impact.
     #[inline(always)]
     fn begin_sub_step(&mut self) {
         self.impacts.drift = [Ints::ZERO; 2];
@@ -230,7 +231,8 @@ struct Impact {
 }
 
 impl Impact {
-    /// Predicts the velocities at the time `f` for the velocity `v`, of which forces have added `forced`.
+    /// Predicts the velocities at the time `f` from the velocity `v`. `forced` is the part of `v` that forces have
+    /// added.
     fn of(v: Speed, forced: Speed, time: Unit, restitution: Unit) -> Self {
         let drift: Speed = mul(forced, time - Unit::lit("0.5"));
         let approach = v.saturating_add(drift);
@@ -248,7 +250,8 @@ mod tests {
     use crate::fx;
     use crate::math::{Fx, Rng, fx_mul, narrow, widen};
 
-    /// Energy of the leapfrog scheme before and after the sub-step in which a ball hits a floor.
+    /// The sub-step in which a ball hits a floor does not change the energy of the leapfrog scheme, except for a loss
+    /// by rounding.
     #[test]
     fn an_elastic_impact_conserves_the_energy_of_the_scheme() {
         let mut rng = Rng::new(1);
@@ -261,7 +264,7 @@ mod tests {
             let time = time_of_impact(closing, v);
             let Impact { after, .. } = Impact::of(v, forced, time, Unit::ONE);
             let rebound = mul(after, Unit::ONE - time);
-            // Heights in units of the distance per sub-step.
+            // Heights are divided by the time step, which gives speeds.
             let energy = |v: Speed, height: Speed| {
                 let (v, forced) = (widen(v), widen(forced));
                 fx_mul(v, v) / 2 - fx_mul(forced, widen(height)) + fx_mul(forced, v) / 2

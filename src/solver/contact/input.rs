@@ -22,8 +22,8 @@ pub(crate) struct ActiveContact {
     pub(crate) shapes: Pair,
     pub(crate) bodies: (u32, u32),
     pub(crate) surface: Surface,
-    /// Whether the shapes may approach each other so fast that the impulses of the last tick are no initial guess for
-    /// those of this tick.
+    /// Whether the shapes may approach each other so fast that the impulses of the last tick are no useful initial
+    /// guess for this tick.
     pub(crate) is_impact: bool,
     /// Whether the shapes approach each other fast enough for a hit event, which reports the impulse of the tick.
     pub(crate) is_hit: bool,
@@ -65,7 +65,7 @@ impl Prospect {
         self.0 & Self::WARM != 0 && !self.is_wedged()
     }
 
-    /// Whether an impact may drive the body between two walls. Neither of them gives way.
+    /// Whether an impact may drive the body between two walls, which are bodies that impulses do not move.
     pub(super) fn is_wedged(self) -> bool {
         self.0 & Self::IMPACT != 0 && self.0 >= 2 * Self::FLAGS
     }
@@ -85,8 +85,8 @@ pub(in crate::solver) struct ContactSource<'a> {
     pub(in crate::solver) list: &'a BodyList,
 }
 
-/// A lane of a batch that is being filled. The numbers are stored in quads, because those of eight lanes are read as
-/// vectors.
+/// A lane of a batch that is being filled. The numbers are stored in quads, because the quads of eight lanes are
+/// transposed into vectors.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Input {
     pub(super) bodies: [u32; 2],
@@ -168,7 +168,8 @@ impl ContactSource<'_> {
         features
     }
 
-    /// Prefetches the data that [`Self::gather`] reads of a pair. Contacts in the order of colours are random accesses.
+    /// Prefetches the data that [`Self::gather`] reads for a pair. In the order of colours, the accesses to contacts
+    /// are random.
     #[inline(always)]
     pub(super) fn prefetch(&self, index: u32) {
         let pair = &self.pairs[index as usize];
@@ -195,7 +196,7 @@ impl ContactSource<'_> {
         let memory = &self.contacts[pair.contact as usize];
         let KeptManifold { arm_a: to_a, arm_b: to_b, to_second, .. } = memory.kept;
         let gap = match memory.kept.separations {
-            // A manifold of the time of impact has no gap.
+            // A manifold at a time of impact has no gap.
             _ if !memory.kept.can_be_kept() => Step::ZERO,
             [first, second] if manifold.count() == 2 => (first >> 1) + (second >> 1),
             [first, _] => first,

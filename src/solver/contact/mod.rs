@@ -11,7 +11,7 @@
 //!
 //! Each operation on a batch has a file of its own: `warm_start`, `solve` (the equations for `w` and `L'`), `relax`,
 //! `restitution` and `hit`. `prepare` fills the batches of a tick, `rows` computes their rows, and `store` returns the
-//! impulses to the state. `overflow_policy` has the two ways to keep numbers within their formats.
+//! impulses to the state. `overflow_policy` defines the two ways in which numbers are kept within their formats.
 //!
 //! Differences of two velocities fit because each velocity is below 512 m/s. A sum that may not fit saturates. Lanes
 //! without a contact have gains of 0, so that their other numbers do not matter.
@@ -60,7 +60,7 @@ pub(super) use warm_start::WarmStart;
 const TANGENT_MAX: Speed = Speed::lit("511");
 
 /// Number of passes in which elastic contacts that bounce at the same time, such as those of a body in a corner, are
-/// solved against each other. With one pass a box in a closed room gained half of its energy within a minute.
+/// solved against each other. With one pass, a box in a closed room would gain half of its energy within a minute.
 const RESTITUTION_PASSES: u32 = 12;
 
 /// All contacts of a tick.
@@ -123,7 +123,7 @@ impl ContactShare<'_> {
         self.cold.run_overflow(operation, context);
     }
 
-    /// Runs an operation over all other contacts, colour by colour.
+    /// Runs an operation over the contacts with a colour, colour by colour.
     pub(super) fn run_coloured(&mut self, operation: impl Operation<Contacts>, context: &StepContext<'_>) {
         self.warm.coloured.run_coloured(operation, context);
         self.cold.coloured.run_coloured(operation, context);
@@ -163,7 +163,7 @@ impl ContactShare<'_> {
     }
 }
 
-/// The kind of constraint that a contact is.
+/// Contacts as a kind of constraint.
 #[derive(Clone, Debug)]
 pub(super) enum Contacts {}
 

@@ -49,7 +49,7 @@ pub(super) fn unchecked_at(rates: [Rate; 3]) -> bool {
 
 /// An overflow policy: the treatment of numbers that might overflow.
 pub(super) trait OverflowPolicy<L: Lanes<N>, const N: usize> {
-    /// Counts faults in these lanes only, from now on.
+    /// Restricts the counting of faults to the given lanes.
     #[inline(always)]
     fn count_faults_in(&mut self, _: L::Mask) {}
     /// Checks displacements, or the velocities at the start of an iteration.

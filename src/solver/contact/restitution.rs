@@ -5,11 +5,11 @@
 //! L' = max(L - (vn + e va + drift), 0)          in the sub-step in which it is pushed, after both passes
 //! ```
 //!
-//! The impulse is not part of the accumulated impulse, which the next sub-step would apply again. `impact.rs` has `va`
-//! and the drift, and the rebound that the bias pass takes into account.
+//! The impulse is not part of the accumulated impulse, which the next sub-step would apply again. `impact.rs` computes
+//! `va`, the drift, and the rebound that the bias pass takes into account.
 //!
-//! The approach speed is measured before any contact is warm-started. Otherwise the impulse of one contact would look
-//! like an approach at the next contact, and balls in a groove would bounce for ever.
+//! The approach speed is measured before any contact is warm-started. Otherwise the impulse of one contact would count
+//! as an approach at the next contact, and balls in a groove would bounce for ever.
 
 use super::super::batches::{BatchParts, Operation};
 use super::super::limits::IMPULSE_MAX;
@@ -23,14 +23,14 @@ use crate::math::{Unit, saturate, saturate_wide};
 use crate::simd::{Ints, Lanes};
 
 /// Number of iterations in which two points that bounce are solved against each other. With one iteration, the first
-/// point would separate too fast: a tall box that was dropped flat gained a third of its energy, and spun. For boxes
+/// point would separate too fast: a tall box that is dropped flat would gain a third of its energy, and spin. For boxes
 /// with an aspect ratio of up to 3, an iteration removes at least 3/4 of the error.
 const RESTITUTION_ITERATIONS: u32 = 12;
 
 /// Applies restitution.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct ApplyRestitution {
-    /// Whether this is not the first pass of the sub-step: in later passes, only elastic contacts bounce again.
+    /// `false` in the first pass of the sub-step. In later passes, only elastic contacts bounce again.
     pub(in crate::solver) again: bool,
 }
 
@@ -43,7 +43,8 @@ impl Operation<Contacts> for ApplyRestitution {
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
         let BatchParts { batch, record, extra: Some(extras), bodies, faults } = parts else { return };
         let policy = &mut Saturating::<L, N>::new(faults);
-        // Only clamps of impulses count as faults: whether a lane is read here depends on the other lanes.
+        // Velocities that do not fit are not counted as faults here, because the other lanes decide whether a lane is
+        // read.
         let mut unread = 0;
         let reader = &mut Saturating::<L, N>::new(&mut unread);
         let restitution = L::load(&extras.restitution);
@@ -140,10 +141,10 @@ impl<const N: usize> Rebound<N> {
 /// over its normal rows and its friction row, where `v+` is the velocity after the rebound. A moving surface counts as
 /// at rest. A restitution above 1 is meant to do work, and is not limited.
 ///
-/// Newton's restitution gains energy where the rebound of one point adds to that of another, and in a corner, where the
-/// rebound from one wall reverses the sliding along the other. `W` is convex in the share, so that it is at most the
-/// line from its value without a rebound to its value with the full rebound. `slides` are the tangential velocities of
-/// both.
+/// Newton's restitution gains energy where the rebounds of two points add up, and in a corner, where the rebound from
+/// one wall reverses the sliding along the other. `W` is convex in the share, so that it is at most the line from its
+/// value without a rebound to its value with the full rebound. `slides` are the tangential velocities without and with
+/// the full rebound.
 fn share_without_gain<const N: usize>(
     lane: usize,
     batch: &Batch<N>,
@@ -169,13 +170,13 @@ fn share_without_gain<const N: usize>(
     } else if none >= 0 {
         0
     } else {
-        // At most 2^98 and shifted by 30 bits.
+        // `none` is at most 2^98 before it is shifted by 30 bits.
         saturate(saturate_wide((-none << Unit::FRAC_NBITS) / (all - none)))
     }
 }
 
-/// Mask of the lanes in which a point approached fast enough and is pushed, or the point with which it bounces
-/// together.
+/// Mask of the lanes in which a point approached fast enough, and either it or the other point, if both bounce
+/// together, is pushed.
 #[inline(always)]
 fn bounces<L: Lanes<N>, const N: usize>(batch: &Batch<N>, extras: &ContactExtras<N>, i: usize) -> L::Mask {
     if i >= batch.count {

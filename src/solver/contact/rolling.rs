@@ -1,7 +1,7 @@
 //! Rolling resistance of a contact: one angular row, limited by the normal impulses.
 //!
-//! A wheel that deforms is supported by the ground slightly ahead of its axle. This gives a torque against rolling of
-//! at most `R N`, with a length `R` and the normal force `N` (the model of Box2D 3). With the scale `s` of
+//! A wheel that deforms is supported by the ground slightly ahead of its axle. The result is a torque of at most `R N`
+//! against rolling, with a length `R` and the normal force `N` (the model of Box2D 3). With the scale `s` of
 //! [`super::super::row::Row::angular`]:
 //!
 //! ```text
@@ -39,8 +39,8 @@ impl<const N: usize> RollingRows<N> {
         denominators: [0; N],
     };
 
-    /// Computes the row of a contact. `inverse_normals` are the reciprocals of its points' denominators. The one of a
-    /// missing point does not matter.
+    /// Computes the row of a contact. `inverse_normals` are the reciprocals of its points' denominators. The value for
+    /// a missing point does not matter.
     pub(super) fn fill(
         &mut self,
         lane: usize,

@@ -182,7 +182,7 @@ impl<L: Lanes<N>, const N: usize> ContactSide<L, N> {
     }
 }
 
-/// Computes a row and its denominators, given where its impulses act on A and on B.
+/// Computes a row and its denominators, given the points at which its impulses act on A and on B.
 #[inline(always)]
 fn fill_row<L: Lanes<N>, const N: usize>(
     row: &mut Row<N>,

@@ -27,18 +27,19 @@ use crate::math::{Rate, Shift, Speed, Unit};
 use crate::simd::{Ints, Lanes};
 
 /// Largest number of rounds in which the two points of a contact are solved against each other. At an impact, a single
-/// round would turn the body: ten boxes that fall on each other from 5 or 10 mm then sway by 12 mm, with up to four
-/// rounds by 1 mm. In a pile at rest the first round is usually enough: a pyramid of 5050 boxes costs a tenth more.
+/// round would turn the body: ten boxes that fall on each other from 5 or 10 mm would sway by 12 mm, instead of 1 mm
+/// with up to four rounds. In a pile at rest the first round is usually enough: a pyramid of 5050 boxes takes a tenth
+/// more time.
 const NORMAL_ROUNDS_MAX: u32 = 4;
 
 /// Change of the second point's impulse, in m/s, below which the points are not solved again.
 const SETTLED: Speed = Speed::lit("0.005");
 
 /// Normal velocity below which an overlap with a body that no impulse moves is as rigid as a gap. A soft contact would
-/// let a part of the approach through.
+/// remove only a part of the approach velocity.
 const IMPACT_SPEED: Speed = Speed::lit("-1");
 
-/// Which of a contact's two points is solved first. The order alternates, because the point that is solved first turns
+/// Order in which the two points of a contact are solved. It alternates, because the point that is solved first turns
 /// the body a little. With a fixed order, a stack of ten boxes sways by 4.7 mm while it settles, instead of 0.05 mm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::solver) enum PointOrder {
@@ -154,7 +155,7 @@ fn iterate<L: Lanes<N>, C: OverflowPolicy<L, N>, const N: usize>(
     if let Some(extras) = extras {
         surface_speed = L::load(&extras.surface_speed);
         if settings.pass == Pass::Bias {
-            // Friction moves the bodies only from the impact on. Restitution does not add to it.
+            // Friction acts only after the time of impact, and its limit does not include the impulse of restitution.
             surface_speed = C::sub(surface_speed, L::load(&extras.impacts.slip));
             for (pressing, impact) in pressing.iter_mut().zip(&impacts) {
                 *pressing = L::max(C::sub(*pressing, impact.rebound), L::splat(0));
@@ -235,8 +236,8 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
         }
     }
 
-    /// Solves two points against each other, until the second no longer affects the first. `present` has the lanes that
-    /// have each point. Returns their impulses.
+    /// Solves two points against each other, until the second no longer affects the first. `present` contains the mask
+    /// of the lanes that have the point, for each of the two. Returns their impulses.
     #[inline(always)]
     fn solve_both<C: OverflowPolicy<L, N>>(
         &self,

@@ -14,7 +14,7 @@ use crate::collision::{Contact, Feature, Pair, PointImpulse};
 use crate::math::Speed;
 use crate::simd::{Ints, Kernel, Lanes, Layout, Scalar, Shared, prefetch};
 
-/// Prefetch distance in batches: in the order of colours, contacts are random accesses.
+/// Prefetch distance in batches: in the order of colours, the accesses to contacts are random.
 const CONTACTS_AHEAD: usize = 2;
 
 /// The contacts to which the impulses of a batch belong, and the data for converting the impulses.
@@ -233,7 +233,8 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
 }
 
 /// The part of a wedged body's impulse that carries a load: at most the impulse of the last tick. The rest comes from
-/// the impact. In a narrow wedge, friction would keep this rest for ever as a stress between the walls.
+/// the impact. In a narrow wedge, friction would keep the impulse of the impact for ever, as a stress between the
+/// walls.
 fn load_of(impulse: PointImpulse, old: &Contact) -> PointImpulse {
     let load = old.impulse_of(Feature(impulse.feature)).unwrap_or_default();
     let most = load.tangent.abs();

@@ -1,7 +1,7 @@
 //! Warm start: applies the impulses that contacts have accumulated so far.
 //!
-//! Only the first sub-step of a tick does this row by row. In all other sub-steps `contact_velocity` applies the sum of
-//! the velocity changes by all contacts, once for each body.
+//! Only the first sub-step of a tick applies them row by row. In all other sub-steps `contact_velocity` applies the sum
+//! of the velocity changes by all contacts, once for each body.
 
 use core::cell::Cell;
 

@@ -28,9 +28,9 @@ impl SubStep {
         }
     }
 
-    /// `v / rate`, rounded to nearest, ties towards +infinity, by a product instead of a division (T. Granlund,
-    /// P. Montgomery, 1994). The dividend is below 2^48, so that `d` times the product is too large by less than
-    /// `2^48 d`. This is below 2^64, so that the quotient does not reach the next integer.
+    /// `v / rate`, rounded to nearest, ties towards +infinity, by a product instead of a division (T. Granlund, P.
+    /// Montgomery, 1994). The dividend `n` is below 2^48. The product of `n`, the reciprocal and `d` exceeds `2^64 n`
+    /// by less than `2^48 d`, which is below 2^64, so that the quotient does not reach the next integer.
     #[inline]
     #[expect(
         clippy::cast_possible_truncation,

@@ -35,7 +35,7 @@ pub(in crate::solver) struct JointSet {
     /// The rotation of each body of the tick.
     body_rotations: Vec<BodyRotation>,
     quads: Vec<Quad>,
-    /// For each joint in the order of the state, the constraint as which it is solved.
+    /// For each joint in the order of the state, its input as a hinge, or its slot.
     entries: Vec<Entry>,
     hinges: HingeSet,
     /// The coloured hinges of each thread.

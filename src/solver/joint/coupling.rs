@@ -177,8 +177,8 @@ fn pitch_per_tooth(gear: &Gear, gap: Vec2<Fx>) -> Option<Fx> {
 }
 
 /// Measures a gear. `s` is the length of the row for each tooth and radian, so that the direction of the row has the
-/// length `(NA + NB) s / distance` along the tangent. `s` is the length on the pitch line, or that of a row on the
-/// angle if the latter is shorter: with a longer `s` the row would hardly move the wheels.
+/// length `(NA + NB) s / distance` along the tangent. `s` is the length on the pitch line or the length of a row on the
+/// angle, whichever is shorter: with a longer `s` the row would hardly move the wheels.
 fn gear_measure(gear: &Gear, angles: [Angle; 2], inverse: [Reciprocal; 2], pose: &JointPose) -> Measure {
     let Gear { teeth_a, teeth_b } = *gear;
     let turning = widen(angular_scale(inverse, pose.fractions));

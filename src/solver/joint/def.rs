@@ -34,8 +34,8 @@ pub struct JointDef {
     pub frame_b: JointFrame,
     /// Whether the two bodies collide with each other.
     pub collide_connected: bool,
-    /// Whether the joint acts. A disabled joint keeps its handle, exerts nothing, and lets its bodies collide and sleep
-    /// as if it were absent.
+    /// Whether the joint acts. A disabled joint keeps its handle, exerts no force, and lets its bodies collide and
+    /// sleep as if it were absent.
     pub enabled: bool,
     /// The kind of joint: the relative motion that it allows.
     pub kind: JointKind,
@@ -354,7 +354,7 @@ impl JointKind {
         }
     }
 
-    /// The spring that has a target.
+    /// The spring, if its target can be set.
     pub(crate) fn spring_mut(&mut self) -> Option<&mut Spring> {
         match self {
             JointKind::Revolute(Revolute { spring, .. })

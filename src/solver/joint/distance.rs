@@ -44,7 +44,7 @@ pub struct Distance {
     pub spring_force: Option<JointLimit>,
 }
 
-/// Shortest rod in metres: a shorter one has no direction.
+/// Shortest rod in metres, because a shorter rod has no well-defined direction.
 const ROD_MIN: Fx = fx!(0.001);
 
 impl Distance {

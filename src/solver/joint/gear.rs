@@ -9,8 +9,9 @@
 //! C = NA (a - p) + NB (b - p)        in teeth; wheels that turn against each other have teeth of the same sign
 //! ```
 //!
-//! is known up to whole teeth from the pose alone, because whole turns are whole teeth. There is no state that could
-//! drift, and wheels that are forced out of mesh by more than half a tooth skip a tooth, as real gears do.
+//! is known up to whole teeth from the pose alone, because a whole turn of a wheel is a whole number of teeth. There is
+//! no state that could drift, and wheels that are forced out of mesh by more than half a tooth skip a tooth, as real
+//! gears do.
 
 use serde::{Deserialize, Serialize};
 

@@ -52,7 +52,7 @@ struct Link {
 }
 
 impl Link {
-    /// Lets `change` change the velocities of the two bodies.
+    /// Calls `change` with the two bodies, and stores their new velocities.
     #[inline]
     fn change(
         &mut self,
@@ -94,7 +94,7 @@ pub(super) enum BlockedTask {
     Spring,
     /// Its impulse is never negative.
     Limit,
-    /// A motor. Its impulse has a largest magnitude.
+    /// A motor, whose impulse is limited in magnitude.
     Drive,
 }
 

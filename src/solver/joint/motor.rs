@@ -1,6 +1,6 @@
 //! The motor joint: motors and springs with limited force on the angle and on the anchors. It has no rigid parts.
 //!
-//! A limit of the force that is the same in all directions bounds the length of the impulse `p = G L` of a point block.
+//! A force limit that is the same in all directions bounds the length of the impulse `p = G L` of a point block.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,10 +14,10 @@ use crate::math::{Fx, Vec2};
 /// With a speed of 0 it acts as friction between B and A, as on a table seen from above. With springs it pulls the
 /// frames onto each other: if A is a kinematic or fixed body that follows a pointer, B is dragged by the pointer.
 ///
-/// Forces act on both bodies at one point, B's anchor, as if A reached there: a sideways force on B also turns A.
+/// Forces act on both bodies at one point, B's anchor, as if A extended to it: a sideways force on B also turns A.
 /// Momentum and angular momentum of the two bodies are kept. A's arm is limited to 88 times its radius of gyration. If
-/// it is shortened, forces act on both bodies at its end. If that point is out of reach of B as well, they act only
-/// along the line between the two centres.
+/// the arm is shortened to this limit, forces act on both bodies at its end. If B's arm to that point would be too long
+/// as well, forces act only along the line between the two centres.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
@@ -38,14 +38,14 @@ use crate::math::{Fx, Vec2};
 #[doc(alias = "target joint")]
 #[doc(alias = "MotorJoint")]
 pub struct Motor {
-    /// Drives B's anchor to a velocity relative to A's frame: relative to the point of A, or of its extension, at which
-    /// B's anchor is. [`World::joint_velocity`](crate::world::World::joint_velocity) measures this velocity. If A
-    /// rotates, B is driven around with it.
+    /// Drives B's anchor to a velocity relative to A's frame, at the point of the frame at which B's anchor is.
+    /// [`World::joint_velocity`](crate::world::World::joint_velocity) measures this velocity. If A rotates, B is driven
+    /// around with it.
     pub linear: Option<LinearDrive>,
     /// Drives B to an angular velocity relative to A in rad/s, with limited torque in N m.
     pub angular: Option<Drive>,
-    /// Pulls the anchors onto each other, with limited force in N. The frequency is that of the bodies as points of
-    /// mass, and the stiffness the same in all directions ([`Soft`]). Its damping acts on the velocity of B's anchor
+    /// Pulls the anchors onto each other, with limited force in N. The frequency is that of the bodies as point masses,
+    /// and the stiffness is the same in all directions ([`Soft`]). Its damping acts on the velocity of B's anchor
     /// relative to A's frame, along the spring and across it.
     pub linear_spring: Option<Pull>,
     /// Turns the frames parallel, with limited torque in N m.
@@ -124,8 +124,8 @@ impl Motor {
     option_builders! {
         /// Sets a target angular velocity in rad/s, and the largest torque in N m.
         angular(speed, max_torque) => Drive { speed, max: max_torque };
-        /// Sets a spring between the anchors, with a frequency in Hz, that of the bodies as points of mass, and a
-        /// largest force in N.
+        /// Sets a spring between the anchors, with a frequency in Hz and a largest force in N. The frequency is that of
+        /// the bodies as point masses.
         linear_spring(hertz, damping_ratio, max_force) =>
             Pull { soft: Soft { hertz, damping_ratio }, max: max_force };
         /// Sets a spring between the angles, with a frequency in Hz and a largest torque in N m.

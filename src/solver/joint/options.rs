@@ -15,9 +15,9 @@ const DAMPING_RATIO_MAX: Fx = fx!(100);
 
 /// The range of a joint's position, in radians or metres, within ±2^20. The lower end is not above the upper one.
 ///
-/// A limit is as stiff as joints are: under a steady acceleration `a` against the limit, the position exceeds it by
-/// `a / (2 pi f)^2`, with the [joint stiffness](crate::solver::SolverSettings::joint_hertz) `f`, at most a quarter of
-/// the sub-step rate.
+/// A limit has the stiffness of a rigid joint: under a steady acceleration `a` against the limit, the position exceeds
+/// it by `a / (2 pi f)^2`, with the [joint stiffness](crate::solver::SolverSettings::joint_hertz) `f`, at most a
+/// quarter of the sub-step rate.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, math::Vec2, world::World};
@@ -67,10 +67,10 @@ pub struct Drive {
 
 /// A damped spring with a target.
 ///
-/// On an angle, the frequency is the one for two free bodies; a body on a hinge away from its centre of mass swings
-/// more slowly. Along a line (sliders, wheels, distance joints), it is the one for the two bodies as points of mass:
-/// the stiffness is `(2 pi hertz)^2 m` N/m at every pose, with `m` as for [`Soft`]. Where the line passes a centre of
-/// mass at a distance, the spring also turns the body, and swings faster.
+/// On an angle, the frequency is that of two free bodies; a body on a hinge away from its centre of mass swings more
+/// slowly. Along a line (sliders, wheels, distance joints), it is that of the two bodies as point masses: the stiffness
+/// is `(2 pi hertz)^2 m` N/m at every pose, with `m` as for [`Soft`]. Where the line does not pass through a centre of
+/// mass, the spring also turns the body, which swings faster.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
@@ -102,12 +102,12 @@ pub struct Spring {
 
 /// Softness of a joint that is not rigid.
 ///
-/// An angular spring has this frequency if both bodies are free. A linear spring, between anchors, has it if both bodies
-/// are points of mass: its stiffness is `(2 pi hertz)^2 m` N/m in all directions, with the masses
-/// `m = MA MB / (MA + MB)`, or the mass of the one that moves if the other does not. A body that hangs on a fixed one
-/// sags by `g / (2 pi hertz)^2`, wherever its anchor is. If the anchor is off the centre of mass by `r`, across the pull,
-/// the body also turns: it swings `sqrt(1 + r^2 / k^2)` times as fast, with `k` its radius of gyration, and its damping
-/// ratio is larger by the same factor.
+/// An angular spring has this frequency if both bodies are free. A linear spring, between anchors, has it if both
+/// bodies are point masses: its stiffness is `(2 pi hertz)^2 m` N/m in all directions, with the masses
+/// `m = MA MB / (MA + MB)`, or the mass of the moving body if the other one does not move. A body that hangs on a fixed
+/// one sags by `g / (2 pi hertz)^2`, wherever its anchor is. If the anchor is off the centre of mass by `r`, across the
+/// pull, the body also turns: it swings `sqrt(1 + r^2 / k^2)` times as fast, with `k` its radius of gyration, and its
+/// damping ratio is larger by the same factor.
 ///
 /// A spring between anchors that is stretched by `x` turns a body of mass `M` too fast for the time step if
 /// `(2 pi hertz / rate)^2 m x r / (M k^2)` is above about 1, where `rate` is the sub-step rate. Then the body gains

@@ -28,12 +28,12 @@ pub(super) enum Direction {
     Along,
     /// The position of B's anchor along the y axis of A's frame.
     Across,
-    /// Like `Across`, but at the point where an impulse does not rotate the bodies relative to each other. For joints
-    /// that also hold the angle.
+    /// Like `Across`, but at the point where an impulse does not rotate the bodies relative to each other. Used by
+    /// joints that also hold the angle.
     AcrossBalanced,
     /// The distance between the anchors.
     Apart,
-    /// The coordinate of the coupling of the joint with this index.
+    /// The position that the coupling with this index measures.
     Coupled(u32),
 }
 

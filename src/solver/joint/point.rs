@@ -13,8 +13,8 @@ use crate::math::{Speed, Unit, Vec2};
 /// The function of a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum PointTask {
-    /// Pulls the anchors onto each other with the same stiffness in all directions, with impulses times `mA + mB` of at
-    /// most `max`, in the bias pass only, as spring rows do.
+    /// Pulls the anchors onto each other with the same stiffness in all directions. Impulses times `mA + mB` are at
+    /// most `max`. Solved in the bias pass only, like spring rows.
     Spring { softness: Softness, max: Speed },
     /// Drives the relative velocity of the anchors to `velocity`, with impulses times `mA + mB` of at most `max`.
     Drive { velocity: Vec2<Speed>, max: Speed },
@@ -54,7 +54,7 @@ impl JointPoint {
         max
     }
 
-    /// The change of the impulse of a spring that the bias pass wants.
+    /// The change of the impulse of a spring in the bias pass, before it is limited.
     pub(super) fn wanted(
         &self,
         softness: &Softness,

@@ -188,9 +188,9 @@ impl JointPose {
         Lever { arm: self.lever_a.arm + self.gap.narrow(), ..self.lever_a }
     }
 
-    /// The block of a pulled or driven point. `mass_scale` is that of the spring, 1 for a motor. Its impulses act at
-    /// one point of both bodies. Far away bodies on which no such point is within reach are moved along the line
-    /// between their centres only: the effective mass across it is less than a ten thousandth of that along it.
+    /// The block of a pulled or driven point. `mass_scale` is that of the spring, 1 for a motor. Its impulses act on
+    /// both bodies at one point. If no point is within reach of both bodies, impulses act only along the line between
+    /// their centres: across the line, the effective mass is less than a ten thousandth of the effective mass along it.
     pub(super) fn block(&self, mass_scale: Unit) -> PointBlock {
         match self.levers_at_one_point() {
             Some([a, b]) => PointBlock::new(a, b, self.fractions, mass_scale),
@@ -202,8 +202,8 @@ impl JointPose {
     }
 
     /// The levers of A and B to one point. An impulse that is not along the gap keeps angular momentum only if it acts
-    /// on both bodies at one point. This is B's anchor if it is within reach of A, otherwise the point within reach of
-    /// A that is nearest to it. `None` if that point is not within reach of B.
+    /// on both bodies at one point. The point is B's anchor if that is within reach of A. Otherwise it is the end of
+    /// A's arm, which is shortened to the reach of A. `None` if that end is not within reach of B.
     fn levers_at_one_point(&self) -> Option<[Lever; 2]> {
         let a = self.reach_of_a();
         let longest = longest_ratio(a);

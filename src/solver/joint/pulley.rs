@@ -14,11 +14,11 @@ const RATIO_MIN: Fx = fx!(0.25);
 /// Largest ratio.
 const RATIO_MAX: Fx = fx!(4);
 
-/// A pulley: a rope from A's anchor over two wheels to B's anchor. The length on A's side and `ratio` times that on B's
-/// side are together at most `length`.
+/// A pulley: a rope from A's anchor over two wheels to B's anchor. The length on A's side plus `ratio` times the length
+/// on B's side is at most `length`.
 ///
 /// A rope only pulls. The wheels are fixed points of the world, which take up the force of the rope. B's side is pulled
-/// with `ratio` times the force of A's, as by a tackle with as many ropes.
+/// with `ratio` times the force on A's side, as by a tackle with as many ropes.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};

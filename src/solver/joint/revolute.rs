@@ -14,10 +14,10 @@ use crate::math::Fx;
 /// A revolute joint, or hinge: pins A's anchor to B's.
 ///
 /// Under a steady force that would accelerate a body by `a`, the anchors of a hinge at rest come apart by
-/// `a / (2 pi f)^2`, where `f` is that of [`JointDef::softness`](crate::solver::JointDef::softness), or else
-/// [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz), or twice that if one of the bodies has
-/// no other joint and the other one is not dynamic. At 60 Hz the weight of a rotor opens its hinge by 18 µm, and by 70
-/// µm if the rotor has another joint.
+/// `a / (2 pi f)^2`, where `f` is the frequency of [`JointDef::softness`](crate::solver::JointDef::softness). Without a
+/// softness of its own, `f` is [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz), or twice
+/// that frequency if one of the bodies has no other joint and the other one is not dynamic. At 60 Hz the weight of a
+/// rotor opens its hinge by 18 µm, and by 70 µm if the rotor has another joint.
 ///
 /// The angle of the joint is that of B's frame in A's, in radians, counter-clockwise. It counts whole turns, so that a
 /// limit may be wider than one turn.

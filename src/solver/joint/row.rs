@@ -6,17 +6,17 @@
 //! ```text
 //! spring   d = -massScale (vn + biasRate (x - target)) - impulseScale L      bias pass only
 //! motor    d = -(vn - speed),  |L| <= F h (mA + mB) D                        (over s: torque)
-//!          speed is clamped: to C / h before a limit of the joint, to biasRate C, back to the limit, beyond it
+//!          speed is clamped: before a limit of the joint to C / h, beyond it to biasRate C (back to the limit)
 //! limit    d = -massScale (vn + biasRate C) - impulseScale L,  L >= 0        C = x - lower or upper - x
 //!          d = -(vn + C / h)                                                 while C > 0
 //! hold     as a limit that is reached, with L of either sign
 //! ```
 //!
-//! A spring along a line has the stiffness `omega^2 m` and the damping `2 zeta omega m` of the bodies as points of
-//! mass, `m = 1 / (mA + mB)` with the inverse masses, at every pose, so that its force follows from a potential. Where it also turns the
-//! bodies, its scales are therefore those of the mobility `D` ([`Softness::at_mobility`]). With the same scales at
-//! every pose it would have the same frequency at every pose, and its stiffness `omega^2 m / D` would change as the
-//! arms turn.
+//! A spring along a line has the stiffness `omega^2 m` and the damping `2 zeta omega m` of the bodies as point masses
+//! at every pose, so that its force follows from a potential. Here `m = 1 / (mA + mB)`, with the inverse masses. Where
+//! the spring also turns the bodies, its scales are therefore those of the mobility `D` ([`Softness::at_mobility`]). If
+//! it had the same scales at every pose, its frequency would be constant, and its stiffness `omega^2 m / D` would
+//! change as the arms turn.
 //!
 //! `L` is a speed. The impulse is `L / ((mA + mB) D)`, times `s` for an angle.
 //!
@@ -76,7 +76,8 @@ pub(super) struct JointRow {
     pub(super) row: Row,
     /// For a spring: the part of its impulse that comes from its stretch. For other rows: the target speed, reversed.
     bias: Speed,
-    /// For a spring: its softness at the current pose. For a limit or a row that holds a position: that of the joint.
+    /// For a spring: its softness at the current pose. For a limit or a row that holds a position: the softness of the
+    /// joint.
     softness: Softness,
     /// Whether the row is a limit that is not reached.
     open: bool,
@@ -146,7 +147,7 @@ impl JointRow {
         self.open
     }
 
-    /// The change of the impulse of a limit that a pass wants if the impulse is 0 and may become negative.
+    /// The change of the impulse of a limit in a pass, if the impulse is 0 and may become negative.
     pub(super) fn wanted_of_limit(
         &self,
         pass: Pass,
@@ -237,7 +238,8 @@ impl JointRow {
         }
     }
 
-    /// The change of the impulse that a pass wants, in units of [`Speed`]. `None` if the pass leaves out the row.
+    /// The change of the impulse in a pass, in units of [`Speed`], before bounds apply. `None` if the pass leaves out
+    /// the row.
     pub(super) fn wanted(
         &self,
         pass: Pass,
@@ -266,8 +268,8 @@ impl JointRow {
 }
 
 /// Returns the largest speed in m/s at which a limit may be approached from a distance of `gap`: at this speed the
-/// limit is reached in one sub-step, of which there are `rate` per second. Beyond the limit, `gap` and the speed are
-/// negative: the joint returns to the limit at `bias_rate` times the gap.
+/// limit is reached in one sub-step of `1 / rate` seconds. Beyond the limit, `gap` and the speed are negative: the
+/// joint returns to the limit at `bias_rate` times the gap.
 fn approach(gap: Fx, bias_rate: Fx, rate: u32) -> Fx {
     fx_mul(gap, if gap > Fx::ZERO { Fx::from_num(rate) } else { bias_rate })
 }

@@ -64,7 +64,7 @@ impl<'set> JointSplit<'set> {
 }
 
 impl JointShare<'_, '_> {
-    /// Computes arms, gains and gaps at the current poses. Those of hinges are computed by the next operation on them.
+    /// Computes arms, gains and gaps at the current poses. Hinges are refreshed by the next operation on them.
     pub(in crate::solver) fn refresh(&mut self, context: &StepContext<'_>) {
         if self.is_empty {
             return;

@@ -71,7 +71,7 @@ impl Joint {
         *self.def = def;
     }
 
-    /// Clears the impulses, because neither body is dynamic any more.
+    /// Clears the impulses. Called if neither body is dynamic.
     pub(crate) fn rest(&mut self) {
         self.impulses = JointImpulses::default();
     }
@@ -151,11 +151,11 @@ impl Joint {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum JointPart {
-    /// The motor; of a motor joint both motors.
+    /// The motor, or both motors of a motor joint.
     Motor,
     /// The limits.
     Limit,
-    /// The springs; of a weld its soft parts.
+    /// The springs, or the soft parts of a weld.
     Spring,
 }
 

@@ -74,8 +74,8 @@ fn an_impulse_of_limited_length_is_no_longer() {
     assert_eq!(faults, 0);
 }
 
-/// A soft block pulls with the stiffness and the damping of its bodies as points of mass in all directions, at the end
-/// of the sub-step: `impulseScale p = -massScale v - push`, however long the arms are.
+/// A soft block pulls in all directions with the stiffness and the damping of its bodies as point masses, at the end of
+/// the sub-step: `impulseScale p = -massScale v - push`, however long the arms are.
 #[test]
 fn a_soft_block_is_an_isotropic_spring() {
     let mut rng = Rng::new(10);
@@ -103,7 +103,7 @@ fn a_soft_block_is_an_isotropic_spring() {
         let start = b.velocity - a.velocity;
         let (mut lambda, remainders) = (Vec2::ZERO, &mut Remainders::default());
         let bodies = &mut BodyPair { a: &mut a, b: &mut b, remainders, faults: &mut faults };
-        // The second update starts with the impulse of the first, and finds nothing to change but roundings.
+        // The second update starts with the impulse of the first, and changes it only by rounding errors.
         for _ in 0..2 {
             let goal = PointGoal { bias: Vec2::ZERO, push };
             block.solve_within(bodies, goal, &softness, Speed::MAX, &mut lambda);

@@ -68,13 +68,14 @@ pub(in crate::solver) fn angular_scale([a, b]: [Reciprocal; 2], fractions: MassF
     if sum == 0 {
         return Length::ZERO;
     }
-    // The sum is normalised to 31 or 32 bits by an even shift, so that its reciprocal has as many bits and the root of
-    // that half as many. The root is increased by more than its rounding error, so that `f` is not above 1.
+    // The sum is normalised to 31 or 32 bits by an even shift. Its reciprocal then has as many bits, and the square
+    // root of the reciprocal half as many. The root is increased by more than its rounding error, so that `f` is not
+    // above 1.
     let shift = (i64::from(128 - sum.leading_zeros()) - 31) & !1;
     let top = if shift >= 0 { sum >> shift } else { sum << -shift };
     let root = ((1u64 << 62) / u64::try_from(top).unwrap_or(u64::MAX).max(1)).isqrt();
     let root = u128::from(root + (root >> 14) + 1);
-    // `root` is now `2^(31 + shift/2) / sqrt(sum)`. A length is `2^(22 + 36) / sqrt(sum)`.
+    // `root` is `2^(31 + shift/2) / sqrt(sum)`. A length is `2^(22 + 36) / sqrt(sum)`.
     let up = 27 - shift / 2;
     let length = if up >= 0 { root << up } else { root >> -up };
     let most = (100u64 << 43) / u64::from(a.max(b).to_bits().unsigned_abs()).max(1);

@@ -1,4 +1,4 @@
-//! Rows whose directions on A and B differ, or are no unit vectors: gears and pulleys.
+//! Rows whose directions on A and B differ, or are not unit vectors: gears and pulleys.
 //!
 //! ```text
 //! vn = nB.vB + eB uB - nA.vA - eA uA

@@ -83,7 +83,7 @@ fn quotient<const BITS: u32>(d: __m512i) -> __m512i {
         let less = |from: u32, a| _mm512_sub_epi64(_mm512_set1_epi64(from.into()), a);
         let spare = _mm512_lzcnt_epi64(d);
         let m = _mm512_srli_epi64::<32>(_mm512_sllv_epi64(d, spare));
-        // The permutation uses the lowest bits of an index; these are the number of the chord.
+        // The permutation uses only the lowest bits of an index, which are the number of the chord.
         let chord = _mm512_srli_epi64::<REST>(m);
         let looked_up = |table: &[i32; CHORDS]| {
             _mm512_maskz_permutexvar_epi32(LANES, chord, _mm512_loadu_si512(table.as_ptr().cast()))

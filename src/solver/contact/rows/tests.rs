@@ -138,8 +138,8 @@ fn naive_row(input: &Input, anchors: [[i32; 2]; 2], n: [i32; 2]) -> Naive {
     Naive { e, gains, denominator, inverse }
 }
 
-/// Checks that every number of a lane equals the one from the equations. The second point of a contact with one is a
-/// copy of the first.
+/// Checks that every number of a lane equals the one from the equations. The second point of a contact with one point
+/// is a copy of the first.
 fn check<const N: usize>(input: &Input, lane: usize, made: &Made<N>) {
     let Made { batch, denominators } = made;
     let mut input = *input;

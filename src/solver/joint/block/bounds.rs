@@ -1,8 +1,8 @@
-//! Units with bounds in a block: limits, which may only push, motors, whose force is limited, and springs of limited
-//! force. The block finds the reached bounds with an active set. At first, all motors are active, and those limits and
-//! springs that would be within their bounds if no other unit acted on their two bodies. Each round solves the
-//! equations of the active units, and holds units that would be beyond a bound at that bound, until no active unit is
-//! beyond one.
+//! Units with bounds in a block: limits, which may only push, and motors and springs of limited force. An active-set
+//! method finds the bounds that are reached. At first, all motors are active, as are the limits and springs that would
+//! be within their bounds if no other unit acted on their two bodies. Each round solves the equations of the active
+//! units. A unit whose impulse would be beyond a bound is then held at that bound. The rounds end when no active unit
+//! is beyond a bound.
 
 use super::super::super::context::{Pass, StepContext};
 use super::super::hinge::{HingeSet, Poses};
@@ -23,15 +23,16 @@ pub(super) struct BoundedUnit {
     pub(super) held: [i64; 2],
 }
 
-/// `S^2` of a limit that is not reached, with 30 fraction bits: so far below 1 that the equations have a solution even
-/// if other rows depend on it.
+/// `S^2` of a limit that is not reached, with 30 fraction bits. It is far enough below 1 that the equations have a
+/// solution even if other rows depend linearly on the limit.
 const OPEN_SCALE: i64 = ONE - (1 << 20);
 
-/// `S^2` of a motor, with 30 fraction bits. Closer to 1 than that of a limit: under leverage the impulse is large, and
-/// the error of the speed is the impulse times `1 - S^2`.
+/// `S^2` of a motor, with 30 fraction bits. It is closer to 1 than `S^2` of a limit, because the error of the speed is
+/// the impulse times `1 - S^2`, and the impulse is large under leverage.
 const DRIVE_SCALE: i64 = ONE - (1 << 16);
 
-/// Number of rounds in which, of the motors beyond their largest force, only the furthest beyond it are deactivated.
+/// Number of initial rounds in which a motor is deactivated only if it is among those furthest beyond their largest
+/// force.
 const ROUNDS_MAX: u32 = 4;
 
 impl Block {
@@ -46,7 +47,7 @@ impl Block {
     ) {
         self.want(pass, hinges, list, poses, context);
         self.activate(pass, hinges, list);
-        // A row that was held at a bound stays there, so that the loop ends.
+        // A unit that is held at a bound stays held, so that the loop ends.
         for round in 0.. {
             if self.hold(context) {
                 self.want(pass, hinges, list, poses, context);
@@ -86,9 +87,8 @@ impl Block {
     }
 
     /// Deactivates units whose impulse would be beyond a bound. With `furthest_only`, motors are deactivated only if
-    /// their excess is at least half the largest one: while a brake holds a strong motor, the equations ask for as
-    /// large an impulse of the motor as of the brake, and only the brake should slip. Returns whether any unit was
-    /// deactivated.
+    /// their excess is at least half the largest one: while a brake holds a strong motor, the equations give the motor
+    /// as large an impulse as the brake, and only the brake should slip. Returns whether any unit was deactivated.
     fn deactivate(&mut self, furthest_only: bool, hinges: &HingeSet, list: &JointList) -> bool {
         let Block { bounded, units, impulses, x, .. } = self;
         let impulses_of = |unit: &Unit| {

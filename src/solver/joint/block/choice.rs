@@ -4,12 +4,12 @@
 //! disturb each other, where it may even add energy. A body is *crowded* if two or more joints hold it and
 //!
 //! - one of them holds more than a point: a weld, a slider, a spring, or
-//! - it is so light, or its arms are so long, that it has a large share in the mobility of the points of two hinges, or
-//!   in the sum over all hinges but one.
+//! - it is so light, or its arms are so long, that its share in the mobility of the points of two hinges is large, or
+//!   the sum of its shares over all hinges but one.
 //!
 //! All joints of a crowded body are solved in a block. Two crowded bodies with a common joint share a block, as long as
-//! it does not grow beyond [`ROWS_MAX`]. The choice depends on the joints of a body alone, so that a joint elsewhere
-//! changes nothing.
+//! it does not grow beyond [`ROWS_MAX`]. The choice depends on the joints of a body alone, so that joints elsewhere do
+//! not affect it.
 
 use alloc::vec::Vec;
 
@@ -25,10 +25,11 @@ use crate::math::{Fx, Unit, fx_mul};
 /// third power of its rows: a block of this size costs about as much as 5000 contacts.
 pub(super) const ROWS_MAX: u32 = 96;
 
-/// Smallest share that makes a body with two hinges crowded, if each of them has it.
+/// Smallest share in the mobility of each of two hinges that makes a body crowded.
 const PAIR_MIN: Unit = Unit::lit("0.6");
 
-/// Smallest sum of the shares of all hinges but the largest that makes a body crowded. Cloth of discs would reach 1.5.
+/// Smallest sum of shares, without the largest share, that makes a body crowded. It is just above 1.5, the sum in cloth
+/// of discs.
 const SUM_MIN: i64 = (1 << 30) / 100 * 152;
 
 /// A joint that may be solved in a block, with the properties by which blocks are chosen.
@@ -36,10 +37,10 @@ const SUM_MIN: i64 = (1 << 30) / 100 * 152;
 pub(in super::super) struct Candidate {
     /// The indices of its bodies: the ground for a body that no impulse changes.
     pub(in super::super) bodies: [u32; 2],
-    /// Number of rows that a block would solve: those that hold the bodies, springs, limits, and motors along one
+    /// Number of rows that a block would solve: rows that hold the bodies, springs, limits, and motors along one
     /// direction. A joint without such rows takes no part.
     pub(in super::super) rows: u32,
-    /// Whether it has rows besides that of a motor. A motor alone crowds no body.
+    /// Whether it has rows besides that of a motor. A motor alone makes no body crowded.
     pub(in super::super) holds: bool,
     /// Whether it is a revolute joint, which holds nothing but a point.
     pub(in super::super) is_hinge: bool,
@@ -91,7 +92,7 @@ impl Candidate {
 struct Crowd {
     /// Number of joints.
     joints: u32,
-    /// Number of joints that hold it.
+    /// Number of joints that hold the body.
     holds: u32,
     others: bool,
     sum: i64,
@@ -185,7 +186,7 @@ impl Choice {
             for &joint in &self.queue {
                 self.settled[joint as usize] = true;
             }
-            // The reverse of E. Cuthill's and J. McKee's order.
+            // Reverse Cuthill-McKee order.
             self.order.extend(self.queue.iter().rev());
             self.block_ends.push(self.order.len());
         }
@@ -199,7 +200,7 @@ impl Choice {
                 self.crowds[body as usize].add(share, joint);
             }
         }
-        // The ground connects nothing.
+        // The ground connects no joints.
         self.crowds[GROUND as usize] = Crowd::default();
     }
 
@@ -267,8 +268,8 @@ impl Choice {
     }
 
     /// Adds the joints of a body to the walk, in ascending order. Leaves out joints that would bring the block above
-    /// [`ROWS_MAX`] rows. `rows` is the number of rows so far; returns the new number. It only grows during a walk, so
-    /// a joint that does not fit is not tried again in the same walk.
+    /// [`ROWS_MAX`] rows. `rows` is the number of rows so far; returns the new number. The number only grows during a
+    /// walk, so that a joint that does not fit is not tried again in the same walk.
     fn take_joints_of(&mut self, place: u32, mut rows: u32) -> u32 {
         let Choice { bodies, of_body, taken, settled, queue, walks, .. } = self;
         let JointsOfBody { next, ends, walk } = &mut bodies[place as usize];

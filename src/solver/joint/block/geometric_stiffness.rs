@@ -1,11 +1,12 @@
 //! Geometric stiffness: the torque of a pull changes while its arm turns.
 //!
-//! A force `F` that pulls a body outwards at an arm `r` returns the body like a pendulum with the stiffness `F . r`.
-//! Computed from the pose at the start of each sub-step, this is a kicked rotor with the kick `kappa = h^2 F . r / I`,
-//! and its energy grows if `kappa` is above about 1 (B. Chirikov, "A universal instability of many-dimensional
-//! oscillator systems", 1979). A body above [`KICK_MIN`] therefore answers the impulses of its block with the inertia
-//! `I + h^2 F . r`, as in a step that is implicit in the rotation (S. Andrews, M. Teichmann and P. Kry, "Geometric
-//! Stiffness for Real-time Constrained Multibody Dynamics", 2017). `F` is the force of the last sub-step.
+//! A force `F` that pulls a body outwards at an arm `r` exerts a restoring torque, as on a pendulum, with the stiffness
+//! `F . r`. If the torque is computed from the pose at the start of each sub-step, the body is a kicked rotor with the
+//! kick `kappa = h^2 F . r / I`, and its energy grows if `kappa` is above about 1 (B. Chirikov, "A universal
+//! instability of many-dimensional oscillator systems", 1979). A body above [`KICK_MIN`] therefore responds to the
+//! impulses of its block with the inertia `I + h^2 F . r`, as in a step that is implicit in the rotation (S. Andrews,
+//! M. Teichmann and P. Kry, "Geometric Stiffness for Real-time Constrained Multibody Dynamics", 2017). `F` is the force
+//! of the last sub-step.
 
 use super::super::hinge::HingeSet;
 use super::super::list::JointList;
@@ -14,8 +15,8 @@ use super::scaling::{length, product};
 use super::{Block, Blocks};
 use crate::math::{Ratio, Vec2, round_shift_wide, saturate_wide};
 
-/// Smallest kick that changes the inertia, with 30 fraction bits. The larger inertia costs angular momentum, so that
-/// bodies below the instability keep theirs.
+/// Smallest kick that changes the inertia, with 30 fraction bits. The larger inertia does not conserve angular
+/// momentum, so that it is not applied to bodies that are stable without it.
 const KICK_MIN: i64 = ONE / 2;
 
 /// Limit to which kicks are clamped.
@@ -30,10 +31,10 @@ pub(super) enum Leverage {
     /// both bodies, which are the arms over the radii of gyration, turned by a right angle.
     AtPoint([Vec2<Ratio>; 2]),
     /// The force turns with A, and acts at a point of B. With `d` from A's centre to that point, `r` from B's, and the
-    /// position `n . d` on the axis `n`, the derivatives of the torques are `F n . d` and `F n . r` by the rotations of
-    /// A and B, and `F` by a translation across the axis. For each body `|F|` times the length of its own arm is used
-    /// instead, which is at least the derivative by its own rotation for any direction of the force. Contains the
-    /// lengths of the lever ratios.
+    /// position `n . d` on the axis `n`, the derivatives of the torques are `F n . d` and `F n . r` with respect to the
+    /// rotations of A and B, and `F` with respect to a translation across the axis. For each body, `|F|` times the
+    /// length of its own arm is used instead, which is at least the derivative with respect to its own rotation for any
+    /// direction of the force. Contains the lengths of the lever ratios.
     AlongAxis([Ratio; 2]),
 }
 
@@ -60,7 +61,7 @@ impl Blocks {
         list: &JointList,
         rotation_of: impl Fn(u32, i64) -> i64,
     ) {
-        // The impulses of the last tick are known, but not yet the rows on which they act.
+        // The impulses of the last tick are known, but the rows on which they act have not been computed yet.
         if core::mem::take(&mut self.is_first_sub_step) {
             self.refresh(hinges, list);
         }

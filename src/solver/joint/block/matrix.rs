@@ -34,8 +34,8 @@ pub(super) struct Matrix {
 }
 
 impl Matrix {
-    /// Creates a matrix of zeros from the column of the first entry of each row. Takes no more memory than it needs:
-    /// thousands of blocks have one each.
+    /// Creates a matrix of zeros from the column of the first entry of each row. Reserves no more memory than it needs,
+    /// because there may be thousands of blocks.
     pub(super) fn new(mut first: Vec<usize>) -> Self {
         let (mut starts, mut count) = (Vec::with_capacity(first.len()), 0);
         for (row, first) in first.iter_mut().enumerate() {

@@ -11,7 +11,7 @@ pub(super) struct Mobility {
     pub(super) fractions: MassFractions,
     /// The square roots of the fractions, with 30 fraction bits.
     pub(super) roots: [i64; 2],
-    /// The share of its own rotation that geometric stiffness leaves each body, `I / (I + h^2 F r)`, with 30 fraction
+    /// For each body, the share of its rotation that geometric stiffness leaves, `I / (I + h^2 F r)`, with 30 fraction
     /// bits.
     spins: [i64; 2],
     /// The square roots of `spins`.

@@ -2,8 +2,8 @@
 //!
 //! Warm-started iterations over joints that meet at one body may diverge: they are the heavy-ball method of B. Polyak
 //! (1964) with momentum 1, which diverges if joints disturb each other in a cycle. `choice.rs` finds such joints. All
-//! their rows, `i`, that are not held at a bound (`bounds.rs`) then get the changes `d` that satisfy the softness of
-//! every row at once, instead of the changes `w` that each row by itself would make:
+//! rows `i` of these joints that are not held at a bound (`bounds.rs`) then get the changes `d` that satisfy the
+//! softness of every row at once, instead of the changes `w` that each row by itself would make:
 //!
 //! ```text
 //! w_i = -massScale_i (v_i + bias_i) - impulseScale_i L_i           as for a single row
@@ -13,14 +13,15 @@
 //!
 //! The softness of a spring between two points is part of its scale (`scaling.rs`), so that its `S` is 1.
 //!
-//! Changes are also divided by `Q = sqrt(m_least / m)`, where `m` is the reduced mass of the two bodies, because the
-//! matrix is symmetric only for impulses, not for speeds.
+//! Changes are also divided by `Q = sqrt(m_least / m)`, where `m` is the reduced mass of the two bodies and `m_least`
+//! the smallest one in the block, because the matrix is symmetric only for impulses, not for speeds.
 //!
 //! The equation of `z` is `A d + (impulseScale / massScale) d = w / massScale`, scaled to a unit diagonal. The smallest
 //! eigenvalue of its matrix is at least the smallest impulse scale, whatever masses and arms are, even if rows depend
 //! on each other, as in a loop of welds. (Springs between points at long arms may depend on each other more closely;
 //! `matrix.rs` bounds the pivots.) The relax pass, which has no softness, adds [`EXCESS`] to the diagonal instead. The
-//! matrix depends on the pose alone. The impulses and the arithmetic that applies them are those of single rows.
+//! matrix depends on the pose and on geometric stiffness (`geometric_stiffness.rs`). `L` is defined as for single rows,
+//! but has 32 fraction bits.
 
 mod bounds;
 mod choice;
@@ -48,8 +49,8 @@ use scales::{Scales, mass_share};
 use scaling::{ScaledRow, root_and_inverse};
 use unit::Unit;
 
-/// Added to the diagonal in the relax pass, with 30 fraction bits: 2^-14. It leaves this share of the velocity of rows
-/// that no other row disturbs.
+/// Added to the diagonal in the relax pass, with 30 fraction bits: 2^-14. A row that no other row disturbs keeps this
+/// share of its velocity.
 const EXCESS: i64 = 1 << 16;
 
 /// All blocks of a tick.
@@ -183,8 +184,9 @@ impl Blocks {
     }
 
     /// Starts a sub-step with impulses of 0. Equations that are solved exactly need no warm start, and softness gives
-    /// the same result without one. At a light body between heavy ones the impulses are large and cancel, but those of
-    /// the last pose do not cancel at the new one. `rotation_of` is that of [`Self::update_inertia`].
+    /// the same result without one. At a light body between heavy ones the impulses are large and cancel each other,
+    /// but the impulses of the last pose would not cancel at the new pose. `rotation_of` is as for
+    /// [`Self::update_inertia`].
     pub(super) fn start_sub_step(
         &mut self,
         hinges: &HingeSet,
@@ -309,8 +311,8 @@ impl Block {
         }
     }
 
-    /// Returns the impulses to the joints, for the next tick. Impulses are clamped to the format of the joint, because
-    /// the next tick only starts from them.
+    /// Returns the impulses to the joints, for the next tick. Impulses that exceed the format of the joint are clamped.
+    /// This is not a fault, because the next tick uses them only as initial values.
     fn return_impulses(&mut self, hinges: &mut HingeSet, list: &mut JointList) {
         self.restore_inertia(hinges, list);
         for unit in &self.units {

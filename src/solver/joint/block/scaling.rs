@@ -1,8 +1,8 @@
 //! Scales rows and point blocks so that their own part of the matrix is 1.
 //!
 //! With the Jacobian `J` of a row or point and the mass fractions `a`, `K = sum a J J^T` is the matrix that relates an
-//! impulse (times the sum of the inverse masses) to the change of velocity. With `K = R R^T`, where `R` is a lower
-//! triangle:
+//! impulse (times the sum of the inverse masses) to the change of velocity. With `K = R R^T`, where `R` is lower
+//! triangular:
 //!
 //! ```text
 //! H = R^-1 sqrt(a) J,    sum H H^T = 1,    A = H H'^T + ...   for each body that two rows share
@@ -123,21 +123,21 @@ impl Scaling {
     }
 }
 
-/// A lower triangle times a vector.
+/// A lower triangular matrix times a vector.
 fn apply(triangle: [i64; 3], d: [i64; 2]) -> [i64; 2] {
     let [t_11, t_21, t_22] = triangle.map(i128::from);
     let [x, y] = d.map(i128::from);
     [t_11 * x, t_21 * x + t_22 * y].map(|wide| saturate_wide(round_shift_wide(wide, 30)))
 }
 
-/// The transpose of a lower triangle times a vector.
+/// The transpose of a lower triangular matrix times a vector.
 fn apply_transposed(triangle: [i64; 3], d: [i64; 2]) -> [i64; 2] {
     let [t_11, t_21, t_22] = triangle.map(i128::from);
     let [x, y] = d.map(i128::from);
     [t_11 * x + t_21 * y, t_22 * y].map(|wide| saturate_wide(round_shift_wide(wide, 30)))
 }
 
-/// The product of two numbers of which one has 30 fraction bits, in the format of the other.
+/// The product of two numbers, one of which has 30 fraction bits, in the format of the other number.
 pub(super) fn product(a: i64, b: i64) -> i64 {
     saturate_wide(round_shift_wide(i128::from(a) * i128::from(b), 30))
 }

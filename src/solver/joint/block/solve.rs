@@ -107,8 +107,8 @@ impl Block {
         self.apply(context);
     }
 
-    /// Changes the velocities by the scaled impulses in `x`. Each velocity is rounded and clamped once: the impulses on
-    /// a light body between heavy ones are large, and almost cancel.
+    /// Changes the velocities by the scaled impulses in `x`. Each velocity is rounded and clamped only once, because
+    /// the impulses on a light body between heavy ones are large and almost cancel.
     pub(super) fn apply(&mut self, context: &StepContext<'_>) {
         let Block { units, rows, bodies, places, x, .. } = self;
         bodies.iter_mut().for_each(|(_, change)| *change = [0; 3]);

@@ -65,8 +65,8 @@ fn roots_and_inverses_are_those_of_theory() {
 }
 
 /// Joints store the impulses of a block scaled by other denominators. Dividing and multiplying again is exact to 2^-18:
-/// the 30 fraction bits of a root, times the largest condition of the matrix, 2^9, and a few roundings. A body that
-/// keeps less of its rotation takes less of an impulse across its arm.
+/// the 30 fraction bits of a root, times the largest condition number of the matrix, 2^9, and a few roundings. A body
+/// that keeps less of its rotation takes less of an impulse across its arm.
 #[test]
 fn impulses_are_the_same_whatever_the_denominator() {
     let mut rng = Rng::new(23);
@@ -118,10 +118,10 @@ fn joints_of_crowded_bodies_are_chosen_and_others_are_not() {
     assert_eq!(chosen(&[weld([1, 2])]), Vec::<u32>::new());
     assert_eq!(chosen(&[hinge([1, 2], half), hinge([2, 3], half), hinge([3, 4], half)]), Vec::<u32>::new());
     assert_eq!(chosen(&[2, 3, 4, 5].map(|limb| hinge([1, limb], half))), Vec::<u32>::new());
-    // Two welds at a body, beside a chain that stays as it is.
+    // Two welds at a body, and a chain that is not chosen.
     let mixed = [hinge([7, 8], half), weld([1, 2]), hinge([8, 9], half), weld([2, 3])];
     assert_eq!(chosen(&mixed), vec![1, 3]);
-    // The ground connects nothing and crowds nothing.
+    // The ground connects no joints and is never crowded.
     assert_eq!(chosen(&[weld([0, 1]), weld([0, 2]), weld([0, 3])]), Vec::<u32>::new());
 }
 
@@ -139,7 +139,7 @@ fn no_block_grows_beyond_its_limit_and_no_joint_is_lost() {
     assert!(choice.order.iter().copied().eq(0..199));
 }
 
-/// The blocks by their definition, as an oracle: breadth first, with a scan over all joints for each body.
+/// Computes the blocks from their definition, as a reference: breadth first, with a scan over all joints for each body.
 fn blocks_by_definition(candidates: &[Candidate], crowded: impl Fn(u32) -> bool) -> Vec<Vec<u32>> {
     let mut taken = vec![false; candidates.len()];
     let walk = |start: u32, taken: &mut Vec<bool>| {
@@ -192,7 +192,7 @@ fn blocks_are_those_of_their_definition() {
             .collect();
         let mut choice = Choice::default();
         choice.choose(&candidates, 300);
-        // A body is crowded by two welds. The ground never is.
+        // Two welds make a body crowded, but never the ground.
         let crowded = |body: u32| {
             let held = candidates.iter().filter(|joint| joint.rows > 0 && joint.bodies.contains(&body));
             body != 0 && held.count() >= 2

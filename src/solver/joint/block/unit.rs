@@ -19,9 +19,9 @@ use crate::math::{Speed, Unit as Fraction, Vec2, div_round, saturate_wide};
 pub(super) enum Source {
     /// A hinge, by its number among the hinges in blocks.
     Hinge(usize),
-    /// A limit of such a hinge: 0 is the lower one.
+    /// A limit of a hinge, by the number of the hinge and the side of the limit: 0 for the lower one.
     HingeLimit(usize, usize),
-    /// The motor of such a hinge.
+    /// The motor of a hinge, by the number of the hinge.
     HingeDrive(usize),
     /// A row or point of another joint.
     Part(ListPart),
@@ -42,7 +42,7 @@ pub(super) struct Unit {
     pub(super) row: usize,
     /// The bodies from which velocities are read.
     source_bodies: [u32; 2],
-    /// The same, with the ground for a body that no impulse changes.
+    /// The bodies that impulses change. The ground replaces a body that no impulse changes.
     bodies: [u32; 2],
     mobility: Mobility,
     softness: [Option<RowSoftness>; 3],
@@ -51,7 +51,7 @@ pub(super) struct Unit {
     pub(super) leverage: Leverage,
     /// Whether the unit is a spring of limited force.
     is_limited: bool,
-    /// The denominator of a row with geometric stiffness divided by that without, with 30 fraction bits.
+    /// The ratio of the denominators of a row with and without geometric stiffness, with 30 fraction bits.
     stiffened: i64,
 }
 
@@ -134,7 +134,7 @@ impl Unit {
         self.common_sides(other).iter().any(Option::is_some)
     }
 
-    /// Returns the pairs of a side of this unit and a side of the other unit that have a common body.
+    /// Returns the pairs of sides, one of this unit and one of the other, that have a common body.
     pub(super) fn common_sides(&self, other: &Unit) -> [Option<(usize, usize)>; 2] {
         [0, 1].map(|side: usize| {
             let body = self.bodies[side];
@@ -184,8 +184,8 @@ impl Unit {
         }
     }
 
-    /// For each row, the change of its impulse, as a speed, that one iteration over this row alone makes, starting from
-    /// an impulse of 0.
+    /// For each row, the change of its impulse in one iteration over this row alone, from an impulse of 0. The change
+    /// is a speed.
     pub(super) fn wanted(
         &self,
         pass: Pass,
@@ -357,7 +357,8 @@ impl Unit {
         [lower, upper].map(|bound| product(i64::from(bound.to_bits()) << EXTRA_BITS, self.stiffened))
     }
 
-    /// Limits an impulse to the bounds: clamps that of a row, shortens that of a point in its direction.
+    /// Limits an impulse to the bounds: clamps the impulse of a row, and shortens the impulse of a point in its
+    /// direction.
     pub(super) fn within_bounds(&self, impulse: [i64; 2], hinges: &HingeSet, list: &JointList) -> [i64; 2] {
         match self.source {
             Source::Part(ListPart::Point(at)) => {

@@ -1,4 +1,5 @@
-//! The rows on the angle of a batch of hinges: spring, motor and limits, in this order, as in `row.rs` of the joints.
+//! The rows on the angle of a batch of hinges: spring, motor and limits, in this order, with the equations of
+//! `joint/row.rs`.
 //!
 //! ```text
 //! vn = eB uB - eA uA,   w = massScale vn + push + impulseScale L,   L' = clamp(L - w, lo, hi),   d = L' - L

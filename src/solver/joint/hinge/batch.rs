@@ -4,7 +4,7 @@ use super::super::super::softness::Softness;
 use crate::math::Angle;
 use crate::simd::Ints;
 
-/// `N` hinges for one tick, of which no two change the same body. Lanes without a hinge have gains of 0, and the ground
+/// `N` hinges for one tick, no two of which change the same body. Lanes without a hinge have gains of 0, and the ground
 /// as both bodies.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]

@@ -90,8 +90,8 @@ impl HingeSet {
         }
     }
 
-    /// The changes of the impulses that one iteration over each part by itself would make if the impulses were 0, as
-    /// they are after [`Self::take_impulses`].
+    /// The changes of the impulses in one iteration over each part alone. The impulses before it are 0, as they are
+    /// after [`Self::take_impulses`].
     pub(in super::super) fn blocked_wanted(
         &self,
         number: usize,
@@ -193,8 +193,8 @@ impl HingeSet {
         }
     }
 
-    /// Takes the impulses of a hinge into its block: of the point along x and y, and of the row on the angle. Those of
-    /// the hinge become 0.
+    /// Takes the impulses of a hinge into its block: of the point along x and y, and of the row on the angle. The
+    /// impulses of the hinge become 0.
     pub(in super::super) fn take_impulses(&mut self, number: usize) -> [i32; 3] {
         let HingeSet { blocked, blocked_extras, .. } = self;
         let [x, y] = &mut blocked.batches[number].lambda;

@@ -79,7 +79,7 @@ impl HingeBody {
     }
 }
 
-/// The shares of two bodies in the mobility of the point of a hinge, `a (2 + e^2)`.
+/// The shares of two bodies in the mobility at the anchor of a hinge, `a (2 + e^2)`.
 pub(in super::super) fn shares(joint: &Joint, [a, b]: [&HingeBody; 2]) -> [Unit; 2] {
     let fractions = MassFractions::of_masses(a.mass, b.mass);
     let mobility = |frame: &JointFrame, body: &HingeBody, fraction: Unit| {

@@ -119,7 +119,7 @@ pub(super) struct HingeShare {
 }
 
 impl HingeShare {
-    /// Invalidates the batches, as [`HingeSet::expire`].
+    /// Invalidates the batches, like [`HingeSet::expire`].
     pub(super) fn expire(&mut self) {
         self.is_stale = true;
     }

@@ -1,7 +1,7 @@
 //! Refresh: computes lever ratios, gains and gaps of hinges at the current pose.
 //!
-//! Lever ratios are rotated from their body's frame, `e = R e0`, instead of computed again from the arms, because their
-//! length does not change. Both levers then reach to the middle of the gap, `eA + perp(gap) / (2 kA)` and
+//! Lever ratios are rotated from their body's frame, `e = R e0`, instead of being computed again from the arms, because
+//! their length does not change. Both levers then reach to the middle of the gap, `eA + perp(gap) / (2 kA)` and
 //! `eB - perp(gap) / (2 kB)`: an impulse that acts on both bodies at one point keeps angular momentum.
 //!
 //! The products of `K` are computed exactly, in two parts of 32 bits, and then rounded:
@@ -131,9 +131,9 @@ fn rotated_ratios<L: Lanes<N>, const N: usize>(quads: &[L::Int; 4], ratios: &[In
 /// Fraction bits of [`gap_factors`].
 pub(super) const FACTOR: u32 = 14;
 
-/// `1 / (2 kA)` and `-1 / (2 kB)` in 1/m, by which a gap becomes a change of lever ratios. 0 if no impulse moves one of
-/// the bodies: angular momentum is then not conserved, and the anchor is the better point. Saturates for radii of
-/// gyration of less than a hundredth of a millimetre.
+/// `1 / (2 kA)` and `-1 / (2 kB)` in 1/m, by which a gap becomes a change of lever ratios. 0 if one of the bodies is
+/// not moved by impulses: angular momentum is then not conserved in any case, and impulses act at the anchors.
+/// Saturates for radii of gyration of less than a hundredth of a millimetre.
 pub(super) fn gap_factors(inverse_gyrations: [Reciprocal; 2], fractions: MassFractions) -> [i32; 2] {
     if fractions.a == 0 || fractions.b == 0 {
         return [0; 2];

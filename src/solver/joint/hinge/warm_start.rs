@@ -1,4 +1,5 @@
-//! Warm start: applies the accumulated impulses of hinges. Each is clamped to the largest impulse of a warm start.
+//! Warm start: applies the accumulated impulses of hinges. Each impulse is clamped to the largest impulse of a warm
+//! start.
 
 use super::super::super::batches::{BatchParts, Operation};
 use super::super::super::limits::STEP_MAX;
