@@ -68,7 +68,7 @@ impl Default for Limits {
 /// let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60)?;
 /// (0..90).try_for_each(|_| recording.step(&[vec![]]))?;
 /// let file = recording.finish()?;
-/// // A race lasts a second here.
+/// // Only races of up to one second are accepted.
 /// let limits = Limits { ticks: 60, ..Limits::default() };
 /// match verify::<Sandbox>(&file, &limits) {
 ///     Verdict::LimitExceeded { limit, max, .. } => assert_eq!((limit, max), (LimitKind::Ticks, 60)),

@@ -105,7 +105,7 @@ pub enum Event {
     Waiting {
         /// Incarnation of the peer.
         peer: PeerId,
-        /// Whether news of the peer arrives, directly or through other peers. If so, its game does not advance.
+        /// Whether rows of the peer arrive, directly or through other peers. If so, the peer's game does not advance.
         heard: bool,
     },
     /// Play continues after [`Event::Waiting`].

@@ -76,7 +76,7 @@ impl Default for TimelineOptions {
 /// # let file = recording.finish().expect("no claims");
 /// let mut timeline = Timeline::<Sandbox>::open(&file, &Default::default(), &Limits::default())?;
 /// assert_eq!(timeline.seek(91), Err(SeekError::NoSuchTick { tick: 91, ticks: 90 }));
-/// // It stays where it was.
+/// // The timeline stays at its current tick.
 /// assert_eq!(timeline.tick(), 0);
 /// # Ok::<(), lockstep2d::replay::Verdict>(())
 /// ```
@@ -233,7 +233,7 @@ impl<'a, G: Game> Timeline<'a, G> {
             return Err(SeekError::NoSuchTick { tick, ticks: self.ticks() });
         }
         self.check_reachable(tick)?;
-        // A short seek backwards is usually followed by more of them.
+        // A short seek backwards is usually followed by others.
         let goes_back = self.tick().checked_sub(tick).is_some_and(|by| (1..self.interval()).contains(&by));
         self.go_to_latest_before(tick)?;
         while self.tick() < tick {

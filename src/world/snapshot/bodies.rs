@@ -253,8 +253,8 @@ fn about(fat: Aabb, centre: Vec2<Fx>) -> Option<[i32; 4]> {
     let lowest = |centre: Fx| (centre.to_bits() & -GRID) + LOWEST;
     let (x, y) = (lowest(centre.x), lowest(centre.y));
     let [left, bottom, right, top] = corners(fat).map(Fx::to_bits);
-    // A difference that wraps around is still out of range, because the point is in the world, far from the end of the
-    // range of numbers.
+    // A difference that wraps around is still out of range, because the point is within the world extent, far from the
+    // end of the range of numbers.
     let above = |bits: i64, lowest: i64| bits.wrapping_sub(lowest);
     let above = [above(left, x), above(bottom, y), above(right, x), above(top, y)];
     let [a, b, c, d] = above;

@@ -19,7 +19,7 @@ use crate::world::state::State;
 ///
 /// ```
 /// use lockstep2d::world::{Violation, World};
-/// // A test of one's own may ask after every tick whether the world is in order.
+/// // A test of a game can check the invariants after every tick.
 /// let mut world = World::default();
 /// world.step();
 /// let result: Result<(), Violation> = world.validate();

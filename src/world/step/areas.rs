@@ -144,7 +144,8 @@ impl<'a> Sum<'a> {
                         part.size
                     }
                 }
-                // A rounded outline is measured as a polygon; what counts is its share of the true area.
+                // A rounded outline is measured as a polygon. The share of the polygon that is inside scales the true
+                // area.
                 _ => fx_mul(area_of(shape.def()), fx_div(part.size, all.size).unwrap_or(Fx::ZERO)),
             };
             inside = inside.saturating_add(size);

@@ -26,7 +26,7 @@ const SWEPT_MIN: Fx = fx!(0.0005);
 /// Work units of a time of impact: it takes some 2 µs, and up to 10 µs for long thin shapes that rotate.
 const IMPACT_WORK: u64 = 16;
 
-/// Number of shapes beside a sweep that cost one work unit.
+/// Number of shapes near a sweep that cost one work unit.
 const VISITS_PER_WORK: u64 = 8;
 
 /// Returns the sweep of a body that is fast, or that may be fast relative to a kinematic body. A body is fast if it may
@@ -70,7 +70,7 @@ fn is_fast_relative(scratch: &Scratch, swept: &SweptBody, obstacle: &Sweep) -> b
     shift.is_longer_than(limit.saturating_sub(fx_mul(turned, extents.reach)))
 }
 
-/// Position at the end of the tick of a world point that moves with a body from a fraction of the tick on.
+/// Position at the end of the tick of a world point that a body carries along from a fraction of the tick on.
 fn carried(sweep: &Sweep, point: Vec2<Fx>, fraction: Fx) -> Vec2<Fx> {
     let (before, turned_before) = sweep.at(fraction);
     let (after, turned_after) = sweep.at(Fx::ONE);
@@ -204,7 +204,7 @@ fn first_impact(
     first
 }
 
-/// A shape about its body's centre as it was at the start of the tick, and the movement of that body within the tick.
+/// A shape relative to its body's centre at the start of the tick, and the movement of the body within the tick.
 fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (SupportShape, Sweep) {
     let body = state.body_of(shape);
     let support = SupportShape::of(scratch.shapes.poses().at(shape), body.centre);

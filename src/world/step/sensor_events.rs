@@ -19,7 +19,7 @@ use crate::world::state::{Side, State};
 /// Work units of following a pair that is not among the contacts.
 const UNFORESEEN_WORK: u64 = 16;
 
-/// Number of pairs of shapes outside their fat boxes that cost one work unit to consider.
+/// Number of comparisons of shapes outside of their fat boxes that cost one work unit.
 const COMPARED_PER_WORK: u64 = 16;
 
 /// Reports the beginnings and ends of overlaps with sensors, once all bodies have been moved.
@@ -159,14 +159,15 @@ impl MovedShape {
         at_end.swept(start - end)
     }
 
-    /// Fraction of the tick after which two shapes first overlap, from its start or back from its end.
+    /// Fraction of the tick until two shapes first overlap, forwards from its start or backwards from its end.
     fn first_overlap(&self, other: &MovedShape, scratch: &Scratch, direction: Direction) -> Option<Fx> {
         let (a, sweep_a) = self.sweep_in(scratch, direction);
         let (b, sweep_b) = other.sweep_in(scratch, direction);
         first_overlap(&a, &sweep_a, &b, &sweep_b)
     }
 
-    /// The shape about its body's centre at the start of its motion in a direction of time, and that motion.
+    /// The motion of the shape forwards or backwards in time: the shape at the first pose, relative to its body's
+    /// centre, and the sweep of the body.
     fn sweep_in(&self, scratch: &Scratch, direction: Direction) -> (SupportShape, Sweep) {
         let Sweep { start, end, turn } = self.sweep;
         let at_end = SupportShape::of(scratch.shapes.poses().at(self.shape), end);
@@ -215,7 +216,7 @@ fn report_unforeseen(state: &mut State, scratch: &mut Scratch) {
     scratch.pairs.buffers.pairs = pairs;
 }
 
-/// Lists, in order, the pairs with a sensor of which a shape has left its fat box and which are not contacts yet.
+/// Lists, in order, the sensor pairs that are not contacts yet and have a shape that has left its fat box.
 fn list_unforeseen(state: &State, scratch: &Scratch, pairs: &mut Vec<Pair>) {
     pairs.clear();
     let left = &scratch.sweeps.left_boxes;
@@ -234,7 +235,7 @@ fn list_unforeseen(state: &State, scratch: &Scratch, pairs: &mut Vec<Pair>) {
             ControlFlow::Continue(())
         });
     }
-    // The new fat box of a shape need not cover its way, on which it may have met another such shape.
+    // The new fat box of a shape need not cover its path, on which it may have met another shape that has left its box.
     let is_sensor = |shape: &&u32| scratch.shapes.motion().shape(**shape).sensor;
     for &sensor in left.iter().filter(is_sensor) {
         left.iter().for_each(|&shape| consider(sensor, shape));
