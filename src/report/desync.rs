@@ -40,7 +40,7 @@ pub struct Group {
     pub seats: Vec<u32>,
 }
 
-/// The data of one peer at a desync. Two reports together tell which peer diverged, when and where.
+/// The data of one peer at a desync. Two reports together show which peer diverged, when and where.
 ///
 /// ```
 /// # use lockstep2d::{hash::StateHash, lockstep::{Game, History, Sandbox, SandboxSetup}, replay::Recording};

@@ -32,7 +32,7 @@ pub enum Status {
     /// Receives no packets from a majority, and only a majority can continue the match. A peer without a seat may ask
     /// another contact.
     Paused,
-    /// The others went on without this peer, which asks for its seat again.
+    /// The others continued without this peer, which requests its seat again.
     Dropped,
     /// The others removed this peer for good.
     Kicked,

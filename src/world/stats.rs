@@ -70,12 +70,13 @@ pub struct StepStats {
     pub contacts: u32,
     /// Number of contact points.
     pub points: u32,
-    /// Number of contact points that were warm-started: each continues a point of the tick before, with its impulse.
+    /// Number of contact points that were warm-started: each continues a point of the previous tick, with its impulse.
     pub points_kept: u32,
-    /// Number of contact points with an impulse in the tick before that are gone although their shapes still touch.
+    /// Number of contact points that had an impulse in the previous tick and are lost although their shapes still
+    /// touch.
     pub points_lost: u32,
-    /// Number of polygon pairs that the cached separating axis of the tick before still separates. Pairs of small boxes
-    /// are never among them.
+    /// Number of polygon pairs that the cached separating axis of the previous tick still separates. Pairs of small
+    /// boxes are never among them.
     pub axis_hits: u32,
     /// Number of polygon pairs that needed a full separating axis test.
     pub axis_searches: u32,

@@ -295,7 +295,7 @@ impl<'a, G: Game> Timeline<'a, G> {
     ///
     /// The interval becomes a multiple of the file's. A keyframe is decoded when it is needed, and its state has to
     /// match the replay's own checkpoint. This does not verify the replay, because it does not show that the inputs
-    /// lead to these states. [`Timeline::played`] tells how far the replay has been simulated.
+    /// lead to these states. [`Timeline::played`] returns how far the replay has been simulated.
     ///
     /// # Errors
     /// [`KeyframesError`] for any other bytes, and for keyframes of another replay. The current keyframes are then

@@ -96,7 +96,7 @@ impl World {
                     closest = Some((shape, found));
                 }
             }
-            // After a negative distance the search goes on at radius 0: the point may be deeper inside another shape.
+            // After a negative distance the search continues at radius 0: the point may be deeper inside another shape.
             closest.map_or(within, |(_, best)| best.distance.max(Fx::ZERO)).saturating_add(SLACK)
         });
         closest

@@ -2,8 +2,8 @@
 //! where they first overlap too deeply with a shape that they might otherwise pass through.
 //!
 //! Speculative contacts already stop most fast bodies. The sweep catches what they cannot predict, such as rotating
-//! rods and speed gained within the tick. A body that is stopped keeps its velocity and goes on in the next tick, when
-//! the contact exists from the start. It loses the rest of its displacement in this tick.
+//! rods and speed gained within the tick. A body that is stopped loses the rest of its displacement in this tick. It
+//! keeps its velocity and continues in the next tick, in which the contact exists from the start.
 //!
 //! Bodies with [`Continuous::Kinematic`] are also swept against kinematic bodies, once these have been moved. Whether
 //! such a body is fast is judged relative to each kinematic body: by its displacement from the position to which the

@@ -93,11 +93,11 @@ impl Visit {
         let (begin, end) = match (was_inside, is_inside) {
             (true, true) => (None, None),
             (false, true) => (Some(first().unwrap_or(Fx::ONE)), None),
-            // If there is no overlap on the way, an edit has moved one of the bodies before the tick.
+            // If there is no overlap during the tick, an edit has moved one of the bodies before it.
             (true, false) => (None, Some(last().unwrap_or(Fx::ZERO))),
             (false, false) => {
                 let begin = first();
-                // A fraction of 0 marks a change between ticks, which would come before the beginning.
+                // A fraction of 0 marks a change between ticks, so that the end would be sorted before the beginning.
                 (begin, begin.map(|begin| last().unwrap_or(begin).max(begin).max(Fx::DELTA)))
             }
         };

@@ -1,4 +1,4 @@
-//! The cost of a tick, for limits on what an untrusted input may make a machine compute.
+//! The cost of a tick, for limits on the computing time of untrusted input.
 
 use crate::solver::SolverSettings;
 use crate::world::World;
