@@ -51,7 +51,7 @@ pub struct Config {
     /// other get a larger margin, which follows from their speeds at the start of the tick.
     pub speculative_distance: Fx,
     /// Largest margin of the fat boxes in the broad phase in metres, 0.001 to 10. The margin of a shape is at most a
-    /// sixteenth of half the larger side of its AABB. A larger margin refits boxes less often, but gives more pairs.
+    /// 32nd of the larger side of its AABB. A larger margin refits boxes less often, but gives more pairs.
     pub fat_margin: Fx,
     /// Whether bodies at rest fall asleep.
     pub sleeping: bool,

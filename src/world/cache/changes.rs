@@ -15,8 +15,8 @@ pub(crate) struct Changes {
     sleeping_contacts: bool,
     /// Filters, sensors, kinds or joints have changed: pairs may not be allowed to collide any more.
     rules: bool,
-    /// Slots of shapes that may have new pairs: the fat box is new, or the body has become active or inactive or has
-    /// other joints. A slot may be listed twice.
+    /// Slots of shapes that may have new pairs: their fat box is new, their body has become active or inactive, or the
+    /// joints of their body have changed. A slot may be listed twice.
     shapes: Vec<u32>,
     /// Fat box of each shape at the last pair update. Two shapes whose boxes overlapped then are not a new pair.
     /// [`Aabb::NOWHERE`] if the shape may have new pairs for a reason other than a new fat box.
@@ -49,8 +49,8 @@ impl Changes {
         self.everything || self.rules
     }
 
-    /// Slots of shapes that may have new pairs: the fat box is new, or the body has become active or inactive or has
-    /// other joints. A slot may be listed twice.
+    /// Slots of shapes that may have new pairs: their fat box is new, their body has become active or inactive, or the
+    /// joints of their body have changed. A slot may be listed twice.
     pub(crate) fn shapes(&self) -> &[u32] {
         &self.shapes
     }

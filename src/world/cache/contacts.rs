@@ -8,7 +8,7 @@ use crate::solver::ActiveContact;
 use crate::threads::Threads;
 use crate::world::events::HitEvent;
 
-/// Cache of the narrow phase. Manifolds and axes are indexed by a contact's place in the state, and so become invalid
+/// Cache of the narrow phase. Manifolds and axes are indexed by a contact's index in the state, and so become invalid
 /// when contacts are reordered.
 #[derive(Clone, Debug)]
 pub(crate) struct ContactCache {

@@ -66,8 +66,8 @@ impl PredictedMotion {
         widen(self.turn).saturating_abs()
     }
 
-    /// Bound of the distance by which the body's rotation by `turn` radians moves any point of a shape: lever arm times
-    /// angle, and at most the diameter.
+    /// Upper bound of the distance by which the body's rotation by `turn` radians moves any point of a shape: lever arm
+    /// times angle, and at most the diameter.
     pub(crate) fn turn_reach(&self, turn: Fx, shape: &ShapeMotion) -> Fx {
         if turn < Fx::DELTA * 64 || shape.disc {
             return Fx::ZERO;
@@ -90,7 +90,7 @@ pub(crate) struct ShapeMotion {
     pub(crate) bounds: Aabb,
     /// Displacement of the body's centre of mass.
     shift: Vec2<Travel>,
-    /// Bound of the distance by which the body's rotation moves any point of the shape.
+    /// Upper bound of the distance by which the body's rotation moves any point of the shape.
     pub(crate) turn: Travel,
     /// Largest overlap in metres at which the ghost-collision filter may treat the shape as passing by another one. The
     /// limit of a pair is the smallest of the limits of both shapes and the touching distance.
@@ -170,7 +170,8 @@ impl ShapeMotion {
         narrow(size.x.wrapping_add(size.y) >> 1)
     }
 
-    /// Bound of the distance by which any two points of two shapes approach each other within the tick, in metres.
+    /// Upper bound of the distance by which any two points of two shapes approach each other within the tick, in
+    /// metres.
     #[inline]
     fn closing(&self, other: &ShapeMotion) -> Travel {
         let apart = |a: Travel, b: Travel| (i64::from(b.to_bits()) - i64::from(a.to_bits())).abs();
@@ -223,7 +224,7 @@ pub(crate) struct Margins {
     pub(crate) touching: Step,
     /// Distance in metres by which shapes approach each other in a tick at [`IMPACT_SPEED`].
     pub(crate) impact: Step,
-    /// Largest movement of two shapes against each other for which a contact keeps its manifold, in metres.
+    /// Largest relative movement of two shapes with which a contact keeps its manifold, in metres.
     pub(crate) kept: Length,
 }
 

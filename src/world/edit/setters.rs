@@ -163,8 +163,8 @@ impl World {
         Ok(())
     }
 
-    /// Wakes a body with all bodies of its island. A fixed or kinematic body does not sleep: it wakes the bodies that
-    /// touch it, and those that are joined to it.
+    /// Wakes a body with all bodies of its island. For a fixed or kinematic body, which does not sleep, wakes the
+    /// bodies that touch it or are joined to it.
     ///
     /// # Errors
     /// [`WorldError::StaleBody`] if it is not in the world.

@@ -74,8 +74,8 @@ pub struct MoverPlane {
 }
 
 impl World {
-    /// Returns every shape within a distance in metres of a probe as a plane, in slot order. Chain links that are solid
-    /// from one side are left out if the probe's middle is on the other side. Empty if the distance is negative.
+    /// Returns a plane for every shape within a distance in metres of a probe, in slot order. Chain links that are
+    /// solid from one side are left out if the probe's middle is on the other side. Empty if the distance is negative.
     ///
     /// ```
     /// use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};

@@ -25,7 +25,7 @@ pub(super) struct Rest {
     /// Distance in metres from the surfaces at which the second cast starts. Ledges of up to 5 µm, the difference to
     /// the gap of the first cast, count as seams: tiles of a ramp are flush to within a micrometre.
     gap: Fx,
-    /// Largest distance in metres by which the cast may in addition approach a surface that it slides along.
+    /// Largest additional distance in metres by which the cast may approach a surface that it slides along.
     grazing_max: Fx,
 }
 

@@ -59,8 +59,8 @@ pub(super) fn swept_body(
     })
 }
 
-/// Whether a body moves so far from where a kinematic body would have taken it that it may pass through a shape of the
-/// kinematic body.
+/// Whether a body moves so far from the position to which a kinematic body would have carried it that it may pass
+/// through a shape of the kinematic body.
 fn is_fast_relative(scratch: &Scratch, swept: &SweptBody, obstacle: &Sweep) -> bool {
     let extents = scratch.shapes.poses().extents(swept.slot);
     let limit = SWEPT_MIN.max(extents.core / 2);
@@ -197,8 +197,8 @@ fn first_impact(
         } else {
             shapes.broad_phase().each_fixed_overlap(area, visit);
         }
-        // Counted after the search for this shape, which an exhausted meter need not end: the budget already covers
-        // comparing all shapes of the world.
+        // Counted after the search for this shape. An exhausted meter need not end the search, because the budget
+        // already covers comparing all shapes of the world.
         meter.spend(1 + visited / VISITS_PER_WORK);
     }
     first
@@ -215,7 +215,7 @@ fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (SupportShape, S
     let slot = state.shapes.at(shape).body().slot();
     let Ok(index) = scratch.awake.bodies().binary_search(&slot) else { return stands };
     let start = scratch.sweeps.starts[index];
-    // The rotation by the shorter way. Obstacles that rotate by more than half a turn in a tick are not handled.
+    // The smaller of the possible rotations. Obstacles that rotate by more than half a turn in a tick are not handled.
     let turn = (body.angle - start.angle).to_turns().to_bits();
     let support = support.rotated(Rot::from_angle(start.angle - body.angle));
     (support, Sweep { start: start.centre, end: body.centre, turn })

@@ -126,7 +126,7 @@ fn soonest([a, b]: [&PredictedMotion; 2], manifold: &Manifold) -> Option<Closing
     })
 }
 
-/// The fraction of the tick at which a point closes, in units of [`Unit`]; `from` is the fraction at which its
+/// The fraction of the tick at which a point closes, as the bits of a [`Unit`]; `from` is the fraction at which its
 /// separation was measured. `None` if it does not close within the tick.
 fn time_of_touch(point: &ClosingPoint, from: i64) -> Option<i64> {
     let rest = (i64::from(point.separation.to_bits()) << Unit::FRAC_NBITS) / point.distance;

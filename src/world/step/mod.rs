@@ -118,7 +118,7 @@ impl World {
         begin(Phase::Report, PhaseView::of(state, scratch));
         report::report_moves(state, scratch);
         report::count(state, scratch);
-        // The tick may have any value in a snapshot from outside, so that the count may wrap around.
+        // A snapshot from outside may have any tick, so that the count may wrap around.
         state.tick = state.tick.wrapping_add(1);
     }
 }

@@ -126,8 +126,8 @@ impl NarrowPhase<'_> {
         }
     }
 
-    /// Finds the contacts of a block whose shapes may meet: those that keep their manifold, the pairs of small boxes,
-    /// which are collided, and others.
+    /// Finds the contacts of a block whose shapes may meet: contacts that keep their manifold, pairs of small boxes,
+    /// and others. Collides the pairs of small boxes.
     fn find_near(
         &self,
         job: &mut Job<'_>,

@@ -15,15 +15,15 @@ pub(super) struct Recycling<'a> {
     rolls: bool,
     /// Largest change of a lever arm that is kept, in metres.
     arm_tolerance: Length,
-    /// Largest movement of the shapes against each other since their manifold was computed, in metres, up to which the
-    /// contact keeps it for another tick. Negative if they move too fast.
+    /// Largest relative movement of the shapes since their manifold was computed, in metres, with which the contact
+    /// keeps it for another tick. Negative if they move too fast.
     movement_max: Length,
 }
 
 impl<'a> Recycling<'a> {
     /// The limits of two shapes that touch at `count` points. Arms are kept while they change by at most a 64th of the
-    /// smaller shape's extent. Manifolds are kept if the movement, including that of this tick, is also at most a
-    /// quarter of the speculative distance.
+    /// smaller shape's extent. Manifolds are kept if the relative movement, including the movement in this tick, is
+    /// also at most a quarter of the speculative distance.
     ///
     /// If a round shape may roll on a body that is not dynamic, the limits are 256 times smaller: an outdated normal
     /// stops a slow ball at a seam between two blocks, and lets a roly-poly toy lean. Between two dynamic bodies the
@@ -75,7 +75,7 @@ impl<'a> Recycling<'a> {
         contact.keep(manifold, self.bodies, self.shapes.map(tolerance));
     }
 
-    /// Stores a manifold of the time of impact in a contact. `moved` has the displacements of the bodies until then.
+    /// Stores a manifold at the time of impact in a contact. `moved` has the displacements of the bodies until then.
     pub(super) fn keep_impact(&self, contact: &mut Contact, manifold: &Manifold, moved: [Vec2<Length>; 2]) {
         contact.kept = KeptManifold::at_impact(manifold, self.bodies.map(Body::pose), moved);
     }

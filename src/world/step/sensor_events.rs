@@ -1,9 +1,9 @@
 //! Sensor events: which shapes overlap a sensor at the end of the tick, and which have crossed one within it.
 //!
-//! Every pair with a sensor is followed from the poses at the start of the tick to those at its end. The pairs are
+//! Every pair with a sensor is followed from the poses at the start of the tick to the poses at its end. The pairs are
 //! those of overlapping fat boxes, which cover the motion that the velocities at the start of the tick predict. A shape
-//! that has left its fat box, because it was deflected or accelerated within the tick, is also compared with everything
-//! along its way.
+//! that has left its fat box, because it was deflected or accelerated within the tick, is also compared with all shapes
+//! along its path.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -138,7 +138,7 @@ impl MovedShape {
             Ok(index) => {
                 let start = scratch.sweeps.starts[index];
                 let solved = turn_of(scratch.solver.body(slot).turn, body.mass.inverse_gyration);
-                // A body that was stopped, or has a target, rotates by the shorter way.
+                // A body that was stopped, or has a target, makes the smaller of the possible rotations.
                 let short = (body.angle - start.angle).to_turns().to_bits();
                 let is_complete = Angle::from_turns(Fx::from_bits(solved.wrapping_sub(short))) == Angle::ZERO;
                 let turn = if is_complete { solved } else { short };

@@ -123,7 +123,7 @@ impl SpeculativePair<'_> {
             }
             let closing = closing_at(point);
             let is_reached = separation <= speculative.max(closing + speculative);
-            // The closing distance is increased by a quarter, because a gap that only just closes acts as well.
+            // The closing distance is increased by a quarter, because a gap that almost closes acts as well.
             if is_reached && closing + closing / 4 > separation {
                 fastest = fastest.max(closing);
             }
