@@ -269,7 +269,7 @@ impl Session {
 
     fn remove(&mut self, removal: Removal) {
         if !self.wants.removals.contains(&removal) {
-            // Drops the oldest request. Its peer has most likely gone, so that the request only prevents its return.
+            // Drops the oldest request: if its peer has gone, the request only prevents the peer's return.
             if self.wants.removals.len() == REMOVALS_MAX {
                 self.wants.removals.remove(0);
             }

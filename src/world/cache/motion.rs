@@ -224,7 +224,7 @@ pub(crate) struct Margins {
     pub(crate) touching: Step,
     /// Distance in metres by which shapes approach each other in a tick at [`IMPACT_SPEED`].
     pub(crate) impact: Step,
-    /// Largest relative movement of two shapes with which a contact keeps its manifold, in metres.
+    /// Largest relative movement of two shapes at which a contact keeps its manifold, in metres.
     pub(crate) kept: Length,
 }
 
