@@ -15,8 +15,8 @@ pub(super) struct Recycling<'a> {
     rolls: bool,
     /// Largest change of a lever arm that is kept, in metres.
     arm_tolerance: Length,
-    /// Largest relative movement of the shapes since their manifold was computed, in metres, with which the contact
-    /// keeps it for another tick. Negative if they move too fast.
+    /// Largest relative movement of the shapes since their manifold was computed, in metres, at which the contact keeps
+    /// it for another tick. Negative if they move too fast.
     movement_max: Length,
 }
 
