@@ -7,9 +7,10 @@ use super::reader::ReadError;
 
 /// Bounds on the size of a replay and on its computing time.
 ///
-/// The default accepts anything that an ordinary game records in a day. It stops a file after 20 000 million work units:
-/// within an hour of computing for an ordinary game, after up to five and a half hours for a file made to be slow. A
-/// server for one game should narrow the limits, for example to a race of ten minutes and two players.
+/// The default accepts anything that an ordinary game records in a day. It stops a file after 20 000 million work
+/// units. They take less than an hour of computing for an ordinary game, and up to five and a half hours for a file
+/// made to be slow. A server for one game should narrow the limits, for example to a race of ten minutes and two
+/// players.
 ///
 /// ```
 /// use lockstep2d::replay::Limits;
@@ -68,7 +69,7 @@ impl Default for Limits {
 /// let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60)?;
 /// (0..90).try_for_each(|_| recording.step(&[vec![]]))?;
 /// let file = recording.finish()?;
-/// // A race lasts a second here.
+/// // Only races of up to one second are accepted.
 /// let limits = Limits { ticks: 60, ..Limits::default() };
 /// match verify::<Sandbox>(&file, &limits) {
 ///     Verdict::LimitExceeded { limit, max, .. } => assert_eq!((limit, max), (LimitKind::Ticks, 60)),

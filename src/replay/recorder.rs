@@ -123,7 +123,7 @@ impl core::error::Error for RecordError {}
 /// use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, Recorder, Verdict, verify};
 /// let (mut recorder, mut game) = Recorder::<Sandbox>::start(&SandboxSetup::default(), CHECKPOINT_INTERVAL)?;
 /// for _ in 0..90 {
-///     // The recorded inputs are what was encoded: step with these.
+///     // Steps the game with the inputs as they were encoded and decoded.
 ///     game.step(recorder.record(&[vec![]])?);
 ///     if recorder.is_checkpoint_due() {
 ///         recorder.checkpoint(game.state_hash());

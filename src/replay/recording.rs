@@ -14,7 +14,7 @@ use crate::lockstep::Game;
 /// let mut file = vec![];
 /// for _ in 0..200 {
 ///     recording.step(&[vec![]])?;
-///     // What is on disk is a replay up to the last full second, should the game crash.
+///     // If the game crashes, the file is a replay up to the last full second.
 ///     file.extend(recording.take_bytes());
 /// }
 /// file.extend(recording.finish()?);

@@ -12,7 +12,7 @@ use super::runs::{Run, Runs};
 /// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
 /// # (0..90).for_each(|_| recording.step(&[vec![]]).expect("one input"));
 /// # let file = recording.finish().expect("no claims");
-/// // The ticks in which a player did something, for a bar below the picture of a replay.
+/// // Marks the ticks with input, for the seek bar of a viewer.
 /// let mut inputs = TickInputs::open(&file, &Limits::default())?;
 /// let mut is_busy = vec![];
 /// while let Some(run) = inputs.next_tick()? {

@@ -27,7 +27,7 @@ pub enum Verdict {
         /// Hash of the last state.
         hash: StateHash,
     },
-    /// All checkpoints agree, but a claim or the final hash in the trailer differs from that of the game.
+    /// All checkpoints agree, but a claim or the final hash in the trailer differs from the game's.
     ClaimMismatch {
         /// Number of ticks in the game.
         ticks: u64,

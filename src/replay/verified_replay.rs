@@ -56,7 +56,7 @@ pub enum Step {
 /// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
 /// # (0..90).for_each(|_| recording.step(&[vec![]]).expect("one input"));
 /// # let file = recording.finish().expect("no claims");
-/// // A film of a replay that is verified on the way.
+/// // Collects the frames of a film while it verifies the replay.
 /// let mut replay = VerifiedReplay::<Sandbox>::open(&file, &Limits::default())?;
 /// let mut frames = vec![];
 /// while replay.step()? == Step::Ticked {
@@ -251,7 +251,7 @@ pub(super) fn decode_setup<G: Game>(header: &Header<'_>) -> Result<G::Setup, Ver
 
 /// Creates the game before its first tick and checks that it matches the header.
 ///
-/// Returns it with the work units of its setup, which count like those of the ticks.
+/// Returns the game and the work units of its setup, which count like the work units of the ticks.
 pub(super) fn start<G: Game>(header: &Header<'_>, limits: &Limits) -> Result<(G, u64), Verdict> {
     let malformed = |offset, flaw| Verdict::Malformed { offset, flaw };
     let setup = decode_setup::<G>(header)?;

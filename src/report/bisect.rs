@@ -12,11 +12,11 @@ use crate::replay::Limits;
 
 /// Finds the first tick at which two trajectories differ, the stage of that tick, and the differences, with the
 /// probable origin first. The search plays the inputs once, with a save and a hash per tick. The total cost, including
-/// the search for a single bit flip that explains all differences, is less than that of playing all ticks three times.
+/// the search for a single bit flip that explains all differences, is less than playing all ticks three times.
 ///
-/// Without `b`, the other trajectory is that of the running engine with the same inputs. A replay shows only between
-/// which of its checkpoints the trajectories diverge. A [`Trace`](super::Trace) of these ticks, made by the engine that
-/// wrote the replay, shows the exact tick. A desync report is such a trace of the last seconds.
+/// Without `b`, the other trajectory is the one that the running engine computes from the same inputs. A replay shows
+/// only between which of its checkpoints the trajectories diverge. A [`Trace`](super::Trace) of these ticks, made by
+/// the engine that wrote the replay, shows the exact tick. A desync report is such a trace of the last seconds.
 ///
 /// With `b`, the files are recordings of the same match on two machines, or two replays of any setups and inputs. They
 /// are simulated until the states differ.

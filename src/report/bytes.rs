@@ -24,7 +24,7 @@ const ENVELOPE: Envelope = Envelope { magic: REPORT_MAGIC, format: REPORT_FORMAT
 /// use lockstep2d::{replay::Limits, report::{DesyncReport, ReportError, Trace}};
 /// # let trace = Trace::<Sandbox>::start(&SandboxSetup::default(), 10)?;
 /// let mut bytes = trace.report().to_bytes();
-/// // A player sends a report, and the mail server a part of it.
+/// // A report that lost its last byte on the way.
 /// bytes.pop();
 /// let error = DesyncReport::from_bytes(&bytes, &Limits::default()).expect_err("a byte is missing");
 /// assert!(matches!(error, ReportError::Length { announced, found } if announced == found + 1));
@@ -136,9 +136,8 @@ impl DesyncReport {
         ENVELOPE.seal(self.semantics, &self.body)
     }
 
-    /// Decodes a report written by [`DesyncReport::to_bytes`]. Of the limits, only `file_bytes` applies: memory
-    /// allocation is bounded by a small multiple of the file's length. The saves and the replay in the report are not
-    /// checked yet.
+    /// Decodes a report written by [`DesyncReport::to_bytes`]. Only the limit `file_bytes` applies: memory allocation
+    /// is bounded by a small multiple of the file's length. The saves and the replay in the report are not checked yet.
     ///
     /// # Errors
     /// [`ReportError`] for any other bytes.

@@ -131,9 +131,9 @@ pub struct Subject {
     pub differences: Vec<Difference>,
 }
 
-/// A single bit flip between two ticks after which the rules lead exactly to the state of the diverged side.
-/// Rarely another flip leads to the same state, such as one of the velocity instead of the spin of a ball that rolls;
-/// only the digests of the phases of that tick can tell the two apart.
+/// A single bit flip between two ticks that explains the divergence: with it, the rules lead exactly to the state of
+/// the diverged side. In rare cases another flip leads to the same state, for example a flip of the velocity instead of
+/// the spin of a rolling ball. Only the phase digests of that tick can tell the two apart.
 ///
 /// ```
 /// use lockstep2d::report::{Comparison, Explanation, Stage};
@@ -172,7 +172,7 @@ pub struct Explanation {
 /// # use lockstep2d::{body::BodyDef, lockstep::{Sandbox, SandboxSetup}, replay::{Limits, Recording}, world::Command};
 /// use lockstep2d::report::{Comparison, Evidence, InputDifference, compare};
 /// let spawn = Command::Spawn { body: BodyDef::dynamic(), shapes: vec![] };
-/// // Two runs of a level, and one of them with a body more.
+/// // Two runs of a level, one of them with an additional body.
 /// let [a, b] = [vec![], vec![spawn]].map(|commands| {
 ///     let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
 ///     (0..30).for_each(|_| recording.step(&[vec![]]).expect("one input"));
@@ -205,7 +205,7 @@ pub struct Comparison {
     /// The subjects that differ. The origin of the differences is first, if it is known. The others are sorted by the
     /// difference in motion, largest first.
     pub subjects: Vec<Subject>,
-    /// The stage of the tick that led to `first_different` at which the states diverged.
+    /// The stage at which the states diverged, within the tick that led to `first_different`.
     pub stage: Option<Stage>,
     /// If the states diverged before the step of the world: the differences at the start of the step. B is the diverged
     /// side, A the rerun.

@@ -40,7 +40,7 @@ pub struct Group {
     pub seats: Vec<u32>,
 }
 
-/// The data of one peer at a desync. Two reports together tell which peer diverged, when and where.
+/// The data of one peer at a desync. Two reports together show which peer diverged, when and where.
 ///
 /// ```
 /// # use lockstep2d::{hash::StateHash, lockstep::{Game, History, Sandbox, SandboxSetup}, replay::Recording};
@@ -91,8 +91,8 @@ impl DesyncReport {
     /// Creates the report of a peer. `replay` contains the inputs of the known ticks, for example from
     /// [`Recorder::so_far`](crate::replay::Recorder::so_far).
     ///
-    /// The report contains the hash of every tick, and as many saves as fit into [`SAVES_BYTES_MAX`]: first those up to
-    /// the different tick, newest first, then those after it.
+    /// The report contains the hash of every tick, and as many saves as fit into [`SAVES_BYTES_MAX`]: first the saves
+    /// up to the tick that differs, newest first, then the later ones.
     #[must_use]
     pub fn new<G: Game>(found: &Desync, history: &History<G>, replay: Vec<u8>) -> Self {
         Self::within(SAVES_BYTES_MAX, found, history, replay)

@@ -5,8 +5,8 @@
 //! reports, replays or snapshots and simulates the confirmed inputs again. A side whose states differ from this rerun
 //! has diverged from the rules. This works with two peers, too.
 //!
-//! [`bisect`] also examines a single file and finds the tick at which its trajectory diverges from that of the running
-//! engine. A [`Trace`] contains more data for this than a replay.
+//! [`bisect`] also examines a single file and finds the tick at which its trajectory diverges from the running
+//! engine's. A [`Trace`] contains more data for this than a replay.
 //!
 //! In this module *tick t* is the state after *t* ticks, as in replays: tick 0 is the start.
 

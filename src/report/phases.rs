@@ -106,7 +106,7 @@ fn bytes_of(snapshot: &Snapshot) -> Vec<u8> {
     world.to_bytes()
 }
 
-/// The differences of `new` to `old`.
+/// The patches that turn `old` into `new`.
 fn patches(old: &[u8], new: &[u8]) -> Vec<Patch> {
     let differs = |at: usize| old.get(at) != new.get(at);
     let mut patches = Vec::new();

@@ -217,7 +217,7 @@ pub enum Fault {
     NoRelay,
     /// The match ends at the tick that this peer wants, not at the decided one.
     LocalEnd,
-    /// Ballots start while a promise stands.
+    /// Ballots start while a promise is in force.
     CompetingBallots,
     /// A proposal drops voters without a promise at once, without waiting for the time of patience.
     Accuse,

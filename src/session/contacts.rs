@@ -1,4 +1,4 @@
-//! [`Contacts`]: alternative contacts for a peer without a vote whose contact has gone.
+//! [`Contacts`]: alternative contacts for a peer without a vote that has lost its contact.
 //!
 //! A spectator receives the match through the peer that admitted it. When it no longer receives packets from a
 //! majority, it contacts the other peers whose addresses it has learned, one after the other, with the same handshake
@@ -29,7 +29,7 @@ pub(super) struct PendingContact {
     until: u64,
 }
 
-/// Addresses of the peers that take part, and which of them is asked.
+/// Addresses of the peers that take part, and the one that is asked.
 #[derive(Debug, Default)]
 pub(super) struct Contacts {
     list: Vec<(PeerId, Address)>,
@@ -52,8 +52,8 @@ impl Contacts {
         }
     }
 
-    /// Returns the contact to send a hello to, if one is due. `is_silent` says whether this peer receives no packets
-    /// from a majority, and `nonce` generates the number of a new handshake.
+    /// Returns the contact to send a hello to, if one is due. `is_silent` is whether this peer receives no packets from
+    /// a majority. `nonce` generates the number of a new handshake.
     pub(super) fn update(
         &mut self,
         now: u64,

@@ -32,7 +32,7 @@ pub enum Status {
     /// Receives no packets from a majority, and only a majority can continue the match. A peer without a seat may ask
     /// another contact.
     Paused,
-    /// The others went on without this peer, which asks for its seat again.
+    /// The others continued without this peer, which requests its seat again.
     Dropped,
     /// The others removed this peer for good.
     Kicked,
@@ -105,7 +105,7 @@ pub enum Event {
     Waiting {
         /// Incarnation of the peer.
         peer: PeerId,
-        /// Whether news of the peer arrives, directly or through other peers. If so, its game does not advance.
+        /// Whether rows of the peer arrive, directly or through other peers. If so, the peer's game does not advance.
         heard: bool,
     },
     /// Play continues after [`Event::Waiting`].

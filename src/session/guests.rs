@@ -121,7 +121,7 @@ impl Guests {
         upload.take(now, next, window, masks);
     }
 
-    /// Returns the packets that are due to guests. Removes guests that take part in the match by now, and guests that
+    /// Returns the packets that are due to guests. Removes guests that already take part in the match, and guests that
     /// have gone.
     pub(super) fn update(&mut self, now: u64, session: &mut Session) -> Vec<(PeerId, JoinPacket)> {
         let passed = now.saturating_sub(self.budget_at).min(BURST);

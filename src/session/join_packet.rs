@@ -89,7 +89,7 @@ const KIND_AT: usize = 4;
 /// Smallest value of a kind. Values of the flags of match packets are smaller.
 const KIND_FIRST: u8 = 0x80;
 
-/// Whether the body is that of a join packet and not of a packet of the match.
+/// Whether the body belongs to a join packet and not to a packet of the match.
 pub(super) fn is_join_packet(body: &[u8]) -> bool {
     body.get(KIND_AT).is_some_and(|&kind| kind >= KIND_FIRST)
 }

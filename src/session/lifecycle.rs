@@ -24,7 +24,7 @@ pub(super) struct Lifecycle {
     paused: alloc::vec::Vec<PeerId>,
 }
 
-/// Length of a stall in ticks after which the game is told which peer play waits for, but not before
+/// Length of a stall in ticks after which the peer whose inputs are missing is reported to the game, but not before
 /// [`Timing::heard`](super::Timing::heard) has passed.
 const WAITING_TICKS: u64 = 6;
 
@@ -161,7 +161,7 @@ impl Session {
             (true, _) => Status::Playing,
             (false, _) if self.lifecycle.kicked => Status::Kicked,
             (false, _) if self.lifecycle.dropped => Status::Dropped,
-            // The contact may have gone: the peer can ask another one.
+            // The contact may be lost: the peer can ask another one.
             (false, _) if self.view.begun && !self.is_connected() => Status::Paused,
             (false, Role::Player { .. }) => Status::Joining,
             (false, Role::Spectator) => Status::Watching,

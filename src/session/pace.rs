@@ -34,7 +34,7 @@ pub(super) struct Pace {
 const AHEAD_MAX: i64 = 6;
 /// Largest lateness that is made up, in ticks. Any further lateness is dropped.
 const LATE_MAX: u64 = 3;
-/// Number of complete but unplayed ticks from which on a peer catches up at once.
+/// Minimum number of complete but unplayed ticks at which a peer catches up at once.
 const CATCH_UP: Tick = 12;
 /// Time between changes of the delay, in microseconds.
 const DELAY_INTERVAL: u64 = 500_000;
@@ -134,7 +134,8 @@ impl Session {
         i64::try_from((self.pace.tick_micros - left) * 256 / self.pace.tick_micros.max(1)).unwrap_or(0)
     }
 
-    /// Catches up with the other players after this peer got a seat. Its first inputs have to arrive in time.
+    /// Catches up with the other players after this peer got a seat. Sets the input delay at once, so that its first
+    /// inputs arrive in time.
     pub(super) fn hurry(&mut self) {
         self.pace.hurries = true;
         self.pace.delay = self.delay_aim();

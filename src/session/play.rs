@@ -44,7 +44,7 @@ pub(super) struct Play {
 /// use lockstep2d::session::Statistics;
 /// # let view = View::opened_by(PeerId(1), Key(1), 0b01, true);
 /// # let session = Session::new(Config::new(17, 1), PeerId(1), Key(1), Role::Player { seats: 1 }, view, 7)?;
-/// // The text in the corner of a debug screen.
+/// // Text of a debug overlay.
 /// let Statistics { replayed, replayed_max, peers, .. } = session.statistics();
 /// let text = format!("{peers} peers, {replayed} ticks again, at most {replayed_max} at once");
 /// assert_eq!(text, "1 peers, 0 ticks again, at most 0 at once");
@@ -177,7 +177,8 @@ impl Session {
     /// again.
     ///
     /// # Errors
-    /// [`InputSize`] when the number of bytes is not that of the own seats. Nothing is issued or played then.
+    /// [`InputSize`] when the number of bytes is not the input size times the number of own seats. Nothing is issued or
+    /// played then.
     pub fn advance(&mut self, now: u64, inputs: &[u8]) -> Result<bool, InputSize> {
         let expected = self.log.size() * usize::try_from(self.seats().count_ones()).unwrap_or(0);
         if inputs.len() != expected {
@@ -337,7 +338,7 @@ impl Session {
         }
     }
 
-    /// Compares the hash of another peer with that of this peer.
+    /// Compares the hash of another peer with the hash of this peer.
     pub(super) fn compare_hash(&mut self, peer: PeerId, tick: Tick, theirs: u128) {
         let own = self.play.hashes.iter().find(|(own, _)| *own == tick);
         let Some(&(_, ours)) = own.filter(|(_, ours)| *ours != theirs) else { return };

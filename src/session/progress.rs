@@ -19,7 +19,7 @@ pub(super) struct Progress {
     pub(super) complete: Tick,
     pub(super) ack: Tick,
     pub(super) fin: Tick,
-    /// Time at which a tick last became complete that had not been complete before.
+    /// Time at which `complete` last increased. Reaching its old value again after a view change does not count.
     pub(super) moved_at: u64,
     /// Indices of the spans that do not end before `live_from`. Earlier ticks are not played again.
     pub(super) live: Vec<usize>,

@@ -20,7 +20,7 @@ const KEPT: u64 = 500_000;
 /// Largest number of peers with addresses.
 const ROUTES_MAX: usize = 192;
 
-/// An address that may be that of a peer.
+/// An address that may belong to a peer.
 #[derive(Clone, Debug)]
 struct Candidate {
     address: Address,
@@ -65,7 +65,7 @@ impl Routes {
         self.list.iter().find(|route| route.id == id).and_then(|route| route.address)
     }
 
-    /// Notes that an address has proven to be that of a peer.
+    /// Notes that an address has been proven to belong to a peer.
     pub(super) fn prove(&mut self, id: PeerId, address: Address, now: u64) {
         let Some(route) = self.add(id) else { return };
         if route.address != Some(address)
@@ -85,7 +85,7 @@ impl Routes {
         }
     }
 
-    /// Notes an address that may be that of a peer.
+    /// Notes an address that may belong to a peer.
     pub(super) fn suggest(&mut self, id: PeerId, address: Address) {
         let Some(route) = self.add(id).filter(|route| route.address != Some(address)) else { return };
         if route.candidates.iter().all(|candidate| candidate.address != address) {

@@ -228,7 +228,7 @@ impl Session {
         self.peers.bound(&self.view);
     }
 
-    /// Stops serving a peer, for example because its transport says that the connection is closed.
+    /// Stops serving a peer, for example because its transport reports that the connection is closed.
     pub fn detach(&mut self, id: PeerId) {
         if let Some(remote) = self.peers.find_mut(id) {
             remote.attached = false;
@@ -236,7 +236,7 @@ impl Session {
         }
     }
 
-    /// Leaves the match. The others continue without this peer from a tick on that all of them agree on. Call
+    /// Leaves the match. The others agree on a tick from which they continue without this peer. Call
     /// [`update`](Session::update) until the status is [`Status::Closed`].
     pub fn leave(&mut self) {
         self.wants.leave = true;
@@ -269,7 +269,7 @@ impl Session {
 
     fn remove(&mut self, removal: Removal) {
         if !self.wants.removals.contains(&removal) {
-            // The oldest request is dropped: a removal of a peer that has gone only prevents its return.
+            // Drops the oldest request: if its peer has gone, the request only prevents the peer's return.
             if self.wants.removals.len() == REMOVALS_MAX {
                 self.wants.removals.remove(0);
             }

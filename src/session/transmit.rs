@@ -190,8 +190,8 @@ impl Session {
         }
     }
 
-    /// The inputs of a span that the receiver lacks, oldest first: inputs of this peer, and inputs of other peers that
-    /// the receiver does not hear or that it lacks many ticks of.
+    /// The inputs of a span that the receiver lacks, oldest first. Inputs of another peer are relayed only if the
+    /// receiver does not hear that peer or lacks many of its ticks.
     fn run_for(&self, receiver: &Remote, index: usize) -> Option<(u16, Tick, &[u8])> {
         let span = self.view.spans.get(index)?;
         let start = self.lacks(receiver, index);

@@ -120,7 +120,7 @@ impl Row {
     }
 }
 
-/// The length of a list that is not empty: without elements its flag would not be set.
+/// Reads the length of a list that is not empty: the flag of an empty list is not set.
 fn read_positive(reader: &mut Reader, max: usize) -> Decoded<usize> {
     match reader.count(max)? {
         0 => Err(Malformed),

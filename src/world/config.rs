@@ -26,12 +26,12 @@ use crate::solver::{ContactTuning, RATE_MAX, SUB_STEPS_MAX, SolverSettings};
 /// | 1 cm | 37 | 277.5 Hz | 1 mm | 2.4 % |
 /// | 5 mm | 52 | 390 Hz | 1 mm | 2.4 % |
 ///
-/// The table depends on gravity divided by size: boxes of 10 cm under 1 m/s² need what boxes of 1 m need under 10 m/s².
-/// Another unit of length than the metre changes nothing, because gravity changes with it. The smallest body has a
-/// radius of gyration of 2 mm: a square of 5 mm or a ball with a radius of 3 mm, and 10 mg. Speeds in settings are not
-/// adapted: a box of 1 cm hardly falls faster than the 0.05 m/s below which bodies
-/// [sleep](crate::body::BodySettings::sleep_speed), or the 1 m/s below which they [do not
-/// bounce](SolverSettings::restitution_threshold), so those may have to be lowered as well.
+/// The table depends on gravity divided by size: boxes of 10 cm under 1 m/s² need the same settings as boxes of 1 m
+/// under 10 m/s². A unit of length other than the metre changes nothing, because gravity changes with it. The smallest
+/// body has a radius of gyration of 2 mm, such as a square of 5 mm or a ball with a radius of 3 mm, and a mass of
+/// 10 mg. Speeds in settings are not adapted and may have to be lowered as well: a box of 1 cm hardly falls faster than
+/// the 0.05 m/s below which bodies [sleep](crate::body::BodySettings::sleep_speed), or the 1 m/s below which they [do
+/// not bounce](SolverSettings::restitution_threshold).
 ///
 /// ```
 /// use lockstep2d::{fx, math::Vec2, world::{Config, World}};
@@ -51,7 +51,7 @@ pub struct Config {
     /// other get a larger margin, which follows from their speeds at the start of the tick.
     pub speculative_distance: Fx,
     /// Largest margin of the fat boxes in the broad phase in metres, 0.001 to 10. The margin of a shape is at most a
-    /// sixteenth of half the larger side of its AABB. A larger margin refits boxes less often, but gives more pairs.
+    /// 32nd of the larger side of its AABB. A larger margin refits boxes less often, but gives more pairs.
     pub fat_margin: Fx,
     /// Whether bodies at rest fall asleep.
     pub sleeping: bool,
@@ -103,7 +103,7 @@ impl Config {
 
     /// Margin in metres of the fat box of a shape with the given AABB on a body that can move.
     pub(crate) fn margin_of(&self, bounds: Aabb) -> Fx {
-        // The box is in the world, so that the difference does not overflow.
+        // The box is within the world extent, so that the difference does not overflow.
         let half = bounds.upper.wrapping_sub(bounds.centre());
         (half.x.max(half.y) / 16).min(self.fat_margin)
     }
@@ -114,11 +114,11 @@ impl Config {
         self.tick_rate.div_ceil(2)
     }
 
-    /// Returns these settings with as many sub-steps and as stiff contacts as a stack of 8 boxes of `size` metres needs
-    /// to sink by less than 2.5 % of a box; see [`Config`] for a table. Call it after gravity and the tick rate are
-    /// set. Also reduces the speculative distance to a fiftieth of `size`, but not below 1 mm. Settings that are
-    /// sufficient stay as they are. It sets at most 64 sub-steps per tick and 4000 per second: with 60 ticks per second
-    /// and 10 m/s², that is sufficient down to 4 mm.
+    /// Returns these settings with enough sub-steps and contact stiffness for a stack of 8 boxes of `size` metres to
+    /// sink by less than 2.5 % of a box; see [`Config`] for a table. Call it after gravity and the tick rate are set.
+    /// Also reduces the speculative distance to a fiftieth of `size`, but not below 1 mm. Settings that are sufficient
+    /// stay as they are. It sets at most 64 sub-steps per tick and 4000 per second: with 60 ticks per second and
+    /// 10 m/s², that is sufficient down to 4 mm.
     ///
     /// ```
     /// use lockstep2d::{fx, world::{Config, World}};
@@ -130,7 +130,7 @@ impl Config {
     #[must_use]
     pub fn for_smallest(mut self, size: Fx) -> Self {
         // 8 boxes sink by 1.96 % (30 Hz / f)^2 (g / 10 m/s^2) / (size / 1 m) with the stiffness `f`, an eighth of the
-        // sub-step rate. For 2.4 %, the square of the rate is 4800 Hz m g / size.
+        // sub-step rate. For 2.4 %, the square of the rate is 4800 g / size.
         let size = size.max(fx!(0.001));
         let squared = fx_div(fx_mul(fx!(4800), self.gravity.length()), size).unwrap_or(Fx::MAX);
         let needed = sqrt(squared).unwrap_or(Fx::ZERO).ceil().to_num::<u32>();

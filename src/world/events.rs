@@ -17,7 +17,7 @@ use crate::math::{Angle, Fx, Unit, Vec2};
 /// let lava = world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[square])?;
 /// let victim = world.spawn(&BodyDef::dynamic(), &[square])?;
 /// world.step();
-/// // Whoever touches the lava is gone. The events are read to their end before the world is changed.
+/// // Removes every body that touches the lava. All events are read before the world is changed.
 /// let other = |event: &ContactEvent| {
 ///     let pair = [event.shape_a, event.shape_b].map(|shape| Some(world.shape(shape)?.body()));
 ///     let is_lava = |body: &_| *body == Some(lava);
@@ -162,7 +162,7 @@ pub struct MoveEvent {
 ///         broken.extend(broke.then_some(*joint));
 ///     }
 /// }
-/// // The handle is stale by now, and good only to look up what the game knows about the joint.
+/// // The handle is stale, and serves only as a key to the game's own data about the joint.
 /// assert_eq!(broken, [joint]);
 /// assert!(world.joint(joint).is_none());
 /// # Ok::<(), lockstep2d::body::WorldError>(())
@@ -187,13 +187,13 @@ pub struct JointEvent {
 /// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
 /// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[square])?;
 /// use lockstep2d::{body::EventSwitches, world::Events};
-/// // Hits are reported for shapes that ask for them.
+/// // Hits are reported only for shapes that enable hit events.
 /// let heard = square.events(EventSwitches { hit: true, ..EventSwitches::default() });
 /// let falling = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(1))), &[heard])?;
 /// let mut hits = 0;
 /// for _ in 0..120 {
 ///     world.step();
-///     // Right after the step, and in the same tick: a restored world has no events until its next tick.
+///     // Events are read right after the step: a restored world has no events until its next tick.
 ///     let events: &Events = world.events();
 ///     for hit in &events.hits {
 ///         assert!(world.shapes_of(falling).contains(&hit.shape_b) && hit.approach_speed > fx!(3));
@@ -212,15 +212,15 @@ pub struct Events {
     /// Pairs that came within [`super::Config::touching_distance`] or pushed each other in the tick. Sorted by shape A,
     /// then by shape B, like all lists of pairs.
     pub contact_begin: Vec<ContactEvent>,
-    /// Pairs that moved further apart than [`super::Config::speculative_distance`], and pairs of which a shape was
+    /// Pairs that moved further apart than [`super::Config::speculative_distance`], and pairs with a shape that was
     /// removed or disabled.
     pub contact_end: Vec<ContactEvent>,
     /// Pairs that pushed each other after an approach at [`super::Config::hit_speed`] or faster.
     pub hits: Vec<HitEvent>,
     /// Shapes that began to overlap a sensor within the tick. Sorted by fraction, then by sensor, then by visitor.
     pub sensor_begin: Vec<SensorEvent>,
-    /// Shapes that ceased to overlap a sensor, and pairs of which the sensor or the shape was removed or disabled.
-    /// Sorted by fraction, then by sensor, then by visitor.
+    /// Shapes that ceased to overlap a sensor, and pairs whose sensor or shape was removed or disabled. Sorted by
+    /// fraction, then by sensor, then by visitor.
     pub sensor_end: Vec<SensorEvent>,
     /// Joints above their threshold, in slot order.
     pub joints: Vec<JointEvent>,

@@ -198,8 +198,8 @@ impl World {
         self.state.bodies.iter().filter(|(_, body)| is_simulated(body)).count()
     }
 
-    /// Number of pairs of shapes whose fat boxes overlap and of which at least one is on an active body. Together with
-    /// the numbers of bodies and joints it determines the cost of the next tick.
+    /// Number of pairs of shapes with overlapping fat boxes, at least one of them on an active body. Together with the
+    /// numbers of bodies and joints it determines the cost of the next tick.
     #[must_use]
     pub fn pair_count(&self) -> usize {
         self.state.contacts.len()
@@ -249,10 +249,10 @@ impl World {
     /// Sets the number of threads that share a tick, at least 1. Does not change any hash. Returns whether the threads
     /// could be created; if not, nothing changes.
     ///
-    /// Several threads pay off with thousands of bodies; a tick with fewer than 256 awake bodies uses the calling
-    /// thread only. Threads keep their processors busy until the tick is over, even while only one of them has work.
-    /// Clones of the world share its threads: a tick that runs during a tick of another clone uses its calling thread
-    /// only.
+    /// Several threads shorten a tick only with thousands of bodies. A tick with fewer than 256 awake bodies uses the
+    /// calling thread only. Threads keep their processors busy until the tick is over, even while only one of them has
+    /// work. Clones of the world share its threads: a tick that runs during a tick of another clone uses its calling
+    /// thread only.
     #[cfg(feature = "parallel")]
     pub fn set_threads(&mut self, count: usize) -> bool {
         let threads = Threads::new(count);

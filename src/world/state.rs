@@ -92,7 +92,8 @@ impl State {
         (self.body_of(a), self.body_of(b))
     }
 
-    /// Has the contacts of a body collided anew in the next tick, because its shapes or its centre of mass change.
+    /// Drops the manifolds of a body's contacts, because its shapes or its centre of mass change. The next tick
+    /// collides them again.
     pub(crate) fn end_manifolds(&mut self, body: u32) {
         let shapes = &self.shapes;
         let is_own = |shape: u32| shapes.get_slot(shape).is_some_and(|shape| shape.body().slot() == body);
@@ -101,7 +102,7 @@ impl State {
             contacts.iter_mut().filter(|contact| has_own(contact)).for_each(|contact| contact.kept.end());
         };
         end(&mut self.contacts);
-        // The contacts of a body that has just been woken are still among these. Changing them copies the list.
+        // The contacts of a body that has just been woken are still in this list. Mutable access drops its packed form.
         if self.sleeping_contacts.iter().any(has_own) {
             end(&mut self.sleeping_contacts);
         }

@@ -5,7 +5,7 @@
 /// ```
 /// use lockstep2d::world::{Phase, World};
 /// # let mut world = World::default();
-/// // A profiler: the engine says when each phase begins, and the game has the clock.
+/// // A profiler: the engine reports the beginning of each phase, and the game reads the clock.
 /// let mut marks = vec![];
 /// world.step_observed(|phase| marks.push((phase, std::time::Instant::now())));
 /// assert!(marks.iter().map(|(phase, _)| *phase).eq(Phase::ALL));
@@ -52,7 +52,7 @@ impl Phase {
 /// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-0.5))), &[square])?;
 /// # world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(0.5))), &[square])?;
 /// world.step();
-/// // The corner of a debug screen.
+/// // Text of a debug overlay.
 /// let StepStats { bodies, contacts, points, .. } = world.stats();
 /// assert_eq!(format!("{bodies} bodies, {contacts} contacts, {points} points"), "1 bodies, 1 contacts, 2 points");
 /// # Ok::<(), lockstep2d::body::WorldError>(())
@@ -64,18 +64,19 @@ pub struct StepStats {
     pub bodies: u32,
     /// Number of solved joints.
     pub joints: u32,
-    /// Number of pairs of shapes whose fat boxes overlap and of which at least one is on an active body.
+    /// Number of pairs of shapes with overlapping fat boxes, at least one of them on an active body.
     pub pairs: u32,
     /// Number of pairs with contact points. Sensors do not count.
     pub contacts: u32,
     /// Number of contact points.
     pub points: u32,
-    /// Number of contact points that were warm-started: each continues a point of the tick before, with its impulse.
+    /// Number of contact points that were warm-started: each continues a point of the previous tick, with its impulse.
     pub points_kept: u32,
-    /// Number of contact points with an impulse in the tick before that are gone although their shapes still touch.
+    /// Number of contact points that had an impulse in the previous tick and are lost although their shapes still
+    /// touch.
     pub points_lost: u32,
-    /// Number of polygon pairs that the cached separating axis of the tick before still separates. Pairs of small boxes
-    /// are never among them.
+    /// Number of polygon pairs that the cached separating axis of the previous tick still separates. Pairs of small
+    /// boxes are never among them.
     pub axis_hits: u32,
     /// Number of polygon pairs that needed a full separating axis test.
     pub axis_searches: u32,

@@ -197,8 +197,8 @@ fn contact_velocities_are_known_of_what_is_locked() {
     );
 }
 
-/// A tick that ends before joints are solved, because its budget does not cover them, changes nothing for the world
-/// that is restored after it.
+/// A tick that ends before joints are solved, because its budget does not cover them, has no effect on a world that is
+/// restored afterwards.
 #[test]
 fn a_world_is_restored_after_a_tick_without_the_budget_for_its_joints() {
     let mut world = pit();

@@ -33,7 +33,7 @@ const ENVELOPE: Envelope = Envelope { magic: KEYFRAMES_MAGIC, format: KEYFRAMES_
 /// # (0..90).for_each(|_| recording.step(&[vec![]]).expect("one input"));
 /// # let file = recording.finish().expect("no claims");
 /// let mut timeline = Timeline::<Sandbox>::open(&file, &TimelineOptions::default(), &Limits::default())?;
-/// // Keyframes beside a replay only save time: without them it is played.
+/// // Keyframes only save time. Without them, the replay is simulated.
 /// assert_eq!(timeline.use_keyframes(b"something else"), Err(KeyframesError::NotKeyframes));
 /// assert!(timeline.seek(90).is_ok());
 /// # Ok::<(), lockstep2d::replay::Verdict>(())

@@ -20,7 +20,7 @@ impl Keyframe<'_> {
     }
 }
 
-/// Keyframes by tick, at multiples of the interval. A multiple may be without a keyframe.
+/// Keyframes by tick, at multiples of the interval. Some multiples may have no keyframe.
 #[derive(Debug)]
 pub(super) struct Keyframes<'a> {
     /// Keyframe of tick 0, which is never removed.

@@ -76,7 +76,7 @@ impl Default for TimelineOptions {
 /// # let file = recording.finish().expect("no claims");
 /// let mut timeline = Timeline::<Sandbox>::open(&file, &Default::default(), &Limits::default())?;
 /// assert_eq!(timeline.seek(91), Err(SeekError::NoSuchTick { tick: 91, ticks: 90 }));
-/// // It stays where it was.
+/// // The timeline stays at its current tick.
 /// assert_eq!(timeline.tick(), 0);
 /// # Ok::<(), lockstep2d::replay::Verdict>(())
 /// ```
@@ -233,7 +233,7 @@ impl<'a, G: Game> Timeline<'a, G> {
             return Err(SeekError::NoSuchTick { tick, ticks: self.ticks() });
         }
         self.check_reachable(tick)?;
-        // A short seek backwards is usually followed by more of them.
+        // A short seek backwards is usually followed by others.
         let goes_back = self.tick().checked_sub(tick).is_some_and(|by| (1..self.interval()).contains(&by));
         self.go_to_latest_before(tick)?;
         while self.tick() < tick {
@@ -295,7 +295,7 @@ impl<'a, G: Game> Timeline<'a, G> {
     ///
     /// The interval becomes a multiple of the file's. A keyframe is decoded when it is needed, and its state has to
     /// match the replay's own checkpoint. This does not verify the replay, because it does not show that the inputs
-    /// lead to these states. [`Timeline::played`] tells how far the replay has been simulated.
+    /// lead to these states. [`Timeline::played`] returns how far the replay has been simulated.
     ///
     /// # Errors
     /// [`KeyframesError`] for any other bytes, and for keyframes of another replay. The current keyframes are then

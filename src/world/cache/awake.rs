@@ -28,7 +28,7 @@ pub(crate) struct AwakeSet {
 pub(crate) struct SlotShare<'a> {
     /// Slots of the bodies.
     pub(crate) bodies: &'a [u32],
-    /// Ends of the thread's slot ranges: that of bodies and that of shapes.
+    /// Exclusive ends of the thread's slot ranges: body slots, shape slots.
     pub(crate) ends: [u32; 2],
 }
 

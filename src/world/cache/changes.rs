@@ -15,11 +15,11 @@ pub(crate) struct Changes {
     sleeping_contacts: bool,
     /// Filters, sensors, kinds or joints have changed: pairs may not be allowed to collide any more.
     rules: bool,
-    /// Slots of shapes that may have new pairs: the fat box is new, or the body has become active or inactive or has
-    /// other joints. A slot may be listed twice.
+    /// Slots of shapes that may have new pairs: their fat box is new, their body has become active or inactive, or the
+    /// joints of their body have changed. A slot may be listed twice.
     shapes: Vec<u32>,
     /// Fat box of each shape at the last pair update. Two shapes whose boxes overlapped then are not a new pair.
-    /// [`Aabb::NOWHERE`] if something other than its box may give the shape new pairs.
+    /// [`Aabb::NOWHERE`] if the shape may have new pairs for a reason other than a new fat box.
     last_boxes: Vec<Aabb>,
 }
 
@@ -49,8 +49,8 @@ impl Changes {
         self.everything || self.rules
     }
 
-    /// Slots of shapes that may have new pairs: the fat box is new, or the body has become active or inactive or has
-    /// other joints. A slot may be listed twice.
+    /// Slots of shapes that may have new pairs: their fat box is new, their body has become active or inactive, or the
+    /// joints of their body have changed. A slot may be listed twice.
     pub(crate) fn shapes(&self) -> &[u32] {
         &self.shapes
     }
@@ -85,7 +85,7 @@ impl Changes {
         }
     }
 
-    /// Whether a shape may have new pairs for another reason than a new fat box.
+    /// Whether a shape may have new pairs for a reason other than a new fat box.
     pub(crate) fn is_new(&self, shape: u32) -> bool {
         self.last_boxes.get(shape as usize).is_none_or(|last| *last == Aabb::NOWHERE)
     }
@@ -111,14 +111,14 @@ impl Changes {
         self.shapes.clear();
     }
 
-    /// Copies the record into that of a snapshot, without the boxes of the last pair update.
+    /// Copies the record into a snapshot, without the boxes of the last pair update.
     pub(crate) fn save_into(&self, saved: &mut Self) {
         let Changes { everything, sleeping_contacts, rules, shapes, last_boxes: _ } = self;
         (saved.everything, saved.sleeping_contacts, saved.rules) = (*everything, *sleeping_contacts, *rules);
         saved.shapes.clone_from(shapes);
     }
 
-    /// Takes the record over from a snapshot whose state has just been restored.
+    /// Restores the record from a snapshot whose state has just been restored.
     pub(crate) fn restore(&mut self, saved: &Self, boxes: &BroadPhase, slot_count: usize) {
         let Changes { everything, sleeping_contacts, rules, shapes, last_boxes } = self;
         (*everything, *sleeping_contacts, *rules) = (saved.everything, saved.sleeping_contacts, saved.rules);

@@ -8,7 +8,7 @@ use crate::solver::ActiveContact;
 use crate::threads::Threads;
 use crate::world::events::HitEvent;
 
-/// Cache of the narrow phase. Manifolds and axes are indexed by a contact's place in the state, and so become invalid
+/// Cache of the narrow phase. Manifolds and axes are indexed by a contact's index in the state, and so become invalid
 /// when contacts are reordered.
 #[derive(Clone, Debug)]
 pub(crate) struct ContactCache {
@@ -93,7 +93,8 @@ impl ContactCache {
         self.axes.clear();
     }
 
-    /// Drops cached surfaces at the next narrow phase, because materials or shapes may have changed.
+    /// Marks the cached surfaces as outdated, because materials or shapes may have changed. The next narrow phase drops
+    /// them.
     pub(crate) fn invalidate_surfaces(&mut self) {
         self.surfaces_changed = true;
     }
@@ -248,7 +249,7 @@ impl Copy<'_> {
     }
 }
 
-/// Sets the length of a list to that of all parts.
+/// Resizes a list to the total length of all parts.
 fn make_room<'a, T: Clone + 'a>(list: &mut Vec<T>, parts: impl Iterator<Item = &'a [T]> + Clone) {
     match parts.clone().find_map(<[T]>::first) {
         None => list.clear(),

@@ -1,7 +1,7 @@
 //! Work units: [`WorkMeter`] counts work whose amount is known only when it is done, up to a budget.
 
-/// Number of pairs per body up to which all pairs are assumed to be solved in SIMD batches of eight. A heap that is not
-/// forced together has up to six pairs per body.
+/// Number of pairs per body up to which all pairs are assumed to be solved in SIMD batches of eight. A pile whose
+/// bodies do not overlap deeply has up to six pairs per body.
 const PAIRS_PER_BODY: u64 = 32;
 
 /// Cost of a pair beyond [`PAIRS_PER_BODY`], in ordinary pairs: measured on a thousand squares at the same position.
@@ -11,7 +11,7 @@ const CROWDED_WORK: u64 = 64;
 /// sizes.
 pub(crate) const NARROW_PHASE_WORK: u64 = 4;
 
-/// Cost of a new pair, whose axis of separation is not known: measured on a hundred octagons at the same position.
+/// Cost of a new pair, whose separating axis is not cached yet: measured on a hundred octagons at the same position.
 pub(crate) const NEW_PAIR_WORK: u64 = 8;
 
 /// Counts work units against a budget. Work beyond the budget is skipped. The meter is not part of the state. The state

@@ -2,7 +2,7 @@
 //! changes no hash.
 //!
 //! [`Scratch`] is a list of owners. An owner whose content can become invalid keeps its fields private, and its methods
-//! do the invalidating. Structs with public fields are buffers without such a state, or results.
+//! invalidate the content. Structs with public fields only group owners, buffers or results.
 //!
 //! | owner | content | invalid when |
 //! |---|---|---|
@@ -91,13 +91,13 @@ impl Scratch {
         }
     }
 
-    /// Builds all caches anew. Keeps the solver's backend and threads, and the meter.
+    /// Rebuilds all caches. Keeps the solver's backend and threads, and the meter.
     pub(crate) fn rebuild(&mut self, kind: BroadPhaseKind, state: &State) {
         let solver = self.solver.emptied();
         *self = Scratch { solver, meter: self.meter, ..Scratch::new(kind, state) };
     }
 
-    /// Drops the results of the last tick, after the state was replaced by that of another tick.
+    /// Drops the results of the last tick, after the state was replaced by the state of another tick.
     pub(crate) fn clear_results(&mut self) {
         self.contacts.invalidate();
         self.contacts.invalidate_surfaces();

@@ -32,7 +32,7 @@ pub(crate) struct PredictedMotion {
 }
 
 impl PredictedMotion {
-    /// The motion of a body in a tick of `1 / tick_rate` seconds, whose reciprocal is passed in.
+    /// The motion of a body in one tick. `per_second` is `1 / tick_rate`.
     #[inline]
     pub(crate) fn of(body: &Body, per_second: Reciprocal) -> Self {
         let step = |speed: Speed| per_second.times(speed);
@@ -42,7 +42,7 @@ impl PredictedMotion {
         PredictedMotion { centre: body.centre, shift, turn }
     }
 
-    /// Displacement of the centre of mass until a fraction of the tick.
+    /// Displacement of the centre of mass from the start of the tick to a fraction of it.
     pub(crate) fn shift_until(&self, fraction: Unit) -> Vec2<Fx> {
         self.shift.scale::<_, U24>(fraction).widen()
     }
@@ -52,7 +52,7 @@ impl PredictedMotion {
         PredictedMotion { centre: self.centre + self.shift_until(fraction), ..*self }
     }
 
-    /// Displacement of the point of the body that is at a world point.
+    /// Displacement of the material point of the body that is at a world point at the start of the tick.
     pub(crate) fn shift_at(&self, point: Vec2<Fx>) -> Vec2<Travel> {
         if self.turn == 0 {
             return self.shift;
@@ -66,14 +66,14 @@ impl PredictedMotion {
         widen(self.turn).saturating_abs()
     }
 
-    /// Bound of the distance by which the body's rotation by `turn` radians moves any point of a shape: lever arm times
-    /// angle, and at most the diameter.
+    /// Upper bound of the distance by which the body's rotation by `turn` radians moves any point of a shape: lever arm
+    /// times angle, and at most the diameter.
     pub(crate) fn turn_reach(&self, turn: Fx, shape: &ShapeMotion) -> Fx {
         if turn < Fx::DELTA * 64 || shape.disc {
             return Fx::ZERO;
         }
         let centre = shape.bounds.centre();
-        // Shapes and centres of mass are in the world, so that no sum overflows.
+        // Shapes and centres of mass are within the world extent, so that no sum overflows.
         let offset = centre.wrapping_sub(self.centre);
         let half = shape.bounds.upper.wrapping_sub(centre);
         let aside = offset.x.wrapping_abs().wrapping_add(offset.y.wrapping_abs());
@@ -82,7 +82,7 @@ impl PredictedMotion {
     }
 }
 
-/// Bounds and predicted motion of a shape, and the properties that the narrow phase needs of every pair: one cache
+/// Bounds and predicted motion of a shape, and the properties that the narrow phase reads for every pair: one cache
 /// line.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
@@ -90,10 +90,10 @@ pub(crate) struct ShapeMotion {
     pub(crate) bounds: Aabb,
     /// Displacement of the body's centre of mass.
     shift: Vec2<Travel>,
-    /// Bound of the distance by which the body's rotation moves any point of the shape.
+    /// Upper bound of the distance by which the body's rotation moves any point of the shape.
     pub(crate) turn: Travel,
-    /// Largest overlap with another shape at which the ghost-collision filter may still find that the two pass by each
-    /// other. The limit of a pair is at most that of each of its shapes.
+    /// Largest overlap in metres at which the ghost-collision filter may treat the shape as passing by another one. The
+    /// limit of a pair is the smallest of the limits of both shapes and the touching distance.
     pub(crate) slack: Step,
     /// Slot of the body.
     pub(crate) body: u32,
@@ -152,24 +152,26 @@ impl ShapeMotion {
         self.bounds.centre()
     }
 
-    /// The vector from the centre of these bounds to that of another shape's.
+    /// The vector from the centre of the bounds to the centre of another shape's bounds.
     #[inline]
     pub(crate) fn offset_to(&self, other: &ShapeMotion) -> Vec2<Fx> {
-        // Both are in the world, so that no sum overflows.
+        // Both are within the world extent, so that no sum overflows.
         let twice = |shape: &ShapeMotion| shape.bounds.lower.wrapping_add(shape.bounds.upper);
         let Vec2 { x, y } = twice(other).wrapping_sub(twice(self));
         Vec2::new(x >> 1, y >> 1)
     }
 
-    /// Half the sum of the sides of the bounds in metres, saturated: no point is farther from their centre.
+    /// Half the sum of the sides of the bounds in metres, saturated: no point of the shape is farther from their
+    /// centre.
     #[inline]
     pub(crate) fn extent(&self) -> Length {
-        // The shape is in the world, so that no sum overflows.
+        // The shape is within the world extent, so that no sum overflows.
         let size = self.bounds.upper.wrapping_sub(self.bounds.lower);
         narrow(size.x.wrapping_add(size.y) >> 1)
     }
 
-    /// Bound of the distance by which any two points of two shapes approach each other within the tick, in metres.
+    /// Upper bound of the distance by which any two points of two shapes approach each other within the tick, in
+    /// metres.
     #[inline]
     fn closing(&self, other: &ShapeMotion) -> Travel {
         let apart = |a: Travel, b: Travel| (i64::from(b.to_bits()) - i64::from(a.to_bits())).abs();
@@ -222,7 +224,7 @@ pub(crate) struct Margins {
     pub(crate) touching: Step,
     /// Distance in metres by which shapes approach each other in a tick at [`IMPACT_SPEED`].
     pub(crate) impact: Step,
-    /// Largest movement of two shapes against each other for which a contact keeps its manifold, in metres.
+    /// Largest relative movement of two shapes at which a contact keeps its manifold, in metres.
     pub(crate) kept: Length,
 }
 
@@ -240,7 +242,7 @@ impl Margins {
     }
 }
 
-/// Bound of how far two shapes approach each other within the tick.
+/// Upper bound of the approach of two shapes within the tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ClosingBound {
     /// Bound of the distance by which any two points of the shapes approach each other, in metres.
@@ -249,8 +251,8 @@ pub(crate) struct ClosingBound {
     pub(crate) margin: Length,
 }
 
-/// Smallest approach in a tick, in metres, from which on the ghost-collision filter checks whether two shapes pass by
-/// each other.
+/// Approach within a tick, in metres, above which the ghost-collision filter checks whether two shapes pass by each
+/// other.
 pub(crate) const GHOST_TRAVEL_MIN: Step = Step::lit("0.0001");
 
 impl ClosingBound {
@@ -260,7 +262,7 @@ impl ClosingBound {
         ClosingBound { distance, margin: margin_for(margins.speculative, distance) }
     }
 
-    /// The rest of a distance when the movement of this tick is subtracted.
+    /// A distance minus the bound of the approach within the tick.
     #[inline]
     pub(crate) fn rest_of(self, distance: Length) -> Length {
         distance.saturating_sub(convert(self.distance))

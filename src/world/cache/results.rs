@@ -30,7 +30,7 @@ pub(crate) struct Predicted {
     /// Slots of the shapes that move. They are kept until the next tick.
     pub(crate) moving: Vec<u32>,
     pub(crate) outgrown: Vec<Outgrown>,
-    /// Slots of the bodies of which a shape is in the range of another thread.
+    /// Slots of the bodies with a shape in the range of another thread.
     pub(crate) others: Vec<u32>,
 }
 
@@ -61,7 +61,7 @@ pub(crate) struct Finalised {
     pub(crate) settled: Vec<u32>,
     /// Shapes that have left their fat box.
     pub(crate) left_boxes: Vec<u32>,
-    /// Fast bodies that only fixed bodies stop.
+    /// Fast bodies that only fixed bodies can stop.
     pub(crate) swept: Vec<SweptBody>,
     /// Poses of the bodies of `swept` after their sweep.
     pub(crate) moved: Vec<(u32, Pose)>,
@@ -71,7 +71,7 @@ pub(crate) struct Finalised {
     pub(crate) relative: Vec<SweptBody>,
     /// Fast bullets.
     pub(crate) bullets: Vec<SweptBody>,
-    /// Bodies of which a shape is in the range of another thread, and their poses. They have not been moved.
+    /// Bodies with a shape in the range of another thread, and their poses. They have not been moved.
     pub(crate) others: Vec<(u32, Pose)>,
 }
 

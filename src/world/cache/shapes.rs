@@ -140,8 +140,8 @@ impl ShapeCache {
         refits
     }
 
-    /// Updates poses after a restore: of the bodies that were only translated, of those that were also rotated, and of
-    /// those that were redefined.
+    /// Updates poses after a restore. `shifted` lists the bodies that were only translated, `moved` those that were
+    /// also rotated, and `redefined` those that were added or whose definition or shapes have changed.
     pub(crate) fn restore_poses(
         &mut self,
         state: &State,
@@ -187,7 +187,7 @@ impl ShapeCache {
                 None => broad_phase.remove(slot),
             }
         }
-        // The state has fat boxes of disabled bodies, which are in no broad phase.
+        // The state also has the fat boxes of disabled bodies, which are not in the broad phase.
         refits.retain(|&(slot, _)| broad_phase.fat(slot) != Aabb::NOWHERE);
         broad_phase.set_many(refits);
     }

@@ -76,8 +76,8 @@ impl World {
         Ok(id)
     }
 
-    /// Adds a body with the same definition at every pose. A recording stores the definition only once, unlike with a
-    /// [`World::spawn`] for each pose.
+    /// Adds a body with the same definition at every pose. A recording stores the definition once instead of once per
+    /// pose.
     ///
     /// # Errors
     /// The errors of [`World::spawn`]. No body is then added.
@@ -101,7 +101,7 @@ impl World {
             .collect()
     }
 
-    /// Attaches a shape to a body. Unless the body's mass was given, it is computed anew from all shapes.
+    /// Attaches a shape to a body. Unless the body's mass was given, it is recomputed from all shapes.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, a value is out of range, or the world is full.
@@ -137,8 +137,8 @@ impl World {
         Ok(self.insert_joint(*def))
     }
 
-    /// Adds a joint with the same definition between every pair of bodies. A recording stores the definition only once,
-    /// unlike with a [`World::add_joint`] for each pair.
+    /// Adds a joint with the same definition between every pair of bodies. A recording stores the definition once
+    /// instead of once per pair.
     ///
     /// # Errors
     /// The errors of [`World::add_joint`]. No joint is then added.

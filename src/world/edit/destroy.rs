@@ -28,7 +28,7 @@ impl World {
         Ok(())
     }
 
-    /// Removes a shape. Unless the body's mass was given, it is computed anew from the remaining shapes.
+    /// Removes a shape. Unless the body's mass was given, it is recomputed from the remaining shapes.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, or the mass of a dynamic body would be out of range.
@@ -64,7 +64,7 @@ impl World {
         Ok(())
     }
 
-    /// Removes shapes from everything except the list of their body.
+    /// Removes shapes from the state and the caches, but not from the list of their body.
     fn delete_shapes(&mut self, ids: &[ShapeId]) {
         self.end_contacts(ids);
         for &id in ids {

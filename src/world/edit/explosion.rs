@@ -121,7 +121,7 @@ impl Explosion {
         !shape.is_sensor() && shape.filter().category & self.mask != 0
     }
 
-    /// The impulse on a shape that is given about the explosion's centre; `None` if it is out of reach.
+    /// The impulse on a shape in coordinates relative to the explosion's centre; `None` if it is out of reach.
     fn on(&self, shape: &SupportShape) -> Option<Push> {
         let found = distance(shape, &SupportShape::point(Vec2::ZERO));
         let strength = self.at_distance(found.distance);

@@ -12,7 +12,7 @@ use crate::world::movement::move_body;
 /// use lockstep2d::world::BodyField;
 /// # let mut world = World::default();
 /// let ball = world.spawn(&BodyDef::dynamic(), &[ShapeDef::new(Geometry::circle(fx!(0.5))?)])?;
-/// // One flipped bit, as of failing memory, in a test of what a game does when peers diverge.
+/// // Flips one bit, as failing memory may, to test how a game reacts when peers diverge.
 /// let mut broken = world.clone();
 /// broken.flip_bit(ball, BodyField::VelocityX, 0)?;
 /// assert_ne!(world.state_hash(), broken.state_hash());
@@ -74,9 +74,9 @@ impl BodyField {
 }
 
 impl World {
-    /// Flips one bit of a field of an awake dynamic body, as a memory error would. Used to test the detection of
-    /// divergence. The lowest bit of a speed is worth 2^-21 m/s, that of a coordinate 2^-32 m, that of the angle 2^-32
-    /// turns; see [`BodyField::bits`].
+    /// Flips one bit of a field of an awake dynamic body, as a memory error would, to test the detection of divergence.
+    /// The lowest bit is 2^-21 m/s for a speed, 2^-32 m for a coordinate and 2^-32 turns for the angle; see
+    /// [`BodyField::bits`].
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the body is disabled, asleep or not dynamic, the bit does not exist, the

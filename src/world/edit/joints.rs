@@ -61,9 +61,9 @@ impl World {
         Ok(JointDef { frame_a, frame_b, ..JointDef::new(a, b, kind) })
     }
 
-    /// The definition of a gear, rack or pulley that holds at the current poses of its bodies: the angle of a gear's
-    /// frame on A is such that the teeth meet, the wheel of a rack is where it has rolled to, and the rope of a pulley
-    /// is taut. Returns definitions of other kinds as they are.
+    /// Returns the definition of a gear, rack or pulley adjusted to the current poses of its bodies, so that its
+    /// position error is 0. Changes the angle of a gear's frame on A, the anchor of a rack on B, or the length of a
+    /// pulley's rope. Returns definitions of other kinds as they are.
     ///
     /// # Errors
     /// [`WorldError::StaleBody`] if a body is not in the world.
@@ -106,7 +106,7 @@ impl World {
     }
 
     /// Enables a disabled joint and wakes its bodies. Does nothing if the joint is enabled already. The joint starts
-    /// without impulses, and its angle is the one within half a turn of the last.
+    /// without impulses, and with the number of full turns that brings its angle nearest to the last one.
     ///
     /// # Errors
     /// [`WorldError::StaleJoint`] if it is not in the world.

@@ -116,7 +116,7 @@ impl World {
         if kind == BodyKind::Fixed {
             body.stop();
         }
-        // Fat boxes of fixed shapes have another margin.
+        // The fat boxes of fixed shapes have no margin.
         self.refit_body(id.slot());
         self.scratch.pairs.changes.rules_changed();
         wake_overlapping(&mut self.state, &mut self.scratch, id.slot());
@@ -163,8 +163,8 @@ impl World {
         Ok(())
     }
 
-    /// Wakes a body with all bodies of its island. A fixed or kinematic body does not sleep: it wakes the bodies that
-    /// touch it, and those that are joined to it.
+    /// Wakes a body with all bodies of its island. For a fixed or kinematic body, which does not sleep, wakes the
+    /// bodies that touch it or are joined to it.
     ///
     /// # Errors
     /// [`WorldError::StaleBody`] if it is not in the world.
@@ -196,8 +196,8 @@ impl World {
     }
 
     /// Replaces the definition of a shape: read [`crate::body::Shape::def`], change a copy, and pass it here. Unless
-    /// the body's mass was given, it is computed anew from its shapes. If the change makes the shape a sensor or a
-    /// solid shape, or switches its contact events, its contacts end; otherwise they last as long as the shapes touch.
+    /// the body's mass was given, it is recomputed from its shapes. If the change makes the shape a sensor or a solid
+    /// shape, or switches its contact events, its contacts end; otherwise they last as long as the shapes touch.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, or a value, including the mass of a dynamic body, is out of range.
@@ -285,8 +285,9 @@ impl World {
         if shape.def.area == area { Ok(()) } else { self.change_shape(id, |def| def.area = area) }
     }
 
-    /// Wakes the bodies that overlap or are joined to a body that is about to gain its first mass or to lose all of it,
-    /// and has pairs checked again: two bodies without mass have no contact and no joint that acts.
+    /// Prepares for a change of the mass between 0 and a positive value: wakes the bodies that overlap or are joined to
+    /// the body, and makes the next pair update check all pairs. Two bodies without mass have no contact and no joint
+    /// that acts.
     pub(super) fn prepare_mass(&mut self, id: BodyId, mass: &MassProperties) {
         if self.state.bodies.at(id.slot()).has_mass() != (mass.mass > 0) {
             wake_overlapping(&mut self.state, &mut self.scratch, id.slot());
@@ -295,7 +296,7 @@ impl World {
         }
     }
 
-    /// Replaces the mass of a body. Lever arms begin at its centre of mass, so that its contacts are collided anew.
+    /// Replaces the mass of a body. Drops its manifolds, because lever arms are relative to the centre of mass.
     pub(super) fn replace_mass(&mut self, body: u32, mass: MassProperties) {
         if self.state.bodies.at(body).mass != mass {
             self.state.end_manifolds(body);

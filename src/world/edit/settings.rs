@@ -13,7 +13,7 @@ impl World {
     /// Replaces the settings of the world: read [`World::config`], change a copy, and pass it here. The limits of
     /// bodies, shapes, joints and pairs stay as they are.
     ///
-    /// Wakes all bodies if a setting changes on which the balance of forces depends: gravity, the tick rate, sub-steps,
+    /// Wakes all bodies if a setting that affects the balance of forces changes: gravity, the tick rate, sub-steps,
     /// iterations, the tuning of contacts and joints, and [`Config::sleeping`] when it is switched off. Impulses that
     /// contacts and joints keep for the next tick are converted to the new length of a sub-step, so that bodies at rest
     /// stay at rest. Bodies that are faster than a lower speed limit are slowed down by the next tick. A kinematic body

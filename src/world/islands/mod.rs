@@ -6,7 +6,7 @@
 //! - when a force, impulse, velocity, pose or property of one of its bodies is changed by an edit,
 //! - when a joint is added to or removed from one of its bodies,
 //! - when a body or shape whose fat box overlaps that of one of its bodies is moved, changed or removed by an edit,
-//! - when gravity or another setting of the world changes on which the balance of forces depends,
+//! - when gravity or another setting that affects the balance of forces changes,
 //! - when a fixed or kinematic body that it touches or is joined to is woken by an edit.
 //!
 //! Bodies that touch, or are joined to, a moving kinematic body do not become sleepy.

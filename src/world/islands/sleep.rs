@@ -53,7 +53,7 @@ pub(crate) fn unite(state: &State, union: &mut UnionFind, a: u32, b: u32) {
     }
 }
 
-/// Makes a sleeping island of every set of bodies in the awake set that is not marked to stay awake.
+/// Turns every set of bodies in the awake set that is not marked to stay awake into a sleeping island.
 pub(crate) fn put_sleepy_sets_to_sleep(state: &mut State, scratch: &mut Scratch) {
     let Scratch { awake, union, .. } = &mut *scratch;
     let mut any = false;

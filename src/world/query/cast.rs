@@ -136,8 +136,8 @@ impl World {
     }
 
     /// Returns the first shape that a probe meets among those for which `accept` holds. `accept` gets the shape, the
-    /// normal of the hit, and the two shapes as they are at the start of the cast, relative to the probe's position,
-    /// the other shape first.
+    /// normal of the hit, and the support shapes of the shape and of the probe at the start of the cast, both relative
+    /// to the probe's position.
     pub(super) fn first_along(
         &self,
         probe: &Probe,

@@ -7,13 +7,13 @@
 //! planes instead of casting would stop it at corners that it just misses.
 //!
 //! Only the slope distinguishes ground from walls. On ground a character stands without sliding, and walks at the same
-//! speed as on level ground. Along any other surface it slides, and never upwards; the rest of a walk into a wall is
+//! speed as on level ground. Along any other surface it slides, but never upwards. The rest of a walk into a wall is
 //! dropped.
 //!
-//! Ground carries the character. A character knows the pose that the body of its ground had at its last move, so that
-//! the next move starts with the displacement of the point under its feet: exact for lifts, turning platforms and
-//! bodies on joints, whatever moves them. *Refused: the velocity of the body*, which is 0 after a tick for a body moved
-//! by [`World::move_to`], and does not tell where a platform that turns or stops has gone.
+//! Ground carries the character. A character stores the pose that the body of its ground had at its last move. The next
+//! move starts with the displacement of the point under its feet since then: exact for lifts, turning platforms and
+//! bodies on joints, whatever moves them. The velocity of the body would not be sufficient: it is 0 after a tick for a
+//! body moved by [`World::move_to`], and does not give the displacement of a platform that turns or stops.
 
 use alloc::vec::Vec;
 
@@ -139,7 +139,7 @@ impl Mover {
 /// }
 /// let player = world.move_character(&mover, &player, Default::default()).state;
 /// assert!(!player.is_on_ground() && player.position.y > fx!(0));
-/// // It belongs to the save of the game, beside the world.
+/// // The game saves it together with the world.
 /// assert_eq!(codec::decode(&codec::encode(&player)), Ok(player));
 /// # Ok::<(), lockstep2d::body::WorldError>(())
 /// ```
@@ -179,7 +179,7 @@ impl MoverState {
 /// let wall = ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(3))?);
 /// let wall = world.spawn(&BodyDef::fixed().position((fx!(1), fx!(0))), &[wall])?;
 /// let running = MoverState { velocity: Vec2::new(fx!(30), fx!(0)), ..MoverState::at(Vec2::ZERO) };
-/// // It runs into a wall: what did it touch?
+/// // It runs into a wall. `met` has the surfaces that it touched.
 /// let Moved { state, met } = world.move_character(&mover, &running, Default::default());
 /// assert!(met.iter().any(|plane| plane.body == wall && plane.normal == -Vec2::X));
 /// assert_eq!(state.velocity.x, fx!(0));
@@ -187,7 +187,7 @@ impl MoverState {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Moved {
-    /// The new state. Its velocity is the old one as limited by the surfaces met; ground only stops a fall.
+    /// The new state. Its velocity is the old one, limited by the surfaces met; ground only stops a fall.
     pub state: MoverState,
     /// The surfaces that the character has met, in order.
     pub met: Vec<MoverPlane>,
@@ -213,7 +213,7 @@ impl World {
     ///
     /// The game adds gravity. Moving ground carries the character without further code: by the movement of its body
     /// since the character's last move, and by the surface speed of a belt. Move characters after [`World::step`]: a
-    /// character that is moved before it is one tick behind its lift.
+    /// character that is moved before the step is one tick behind its lift.
     ///
     /// Between slopes that are both too steep a character rests without ground: see [`Moved::is_wedged`].
     ///

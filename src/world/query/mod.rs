@@ -27,10 +27,10 @@ use crate::body::{BodyId, Handle, ShapeId};
 use crate::fx;
 use crate::math::Fx;
 
-/// Largest distance in metres by which a shape can be found outside of its box, because queries round to a grid.
+/// Largest distance in metres from its AABB at which a query may find a shape, because queries round to a grid.
 const SLACK: Fx = fx!(0.000001);
 
-/// Selects the shapes that a query sees: those whose collision filter accepts that of the query and is accepted by it.
+/// Selects the shapes that a query sees. The collision filters of the shape and of the query must accept each other.
 ///
 /// ```
 /// use lockstep2d::world::QueryFilter;
@@ -47,13 +47,14 @@ pub struct QueryFilter {
     pub sensors: bool,
     /// A body that the query does not see, usually the one for which the query is made.
     pub except: Option<BodyId>,
-    /// Further bodies that the query does not see, such as those of a vehicle.
+    /// Further bodies that the query does not see, such as the parts of a vehicle.
     pub except_also: [Option<BodyId>; Self::EXCEPT_ALSO_MAX],
-    /// Treatment of shapes inside of which a ray or a cast starts.
+    /// Treatment of shapes that contain or overlap the start of a ray or cast.
     pub initial_overlap: InitialOverlap,
 }
 
-/// Treatment of shapes inside of which a ray or a cast starts. The field `starts_inside` of a hit marks such a shape.
+/// Treatment of shapes that contain or overlap the start of a ray or cast. The field `starts_inside` of a hit marks
+/// such a shape.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
@@ -100,7 +101,7 @@ impl QueryFilter {
     pub const EXCEPT_ALSO_MAX: usize = 8;
 
     /// Replaces [`QueryFilter::except_also`] by the bodies of a list. `None` if there are more than
-    /// [`QueryFilter::EXCEPT_ALSO_MAX`]: a ragdoll of many bodies is left out by its category.
+    /// [`QueryFilter::EXCEPT_ALSO_MAX`]: leave out a ragdoll of many bodies by its category.
     #[must_use]
     pub fn except_all(mut self, bodies: &[BodyId]) -> Option<Self> {
         self.except_also = [None; Self::EXCEPT_ALSO_MAX];
@@ -110,7 +111,7 @@ impl QueryFilter {
         Some(self)
     }
 
-    /// Sets the treatment of shapes inside of which a ray or a cast starts.
+    /// Sets the treatment of shapes that contain or overlap the start of a ray or cast.
     #[must_use]
     pub const fn initial_overlap(mut self, overlap: InitialOverlap) -> Self {
         self.initial_overlap = overlap;

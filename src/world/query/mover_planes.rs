@@ -39,7 +39,7 @@ const PARALLEL: Fx = fx!(0.000001);
 /// # let mut world = World::default();
 /// # let floor = ShapeDef::new(Polygon::rectangle(fx!(9), fx!(1))?);
 /// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor])?;
-/// // A character of one's own, 1 cm above the floor, that walks 5 cm to the right and falls by 1 m.
+/// // A character moved by the game's own code, 1 cm above the floor, that walks 5 cm to the right and falls by 1 m.
 /// let ball = Probe::new(Geometry::circle(fx!(0.5))?, Vec2::new(fx!(0), fx!(0.51)))?;
 /// let mut planes: Vec<MoverPlane> = world.collide_mover(&ball, fx!(1), Default::default());
 /// let step = solve_planes(Vec2::new(fx!(0.05), fx!(-1)), &mut planes);
@@ -54,12 +54,12 @@ pub struct MoverPlane {
     /// The body of that shape.
     pub body: BodyId,
     /// Position of the body's origin at the time of the query, in the world, in metres. Together with `body_angle` it
-    /// tells how far the body has carried the surface since.
+    /// gives the displacement of the surface since then.
     pub body_position: Vec2<Fx>,
     /// Rotation of the body at the time of the query.
     pub body_angle: Angle,
-    /// Velocity of the surface at `point` in m/s: that of the body there, and the surface speed of the shape. A body
-    /// that was moved by [`World::move_to`] has no velocity after the tick.
+    /// Velocity of the surface at `point` in m/s: the velocity of the body there plus the surface speed of the shape. A
+    /// body that was moved by [`World::move_to`] has no velocity after the tick.
     pub velocity: Vec2<Fx>,
     /// Outward normal, towards the mover.
     pub normal: Vec2<Unit>,
@@ -74,8 +74,8 @@ pub struct MoverPlane {
 }
 
 impl World {
-    /// Returns every shape within a distance in metres of a probe as a plane, in slot order. Chain links that are solid
-    /// from one side are left out if the probe's middle is on the other side. Empty if the distance is negative.
+    /// Returns a plane for every shape within a distance in metres of a probe, in slot order. Chain links that are
+    /// solid from one side are left out if the probe's middle is on the other side. Empty if the distance is negative.
     ///
     /// ```
     /// use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
@@ -148,10 +148,10 @@ pub(super) fn along_surface(normal: Vec2<Unit>, length: Fx) -> Vec2<Fx> {
 /// Returns the translation in metres that is nearest to a wanted one and stays outside of all planes. Sets each plane's
 /// `push`.
 ///
-/// If all planes are rigid and leave room, the result is exact except for rounding. If some are soft, or there is no
-/// room, the planes push in turn. A round multiplies the error of two planes with normals `n` and `m` by `(n . m)²`, so
-/// that 64 rounds are enough if their normals are 25 degrees or more apart. In a sharper corner, or between two walls,
-/// the result may lie inside a plane: follow it with a cast, as [`World::move_character`] does.
+/// If all planes are rigid and some point is outside of all of them, the result is exact except for rounding. Otherwise
+/// the planes push in turn. A round multiplies the error of two planes with normals `n` and `m` by `(n . m)²`, so that
+/// 64 rounds are enough if their normals are 25 degrees or more apart. In a sharper corner, or between two walls, the
+/// result may lie inside a plane: follow it with a cast, as [`World::move_character`] does.
 #[must_use]
 pub fn solve_planes(wanted: Vec2<Fx>, planes: &mut [MoverPlane]) -> Vec2<Fx> {
     match nearest_outside(wanted, planes) {
@@ -319,7 +319,7 @@ mod tests {
             let found = solve_planes(target, &mut planes);
             let least = planes.iter().map(|plane| plane.height(found)).min().expect("planes");
             assert!(least > fx!(-0.0000001), "{least} {target:?} {planes:?}");
-            // The oracle's slack moves the intersection of nearly parallel planes further.
+            // The oracle's slack displaces the intersection of nearly parallel planes by more than the slack.
             let expected = nearest(target, &planes, fx!(0.00000001)).expect("the planes leave room");
             worst = worst.max(found.distance(target) - expected.distance(target));
             assert!(worst < fx!(0.000001), "{found:?} {expected:?} {target:?} {planes:?}");

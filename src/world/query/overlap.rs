@@ -70,9 +70,9 @@ impl World {
         })
     }
 
-    /// Returns the shape nearest to a point, at most `within` metres away, and the nearest points, that of the query
-    /// first. A point inside a shape has a negative distance from it. `None` if `within` is negative; [`Fx::MAX`] finds
-    /// every shape.
+    /// Returns the shape nearest to a point, at most `within` metres away, and the nearest points: A is the point of
+    /// the query, B is on the shape. A point inside a shape has a negative distance from it. `None` if `within` is
+    /// negative; [`Fx::MAX`] finds every shape.
     #[must_use]
     #[doc(alias = "nearest")]
     pub fn closest(
@@ -96,7 +96,7 @@ impl World {
                     closest = Some((shape, found));
                 }
             }
-            // After a negative distance the search goes on at radius 0: the point may be deeper inside another shape.
+            // After a negative distance the search continues at radius 0: the point may be deeper inside another shape.
             closest.map_or(within, |(_, best)| best.distance.max(Fx::ZERO)).saturating_add(SLACK)
         });
         closest
@@ -113,8 +113,8 @@ impl World {
         Some(proximity(&SupportShape::of(posed_a, origin), &SupportShape::of(posed_b, origin), origin))
     }
 
-    /// Returns the distance between a probe and a shape and their nearest points, that of the probe first. `None` if
-    /// the shape was removed or is disabled.
+    /// Returns the distance between a probe and a shape and their nearest points, A on the probe and B on the shape.
+    /// `None` if the shape was removed or is disabled.
     #[must_use]
     pub fn probe_distance(&self, probe: &Probe, shape: ShapeId) -> Option<ClosestPoints> {
         self.is_present(shape).then_some(())?;
@@ -156,7 +156,7 @@ impl World {
     }
 }
 
-/// The nearest points in the world of two shapes that are given about an origin.
+/// The nearest points in the world of two shapes in coordinates relative to an origin.
 pub(super) fn proximity(a: &SupportShape, b: &SupportShape, origin: Vec2<Fx>) -> ClosestPoints {
     let found = distance(a, b);
     ClosestPoints {

@@ -5,7 +5,7 @@
 //! second cast, which starts where the shape just rests on the surfaces that it touches. An obstacle that the second
 //! cast does not meet is a seam.
 //!
-//! Only contacts that the cast leaves or slides along lift the shape. A contact that it goes against stops it.
+//! Only contacts that the cast leaves or slides along lift the shape. A contact that it moves into stops it.
 
 use smallvec::SmallVec;
 
@@ -25,7 +25,7 @@ pub(super) struct Rest {
     /// Distance in metres from the surfaces at which the second cast starts. Ledges of up to 5 µm, the difference to
     /// the gap of the first cast, count as seams: tiles of a ramp are flush to within a micrometre.
     gap: Fx,
-    /// Largest distance in metres by which the cast may in addition approach a surface that it slides along.
+    /// Largest additional distance in metres by which the cast may approach a surface that it slides along.
     grazing_max: Fx,
 }
 
@@ -38,8 +38,8 @@ impl Rest {
     /// For characters: no approach, because each move would bring them closer to the surface.
     pub(super) const CHARACTER: Rest = Rest { gap: fx!(0.000105), grazing_max: Fx::ZERO };
 
-    /// Distance in metres by which a cast along a translation may approach what it slides along: 1 µm per metre,
-    /// because directions and the sides of tiles that are turned are parallel to within 0.5 µm per metre.
+    /// Distance in metres by which a cast along a translation may approach a surface that it slides along: 1 µm per
+    /// metre, because directions and the sides of rotated tiles are parallel to within 0.5 µm per metre.
     fn grazing(self, translation: Vec2<Fx>) -> Fx {
         (translation.length() >> 20_u32).min(self.grazing_max)
     }
@@ -58,8 +58,8 @@ pub(super) struct Resting {
 }
 
 impl Resting {
-    /// Confirms a hit on a shape; `None` if that is a seam. The normal is that of the surface which is met, not of a
-    /// corner below it.
+    /// Confirms a hit on a shape; `None` if the hit is a seam. Takes the normal from the second cast, because the first
+    /// one may have met a corner below the surface.
     pub(super) fn confirm(&self, other: &SupportShape, hit: ShapeHit) -> Option<ShapeHit> {
         let confirmed = cast_shape(other, &self.shape, self.translation)?;
         Some(ShapeHit { normal: confirmed.normal, point: confirmed.point, ..hit })

@@ -1,6 +1,5 @@
-//! Queries of single shapes: a ray, a point, a distance, a manifold or a time of impact of one shape or of two, without
-//! a world. A [`Probe`] is a shape outside of a world, with a pose; [`World::probe_of`] copies a shape of the world to
-//! one.
+//! Queries of one or two shapes without a world: rays, points, distances, manifolds and times of impact. A [`Probe`] is
+//! a shape outside of a world, with a pose; [`World::probe_of`] copies a shape of the world to one.
 
 use super::Probe;
 use super::overlap::{ClosestPoints, proximity};
@@ -16,7 +15,7 @@ use crate::world::World;
 ///
 /// ```
 /// use lockstep2d::{body::Geometry, fx, math::Vec2, world::{Probe, ProbeHit}};
-/// // A target that is in no world, for a menu that is a game itself.
+/// // A target outside of any world, such as one in a menu.
 /// let target = Probe::new(Geometry::circle(fx!(1))?, Vec2::new(fx!(6), fx!(0)))?;
 /// let hit: Option<ProbeHit> = target.cast_ray(Vec2::ZERO, Vec2::new(fx!(10), fx!(0)));
 /// assert_eq!(hit.map(|hit| (hit.fraction, hit.starts_inside)), Some((fx!(0.5), false)));
@@ -39,7 +38,8 @@ pub struct ProbeHit {
 /// ```
 /// use lockstep2d::{body::{Geometry, Polygon}, fx, math::Vec2};
 /// use lockstep2d::world::{Displacement, Probe, TimeOfImpact};
-/// // A bat of 2 m turns by half a turn in the time of a swing. A ball lies still 1.5 m above its middle.
+/// // A bat that reaches 2 m from its middle turns by half a turn in one swing. A ball lies still 1.5 m above the
+/// // middle.
 /// let bat = Probe::new(Polygon::rectangle(fx!(2), fx!(0.1))?, Vec2::ZERO)?;
 /// let ball = Probe::new(Geometry::circle(fx!(0.1))?, Vec2::new(fx!(0), fx!(1.5)))?;
 /// let swing = Displacement { turns: fx!(0.5), ..Displacement::default() };
@@ -148,7 +148,7 @@ impl Probe {
         })
     }
 
-    /// Returns the distance from another shape and the nearest points, that of this shape first.
+    /// Returns the distance from another shape and the nearest points, A on this shape and B on the other one.
     #[must_use]
     #[doc(alias = "gjk")]
     pub fn distance(&self, other: &Probe) -> ClosestPoints {

@@ -21,9 +21,9 @@ impl World {
     /// Returns the first shape that a probe meets as it moves along a translation in metres while it turns about its
     /// position, both at constant speed. The rotation is in turns, counter-clockwise, and may exceed a turn.
     ///
-    /// The probe stops 0.1 to 0.15 mm before it touches. A shape that it touches at the start stops it when it comes
-    /// 0.05 mm deeper. A probe that turns by 163 turns or more, or reaches further than 1024 m from its position, is
-    /// stopped as soon as the disc in which it turns may reach the box around a shape.
+    /// The probe stops 0.1 to 0.15 mm before it touches. A shape that it touches at the start stops the probe once it
+    /// moves 0.05 mm deeper. A probe that turns by 163 turns or more, or reaches further than 1024 m from its position,
+    /// is stopped as soon as the disc in which it turns may reach the box around a shape.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, math::Vec2, world::{Probe, World}};
@@ -62,8 +62,8 @@ impl World {
                 return interest;
             };
             if let Some(fraction) = turning.first_touch(posed, resting.as_ref(), filter.initial_overlap) {
-                // A search that gives up may report a shape before the probe gets there. The broad phase would then
-                // decide by the order of its visits which shape is the first.
+                // A search that gives up may report a shape before the probe reaches it. Without the lower bound
+                // `entry`, the order of the visits would then decide which shape is the first.
                 let found = (fraction.max(entry(area, translation, posed.bounds)), shape);
                 let best = closest.map_or(found, |best| best.min(found));
                 closest = Some(best);
@@ -78,7 +78,7 @@ impl World {
 }
 
 impl Turning {
-    /// Fraction at which the probe first touches a shape that is not a seam of what it rests on.
+    /// Fraction at which the probe first touches a shape that is not a seam of the surfaces that it rests on.
     fn first_touch(
         &self,
         other: &PosedShape,
@@ -102,7 +102,7 @@ impl Turning {
     }
 
     /// Fraction at which the probe touches a shape on its way. A search that does not end counts as a hit where it
-    /// gives up, so that nothing is passed.
+    /// gives up, so that the probe passes through no shape.
     fn touch(&self, other: &SupportShape, centre: Vec2<Fx>, sweep: &Sweep) -> Option<Fx> {
         let still = Sweep::fixed(centre);
         match first_impact((other, &still), (&self.support, sweep), SKIN, StartPolicy::Resist) {

@@ -43,7 +43,7 @@ enum Overlaps {
     /// They stop a cast that goes deeper.
     Stop,
     /// Only shapes of fixed bodies stop a cast that goes deeper. All others have moved over the character in this tick,
-    /// as the other platforms of a train do, and let it pass; it is pushed out of them after it has been carried.
+    /// such as the other platforms of a train, and do not stop it. It is pushed out of them after it has been carried.
     Pass,
 }
 
@@ -97,7 +97,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Moves the character by the displacement of the point under its feet since its last move, or until it meets a
-    /// shape of a body other than that of the ground.
+    /// shape of a body other than its ground.
     pub(super) fn carry(&mut self, ground: &MoverPlane) -> Option<Carrier> {
         let body = self.world.body(ground.body).filter(|body| body.is_enabled())?;
         let turned = body.angle() - ground.body_angle;
@@ -145,7 +145,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Moves the character at its own velocity, and that of a belt: along the ground that it walks on, or freely.
+    /// Moves the character at its own velocity plus the speed of a belt: along the ground that it walks on, or freely.
     pub(super) fn walk(&mut self) {
         let translation = in_tick(self.world, self.from.velocity);
         let Some(ground) = self.from.ground else { return self.slide(translation) };
@@ -252,8 +252,8 @@ impl<'a> Walk<'a> {
         if self.surfaces.iter().any(against) { Vec2::new(Fx::ZERO, v.y) } else { v }
     }
 
-    /// Normals of the surfaces that limit a translation (with ground) or a velocity (without ground). Of several
-    /// grounds, a character that walks is limited only by the one that it walks along.
+    /// Normals of the surfaces that limit a translation (with ground) or a velocity (without ground). A walking
+    /// character is limited by only one ground, the one that it walks along.
     fn limits(&self, ground_too: bool) -> impl Iterator<Item = Vec2<Unit>> + Clone {
         let all_ground = ground_too && self.along.is_none();
         let walls = self.surfaces.iter().flat_map(move |(surface, plane)| {
@@ -288,8 +288,9 @@ impl<'a> Walk<'a> {
         most_level.or_else(|| of_kind(Surface::Step).next()).copied()
     }
 
-    /// Moves down to ground within the snap distance, sliding along other surfaces in the way. The distance is larger
-    /// by the height that the character has climbed in this walk. Without ground the character stays where it is.
+    /// Moves down to ground within the snap distance, sliding along other surfaces in the way. The distance is
+    /// increased by the height that the character has climbed in this walk. Without ground the character stays where it
+    /// is.
     fn snap(&mut self) -> Option<MoverPlane> {
         let start = self.probe;
         let reach = self.mover.snap_max().saturating_add(self.climbed).max(SKIN + SKIN);
@@ -384,8 +385,9 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Horizontal velocity relative to ground on which a character lands. The ground takes it along: a character that hung
-/// still in the air stands still on a belt, and one that jumped straight up on a train lands without speed.
+/// Horizontal velocity relative to ground on which a character lands. The ground carries it along: a character without
+/// horizontal velocity in the air stands still on a belt, and one that jumped straight up on a train lands without
+/// speed.
 fn taken_along(velocity: Fx, ground: Fx) -> Fx {
     velocity.saturating_sub(ground).clamp(velocity.min(Fx::ZERO), velocity.max(Fx::ZERO))
 }

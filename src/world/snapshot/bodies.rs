@@ -1,13 +1,13 @@
 //! Packed bodies and fat boxes: the parts of bodies and shapes that a tick changes.
 //!
-//! Each body takes 36 bytes: centre (2 x i64), angle (u32), velocity (2 x i32), spin (i32), rest ticks (u32). A record
-//! follows after all bodies for each body that has a force, sleeps or has a target: the slot (u32), flags for which of
+//! Each body takes 36 bytes: centre (2 x i64), angle (u32), velocity (2 x i32), spin (i32), rest ticks (u32). After all
+//! bodies, a record follows for each body that has a force, sleeps or has a target: the slot (u32), flags for which of
 //! the following parts it has (u8), and these parts: force and torque (3 x i64), island (2 x u32), target (2 x i64,
 //! u32).
 //!
-//! Each shape of a body that is not fixed takes 16 bytes: the corners of its fat box about the body's centre in units
-//! of 2^-22 m (4 x i32). A box that is off this grid or too far away has `i32::MIN` in the first place, and follows in
-//! full (4 x i64) after all others.
+//! Each shape of a body that is not fixed takes 16 bytes: the corners of its fat box relative to the body's centre in
+//! units of 2^-22 m (4 x i32). A box that is off this grid or too far away has `i32::MIN` as its first coordinate, and
+//! follows in full (4 x i64) after all others.
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -253,8 +253,8 @@ fn about(fat: Aabb, centre: Vec2<Fx>) -> Option<[i32; 4]> {
     let lowest = |centre: Fx| (centre.to_bits() & -GRID) + LOWEST;
     let (x, y) = (lowest(centre.x), lowest(centre.y));
     let [left, bottom, right, top] = corners(fat).map(Fx::to_bits);
-    // A difference that wraps around is still out of range, because the point is in the world, far from the end of the
-    // range of numbers.
+    // A difference that wraps around is still out of range, because the point is within the world extent, far from the
+    // end of the range of numbers.
     let above = |bits: i64, lowest: i64| bits.wrapping_sub(lowest);
     let above = [above(left, x), above(bottom, y), above(right, x), above(top, y)];
     let [a, b, c, d] = above;

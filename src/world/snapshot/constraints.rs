@@ -4,8 +4,8 @@
 //! bits), whether it has impulses. A second buffer has 80 bytes for each contact with impulses: normal and tangential
 //! impulse of both points and the rolling impulse (5 x i32), features (2 x u16), the kept manifold (14 x i32).
 //!
-//! Each joint takes one byte of flags, which tell which of its six impulses are not 0 and whether its turns take 8
-//! bytes, then these impulses (i32 each) and the turns (i32 or i64).
+//! Each joint takes one byte of flags, then its impulses that are not 0 (i32 each) and its turns (i32 or i64). The
+//! flags mark which of the six impulses are not 0, and whether the turns take 8 bytes.
 
 use alloc::vec::Vec;
 

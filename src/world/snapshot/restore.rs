@@ -48,7 +48,7 @@ impl World {
     }
 }
 
-/// Replaces a state by that of a snapshot, and lists the slots that differ.
+/// Replaces a state by the state of a snapshot, and lists the slots that differ.
 pub(super) fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut Stale) {
     let Snapshot { rest, bodies, shapes, joints, islands, sleeping_contacts, packed, digest: _, changes: _ } =
         snapshot;

@@ -18,7 +18,7 @@ use crate::world::state::{Island, Reported, State};
 /// A copy of a world's state, for [`World::restore`](crate::world::World::restore).
 ///
 /// It shares unchanged data with the world and with other snapshots. Its own memory is about 50 bytes for each body, 8
-/// bytes for each pair of near shapes, and 36 more for each pair with impulses: see [`Snapshot::rollback_bytes`]. It
+/// bytes for each pair of near shapes, and 80 more for each pair with impulses: see [`Snapshot::rollback_bytes`]. It
 /// stores its [`Snapshot::state_hash`].
 ///
 /// ```

@@ -26,7 +26,7 @@ impl World {
     /// ```
     /// # use lockstep2d::world::{Snapshot, World};
     /// let mut world = World::default();
-    /// // The last eight ticks, each in the place of the one eight ticks before.
+    /// // A ring of the last eight ticks.
     /// let mut ring = vec![Snapshot::default(); 8];
     /// for tick in 0..100 {
     ///     world.save_into(&mut ring[tick % 8]);

@@ -127,7 +127,7 @@ fn snapshots_share_what_does_not_change() {
     assert_eq!(world.save().bodies.shared_with(&first.bodies), 7, "the restored world shares its pages");
 }
 
-/// A snapshot that is saved into every few ticks is equal to a new one, and keeps its content while the world goes on.
+/// A reused snapshot is equal to a new one, and does not change while the world advances.
 #[test]
 fn reused_snapshots_equal_new_ones() {
     let (mut world, bodies) = chain(40);

@@ -19,7 +19,7 @@ use crate::world::state::State;
 ///
 /// ```
 /// use lockstep2d::world::{Violation, World};
-/// // A test of one's own may ask after every tick whether the world is in order.
+/// // A test of a game can check the invariants after every tick.
 /// let mut world = World::default();
 /// world.step();
 /// let result: Result<(), Violation> = world.validate();
@@ -93,7 +93,7 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
         let range = -WORLD_EXTENT_MAX..=WORLD_EXTENT_MAX;
         range.contains(&v.x) && range.contains(&v.y)
     };
-    // The centre of mass may be outside the range of the origin by its distance from the origin.
+    // The origin is within the world extent. The centre of mass may be outside by its distance from the origin.
     let reach = Vec2::new(crate::body::REACH_MAX * 8, crate::body::REACH_MAX * 8);
     check(inside(body.centre.max(-body.centre) - reach), || at("outside the world"))?;
     let speed = -SPEED_MAX..=SPEED_MAX;

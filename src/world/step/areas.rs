@@ -51,7 +51,7 @@ pub(super) fn apply_areas(state: &mut State, scratch: &mut Scratch, tuning: &Tun
     scratch.area_visitors = visitors;
 }
 
-/// Whether an area of an active body overlaps a shape of a sleeping one, on which it acts.
+/// Whether an area of an active body overlaps a shape of a sleeping body and acts on it.
 pub(super) fn wakes(state: &State, scratch: &Scratch, pair: Pair) -> bool {
     let is_acted_on = |area: u32, shape: u32| {
         state.shapes.at(area).acts_on(state.shapes.at(shape)) && state.body_of(shape).is_asleep()
@@ -144,7 +144,8 @@ impl<'a> Sum<'a> {
                         part.size
                     }
                 }
-                // A rounded outline is measured as a polygon; what counts is its share of the true area.
+                // A rounded outline is measured as a polygon. The share of the polygon that is inside scales the true
+                // area.
                 _ => fx_mul(area_of(shape.def()), fx_div(part.size, all.size).unwrap_or(Fx::ZERO)),
             };
             inside = inside.saturating_add(size);
@@ -168,7 +169,7 @@ impl<'a> Sum<'a> {
         self.effect.torque = self.effect.torque.saturating_add(arm.cross(force));
     }
 
-    /// Adds the effects on the body as a whole, scaled by the share of it that is in the area.
+    /// Adds the effects on the body as a whole, scaled by the share of the body that is in the area.
     fn add_share(&mut self, area: &Area, shape: &Shape, medium: &Body, pose: &RelativePose, share: Fx) {
         let mut field = pose.rotation.apply_wide(area.acceleration);
         if let Some(attraction) = &area.attraction {

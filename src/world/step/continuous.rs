@@ -2,8 +2,8 @@
 //! where they first overlap too deeply with a shape that they might otherwise pass through.
 //!
 //! Speculative contacts already stop most fast bodies. The sweep catches what they cannot predict, such as rotating
-//! rods and speed gained within the tick. A body that is stopped keeps its velocity and goes on in the next tick, when
-//! the contact exists from the start. It loses the rest of its displacement in this tick.
+//! rods and speed gained within the tick. A body that is stopped loses the rest of its displacement in this tick. It
+//! keeps its velocity and continues in the next tick, in which the contact exists from the start.
 //!
 //! Bodies with [`Continuous::Kinematic`] are also swept against kinematic bodies, once these have been moved. Whether
 //! such a body is fast is judged relative to each kinematic body: by its displacement from the position to which the
@@ -26,7 +26,7 @@ const SWEPT_MIN: Fx = fx!(0.0005);
 /// Work units of a time of impact: it takes some 2 µs, and up to 10 µs for long thin shapes that rotate.
 const IMPACT_WORK: u64 = 16;
 
-/// Number of shapes beside a sweep that cost one work unit.
+/// Number of shapes near a sweep that cost one work unit.
 const VISITS_PER_WORK: u64 = 8;
 
 /// Returns the sweep of a body that is fast, or that may be fast relative to a kinematic body. A body is fast if it may
@@ -59,8 +59,8 @@ pub(super) fn swept_body(
     })
 }
 
-/// Whether a body moves so far from where a kinematic body would have taken it that it may pass through a shape of the
-/// kinematic body.
+/// Whether a body moves so far from the position to which a kinematic body would have carried it that it may pass
+/// through a shape of the kinematic body.
 fn is_fast_relative(scratch: &Scratch, swept: &SweptBody, obstacle: &Sweep) -> bool {
     let extents = scratch.shapes.poses().extents(swept.slot);
     let limit = SWEPT_MIN.max(extents.core / 2);
@@ -70,7 +70,7 @@ fn is_fast_relative(scratch: &Scratch, swept: &SweptBody, obstacle: &Sweep) -> b
     shift.is_longer_than(limit.saturating_sub(fx_mul(turned, extents.reach)))
 }
 
-/// Position at the end of the tick of a world point that moves with a body from a fraction of the tick on.
+/// Position at the end of the tick of a world point that a body carries along from a fraction of the tick on.
 fn carried(sweep: &Sweep, point: Vec2<Fx>, fraction: Fx) -> Vec2<Fx> {
     let (before, turned_before) = sweep.at(fraction);
     let (after, turned_after) = sweep.at(Fx::ONE);
@@ -197,14 +197,14 @@ fn first_impact(
         } else {
             shapes.broad_phase().each_fixed_overlap(area, visit);
         }
-        // Counted after the search for this shape, which an exhausted meter need not end: the budget already covers
-        // comparing all shapes of the world.
+        // Counted after the search for this shape. An exhausted meter need not end the search, because the budget
+        // already covers comparing all shapes of the world.
         meter.spend(1 + visited / VISITS_PER_WORK);
     }
     first
 }
 
-/// A shape about its body's centre as it was at the start of the tick, and the movement of that body within the tick.
+/// A shape relative to its body's centre at the start of the tick, and the movement of the body within the tick.
 fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (SupportShape, Sweep) {
     let body = state.body_of(shape);
     let support = SupportShape::of(scratch.shapes.poses().at(shape), body.centre);
@@ -215,7 +215,7 @@ fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (SupportShape, S
     let slot = state.shapes.at(shape).body().slot();
     let Ok(index) = scratch.awake.bodies().binary_search(&slot) else { return stands };
     let start = scratch.sweeps.starts[index];
-    // The rotation by the shorter way. Obstacles that rotate by more than half a turn in a tick are not handled.
+    // The smaller of the possible rotations. Obstacles that rotate by more than half a turn in a tick are not handled.
     let turn = (body.angle - start.angle).to_turns().to_bits();
     let support = support.rotated(Rot::from_angle(start.angle - body.angle));
     (support, Sweep { start: start.centre, end: body.centre, turn })

@@ -10,7 +10,7 @@ use crate::world::cache::{Extents, Finalised, PoseRange, Scratch, SweptBody};
 use crate::world::movement::{cover_shape, move_body};
 use crate::world::state::State;
 
-/// Moves the awake bodies to the poses that the solver has computed, and fast bodies as far as nothing stops them.
+/// Moves the awake bodies to the poses that the solver has computed, and fast bodies up to their first impact.
 pub(super) fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
     scratch.results.stats.impacts = 0;
     scratch.sweeps.relative.clear();
@@ -64,8 +64,8 @@ fn run_shares(
     })
 }
 
-/// Sweeps the fast bodies that only fixed bodies stop. Each thread sweeps its own bodies, which need not wait for other
-/// bodies to be moved.
+/// Sweeps the fast bodies that only fixed bodies can stop. Each thread sweeps its own bodies, which need not wait for
+/// other bodies to be moved.
 fn sweep_bodies(state: &State, scratch: &mut Scratch) {
     let mut finalised = core::mem::take(&mut scratch.finalised);
     if finalised.iter().any(|finalised| !finalised.swept.is_empty()) {
@@ -161,7 +161,7 @@ impl Sources<'_> {
     }
 }
 
-/// Completes the work that a thread has left over because it depends on the order.
+/// Completes the work that a thread has left over because its order matters.
 fn complete(state: &mut State, scratch: &mut Scratch, finalised: &Finalised) {
     for &slot in &finalised.settled {
         scratch.pairs.changes.body_changed(state.bodies.at(slot));

@@ -1,10 +1,10 @@
 //! Contacts at the time of impact: the manifold of shapes that first touch later in the tick.
 //!
-//! A manifold of the start of the tick describes shapes that are still apart. The common normal of two balls that do
-//! not meet head-on turns until they touch, and so do the ends of a rotating rod. An impact that is solved with the
-//! normal and the lever arms of the start changes the angular momentum and the energy of the bodies. The shapes are
-//! therefore advanced, at the velocities of the start, to the time at which they touch, and collided there. The
-//! separations are then converted back to the start of the tick, along the new rows:
+//! A manifold at the start of the tick describes shapes that are still apart. The normal between two balls that do not
+//! meet head-on rotates until they touch, and the ends of a rotating rod move along arcs. An impact that is solved with
+//! the normal and the lever arms at the start changes the angular momentum and the energy of the bodies. The shapes are
+//! therefore advanced, at their initial velocities, to the time at which they touch, and collided there. The
+//! separations are then converted back to the start of the tick, along the constraint rows of the new manifold:
 //!
 //! ```text
 //! s(0) = s(f) + f (approach in the tick)
@@ -51,15 +51,15 @@ impl MovingShape<'_> {
 }
 
 impl SpeculativePair<'_> {
-    /// Whether the shapes are apart and approach each other by so much that a manifold of the time of impact differs.
+    /// Whether the shapes are apart and approach each other so fast that a manifold at the time of impact differs.
     #[inline]
     pub(super) fn may_impact(&self, manifold: &Manifold) -> bool {
         self.closing.is_longer_than(self.margins.touching)
             && manifold.points().iter().all(|point| point.separation > self.margins.touching)
     }
 
-    /// Replaces the manifold of the start of the tick by that of the time of impact, if the shapes touch within the
-    /// tick. Returns the displacements of the bodies until then.
+    /// Replaces the manifold at the start of the tick by the manifold at the time of impact, if the shapes touch within
+    /// the tick. Returns the displacements of the bodies until then.
     #[cold]
     pub(super) fn move_to_impact(
         &self,
@@ -104,7 +104,7 @@ impl SpeculativePair<'_> {
     }
 }
 
-/// A point of a manifold that closes, and by how much in a whole tick.
+/// A contact point that closes: its separation, and its approach in a whole tick.
 struct ClosingPoint {
     separation: Step,
     distance: i64,
@@ -126,7 +126,7 @@ fn soonest([a, b]: [&PredictedMotion; 2], manifold: &Manifold) -> Option<Closing
     })
 }
 
-/// The fraction of the tick at which a point closes, in units of [`Unit`]; `from` is the fraction at which its
+/// The fraction of the tick at which a point closes, as the bits of a [`Unit`]; `from` is the fraction at which its
 /// separation was measured. `None` if it does not close within the tick.
 fn time_of_touch(point: &ClosingPoint, from: i64) -> Option<i64> {
     let rest = (i64::from(point.separation.to_bits()) << Unit::FRAC_NBITS) / point.distance;

@@ -13,7 +13,7 @@ use crate::world::state::State;
 /// Compares the force and torque of each joint in the last sub-step with its threshold.
 pub(super) fn report_joints(state: &mut State, scratch: &mut Scratch, tuning: &Tuning) {
     let Scratch { awake, results, solver, .. } = scratch;
-    // Joints break so rarely that this list is no buffer in the scratch memory.
+    // Joints break so rarely that this list is not kept in the scratch memory.
     let mut broken = Vec::new();
     for &slot in awake.joints_with_threshold() {
         let joint = state.joints.at(slot);

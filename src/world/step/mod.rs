@@ -25,8 +25,8 @@ use crate::solver::Tuning;
 use crate::threads::Threads;
 use phases::PhaseView;
 
-/// Number of awake bodies from which on threads share a tick. With fewer, barriers cost more than a second thread
-/// gains.
+/// Minimum number of awake bodies for a tick on several threads. With fewer bodies, barriers take more time than a
+/// second thread saves.
 const BODIES_MIN: usize = 256;
 
 impl World {
@@ -118,7 +118,7 @@ impl World {
         begin(Phase::Report, PhaseView::of(state, scratch));
         report::report_moves(state, scratch);
         report::count(state, scratch);
-        // The tick may have any value in a snapshot from outside, so that the count may wrap around.
+        // A snapshot from outside may have any tick, so that the count may wrap around.
         state.tick = state.tick.wrapping_add(1);
     }
 }

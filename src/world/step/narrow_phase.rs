@@ -126,8 +126,8 @@ impl NarrowPhase<'_> {
         }
     }
 
-    /// Finds the contacts of a block whose shapes may meet: those that keep their manifold, the pairs of small boxes,
-    /// which are collided, and others.
+    /// Finds the contacts of a block whose shapes may meet: contacts that keep their manifold, pairs of small boxes,
+    /// and others. Collides the pairs of small boxes.
     fn find_near(
         &self,
         job: &mut Job<'_>,
@@ -284,7 +284,8 @@ fn manifold_of(
     collide_near(posed_a, posed_b, pair.closing.margin, axis, counters)
 }
 
-/// Removes the points of two shapes that pass by each other, or of which one passes through a one-way shape.
+/// Removes the points of two shapes that pass by each other, or one of which is a one-way shape that lets the other
+/// pass.
 #[inline(always)]
 fn keep_reachable(
     state: &State,

@@ -2,8 +2,8 @@
 //!
 //! A contact exists for every pair of shapes whose fat boxes overlap and which may collide. The active ones, with at
 //! least one active body, are in `State::contacts`; the others are in `State::sleeping_contacts` until something moves.
-//! The result is a function of the state: [`Changes`](crate::world::cache::Changes) only tells where contacts may have
-//! to be added or removed.
+//! The result is a function of the state: [`Changes`](crate::world::cache::Changes) only records where contacts may
+//! have to be added or removed.
 
 use crate::collision::{Contact, Moved, Pair};
 use crate::world::cache::{Changes, MergedContacts, NonCollidingPairs, Scratch, ShapeCache, merge_sorted};

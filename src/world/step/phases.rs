@@ -22,8 +22,8 @@ impl World {
         self.phases = None;
     }
 
-    /// Returns the digests of every tick since [`World::log_phases`], in order: eight for each tick, the first of
-    /// which is that of the beginning of the tick. Empty if nothing is recorded.
+    /// Returns the digests of every tick since [`World::log_phases`], in order: eight for each tick, the first one at
+    /// the beginning of the tick. Empty if nothing is recorded.
     ///
     /// ```
     /// # use lockstep2d::world::{Phase, World};

@@ -15,19 +15,19 @@ pub(super) struct Recycling<'a> {
     rolls: bool,
     /// Largest change of a lever arm that is kept, in metres.
     arm_tolerance: Length,
-    /// Largest movement of the shapes against each other since their manifold was computed, in metres, with which the
-    /// contact keeps it for another tick. Negative if they move too fast.
+    /// Largest relative movement of the shapes since their manifold was computed, in metres, at which the contact keeps
+    /// it for another tick. Negative if they move too fast.
     movement_max: Length,
 }
 
 impl<'a> Recycling<'a> {
     /// The limits of two shapes that touch at `count` points. Arms are kept while they change by at most a 64th of the
-    /// smaller shape's extent. Manifolds are kept if the movement, including that of this tick, is also at most a
-    /// quarter of the speculative distance.
+    /// smaller shape's extent. Manifolds are kept if the relative movement, including the movement in this tick, is
+    /// also at most a quarter of the speculative distance.
     ///
-    /// If a round shape may roll on a body that no impulse moves, the limits are 256 times smaller: a normal that lags
-    /// behind stops a slow ball at a seam between two blocks, and lets a weeble lean. Between bodies that move they are
-    /// not, because plates on rollers stand only on kept arms.
+    /// If a round shape may roll on a body that is not dynamic, the limits are 256 times smaller: an outdated normal
+    /// stops a slow ball at a seam between two blocks, and lets a roly-poly toy lean. Between two dynamic bodies the
+    /// limits are not reduced, because plates on rollers are stable only with kept arms.
     #[inline]
     pub(super) fn new(
         state: &'a State,
@@ -58,7 +58,7 @@ impl<'a> Recycling<'a> {
         };
         let kept = &contact.kept;
         let separations = kept.separations_at([side(0), side(1)], contact.count, self.movement_max)?;
-        // The point is placed by the arm of a body that moves: that of a fixed body may be out of range.
+        // The point is placed by the arm of a dynamic body: the arm of a fixed body may be out of range.
         let [a, b] = self.bodies;
         let (centre, arm) = if b.is_dynamic() { (b.centre, kept.arm_b) } else { (a.centre, kept.arm_a) };
         Some(Recycled { origin: centre.wrapping_add(arm.widen()), separations })
@@ -68,14 +68,14 @@ impl<'a> Recycling<'a> {
     #[inline]
     pub(super) fn keep(&self, contact: &mut Contact, manifold: &Manifold) {
         let tolerance = |shape: &ShapeMotion| match shape.disc || self.rolls {
-            // The arm of a circle follows from the normal, so that it is kept only together with it.
+            // The arm of a circle follows from the normal, so that both are kept together.
             true => self.movement_max.max(Length::ZERO),
             false => self.arm_tolerance,
         };
         contact.keep(manifold, self.bodies, self.shapes.map(tolerance));
     }
 
-    /// Stores a manifold of the time of impact in a contact. `moved` has the displacements of the bodies until then.
+    /// Stores a manifold at the time of impact in a contact. `moved` has the displacements of the bodies until then.
     pub(super) fn keep_impact(&self, contact: &mut Contact, manifold: &Manifold, moved: [Vec2<Length>; 2]) {
         contact.kept = KeptManifold::at_impact(manifold, self.bodies.map(Body::pose), moved);
     }

@@ -109,8 +109,8 @@ impl Prediction<'_> {
     }
 }
 
-/// Extension of the AABB of a shape to its swept AABB, the same for all shapes of a body. Positions are in the world
-/// and displacements below 52 m, so that no sum overflows.
+/// Extension of the AABB of a shape to its swept AABB, the same for all shapes of a body. Positions are within the
+/// world extent and displacements below 52 m, so that no sum overflows.
 struct SweptAabb {
     /// Displacement of the lower and of the upper corner, including the speculative distance.
     corners: [Vec2<Fx>; 2],

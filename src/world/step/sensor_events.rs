@@ -1,9 +1,9 @@
 //! Sensor events: which shapes overlap a sensor at the end of the tick, and which have crossed one within it.
 //!
-//! Every pair with a sensor is followed from the poses at the start of the tick to those at its end. The pairs are
+//! Every pair with a sensor is followed from the poses at the start of the tick to the poses at its end. The pairs are
 //! those of overlapping fat boxes, which cover the motion that the velocities at the start of the tick predict. A shape
-//! that has left its fat box, because it was deflected or accelerated within the tick, is also compared with everything
-//! along its way.
+//! that has left its fat box, because it was deflected or accelerated within the tick, is also compared with all shapes
+//! along its path.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -19,7 +19,7 @@ use crate::world::state::{Side, State};
 /// Work units of following a pair that is not among the contacts.
 const UNFORESEEN_WORK: u64 = 16;
 
-/// Number of pairs of shapes outside their fat boxes that cost one work unit to consider.
+/// Number of comparisons of shapes outside of their fat boxes that cost one work unit.
 const COMPARED_PER_WORK: u64 = 16;
 
 /// Reports the beginnings and ends of overlaps with sensors, once all bodies have been moved.
@@ -93,11 +93,11 @@ impl Visit {
         let (begin, end) = match (was_inside, is_inside) {
             (true, true) => (None, None),
             (false, true) => (Some(first().unwrap_or(Fx::ONE)), None),
-            // If there is no overlap on the way, an edit has moved one of the bodies before the tick.
+            // If there is no overlap during the tick, an edit has moved one of the bodies before it.
             (true, false) => (None, Some(last().unwrap_or(Fx::ZERO))),
             (false, false) => {
                 let begin = first();
-                // A fraction of 0 marks a change between ticks, which would come before the beginning.
+                // A fraction of 0 marks a change between ticks, so that the end would be sorted before the beginning.
                 (begin, begin.map(|begin| last().unwrap_or(begin).max(begin).max(Fx::DELTA)))
             }
         };
@@ -138,7 +138,7 @@ impl MovedShape {
             Ok(index) => {
                 let start = scratch.sweeps.starts[index];
                 let solved = turn_of(scratch.solver.body(slot).turn, body.mass.inverse_gyration);
-                // A body that was stopped, or has a target, rotates by the shorter way.
+                // A body that was stopped, or has a target, makes the smaller of the possible rotations.
                 let short = (body.angle - start.angle).to_turns().to_bits();
                 let is_complete = Angle::from_turns(Fx::from_bits(solved.wrapping_sub(short))) == Angle::ZERO;
                 let turn = if is_complete { solved } else { short };
@@ -159,14 +159,15 @@ impl MovedShape {
         at_end.swept(start - end)
     }
 
-    /// Fraction of the tick after which two shapes first overlap, from its start or back from its end.
+    /// Fraction of the tick until two shapes first overlap, forwards from its start or backwards from its end.
     fn first_overlap(&self, other: &MovedShape, scratch: &Scratch, direction: Direction) -> Option<Fx> {
         let (a, sweep_a) = self.sweep_in(scratch, direction);
         let (b, sweep_b) = other.sweep_in(scratch, direction);
         first_overlap(&a, &sweep_a, &b, &sweep_b)
     }
 
-    /// The shape about its body's centre at the start of its motion in a direction of time, and that motion.
+    /// The motion of the shape forwards or backwards in time: the shape at the first pose, relative to its body's
+    /// centre, and the sweep of the body.
     fn sweep_in(&self, scratch: &Scratch, direction: Direction) -> (SupportShape, Sweep) {
         let Sweep { start, end, turn } = self.sweep;
         let at_end = SupportShape::of(scratch.shapes.poses().at(self.shape), end);
@@ -215,7 +216,7 @@ fn report_unforeseen(state: &mut State, scratch: &mut Scratch) {
     scratch.pairs.buffers.pairs = pairs;
 }
 
-/// Lists, in order, the pairs with a sensor of which a shape has left its fat box and which are not contacts yet.
+/// Lists, in order, the sensor pairs that are not contacts yet and have a shape that has left its fat box.
 fn list_unforeseen(state: &State, scratch: &Scratch, pairs: &mut Vec<Pair>) {
     pairs.clear();
     let left = &scratch.sweeps.left_boxes;
@@ -234,7 +235,7 @@ fn list_unforeseen(state: &State, scratch: &Scratch, pairs: &mut Vec<Pair>) {
             ControlFlow::Continue(())
         });
     }
-    // The new fat box of a shape need not cover its way, on which it may have met another such shape.
+    // The new fat box of a shape need not cover its path, on which it may have met another shape that has left its box.
     let is_sensor = |shape: &&u32| scratch.shapes.motion().shape(**shape).sensor;
     for &sensor in left.iter().filter(is_sensor) {
         left.iter().for_each(|&shape| consider(sensor, shape));

@@ -7,8 +7,8 @@ use crate::world::cache::Scratch;
 use crate::world::islands::{put_sleepy_sets_to_sleep, unite_connected};
 use crate::world::state::State;
 
-/// Updates the ticks at rest of all awake bodies, and puts every island to sleep whose bodies have been at rest long
-/// enough.
+/// Updates the ticks at rest of all awake bodies, and puts islands to sleep if all of their bodies have been at rest
+/// long enough.
 pub(super) fn fall_asleep(state: &mut State, scratch: &mut Scratch) {
     if !state.config.sleeping {
         return;

@@ -12,7 +12,8 @@ pub(super) fn pairs(state: &State) -> u64 {
     count(state.contacts.len() + state.sleeping_contacts.len())
 }
 
-/// Counts this work; `pairs_before` is the number of pairs before the tick. Returns whether the budget covers the work.
+/// Counts the work of new pairs and of joints in blocks. `pairs_before` is the number of pairs before the tick. Returns
+/// whether the budget covers the work.
 pub(super) fn spend(state: &State, scratch: &mut Scratch, pairs_before: u64) -> bool {
     let (sub_steps, iterations) = (state.config.solver.sub_steps, state.config.solver.iterations);
     let (bodies, pairs) = (count(state.bodies.len()), pairs(state));

@@ -10,8 +10,8 @@ use crate::world::state::State;
 use fixed::FixedI32;
 use fixed::types::extra::{LeEqU32, U27};
 
-/// Returns a function that computes by how much two bodies approach each other in a tick at a point of their contact,
-/// along the normal. With `x` the translation, `t` the rotation and `r` the lever arm of each body,
+/// Returns a function that computes the approach of two bodies in a tick at a point of their contact, along the normal.
+/// With `x` the translation, `t` the rotation and `r` the lever arm of each body,
 ///
 /// ```text
 /// n.(xA - xB) + tA (rA x n) - tB (rB x n)
@@ -35,7 +35,7 @@ pub(super) fn approach(
         if motion.turn == 0 || motion.centre == manifold.origin {
             return 0;
         }
-        // Both points are in the world, so that the difference does not overflow.
+        // Both points are within the world extent, so that the difference does not overflow.
         turned(motion.turn, lever(manifold.origin.wrapping_sub(motion.centre).narrow()))
     };
     let common =
@@ -123,7 +123,7 @@ impl SpeculativePair<'_> {
             }
             let closing = closing_at(point);
             let is_reached = separation <= speculative.max(closing + speculative);
-            // The closing distance is increased by a quarter, because a gap that only just closes acts as well.
+            // The closing distance is increased by a quarter, because a gap that almost closes acts as well.
             if is_reached && closing + closing / 4 > separation {
                 fastest = fastest.max(closing);
             }

@@ -61,7 +61,7 @@ impl fmt::Debug for ContactView<'_> {
 /// # world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-0.5))), &[square])?;
 /// let scale = world.spawn(&BodyDef::dynamic().position((fx!(0), fx!(0.5))), &[square])?;
 /// # (0..20).for_each(|_| world.step());
-/// // How much does the box weigh? Its ground bears it.
+/// // The weight of the box is the sum of the forces that its ground exerts.
 /// let push = |force: ContactForce| force.normal;
 /// let pushes = world.contacts_of(scale).map(|contact| contact.forces().map(|(_, force)| push(force)).sum::<Fx>());
 /// let weight: Fx = pushes.sum();
@@ -129,8 +129,9 @@ impl ContactView<'_> {
     pub fn solver_colour(&self) -> Option<SolverColour> {
         let touching = &self.world.scratch.contacts.output().touching;
         let place = touching.binary_search_by_key(&self.contact.shapes, |pair| pair.shapes).ok()?;
-        // Every manifold of the tick belonged to a touching pair, so that the index of the manifold is also that of the
-        // pair in the solver's list. The place in `touching` may differ: pairs may have been removed from it since.
+        // Every manifold of the tick belonged to a touching pair, so that the index of the manifold is also the index
+        // of the pair in the solver's list. The place in `touching` may differ: pairs may have been removed from it
+        // since.
         self.world.scratch.solver.contact_colour(touching.get(place)?.manifold as usize)
     }
 

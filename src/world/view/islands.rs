@@ -1,4 +1,4 @@
-//! Views of islands. The state stores sleeping islands only; those of awake bodies are found on demand.
+//! Views of islands. The state stores sleeping islands only. Islands of awake bodies are found on demand.
 
 use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
@@ -13,7 +13,7 @@ impl World {
     /// the last tick, and sleeping islands. The bodies of a set are in slot order, and the sets are ordered by their
     /// first body.
     ///
-    /// For tools: every call computes the sets anew, in about the time of the sleep phase of a tick.
+    /// For tools: every call computes the sets again, in about the time of the sleep phase of a tick.
     #[must_use]
     pub fn islands(&self) -> Vec<Vec<BodyId>> {
         let state = &self.state;

@@ -6,8 +6,8 @@ use crate::solver::{Joint, JointKind, JointPart, Tuning, Weld};
 use crate::world::World;
 
 impl World {
-    /// Returns the anchors of a joint in the world, in metres: first that of body A, then that of body B. `None` if the
-    /// joint is not in the world, as with all methods for a single joint.
+    /// Returns the anchors of a joint on body A and on body B, in the world, in metres. `None` if the joint is not in
+    /// the world, as with all methods for a single joint.
     #[must_use]
     pub fn joint_anchors(&self, id: JointId) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
         let (joint, a, b) = self.joint_and_bodies(id)?;
@@ -56,8 +56,8 @@ impl World {
     /// Returns the distance in metres by which the anchors violate the joint: the distance of the anchors of a revolute
     /// joint or of a weld with rigid anchors, the offset across the axis of a prismatic or wheel joint, the deviation
     /// from the rod or the limits of a distance joint, the distance of the teeth of a gear or rack along the pitch
-    /// line, the length by which the rope of a pulley is too long. Springs are meant to give way: they, the limits of
-    /// other kinds and motors do not count. `None` for motor and filter joints.
+    /// line, the length by which the rope of a pulley is too long. Springs, motors and the limits of other kinds do not
+    /// count. `None` for motor and filter joints.
     #[doc(alias = "separation")]
     #[must_use]
     pub fn joint_error(&self, id: JointId) -> Option<Fx> {
@@ -87,7 +87,7 @@ impl World {
     }
 
     /// Returns the force in N that the joint exerted on B in the last sub-step, and the torque in N m about B's anchor.
-    /// 0 while the joint is disabled or rests.
+    /// 0 while the joint is disabled or neither body has mass.
     #[doc(alias = "reaction force")]
     #[must_use]
     pub fn joint_force(&self, id: JointId) -> Option<(Vec2<Fx>, Fx)> {
