@@ -11,9 +11,9 @@ use lockstep2d::world::{Backend, Config, World};
 use crate::source::Source;
 use crate::{generator, shapes};
 
-/// Maximum difference between two separations, and between a separation and a distance, in metres: a face must be
-/// better than that of the other shape by half a millimetre, and outlines within another half a millimetre count as
-/// touching.
+/// Maximum difference between two separations, and between a separation and a distance, in metres. The face of the
+/// second shape is only chosen if its separation is better by half a millimetre, and outlines within another half a
+/// millimetre count as touching.
 const ERROR: Fx = fx!(0.001001);
 /// Maximum difference in metres between the distances with the shapes exchanged, before the part that grows with size:
 /// twice 20 nm, rounded up.
