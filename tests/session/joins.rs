@@ -123,7 +123,7 @@ fn other_games_are_refused_with_what_is_expected() {
     assert_eq!(net.nodes[1].events, [expected]);
 }
 
-/// Six spectators, each through the one before. Each is known to its own contact only.
+/// Six spectators, each of which joins through the previous one. Each is known only to its own contact.
 #[test]
 fn spectators_feed_spectators() {
     let mut net = Net::new(15 * MS, 1, 5000);
