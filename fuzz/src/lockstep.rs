@@ -59,7 +59,7 @@ enum Disturbance {
     ClearedScratch,
 }
 
-/// All variants except that of the plain world.
+/// The variants of the second world.
 const VARIANTS: [Variant; 8] = {
     use BroadPhaseKind::{BruteForce, SweepAndPrune, Tree};
     use Disturbance::{ClearedScratch, None, ThroughBytes};

@@ -20,7 +20,7 @@ use crate::source::Source;
 
 /// Number of turns of 10 ms.
 const TURNS: u32 = 500;
-/// Turn in which the third peer asks to join or to watch.
+/// Turn in which the third peer requests to join or to watch.
 const NEWCOMER: u32 = 150;
 /// Port of the attacker.
 const STRANGER: u32 = 9;

@@ -36,7 +36,7 @@ impl Cost {
     }
 }
 
-/// A replay of the scene that the bytes describe, which gets more commands in two of three ticks.
+/// A replay of the scene that the bytes describe, with further commands in two of three ticks.
 fn record(bytes: &[u8]) -> Vec<u8> {
     let mut source = Source::new(bytes);
     let (setup, mut generator) = verdicts::scene(&mut source);

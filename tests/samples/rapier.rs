@@ -302,7 +302,7 @@ fn platforms_carry_boxes() {
     }
 }
 
-/// sensor2. A sensor that a falling box carries sees the boxes on the ground, and ceases to see what leaves.
+/// sensor2. A sensor on a falling box detects the boxes on the ground, and reports the end of an overlap.
 #[test]
 fn a_carried_sensor_sees_what_it_passes() {
     let mut stage = Stage::with_floor();
@@ -328,8 +328,8 @@ fn a_carried_sensor_sees_what_it_passes() {
     assert_eq!(stage.world.sensor_overlaps(eye).len(), before - 1);
 }
 
-/// heightfield2, polyline2, trimesh2, voxels2. The same hill as a chain, as triangles and as boxes carries a rain of
-/// things; level triangles have no bumps.
+/// heightfield2, polyline2, trimesh2, voxels2. The same hill as a chain, as triangles and as boxes carries falling
+/// bodies. A box slides over level triangles without ghost collisions.
 #[test]
 fn terrain_of_every_kind_carries() {
     let height = |i: i32| widen(Angle::from_turns(num(i) / 10).cos());

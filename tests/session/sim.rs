@@ -71,7 +71,7 @@ pub(crate) struct Peer {
     pub(crate) desyncs: u32,
     bytes: u64,
     pub(crate) finished: Option<(Tick, u64)>,
-    /// Whether the session has reported that it is leaving.
+    /// Whether the session has reported `Status::Leaving`.
     pub(crate) was_leaving: bool,
     /// Time at which the session reported that it has left.
     pub(crate) left_at: Us,
