@@ -248,7 +248,8 @@ fn a_star_of_welds_that_is_hit_gains_no_energy() {
 }
 
 /// One of the limbs is hit at its far end. At 30 m/s and 30 Hz it turns by some 0.6 radians in a sub-step. If rotations
-/// were predicted by up to a quarter of a radian, the energy of a box with four boxes would rise to 9 times the start.
+/// were predicted by up to a quarter of a radian, the energy of a box with four boxes would rise to 9 times that of the
+/// start.
 #[test]
 fn a_star_of_hinges_that_turns_fast_gains_no_energy() {
     let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));

@@ -19,7 +19,7 @@ fn it_knows_how_far_it_has_read() {
         assert_eq!(reader.ticks(), ticks);
         offsets.push(reader.offset());
     }
-    // The first four bytes of a block are the length of its payload. It does not include these bytes, the kind and the
+    // A block begins with the length of its payload in four bytes. The length excludes these bytes, the kind and the
     // checksum.
     for pair in offsets.windows(2) {
         let start = usize::try_from(pair[0]).unwrap();

@@ -259,7 +259,7 @@ fn every_command_of_a_body(settled: bool) {
 }
 
 /// The ticks of this file cost far more than the limits, which allow at most a tenth of a second. Verification must end
-/// before it simulates a tick that exceeds a limit.
+/// within half a second, not after a whole tick.
 #[test]
 fn a_limit_ends_a_file_before_its_cost_is_paid() {
     let crowd = |count: i64, settings| {
