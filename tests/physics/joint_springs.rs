@@ -116,8 +116,8 @@ fn a_motor_pulls_its_frames_together_as_theory_says() {
     follows(kind, Vec2::new(fx!(0), fx!(0.5)), fx!(0), apart);
 }
 
-/// The stiffness of a spring between two points is computed for two point masses. At the end of an arm `r`, where B also
-/// turns, the spring swings `sqrt(1 + m r^2 / (mB k^2))` times as fast, with the reduced mass `m`.
+/// The stiffness of a spring between two points is computed for two point masses. At the end of an arm `r`, where B
+/// also turns, the spring swings `sqrt(1 + m r^2 / (mB k^2))` times as fast, with the reduced mass `m`.
 #[test]
 fn a_point_on_an_arm_swings_faster() {
     // B has 2 kg and a radius of gyration of 0.5 m.
