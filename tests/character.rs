@@ -1,4 +1,4 @@
-//! Characters moved by queries never overlap a shape, never fall through ground, and move as their settings say.
+//! Characters moved by queries never overlap a shape, never fall through ground, and move according to their settings.
 
 use lockstep2d::body::{BodyDef, BodyId, Chain, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;

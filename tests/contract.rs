@@ -57,8 +57,8 @@ fn undisturbed(scene: &Scene) -> &'static Trace {
     TRACES[place].get_or_init(|| trace(scene, scene.golden_ticks, |_, _| {}))
 }
 
-/// Calls `hold` for every scene, with a number of ticks and the trace of an undisturbed run. The number is that of the
-/// golden, at most [`TICKS_MAX`], and smaller outside of the long run.
+/// Calls `hold` for every scene, with a number of ticks and the trace of an undisturbed run. The number of ticks is
+/// that of the scene's golden, at most [`TICKS_MAX`], and smaller outside of the long run.
 fn each_scene(hold: impl Fn(&Scene, u64, &Trace) + Sync) {
     sweep::for_each(ALL.iter().collect(), |scene| {
         let ticks_max = sweep::size(TICKS_MAX, if shape_count(scene) > 2000 { 30 } else { 150 });

@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use source::{Source, files, tokens};
 
-/// The library, and the crates whose types the author of a game names.
+/// The library, and the crates whose types occur in the code of games.
 const FOLDERS: &[&str] = &["src", "crates/cli/src", "crates/render/src", "crates/viewer/src"];
 
 /// Public types without an example, and why.
@@ -115,14 +115,14 @@ fn every_public_type_is_shown() {
     let all: Vec<_> = FOLDERS.iter().flat_map(|folder| files(folder, &["rs"])).collect();
     let modules = modules(&all);
     let count: usize = modules.values().map(|module| module.types.len()).sum();
-    // Far fewer would mean that the declarations are no longer found.
+    // A much smaller number means that declarations are not recognised.
     assert!(count > 200, "only {count} public types");
     let missing = not_shown(&modules);
     let excused: Vec<_> = WITHOUT.iter().map(|&(module, name, _)| (module, name)).collect();
     let wrong: Vec<_> = missing.iter().filter(|found| !excused.contains(found)).collect();
     assert!(wrong.is_empty(), "{} of {count} types are in no example: {wrong:#?}", wrong.len());
     let idle: Vec<_> = excused.iter().filter(|found| !missing.contains(found)).collect();
-    assert!(idle.is_empty(), "shown by now, or gone: {idle:?}");
+    assert!(idle.is_empty(), "exceptions for types that are shown or do not exist: {idle:?}");
 }
 
 #[test]

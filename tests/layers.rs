@@ -26,7 +26,7 @@ mod source;
 use paths::{Crate, module_of, modules};
 use source::{Token, files, tokens};
 
-/// Names, and the other names that each of them may use.
+/// Modules or folders, each with the others that it may use.
 type Rules = &'static [(&'static str, &'static [&'static str])];
 
 /// Every module of the library with the modules that it may use besides itself.
@@ -186,7 +186,7 @@ fn wrong_folders_and_circles_are_found() {
         assert!(uses > 0, "{used}");
     }
     assert_eq!(with("mod tests { use crate::m::Shown; }", "pub struct Shown;"), (0, 0), "a test");
-    // Each alone is allowed, but together they form a circle.
+    // Each path is allowed by itself, but together they form a circle.
     let circle = [root, a, b, ("src/m/b/y.rs", "use crate::m::c::Base; pub struct Shown;")];
     let there = ("src/m/c.rs", "use super::b::Shown; pub struct Base;");
     let there_and_back: Vec<_> = circle.iter().copied().chain([there]).collect();

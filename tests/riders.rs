@@ -307,7 +307,7 @@ fn a_run_up_a_slope_ends_at_the_wall() {
     }
 }
 
-/// Between two slopes of 60 degrees a character is not on ground. It is told that it is wedged, and can jump out.
+/// A character between two slopes of 60 degrees is not on ground. It is reported as wedged, and can jump out.
 #[test]
 fn a_character_in_a_steep_v_is_wedged_and_can_jump_out() {
     for rate in RATES {

@@ -1,6 +1,6 @@
-//! Runs one scene in two worlds that must not differ: a plain world that is rolled back once, and a second world that
-//! has another broad phase, or is reloaded from bytes, or has its caches cleared, or that combines another broad phase
-//! with reloading or clearing.
+//! Runs one scene in two worlds that must not differ. The plain world is rolled back once. The second world has another
+//! broad phase, is reloaded from bytes or has its caches cleared, or combines another broad phase with one of the
+//! latter two.
 
 use std::sync::Mutex;
 
@@ -15,8 +15,8 @@ use crate::source::Source;
 const COST_MAX: u64 = 60_000;
 /// Maximum depth of the rollback, in ticks.
 const ROLLBACK_MAX: usize = 30;
-/// Interval in ticks of the invariant checks, in addition to those after commands and at the end. The checks are most
-/// of the work in a small world, and a broken invariant stays broken.
+/// Interval in ticks of the invariant checks, in addition to those after commands and at the end. In a small world the
+/// checks take most of the time, and a broken invariant stays broken.
 const CHECK_INTERVAL: u64 = 8;
 
 /// Statistics of a run.
@@ -59,7 +59,7 @@ enum Disturbance {
     ClearedScratch,
 }
 
-/// All variants except that of the plain world.
+/// The variants of the second world.
 const VARIANTS: [Variant; 8] = {
     use BroadPhaseKind::{BruteForce, SweepAndPrune, Tree};
     use Disturbance::{ClearedScratch, None, ThroughBytes};

@@ -13,7 +13,7 @@ use crate::source::Source;
 type Point = [BigInt; 2];
 
 /// Maximum error of a manifold's separation in micrometres. The face of shape B is only chosen if its separation is
-/// better by half a millimetre, and outlines closer than that count as touching.
+/// better by half a millimetre, and outlines within another half a millimetre count as touching.
 const CONTACT_ERROR: i64 = 1_001;
 /// Maximum error of a distance in micrometres: 20 nm, plus one unit of `Length` by which a rotated vertex is rounded.
 const DISTANCE_ERROR: i64 = 1;
@@ -246,7 +246,7 @@ fn separation(a: &Solid, b: &Solid) -> Exact {
     }
 }
 
-/// Whether a signed square is that of `found`, with an error of at most `error` micrometres.
+/// Whether `exact` is the signed square of a length that differs from `found` by at most `error` micrometres.
 fn is_within(exact: &Exact, found: &Exact, error: i64) -> bool {
     let error = micrometres(error);
     (signed_square(&(found - &error))..=signed_square(&(found + &error))).contains(exact)

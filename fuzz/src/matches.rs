@@ -1,5 +1,5 @@
-//! Peers play a match while an attacker, who reads all packets, sends others: noise, and packets of the match
-//! truncated, repeated or changed, with the checksum as it is or repaired, from any address.
+//! Peers play a match, and an attacker reads all their packets. The attacker sends noise, and truncated, repeated or
+//! changed packets of the match, with the checksum as it is or repaired, from any address.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -20,7 +20,7 @@ use crate::source::Source;
 
 /// Number of turns of 10 ms.
 const TURNS: u32 = 500;
-/// Turn in which the third peer asks to join or to watch.
+/// Turn in which the third peer requests to join or to watch.
 const NEWCOMER: u32 = 150;
 /// Port of the attacker.
 const STRANGER: u32 = 9;
@@ -176,7 +176,7 @@ impl Match {
                 changed
             }
         };
-        // A genuine packet from another address would be a forgery.
+        // An attacker that does not forge repeats an unchanged packet only from the address of its sender.
         let from = if !self.forges && packet == heard { sender } else { from };
         if self.forges {
             repair(0, &mut packet);

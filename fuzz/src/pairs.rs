@@ -11,9 +11,9 @@ use lockstep2d::world::{Backend, Config, World};
 use crate::source::Source;
 use crate::{generator, shapes};
 
-/// Maximum difference between two separations, and between a separation and a distance, in metres: a face must be
-/// better than that of the other shape by half a millimetre, and outlines within another half a millimetre count as
-/// touching.
+/// Maximum difference between two separations, and between a separation and a distance, in metres. The face of the
+/// second shape is only chosen if its separation is better by half a millimetre, and outlines within another half a
+/// millimetre count as touching.
 const ERROR: Fx = fx!(0.001001);
 /// Maximum difference in metres between the distances with the shapes exchanged, before the part that grows with size:
 /// twice 20 nm, rounded up.
@@ -121,15 +121,15 @@ impl Pair {
         self.world.set_velocity(moving, Vec2::ZERO, Fx::ZERO).expect("a velocity of zero is valid");
     }
 
-    /// The contact, directed from the shape that was created first to the other one, and whether it is touching.
+    /// The contact, with its normal from the shape that was created first to the second one, and whether it is
+    /// touching.
     fn contact(&self) -> Option<(Manifold, bool)> {
         let contact = self.world.contacts().next()?;
         Some((*contact.manifold, contact.touching))
     }
 }
 
-/// Checks that with the shapes exchanged the distance is equal and, if they are apart, the normal points to the other
-/// side.
+/// Checks that exchanging the shapes does not change their distance and, if they are apart, reverses the normal.
 fn distances(pair: &Pair) {
     let [a, b] = pair.shapes;
     let (Some(there), Some(back)) = (pair.world.distance(a, b), pair.world.distance(b, a)) else { return };

@@ -19,7 +19,7 @@ mod singles;
 const COST_MAX: u64 = 60_000;
 /// Maximum difference in metres between two ways to compute a point.
 const TOLERANCE: Fx = fx!(0.005);
-/// Largest depth in metres at which a probe rests on a shape, and passes seams.
+/// Maximum depth in metres of a probe in a shape that it rests on, or in a shape beyond a seam that it passes.
 const DEPTH_OF_REST: Fx = fx!(0.021);
 
 /// Runs queries in the scene that the bytes describe. Returns the number of results that were not empty.
@@ -367,8 +367,8 @@ impl Questions<'_> {
         met
     }
 
-    /// Shapes that a moving point or probe is well inside of, at 17 samples of its path. Links are left out, because
-    /// they may be passable.
+    /// Shapes that contain a moving point or probe by more than the tolerance, at 17 samples of its path. Links are
+    /// left out, because they may be one-sided.
     fn samples<'a>(
         &'a self,
         distance: impl Fn(Fx, ShapeId) -> Fx + 'a,

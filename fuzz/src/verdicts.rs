@@ -60,7 +60,7 @@ pub fn run(bytes: &[u8]) -> Verdict {
 /// A small scene, and the generator of its commands.
 ///
 /// # Panics
-/// Never: settings that no world has are replaced by the default.
+/// Never: settings that a world refuses are replaced by the default.
 pub fn scene(source: &mut Source<'_>) -> (SandboxSetup, Generator) {
     let config = generator::config(source);
     let config = World::new(config).map(|_| config).unwrap_or_default();

@@ -1,5 +1,5 @@
-//! Work units are honest in random worlds, too: no setup and no tick takes more than a microsecond for each unit that
-//! it is charged. `tests/work_units` of the library has the worlds that are made to be expensive.
+//! Work units bound the time in random worlds, too: no setup and no tick takes more than a microsecond for each unit
+//! that it is charged. `tests/work_units` of the library has the worlds that are made to be expensive.
 //!
 //! `WORLDS` is the number of worlds, 200 by default.
 
@@ -20,7 +20,7 @@ const JUDGED: Duration = Duration::from_micros(50);
 /// Number of runs of a file. The shortest time of each part counts, so that other load on the machine matters little.
 const RUNS: usize = 5;
 
-/// Number of ticks of a world, at most.
+/// Maximum number of ticks of a world.
 const TICKS: u64 = 60;
 
 /// A part of a file: its units, and the shortest time that it has taken.
@@ -36,7 +36,7 @@ impl Cost {
     }
 }
 
-/// A replay of the scene that the bytes describe, which gets more commands in two of three ticks.
+/// A replay of the scene that the bytes describe, with further commands in two of three ticks.
 fn record(bytes: &[u8]) -> Vec<u8> {
     let mut source = Source::new(bytes);
     let (setup, mut generator) = verdicts::scene(&mut source);

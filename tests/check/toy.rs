@@ -89,7 +89,7 @@ mod unordered {
     }
 }
 
-/// A byte that is encoded as 2 if that is the planted fault, although decoding accepts at most 1.
+/// A byte. Decoding accepts at most 1, but [`Mistake::Unreadable`] encodes it as 2.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(try_from = "u8")]
 pub(crate) struct Flag(u8);

@@ -24,7 +24,7 @@ pub fn sample<T>(cases: impl IntoIterator<Item = T>, stride: usize) -> Vec<T> {
     cases.into_iter().enumerate().filter(chosen).map(|(_, case)| case).collect()
 }
 
-/// Checks each case, as many at a time as there are processors. For cases that compute.
+/// Checks each case, as many at a time as there are processors. For checks whose time is spent on computation.
 ///
 /// # Panics
 ///
@@ -45,7 +45,7 @@ pub fn for_each<T: Send>(cases: Vec<T>, check: impl Fn(T) + Sync) {
     });
 }
 
-/// Checks all cases at the same time. For cases that wait for a clock.
+/// Checks all cases at the same time. For checks that mostly wait for a clock.
 ///
 /// # Panics
 ///

@@ -48,8 +48,8 @@ fn a_snapshot_that_hides_the_floor_from_the_broad_phase_is_refused() {
 
 #[test]
 fn a_snapshot_of_a_kinematic_body_that_rests_and_moves_is_refused() {
-    // Such a snapshot was once accepted: when the body stopped, its contacts were kept a tick longer than in a world
-    // without caches.
+    // If such a snapshot were accepted, the contacts of the body would be kept a tick longer after it stops than in a
+    // world without caches.
     let mut world = weightless();
     world.spawn(&BodyDef::kinematic().position((fx!(3.25), fx!(0))), &[]).unwrap();
     world.step();

@@ -30,8 +30,8 @@ fn caches_decide_nothing(world: &mut World, ticks: u64) {
 
 #[test]
 fn an_outline_that_goes_back_on_itself_is_refused() {
-    // Every vertex is an endpoint of every edge, so no vertex was found on the wrong side of an edge. The mass was then
-    // divided by an area of zero.
+    // Every vertex is an endpoint of every edge, so no vertex is on the wrong side of an edge. The mass of an accepted
+    // outline would be divided by an area of zero.
     let there_and_back = [(0, 0), (1, 0), (0, 0), (1, 0)].map(|(x, y)| Vec2::new(Fx::from(x), Fx::from(y)));
     assert!(Polygon::new(&there_and_back).is_err());
 }
@@ -107,7 +107,7 @@ fn the_last_tick_of_all_is_followed_by_no_panic() {
 
 #[test]
 fn a_large_ball_is_pushed_out_of_the_floor() {
-    // Distances of more than 16 m saturated, and so did the radius; their difference was then a separation of zero.
+    // If distances and radii saturated at 16 m, their difference, the separation, would be zero.
     let mut world = weightless();
     let floor = ShapeDef::new(Polygon::rectangle(fx!(100), fx!(50)).unwrap());
     world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-50))), &[floor]).unwrap();
@@ -126,7 +126,7 @@ fn a_large_ball_beside_a_corner_does_not_touch_it() {
     let block = ShapeDef::new(Polygon::square(fx!(10)).unwrap());
     world.spawn(&BodyDef::fixed().position((fx!(-10), fx!(-10))), &[block]).unwrap();
     let ball = ShapeDef::new(Geometry::circle(fx!(50)).unwrap());
-    // 63 m from the corner, although the AABBs overlap.
+    // The centre is 63 m from the corner, 13 m more than the radius, but the AABBs overlap.
     world.spawn(&BodyDef::dynamic().position((fx!(45), fx!(45))), &[ball]).unwrap();
     world.step();
     assert!(world.events().contact_begin.is_empty(), "expected no contact at a distance of 13 m");
@@ -229,8 +229,7 @@ fn many_shapes_added_in_one_tick_are_work() {
 
 #[test]
 fn many_fixed_shapes_at_one_point_wake_nobody_for_long() {
-    // Each shape searched all earlier ones for bodies to wake, and cached even fixed bodies: a minute for 20 000
-    // shapes.
+    // If each shape searched all earlier ones for bodies to wake, 20 000 shapes would take a minute.
     let poses = vec![BodyPose { position: Vec2::ZERO, angle: Angle::ZERO }; 50_000];
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let spawn = Command::SpawnEach { body: BodyDef::fixed(), shapes: vec![ball], poses };
@@ -277,8 +276,8 @@ fn kinematic_bodies_that_start_to_move_are_work() {
 
 #[test]
 fn contacts_that_have_parted_do_not_rest() {
-    // A body that is pushed out of an overlap leaves its box within the tick. If it was put to sleep before the pairs
-    // were updated, its contacts that had separated were kept as sleeping contacts until the caches were cleared.
+    // A body that is pushed out of an overlap leaves its fat box within the tick. If it fell asleep before the pairs
+    // are updated, its separated contacts would be kept as sleeping contacts until the caches are cleared.
     let mut rng = lockstep2d::math::Rng::new(1);
     for _ in 0..40 {
         let gravity = Vec2::new(fx!(25), fx!(-40));
@@ -305,7 +304,7 @@ fn contacts_that_have_parted_do_not_rest() {
 
 #[test]
 fn a_body_that_a_joint_drags_out_of_range_is_not_slow() {
-    // At 30 Hz or less a displacement may saturate on both axes, and the sum of the squares overflowed.
+    // At 30 Hz or less a displacement may saturate on both axes. The sum of its squares must not overflow.
     for tick_rate in [10, 20, 30] {
         let mut config = Config { tick_rate, ..Config::default() };
         config.solver.sub_steps = (60 / tick_rate).max(4);
@@ -322,9 +321,8 @@ fn a_body_that_a_joint_drags_out_of_range_is_not_slow() {
 
 #[test]
 fn a_shape_in_the_slot_of_one_that_slept_has_its_own_surface() {
-    // The contacts of a body that falls asleep leave the list that is searched for removed shapes, and the surface of a
-    // pair was cached by its slots. The cached surface was then used for a new shape that reused the slot before the
-    // next tick.
+    // The contacts of a body that falls asleep leave the list that is searched for removed shapes. A surface that is
+    // cached by the slots of its pair must not be used for a new shape that reuses a slot before the next tick.
     let mut world = World::default();
     let ground = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).unwrap());
     world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[ground]).unwrap();
@@ -340,8 +338,8 @@ fn a_shape_in_the_slot_of_one_that_slept_has_its_own_surface() {
 
 #[test]
 fn a_circle_in_line_with_a_turned_capsule_is_beyond_its_end() {
-    // At one in four angles, rounding put the centre between the two sides of the capsule, and the contact was a radius
-    // deep.
+    // At one in four angles, rounding may put the centre between the two sides of the capsule. The contact would then
+    // be a radius deep.
     let ends = [fx!(-0.03), fx!(-0.5)].map(|along| Vec2::new(along, along));
     let capsule = Geometry::capsule(ends[0], ends[1], fx!(0.018)).expect("valid");
     let ball = Geometry::circle(fx!(0.007)).expect("valid");
@@ -364,7 +362,7 @@ fn a_circle_in_line_with_a_turned_capsule_is_beyond_its_end() {
 
 #[test]
 fn a_bar_below_an_outline_that_hardly_bends_touches_it_where_it_is() {
-    // The edge that most opposed the bar's side lay beside the bar, and so did the contact.
+    // The edge whose normal is most opposed to the normal of the bar's side lies beside the bar. The contact must not.
     let corners =
         [(fx!(-0.5), fx!(-0.5)), (fx!(-0.37), fx!(-0.5)), (fx!(0.182), fx!(-0.499)), (fx!(-0.5), fx!(0.394))];
     let outline = Polygon::new(&corners.map(|(x, y)| Vec2::new(x, y))).expect("convex");

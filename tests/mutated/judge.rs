@@ -16,7 +16,7 @@ const SECONDS_MAX: u64 = 5;
 const MEMORY_MAX: usize = 32 << 20;
 /// Largest size of a small file, in bytes.
 const SMALL: usize = 6000;
-/// Number of files of which one is derived from a file that is not small.
+/// One in this number of files is derived from a file that is not small.
 const LARGE_ONE_IN: u32 = 50;
 /// Decoded content of a replay, with its verdict.
 #[derive(PartialEq, Eq)]

@@ -28,7 +28,7 @@ fn took(bytes: usize) {
     PEAK.set(PEAK.get().max(in_use));
 }
 
-// SAFETY: forwards to the system allocator. `realloc` is the default, which moves: both buffers count while it copies.
+// SAFETY: forwards to the system allocator. The default `realloc` allocates and copies, so both buffers are counted.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         took(layout.size());

@@ -153,7 +153,7 @@ fn replay_header(file: &[u8]) -> Option<usize> {
     Some(56 + number(file, 32)? + number(file, 36)?)
 }
 
-/// Recomputes lengths, checksums and hashes, as a forger can who knows the format but not the game.
+/// Recomputes lengths, checksums and hashes: everything that a forger can repair without running the game.
 pub(crate) fn repair(file: &mut [u8]) {
     if is_snapshot(file) { repair_snapshot(file) } else { repair_replay(file).unwrap_or(()) }
 }

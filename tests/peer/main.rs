@@ -137,7 +137,7 @@ fn all_have_the_same_replay_and_it_verifies() {
     }
 }
 
-/// The host's replay goes on through a late join and a departure. Late joiners and spectators follow the same states.
+/// The host's replay continues across a late join and a departure. Late joiners and spectators follow the same states.
 #[test]
 fn late_joiners_and_spectators_follow() {
     for options in modes() {
@@ -249,7 +249,7 @@ fn another_setup_is_refused_with_all_differences() {
     assert_eq!(what, ["setup", "tick rate", "patience in microseconds"]);
 }
 
-/// A dedicated server has no seat, and its replay is that of the players.
+/// A dedicated server has no seat, and its replay equals the replays of the players.
 #[test]
 fn a_dedicated_server_plays_no_seat() {
     let options = PeerOptions::lockstep();

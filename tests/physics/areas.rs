@@ -311,7 +311,7 @@ fn what_floats_sleeps_and_wakes() {
     assert_eq!(asleep(&world), [false, false]);
     run(&mut world, 600);
     assert_eq!(asleep(&world), [true, true]);
-    // The box falls asleep after half a second below the sleep speed, so its height may be off by the way that it
+    // The box falls asleep after half a second below the sleep speed, so its height may be off by the distance that it
     // moves in half a second at that speed.
     close(at(&world, bodies[0]).y, fx!(0.15), fx!(0.025));
     world.despawn(sea).expect("valid");

@@ -4,7 +4,7 @@
 //! factor of 100 of each other, and arms within 16 radii of gyration.
 #![expect(clippy::disallowed_types, reason = "energies are compared with floating point, not simulated")]
 #![expect(clippy::float_arithmetic, reason = "the oracle computes energy in floating point")]
-#![allow(dead_code, reason = "every start and kind is described, the tests use those that hold")]
+#![allow(dead_code, reason = "all starts and kinds are defined, the tests use those that gain no energy")]
 
 use lockstep2d::body::{BodyDef, BodyId, JointId, MassSource};
 use lockstep2d::fx;

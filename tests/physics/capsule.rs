@@ -39,8 +39,8 @@ fn a_capsule_lies_on_two_points_and_rests() {
     assert_eq!(world.faults(), 0);
 }
 
-/// With every semantics, about one heap in a hundred keeps one or two bodies rocking against a wall: 20 or 21 of 2400
-/// heaps, dropped from heights a millimetre apart, with speeds of 0.05 to 0.4 m/s.
+/// In every semantics version, about one heap in a hundred keeps one or two bodies rocking against a wall: 20 or 21 of
+/// 2400 heaps, dropped from heights a millimetre apart, with speeds of 0.05 to 0.4 m/s.
 #[test]
 fn capsules_pile_up_on_boxes_circles_and_segments() {
     let speeds = [0, 1, 2, 3, 4, 5].map(|millimetres| {

@@ -7,7 +7,7 @@ use lockstep2d::world::{Config, World};
 
 use crate::sweep;
 
-/// Movers of different shapes. Their lowest points are 0.5 m below their centres, that of the small ball 0.1 m.
+/// Movers of different shapes. Their lowest points are 0.5 m below their centres, except for the small ball: 0.1 m.
 fn movers() -> [(&'static str, ShapeDef); 5] {
     let square =
         |half, radius| Polygon::square(half).and_then(|square| square.rounded(radius)).expect("valid");

@@ -191,7 +191,7 @@ fn what_a_kinematic_body_carries_is_not_held_back() {
 }
 
 /// A drum as fast as the washer's, with thin walls: sweeping against the drum does not press the boxes in it together.
-/// The motion is chaotic, so that the means of several starts are compared.
+/// The motion is chaotic, so the means of several starts are compared.
 #[test]
 fn boxes_in_a_drum_overlap_no_more_for_seeing_it() {
     const STARTS: i32 = 8;

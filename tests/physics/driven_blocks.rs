@@ -7,7 +7,7 @@ use lockstep2d::solver::{Distance, JointDef, Revolute};
 use lockstep2d::world::{Config, World};
 
 /// A boom of 5 m with 50 kg on a hinge at its end, held up by a strut whose motor may push with 100 kN. The strut
-/// lengthens at the speed of its motor. When motors were solved before the block, the strut sank by 0.4 m.
+/// lengthens at the speed of its motor. If motors were solved before the block, the strut would sink by 0.4 m.
 #[test]
 fn a_strut_lifts_a_loaded_boom() {
     let mut world = World::new(Config::default()).expect("valid");

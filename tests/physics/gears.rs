@@ -89,7 +89,7 @@ fn the_ratio_is_kept_under_load() {
         let turned = [axle_a, axle_b].map(|axle| world.joint_angle(axle).expect("valid"));
         let apart = turned[0] * i64::from(teeth[0]) + turned[1] * i64::from(teeth[1]);
         assert!(turned[0] > fx!(500));
-        // The difference is in radians of a tooth, of which a skipped tooth would be 2 pi.
+        // The difference is in radians of a tooth: a skipped tooth would change it by 2 pi.
         close(apart, fx!(0), fx!(1));
     }
 }

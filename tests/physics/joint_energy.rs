@@ -61,8 +61,8 @@ fn assemblies_of_hinges_gain_no_energy() {
     never_gain(Mix::Hinge, Start::Hit);
 }
 
-/// Welds whose anchors, angles or both are springs. Formerly, the stiffness between the anchors depended on the
-/// directions of the arms, and 6 of 60 assemblies gained up to 5 times their energy.
+/// Welds whose anchors, angles or both are springs. If the stiffness between the anchors depended on the directions of
+/// the arms, 6 of 60 assemblies would gain up to 5 times their energy.
 #[test]
 fn assemblies_of_soft_welds_gain_no_energy() {
     never_gain(Mix::SoftWeld, Start::Hit);
@@ -83,16 +83,16 @@ fn assemblies_with_suspensions_gain_no_energy() {
     never_gain(Mix::Wheel, Start::Hit);
 }
 
-/// Formerly, hinges and welds pushed each body at its own anchor. Where the anchors were apart, angular momentum grew,
-/// and with it energy: in 9 % of these assemblies by up to 50 times.
+/// Hinges and welds push both bodies at one point. If each body were pushed at its own anchor, angular momentum would
+/// grow where the anchors are apart, and with it energy: in 9 % of these assemblies by up to 50 times.
 #[test]
 fn assemblies_of_welds_that_turn_or_hang_gain_no_energy() {
     never_gain(Mix::Weld, Start::Spin);
     never_gain(Mix::Weld, Start::Hang);
 }
 
-/// Formerly, bodies answered hard pulls at long arms with their inertia alone, and a hanging assembly gained up to
-/// 934 446 times its energy. The worst assembly of hinges in [`BEYOND`], which this test leaves out, now gains 23 %.
+/// Without geometric stiffness, hard pulls at long arms let a hanging assembly gain up to 934 446 times its energy.
+/// With it, the worst assembly of hinges in [`BEYOND`], which this test leaves out, gains 23 %.
 #[test]
 fn assemblies_of_hinges_that_turn_or_hang_gain_no_energy() {
     never_gain(Mix::Hinge, Start::Spin);
@@ -135,8 +135,8 @@ fn assemblies_of_hinges_and_welds_keep_their_momentum() {
     assert!(changed * 50 <= count, "the angular momentum of {changed} of {count} assemblies changed");
 }
 
-/// Formerly, springs along a line had a stiffness that depended on the pose: 10 of 60 assemblies of wheels or of rods,
-/// ropes and distance springs that turned or hung gained energy.
+/// If the stiffness of springs along a line depended on the pose, 10 of 60 assemblies of wheels, or of rods, ropes and
+/// distance springs, that turn or hang would gain energy.
 #[test]
 fn assemblies_on_springs_that_turn_or_hang_gain_no_energy() {
     for mix in [Mix::Wheel, Mix::Rod, Mix::Prismatic] {
@@ -145,7 +145,7 @@ fn assemblies_on_springs_that_turn_or_hang_gain_no_energy() {
     }
 }
 
-/// Formerly, sliders had no geometric stiffness, and these four gained up to 7600 times their energy.
+/// Without geometric stiffness of sliders, these four would gain up to 7600 times their energy.
 #[test]
 fn sliders_on_springs_that_pull_hard_gain_no_energy() {
     let slider = |shape, start, seed| Case { shape, mix: Mix::Prismatic, start, seed };
@@ -161,9 +161,9 @@ fn sliders_on_springs_that_pull_hard_gain_no_energy() {
     });
 }
 
-/// Formerly, springs of motors and those of limited force were solved one after the other, before the blocks: 6 of 720
-/// assemblies of motors gained up to 40 times their energy, and 10 of 720 on springs that only pull, only push or have
-/// a largest force.
+/// Springs of motors and springs of limited force are solved in the blocks. If they were solved one after the other
+/// before the blocks, 6 of 720 assemblies of motors would gain up to 40 times their energy, as would 10 of 720
+/// assemblies on springs that only pull, only push or have a largest force.
 #[test]
 fn assemblies_on_springs_of_motors_or_of_limited_force_gain_no_energy() {
     for mix in [Mix::MotorSpring, Mix::LimitedSpring] {
@@ -221,7 +221,8 @@ fn weightless(tick_rate: u32) -> World {
     World::new(Config { gravity: Vec2::ZERO, tick_rate, ..Config::default() }).expect("valid")
 }
 
-/// Formerly, the energy of four planks of which one was hit rose to 90 000 times that of the start.
+/// One of the limbs is hit. If the welds were solved one by one, the energy of four planks would rise to 90 000 times
+/// that of the start.
 #[test]
 fn a_star_of_welds_that_is_hit_gains_no_energy() {
     for limbs in 3..=8 {
@@ -246,8 +247,9 @@ fn a_star_of_welds_that_is_hit_gains_no_energy() {
     }
 }
 
-/// One of the limbs is hit at its far end. At 30 m/s and 30 Hz it turns by some 0.6 radians in a sub-step. Formerly,
-/// the energy of a box with four boxes rose to 9 times that of the start.
+/// One of the limbs is hit at its far end. At 30 m/s and 30 Hz it turns by some 0.6 radians in a sub-step. If rotations
+/// were predicted by up to a quarter of a radian, the energy of a box with four boxes would rise to 9 times that of the
+/// start.
 #[test]
 fn a_star_of_hinges_that_turns_fast_gains_no_energy() {
     let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));

@@ -116,8 +116,8 @@ fn a_motor_pulls_its_frames_together_as_theory_says() {
     follows(kind, Vec2::new(fx!(0), fx!(0.5)), fx!(0), apart);
 }
 
-/// The frequency of a spring between two points is that of the bodies as points of mass: at the end of an arm `r`,
-/// where the body also turns, it swings `sqrt(1 + m r^2 / (mB k^2))` times as fast, with the reduced mass `m`.
+/// The stiffness of a spring between two points is computed for two point masses. At the end of an arm `r`, where B
+/// also turns, the spring swings `sqrt(1 + m r^2 / (mB k^2))` times as fast, with the reduced mass `m`.
 #[test]
 fn a_point_on_an_arm_swings_faster() {
     // B has 2 kg and a radius of gyration of 0.5 m.
@@ -146,7 +146,7 @@ fn a_point_on_an_arm_swings_faster() {
     }
 }
 
-/// Springs along a line, those of suspensions and of distance joints, have the stiffness of two points of mass.
+/// The stiffness of springs along a line, in suspensions and distance joints, is also computed for two point masses.
 #[test]
 fn a_spring_along_a_line_swings_faster_on_an_arm() {
     for (ground, reduced) in [(Ground::Fixed, fx!(1)), (Ground::Free(fx!(2)), fx!(0.5))] {

@@ -40,7 +40,7 @@ use lockstep2d::world::World;
 use lockstep2d_scenes::Scene;
 use lockstep2d_tests::sweep;
 
-/// Returns the scene of a name, before its first tick.
+/// Returns the scene with a name, before its first tick.
 fn open(name: &str) -> Sandbox {
     let scene = Scene::find(name).unwrap_or_else(|| panic!("no scene {name}"));
     Sandbox::new(&scene.setup(1)).expect("the scenes of this crate are valid")

@@ -13,8 +13,8 @@ fn gap(a: &Probe, b: &Probe) -> Option<Fx> {
     manifold.points().iter().map(|point| Fx::from(point.separation)).min()
 }
 
-/// The gap does not depend on which shape is first, and is the distance of the shapes where they are apart, up to the
-/// 0.5 mm by which one reference face must beat another.
+/// The gap does not depend on the order of the shapes, and equals their distance where they are apart. The tolerance is
+/// the 0.5 mm by which the second shape's face must be better to become the reference face.
 #[test]
 fn the_gap_of_two_rounded_polygons_does_not_depend_on_their_order() {
     let (count, tolerance) = (sweep::size(100_000, 10_000), fx!(0.00051));
@@ -46,8 +46,8 @@ fn the_gap_of_two_rounded_polygons_does_not_depend_on_their_order() {
     assert!(compared > count / 50, "expected shapes that are apart, found {compared}");
 }
 
-/// Contact points lie half-way between the surfaces, also of triangles of up to 117 m that are micrometres thick, whose
-/// faces differ by less than the rounding of their normals times their length.
+/// Contact points lie half-way between the surfaces. This includes triangles up to 117 m long and micrometres thick,
+/// whose faces differ by less than the rounding of their normals times their length.
 #[test]
 fn contact_points_lie_on_outlines_that_hardly_bend() {
     let (mut rng, mut points) = (Rng::new(67), 0);

@@ -223,8 +223,8 @@ fn a_joint_between_free_bodies_keeps_their_momentum() {
     });
 }
 
-/// Friction between two balls cannot carry one of them beside the other: the force that holds it up would turn the
-/// other one, and nothing bears that torque.
+/// A friction joint between two balls side by side cannot hold up the higher one: the force would also turn the lower
+/// one, and nothing bears that torque.
 #[test]
 fn friction_between_two_balls_holds_neither_of_them_up() {
     for (apart, force) in [(fx!(1.2), fx!(5)), (fx!(1.2), fx!(11)), (fx!(2), fx!(20)), (fx!(4), Fx::MAX)] {
@@ -250,8 +250,8 @@ fn friction_between_two_balls_holds_neither_of_them_up() {
     }
 }
 
-/// Friction with the fixed world holds a body of 10 N if it suffices; otherwise the body falls at the acceleration
-/// that is left.
+/// A friction joint to a fixed body holds a weight of 10 N if its largest force suffices. Otherwise the body falls with
+/// the remaining acceleration.
 #[test]
 fn friction_holds_a_falling_body_only_if_it_suffices() {
     for (force, falls) in [(fx!(9.5), true), (fx!(10.5), false)] {
@@ -271,7 +271,7 @@ fn friction_holds_a_falling_body_only_if_it_suffices() {
     }
 }
 
-/// A motor without a limit of its force comes to rest at the limit of its joint, and does not push on.
+/// A motor of unlimited force comes to rest at the limit of its joint, and does not push the body beyond it.
 #[test]
 fn an_unlimited_motor_rests_at_the_limit_of_its_joint() {
     let slider = Prismatic::new().limit(fx!(-1), fx!(1)).motor(fx!(2), Fx::MAX);

@@ -40,8 +40,8 @@ fn rebounds_above(e: Fx, threshold: Option<Fx>, height: Fx, ticks: u32) -> Vec<F
     heights
 }
 
-/// A rebound reaches `e^2 H`. The velocity that moves a body in a sub-step is that of its middle, so that the highest
-/// position is up to `g h^2 / 8` above the top of the parabola. The top is seen at ticks only.
+/// A rebound reaches `e^2 H`. In a sub-step a body moves with the velocity at the middle of the sub-step, so its
+/// highest position is up to `g h^2 / 8` above the top of the parabola. Positions are read only at ticks.
 #[test]
 fn a_rebound_returns_the_square_of_the_restitution() {
     for (e, height) in [
@@ -108,7 +108,7 @@ fn a_box_that_lands_flat_does_not_spin_or_gain_energy() {
                     highest = highest.max(body.position().y - half_height);
                 }
                 let spin = body.angular_velocity().abs();
-                // The box may no longer be quite flat at its second impact, which is after tick 70 or later.
+                // At its second impact, after tick 70 or later, the box may be slightly tilted.
                 let bound = if tick < 70 { fx!(0.02) } else { fx!(0.2) };
                 assert!(spin < bound, "{half_width} x {half_height}, e {e}, tick {tick}: {spin} rad/s");
             }
@@ -120,7 +120,7 @@ fn a_box_that_lands_flat_does_not_spin_or_gain_energy() {
 }
 
 /// A box that lands a little tilted bounces flat as well, whether both corners hit in the same sub-step or not: a
-/// corner that is within 5 mm bounces together with the other one.
+/// corner within 5 mm of the floor bounces together with the corner that hits.
 #[test]
 fn a_box_that_lands_almost_flat_does_not_spin() {
     let boxes = [(fx!(0.3), fx!(0.8)), (fx!(0.5), fx!(0.5)), (fx!(1), fx!(0.2))].into_iter();
@@ -260,8 +260,8 @@ fn a_bumper_returns_more_than_the_speed() {
     }
 }
 
-/// Two bumpers that meet head on at the speed limit: `e` times their approach exceeds the format of speeds. The change
-/// of velocity is clamped, which counts as a fault, and never wraps around.
+/// Two bumpers that meet head on at the speed limit: `e` times their closing speed exceeds the format of speeds. The
+/// change of velocity is clamped, which counts as a fault, and never wraps around.
 #[test]
 fn bumpers_at_the_speed_limit_part() {
     let mut world = World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).expect("valid");

@@ -43,8 +43,8 @@ fn a_ball_keeps_its_speed_on_a_plane_and_on_a_chain() {
     }
 }
 
-/// At a seam the ball stands on two blocks for a moment, and the corner of the one ahead takes over its weight: it
-/// loses a little of its speed there, and never stops.
+/// At a seam the ball stands on two blocks for a moment, and the corner of the block ahead takes over its weight. The
+/// ball loses a little of its speed there, and never stops.
 #[test]
 fn a_ball_rolls_over_flush_blocks() {
     for rate in RATES {

@@ -197,8 +197,8 @@ fn a_turning_cast_stops_at_the_first_touch_of_small_steps() {
     assert!(hits > 300 && misses > 100, "{hits} {misses}");
 }
 
-/// A search that gives up reports a shape early. The first shape must not depend on the order in which the broad phase
-/// visits them.
+/// A time-of-impact search that gives up reports its shape early. The first shape that is hit must not depend on the
+/// order in which the broad phase visits the shapes.
 #[test]
 fn turning_casts_do_not_depend_on_the_broad_phase() {
     let mut rng = Rng::new(17);

@@ -19,7 +19,8 @@ fn it_knows_how_far_it_has_read() {
         assert_eq!(reader.ticks(), ticks);
         offsets.push(reader.offset());
     }
-    // The first four bytes of a block are the length of its payload. They, the kind and the checksum come in addition.
+    // A block begins with the length of its payload in four bytes. The length excludes these bytes, the kind and the
+    // checksum.
     for pair in offsets.windows(2) {
         let start = usize::try_from(pair[0]).unwrap();
         let length = u32::from_le_bytes(file[start..start + 4].try_into().unwrap());

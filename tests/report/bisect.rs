@@ -1,4 +1,5 @@
-//! Bisection finds the tick, the stage, the body and the field of a random bit flip in less than three verifications.
+//! Bisection finds the tick, the stage, the body and the field of a random bit flip. It simulates fewer ticks than
+//! three verifications of the replay.
 
 use std::cell::Cell;
 use std::collections::BTreeSet;

@@ -78,8 +78,8 @@ fn state_after(seed: u64, flip: Flip) -> StateHash {
     peer.game.state_hash()
 }
 
-/// Compares the reports of a peer whose game had a bit flip and of another peer, in `count` cases. Of the flips that
-/// are drawn, every `stride`th is tried. At most one in twenty may be explained by another flip with the same effect.
+/// Compares the reports of a peer whose game had a bit flip and of another peer, in `count` cases. Every `stride`th
+/// drawn flip is tried. At most one in twenty may be explained by another flip with the same effect.
 /// Returns the number of flips that made no difference to the game.
 fn cases(seed: u64, count: u32, when: When, stride: u32) -> u32 {
     let mut rng = Rng::new(seed);

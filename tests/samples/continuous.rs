@@ -101,7 +101,8 @@ fn a_fast_ball_follows_the_floor_to_the_wall() {
     }
 }
 
-/// Skinny Box. A plank that is thrown, spinning, at a post on the floor goes through neither; nor does the box behind.
+/// Skinny Box. A spinning plank that is thrown at a post on the floor passes through neither, and neither does the box
+/// behind it.
 #[test]
 fn a_spinning_plank_does_not_go_through() {
     for shape in [rect(fx!(2), fx!(0.05)), capsule(at!(0, -1), at!(0, 1), fx!(0.1))] {

@@ -90,7 +90,7 @@ fn every_begin_has_its_end() {
                     }
                 }
             }
-            // The two sensors notice each other, both or neither.
+            // Either both sensors have an open overlap with each other, or neither has.
             let mutual = open.iter().filter(|(sensor, visitor)| {
                 let is_sensor = |id| stage.world.shape(id).is_some_and(|shape| shape.is_sensor());
                 is_sensor(*sensor) && is_sensor(*visitor)
@@ -349,8 +349,8 @@ fn a_projectile_explodes_on_impact() {
     assert!(stage.place(stack[7]).y < fx!(7), "the top is at {}", stage.place(stack[7]).y);
 }
 
-/// Circle Impulse. A ball of 1 kg hits at 25 m/s: the event has the speed and the impulse, and the ball leaves at the
-/// fraction of the speed that its restitution says.
+/// Circle Impulse. A ball of 1 kg hits at 25 m/s: the event has the speed and the impulse, and the ball leaves at its
+/// restitution times this speed.
 #[test]
 fn a_hit_reports_its_speed() {
     for (restitution, returned) in [(fx!(0), fx!(0)), (fx!(0.25), fx!(6.25))] {

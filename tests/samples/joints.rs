@@ -106,7 +106,7 @@ fn a_motor_joint_follows_its_target() {
     assert!(stage.world.joint_force(joint).is_some_and(|(force, _)| force.length() < fx!(5000)));
 }
 
-/// Top Down Friction. A force of 10 N stops 1 kg at 5 m/s after half a second and 1.25 m, a torque its rotation.
+/// Top Down Friction. A force of 10 N stops 1 kg at 5 m/s after half a second and 1.25 m. A torque stops its rotation.
 #[test]
 fn a_motor_joint_is_friction_seen_from_above() {
     let mut stage = Stage::weightless();
@@ -124,7 +124,7 @@ fn a_motor_joint_is_friction_seen_from_above() {
     near(stage.body(body).angular_velocity(), fx!(0), fx!(0.001));
 }
 
-/// Filter Joint. Two boxes overlap undisturbed while it exists, and push each other apart when it is gone.
+/// Filter Joint. Two boxes overlap undisturbed while the joint exists, and push each other apart once it is removed.
 #[test]
 fn a_filter_joint_lets_two_bodies_overlap() {
     let mut stage = Stage::with_floor();

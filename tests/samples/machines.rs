@@ -205,9 +205,9 @@ fn doohickeys_hold_together() {
     assert!(stage.world.widest_joint_gap() < fx!(0.02), "{} m", stage.world.widest_joint_gap());
 }
 
-/// Scissor Lift. A motor lengthens a strut; the platform rises level, as the geometry of the links says. The platform
-/// moves seven times as fast as the strut: with one iteration, the motor would hold, but the links would give way by up
-/// to 0.23 m.
+/// Scissor Lift. A motor lengthens a strut; the platform rises level, by the height that follows from the geometry of
+/// the links. The platform moves seven times as fast as the strut: with one iteration, the motor would hold, but the
+/// links would give way by up to 0.23 m.
 #[test]
 fn a_scissor_lift_rises_level() {
     let solver = SolverSettings { sub_steps: 8, iterations: 8, ..SolverSettings::default() };

@@ -120,7 +120,7 @@ impl Stage {
         self.run_and(ticks, |_| ());
     }
 
-    /// Simulates a number of ticks and looks at the world after each.
+    /// Simulates a number of ticks and calls `look` after each.
     fn run_and(&mut self, ticks: u32, mut look: impl FnMut(&mut Stage)) {
         for _ in 0..ticks {
             self.world.step();

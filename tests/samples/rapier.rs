@@ -33,7 +33,7 @@ fn what_falls_off_is_removed() {
     assert!(removed > 50, "only {removed} fell off");
 }
 
-/// ccd2. Fast compounds are stopped by a thin wall, and the thin sensor before it sees them.
+/// ccd2. Fast compounds are stopped by a thin wall, and the thin sensor in front of the wall detects them.
 #[test]
 fn thin_walls_stop_fast_compounds() {
     let mut stage = Stage::new();
@@ -213,8 +213,8 @@ fn boxes_in_one_place_come_apart() {
     assert!(momentum.length() < fx!(0.01), "{momentum:?}");
 }
 
-/// inv_pyramid2. Each box carries one twice its size. A box of 1 kg carries four, or five with contacts of 120 Hz: with
-/// contacts of 30 Hz it would yield by 1364 g / (2 pi 30 Hz)^2 = 0.38 m.
+/// inv_pyramid2. Each box carries one twice its size. A box of 1 kg carries four boxes, or five with contacts at
+/// 120 Hz: with contacts at 30 Hz, the lowest of six boxes would yield by 1364 g / (2 pi 30 Hz)^2 = 0.38 m.
 #[test]
 fn an_inverted_pyramid_stands() {
     for (count, sub_steps, hertz) in [(5, 4, fx!(30)), (6, 16, fx!(120))] {
@@ -302,7 +302,7 @@ fn platforms_carry_boxes() {
     }
 }
 
-/// sensor2. A sensor that a falling box carries sees the boxes on the ground, and ceases to see what leaves.
+/// sensor2. A sensor on a falling box detects the boxes on the ground, and reports the end of an overlap.
 #[test]
 fn a_carried_sensor_sees_what_it_passes() {
     let mut stage = Stage::with_floor();
@@ -328,8 +328,8 @@ fn a_carried_sensor_sees_what_it_passes() {
     assert_eq!(stage.world.sensor_overlaps(eye).len(), before - 1);
 }
 
-/// heightfield2, polyline2, trimesh2, voxels2. The same hill as a chain, as triangles and as boxes carries a rain of
-/// things; level triangles have no bumps.
+/// heightfield2, polyline2, trimesh2, voxels2. The same hill as a chain, as triangles and as boxes carries falling
+/// bodies. A box slides over level triangles without ghost collisions.
 #[test]
 fn terrain_of_every_kind_carries() {
     let height = |i: i32| widen(Angle::from_turns(num(i) / 10).cos());

@@ -227,7 +227,7 @@ fn a_light_ball_between_heavy_ones_is_stable() {
     }
 }
 
-/// Unstable Windmill. Four heavy arms welded to a hub, without gravity, get no energy from nowhere, also after a push.
+/// Unstable Windmill. Four heavy arms welded to a hub, without gravity, gain no energy, even after a push.
 #[test]
 fn a_welded_windmill_gains_no_energy() {
     let mut stage = Stage::weightless();

@@ -23,7 +23,7 @@ fn a_bounce_returns_the_square_of_the_restitution() {
                 if bounced {
                     highest = highest.max(stage.place(body).y - fx!(0.5));
                 }
-                // The first bounce is the highest one if no energy is made.
+                // The first bounce is the highest one if no energy is added.
                 assert!(!bounced || highest < fx!(10.02), "{highest} m");
             });
             near(highest, fx_mul(restitution, restitution) * 10, fx!(0.25));
@@ -140,7 +140,7 @@ fn an_explosion_pushes_a_ring_evenly_and_welds_pull_it_back() {
     }
 }
 
-/// Box Restitution. Boxes on boxes: no restitution makes energy.
+/// Box Restitution. Boxes on boxes gain no energy at any restitution.
 #[test]
 fn boxes_on_boxes_make_no_energy() {
     for tenths in [0, 2, 5, 8, 10] {

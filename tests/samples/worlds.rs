@@ -130,7 +130,7 @@ fn falling_hinges_end_alike_from_every_saved_state() {
     }
 }
 
-/// Barrel. A hundred things of one kind fall into a barrel and stay in it.
+/// Barrel. A hundred bodies of one kind fall into a barrel and stay in it.
 #[test]
 fn a_barrel_holds_what_falls_into_it() {
     let mix = [square(fx!(0.25)), rect(fx!(0.4), fx!(0.1))];

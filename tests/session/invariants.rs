@@ -1,4 +1,4 @@
-//! Invariants of a match: one history, equal states, and no peer dropped that a majority can hear.
+//! Invariants of a match: one history, equal states, and a quorum that holds all ticks before the cut of a view.
 
 use lockstep2d::session::{Event, PeerId, Status, View};
 
@@ -109,7 +109,7 @@ impl Sim {
         }
     }
 
-    /// All final ticks are those of the one history.
+    /// All final ticks belong to the one history.
     fn check_final(&mut self, index: usize) {
         let fin = self.peers[index].session.final_tick();
         let from = self.peers[index].seen_final;
@@ -136,7 +136,7 @@ impl Sim {
         self.peers[index].seen_final = fin;
     }
 
-    /// The confirmed ticks that the game has played are those of the one history; memory is bounded.
+    /// The confirmed ticks that the game has played belong to the one history; memory is bounded.
     fn check_played(&mut self, index: usize) {
         let peer = &self.peers[index];
         let confirmed = peer.session.confirmed();

@@ -13,7 +13,7 @@ fn players_join_while_the_others_play_at_full_speed() {
     net.join(Role::Player { seats: 1 }, 1);
     net.run(6 * S);
     net.assert_all_play();
-    // The third peer asks the second one, and learns of the first only from it.
+    // The third peer contacts the second one, from which alone it receives the address of the first.
     net.join(Role::Player { seats: 2 }, 2);
     net.run(10 * S);
     net.assert_all_play();
@@ -123,7 +123,7 @@ fn other_games_are_refused_with_what_is_expected() {
     assert_eq!(net.nodes[1].events, [expected]);
 }
 
-/// Six spectators, each through the one before. Each is known to its own contact only.
+/// Six spectators, each of which joins through the previous one. Each is known only to its own contact.
 #[test]
 fn spectators_feed_spectators() {
     let mut net = Net::new(15 * MS, 1, 5000);
@@ -192,7 +192,7 @@ fn a_restarted_process_gets_its_seat_back() {
     assert_eq!(net.nodes[index].endpoint.session().expect("valid").seats(), 0b10);
 }
 
-/// The contact dies during the download: the joining peer asks another one.
+/// The contact crashes during the download, and the joining peer contacts another one.
 #[test]
 fn another_contact_can_be_asked() {
     let mut net = Net::new(20 * MS, 0, 40 << 20);

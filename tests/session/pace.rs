@@ -1,4 +1,4 @@
-//! Pace: lockstep plays at full speed with a delay of the one-way latency and a tick, whatever the clocks do.
+//! Pace: lockstep plays at full speed with a delay of the one-way latency and a tick, with clocks of different speeds.
 
 use lockstep2d::session::{Config, Role, View};
 
@@ -106,7 +106,7 @@ fn rollback_hides_latency_and_corrects_guesses() {
     }
 }
 
-/// Ping, jitter and loss are those of the links; bytes are counted.
+/// Measured ping, jitter and loss equal those of the links; bytes are counted.
 #[test]
 fn measurements_are_those_of_the_links() {
     let mut sim = players(2, LinkConditions { jitter: 10 * MS, loss: 20, ..link(50 * MS) }, |_| ());

@@ -64,16 +64,16 @@ pub(crate) struct Peer {
     pub(crate) skew: u64,
     pub(crate) queue: Vec<Vec<u8>>,
     pub(crate) lost_seats: u32,
-    /// Whether its game does not advance.
+    /// Whether the peer is in a menu, so that its game does not advance.
     pub(crate) in_menu: bool,
-    /// The peers that its session reported to wait for, each with whether packets of that peer arrive.
+    /// Peers that the session reported to wait for. The flag tells whether packets of that peer arrive.
     pub(crate) waiting: Vec<(PeerId, bool)>,
     pub(crate) desyncs: u32,
     bytes: u64,
     pub(crate) finished: Option<(Tick, u64)>,
-    /// Whether it was a voter when it asked to leave.
+    /// Whether the session has reported `Status::Leaving`.
     pub(crate) was_leaving: bool,
-    /// Time at which its session reported that it has left.
+    /// Time at which the session reported that it has left.
     pub(crate) left_at: Us,
     pub(crate) seen_view: u32,
     pub(crate) seen_final: Tick,
@@ -192,7 +192,7 @@ impl Sim {
         self.push(at, Kind::Crash(index));
     }
 
-    /// Lets two peers know each other, as the join does.
+    /// Attaches the sessions of two peers to each other, as a join does.
     pub(crate) fn introduce(&mut self, a: usize, b: usize) {
         self.peers[a].session.attach(id(b), Some(key(b)));
         self.peers[b].session.attach(id(a), Some(key(a)));

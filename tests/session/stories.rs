@@ -91,7 +91,7 @@ fn somebody_who_is_kicked_does_not_return_and_knows_it() {
     assert!(played(&sim, 0) > 60 * 9 && sim.failure.is_none());
 }
 
-/// The vote of peer 0, the tie-holder, decides alone. Those of other peers need a quorum.
+/// The vote of peer 0, the tie-holder, decides alone. The votes of other peers need a quorum.
 #[test]
 fn two_votes_of_five_kick_nobody_and_three_do() {
     let mut sim = players(5, link(30 * MS), |_| ());
@@ -130,7 +130,7 @@ fn spectators_watch_through_one_another() {
     let (first, config) = (sim.peers[0].session.view().clone(), Config::new(5, 2));
     for index in 2..count {
         sim.add(config.clone(), Role::Spectator, &first, 1000);
-        // Each knows the one before it.
+        // Each spectator knows only the previous peer.
         sim.introduce(index, index - 1);
         sim.start(index, (index as u64) * S);
     }

@@ -1,4 +1,4 @@
-//! Random matches: a seed gives the peers, the links, and what goes wrong when. All links heal after 20 s. From then
+//! Random matches: a seed determines the peers, the links and the disturbances. All links heal after 20 s. From then
 //! on, every peer that still runs has to play, and to finish the match.
 
 use lockstep2d::session::{Config, Role, Timing, View};

@@ -1,9 +1,10 @@
-//! Work units are honest: no tick and no setup takes more than a microsecond for each unit that it is charged, whatever
-//! the commands do. Otherwise the limits of a verifier would not protect it.
+//! Work units bound the time: no tick and no setup takes more than a microsecond for each unit that it is charged,
+//! whatever the commands do. Otherwise the limits of a verifier would not protect it.
 //!
-//! Every case is recorded, then played by the verifier's player, which charges the units, and verified with a part of
-//! the work that it needs: the limit has to stop it within the time of its units. The time is that of the thread on its
-//! processor where the system tells it, and the shortest of several runs, so that a busy machine counts little.
+//! Every case is recorded and then played by the verifier's player, which charges the units. It is also verified with a
+//! limit below the work that it needs: the limit must stop verification within the time of its units. Times are
+//! processor times of the thread where the system reports them, and the shortest of several runs, so that other load on
+//! the machine has little effect.
 #![expect(clippy::disallowed_types, reason = "the test measures time")]
 
 mod builders;
@@ -257,7 +258,8 @@ fn every_command_of_a_body(settled: bool) {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Files that once took minutes, although their limit allowed a tenth of a second.
+/// The ticks of this file cost far more than the limits, which allow at most a tenth of a second. Verification must end
+/// within half a second, not after a whole tick.
 #[test]
 fn a_limit_ends_a_file_before_its_cost_is_paid() {
     let crowd = |count: i64, settings| {

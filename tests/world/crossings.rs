@@ -268,7 +268,7 @@ fn switching_the_detection_of_sensors_begins_and_ends_overlaps() {
     assert_eq!((world.events().sensor_begin.len(), world.events().sensor_end.len()), (0, 1));
 }
 
-/// The overlap is that of the end of the tick: a visitor that has just left is not inside.
+/// Overlaps are listed as of the end of the tick: a visitor that has just left is not inside.
 #[test]
 fn overlaps_are_those_of_the_end_of_the_tick() {
     let mut world = weightless();

@@ -93,8 +93,8 @@ impl Open {
         }
     }
 
-    /// Expects that every open contact and overlap is between shapes that exist, and that the overlaps are those that
-    /// the world lists and that its shapes have.
+    /// Expects that the shapes of every open contact and overlap exist, that the world lists the same overlaps, and
+    /// that the shapes of each overlap touch.
     fn check(&self, world: &World) {
         let ends = self.contacts.iter().flat_map(|event| [event.shape_a, event.shape_b]);
         let ends = ends.chain(self.visits.iter().flat_map(|event| [event.0, event.1]));

@@ -187,8 +187,7 @@ fn lists_are_sorted_and_the_same_when_simulated_again() {
     }
 }
 
-/// A world in which everything reports its hits moves like one in which nothing does, and has the same events with
-/// every backend.
+/// Hit events do not affect the motion of bodies, and are the same with every backend.
 #[test]
 fn hits_change_nothing_but_themselves() {
     let fall = |wanted: bool| {

@@ -36,7 +36,7 @@ fn kinds() -> [JointKind; 8] {
     ]
 }
 
-/// A pendulum at an anchor on a fixed body, which is at the anchor or far away from it.
+/// A pendulum on a fixed anchor. The fixed body is at the anchor or far away from it.
 fn pendulum(kind: JointKind, ground: (Vec2<Fx>, Angle), swapped: bool) -> (World, BodyId, JointId) {
     let anchor = Vec2::new(fx!(3000), fx!(-7));
     let mut world = World::default();
@@ -131,8 +131,8 @@ fn a_joint_may_be_added_between_bodies_that_become_dynamic_later() {
     assert!(at(&world, crate_).y > fx!(8.99), "the weld holds it");
 }
 
-/// Two anchors come apart by `a / (2 pi f)^2` under gravity `a`: with the joint's own frequency instead of the world's.
-/// A spring that is solved in sub-steps at rest has no other error.
+/// Under gravity `a`, two anchors come apart by `a / (2 pi f)^2`, where `f` is the joint's own frequency instead of the
+/// world's. Solving in sub-steps adds no error at rest.
 #[test]
 fn a_joint_yields_by_its_own_softness() {
     let limit: JointKind = Prismatic::new().limit(fx!(0), fx!(0)).into();
@@ -177,7 +177,7 @@ fn a_joint_yields_by_its_own_softness() {
     }
 }
 
-/// Joints whose own softness is that of the world move as joints without one, bit by bit.
+/// Joints whose own softness equals that of the world move bit for bit like joints without one.
 #[test]
 fn the_softness_of_the_world_as_a_joints_own_changes_nothing() {
     let net = |own: u32| {

@@ -29,7 +29,7 @@ fn set(world: &mut World, change: impl Fn(&mut Config)) {
     assert_eq!(world.validate(), Ok(()));
 }
 
-/// The impulses of a warm start are converted to the new length of sub-steps: those of a shorter sub-step are smaller.
+/// The impulses of a warm start are converted to the new length of sub-steps: a shorter sub-step has smaller impulses.
 #[test]
 fn a_stack_stays_at_rest_when_the_length_of_sub_steps_changes() {
     for (from, to, tick_rate) in [(4, 8, 60), (4, 16, 60), (8, 4, 60), (16, 4, 60), (4, 4, 120), (4, 8, 30)] {

@@ -1,7 +1,7 @@
 //! Sends changed packets to three peers: two that play, and one that joins them.
 //!
-//! A short match is played first, in which a third peer joins. An input is a list of attacks: which of the packets so
-//! far is taken, how it is changed, and who gets it, with the checksum as it is or repaired.
+//! A short match is played first, in which a third peer joins. An input is a list of attacks. Each attack selects one
+//! of the packets sent so far, a change, a receiver, and whether the checksum is repaired.
 
 use lockstep2d::session::{Address, Config, Endpoint, Identity, Key, PeerId, Request, Role};
 

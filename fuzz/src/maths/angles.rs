@@ -54,7 +54,7 @@ fn units(source: &mut Source<'_>, angle: Angle) {
     assert_eq!(bits(Angle::from_turns(x)), wrapped(x.to_bits().into()));
     assert_eq!(bits(Angle::from_degrees(x)), wrapped(halves_away(&(of(x) / exact::integer(360)), 32)), "{x}");
     let exact = halves_up(&(of(x) / turn), 32);
-    // The constant has an error of at most a sixteenth of a unit.
+    // The engine multiplies by a rounded constant, which adds an error of at most a sixteenth of a unit.
     let off = wrapped(bits(Angle::from_radians(x)) - exact + 1);
     assert!(off <= BigInt::from(2), "{x} rad");
 }

@@ -27,7 +27,7 @@ struct KeptManifold {
 }
 
 impl KeptManifold {
-    /// Normals, most of which the world accepts: multiples of the unit are refused.
+    /// Normals. The world accepts zero and unit vectors, and refuses the last two, whose length is not 1.
     const NORMALS: [Vector; 6] =
         [[0, 0], [0, 1 << 30], [-(1 << 30), 0], [759_250_125, 759_250_125], [1 << 30, 1 << 30], [i32::MIN, 1]];
 
@@ -49,7 +49,7 @@ impl KeptManifold {
         }
     }
 
-    /// Zeroes what a contact of `count` points does not have.
+    /// Zeroes the data of the points that a contact of `count` points lacks.
     fn cut(&mut self, count: u8) {
         match count {
             0 => *self = KeptManifold::default(),
