@@ -5,7 +5,7 @@
 //! - An existing file is replaced only with `--force` or [`Overwrite::ALWAYS`].
 //! - At most one process writes a target at a time. The others fail before they change anything.
 //!
-//! - A private file can be read only by its owner, from its first byte on.
+//! - A private file can be read only by its owner, from its creation on.
 //!
 //! A process that is killed leaves its temporary file behind. The lock on it ends with the process, so the next writer
 //! of the same target reuses the file.
