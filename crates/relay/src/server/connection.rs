@@ -165,7 +165,7 @@ impl Connection<'_> {
         }
     }
 
-    /// Forwards a datagram, with the address of its receiver replaced by that of its sender.
+    /// Forwards a datagram, and replaces the receiver's address by the sender's address.
     fn forward(&self, message: &Message) {
         if let Message::Binary(bytes) = message
             && let Some((to, datagram)) = unframe(bytes)
