@@ -110,7 +110,7 @@ pub(crate) fn each_event(world: &World, tick: u64, found: &mut impl FnMut(Logged
     asleep.for_each(|moved| add(WorldEvent::FellAsleep(moved.body)));
 }
 
-/// An event of a tick that is final. Each comes once.
+/// An event of a final tick. Each event is sent once.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ConfirmedEvent {
     /// Number of ticks played, including that of the event.
@@ -122,7 +122,7 @@ pub struct ConfirmedEvent {
     pub views: [Option<Entity>; 2],
 }
 
-/// An event that may still turn out not to have happened. Each comes once, when a tick shows it for the first time; a
+/// An event that a rollback may still remove. Each event is sent once, when it first occurs in a played tick. A
 /// rollback that moves it by a few ticks does not repeat it.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PredictedEvent {

@@ -222,8 +222,8 @@ impl<G: LockstepGame> Lockstep<G> {
         }
     }
 
-    /// Takes the finished bytes of the game's own replay, to be appended to its file. Every byte comes once. Empty for
-    /// drivers that do not record, and for a peer that joined after the first tick.
+    /// Takes the finished bytes of the game's own replay, to be appended to its file. Every byte is returned once.
+    /// Empty for drivers that do not record, and for a peer that joined after the first tick.
     pub fn take_replay(&mut self) -> Vec<u8> {
         match &mut self.driver {
             Driver::Local(local) => local.take_replay(),

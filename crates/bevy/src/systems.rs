@@ -141,7 +141,7 @@ fn follow(
 }
 
 /// Whether a body was placed elsewhere in a tick instead of moving by its velocity: further than `limit` metres, and
-/// further than twice the way of its velocity in a tick.
+/// further than twice the distance that its velocity covers in a tick.
 fn is_jump(world: Option<&World>, body: BodyId, previous: Pose, current: Pose, limit: f32) -> bool {
     if previous.position == current.position {
         return false;
