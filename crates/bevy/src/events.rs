@@ -1,10 +1,10 @@
 //! Events of the simulation as Bevy messages, and for observers.
 //!
-//! With rollback a tick may be played several times. A [`ConfirmedEvent`] belongs to a tick that no rollback changes
-//! any more, and is sent when the tick becomes final: every peer receives the same confirmed events, in the same order,
-//! each once. A [`PredictedEvent`] is sent when the event occurs in a played tick for the first time, for sounds and
-//! particles; a [`RetractedEvent`] follows if a rollback removes the event. In a local game and in a replay, the
-//! predicted and the confirmed event are sent in the same frame.
+//! With rollback a tick may be played several times. A [`ConfirmedEvent`] is sent when its tick is final, so that no
+//! rollback can change it: every peer receives the same confirmed events, in the same order, each once. A
+//! [`PredictedEvent`] is sent when the event occurs in a played tick for the first time, for sounds and particles; a
+//! [`RetractedEvent`] follows if a rollback removes the event. In a local game and in a replay, the predicted and the
+//! confirmed event are sent in the same frame.
 
 use bevy::prelude::{Entity, EntityEvent, Message};
 use lockstep2d::body::{BodyId, ShapeId};
@@ -65,7 +65,7 @@ impl WorldEvent {
 /// An event with its tick and the bodies that take part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LoggedEvent {
-    /// Number of ticks played, including that of the event.
+    /// Number of ticks played, including the tick of the event.
     pub(crate) tick: u64,
     pub(crate) event: WorldEvent,
     /// Bodies of the shapes, as far as they exist after the tick.
@@ -113,7 +113,7 @@ pub(crate) fn each_event(world: &World, tick: u64, found: &mut impl FnMut(Logged
 /// An event of a final tick. Each event is sent once.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ConfirmedEvent {
-    /// Number of ticks played, including that of the event.
+    /// Number of ticks played, including the tick of the event.
     pub tick: u64,
     /// The event.
     pub event: WorldEvent,
@@ -126,7 +126,7 @@ pub struct ConfirmedEvent {
 /// rollback that moves it by a few ticks does not repeat it.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PredictedEvent {
-    /// Number of ticks played, including that of the event.
+    /// Number of ticks played, including the tick of the event.
     pub tick: u64,
     /// The event.
     pub event: WorldEvent,
@@ -151,7 +151,7 @@ pub struct BodyEvent {
     pub entity: Entity,
     /// View of the other body, if there is one.
     pub other: Option<Entity>,
-    /// Number of ticks played, including that of the event.
+    /// Number of ticks played, including the tick of the event.
     pub tick: u64,
     /// The event.
     pub event: WorldEvent,

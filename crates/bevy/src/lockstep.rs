@@ -138,7 +138,7 @@ impl<G: LockstepGame> Lockstep<G> {
         self.driver.tick()
     }
 
-    /// Number of ticks that no rollback changes any more.
+    /// Number of confirmed ticks, which no rollback can change.
     #[must_use]
     pub fn confirmed(&self) -> u64 {
         self.driver.confirmed()
@@ -155,14 +155,14 @@ impl<G: LockstepGame> Lockstep<G> {
         }
     }
 
-    /// Stops the ticks. In a match the others are asked to stop, too ([`MatchEvent`](crate::MatchEvent)); whether they
-    /// do is the decision of their game. Peers that do not stop wait for this one, and go on without it after
+    /// Stops the ticks. In a match the others are asked to stop, too ([`MatchEvent`](crate::MatchEvent)); their game
+    /// decides whether they do. Peers that do not stop wait for this one, and continue without it after
     /// [`PeerOptions::patience`]. This peer returns to the match when it resumes.
     pub fn pause(&mut self) {
         self.set_paused(true);
     }
 
-    /// Goes on after [`Lockstep::pause`].
+    /// Continues after [`Lockstep::pause`].
     pub fn resume(&mut self) {
         self.set_paused(false);
     }

@@ -1,7 +1,7 @@
 //! [`StepLog`]: a record of the steps of a game, from which its views and events are made.
 //!
-//! A driver may load states and play ticks again in any order. The log follows it from inside the game, so that all
-//! drivers have the same views and events.
+//! A driver may load states and play ticks again in any order. The game itself fills the log, so that all drivers
+//! have the same views and events.
 
 use std::collections::VecDeque;
 

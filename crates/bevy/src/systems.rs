@@ -113,7 +113,7 @@ fn replace_strangers(commands: &mut Commands, views: &mut BodyViews, log: &StepL
     }
 }
 
-/// Spawns the views of new bodies, moves those of known ones, and despawns the others.
+/// Spawns the views of new bodies, moves the views of existing bodies, and despawns the views of removed bodies.
 fn follow(
     commands: &mut Commands,
     views: &mut BodyViews,

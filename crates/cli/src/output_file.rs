@@ -28,7 +28,7 @@ const OWNER_ONLY: u32 = 0o600;
 /// Maximum number of attempts to lock a temporary file that other processes keep renaming.
 const ATTEMPTS_MAX: u32 = 100;
 
-/// What happens to a file that exists already.
+/// Whether an existing file is replaced.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct Overwrite {
     /// Replace the output file if it exists; it may be the input file

@@ -207,8 +207,8 @@ impl<G: Game + 'static> Work<G> {
     }
 }
 
-/// Acknowledges a job and waits until the server has confirmed it. Without a confirmation, the job is delivered again,
-/// and its result is known then.
+/// Acknowledges a job and waits until the server has confirmed it. Without a confirmation, the job is delivered again
+/// and dropped because it has a result.
 async fn acknowledge(message: &Message, kind: AckKind) {
     let _ = message.double_ack_with(kind).await;
 }

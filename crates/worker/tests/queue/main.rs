@@ -1,5 +1,5 @@
-//! The queue with a real server: every file has exactly one result, equal to that of `verify --json`, whichever
-//! process is killed.
+//! The queue with a real server: every file has exactly one result, equal to the line of `verify --json`, also if
+//! workers or the server are killed.
 //!
 //! `LOCKSTEP2D_WORKER_FILES` is the number of files of the largest test, 300 by default.
 #![cfg(unix)]
@@ -77,7 +77,7 @@ fn verified(folder: &Folder) -> Vec<String> {
     let arguments = ["verify", "--json"].map(String::from);
     let arguments = ["lockstep2d".into()].into_iter().chain(arguments).chain([path.display().to_string()]);
     Tool::<Sandbox>::new().run_with(arguments, &mut out, &mut err);
-    // Workers know the path that was submitted.
+    // Results have the submitted path, which is relative to the folder.
     let below = format!("{}/", folder.0.display());
     let mut lines: Vec<String> =
         String::from_utf8(out).unwrap().lines().map(|line| line.replacen(&below, "", 1)).collect();
