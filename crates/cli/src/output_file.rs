@@ -4,7 +4,6 @@
 //! - The target has either its old contents or all of the new ones, also after a full disk, a panic or a kill.
 //! - An existing file is replaced only with `--force` or [`Overwrite::ALWAYS`].
 //! - At most one process writes a target at a time. The others fail before they change anything.
-//!
 //! - A private file can be read only by its owner, from its creation on.
 //!
 //! A process that is killed leaves its temporary file behind. The lock on it ends with the process, so the next writer
