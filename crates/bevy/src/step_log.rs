@@ -154,7 +154,7 @@ impl StepLog {
         self.bases.get(epoch as usize).copied().flatten()
     }
 
-    /// Sets the number of played ticks, if it is not known in this epoch.
+    /// Sets the number of played ticks, unless it is known in this epoch.
     pub(crate) fn set_tick(&mut self, tick: u64) {
         let base = self.bases.get_mut(self.epoch as usize);
         base.map(|base| base.get_or_insert(tick.saturating_sub(self.ticks)));

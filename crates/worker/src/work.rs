@@ -28,7 +28,7 @@ use crate::shutdown::{Phase, Shutdown};
 /// Longest time for which the server holds a request for a job. An idle worker takes at most this long to end.
 const EXPIRES: Duration = Duration::from_secs(2);
 
-/// Additional time, after [`EXPIRES`], after which a request counts as lost because the server has gone.
+/// Time after [`EXPIRES`] at which a request counts as lost, because the server has gone.
 const LOST: Duration = Duration::from_secs(5);
 
 /// Pause before another attempt to read a file, multiplied by the number of deliveries so far.
@@ -170,7 +170,7 @@ impl<G: Game + 'static> Work<G> {
             tokio::select! {
                 done = &mut verify => return done,
                 () = tokio::time::sleep(self.progress) => {
-                    // If this message is lost, another worker may verify the file as well. Its result is then refused.
+                    // If this message is lost, another worker may verify the file as well; the later result is refused.
                     let _ = message.ack_with(AckKind::Progress).await;
                 }
             }

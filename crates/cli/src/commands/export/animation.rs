@@ -14,7 +14,7 @@ use crate::error::CommandError;
 
 /// Largest default frame rate in frames per second. A higher rate makes no visible difference.
 const FRAME_RATE_MAX: u32 = 30;
-/// Default width of an animation in pixels. Pictures have a larger default; this one keeps files small.
+/// Default width of an animation in pixels, smaller than for pictures to keep files small.
 const WIDTH: u32 = 640;
 /// Highest frame rate at which most programs show a GIF: their shortest frame time is 2/100 s.
 const GIF_RATE_MAX: u32 = 50;

@@ -46,7 +46,7 @@ impl Digests {
     }
 }
 
-/// The versions that a file requires. If this program cannot read the format version, the other fields are `None`.
+/// The versions that a file requires. If this program cannot read the format, the other fields are `None`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(super) struct Needs {
     pub(super) format: u32,
