@@ -127,7 +127,7 @@ mod tests {
         let [fixed, dynamic] = [Style::Fixed, Style::Dynamic].map(|style| style.paint().stroke);
         let compare = |parts: &[(u32, usize)]| compare(&pixels(parts), &shows);
         assert_eq!(compare(&[(PAPER, 100), (fixed, 20), (dynamic, 10)]), Ok(()));
-        // A colour value that is off by one is the same colour.
+        // A colour value that is off by one counts as the same colour.
         assert_eq!(compare(&[(PAPER - 0x01_0101, 100), (fixed + 1, 20), (dynamic, 10)]), Ok(()));
         let refused: [&[(u32, usize)]; 7] = [
             &[],

@@ -45,7 +45,7 @@ impl<G: LockstepGame> Plugin for LockstepDiagnosticsPlugin<G> {
     }
 }
 
-/// Frames between two measurements of the size of a save, which has to be encoded for it.
+/// Frames between two measurements of the size of a save. Each measurement encodes a save.
 const SAVE_INTERVAL: u32 = 64;
 
 fn measure<G: LockstepGame>(

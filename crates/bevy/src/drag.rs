@@ -16,8 +16,8 @@ use crate::plugin::{LockstepSettings, LockstepSystems};
 /// Drags the bodies of a [`Sandbox`] with a [`DragHand`]. The pull is a command in the input of a player, so that it is
 /// recorded.
 ///
-/// The plugin needs no window: a system of the game tells the hand where the pointer is, and when it is pressed and
-/// released. With the feature `picking`, `PointerDragPlugin` does so for mouse and touch.
+/// The plugin needs no window: a system of the game passes the position, presses and releases of the pointer to the
+/// hand. With the feature `picking`, `PointerDragPlugin` does so for mouse and touch.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DragPlugin;
 

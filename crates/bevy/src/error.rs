@@ -1,4 +1,4 @@
-//! [`LockstepError`]: reasons why a driver cannot go on.
+//! [`LockstepError`]: reasons why a driver cannot continue.
 
 use core::fmt;
 
@@ -8,7 +8,7 @@ use lockstep2d::lockstep::{InputError, SetupError};
 use lockstep2d::peer::PeerError;
 use lockstep2d::replay::{RecordError, SeekError, Verdict};
 
-/// Reason why a driver cannot start or go on.
+/// Reason why a driver cannot start or continue.
 #[derive(Clone, Debug)]
 pub enum LockstepError {
     /// The game cannot start from its setup.
@@ -17,7 +17,7 @@ pub enum LockstepError {
     Inputs(InputError),
     /// The replay of a local game cannot be written.
     Record(RecordError),
-    /// The match cannot go on.
+    /// The match cannot continue.
     Match(PeerError),
     /// The file is not a replay of this game.
     Replay(Box<Verdict>),

@@ -1,10 +1,10 @@
 //! Events of the simulation as Bevy messages, and for observers.
 //!
-//! With rollback a tick may be played several times. A [`ConfirmedEvent`] belongs to a tick that no rollback changes
-//! any more, and is sent when the tick becomes final: every peer receives the same confirmed events, in the same order,
-//! each once. A [`PredictedEvent`] is sent when the event occurs in a played tick for the first time, for sounds and
-//! particles; a [`RetractedEvent`] follows if a rollback removes the event. In a local game and in a replay, the
-//! predicted and the confirmed event are sent in the same frame.
+//! With rollback a tick may be played several times. A [`ConfirmedEvent`] is sent when its tick is final, so that no
+//! rollback can change it: every peer receives the same confirmed events, in the same order, each once. A
+//! [`PredictedEvent`] is sent when the event occurs in a played tick for the first time, for sounds and particles; a
+//! [`RetractedEvent`] follows if a rollback removes the event. In a local game and in a replay, the predicted and the
+//! confirmed event are sent in the same frame.
 
 use bevy::prelude::{Entity, EntityEvent, Message};
 use lockstep2d::body::{BodyId, ShapeId};
@@ -65,7 +65,7 @@ impl WorldEvent {
 /// An event with its tick and the bodies that take part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LoggedEvent {
-    /// Number of ticks played, including that of the event.
+    /// Number of ticks played, including the tick of the event.
     pub(crate) tick: u64,
     pub(crate) event: WorldEvent,
     /// Bodies of the shapes, as far as they exist after the tick.
@@ -110,10 +110,10 @@ pub(crate) fn each_event(world: &World, tick: u64, found: &mut impl FnMut(Logged
     asleep.for_each(|moved| add(WorldEvent::FellAsleep(moved.body)));
 }
 
-/// An event of a tick that is final. Each comes once.
+/// An event of a final tick. Each event is sent once.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ConfirmedEvent {
-    /// Number of ticks played, including that of the event.
+    /// Number of ticks played, including the tick of the event.
     pub tick: u64,
     /// The event.
     pub event: WorldEvent,
@@ -122,11 +122,11 @@ pub struct ConfirmedEvent {
     pub views: [Option<Entity>; 2],
 }
 
-/// An event that may still turn out not to have happened. Each comes once, when a tick shows it for the first time; a
+/// An event that a rollback may still remove. Each event is sent once, when it first occurs in a played tick. A
 /// rollback that moves it by a few ticks does not repeat it.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PredictedEvent {
-    /// Number of ticks played, including that of the event.
+    /// Number of ticks played, including the tick of the event.
     pub tick: u64,
     /// The event.
     pub event: WorldEvent,
@@ -151,7 +151,7 @@ pub struct BodyEvent {
     pub entity: Entity,
     /// View of the other body, if there is one.
     pub other: Option<Entity>,
-    /// Number of ticks played, including that of the event.
+    /// Number of ticks played, including the tick of the event.
     pub tick: u64,
     /// The event.
     pub event: WorldEvent,

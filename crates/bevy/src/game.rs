@@ -2,8 +2,8 @@
 
 use lockstep2d::lockstep::Game;
 
-/// A [`Game`] that can live in a Bevy resource: it and its inputs and saves are shared between threads. Implemented for
-/// every such game.
+/// A [`Game`] that can be part of a Bevy resource: threads can share the game, its inputs and its saves. Implemented
+/// for every such game.
 pub trait LockstepGame:
     Game<Setup: Send + Sync, Input: Send + Sync + 'static, Save: Send + Sync + 'static> + Send + Sync + 'static
 {

@@ -26,8 +26,8 @@ impl<G> Default for LockstepGizmosPlugin<G> {
     }
 }
 
-/// The layers to draw, as a group of `GizmoConfigStore`, where it is switched on and off and has its line width. The
-/// fields are those of [`Layers`].
+/// The layers to draw, as a config group of `GizmoConfigStore`, which also turns the group on and off and sets its line
+/// width. The fields are those of [`Layers`].
 #[derive(Reflect, GizmoConfigGroup, Clone, Copy, Debug, PartialEq, Eq)]
 #[reflect(Default)]
 pub struct LockstepGizmos {

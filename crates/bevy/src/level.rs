@@ -14,7 +14,7 @@ use crate::views::BodyView;
 /// A body to be created by [`build_level`]. The entity becomes its view, with all its other components.
 #[derive(Component, Clone, Debug)]
 pub struct SpawnBody {
-    /// The body. Its position is that of this definition, not that of the `Transform`, whose floats are rounded.
+    /// The body. Its position comes from this definition and not from the `Transform`, whose floats are rounded.
     pub body: BodyDef,
     /// Its shapes.
     pub shapes: Vec<ShapeDef>,

@@ -31,8 +31,7 @@
 //! Systems of the plugin run in the schedule `RunFixedMainLoop`, after `PreUpdate` and before `Update`, in the sets of
 //! [`LockstepSystems`]. Systems that read input and fill [`Inputs`] belong in [`LockstepSystems::Inputs`].
 
-// The library's ban on floats does not apply here: views are floats, and nothing of them gets back into a game except
-// as an input.
+// The library's ban on floats does not apply here: views are floats, and they affect a game only through its inputs.
 #![deny(missing_docs, clippy::iter_over_hash_type, clippy::unwrap_used)]
 #![warn(unreachable_pub)]
 

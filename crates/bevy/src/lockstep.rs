@@ -138,7 +138,7 @@ impl<G: LockstepGame> Lockstep<G> {
         self.driver.tick()
     }
 
-    /// Number of ticks that no rollback changes any more.
+    /// Number of confirmed ticks, which no rollback can change.
     #[must_use]
     pub fn confirmed(&self) -> u64 {
         self.driver.confirmed()
@@ -155,14 +155,14 @@ impl<G: LockstepGame> Lockstep<G> {
         }
     }
 
-    /// Stops the ticks. In a match the others are asked to stop, too ([`MatchEvent`](crate::MatchEvent)); whether they
-    /// do is the decision of their game. Peers that do not stop wait for this one, and go on without it after
+    /// Stops the ticks. In a match the others are asked to stop, too ([`MatchEvent`](crate::MatchEvent)); their game
+    /// decides whether they do. Peers that do not stop wait for this one, and continue without it after
     /// [`PeerOptions::patience`]. This peer returns to the match when it resumes.
     pub fn pause(&mut self) {
         self.set_paused(true);
     }
 
-    /// Goes on after [`Lockstep::pause`].
+    /// Continues after [`Lockstep::pause`].
     pub fn resume(&mut self) {
         self.set_paused(false);
     }
@@ -222,8 +222,8 @@ impl<G: LockstepGame> Lockstep<G> {
         }
     }
 
-    /// Takes the finished bytes of the game's own replay, to be appended to its file. Every byte comes once. Empty for
-    /// drivers that do not record, and for a peer that joined after the first tick.
+    /// Takes the finished bytes of the game's own replay, to be appended to its file. Every byte is returned once.
+    /// Empty for drivers that do not record, and for a peer that joined after the first tick.
     pub fn take_replay(&mut self) -> Vec<u8> {
         match &mut self.driver {
             Driver::Local(local) => local.take_replay(),

@@ -87,7 +87,7 @@ fn on_plane(ray: Ray3d) -> Option<(Vec3, f32)> {
     Some((ray.get_point(distance), distance))
 }
 
-/// Tells the pointers which views they hit.
+/// Writes the views that each pointer hits.
 fn pick<G: LockstepGame>(
     lockstep: Res<Lockstep<G>>,
     (settings, views, rays): (Res<LockstepSettings>, Res<BodyViews>, Res<RayMap>),
@@ -152,7 +152,7 @@ fn grab(
     }
 }
 
-/// Moves the hand with its pointer, and opens it when the button is up.
+/// Moves the hand with its pointer, and releases the body when the button goes up.
 fn move_hand(
     rays: Res<RayMap>,
     mut inputs: MessageReader<PointerInput>,

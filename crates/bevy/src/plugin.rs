@@ -92,7 +92,7 @@ impl LockstepSettings {
 pub struct LockstepStatus {
     /// Number of ticks played.
     pub tick: u64,
-    /// Number of ticks that no rollback changes any more.
+    /// Number of confirmed ticks, which no rollback can change.
     pub confirmed: u64,
     /// Ticks played in this frame, including repeated ones.
     pub stepped: u32,

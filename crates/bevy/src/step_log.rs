@@ -1,7 +1,7 @@
 //! [`StepLog`]: a record of the steps of a game, from which its views and events are made.
 //!
-//! A driver may load states and play ticks again in any order. The log follows it from inside the game, so that all
-//! drivers have the same views and events.
+//! A driver may load states and play ticks again in any order. The game itself fills the log, so that all drivers
+//! have the same views and events.
 
 use std::collections::VecDeque;
 
@@ -11,8 +11,8 @@ use lockstep2d::world::World;
 use crate::events::{LoggedEvent, each_event};
 use crate::poses::Poses;
 
-/// A tick, as a number of ticks since the start of an epoch. An epoch begins with a state whose tick only the driver
-/// knows: one that another peer has sent, or one that was read from bytes.
+/// A tick, as a number of ticks since the start of an epoch. An epoch begins with a state that another peer has sent or
+/// that was read from bytes. The driver sets the tick of such a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Stamp {
     epoch: u32,
@@ -49,13 +49,13 @@ pub(crate) struct StepLog {
     shown: Option<Stamp>,
     /// Poses of the tick `shown` after it was played again.
     pub(crate) shown_again: Option<Poses>,
-    /// Bodies that were missing in a loaded state: a body with the same id may be another one now.
+    /// Bodies that were missing in a loaded state. A later body with the same id may be another one.
     pub(crate) missing: Vec<BodyId>,
     /// Number of ticks played since the last frame, including those played again.
     pub(crate) stepped: u32,
     /// Largest number of ticks by which a load went back since the last frame.
     pub(crate) replayed: u32,
-    /// The tick to return to, while the driver simulates ticks that are not part of the game's course.
+    /// The tick to return to, while the driver simulates ticks whose results are not shown.
     suspended_at: Option<Stamp>,
     /// Tick of the world before the step.
     world_tick: Option<u64>,
@@ -154,7 +154,7 @@ impl StepLog {
         self.bases.get(epoch as usize).copied().flatten()
     }
 
-    /// Tells the log how many ticks have been played.
+    /// Sets the number of played ticks, unless it is known in this epoch.
     pub(crate) fn set_tick(&mut self, tick: u64) {
         let base = self.bases.get_mut(self.epoch as usize);
         base.map(|base| base.get_or_insert(tick.saturating_sub(self.ticks)));
@@ -165,19 +165,19 @@ impl StepLog {
         self.base_of(self.epoch).unwrap_or(0)
     }
 
-    /// Ignores what follows, until [`StepLog::resume`] or [`StepLog::relocate`].
+    /// Records no events or poses until [`StepLog::resume`] or [`StepLog::relocate`].
     pub(crate) fn suspend(&mut self) {
         self.suspended_at = Some(self.stamp());
     }
 
-    /// Goes on where the log was suspended: the driver has restored the state of that tick.
+    /// Continues at the tick at which the log was suspended. The driver has restored the state of that tick.
     pub(crate) fn resume(&mut self) {
         if let Some(Stamp { epoch, ticks }) = self.suspended_at.take() {
             (self.epoch, self.ticks) = (epoch, ticks);
         }
     }
 
-    /// Goes on at another tick, as after a seek: without events, and with views that go there without a transition.
+    /// Continues at another tick, as after a seek, without events. Views move there without interpolation.
     pub(crate) fn relocate(&mut self, tick: u64, world: Option<&World>) {
         self.suspended_at = None;
         self.bases.push(Some(tick));
@@ -188,7 +188,8 @@ impl StepLog {
         self.refresh(world);
     }
 
-    /// Takes the poses of a state that no step has led to, such as a loaded one. Views go there without interpolation.
+    /// Captures the poses of a state that is not the result of a step, such as a loaded one. Views move there without
+    /// interpolation.
     fn refresh(&mut self, world: Option<&World>) {
         self.after.capture(world);
         self.before = self.after.clone();
@@ -196,7 +197,7 @@ impl StepLog {
         (self.shown, self.shown_again) = (None, None);
     }
 
-    /// Notes that the views show the current tick. If the game was loaded and not stepped since, its poses are taken.
+    /// Stores that the views show the current tick. If the game was loaded and not stepped since, captures its poses.
     pub(crate) fn show(&mut self, world: Option<&World>) {
         if self.is_after_stale {
             self.refresh(world);

@@ -113,7 +113,7 @@ fn replace_strangers(commands: &mut Commands, views: &mut BodyViews, log: &StepL
     }
 }
 
-/// Spawns the views of new bodies, moves those of known ones, and despawns the others.
+/// Spawns the views of new bodies, moves the views of existing bodies, and despawns the views of removed bodies.
 fn follow(
     commands: &mut Commands,
     views: &mut BodyViews,
@@ -141,7 +141,7 @@ fn follow(
 }
 
 /// Whether a body was placed elsewhere in a tick instead of moving by its velocity: further than `limit` metres, and
-/// further than twice the way of its velocity in a tick.
+/// further than twice the distance that its velocity covers in a tick.
 fn is_jump(world: Option<&World>, body: BodyId, previous: Pose, current: Pose, limit: f32) -> bool {
     if previous.position == current.position {
         return false;

@@ -58,7 +58,7 @@ pub(crate) struct View {
     /// Pose after the last tick.
     pub(crate) current: Pose,
     pub(crate) offset: Offset,
-    /// Whether the `Transform` is that of `current`, so that nothing has to be written.
+    /// Whether the `Transform` already shows `current`, so that nothing has to be written.
     pub(crate) is_settled: bool,
     /// Hash of what distinguishes the body from another one with the same id.
     pub(crate) identity: StateHash,

@@ -37,7 +37,7 @@ impl Screen {
         let setup = SandboxSetup { commands, ..SandboxSetup::default() };
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, PickingPlugin, InteractionPlugin))
-            // Rays are those of the test, not those of a window.
+            // The test supplies the rays, not a window.
             .insert_resource(PickingSettings { is_input_enabled: false, ..PickingSettings::default() })
             .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_nanos(16_666_667)))
             .add_plugins((LockstepPlugin::<Sandbox>::default().pixels_per_metre(10.0), PointerDragPlugin))

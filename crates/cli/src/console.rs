@@ -24,7 +24,7 @@ pub(crate) struct Console<'a> {
 }
 
 impl Console<'_> {
-    /// Writes a line of results with one write call, so that output of the game cannot get into it.
+    /// Writes a line of results with one write call, so that output of the game cannot split it.
     pub(crate) fn line(&mut self, line: impl fmt::Display) -> Result<(), CommandError> {
         self.out.write_all(format!("{line}\n").as_bytes()).map_err(CommandError::Output)
     }

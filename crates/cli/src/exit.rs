@@ -2,8 +2,8 @@
 
 use std::process::ExitCode;
 
-/// The outcome of a command, which scripts receive as the exit code. The outcome of several files is the last of their
-/// outcomes in this order.
+/// The outcome of a command, which scripts receive as the exit code. The outcome of several files is the largest of
+/// their outcomes in the order of the variants.
 ///
 /// ```
 /// use lockstep2d_cli::Exit;

@@ -4,8 +4,7 @@
 //! - The target has either its old contents or all of the new ones, also after a full disk, a panic or a kill.
 //! - An existing file is replaced only with `--force` or [`Overwrite::ALWAYS`].
 //! - At most one process writes a target at a time. The others fail before they change anything.
-//!
-//! - A private file can be read only by its owner, from its first byte on.
+//! - A private file can be read only by its owner, from its creation on.
 //!
 //! A process that is killed leaves its temporary file behind. The lock on it ends with the process, so the next writer
 //! of the same target reuses the file.
@@ -28,7 +27,7 @@ const OWNER_ONLY: u32 = 0o600;
 /// Maximum number of attempts to lock a temporary file that other processes keep renaming.
 const ATTEMPTS_MAX: u32 = 100;
 
-/// What happens to a file that exists already.
+/// Whether an existing file is replaced.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct Overwrite {
     /// Replace the output file if it exists; it may be the input file

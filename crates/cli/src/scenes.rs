@@ -2,7 +2,7 @@
 
 use lockstep2d::lockstep::Game;
 
-/// The inputs of all players for a tick, given its number and the game before it.
+/// Returns the inputs of all players for a tick. Its arguments are the number of the tick and the game before the tick.
 pub type Script<G> = Box<dyn FnMut(u64, &G) -> Vec<<G as Game>::Input>>;
 
 /// The scenes of a game.

@@ -117,7 +117,7 @@ impl<G: Game> Tool<G> {
         self.run_on(std::env::args_os(), console).into()
     }
 
-    /// Runs the command that `arguments` select, the first of which is the program's name. Results go to `out`,
+    /// Runs the command that `arguments` select. The first argument is the program's name. Results go to `out`,
     /// messages to `err`, both with ANSI colours.
     pub fn run_with<A>(
         &self,

@@ -24,7 +24,7 @@ const NAMES_MAX: usize = 4096;
 /// # let folder = std::env::temp_dir().join(format!("walk-{}", std::process::id()));
 /// # std::fs::create_dir_all(folder.join("old"))?;
 /// # ["b.replay", "old/a.replay", "notes.txt"].iter().try_for_each(|name| std::fs::write(folder.join(name), b""))?;
-/// // All replays of a folder. What cannot be listed is passed over with a message.
+/// // All replays of a folder. A folder that cannot be listed is skipped with a message.
 /// let mut found = vec![];
 /// for entry in Walk::new(&folder) {
 ///     match entry {

@@ -96,7 +96,7 @@ impl Transport for Matchbox {
     fn send(&mut self, packet: &[u8], to: &Address) {
         let Some(peer) = peer_of(to) else { return };
         let Ok(channel) = self.socket.get_channel_mut(CHANNEL) else { return };
-        // An error says that the room is lost, which `update` finds as well. Packets may be lost in any case.
+        // An error means that the room is lost, which `update` detects as well. Packets may be lost in any case.
         let _lost = channel.try_send(packet.to_vec().into(), peer);
     }
 
@@ -120,7 +120,7 @@ fn peer_of(address: &Address) -> Option<PeerId> {
     Uuid::from_slice(address.bytes()).ok().map(PeerId)
 }
 
-/// Runs the connections until the socket is dropped. Its end is seen by [`Matchbox::is_closed`].
+/// Runs the connections until the socket is dropped. [`Matchbox::is_closed`] reports when they have ended.
 #[cfg(not(target_arch = "wasm32"))]
 fn spawn(message_loop: MessageLoopFuture) {
     std::thread::spawn(move || _ = pollster::block_on(message_loop));

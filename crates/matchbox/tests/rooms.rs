@@ -13,7 +13,7 @@ use lockstep2d_matchbox::Matchbox;
 use lockstep2d_matchbox::matchbox_socket::{RtcIceServerConfig, WebRtcSocket};
 use matchbox_signaling::SignalingServer;
 
-/// Longest time for anything to happen.
+/// Timeout of each wait.
 const PATIENCE: Duration = Duration::from_secs(30);
 const STEP: Duration = Duration::from_millis(2);
 
@@ -56,7 +56,7 @@ impl Drop for Server {
     }
 }
 
-/// Repeats something until it has a result.
+/// Repeats `attempt` until it has a result.
 fn until<T>(what: &str, mut attempt: impl FnMut() -> Option<T>) -> T {
     let start = Instant::now();
     while start.elapsed() < PATIENCE {

@@ -142,7 +142,8 @@ impl Relay {
         matches!(self.state, State::Open(_))
     }
 
-    /// Whether another connection with the same secret has replaced this one, which then does not connect again.
+    /// Whether another connection with the same secret has replaced this one. A replaced connection is not opened
+    /// again.
     #[must_use]
     pub const fn is_closed(&self) -> bool {
         matches!(self.state, State::Closed)

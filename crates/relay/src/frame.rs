@@ -39,7 +39,7 @@ pub(crate) fn to_text(member: Member) -> String {
     format!("{:016x}", u64::from_be_bytes(member))
 }
 
-/// The address that [`to_text`] wrote.
+/// Parses an address written by [`to_text`].
 pub(crate) fn of_text(text: &str) -> Option<Member> {
     if text.len() != 2 * ADDRESS_BYTES {
         return None;

@@ -1,8 +1,8 @@
 //! A WebSocket relay for matches of lockstep2d.
 //!
 //! Browsers cannot open UDP sockets, and some networks block everything but HTTP. The relay has rooms, and forwards
-//! datagrams between the members of a room without looking into them. [`Relay`] is the transport of native peers;
-//! `Relay` in the npm package that of pages. `README.md` has the protocol.
+//! datagrams between the members of a room without reading their contents. [`Relay`] is the transport of native peers;
+//! web pages use `Relay` of the npm package. `README.md` has the protocol.
 //!
 //! - [`Server`] is the relay, which the binary `lockstep2d-relay` runs.
 //! - [`Relay`] is a member of a room: a [`Transport`](lockstep2d::peer::Transport).

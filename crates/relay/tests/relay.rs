@@ -10,7 +10,7 @@ use lockstep2d::session::Address;
 use lockstep2d_relay::{Limits, Relay, RelayError, Server};
 use tungstenite::Message;
 
-/// Longest time for anything to happen.
+/// Timeout of each wait.
 const PATIENCE: Duration = Duration::from_secs(20);
 const STEP: Duration = Duration::from_millis(2);
 
@@ -55,7 +55,7 @@ impl Drop for Running {
     }
 }
 
-/// Repeats something until it has a result.
+/// Repeats `attempt` until it has a result.
 fn until<T>(what: &str, mut attempt: impl FnMut() -> Option<T>) -> T {
     for _ in 0..PATIENCE.as_millis() / STEP.as_millis() {
         if let Some(found) = attempt() {
@@ -159,7 +159,7 @@ fn a_member_that_does_not_read_loses_the_oldest_datagrams() {
     let server = Running::start(limits);
     let (mut a, mut b) = (server.enter("room", 1), server.enter("room", 2));
     let to = *b.own();
-    // More than the buffers of the system and the queue hold.
+    // More datagrams than the buffers of the system and the queue hold.
     let count = 20_000_u32;
     for number in 0..count {
         let mut datagram = vec![0; 1000];
@@ -173,7 +173,7 @@ fn a_member_that_does_not_read_loses_the_oldest_datagrams() {
     // The last datagram sent arrives, although b has not read any before.
     let mut numbers = Vec::new();
     until("the newest datagram", || {
-        // A datagram that finds its sender's buffer full is lost, too.
+        // Sent repeatedly, because a datagram is also lost if the sender's buffer is full.
         a.send(&u32::MAX.to_le_bytes(), &to);
         while let Some((_, bytes)) = b.receive() {
             numbers.push(u32::from_le_bytes(*bytes.first_chunk().unwrap()));

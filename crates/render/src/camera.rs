@@ -19,7 +19,7 @@ const MARGIN: f64 = 16.0;
 /// let window = Aabb::new(Vec2::new(fx!(-10), fx!(0)), Vec2::new(fx!(10), fx!(10)));
 /// let mut camera = Camera::new(window, [0.0, 0.0], [800.0, 400.0]);
 /// assert_eq!(camera.place(Vec2::new(fx!(-10), fx!(10))), [0.0, 0.0]);
-/// // The mouse wheel: what is below the pointer stays there.
+/// // The mouse wheel: the world point below the pointer stays there.
 /// let pointer = [600.0, 300.0];
 /// let below = camera.point(pointer);
 /// camera.zoom(2.0, pointer);
@@ -111,8 +111,8 @@ impl Camera {
         !(points.is_empty() || beyond(0) || beyond(1))
     }
 
-    /// Clips a line to the visible area (Liang and Barsky, "A New Concept and Method for Line Clipping", 1984): the
-    /// coordinates of a line across the whole world are too large for a rasteriser.
+    /// Clips a line to the visible area (Liang and Barsky, "A New Concept and Method for Line Clipping", 1984), because
+    /// the coordinates of a line across the whole world are too large for a rasteriser.
     #[must_use]
     pub fn clipped(&self, [from, to]: [[f32; 2]; 2]) -> Option<[[f32; 2]; 2]> {
         if self.sees(from, MARGIN as f32) && self.sees(to, MARGIN as f32) {

@@ -50,7 +50,7 @@ const TINY: f32 = 1.5;
 /// let camera = Camera::new(fit(&world), [0.0, 0.0], [640.0, 480.0]);
 /// let mut list = DrawList::default();
 /// lockstep2d_render::world(&mut list, &world, Layers::default(), &camera, &Brush::default());
-/// // Another world over it, in one colour: where this peer has predicted the bodies to be.
+/// // A second world over the first, in one colour: the bodies at their predicted positions.
 /// let ghost = Brush { tint: Some(Colour::hex(0x1f77b4)), ..Brush::suiting(&world, &camera) };
 /// let solid = list.items().len();
 /// lockstep2d_render::world(&mut list, &predicted, Layers::default(), &camera, &ghost);

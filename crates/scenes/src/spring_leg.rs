@@ -1,5 +1,5 @@
 //! A dynamic character: a body that a spring leg holds above the ground, pushed by forces alone. It takes part in the
-//! simulation, so that it pushes crates, weighs on what it stands on, and is carried by what moves.
+//! simulation: it pushes crates, loads the ground with its weight, and is carried by moving ground.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -65,9 +65,9 @@ fn lift_at(tick: u64) -> Vec2<Fx> {
     Vec2::new(fx!(17.6), rise - fx!(0.2))
 }
 
-/// Height in metres of the body's centre above the ground at which the leg carries no more than the weight.
+/// Height in metres of the body's centre above the ground at which the force of the leg equals the weight.
 const RIDE_HEIGHT: Fx = fx!(0.9);
-/// Length in metres of the leg when it does not reach the ground any more.
+/// Maximum length in metres of the leg. If the ground is further away, the leg exerts no force.
 const LEG_LENGTH: Fx = fx!(1.1);
 /// Stiffness of the leg, `(2 pi 4 Hz)²`, in 1/s².
 const STIFFNESS: Fx = fx!(632);
@@ -77,7 +77,7 @@ const DAMPING: Fx = fx!(35);
 const PUSH_MAX: Fx = fx!(100);
 /// Largest acceleration along the ground in m/s².
 const DRIVE_MAX: Fx = fx!(25);
-/// Upward speed in m/s, relative to the ground, above which the leg does not push: that of a jump.
+/// Upward speed in m/s, relative to the ground, above which the leg does not push because the character is jumping.
 const LIFT_OFF: Fx = fx!(2);
 
 /// Horizontal speed in m/s relative to the ground, from the given tick on.
@@ -116,7 +116,7 @@ fn push(tick: u64, world: &World, (character, body): (BodyId, &Body), hit: &Cast
     let shortened = RIDE_HEIGHT - (body.centre_of_mass().y - hit.point.y);
     let spring = fx_mul(STIFFNESS, shortened) - fx_mul(DAMPING, relative.y) - world.config().gravity.y;
     let up = if relative.y > LIFT_OFF { Fx::ZERO } else { spring.clamp(Fx::ZERO, PUSH_MAX) };
-    // The drive makes up for a third of the missing speed in a tick.
+    // Each tick, the drive removes a third of the difference to the wanted speed.
     let along = ((wanted - relative.x) * 20).clamp(-DRIVE_MAX, DRIVE_MAX);
     let force = Vec2::new(along, up).scale(body.mass());
     let mut commands = vec![Command::ApplyForce { body: character, force, point: body.centre_of_mass() }];

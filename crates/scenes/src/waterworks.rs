@@ -51,7 +51,7 @@ fn basin(scene: &mut Builder) -> Result<BodyId, WorldError> {
     scene.spawn(BodyDef::fixed(), &shapes)
 }
 
-/// A crank that turns a train of wheels, the last of which moves a gate up and down by a rack.
+/// A crank that turns a train of wheels. The last wheel moves a gate up and down by a rack.
 fn mill(scene: &mut Builder, ground: BodyId) -> Result<(), WorldError> {
     let wheels = [(fx!(-8), fx!(0.5)), (fx!(-6.5), fx!(1)), (fx!(-5), fx!(0.5))];
     let mut bodies = Vec::new();
@@ -90,7 +90,7 @@ fn buckets(scene: &mut Builder) -> Result<(), WorldError> {
     scene.joint(joint.colliding()).map(|_| ())
 }
 
-/// Things of many forms and densities above the pools, and leaves in the wind.
+/// Bodies of several shapes and densities above the pools, and leaves in the wind.
 fn floats(scene: &mut Builder) -> Result<(), WorldError> {
     let end = Vec2::new(fx!(0.4), fx!(0));
     let forms = [
@@ -112,7 +112,8 @@ fn floats(scene: &mut Builder) -> Result<(), WorldError> {
     scene.spawn_each(BodyDef::dynamic(), &[leaf], places).map(|_| ())
 }
 
-/// A body without mass that passes over the water and attracts what is below, with a tray that nothing pushes down.
+/// A body without mass, whose velocity no force changes. It passes over the water, attracts the bodies below, and has a
+/// tray that no load pushes down.
 fn magnet(scene: &mut Builder) -> Result<(), WorldError> {
     let pull = Area::new().attraction(fx!(18), fx!(1), Falloff::Inverse);
     let field = ShapeDef::new(Geometry::circle(fx!(3))?).area(pull);

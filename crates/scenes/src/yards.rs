@@ -38,7 +38,7 @@ pub(super) fn grid(
     (0..columns).flat_map(move |column| (0..rows).map(move |row| place(column, row)))
 }
 
-/// Shifts every other position to the right by `first`, and those between to the left.
+/// Shifts the positions alternately to the right and to the left by `first`.
 fn staggered(places: impl Iterator<Item = Vec2<Fx>>, first: Fx) -> impl Iterator<Item = Vec2<Fx>> {
     places
         .enumerate()

@@ -194,7 +194,7 @@ impl<G: Game + 'static> Viewer<G> {
         return self.run_on_page();
     }
 
-    /// Runs the program with these arguments, the first of which is the program's name.
+    /// Runs the program with these arguments. The first argument is the program's name.
     #[cfg(not(target_arch = "wasm32"))]
     #[must_use]
     pub fn run_with<A>(self, arguments: impl IntoIterator<Item = A>) -> ExitCode

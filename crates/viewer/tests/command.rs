@@ -57,7 +57,7 @@ fn it_says_what_is_wrong() {
         (&["--scene", "pyramid"], "no display"),
     ];
     for (args, expected) in cases {
-        // Only on Linux does a window need an environment variable.
+        // On other systems than Linux, a window needs no environment variable.
         if expected == "no display" && !cfg!(target_os = "linux") {
             continue;
         }

@@ -15,7 +15,7 @@ use url::Url;
 use crate::error::WorkerError;
 use crate::{results, submit, work};
 
-/// Stack size of a thread in bytes: that of a main thread, which a game may rely on.
+/// Stack size of a thread in bytes. It equals the usual size for a main thread, which a game may rely on.
 const STACK_BYTES: usize = 8 << 20;
 
 /// Exit code for an error, and for wrong usage.
@@ -80,7 +80,7 @@ impl<G: Game + 'static> Worker<G> {
             .mut_subcommand("work", |work| with_defaults(work, &self.limits));
         let arguments =
             Arguments::from_arg_matches(&command.get_matches()).unwrap_or_else(|usage| usage.exit());
-        // Cryptography of TLS connections. The program may have installed another provider, which is kept.
+        // Cryptography provider for TLS. If the program has installed another provider, that one is kept.
         let _ = rustls::crypto::ring::default_provider().install_default();
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(2)

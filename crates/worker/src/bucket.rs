@@ -25,7 +25,7 @@ pub(crate) struct Bucket {
 }
 
 impl Bucket {
-    /// The bucket that `url` names, and the folder in it. Credentials, region and endpoint are those of the environment
+    /// The bucket that `url` names, and the folder in it. Credentials, region and endpoint come from the environment
     /// variables `AWS_*`.
     pub(crate) fn open(url: &Url) -> Result<Self, WorkerError> {
         let failed = WorkerError::bucket(url);

@@ -30,7 +30,8 @@ pub(crate) async fn read_object(store: &ObjectStore, name: &str, bytes_max: u64)
     Ok(bytes)
 }
 
-/// Checks that the bytes are those of the job. Of a file that is too large, only the beginning was read.
+/// Compares the digest of the bytes with the job. A file that is too large is not compared, because only its beginning
+/// was read.
 pub(crate) fn check(job: &Job, bytes: Vec<u8>, bytes_max: u64) -> io::Result<Vec<u8>> {
     let is_whole = u64::try_from(bytes.len()).is_ok_and(|length| length <= bytes_max);
     if is_whole && blake3::hash(&bytes).to_hex().as_str() != job.blake3 {

@@ -23,7 +23,7 @@ const DUPLICATE_WINDOW: Duration = Duration::from_secs(3600);
 /// Name of the consumer that all workers share.
 const CONSUMER: &str = "workers";
 
-/// Pauses between attempts of an operation, of about a minute in all: a server may be restarting.
+/// Pauses between attempts of an operation. They add up to about a minute, in which a server can restart.
 const PAUSES: [Duration; 8] = [
     Duration::from_millis(100),
     Duration::from_millis(400),
@@ -95,7 +95,7 @@ impl Queue {
         Ok(Queue { context, name, results, replicas })
     }
 
-    /// Adds a job. A job with the same bytes as one that was added within the last hour is known, and not added again.
+    /// Adds a job. A job with the same bytes as one that was added within the last hour is not added again.
     pub(crate) async fn submit(&self, job: &Job) -> Result<Added, WorkerError> {
         let payload = json(job);
         let publish = || async {
@@ -114,7 +114,7 @@ impl Queue {
             durable_name: Some(CONSUMER.into()),
             ack_policy: AckPolicy::Explicit,
             ack_wait,
-            // A worker counts the deliveries, so that a file that kills workers has a result.
+            // No limit, because the workers check the number of deliveries: a file that kills workers gets a result.
             max_deliver: -1,
             // No limit, because there are as many unacknowledged jobs as workers.
             max_ack_pending: -1,

@@ -11,10 +11,10 @@ use crate::error::WorkerError;
 use crate::queue::Queue;
 use crate::shutdown::Shutdown;
 
-/// Longest time for which the server holds a request that it has no results for.
+/// Longest time for which the server holds a request while there are no results.
 const EXPIRES: Duration = Duration::from_secs(2);
 
-/// Most results of one request.
+/// Maximum number of results per request.
 const BATCH: usize = 500;
 
 /// Prints the results of a queue. With `follow`, also those that come later, until a signal.

@@ -17,7 +17,7 @@ use crate::files::inside;
 use crate::job::{Job, Source};
 use crate::queue::{Added, Queue, json, retry};
 
-/// Files that are submitted at a time, so that the queue limits the speed.
+/// Maximum number of files that are submitted at the same time. The acknowledgements of the queue limit the rate.
 const AT_ONCE: usize = 16;
 
 /// Names of files, as their jobs and results have them.

@@ -25,18 +25,18 @@ use crate::metrics::Metrics;
 use crate::queue::{Added, Queue, json};
 use crate::shutdown::{Phase, Shutdown};
 
-/// Longest time for which the server holds a request for a job, and for which an idle worker takes to end.
+/// Longest time for which the server holds a request for a job. An idle worker takes at most this long to end.
 const EXPIRES: Duration = Duration::from_secs(2);
 
-/// Time after which a request counts as lost, because the server has gone.
+/// Time after [`EXPIRES`] at which a request counts as lost, because the server has gone.
 const LOST: Duration = Duration::from_secs(5);
 
-/// Pause before a file that cannot be read is tried again, times the number of deliveries so far.
+/// Pause before another attempt to read a file, multiplied by the number of deliveries so far.
 const READ_AGAIN: Duration = Duration::from_secs(1);
 
 /// The verdict on a file whose workers have ended several times without a result.
 const CRASHED: &str = "crashed";
-/// Name in the metrics of the result of a file that cannot be read.
+/// Name, in the metrics, for the result of a file that cannot be read.
 const UNREAD: &str = "unread";
 
 /// A worker of the game `G`.
@@ -110,7 +110,7 @@ pub(crate) async fn run<G: Game + 'static>(
     Ok(())
 }
 
-/// The next job. `None` if there is none for a moment, also while the server is restarting.
+/// Waits for the next job. Returns `None` if none arrives in time, also while the server is restarting.
 async fn next(jobs: &PullConsumer) -> Option<Message> {
     let request = async {
         let mut batch = jobs.fetch().max_messages(1).expires(EXPIRES).messages().await.ok()?;
@@ -170,7 +170,7 @@ impl<G: Game + 'static> Work<G> {
             tokio::select! {
                 done = &mut verify => return done,
                 () = tokio::time::sleep(self.progress) => {
-                    // If this is lost, another worker may verify the file as well; one result is refused.
+                    // If this message is lost, another worker may verify the file as well; the later result is refused.
                     let _ = message.ack_with(AckKind::Progress).await;
                 }
             }
@@ -207,8 +207,8 @@ impl<G: Game + 'static> Work<G> {
     }
 }
 
-/// Acknowledges a job and waits until the server has confirmed it. Without a confirmation, the job is delivered again,
-/// and its result is known then.
+/// Acknowledges a job and waits until the server has confirmed it. Without a confirmation, the job is delivered again
+/// and dropped because it has a result.
 async fn acknowledge(message: &Message, kind: AckKind) {
     let _ = message.double_ack_with(kind).await;
 }

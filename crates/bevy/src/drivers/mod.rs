@@ -74,7 +74,7 @@ impl<G: LockstepGame> Driver<G> {
         }
     }
 
-    /// Number of ticks that no rollback changes any more.
+    /// Number of confirmed ticks, which no rollback can change.
     pub(crate) fn confirmed(&self) -> u64 {
         match self {
             Driver::Local(local) => local.tick(),

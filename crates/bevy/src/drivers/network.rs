@@ -80,7 +80,7 @@ impl<G: LockstepGame> MatchDriver<G> {
         Ok(())
     }
 
-    /// Tells the log the tick: a state that was received does not contain it.
+    /// Sets the tick of the log, because a received state does not contain its tick.
     fn synchronise(&self) {
         self.peer.game().log().set_tick(self.peer.tick());
     }

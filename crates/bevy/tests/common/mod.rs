@@ -95,7 +95,7 @@ pub fn check_views(app: &mut App) {
     assert_eq!(views.iter().count(), count);
 }
 
-/// The events of the last tick of a world, in the order of the messages, collected in another way than the plugin does.
+/// The events of the last tick of a world, in the order of the messages, collected independently of the plugin.
 pub fn events_of(world: &Physics) -> Vec<WorldEvent> {
     let events = world.events();
     let mut found = Vec::new();

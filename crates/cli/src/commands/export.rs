@@ -150,7 +150,7 @@ impl Arguments {
         }
     }
 
-    /// The game's own view, changed by the arguments.
+    /// The game's own view, with the overrides of the arguments applied.
     fn view(&self, game: View) -> View {
         let (width, height) = (self.width.unwrap_or(game.width), self.height.unwrap_or(game.height));
         let frame = self.window.map_or(game.frame, lockstep2d::draw::Frame::Window);

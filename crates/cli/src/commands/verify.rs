@@ -84,7 +84,7 @@ struct SignerArguments {
     require: u16,
 }
 
-/// Arguments that override limits of one file, as `verify` has them.
+/// Arguments of `verify` that override the limits of one file.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Limits of one file")]
 pub struct LimitArguments {

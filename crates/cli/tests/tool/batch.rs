@@ -96,7 +96,7 @@ pub(crate) fn fuse(ticks: u64) -> Vec<u8> {
     recording.finish().unwrap()
 }
 
-/// The bytes of a file of one of several kinds, chosen by `number`, and its verdict.
+/// The bytes of a file and its verdict. `number` selects the kind of the file.
 fn file(number: u64) -> (Vec<u8>, &'static str) {
     let mut good = replay(number * 31 % 400);
     let length = good.len();

@@ -115,10 +115,7 @@ fn other_limits_are_other_questions() {
     {
         let flag = format!("--max-{flag}");
         let (limited, cached) = with(&[&flag, number]);
-        assert!(
-            cached <= 2,
-            "{flag}: at most the files that are equal as far as they are read share an entry"
-        );
+        assert!(cached <= 2, "{flag}: files share an entry only if the bytes that are read are equal");
         assert_eq!(limited, uncached(&run(&["verify", "--json", &path, &flag, number])).0, "{flag}");
         assert_eq!(with(&[&flag, number]), (limited, 5), "{flag}");
     }

@@ -29,8 +29,7 @@ fn pictures(file: &[u8], ticks: &[u64], view: &View) -> Vec<Image> {
     pictures
 }
 
-/// The window that fits the world over a range of ticks, from at most about a hundred sampled ticks, the last among
-/// them.
+/// The window that fits the world at about a hundred sampled ticks of a range, including the last tick.
 fn window(file: &[u8], mut ticks: RangeInclusive<u64>) -> Aabb {
     let step = usize::try_from((ticks.end() - ticks.start()).div_ceil(100).max(1)).unwrap();
     let last = *ticks.end();
@@ -198,7 +197,7 @@ fn memory_does_not_grow_with_the_frames() {
     };
     let frames = crate::sweep::size(500, 150);
     let (few, many) = (peak_of(50), peak_of(frames));
-    // The frames that are added, 100 or in the full sweep 450, are 120 or 550 MB of pixels.
+    // The pixels of the additional frames are 120 MB for 100 frames, or 550 MB for 450 frames in the full sweep.
     assert!(many < few + 10_000, "{few} KiB for 50 frames, {many} KiB for {frames}");
 }
 

@@ -125,9 +125,9 @@ fn energy_in_free_fall_is_constant() {
     let (low, high) = extremes(&curve(&svg, "total"));
     let (_, kinetic) = extremes(&curve(&svg, "kinetic"));
     assert!(kinetic > 0.0);
-    assert!(high - low < kinetic * 0.02, "from {low} to {high}, of which {kinetic} is kinetic");
+    assert!(high - low < kinetic * 0.02, "total from {low} to {high}, kinetic up to {kinetic}");
     let (still, fast) = (curve(&svg, "kinetic")[0], curve(&svg, "kinetic").pop().unwrap());
-    assert!(still < fast / 100.0, "from {still} to {fast}");
+    assert!(still < fast / 100.0, "kinetic from {still} to {fast}");
 }
 
 /// A pendulum turns potential energy into kinetic energy and back with small losses. At the height of its release its
@@ -139,9 +139,12 @@ fn energy_of_a_pendulum_goes_back_and_forth() {
         (curve(&svg, "total"), curve(&svg, "kinetic"), curve(&svg, "potential"));
     let (low, high) = extremes(&total);
     let (_, fastest) = extremes(&kinetic);
-    assert!(high - low < fastest * 0.05, "from {low} to {high}, of which {fastest} is kinetic");
+    assert!(high - low < fastest * 0.05, "total from {low} to {high}, kinetic up to {fastest}");
     let (lowest, highest) = extremes(&potential);
-    assert!(((highest - lowest) - fastest).abs() < fastest * 0.05, "{lowest} to {highest}, and {fastest}");
+    assert!(
+        ((highest - lowest) - fastest).abs() < fastest * 0.05,
+        "potential from {lowest} to {highest}, kinetic up to {fastest}"
+    );
     let turns = kinetic.windows(3).filter(|w| w[1] <= w[0] && w[1] < w[2] && w[1] < fastest / 20.0).count();
     assert!(turns >= 2, "it turns {turns} times");
 }

@@ -1,4 +1,4 @@
-//! Memory of all tools for files that are made to be large, against the table of docs/VERIFYING.md.
+//! Peak memory of all tools for files that need much memory, compared with the table of docs/VERIFYING.md.
 
 use std::process::{Command, Stdio};
 use std::time::Duration;
@@ -55,7 +55,7 @@ fn field(count: i64) -> Vec<Edit> {
     squares((0..count).map(|at| (fx!(2) * (at % 1000), fx!(2) * (at / 1000))))
 }
 
-/// Two bodies with joints of a kind between them.
+/// Two bodies with `count` joints of one kind between them.
 fn joints(count: usize, kind: impl Into<JointKind>) -> Vec<Edit> {
     let body = |slot: u32| codec::decode::<BodyId>(&u64::from(slot).to_le_bytes()).unwrap();
     let ends = vec![(body(0), body(1)); count];
@@ -80,7 +80,7 @@ fn replay_of(commands: Vec<Edit>, ticks: u32) -> Vec<u8> {
     recording.finish().unwrap()
 }
 
-/// The rows of the table. The sample has the first of them.
+/// Measures the rows of the table. Without the full sweep, only the first row is measured.
 #[test]
 fn verify_takes_no_more_memory_than_is_documented() {
     type Row = (&'static str, fn() -> Vec<Edit>, u32, &'static str, u64);
@@ -110,7 +110,7 @@ fn verify_takes_no_more_memory_than_is_documented() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Memory in KB that the tool takes by itself without optimisation, because its code is larger.
+/// Additional memory in KB of the tool without optimisation, because its code is larger.
 const UNOPTIMISED: u64 = if cfg!(debug_assertions) { 3_000 } else { 0 };
 
 /// Runs all tools on three files. `verify` may take the memory in KB that the table states for such a file, and some

@@ -1,5 +1,5 @@
 //! Commands that write a file lose no data: an existing file is replaced only on request, and either by all of the new
-//! bytes or not at all, with a full disk, a killed process and two writers of the same file.
+//! bytes or not at all. This holds with a full disk, a killed process and two writers of the same file.
 #![cfg(unix)]
 
 use std::fs;

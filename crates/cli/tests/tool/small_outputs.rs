@@ -22,13 +22,13 @@ fn start(arguments: &[&str]) -> Child {
     command.args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-/// Runs the tool in a shell where no file can have a byte, as on a full disk.
+/// Runs the tool with a file size limit of 0 bytes, so that writes fail as on a full disk.
 fn tool_without_space(arguments: &[&str]) -> Output {
     let script = "trap '' XFSZ; ulimit -f 0; exec \"$@\"";
     Command::new("sh").args(["-c", script, "sh", TOOL]).args(arguments).output().unwrap()
 }
 
-/// Starts the tool and kills it after some microseconds, in which it may have ended.
+/// Starts the tool and kills it after some microseconds, unless it has ended before.
 fn kill_after(microseconds: u64, arguments: &[&str]) {
     let mut child = start(arguments);
     std::thread::sleep(Duration::from_micros(microseconds));
@@ -36,7 +36,7 @@ fn kill_after(microseconds: u64, arguments: &[&str]) {
     child.wait().unwrap();
 }
 
-/// A number below `range` for each `round`, in no order.
+/// Pseudorandom number below `range` for each `round`.
 fn shuffled(round: u64, range: u64) -> u64 {
     round * 7919 % range
 }
@@ -173,7 +173,7 @@ fn whoever_signs_at_the_same_time_is_in_the_file_or_is_told() {
         signed.sort();
         assert_eq!(found, signed);
     }
-    assert!(told > 0, "no two signers have met");
+    assert!(told > 0, "no signer has found the file locked by another");
 }
 
 /// The lines of `verify --json`, without their field `cached`, and the text of standard error.

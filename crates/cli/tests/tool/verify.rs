@@ -113,7 +113,7 @@ fn every_verdict_has_its_json() {
 
 #[test]
 fn a_file_that_diverges_says_where() {
-    // Hashes of a changed state stand for a machine that computed something else.
+    // The hashes of a changed state simulate a machine that has diverged.
     let folder = Folder::new("diverged");
     let (mut recorder, mut game) = Recorder::<Counter>::start(&setup(), 2).unwrap();
     for tick in 0..6 {

@@ -99,8 +99,8 @@ async fn first_frame(socket: &mut Socket) -> Result<Option<Vec<u8>>, Error> {
     Ok(None)
 }
 
-/// The address of the member with a secret: a hash, from which nobody can find the secret. Nothing has to be stored,
-/// so that the address outlives connections and the relay.
+/// The address of the member with this secret: a hash, which does not reveal the secret. Nothing has to be stored, so a
+/// member keeps its address after a lost connection or a restart of the relay.
 fn member_of(secret: &[u8]) -> Option<Member> {
     let valid = secret.len() == SECRET_BYTES;
     valid.then(|| blake3::hash(secret).as_bytes().first_chunk().copied()).flatten()
@@ -165,7 +165,7 @@ impl Connection<'_> {
         }
     }
 
-    /// Forwards a datagram, with the address of its receiver replaced by that of its sender.
+    /// Forwards a datagram, and replaces the receiver's address by the sender's address.
     fn forward(&self, message: &Message) {
         if let Message::Binary(bytes) = message
             && let Some((to, datagram)) = unframe(bytes)

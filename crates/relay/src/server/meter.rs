@@ -106,7 +106,7 @@ mod tests {
         let lost = paces.iter().filter(|pace| **pace == Pace::Fast).count();
         assert!((440..=460).contains(&lost), "{lost}");
         let first = paces.iter().position(|pace| *pace != Pace::Fine);
-        assert_eq!(first, Some(99), "a second's worth is a burst");
+        assert_eq!(first, Some(99), "a burst of one second is allowed");
     }
 
     #[test]

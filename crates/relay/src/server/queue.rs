@@ -16,7 +16,7 @@ pub(super) struct Queue {
 struct State {
     frames: VecDeque<Vec<u8>>,
     bytes: usize,
-    /// The member has not been told the current members of the room.
+    /// The members of the room have changed since the last message about them.
     room_changed: bool,
     /// A newer connection of the same member takes the place of this one.
     replaced: bool,
@@ -75,7 +75,7 @@ impl Queue {
         Some(Next::Frame(frame))
     }
 
-    /// Waits for something to send. May be cancelled without a loss.
+    /// Waits for the next message. Cancel-safe: no message is lost if the future is dropped.
     pub(super) async fn next(&self) -> Next {
         loop {
             if let Some(next) = self.pop() {

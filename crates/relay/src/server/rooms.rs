@@ -26,7 +26,7 @@ impl Rooms {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Admits a member. A connection of the same member that is still there is replaced.
+    /// Admits a member. An existing connection of the same member is replaced.
     pub(super) fn enter(
         &self,
         code: &str,
@@ -74,7 +74,7 @@ impl Rooms {
         }
     }
 
-    /// The members of a room, as told to one of them.
+    /// The message about the members of a room, for the member `you`.
     pub(super) fn members(&self, code: &str, you: Member) -> Members {
         let rooms = self.rooms();
         let room = rooms.get(code).map_or(&[][..], Vec::as_slice);

@@ -20,7 +20,7 @@ impl Pace {
         u16::try_from(end(frame + 1) - end(frame)).unwrap_or(u16::MAX)
     }
 
-    /// Returns the duration of a frame in seconds, as numerator and denominator, shortened to 16 bits if necessary.
+    /// Returns the duration of a frame in seconds, as numerator and denominator, reduced to 16 bits each if necessary.
     pub(super) fn fraction(self) -> (u16, u16) {
         let (mut above, mut below) = (self.ticks.max(1), self.tick_rate.max(1));
         let common = gcd(above, below);

@@ -13,7 +13,7 @@ type Rgb = [u8; 3];
 const COLOURS_MAX: usize = 255;
 /// Number of the most frequent colours that are kept exactly if there are too many colours.
 const KEPT: usize = 96;
-/// Largest error per channel, except for stray pixels, with which an existing palette is used for a frame.
+/// Largest error per channel at which a frame uses an existing palette. Stray colours are not compared.
 const ERROR_MAX: u8 = 24;
 /// A colour is stray if it has at most one pixel per this number of pixels of the frame.
 const PIXELS_OF_A_STRAY: u64 = 20_000;

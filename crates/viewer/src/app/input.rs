@@ -42,7 +42,7 @@ fn is_click(from: [f32; 2], to: [f32; 2]) -> bool {
 }
 
 impl App {
-    /// Handles an input event. The source gets it first: a game takes its own keys.
+    /// Handles an input event. The source receives the event first, so that a game can consume its players' keys.
     pub fn handle(&mut self, event: Event) {
         if self.source.as_mut().is_some_and(|source| source.handle(&event)) {
             return;

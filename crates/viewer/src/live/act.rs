@@ -66,7 +66,7 @@ impl Aim {
 /// let place = Vec2::new(fx!(5), fx!(9));
 /// live.act(Act::Spawn { form: Form::Circle, at: place, to: place });
 /// live.seek(1)?;
-/// // A person who draws sees the body, and takes it where it is then.
+/// // The body exists after one tick. It is grabbed at its position in that tick.
 /// let (_, ball) = live.world().bodies().last().expect("the circle");
 /// let at = ball.position();
 /// assert_eq!(ball.kind(), BodyKind::Dynamic);

@@ -25,8 +25,8 @@ const HERTZ: Fx = fx!(5);
 const DAMPING_RATIO: Fx = fx!(1);
 /// Largest force of the drag spring per kilogram of the body, in m/s².
 const STRENGTH: i64 = 1000;
-/// Friction torque that damps the rotation of a dragged body, per kilogram and metre of radius of gyration, in m/s²:
-/// the torque of a quarter of its weight at that radius.
+/// Friction torque that damps the rotation of a dragged body, per kilogram and metre of radius of gyration, in m/s². It
+/// equals the torque of a quarter of the body's weight at that radius.
 const GRIP: Fx = fx!(2.5);
 
 /// Grab state of the pointer.

@@ -105,7 +105,7 @@ impl Live {
         let all = [[script.clone(), done].concat()];
         self.note = None;
         match self.recording.play(&all) {
-            // More than a replay can hold: play the tick without the user's commands, with the scene's script only.
+            // A replay cannot hold all these commands: play the tick with the commands of the scene's script only.
             Err(RecordingError::TooMuch | RecordingError::Record(_)) if all[0].len() > script.len() => {
                 self.hand.forget();
                 self.note = Some("too many commands in one tick: they were dropped");

@@ -15,7 +15,7 @@ use super::presentation::Presentation;
 use crate::event::{Event, Key};
 use crate::source::{Source, SourceError};
 
-/// Maximum time for which closing waits until the others know that this peer leaves.
+/// Maximum time for which closing waits until this peer has left the match.
 const LEAVE_TIME: Duration = Duration::from_millis(500);
 /// Time between two updates while closing waits.
 const LEAVE_STEP: Duration = Duration::from_millis(5);

@@ -11,7 +11,7 @@ use crate::event::{Event, Key};
 /// A computer player: returns the input for the next tick of a game. It is called once per tick.
 pub type Bot<G> = Box<dyn FnMut(&G) -> <G as Game>::Input>;
 
-/// Creates the bot of a seat, with the random seed of the scene.
+/// Creates a bot from the random seed of the scene and the number of the seat.
 type MakeBot<G> = Rc<dyn Fn(u64, usize) -> Bot<G>>;
 
 /// Control of a seat: keys, a bot or no player. [`Viewer::keys`](crate::Viewer::keys) and

@@ -15,7 +15,7 @@ use lockstep2d::report::EvidenceError;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OpenError {
-    /// The file is a replay of which no tick can be played.
+    /// The file is a replay, and none of its ticks can be played.
     Replay(Verdict),
     /// The file is a replay of another game.
     OtherGame {

@@ -14,7 +14,7 @@ const SAVES_MAX: usize = 256;
 
 /// World of a snapshot, which runs on without any input.
 ///
-/// *Tick t* is tick *t* of the world, so the first tick is that of the snapshot.
+/// *Tick t* is tick *t* of the world, so the first tick is the tick of the snapshot.
 ///
 /// ```
 /// use lockstep2d::world::World;

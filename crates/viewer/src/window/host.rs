@@ -56,7 +56,7 @@ impl Host {
 
     /// Sleeps if the display does not pace the frames, as with a virtual display. Times are in seconds.
     pub(super) fn pace(&self, elapsed: f64) {
-        /// Frames shorter than this are faster than any display.
+        /// Smallest plausible frame time of a display, in seconds.
         const HASTE: f64 = 1.0 / 250.0;
         if elapsed < HASTE {
             std::thread::sleep(Duration::from_secs_f64(1.0 / 60.0 - elapsed));
@@ -91,7 +91,7 @@ fn save_as_new(name: &str, bytes: &[u8]) -> io::Result<PathBuf> {
     outcome
 }
 
-/// Writes bytes to a file of this process beside a path.
+/// Writes bytes to a temporary file beside a path. The file name contains the process id.
 fn write_beside(path: &Path, bytes: &[u8]) -> io::Result<PathBuf> {
     let mut beside = path.to_path_buf().into_os_string();
     beside.push(format!(".{}.unfinished", std::process::id()));

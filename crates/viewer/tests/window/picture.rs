@@ -29,7 +29,7 @@ impl Picture {
         self.pixels[y * self.width + x]
     }
 
-    /// Returns the positions of the pixels that differ from those of another picture by more than `step` in a channel.
+    /// Returns the positions of the pixels that differ from the other picture by more than `step` in a channel.
     pub(crate) fn differing<'a>(
         &'a self,
         other: &'a Self,

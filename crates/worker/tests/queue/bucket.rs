@@ -128,7 +128,7 @@ fn a_bucket_that_cannot_be_read_is_an_error() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
         assert!(error.contains(expected), "{arguments:?}: {error}");
     }
-    // A worker without the bucket, and one without the right key, have a result as for any file that cannot be read.
+    // For a worker without the bucket or without the right key, the file counts as one that cannot be read.
     allowed.submit(&["--bucket", "s3://uploads"]);
     let mut child = forged.work(&["--bucket", "s3://uploads", "--max-deliver", "1"]);
     wait_until("there is a result", || forged.results().len() == 1);

@@ -1,5 +1,5 @@
-//! The queue with a real server: every file has exactly one result, equal to that of `verify --json`, whichever
-//! process is killed.
+//! The queue with a real server: every file has exactly one result, equal to the line of `verify --json`, also if
+//! workers or the server are killed.
 //!
 //! `LOCKSTEP2D_WORKER_FILES` is the number of files of the largest test, 300 by default.
 #![cfg(unix)]
@@ -77,7 +77,7 @@ fn verified(folder: &Folder) -> Vec<String> {
     let arguments = ["verify", "--json"].map(String::from);
     let arguments = ["lockstep2d".into()].into_iter().chain(arguments).chain([path.display().to_string()]);
     Tool::<Sandbox>::new().run_with(arguments, &mut out, &mut err);
-    // Workers know the path that was submitted.
+    // Results have the submitted path, which is relative to the folder.
     let below = format!("{}/", folder.0.display());
     let mut lines: Vec<String> =
         String::from_utf8(out).unwrap().lines().map(|line| line.replacen(&below, "", 1)).collect();
@@ -106,7 +106,7 @@ fn every_file_has_one_result_though_workers_and_the_server_are_killed() {
     assert_eq!(submitted.len() as u64, count);
     assert!(submitted.iter().all(|line| line.ends_with("\"queued\":true}")), "{}", submitted[0]);
 
-    // Kills are no fault of the file, so that many are allowed.
+    // Kills are not caused by the files, so many deliveries are allowed.
     let arguments = ["--ack-seconds", "1", "--max-deliver", "1000"];
     let mut workers: Vec<Process> = (0..WORKERS).map(|_| program.work(&arguments)).collect();
     let (mut state, mut kills, mut restarts) = (7, 0, 0);
@@ -171,10 +171,10 @@ fn two_workers_do_almost_twice_as_much_as_one() {
     };
     // The best of three: other programs on the machine can only make the gain smaller.
     let best = (0..3).map(gain).max().unwrap();
-    assert!(best >= 180, "throughput of two workers: {best} % of that of one");
+    assert!(best >= 180, "two workers have only {best} % of the throughput of one");
 }
 
-/// Against docs/VERIFYING.md: 65 MB for 400 squares on one spot, and 30 MB for the worker itself.
+/// Compares with docs/VERIFYING.md: 65 MB for 400 squares on one spot, and 30 MB for the worker itself.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_worker_takes_little_more_memory_than_verify() {

@@ -14,7 +14,7 @@ use crate::error::CommandError;
 
 /// Largest default frame rate in frames per second. A higher rate makes no visible difference.
 const FRAME_RATE_MAX: u32 = 30;
-/// Default width of an animation in pixels. It is smaller than that of a picture, to keep files small.
+/// Default width of an animation in pixels, smaller than for pictures to keep files small.
 const WIDTH: u32 = 640;
 /// Highest frame rate at which most programs show a GIF: their shortest frame time is 2/100 s.
 const GIF_RATE_MAX: u32 = 50;
@@ -101,7 +101,7 @@ struct Camera<'a, G: Game> {
 }
 
 impl<'a, G: Game> Camera<'a, G> {
-    /// All frames have the same size. Their aspect ratio is that of the game's own view, unless the arguments set both
+    /// All frames have the same size. They have the aspect ratio of the game's own view, unless the arguments set both
     /// width and height.
     fn new(
         replay: &mut Replay<'_, G>,

@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 use super::report::Report;
 use crate::console::json_text;
 
-/// Version of the cache. Incremented when the meaning of an entry changes, or the verdict for the same bytes, rules and
-/// semantics.
+/// Version of the cache. Incremented when the meaning of an entry changes, or when the verdict for the same bytes,
+/// rules and semantics changes.
 const VERSION: u32 = 1;
 
 /// Maximum number of bytes read from an entry: enough for 256 claims.

@@ -22,7 +22,7 @@ use crate::files::{OneLine, Shown};
 /// Prints the results line by line, and the summary.
 pub(super) struct Display<'a, 'c> {
     json: bool,
-    /// Seconds after which files are stopped.
+    /// Time limit of a file in seconds, for messages.
     max_seconds: u64,
     console: &'a mut Console<'c>,
     shared: &'a Shared,

@@ -7,13 +7,13 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::{SigId, flag, low_level};
 
-/// The signals, their numbers as flags, and their names.
+/// Each signal, the number that [`Interrupt`] stores when it arrives, and its name.
 const SIGNALS: [(i32, usize, &str); 2] = [(SIGINT, 1, "SIGINT"), (SIGTERM, 2, "SIGTERM")];
 
 /// Catches the signals while the value exists. A second signal ends the process at once, even while the output is
 /// blocked.
 pub(super) struct Interrupt {
-    /// The flag of the signal, 0 before one arrives.
+    /// Number of the signal that arrived, as in [`SIGNALS`]; 0 before.
     caught: Arc<AtomicUsize>,
     ids: Vec<SigId>,
 }

@@ -92,8 +92,8 @@ impl<G: Game> Judge<G> {
         self.shared.ticks.load(Ordering::Relaxed)
     }
 
-    /// Key of everything that the verdict depends on, as 64 hexadecimal digits: the file with this BLAKE3 digest, the
-    /// rules, the semantics of the engine, and the limits. The entries of `verify --cache` are named by the same key.
+    /// Hash of everything that the verdict depends on, as 64 hexadecimal digits: the file with this BLAKE3 digest, the
+    /// rules, the semantics of the engine, and the limits. The entries of `verify --cache` are named by the same hash.
     #[must_use]
     pub fn key(&self, blake3: &[u8; 32]) -> String {
         cache::key(&cache::context(G::RULES, &self.limits), blake3).to_string()

@@ -13,7 +13,8 @@ const AHEAD_MAX: u64 = 1024;
 /// Longest time between two calls of [`Sink::pause`].
 const MOMENT: Duration = Duration::from_millis(100);
 
-/// Stack size of a thread in bytes: that of a main thread, which a game may rely on. Untouched pages take no memory.
+/// Stack size of a thread in bytes. It equals the usual size for a main thread, which a game may rely on. Untouched
+/// pages take no memory.
 const STACK_BYTES: usize = 8 << 20;
 
 /// The order in which results are shown.
@@ -308,7 +309,7 @@ mod tests {
         };
         let mut shown = EndWhenHeld(Shown::default(), &done);
         run(2, Order::Tasks, 0.., task, &stop, &mut shown).unwrap();
-        // A result whose task has ended may still be on its way.
+        // The result of a task that has ended may still be in the channel.
         assert!(
             shown.0.is_ended && shown.0.numbers.len() as u64 >= AHEAD_MAX - 2,
             "{}",

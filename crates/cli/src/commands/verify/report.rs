@@ -46,7 +46,7 @@ impl Digests {
     }
 }
 
-/// The versions that a file requires. If the format has another version, all others are unknown.
+/// The versions that a file requires. If this program cannot read the format, the other fields are `None`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(super) struct Needs {
     pub(super) format: u32,
@@ -59,7 +59,7 @@ pub(super) struct Needs {
 const PANICKED: &str = "panicked";
 
 impl Report {
-    /// `claims` are those of the trailer, `needs` the versions that an unverifiable file needs.
+    /// `claims` are the claims of the trailer. `needs` are the versions that an unverifiable file requires.
     pub(super) fn new(bytes: u64, verdict: &Verdict, claims: &[(String, i64)], needs: Option<Needs>) -> Self {
         let mut text = verdict.to_string();
         if verdict.is_match() && !claims.is_empty() {
@@ -88,7 +88,7 @@ impl Report {
         self.verdict == "match"
     }
 
-    /// Whether the file may be good although it does not match.
+    /// Whether the file may be valid although it does not match.
     pub(super) fn is_doubtful(&self) -> bool {
         matches!(self.verdict.as_str(), "incomplete" | "unverifiable")
     }

@@ -11,7 +11,7 @@ use crate::commands::sign;
 use crate::error::CommandError;
 use crate::signature::{AllowedKeys, Check, GameDigest, path_beside};
 
-/// The keys of which signatures are required.
+/// The keys that may sign, and the number of required signers.
 pub(super) struct Signers {
     keys: AllowedKeys,
     /// Number of different names that have to sign each file.

@@ -31,7 +31,7 @@ pub(super) struct Verified {
     pub(super) outcome: Outcome,
     pub(super) digests: Digests,
     pub(super) cached: bool,
-    /// The error that kept the report from being cached.
+    /// Error in writing the report to the cache.
     pub(super) unkept: Option<io::Error>,
     /// Result of the signature check, if signatures are required. It is never cached.
     pub(super) signed: Option<Signed>,

@@ -1,10 +1,10 @@
 //! [`Curve`]: values over ticks, reduced to the number of points that a plot can show.
 
-/// Maximum number of columns.
+/// Maximum number of columns. A column holds consecutive ticks.
 const COLUMNS: u64 = 1000;
 
-/// Values over any number of ticks. Of the values in one column, the first, lowest, highest and last are kept, so that
-/// no extreme is lost.
+/// Values over any number of ticks. Each column keeps its first, lowest, highest and last value, so that no extreme is
+/// lost.
 pub(super) struct Curve {
     pub(super) name: &'static str,
     pub(super) colour: &'static str,
