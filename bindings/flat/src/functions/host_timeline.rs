@@ -1,5 +1,5 @@
-//! Seeking in replays of games whose rules are in another language: the game fulfils requests, as in a match. It saves,
-//! restores and advances its state, and passes its hash at the checkpoints.
+//! Seeking in replays of games whose rules are written in another language: the host fulfils requests, as in a match.
+//! It saves, restores and advances its state, and passes its state hash at the checkpoints.
 
 use super::host_replay::HostReplay;
 use crate::border::Out;
@@ -37,7 +37,7 @@ impl HostReplay {
         request(kind, self.tick, self.run().map_or(0, |run| run.absent))
     }
 
-    /// Notes that a request was passed to the game. A checksum is requested until it is answered.
+    /// Updates the position after a request was passed to the game. A checksum is requested until it is answered.
     fn fulfil(&mut self, request: RawRequest) {
         match request.kind {
             REQUEST_LOAD => (self.tick, self.compared) = (request.tick.into(), None),
@@ -90,8 +90,8 @@ api! {
         })
     }
 
-    /// Sets the ticks between the states that seeking asks to save. At first it is 60, or more for replays that would
-    /// need more than 256 states.
+    /// Sets the interval in ticks at which seeking requests to save the state. The default is 60, or more for replays
+    /// that would otherwise need more than 256 saved states.
     fn ls2d_replay_set_interval(replay: u32, ticks: u32) {
         with(replay, |replay: &mut HostReplay| {
             if ticks == 0 {

@@ -89,7 +89,7 @@ api! {
         with(world, |world: &mut World| tick.set(world.tick()))
     }
 
-    /// Number of results that a clamp has changed since the world was made: 0 while all values stay in their ranges.
+    /// Number of results that were clamped since the world was made: 0 while all values stay in their ranges.
     fn ls2d_world_faults(world: u32, faults: Out<'_, u64>) {
         let mut faults = faults;
         with(world, |world: &mut World| faults.set(world.faults()))
