@@ -5,7 +5,7 @@ const ONE = 1n << 32n;
 const MAX = (1n << 63n) - 1n;
 const MIN = -(1n << 63n);
 const NUMBER = /^([+-]?)(\d+)(?:\.(\d+))?$/;
-// Parsed strings, because the same few strings occur again and again.
+// Cache of parsed strings: a program parses the same few strings repeatedly.
 const CACHE = new Map();
 const CACHE_MAX = 4096;
 
@@ -140,7 +140,7 @@ export class Fx {
         return Number(this.raw >> 32n);
     }
 
-    /** A float for drawing. It must not come back into the simulation. */
+    /** A float for drawing. It must not enter the simulation. */
     toNumber() {
         return Number(this.raw) / 4294967296;
     }
@@ -158,7 +158,7 @@ export class Fx {
         return this.toString();
     }
 
-    // Otherwise `a < b` would compare floats, and `a + b` would concatenate strings.
+    // Refuses operators: otherwise `a < b` would compare floats, and `a + b` would concatenate strings.
     [Symbol.toPrimitive](hint) {
         if (hint === "string") {
             return this.toString();

@@ -1,4 +1,4 @@
-// Replays: recorded, verified, limited; and those of games whose rules are in JavaScript.
+// Replays of worlds: recording, verification, limits, seeking. Replays of games whose rules are in JavaScript.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { library } from "../src/library.js";
@@ -52,7 +52,7 @@ test("a recorded world verifies, and a changed file does not", () => {
     timeline.dispose();
 });
 
-// A game: each player counts, and ticks without a player are counted. All sums are hashed.
+// A game that sums the inputs of each player and counts the ticks with an absent player. All sums are hashed.
 class Sums {
     sums = [0, 0, 0];
     step(inputs, absent) {

@@ -1,4 +1,4 @@
-//! The same inputs give the same match: in every way in which it can be played, and on every machine.
+//! The same inputs give the same match on every machine, in all variants of the determinism check, and in a replay.
 
 use lockstep2d::check::{CheckOptions, check};
 use lockstep2d::lockstep::Game;
