@@ -115,7 +115,8 @@ function Driver:status()
     return self.flag[0]
 end
 
---- Numbers of ticks: played, final for the match, and played with final inputs here. 0 before the peer has joined.
+--- Numbers of ticks: played, also with guessed inputs; final, whose inputs are final; played with final inputs. All
+--- are 0 before the peer has joined.
 function Driver:ticks()
     if self:status() == ls.MATCH_CONNECTING then
         return 0, 0, 0

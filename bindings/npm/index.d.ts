@@ -40,7 +40,7 @@ export class Lockstep2dError extends Error {
     readonly verdict?: Verdict;
 }
 
-/** A number of the simulation: 64 bits, 32 of which are fraction bits. Immutable. */
+/** A fixed-point number of 64 bits with 32 fraction bits. Immutable. */
 export class Fx {
     private constructor(raw: bigint);
     static fromRaw(raw: bigint | number): Fx;
@@ -64,7 +64,7 @@ export class Fx {
     toString(): string;
     toJSON(): string;
 }
-/** A number of the simulation: `fx("1.25")`. */
+/** Makes a fixed-point number: `fx("1.25")`. */
 export function fx(value: Num): Fx;
 
 /** A rotation in units of 2^-32 turn. Immutable. */
@@ -124,7 +124,7 @@ export interface ShapeOptions {
     restitutionThreshold?: Num;
     rollingResistance?: Num;
     surfaceSpeed?: Num;
-    /** Bits of the categories that the shape belongs to. `mask` has those that it collides with. */
+    /** Bits of the categories that the shape belongs to. `mask` has the categories that it collides with. */
     category?: bigint | number;
     mask?: bigint | number;
     group?: number;
@@ -639,7 +639,7 @@ export interface MatchOptions {
     seatWithin?: number;
     /** Distinguishes matches: packets with another tag are ignored. */
     matchTag?: bigint | number;
-    /** Milliseconds for which play stalls because of a missing peer before the others go on without it. */
+    /** Milliseconds for which play stalls because of a missing peer before the other peers go on without it. */
     patience?: number;
     /** Number of this peer: random by default. It has to be a new one each time a page is loaded. */
     peer?: number;
@@ -660,7 +660,7 @@ export interface MatchOptions {
  * - `watching`: follows the match and requests no seat.
  * - `waiting`: has a seat in a match that has not begun.
  * - `paused`: receives no packets from a majority, and only a majority can continue the match.
- * - `dropped`: the others went on without this peer, which requests its seat again.
+ * - `dropped`: the other peers went on without this peer, which requests its seat again.
  * - `kicked`: removed permanently.
  * - `leaving`: announces its departure.
  * - `left`, `finished`: still answers peers that lack packets.
@@ -682,7 +682,7 @@ export type MatchStatus =
  * - `end`: the match ends after `tick` ticks.
  * - `desync`: after `tick` ticks, `peer` has the hash `theirs` instead of `ours`.
  * - `conflict`: `peer` has issued two different inputs for `tick`. Its inputs are no longer accepted.
- * - `tooFarBehind`: the others no longer keep the inputs that this peer lacks; it has to join again.
+ * - `tooFarBehind`: the other peers no longer keep the inputs that this peer lacks; it has to join again.
  * - `refused`: the contact refuses the request to join, because of `reason`.
  * - `state`: the encoded `state` after `tick` ticks. The game has to load it before further requests are fulfilled.
  * - `badState`: a downloaded state is not valid; it is requested again.
@@ -751,18 +751,19 @@ export class Match extends Handle {
     /** Offers the encoded state after `tick` final ticks to peers that join. */
     offerState(tick: number, state: Uint8Array): void;
     readonly status: MatchStatus;
-    /** Numbers of ticks: played, final for the match, and played with final inputs here. */
+    /** Numbers of ticks: `played`, also with guessed inputs; `final`, whose inputs are final; `confirmed`, played with
+     * final inputs. */
     ticks(): { played: number; final: number; confirmed: number };
     /** The final inputs of all seats for a tick, or undefined if they are not kept. */
     finalInputs(tick: number): TickInputs | undefined;
     /** Seats that this peer plays. */
     readonly seats: number[];
-    /** Leaves the match. Call `update` until the status is `closed`, so that the others are informed. */
+    /** Leaves the match. Call `update` until the status is `closed`, so that the other peers are informed. */
     leave(): void;
     /** Requests an end of the match after a number of ticks. The end is decided two seconds before; until then, other
      * peers can join. */
     endAt(ticks: number): void;
-    /** Requests a pause from all others, or withdraws the request. */
+    /** Requests a pause from all other peers, or withdraws the request. */
     pause(paused: boolean): void;
     /** Votes for going on without a peer that is missing. */
     goOnWithout(peer: number): void;

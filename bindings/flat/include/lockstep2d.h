@@ -34,7 +34,7 @@ typedef uint32_t ls2d_handle;
 #define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)((int64_t)(numerator) * 4294967296 / (denominator)))
 /* An angle of whole degrees, rounded towards zero. */
 #define LS2D_DEGREES(whole) ((ls2d_angle)(int64_t)((int64_t)(whole) * 4294967296 / 360))
-/* No body, no shape, no joint. */
+/* Value of ls2d_body, ls2d_shape and ls2d_joint for none. */
 #define LS2D_NO_ID UINT64_MAX
 /* Version of this header, to be compared with ls2d_api_version(). */
 #define LS2D_API_VERSION 1
@@ -57,7 +57,7 @@ typedef uint32_t ls2d_handle;
 #define LS2D_VALUE 7
 /* The buffer is too short. The number of items that it has to hold was written. */
 #define LS2D_BUFFER 8
-/* A text is not what was expected, for example not UTF-8 or not a number. */
+/* A text is invalid, for example not UTF-8 or not a number. */
 #define LS2D_TEXT 9
 /* A result has no value: division by zero, root of a negative number. */
 #define LS2D_NUMBER 10
@@ -166,9 +166,9 @@ typedef uint64_t ls2d_joint;
 #define LS2D_SWEEP_BULLET 2
 /* `ls2d_body_def.continuous`: swept against fixed and kinematic bodies. */
 #define LS2D_SWEEP_KINEMATIC 3
-/* `ls2d_mover_state.flags`: it stands on ground. */
+/* `ls2d_mover_state.flags`: the character stands on ground. */
 #define LS2D_MOVER_ON_GROUND 1
-/* `ls2d_mover_state.flags`, in results only: it is wedged between two slopes that are both too steep to stand on. */
+/* `ls2d_mover_state.flags`, in results only: wedged between two slopes that are both too steep to stand on. */
 #define LS2D_MOVER_WEDGED 2
 /* `ls2d_config.flags`: bodies at rest fall asleep. */
 #define LS2D_SLEEPING 1
@@ -271,7 +271,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_EVENT_DESYNC 8
 /* Event: `peer` has issued two different inputs for `tick`. */
 #define LS2D_EVENT_CONFLICT 9
-/* Event: the others no longer keep the inputs that this peer lacks; it has to join again. */
+/* Event: the other peers no longer keep the inputs that this peer lacks; it has to join again. */
 #define LS2D_EVENT_TOO_FAR_BEHIND 10
 /* Event: the contact refuses the request to join; `value` is a `LS2D_REFUSED_` reason. */
 #define LS2D_EVENT_REFUSED 11
@@ -298,11 +298,11 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MATCH_PLAYING 3
 /* Status: receives no packets from a majority of the peers. */
 #define LS2D_MATCH_PAUSED 4
-/* Status: the others went on without this peer, which requests its seat again. */
+/* Status: the other peers went on without this peer, which requests its seat again. */
 #define LS2D_MATCH_DROPPED 5
 /* Status: removed for good. */
 #define LS2D_MATCH_KICKED 6
-/* Status: announces its departure to the others. */
+/* Status: announces its departure to the other peers. */
 #define LS2D_MATCH_LEAVING 7
 /* Status: has left. */
 #define LS2D_MATCH_LEFT 8
@@ -462,7 +462,7 @@ typedef struct ls2d_body_def {
     ls2d_vec2 position;
     /* Rotation. */
     ls2d_angle angle;
-    /* 0. */
+    /* Reserved: 0. */
     uint32_t reserved;
     /* Velocity of the centre of mass in m/s. */
     ls2d_vec2 velocity;
@@ -530,7 +530,7 @@ typedef struct ls2d_pose {
 typedef struct ls2d_explosion {
     /* Size of this struct in bytes. */
     uint32_t size;
-    /* 0. */
+    /* Reserved: 0. */
     uint32_t reserved;
     /* Centre in the world, in metres. */
     ls2d_vec2 centre;
@@ -576,7 +576,8 @@ typedef struct ls2d_shape_def {
     uint64_t category;
     /* Categories that the shape collides with. */
     uint64_t mask;
-    /* Shapes of one group other than 0 always collide if it is positive, and never if it is negative. */
+    /* Shapes with the same group other than 0 always collide if the number is positive, and never if it is
+     * negative. */
     int32_t group;
     /* `LS2D_MIX_AVERAGE` and so on, for friction. */
     uint32_t friction_mixing;
@@ -602,7 +603,7 @@ typedef struct ls2d_shape_def {
     ls2d_fx attraction_radius;
     /* `LS2D_FALLOFF_CONSTANT` and so on. */
     uint32_t attraction_falloff;
-    /* 0. */
+    /* Reserved: 0. */
     uint32_t reserved;
     /* A number for the game, part of the state. */
     uint64_t user_data;
@@ -625,7 +626,7 @@ typedef struct ls2d_joint_def {
     ls2d_angle angle_a;
     /* Angle of the joint's frame in B's frame. */
     ls2d_angle angle_b;
-    /* 0. */
+    /* Reserved: 0. */
     uint32_t reserved;
     /* Body A. */
     ls2d_body body_a;
@@ -809,7 +810,7 @@ typedef struct ls2d_mover_plane {
     ls2d_fx separation;
     /* Rotation of the body when the surface was met. */
     ls2d_angle body_angle;
-    /* 0. */
+    /* Reserved: 0. */
     uint32_t reserved;
 } ls2d_mover_plane;
 
@@ -855,9 +856,9 @@ typedef struct ls2d_hit_event {
 typedef struct ls2d_sensor_event {
     /* The sensor. */
     ls2d_shape sensor;
-    /* The other shape. */
+    /* The shape that overlaps the sensor. */
     ls2d_shape visitor;
-    /* Fraction of the tick, 0 to 1. */
+    /* Time within the tick at which the overlap began or ceased, 0 to 1. */
     ls2d_fx fraction;
 } ls2d_sensor_event;
 
@@ -877,7 +878,7 @@ typedef struct ls2d_joint_event {
 typedef struct ls2d_limits {
     /* Size of this struct in bytes. */
     uint32_t size;
-    /* 0. */
+    /* Reserved: 0. */
     uint32_t reserved;
     /* Bytes of the file. */
     uint64_t file_bytes;
@@ -903,7 +904,7 @@ typedef struct ls2d_limits {
 typedef struct ls2d_verdict {
     /* `LS2D_MATCH` and so on. */
     uint32_t kind;
-    /* 0. */
+    /* Reserved: 0. */
     uint32_t reserved;
     /* Number of ticks that were played; for `LS2D_DIVERGED`, the tick of the first checkpoint that differs. */
     uint64_t ticks;
@@ -947,11 +948,12 @@ typedef struct ls2d_match_config {
     uint32_t peer;
     /* Distinguishes matches. */
     uint64_t match_tag;
-    /* Time in microseconds for which play stalls because of a missing peer before the others go on without it. */
+    /* Time in microseconds for which play stalls because of a missing peer before the other peers go on without
+     * it. */
     uint64_t patience;
     /* Identity of the player: a peer that joins again with the same key gets its seat back. */
     uint64_t key;
-    /* Random numbers that nobody else knows. */
+    /* Secret random numbers, which protect against packets with forged addresses. */
     uint64_t secret[2];
 } ls2d_match_config;
 
@@ -979,7 +981,7 @@ typedef struct ls2d_match_event {
     uint32_t tick;
     /* Its meaning depends on the kind. */
     uint32_t value;
-    /* 0. */
+    /* Reserved: 0. */
     uint32_t reserved;
     /* Hash of this peer, for `LS2D_EVENT_DESYNC`. */
     ls2d_hash ours;
@@ -1024,7 +1026,8 @@ size_t ls2d_scratch(size_t size);
 /* Sets the default settings of a world: 60 ticks per second, gravity of 10 m/s² downwards. */
 ls2d_status ls2d_config_init(ls2d_config *config);
 
-/* Raises the sub-steps and the stiffness of contacts to what stacks of bodies of `size` metres need. */
+/* Raises the number of sub-steps and the stiffness of contacts so that stacks of bodies of `size` metres are
+ * stable. */
 ls2d_status ls2d_config_for_smallest(ls2d_config *config, const ls2d_config *from, ls2d_fx size);
 
 /* Makes an empty world. A null pointer stands for the default settings. */
@@ -1039,7 +1042,7 @@ ls2d_status ls2d_world_step(uint32_t world);
 /* Advances a world by some ticks. Only the events of the last one are kept. */
 ls2d_status ls2d_world_steps(uint32_t world, uint32_t ticks);
 
-/* Hash of the state of a world: equal for equal edits in the same order, on every machine. */
+/* Hash of the state of a world. The same edits in the same order give the same hash on every machine. */
 ls2d_status ls2d_world_hash(uint32_t world, ls2d_hash *hash);
 
 /* Hash of a section of the state: 0 settings, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands, 6 random
@@ -1282,10 +1285,10 @@ ls2d_status ls2d_events_contact_end(uint32_t world, ls2d_contact_event *events, 
 /* Shapes that hit each other, sorted. Only shapes with `LS2D_SHAPE_HIT_EVENTS` report hits. */
 ls2d_status ls2d_events_hits(uint32_t world, ls2d_hit_event *events, size_t capacity, size_t *count);
 
-/* Shapes that began to overlap a sensor, sorted by the fraction of the tick. */
+/* Shapes that began to overlap a sensor, sorted by `fraction`. */
 ls2d_status ls2d_events_sensor_begin(uint32_t world, ls2d_sensor_event *events, size_t capacity, size_t *count);
 
-/* Shapes that ceased to overlap a sensor, sorted by the fraction of the tick. */
+/* Shapes that ceased to overlap a sensor, sorted by `fraction`. */
 ls2d_status ls2d_events_sensor_end(uint32_t world, ls2d_sensor_event *events, size_t capacity, size_t *count);
 
 /* Joints whose force or torque has exceeded a threshold, in slot order. */
@@ -1465,8 +1468,8 @@ ls2d_status ls2d_replay_verdict(uint32_t replay, const ls2d_hash *hash, ls2d_ver
 
 /* ---- Timelines of replays of games with rules of their own ---- */
 
-/* Sets the tick to go to; tick t is the state after t ticks. `ls2d_replay_next_request` then returns what the game
- * has to do. At the first request the game has to be in its first state. */
+/* Sets the tick to go to; tick t is the state after t ticks. `ls2d_replay_next_request` then returns the requests
+ * that the game has to fulfil. At the first request the game has to be in its first state. */
 ls2d_status ls2d_replay_seek(uint32_t replay, uint64_t tick);
 
 /* The next request on the way to a tick: `LS2D_REQUEST_SAVE`, `LS2D_REQUEST_LOAD`, `LS2D_REQUEST_ADVANCE` as in a
@@ -1553,7 +1556,7 @@ ls2d_status ls2d_match_leave(uint32_t handle);
  * peers can join. */
 ls2d_status ls2d_match_end_at(uint32_t handle, uint32_t ticks);
 
-/* Requests a pause from all others, or, with 0, withdraws the request. */
+/* Requests a pause from all other peers, or, with 0, withdraws the request. */
 ls2d_status ls2d_match_pause(uint32_t handle, uint32_t paused);
 
 /* Votes for going on without a peer that is missing. */

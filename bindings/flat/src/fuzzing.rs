@@ -151,7 +151,7 @@ impl Caller<'_> {
         let mut words = known.unwrap_or_else(|| vec![0; (self.items * item).div_ceil(8) + 1].into());
         if !is_output {
             for _ in 0..self.byte() % 4 {
-                // Only words of about the first two items change: they matter most.
+                // Changes only words of about the first two items, which most calls read.
                 let (place, value) = (self.below((item / 4).max(8)), self.number());
                 if let Some(word) = words.get_mut(place) {
                     *word = value;

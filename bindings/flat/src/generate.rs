@@ -44,7 +44,7 @@ typedef uint32_t ls2d_handle;
 #define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)((int64_t)(numerator) * 4294967296 / (denominator)))
 /* An angle of whole degrees, rounded towards zero. */
 #define LS2D_DEGREES(whole) ((ls2d_angle)(int64_t)((int64_t)(whole) * 4294967296 / 360))
-/* No body, no shape, no joint. */
+/* Value of ls2d_body, ls2d_shape and ls2d_joint for none. */
 #define LS2D_NO_ID UINT64_MAX
 ";
 

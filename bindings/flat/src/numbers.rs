@@ -48,7 +48,7 @@ records! {
     }
 }
 
-/// No body, no shape, no joint.
+/// Value of a handle that refers to no body, shape or joint.
 pub(crate) const NO_ID: u64 = u64::MAX;
 /// Number of bits of a handle that hold the slot.
 const SLOT_BITS: u32 = 21;

@@ -43,7 +43,7 @@ statuses! {
     Value = 7, "LS2D_VALUE";
     /// The buffer is too short. The number of items that it has to hold was written.
     Buffer = 8, "LS2D_BUFFER";
-    /// A text is not what was expected, for example not UTF-8 or not a number.
+    /// A text is invalid, for example not UTF-8 or not a number.
     Text = 9, "LS2D_TEXT";
     /// A result has no value: division by zero, root of a negative number.
     Number = 10, "LS2D_NUMBER";

@@ -187,7 +187,7 @@ pub(crate) fn with_any<R>(handle: u32, body: impl FnOnce(&mut Object) -> Outcome
     body(&mut object)
 }
 
-/// Takes an object out of the table. Its handle is stale from now on.
+/// Takes an object out of the table. Its handle is stale afterwards.
 fn remove(handle: u32) -> Outcome<Shared> {
     let (index, generation) = parts(handle);
     let mut table = table();

@@ -1,4 +1,4 @@
-// Numbers of the simulation: 64-bit integers with 32 fraction bits, so that every browser computes the same bits.
+// Fixed-point numbers: 64-bit integers with 32 fraction bits, so that every browser computes the same bits.
 import { Lockstep2dError } from "./error.js";
 
 const ONE = 1n << 32n;
@@ -69,7 +69,7 @@ export function rawOf(value, what = "a number") {
     throw new Lockstep2dError("VALUE", `${what} is ${typeof value}, and not an integer, a decimal text or an Fx`);
 }
 
-/** A number of the simulation. Immutable; arithmetic is exact or rounded to nearest, and saturates. */
+/** A fixed-point number. Immutable; arithmetic is exact or rounded to nearest, and saturates. */
 export class Fx {
     constructor(raw) {
         this.raw = raw;
@@ -167,7 +167,7 @@ export class Fx {
     }
 }
 
-/** A number of the simulation from an integer, or from decimal text: `fx("1.25")`. */
+/** Makes a fixed-point number from an integer, or from decimal text: `fx("1.25")`. */
 export function fx(value) {
     return value instanceof Fx ? value : new Fx(rawOf(value));
 }

@@ -143,7 +143,8 @@ export class Match extends Handle {
         return STATUS[u32(at)];
     }
 
-    /** Numbers of ticks: played, final for the match, and played with final inputs here. */
+    /** Numbers of ticks: `played`, also with guessed inputs; `final`, whose inputs are final; `confirmed`, played with
+     * final inputs. */
     ticks() {
         const at = scratch(16);
         call("ls2d_match_ticks", this.handle, at, at + 4, at + 8);

@@ -174,7 +174,7 @@ test("files are opened and refused, although reading them moves the memory", () 
     for (let attempt = 0; attempt < 20; attempt++) {
         const before = library().memory.buffer;
         assert.throws(() => new L.Timeline(damaged), (error) => error.code === "RECORD" && error.verdict.verdict === "malformed");
-        // A timeline that is kept takes the free memory, so that the next one makes the memory grow.
+        // The timelines that are kept use up the free memory, so that the memory grows for the next one.
         kept.push(new L.Timeline(replay));
         assert.equal(kept.at(-1).ticks, 20);
         moved += library().memory.buffer === before ? 0 : 1;

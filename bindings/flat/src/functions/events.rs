@@ -54,7 +54,7 @@ api! {
         copy(world, |world| &world.events().hits, RawHitEvent::of, events, capacity, count)
     }
 
-    /// Shapes that began to overlap a sensor, sorted by the fraction of the tick.
+    /// Shapes that began to overlap a sensor, sorted by `fraction`.
     fn ls2d_events_sensor_begin(
         world: u32,
         events: Out<'_, RawSensorEvent>,
@@ -64,7 +64,7 @@ api! {
         copy(world, |world| &world.events().sensor_begin, RawSensorEvent::of, events, capacity, count)
     }
 
-    /// Shapes that ceased to overlap a sensor, sorted by the fraction of the tick.
+    /// Shapes that ceased to overlap a sensor, sorted by `fraction`.
     fn ls2d_events_sensor_end(
         world: u32,
         events: Out<'_, RawSensorEvent>,

@@ -33,8 +33,8 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// Returns the inputs of all players, zeros for those that are absent. A run stores only the inputs of present
-    /// players: with the zeros, a file without players could take 64 times its size in memory.
+    /// Returns the inputs of all players, zeros for absent players. A run stores only the inputs of present players:
+    /// with the zeros, a file without players could take 64 times its size in memory.
     fn inputs_of_all(&self, players: u32, input_bytes: usize) -> Vec<u8> {
         let mut present = self.inputs.chunks_exact(input_bytes);
         let zeros = vec![0; input_bytes];

@@ -21,7 +21,7 @@ impl HostReplay {
             let failure = || value("the tick to go to, without a saved state before it,", self.target);
             return request(REQUEST_LOAD, latest.ok_or_else(failure)?, 0);
         }
-        // A single tick is always played, never loaded, so that the game shows what happens in it.
+        // A single tick is always played, never loaded, so that the game can show the events of this tick.
         if let Some(latest) = latest.filter(|&latest| latest > self.tick && self.target - self.tick > 1) {
             return request(REQUEST_LOAD, latest, 0);
         }
@@ -55,8 +55,8 @@ fn request(kind: u32, tick: u64, absent: u64) -> Outcome<RawRequest> {
 }
 
 api! {
-    /// Sets the tick to go to; tick t is the state after t ticks. `ls2d_replay_next_request` then returns what the game
-    /// has to do. At the first request the game has to be in its first state.
+    /// Sets the tick to go to; tick t is the state after t ticks. `ls2d_replay_next_request` then returns the requests
+    /// that the game has to fulfil. At the first request the game has to be in its first state.
     fn ls2d_replay_seek(replay: u32, tick: u64) {
         with(replay, |replay: &mut HostReplay| {
             if tick > replay.ticks {

@@ -365,7 +365,7 @@ api! {
         })
     }
 
-    /// Requests a pause from all others, or, with 0, withdraws the request.
+    /// Requests a pause from all other peers, or, with 0, withdraws the request.
     fn ls2d_match_pause(handle: u32, paused: u32) {
         with(handle, |game: &mut Match| {
             game.session()?.pause(paused != 0);

@@ -1,5 +1,5 @@
-//! Replays of worlds that are changed by commands alone: recorded, and verified by this library or by `lockstep2d
-//! verify`.
+//! Recording and verification of worlds that are changed by commands alone. The command `lockstep2d verify` also
+//! verifies the files.
 
 use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 use lockstep2d::replay::{self, Limits, Recording, Verdict};

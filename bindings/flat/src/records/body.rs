@@ -66,7 +66,7 @@ records! {
         position: RawVec2,
         /// Rotation.
         angle: RawAngle,
-        /// 0.
+        /// Reserved: 0.
         reserved: u32,
         /// Velocity of the centre of mass in m/s.
         velocity: RawVec2,
@@ -134,7 +134,7 @@ records! {
     struct RawExplosion = "ls2d_explosion" {
         /// Size of this struct in bytes.
         size: u32,
-        /// 0.
+        /// Reserved: 0.
         reserved: u32,
         /// Centre in the world, in metres.
         centre: RawVec2,

@@ -11,9 +11,9 @@ use crate::numbers::{RawAngle, RawBody, RawFx, RawShape, RawVec2};
 use crate::status::Outcome;
 
 constants! {
-    /// `ls2d_mover_state.flags`: it stands on ground.
+    /// `ls2d_mover_state.flags`: the character stands on ground.
     MOVER_ON_GROUND = 1, "LS2D_MOVER_ON_GROUND";
-    /// `ls2d_mover_state.flags`, in results only: it is wedged between two slopes that are both too steep to stand on.
+    /// `ls2d_mover_state.flags`, in results only: wedged between two slopes that are both too steep to stand on.
     MOVER_WEDGED = 2, "LS2D_MOVER_WEDGED";
 }
 
@@ -50,7 +50,7 @@ records! {
         separation: RawFx,
         /// Rotation of the body when the surface was met.
         body_angle: RawAngle,
-        /// 0.
+        /// Reserved: 0.
         reserved: u32,
     }
 

@@ -78,7 +78,7 @@ records! {
         angle_a: RawAngle,
         /// Angle of the joint's frame in B's frame.
         angle_b: RawAngle,
-        /// 0.
+        /// Reserved: 0.
         reserved: u32,
         /// Body A.
         body_a: RawBody,

@@ -53,7 +53,7 @@ constants! {
     EVENT_DESYNC = 8, "LS2D_EVENT_DESYNC";
     /// Event: `peer` has issued two different inputs for `tick`.
     EVENT_CONFLICT = 9, "LS2D_EVENT_CONFLICT";
-    /// Event: the others no longer keep the inputs that this peer lacks; it has to join again.
+    /// Event: the other peers no longer keep the inputs that this peer lacks; it has to join again.
     EVENT_TOO_FAR_BEHIND = 10, "LS2D_EVENT_TOO_FAR_BEHIND";
     /// Event: the contact refuses the request to join; `value` is a `LS2D_REFUSED_` reason.
     EVENT_REFUSED = 11, "LS2D_EVENT_REFUSED";
@@ -80,11 +80,11 @@ constants! {
     MATCH_PLAYING = 3, "LS2D_MATCH_PLAYING";
     /// Status: receives no packets from a majority of the peers.
     MATCH_PAUSED = 4, "LS2D_MATCH_PAUSED";
-    /// Status: the others went on without this peer, which requests its seat again.
+    /// Status: the other peers went on without this peer, which requests its seat again.
     MATCH_DROPPED = 5, "LS2D_MATCH_DROPPED";
     /// Status: removed for good.
     MATCH_KICKED = 6, "LS2D_MATCH_KICKED";
-    /// Status: announces its departure to the others.
+    /// Status: announces its departure to the other peers.
     MATCH_LEAVING = 7, "LS2D_MATCH_LEAVING";
     /// Status: has left.
     MATCH_LEFT = 8, "LS2D_MATCH_LEFT";
@@ -101,7 +101,7 @@ records! {
     struct RawLimits = "ls2d_limits" {
         /// Size of this struct in bytes.
         size: u32,
-        /// 0.
+        /// Reserved: 0.
         reserved: u32,
         /// Bytes of the file.
         file_bytes: u64,
@@ -127,7 +127,7 @@ records! {
     struct RawVerdict = "ls2d_verdict" {
         /// `LS2D_MATCH` and so on.
         kind: u32,
-        /// 0.
+        /// Reserved: 0.
         reserved: u32,
         /// Number of ticks that were played; for `LS2D_DIVERGED`, the tick of the first checkpoint that differs.
         ticks: u64,
@@ -171,11 +171,12 @@ records! {
         peer: u32,
         /// Distinguishes matches.
         match_tag: u64,
-        /// Time in microseconds for which play stalls because of a missing peer before the others go on without it.
+        /// Time in microseconds for which play stalls because of a missing peer before the other peers go on without
+        /// it.
         patience: u64,
         /// Identity of the player: a peer that joins again with the same key gets its seat back.
         key: u64,
-        /// Random numbers that nobody else knows.
+        /// Secret random numbers, which protect against packets with forged addresses.
         secret: [u64; 2],
     }
 
@@ -203,7 +204,7 @@ records! {
         tick: u32,
         /// Its meaning depends on the kind.
         value: u32,
-        /// 0.
+        /// Reserved: 0.
         reserved: u32,
         /// Hash of this peer, for `LS2D_EVENT_DESYNC`.
         ours: RawHash,

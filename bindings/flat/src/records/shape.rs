@@ -107,7 +107,8 @@ records! {
         category: u64,
         /// Categories that the shape collides with.
         mask: u64,
-        /// Shapes of one group other than 0 always collide if it is positive, and never if it is negative.
+        /// Shapes with the same group other than 0 always collide if the number is positive, and never if it is
+        /// negative.
         group: i32,
         /// `LS2D_MIX_AVERAGE` and so on, for friction.
         friction_mixing: u32,
@@ -133,7 +134,7 @@ records! {
         attraction_radius: RawFx,
         /// `LS2D_FALLOFF_CONSTANT` and so on.
         attraction_falloff: u32,
-        /// 0.
+        /// Reserved: 0.
         reserved: u32,
         /// A number for the game, part of the state.
         user_data: u64,
