@@ -1491,8 +1491,8 @@ ls2d_status ls2d_match_config_init(uint32_t seats, ls2d_match_config *config);
 /* Opens a match. All peers have to pass the same `offer`: versions, rules, setup, at most 512 bytes. */
 ls2d_status ls2d_match_host(const ls2d_match_config *config, const uint8_t *offer, size_t offer_size, uint32_t *handle);
 
-/* Joins a match through the participant at the address `contact`: as a player, or as a spectator if `own_seats` is
- * 0. */
+/* Joins a match through the participant at the address `contact`, as a player or, if `own_seats` is 0, a
+ * spectator. */
 ls2d_status ls2d_match_join(const ls2d_match_config *config, const uint8_t *offer, size_t offer_size, const uint8_t *contact, size_t contact_size, uint32_t *handle);
 
 /* Sends the request to join to another participant, or again to the same one. */

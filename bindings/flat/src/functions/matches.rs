@@ -128,8 +128,8 @@ api! {
         handle.set(table::add(Match::new(Endpoint::host(config, identity, seats)?))?)
     }
 
-    /// Joins a match through the participant at the address `contact`: as a player, or as a spectator if `own_seats` is
-    /// 0.
+    /// Joins a match through the participant at the address `contact`, as a player or, if `own_seats` is 0, a
+    /// spectator.
     fn ls2d_match_join(
         config: In<'_, RawMatchConfig>,
         offer: In<'_, u8>,
