@@ -23,14 +23,14 @@ fn main() -> Result<(), SetupError> {
     let scene = Scene::find("box_stack").expect("a scene of the engine");
     let setup = scene.setup(0);
 
-    // The peer that knows the input at once.
+    // A peer that receives the input without delay.
     let mut peer = Sandbox::new(&setup)?;
     for tick in 0..60 {
         let input = true_input(&peer, tick);
         peer.step(&[input]);
     }
 
-    // The inputs of the last ten ticks are late on this machine. Until they arrive, the prediction is that the player
+    // On this machine the inputs of the last ten ticks are late. Until they arrive, the prediction is that the player
     // does nothing.
     let mut here = Sandbox::new(&setup)?;
     for _ in 0..50 {

@@ -47,7 +47,7 @@ pub struct Each<T> {
 pub struct SceneResult {
     /// Name of the scene.
     pub scene: String,
-    /// Number of simulated steps, of which the first is not timed.
+    /// Number of simulated steps. The first one is not timed.
     pub steps: usize,
     /// Runs of each engine.
     pub rounds: usize,

@@ -103,7 +103,7 @@ impl Inventory {
         Inventory { counts: engine.counts(), mass }
     }
 
-    /// Returns whether another world has the same counts, and the same mass up to 0.5 %: engines approximate the mass
+    /// Returns whether another world has the same counts, and the same mass within 0.5 %: engines approximate the mass
     /// of rounded corners.
     pub fn is_like(&self, other: &Inventory) -> bool {
         self.counts == other.counts && (self.mass - other.mass).abs() <= 0.005 * self.mass

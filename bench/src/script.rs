@@ -1,8 +1,8 @@
 //! [`Script`]: a scene as a list of recorded commands, from which every engine is built and driven.
 //!
-//! Commands refer to bodies by lockstep2d's handles, and commands that spawn bodies create new handles. So each
-//! command is executed once on a world that is never stepped, and stored together with its outcome. The scripts of
-//! the scenes depend only on which bodies exist, not on where they are, so the same list serves every engine.
+//! Commands refer to bodies by lockstep2d's handles, and commands that spawn bodies create new handles. So each command
+//! is executed once on a world that is never stepped, and stored together with its outcome. The scripts of the scenes
+//! depend only on which bodies exist, not on their positions, so the same list is valid for every engine.
 
 use anyhow::{Context, Result, anyhow};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
@@ -82,7 +82,8 @@ impl Script {
 fn execute(game: &mut Sandbox, commands: Vec<Command>) -> Result<Vec<Event>> {
     let mut events = Vec::new();
     for command in commands {
-        // The world is never stepped, so a body that is moved must be at its target at once, for the next `MoveTo`.
+        // The world is never stepped, so a moved body is placed at its target at once. The next `MoveTo` starts from
+        // there.
         let at_once = match command {
             Command::MoveTo { body, position, angle } => Command::SetTransform { body, position, angle },
             ref other => other.clone(),

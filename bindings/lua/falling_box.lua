@@ -1,4 +1,4 @@
---- A box falls on the ground, as in bindings/c/falling_box.c. The last line of the output is the same hash.
+--- A box falls on the ground, as in bindings/c/falling_box.c. The last line of the output has the same hash.
 local ls = require("lockstep2d")
 
 local out = ls.out("handle")

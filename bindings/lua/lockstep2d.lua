@@ -1,11 +1,11 @@
---- The flat API of lockstep2d for LuaJIT and LÖVE. Functions, structs and constants are those of lockstep2d.h without
---- their prefix: `ls.world_step(world)`, `ls.DYNAMIC`. `lockstep2d.h` and the library have to be in the folder of this
---- file, or in that of the LÖVE game; the library may also be where the system finds it.
+--- The flat API of lockstep2d for LuaJIT and LÖVE. Functions, structs and constants have the names of lockstep2d.h
+--- without their prefix: `ls.world_step(world)`, `ls.DYNAMIC`. `lockstep2d.h` and the library have to be in the folder
+--- of this file, or in the folder of the LÖVE game. The library may also be on the search path of the system.
 ---
 --- A function that returns a status raises an error if it fails, and otherwise returns whether there was something to
 --- return (`LS2D_OK`, not `LS2D_NONE`). Other functions return their result.
 ---
---- Numbers that enter the state are integers (`ls.fx`). Numbers of Lua are floats: use them only for drawing.
+--- Numbers that enter the state are integers (`ls.fx`). Lua's own numbers are floats: use them only for drawing.
 local ffi = require("ffi")
 
 local ls = {}
@@ -90,12 +90,12 @@ function ls.make(struct, ...)
     return made
 end
 
---- A place for a result, whose value is at index 0: `ls.out("handle")`, `ls.out("body")`.
+--- Memory for a result, whose value is at index 0: `ls.out("handle")`, `ls.out("body")`.
 function ls.out(type)
     return ffi.new("ls2d_" .. type .. "[1]")
 end
 
---- A number for the state, from a whole number or from decimal text: `ls.fx(3)`, `ls.fx("0.25")`.
+--- A fixed-point number, from a whole number or from decimal text: `ls.fx(3)`, `ls.fx("0.25")`.
 function ls.fx(value)
     if type(value) == "string" then
         local number = ls.out("fx")
@@ -108,7 +108,7 @@ function ls.fx(value)
     return ffi.new("int64_t", value) * 4294967296LL
 end
 
---- A number of the state as a number of Lua, for drawing.
+--- A fixed-point number as a Lua number, for drawing.
 function ls.number(fx)
     return tonumber(fx) / 4294967296
 end

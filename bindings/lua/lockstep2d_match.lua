@@ -1,13 +1,13 @@
 --- Plays a game in a match: fulfils the requests of the session of `ls2d_match_host` or `ls2d_match_join`.
 ---
 --- The game has
---- - `step(inputs, absent)`: advances by a tick with the inputs of all seats, a string; `absent` has a bit for each seat
----   that nobody plays;
+--- - `step(inputs, absent)`: advances by a tick with the inputs of all seats, a string; `absent` has a bit for each
+---   seat that nobody plays;
 --- - `save()`, `load(saved)`, `drop(saved)`: copies the whole state, restores it, frees the copy;
 --- - `hash()`: an `ls2d_hash` of the whole state;
 --- - `encode()`, `decode(bytes)`: converts the state to a string and back, for peers that join.
 ---
---- `send(to, packet)` carries packets; both are strings.
+--- `send(to, packet)` sends a packet to an address; both are strings.
 local ffi = require("ffi")
 local ls = require("lockstep2d")
 
@@ -23,7 +23,7 @@ function Driver.new(options)
     for field, value in pairs(options.settings or {}) do
         config[field] = value
     end
-    -- Random numbers from the system: they identify this peer, and nobody else may guess them.
+    -- Random numbers of the system, for `peer`, `key` and `secret`: nobody else may guess them.
     local file = assert(io.open("/dev/urandom", "rb"))
     local random = file:read(28)
     file:close()
@@ -59,8 +59,8 @@ function Driver:receive(now, from, packet)
     ls.match_receive(self.match, now * 1e6, from, #from, packet, #packet)
 end
 
---- Advances the time, in seconds, and plays the ticks that are due. `read(seats)` returns the inputs of your own seats,
---- as a string; `seats` is their number. Returns the events, as a list of tables.
+--- Advances the match to the time `now`, in seconds, and plays the ticks that are due. `read(seats)` returns the inputs
+--- of your own seats, as a string; `seats` is their number. Returns the events, as a list of tables.
 function Driver:update(now, read)
     ls.match_update(self.match, now * 1e6)
     local events = {}
@@ -115,7 +115,8 @@ function Driver:status()
     return self.flag[0]
 end
 
---- Numbers of ticks: played, final for the match, and played with final inputs here. 0 before the peer has joined.
+--- Numbers of ticks: played, also with guessed inputs; final, whose inputs are final; played with final inputs. All
+--- are 0 before the peer has joined.
 function Driver:ticks()
     if self:status() == ls.MATCH_CONNECTING then
         return 0, 0, 0
@@ -185,7 +186,7 @@ function Driver:fulfil()
     end
 end
 
--- Offers the newest final state, as bytes. Afterwards the game is in its old state again.
+-- Offers the newest final state as bytes, and then restores the current state of the game.
 function Driver:offer_state()
     local _, _, confirmed = self:ticks()
     local tick = self:newest(confirmed)

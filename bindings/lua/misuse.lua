@@ -1,4 +1,4 @@
---- Tests that mistakes raise errors that say what is wrong, and do not crash.
+--- Tests that misuse of the API raises errors with an explanation, and does not crash.
 local ls = require("lockstep2d")
 
 local function fails(what, pattern, action, ...)

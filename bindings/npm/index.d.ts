@@ -1,6 +1,6 @@
 // lockstep2d: deterministic 2D physics for the web.
 
-/** A number of the simulation as an argument: an integer, decimal text such as `"0.1"`, or an `Fx`. A float is an error. */
+/** A fixed-point number as an argument: an integer, decimal text such as `"0.1"`, or an `Fx`. A float is an error. */
 export type Num = number | string | Fx;
 /** A vector as an argument. */
 export type Vec = readonly [Num, Num] | { readonly x: Num; readonly y: Num };
@@ -24,13 +24,13 @@ export interface InitOptions {
     /** A module to use instead of the inlined one. */
     wasm?: WebAssembly.Module | Response | BufferSource;
 }
-/** Loads the wasm module. Call it once before anything else except `fx`, `degrees` and so on. */
+/** Loads the wasm module. Call it once before all other functions except `fx`, `degrees`, `radians` and `turns`. */
 export function init(options?: InitOptions): Promise<void>;
 /** The module that was loaded. */
 export function loaded(): "simd" | "plain" | "given" | undefined;
-/** Version of the engine's arithmetic: programs with different versions do not compute the same states. */
+/** Version of the engine's arithmetic: programs with different versions compute different states. */
 export function semantics(): number;
-/** Number of objects that are not disposed. */
+/** Number of objects that have not been disposed of. */
 export function objectCount(): number;
 
 /** An error with a code, such as `FLOAT`, `STALE_BODY`, `GEOMETRY`, `DISPOSED`. */
@@ -40,7 +40,7 @@ export class Lockstep2dError extends Error {
     readonly verdict?: Verdict;
 }
 
-/** A number of the simulation: 64 bits, 32 of which are fraction bits. Immutable. */
+/** A fixed-point number of 64 bits with 32 fraction bits. Immutable. */
 export class Fx {
     private constructor(raw: bigint);
     static fromRaw(raw: bigint | number): Fx;
@@ -59,12 +59,12 @@ export class Fx {
     gt(other: Num): boolean;
     eq(other: Num): boolean;
     floor(): number;
-    /** A float for drawing. It must not come back into the simulation. */
+    /** A float for drawing. It must not enter the simulation. */
     toNumber(): number;
     toString(): string;
     toJSON(): string;
 }
-/** A number of the simulation: `fx("1.25")`. */
+/** Makes a fixed-point number: `fx("1.25")`. */
 export function fx(value: Num): Fx;
 
 /** A rotation in units of 2^-32 turn. Immutable. */
@@ -124,7 +124,7 @@ export interface ShapeOptions {
     restitutionThreshold?: Num;
     rollingResistance?: Num;
     surfaceSpeed?: Num;
-    /** Bits of the categories that the shape belongs to. `mask` has those that it collides with. */
+    /** Bits of the categories that the shape belongs to. `mask` has the categories that it collides with. */
     category?: bigint | number;
     mask?: bigint | number;
     group?: number;
@@ -157,8 +157,8 @@ export function capsule(a: Vec, b: Vec, radius: Num, options?: ShapeOptions): Sh
 export function segment(a: Vec, b: Vec, options?: ShapeOptions): ShapeDef;
 export function chain(points: readonly Vec[], options?: ShapeOptions & { closed?: boolean; oneSided?: boolean }): ChainDef;
 
-/** Mass in kg, centre of mass and radius of gyration in metres of a dynamic body with some shapes, for the option `mass`:
- * `{ ...massOf(shapes), mass: 80 }` is a body of 80 kg with the proportions of its shapes. */
+/** Mass in kg, centre of mass and radius of gyration in metres of a dynamic body with some shapes, for the option
+ * `mass`: `{ ...massOf(shapes), mass: 80 }` is a mass of 80 kg with the distribution of the shapes. */
 export function massOf(shapes: readonly ShapeDef[]): { mass: Fx; centre: Vec2; gyration: Fx };
 
 export type BodyType = "fixed" | "kinematic" | "dynamic";
@@ -169,13 +169,14 @@ export interface BodyOptions {
     angle?: Rotation;
     velocity?: Vec;
     angularVelocity?: Num;
-    /** A mass instead of that of the shapes. */
+    /** Mass, centre of mass and radius of gyration, instead of the values that follow from the shapes. */
     mass?: { mass: Num; centre?: Vec; gyration: Num };
     linearDamping?: Num;
     angularDamping?: Num;
     gravityScale?: Num;
     sleepSpeed?: Num;
-    /** Kinds of bodies that the body does not pass through, however fast it is. `fixed` by default. */
+    /** Bodies through which the body cannot tunnel: `fixed` by default. `bullet`: all except bullets. `kinematic`:
+     * fixed and kinematic bodies. */
     continuous?: "off" | "fixed" | "bullet" | "kinematic";
     enabled?: boolean;
     asleep?: boolean;
@@ -198,7 +199,8 @@ export interface JointOptions {
     type: "revolute" | "prismatic" | "distance" | "weld" | "wheel" | "motor" | "filter" | "gear" | "rack" | "pulley";
     a: BodyId;
     b: BodyId;
-    /** Anchor in world coordinates at the current poses. Sliders and wheels also need `axis`. Only for worlds. */
+    /** Anchor in world coordinates at the current poses. Prismatic and wheel joints also need `axis`. A world is
+     * needed: `Commands` refuse it. */
     anchor?: Vec;
     axis?: Vec;
     /** Anchors and angles in the frames of the bodies. */
@@ -257,7 +259,7 @@ declare class Handle {
     dispose(): void;
 }
 
-/** Where to add a body of `spawnEach`. */
+/** Pose of a body that `spawnEach` adds. */
 export interface BodyPose {
     position: Vec;
     /** No rotation by default. */
@@ -370,7 +372,8 @@ export interface Events {
 
 /** A physics world. */
 export class World extends Edits {
-    /** `smallest` is the size of the smallest boxes that have to stand in stacks. Small sizes add sub-steps. */
+    /** `smallest` is the size in metres of the smallest boxes whose stacks have to be stable. Small sizes add
+     * sub-steps. */
     constructor(options?: ConfigOptions & { smallest?: Num });
     /** Makes a world from bytes, which may come from any source. */
     static fromBytes(bytes: Uint8Array): World;
@@ -431,7 +434,7 @@ export interface MoverOptions {
     slopeMax?: Rotation;
     /** Height in metres of steps that it climbs without a jump; 0 by default. */
     stepHeight?: Num;
-    /** Distance in metres by which the ground may descend within a tick while the character follows it; 0.1 by default. */
+    /** Largest descent of the ground within a tick that the character follows, in metres; 0.1 by default. */
     snapDistance?: Num;
 }
 /** A surface that a character has met. */
@@ -461,13 +464,13 @@ export interface Moved {
         velocity: Vec2;
         ground: MoverPlane | undefined;
         isOnGround: boolean;
-        /** It hangs between two slopes that are both too steep to stand on. */
+        /** It is wedged between two slopes that are both too steep to stand on. */
         isWedged: boolean;
     };
     /** The surfaces that it has met, in order. */
     met: MoverPlane[];
 }
-/** Moves a character for one tick at its velocity: it slides along what it meets, climbs steps, and moving ground carries
+/** Moves a character for one tick at its velocity: it slides along surfaces, climbs steps, and moving ground carries
  * it. The game adds gravity to the velocity. The world does not change. */
 export function moveCharacter(world: World, mover: MoverOptions, state: MoverState, filter?: Filter): Moved;
 /** The state of a character as bytes, for saves and hashes. */
@@ -499,13 +502,13 @@ export class Timeline extends Handle {
     constructor(bytes: Uint8Array, limits?: Limits);
     readonly ticks: number;
     readonly tick: number;
-    /** Goes to a tick. Ticks that were played before cost little. Checkpoints on the way are compared. */
+    /** Goes to a tick, which is fast if it was played before. Checkpoints on the way are compared. */
     seek(tick: number): void;
     /** Goes forward by a tick. Returns false at the end. */
     step(): boolean;
     /** Goes back by a tick. Returns false at the start. */
     stepBack(): boolean;
-    /** A copy of the world at the current tick, to draw and query it. Dispose of it. */
+    /** A copy of the world at the current tick, to draw and query it. The caller disposes of it. */
     world(): World;
 }
 
@@ -541,11 +544,11 @@ export class Recorder extends Handle {
         start: string;
         interval?: number;
     });
-    /** Records the inputs of all players, and a bit for each player that is absent, whose input is zeros: both as
-     * `Match.finalInputs` returns them. Returns whether `checkpoint` has to follow. */
+    /** Records the inputs of all players, and a bit for each absent player, whose input has to be zeros.
+     * `Match.finalInputs` returns both in this form. Returns whether `checkpoint` has to follow. */
     record(inputs: Uint8Array, absent?: bigint): boolean;
-    /** Adds a result such as a score, with a name of 1 to 64 bytes, before `finish`: at most 256 with different names,
-     * which can be read without playing the replay. */
+    /** Adds a result such as a score, with a name of 1 to 64 bytes. Call it before `finish`. A replay has at most 256
+     * results with different names, which can be read without playing it. */
     claim(name: string, number: number | bigint): void;
     checkpoint(hash: string): void;
     take(): Uint8Array;
@@ -564,21 +567,23 @@ export class Replay extends Handle {
     /** The results that the file states, which are true if the verdict is `match`. */
     readonly claims: Map<string, bigint>;
     next(): TickInputs | undefined;
-    /** Passes the hash of the state before the first tick and after every tick, or answers `checksum`. */
+    /** Compares the hash of the game's state with the file. Call it before the first tick and after every tick, or,
+     * while seeking, for each request `checksum`. */
     check(hash: string): void;
-    /** Adds a result of the game that was played. The verdict compares all of them with `claims`. */
+    /** Adds a result of the game that was played. The verdict compares all added results with `claims`. */
     claim(name: string, number: number | bigint): void;
     verdict(hash: string): Verdict;
-    /** Begins to go to a tick; `nextRequest` returns the requests, which `ReplayDriver` fulfils. At the first call the game
-     * has to be in the state before the first tick. */
+    /** Starts seeking to a tick: `nextRequest` returns the requests, which `ReplayDriver` fulfils. At the first call
+     * the game has to be in the state before the first tick. */
     seek(tick: number): void;
     /** The next request on the way to the tick of `seek`: `save`, `load`, `advance`, or `checksum`, which `check`
      * answers. Throws an error with the code RECORD if the game has diverged from the file. */
     nextRequest(): MatchRequest | undefined;
-    /** Ticks between the states that `seek` asks to save: 60 at first, or more, so that there are at most 256 states. */
+    /** Sets the interval in ticks at which seeking requests to save the state: 60 by default, or more for replays that
+     * would otherwise need more than 256 saved states. */
     setInterval(ticks: number): void;
 }
-/** A game that a `ReplayDriver` plays. Its whole state is in what `save` returns and `hash` covers. */
+/** A game that a `ReplayDriver` plays. `save` and `hash` have to cover its whole state. */
 export interface ReplayGame<Saved = unknown> {
     step(inputs: Uint8Array, absent: bigint): void;
     save(): Saved;
@@ -590,8 +595,9 @@ export interface ReplayGame<Saved = unknown> {
 export class ReplayDriver<Saved = unknown> {
     constructor(replay: Replay, game: ReplayGame<Saved>);
     readonly tick: number;
-    /** Goes to a tick. Ticks that were played before cost less than an interval of simulation. Throws an error with the code
-     * RECORD if the game diverges from the file: the driver stays there, and earlier ticks can be reached. */
+    /** Goes to a tick. If it was played before, this simulates fewer ticks than the interval of the saved states.
+     * Throws an error with the code RECORD if the game diverges from the file. The driver then stays at that tick, and
+     * earlier ticks can be reached. */
     seek(tick: number): void;
     /** Goes forward by a tick, which is always simulated, even if its state is saved. Returns false at the end. */
     step(): boolean;
@@ -604,9 +610,9 @@ export class ReplayDriver<Saved = unknown> {
 export interface MatchOptions {
     /** Number of seats of the match, 1 to 64. */
     seats: number;
-    /** Seats to play: 1 by default; 0 to watch, or to open a match as a server. */
+    /** Number of seats that this peer plays: 1 by default; 0 for a spectator or a dedicated server. */
     ownSeats?: number;
-    /** Seats that have to be taken before the first tick: 2 by default, or `seats` if that is less. */
+    /** Number of seats that have to be taken before the first tick: 2 by default, or `seats` if that is less. */
     startWith?: number;
     /** Bytes of an input, 1 to 512: 1 by default. */
     inputBytes?: number;
@@ -624,7 +630,8 @@ export interface MatchOptions {
     checkInterval?: number;
     /** Ticks that may be played beyond the last final one, at least 16. */
     history?: number;
-    /** Final ticks whose inputs are kept for peers that come back. After a longer absence a peer downloads a state. */
+    /** Number of final ticks whose inputs are kept for peers that return. After a longer absence a peer downloads a
+     * state. */
     logTicks?: number;
     /** Ticks from the cut, where a change of the players takes effect, to the first tick that a joining peer plays. */
     seatLead?: number;
@@ -632,45 +639,53 @@ export interface MatchOptions {
     seatWithin?: number;
     /** Distinguishes matches: packets with another tag are ignored. */
     matchTag?: bigint | number;
-    /** Milliseconds for which play waits for a peer before the others go on. */
+    /** Milliseconds for which play stalls because of a missing peer before the other peers go on without it. */
     patience?: number;
-    /** Number of this peer: random by default, and another one each time a page is loaded. */
+    /** Number of this peer: random by default. It has to be a new one each time a page is loaded. */
     peer?: number;
-    /** Identity of the player: random by default. Whoever returns with the same key gets its seat back. */
+    /** Identity of the player: random by default. A peer that joins again with the same key gets its seat back. */
     key?: bigint;
-    /** Random numbers that no one else knows: random by default. They protect from forged addresses. */
+    /** Secret numbers: random by default. They protect against packets with forged addresses. */
     secret?: readonly [bigint, bigint];
-    /** Versions, rules and setup, as bytes. They have to be the same for all peers; others are refused. */
+    /** Versions, rules and setup, as bytes. A peer with a different offer is refused. */
     offer?: Uint8Array;
-    /** Address of a peer that takes part. Without it, a match is opened. */
+    /** Address of a participant of the match to join. Without it, a new match is opened. */
     contact?: Uint8Array;
 }
 /**
- * Status of a peer. `connecting` asks the contact for entry; `joining` follows the match and asks for a seat;
- * `watching` follows the match and asks for no seat; `waiting` has a seat in a match that has not begun; `paused`
- * receives no packets from a majority, and only a majority can continue the match; `dropped` was left behind by the
- * others and asks for its seat again; `kicked` was removed for good; `leaving` announces its departure; `left` and
- * `finished` still answer peers that lack packets; `closed` sends nothing more.
+ * Status of a peer:
+ *
+ * - `connecting`: requests to join, or downloads the initial state.
+ * - `joining`: follows the match and requests a seat.
+ * - `watching`: follows the match and requests no seat.
+ * - `waiting`: has a seat in a match that has not begun.
+ * - `paused`: receives no packets from a majority, and only a majority can continue the match.
+ * - `dropped`: the other peers went on without this peer, which requests its seat again.
+ * - `kicked`: removed permanently.
+ * - `leaving`: announces its departure.
+ * - `left`, `finished`: still answers peers that lack packets.
+ * - `closed`: sends nothing more.
  */
 export type MatchStatus =
     | "joining" | "watching" | "waiting" | "playing" | "paused" | "dropped" | "kicked" | "leaving" | "left" | "finished" | "closed"
     | "connecting";
 /**
- * Something that happened. Fields that a kind does not name are 0 or `""`.
+ * An event of a match. Fields that are not named for a kind are 0 or `""`.
  *
  * - `status`: the status of the match has changed to `status`.
  * - `view`: the seats of the peers have changed.
  * - `seated`, `unseated`: from `tick` on, `peer` has or no longer has `seat`.
- * - `waiting`: play waits for inputs of `peer`; `value` is 1 if its packets arrive, which means that its game is slow.
- * - `resumed`: play goes on.
- * - `pause`: `peer` asks all to stop (`value` 1), or no longer does (0).
- * - `end`: the match will have `tick` ticks.
+ * - `waiting`: play stalls because inputs of `peer` are missing; `value` is 1 if its packets arrive, so that its game
+ *   is slow.
+ * - `resumed`: play continues.
+ * - `pause`: `peer` requests a pause (`value` is 1) or withdraws its request (0).
+ * - `end`: the match ends after `tick` ticks.
  * - `desync`: after `tick` ticks, `peer` has the hash `theirs` instead of `ours`.
  * - `conflict`: `peer` has issued two different inputs for `tick`. Its inputs are no longer accepted.
- * - `tooFarBehind`: the others no longer keep the inputs that this peer lacks; it has to join again.
- * - `refused`: the contact does not let this peer in, because of `reason`.
+ * - `tooFarBehind`: the other peers no longer keep the inputs that this peer lacks; it has to join again.
+ * - `refused`: the contact refuses the request to join, because of `reason`.
  * - `state`: the encoded `state` after `tick` ticks. The game has to load it before further requests are fulfilled.
- * - `badState`: a received state is damaged; another one is requested.
+ * - `badState`: a downloaded state is not valid; it is requested again.
  */
 export interface MatchEvent {
     kind:
@@ -683,13 +698,13 @@ export interface MatchEvent {
     ours: string;
     theirs: string;
     status?: MatchStatus;
-    /** `offer`: the versions, rules or setup differ; `full`: too many peers follow the match; `taken`: another peer has this
-     * number; `notReady`: the contact is not in a match yet, and is asked again. */
+    /** `offer`: the versions, rules or setup differ; `full`: too many peers are joining through this contact; `taken`:
+     * another peer has this number; `notReady`: the contact is not in a match yet, and the request is repeated. */
     reason?: "offer" | "full" | "taken" | "notReady";
     state?: Uint8Array;
 }
 /**
- * A request of the match to the game. Fulfil requests in their order, before you call `advance` again:
+ * A request of the match to the game. Fulfil the requests in order, before you call `advance` again:
  *
  * - `save`: keep a copy of the state before `tick`.
  * - `load`: restore the copy of the state before `tick`.
@@ -707,49 +722,52 @@ export interface MatchRequest {
     guessed: bigint;
 }
 /**
- * One participant of a match: bytes in, bytes out. `now` is in milliseconds and never decreases, such as
- * `performance.now()`. `MatchDriver` fulfils the requests for a game. Every misuse is a `Lockstep2dError`.
+ * One participant of a match. Inputs, states and packets are bytes. `now` is in milliseconds and never decreases, such
+ * as `performance.now()`. `MatchDriver` fulfils the requests for a game. Every misuse is a `Lockstep2dError`.
  */
 export class Match extends Handle {
     constructor(options: MatchOptions);
-    /** Asks another participant for entry, or the same one again. */
+    /** Sends the request to join to another participant, or again to the same one. */
     ask(contact: Uint8Array): void;
-    /** Takes a packet that arrived from an address. Packets of strangers are ignored. */
+    /** Takes a packet that arrived from an address. Packets that do not belong to the match are ignored. */
     receive(now: number, from: Uint8Array, packet: Uint8Array): void;
-    /** Advances the time. Call it every few milliseconds, and after `receive`. */
+    /** Advances the match to the time `now`. Call it every few milliseconds, and after `receive`. */
     update(now: number): void;
     /** Whether it is time for the next tick, and the match can take its inputs. */
     isDue(now: number): boolean;
-    /** Issues the inputs of your own seats, one after another. Returns whether they were taken; if not, they may be used again. */
+    /** Issues the inputs of your own seats, one after another, and plays a tick if possible. Returns whether the inputs
+     * were issued; if not, they may be passed again. */
     advance(now: number, inputs: Uint8Array): boolean;
     /** The next request to the game. */
     nextRequest(): MatchRequest | undefined;
-    /** Answers `checksum`. */
+    /** Passes the hash that the request `checksum` asks for. */
     reportHash(tick: number, hash: string): void;
     /** The next packet to send, and the address to send it to. */
     nextPacket(): { to: Uint8Array; packet: Uint8Array } | undefined;
     /** The next event. */
     nextEvent(): MatchEvent | undefined;
-    /** Whether a peer that joins needs a state: answer with `offerState`. */
+    /** Whether a peer that joins needs a state. If so, call `offerState`. */
     readonly wantsState: boolean;
     /** Offers the encoded state after `tick` final ticks to peers that join. */
     offerState(tick: number, state: Uint8Array): void;
     readonly status: MatchStatus;
-    /** Numbers of ticks: played, final for the match, and played with final inputs here. */
+    /** Numbers of ticks: `played`, also with guessed inputs; `final`, whose inputs are final; `confirmed`, played with
+     * final inputs. */
     ticks(): { played: number; final: number; confirmed: number };
     /** The final inputs of all seats for a tick, or undefined if they are not kept. */
     finalInputs(tick: number): TickInputs | undefined;
     /** Seats that this peer plays. */
     readonly seats: number[];
-    /** Leaves the match. Go on with `update` until the status is `closed`, so that the others notice. */
+    /** Leaves the match. Call `update` until the status is `closed`, so that the other peers are informed. */
     leave(): void;
-    /** Asks for an end of the match after a number of ticks. It is decided two seconds before; until then others can join. */
+    /** Requests an end of the match after a number of ticks. The end is decided two seconds before; until then, other
+     * peers can join. */
     endAt(ticks: number): void;
-    /** Asks all others to pause, or withdraws the request. */
+    /** Requests a pause from all other peers, or withdraws the request. */
     pause(paused: boolean): void;
     /** Votes for going on without a peer that is missing. */
     goOnWithout(peer: number): void;
-    /** Votes for removing the player with this key for good. */
+    /** Votes for removing the player with this key permanently. */
     kick(key: bigint): void;
     /** Changes `guess` of the options. */
     setGuess(ticks: number): void;
@@ -759,7 +777,7 @@ export interface MatchGame<Saved = unknown> extends ReplayGame<Saved> {
     encode(): Uint8Array;
     decode(bytes: Uint8Array): void;
 }
-/** Plays a game in a match: saves, restores and advances it when the match asks for that. */
+/** Plays a game in a match: saves, restores and advances it as the match requests. */
 export class MatchDriver<Saved = unknown> {
     constructor(match: Match, game: MatchGame<Saved>, send: (to: Uint8Array, packet: Uint8Array) => void);
     readonly match: Match;
@@ -769,8 +787,8 @@ export class MatchDriver<Saved = unknown> {
     update(now: number, readInputs: (seats: number[]) => Uint8Array): MatchEvent[];
 }
 
-/** The offer of a native `Peer<G>` (Rust), so that pages and native programs play together. `setup` are the canonical
- * bytes of `G::Setup`, empty for `()`. */
+/** The offer of a native `Peer<G>` (Rust), so that pages and native programs play together. `setup` has the canonical
+ * bytes of `G::Setup`, and is empty for `()`. */
 export function nativeOffer(options: {
     rules: string;
     rulesVersion?: number;
@@ -781,26 +799,26 @@ export function nativeOffer(options: {
     /** Milliseconds, as in `MatchOptions`. */
     patience?: number;
 }): Uint8Array;
-/** The state of a native game whose `Save` is the `Snapshot` of its world: what `MatchGame.encode` returns. */
+/** Encodes the state of a native game whose `Save` is the `Snapshot` of its world, for `MatchGame.encode`. */
 export function encodeNativeState(world: World): Uint8Array;
-/** Decodes the world from a state of `encodeNativeState` or of a native game, which may come from any source: what
- * `MatchGame.decode` takes. */
+/** Decodes the world from a state of `encodeNativeState` or of a native game, for `MatchGame.decode`. The bytes may
+ * come from any source. */
 export function decodeNativeState(bytes: Uint8Array): World;
 
-/** A member of a room of a relay (`crates/relay`): carries the packets of a match over a WebSocket. A lost connection is
- * opened again; packets are lost meanwhile. */
+/** A member of a room of a relay (`crates/relay`): carries the packets of a match over a WebSocket. After a lost
+ * connection it reconnects; packets are lost meanwhile. */
 export class Relay {
     private constructor();
-    /** Enters a room, which exists from then on. `url` is `wss://HOST` or `ws://HOST:PORT`, `code` 1 to 32 letters,
-     * digits and `-`. With the same `secret`, 16 random bytes, a member gets the same address again. `WebSocket` is
-     * needed where there is no global one, as in Node before 22. */
+    /** Enters a room, and creates it if it does not exist. `url` is `wss://HOST` or `ws://HOST:PORT`, `code` 1 to 32
+     * letters, digits and `-`. With the same `secret`, 16 random bytes, a member gets the same address again.
+     * `WebSocket` is needed where there is no global one, as in Node before 22. */
     static connect(url: string, code: string, options?: { secret?: Uint8Array; WebSocket?: unknown }): Promise<Relay>;
     readonly own: Uint8Array;
-    /** Addresses of the others in the room, in the order in which they came. */
+    /** Addresses of the other members of the room, in the order in which they entered. */
     readonly others: Uint8Array[];
     readonly isOpen: boolean;
     onPacket: (from: Uint8Array, packet: Uint8Array) => void;
-    /** Called when somebody comes or goes, and after connecting again. */
+    /** Called when a member enters or leaves the room, and after a reconnection. */
     onMembers: (others: Uint8Array[]) => void;
     send(to: Uint8Array, packet: Uint8Array): void;
     close(): void;

@@ -1,6 +1,6 @@
 // Writes each wasm module as a JavaScript module with its compressed bytes, which every bundler can handle.
 //
-// `zopfli` (the Debian package) compresses a twentieth better than zlib, in a format that browsers know, and takes a minute.
+// `zopfli` (the Debian package) writes the same gzip format as zlib, in about 5 % fewer bytes. It takes a minute.
 import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";

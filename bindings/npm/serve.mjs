@@ -1,4 +1,4 @@
-// A server of files for the tests in a browser.
+// A static file server for the tests in a browser.
 import { readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { extname } from "node:path";

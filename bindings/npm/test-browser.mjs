@@ -1,6 +1,6 @@
 // Tests the package in a headless Chromium: node bindings/npm/test-browser.mjs [SCREENSHOT]
 //
-// Both modules verify a golden replay, and examples/web/local.html plays a match between two peers.
+// The modules with and without SIMD verify a golden replay, and examples/web/local.html plays a match of two peers.
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { Browser } from "../../crates/viewer/web/browser.mjs";

@@ -111,7 +111,7 @@ static void play(ls2d_handle commands, ls2d_handle world, ls2d_body player, cons
         check(ls2d_apply_force(commands, player, LS2D_FX(25 * x), LS2D_FX(25 * y), info.position.x, info.position.y));
     }
     if (click != NULL) {
-        /* A pixel becomes a fraction of two integers, so that the replay holds exactly what was clicked. */
+        /* The position of the click is a fraction of two integers, so that the command is exact. */
         const ls2d_fx at_x = LS2D_FX_RATIO(click->x - WIDTH / 2, PIXELS_PER_METRE);
         const ls2d_fx at_y = LS2D_FX_RATIO(HEIGHT - PIXELS_PER_METRE - click->y, PIXELS_PER_METRE);
         ls2d_explosion explosion;
@@ -122,9 +122,9 @@ static void play(ls2d_handle commands, ls2d_handle world, ls2d_body player, cons
     }
 }
 
-/* ---- Drawing: floats are allowed, since nothing returns to the world ---- */
+/* ---- Drawing: floats are allowed, because nothing drawn enters the world ---- */
 
-/* The corners of a shape about its centre, in metres. Returns their number, or 0 for a shape that has no area. */
+/* Writes the corners of a shape in metres from its centre. Returns their number, or 0 for a shape without area. */
 static int outline(const ls2d_shape_def *shape, SDL_FPoint *corners) {
     const double pi = 3.14159265358979, radius = (double)shape->radius / METRE;
     int i, count = 0;
@@ -287,7 +287,7 @@ int main(int argc, char **argv) {
             }
         }
         if (ticks_max == UINT64_MAX) {
-            /* 60 ticks a second. After a pause the game goes on where it was. */
+            /* 60 ticks a second. If more than six are due, as after a pause of the process, all of them are skipped. */
             const uint64_t due = SDL_GetTicks64() * 60 / 1000 - skipped;
             if (due > ticks + 6) {
                 skipped += due - ticks;

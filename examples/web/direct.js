@@ -1,9 +1,9 @@
-// WebRTC data channels between the members of a room. The relay carries the signals, and packets between members
-// without an open channel.
+// WebRTC data channels between the members of a room. The relay carries the WebRTC signals, and the packets between
+// members without an open channel.
 //
-// A channel is unordered and does not resend lost packets, like UDP. Members keep their addresses of the relay, so that
-// a match does not depend on the route of a packet. Signals are JSON after a prefix with which no packet of a match
-// begins; the relay reads neither.
+// A channel is unordered and does not resend lost packets, like UDP. Packets of both routes have the addresses that the
+// relay assigns, so a match does not depend on the route. A signal is JSON after a prefix with which no packet of a
+// match begins. The relay interprets neither.
 const SIGNAL = new TextEncoder().encode("lockstep2d signal ");
 const DECODER = new TextDecoder();
 // Between networks, a STUN server is needed: { iceServers: [{ urls: "stun:HOST:PORT" }] }.
@@ -55,7 +55,7 @@ export class Direct {
         this.#links.clear();
     }
 
-    // Of two members, the one with the smaller address makes the offer. The other one asks it to connect.
+    // The member with the smaller address makes the offer. The other member requests the connection with a `wish`.
     #connect() {
         const names = new Set(this.#relay.others.map(nameOf));
         [...this.#links.values()].filter(({ name }) => !names.has(name)).forEach(({ address }) => this.#drop(address));
@@ -89,7 +89,7 @@ export class Direct {
     }
 
     async #call(address) {
-        // The description is an offer or the answer to one.
+        // `setLocalDescription` creates an offer, or an answer if an offer was received.
         const { connection } = this.#link(address);
         await connection.setLocalDescription();
         this.#signal(address, { description: connection.localDescription });

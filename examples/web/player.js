@@ -4,7 +4,7 @@ import { Direct } from "./direct.js";
 import { Game, SEATS, offer } from "./game.js";
 import { MatchRecording } from "./recording.js";
 
-/** Identity of this window for a room: a page that is reloaded gets its seat back. */
+/** Identity of this window in a room, kept in the session storage: a page that is reloaded gets its seat back. */
 function identity(code) {
     const name = `lockstep2d ${code.toUpperCase()}`;
     const stored = sessionStorage.getItem(name);
@@ -17,8 +17,8 @@ export class Player {
     desyncs = 0;
     #input;
 
-    /** Enters a room. Opens a match if nobody is there, otherwise joins the match of the room. `input` returns the bits
-     * of the pad. */
+    /** Enters a room. Opens a match if the room is empty, otherwise joins the match of the room. `input` returns the
+     * bits of the pad. */
     static async enter(url, code, input) {
         const { secret, key } = identity(code);
         const relay = await Relay.connect(url, code, { secret });

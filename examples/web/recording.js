@@ -10,7 +10,7 @@ export class MatchRecording {
     #parts = [];
     /** Number of recorded ticks. */
     ticks = 0;
-    /** Whether a tick is missing, as for a peer that joins late, which does not have the first ticks. */
+    /** Whether ticks are missing, for example the first ones because this peer has joined late. */
     broken = false;
 
     constructor() {
@@ -19,7 +19,7 @@ export class MatchRecording {
         this.#recording = new Recording({ setup });
     }
 
-    /** Records the final ticks of a match. The match keeps their inputs for some minutes, so call this more often. */
+    /** Records the final ticks of a match. Call it every few seconds: the match keeps their inputs only for minutes. */
     follow(match) {
         if (this.broken || match.status === "connecting") {
             return;

@@ -89,7 +89,7 @@ pub fn frame(world: World, size: u32, rounds: usize, progress: &ProgressBar) -> 
     })
 }
 
-/// Returns the medians of the rounds. The bytes are those of the last one: all rounds save the same ticks.
+/// Returns the medians of the rounds. The bytes are from the last round, because all rounds save the same ticks.
 fn saving(rounds: &[Round]) -> Saving {
     let of = |part: fn(&Saving) -> f64| {
         median(&rounds.iter().map(|round| part(&round.saving)).collect::<Vec<_>>())
@@ -103,9 +103,9 @@ fn saving(rounds: &[Round]) -> Saving {
 
 /// Measures a frame, as the mean of [`FRAMES`].
 ///
-/// Slot 0 has the start of the frame, which is the same for all frames, and the other slots have the ticks of the
-/// frame. The time of the saves and hashes is the difference between frames with and without them, because reading the
-/// clock takes as long as saving a small world.
+/// Slot 0 holds the start of the frame, which is the same for all frames, and the other slots hold its ticks. The time
+/// of the saves and hashes is the difference between frames with and without them, because reading the clock takes as
+/// long as saving a small world.
 fn measure(engine: &mut dyn Engine) -> Result<Round> {
     engine.save(0);
     let (bare, done) = timed(|| frames(engine, |_, _| {}));

@@ -3,8 +3,8 @@
  * Written by the tests of lockstep2d-flat; do not edit it.
  *
  * Functions return a status: LS2D_OK, LS2D_NONE if there is nothing to return, or an error, whose text ls2d_last_error
- * copies. Objects are handles, numbers that are never 0. A wrong or stale handle is an error, never undefined behaviour. ls2d_free
- * frees objects of all kinds.
+ * copies. Objects are referred to by handles, numbers that are never 0. A wrong or stale handle is an error, never
+ * undefined behaviour. ls2d_free frees objects of all kinds.
  *
  * Pointers are null or point to as many items as the function reads or writes, and nothing else uses that memory during
  * the call. Functions with a buffer take its capacity in items and write the number of items; if the buffer is too
@@ -12,8 +12,8 @@
  *
  * Structs that the caller fills begin with their size; ls2d_*_init functions set it and the defaults.
  *
- * Numbers are integers: ls2d_fx has 32 fraction bits (LS2D_FX(1) is a metre), ls2d_angle counts 2^-32 turn. Different
- * objects may be used on several threads at once. */
+ * Numbers are integers: ls2d_fx has 32 fraction bits (LS2D_FX(1) is a metre), ls2d_angle is in units of 2^-32 turn.
+ * Different objects may be used on several threads at once. */
 #ifndef LOCKSTEP2D_H
 #define LOCKSTEP2D_H
 
@@ -34,7 +34,7 @@ typedef uint32_t ls2d_handle;
 #define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)((int64_t)(numerator) * 4294967296 / (denominator)))
 /* An angle of whole degrees, rounded towards zero. */
 #define LS2D_DEGREES(whole) ((ls2d_angle)(int64_t)((int64_t)(whole) * 4294967296 / 360))
-/* No body, no shape, no joint. */
+/* Value of ls2d_body, ls2d_shape and ls2d_joint for none. */
 #define LS2D_NO_ID UINT64_MAX
 /* Version of this header, to be compared with ls2d_api_version(). */
 #define LS2D_API_VERSION 1
@@ -51,23 +51,23 @@ typedef uint32_t ls2d_handle;
 #define LS2D_HANDLE 4
 /* The handle belongs to an object of another kind. */
 #define LS2D_HANDLE_KIND 5
-/* The `size` of a struct is not the one of this version of the library. */
+/* The `size` of a struct does not match this version of the library. */
 #define LS2D_SIZE 6
 /* A kind, flag, count or index is out of its range. */
 #define LS2D_VALUE 7
 /* The buffer is too short. The number of items that it has to hold was written. */
 #define LS2D_BUFFER 8
-/* A text is not what was expected, for example not UTF-8 or not a number. */
+/* A text is invalid, for example not UTF-8 or not a number. */
 #define LS2D_TEXT 9
 /* A result has no value: division by zero, root of a negative number. */
 #define LS2D_NUMBER 10
-/* An error in the library itself. The objects that took part are unusable from now on. */
+/* An error in the library itself. The objects that the call used are unusable afterwards. */
 #define LS2D_INTERNAL 11
-/* The object was unusable after `LS2D_INTERNAL`. Only freeing it is possible. */
+/* An earlier `LS2D_INTERNAL` has left the object unusable. It can only be freed. */
 #define LS2D_BROKEN 12
 /* There are too many objects. */
 #define LS2D_EXHAUSTED 13
-/* Bytes are not the encoding of what was expected. */
+/* The bytes are not a valid encoding of the expected value. */
 #define LS2D_DECODE 14
 /* Geometry is not valid. */
 #define LS2D_GEOMETRY 20
@@ -117,7 +117,7 @@ typedef uint32_t ls2d_handle;
 #define LS2D_WRONG_KIND 42
 /* The bytes are not a world of this version. */
 #define LS2D_SNAPSHOT 50
-/* A replay cannot hold this. */
+/* A replay cannot be recorded, opened or played further. */
 #define LS2D_RECORD 51
 /* A parameter of a match is out of its range. */
 #define LS2D_CONFIG 60
@@ -130,17 +130,17 @@ typedef uint32_t ls2d_handle;
 typedef int64_t ls2d_fx;
 /* An angle in units of 2^-32 turn, counter-clockwise: a quarter turn is 1073741824. */
 typedef uint32_t ls2d_angle;
-/* A body of a world: its slot in the lowest 21 bits, above them the number of earlier bodies in that slot. Less
- * than 2^53, so that it fits a number of JavaScript. */
+/* A body of a world: the lowest 21 bits are its slot, the bits above them the number of earlier bodies in that
+ * slot. Always less than 2^53, so that a JavaScript number represents it exactly. */
 typedef uint64_t ls2d_body;
-/* A shape of a world, numbered as a body is. */
+/* A shape of a world, encoded like a body. */
 typedef uint64_t ls2d_shape;
-/* A joint of a world, numbered as a body is. */
+/* A joint of a world, encoded like a body. */
 typedef uint64_t ls2d_joint;
 
 /* Kind of a body: does not move. */
 #define LS2D_FIXED 0
-/* Kind of a body: moves with its velocity alone. */
+/* Kind of a body: moves at its velocity, which forces and contacts do not change. */
 #define LS2D_KINEMATIC 1
 /* Kind of a body: moved by forces, contacts and joints. */
 #define LS2D_DYNAMIC 2
@@ -166,9 +166,9 @@ typedef uint64_t ls2d_joint;
 #define LS2D_SWEEP_BULLET 2
 /* `ls2d_body_def.continuous`: swept against fixed and kinematic bodies. */
 #define LS2D_SWEEP_KINEMATIC 3
-/* `ls2d_mover_state.flags`: it stands on ground. */
+/* `ls2d_mover_state.flags`: the character stands on ground. */
 #define LS2D_MOVER_ON_GROUND 1
-/* `ls2d_mover_state.flags`, a result: it hangs between two slopes that are both too steep to stand on. */
+/* `ls2d_mover_state.flags`, in results only: wedged between two slopes that are both too steep to stand on. */
 #define LS2D_MOVER_WEDGED 2
 /* `ls2d_config.flags`: bodies at rest fall asleep. */
 #define LS2D_SLEEPING 1
@@ -184,7 +184,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_PRISMATIC 1
 /* Kind of a joint: a rod, a rope or a spring between the anchors. */
 #define LS2D_DISTANCE 2
-/* Kind of a joint: glue, rigid or soft. */
+/* Kind of a joint: B keeps its pose relative to A, rigidly or by springs. */
 #define LS2D_WELD 3
 /* Kind of a joint: B slides along the x axis of A's frame and turns. */
 #define LS2D_WHEEL 4
@@ -200,7 +200,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_PULLEY 9
 /* Flag of a joint: its bodies collide with each other. */
 #define LS2D_JOINT_COLLIDE 1
-/* Flag of a joint: it acts. */
+/* Flag of a joint: enabled. */
 #define LS2D_JOINT_ENABLED 2
 /* Flag of a joint: has `limit_lower` and `limit_upper` (revolute, prismatic, distance, wheel). */
 #define LS2D_JOINT_LIMIT 4
@@ -227,19 +227,19 @@ typedef uint64_t ls2d_joint;
 #define LS2D_JOINT_LINEAR_SPRING 4096
 /* Flag of a joint: has `angular_hertz`, `angular_damping_ratio` and, for a motor, `angular_max` (weld, motor). */
 #define LS2D_JOINT_ANGULAR_SPRING 8192
-/* Verdict: the setup and the inputs lead to every checkpoint and to the end of the file. */
+/* Verdict: the setup and the inputs reproduce every checkpoint and the trailer of the file. */
 #define LS2D_MATCH 0
-/* Verdict: a claim or the final hash in the trailer differs from that of the game. */
+/* Verdict: a claim or the final hash in the trailer differs from the result of the simulation. */
 #define LS2D_CLAIM_MISMATCH 1
 /* Verdict: the simulation diverges from the recorded game. */
 #define LS2D_DIVERGED 2
 /* Verdict: the file ends before its trailer. */
 #define LS2D_INCOMPLETE 3
-/* Verdict: not what a recorder writes. */
+/* Verdict: the bytes are not a valid replay file. */
 #define LS2D_MALFORMED 4
-/* Verdict: the file costs more than is allowed. */
+/* Verdict: the file exceeds one of the limits. */
 #define LS2D_LIMIT_EXCEEDED 5
-/* Verdict: of other versions or other rules. */
+/* Verdict: recorded by another version of the engine, or with other rules. */
 #define LS2D_UNVERIFIABLE 6
 /* Request: keep a copy of the state before `tick`. An older copy for the same tick is replaced. */
 #define LS2D_REQUEST_SAVE 0
@@ -259,50 +259,50 @@ typedef uint64_t ls2d_joint;
 #define LS2D_EVENT_SEATED 2
 /* Event: `peer` no longer has `seat` from `tick` on. */
 #define LS2D_EVENT_UNSEATED 3
-/* Event: play stands still because inputs of `peer` are missing; `value` is 1 if its packets arrive. */
+/* Event: play stalls because inputs of `peer` are missing; `value` is 1 if its packets arrive. */
 #define LS2D_EVENT_WAITING 4
-/* Event: play goes on. */
+/* Event: play continues. */
 #define LS2D_EVENT_RESUMED 5
-/* Event: `peer` asks for a pause, or no longer does; `value` is 1 or 0. */
+/* Event: `peer` requests a pause (`value` is 1) or withdraws its request (0). */
 #define LS2D_EVENT_PAUSE 6
 /* Event: the match ends after `tick` ticks. */
 #define LS2D_EVENT_END 7
-/* Event: after `tick` ticks, `peer` has another state; the hashes are `ours` and `theirs`. */
+/* Event: after `tick` ticks, `peer` has a different state; the hashes are `ours` and `theirs`. */
 #define LS2D_EVENT_DESYNC 8
-/* Event: `peer` has issued two inputs for `tick`. */
+/* Event: `peer` has issued two different inputs for `tick`. */
 #define LS2D_EVENT_CONFLICT 9
-/* Event: the others no longer keep the inputs that this peer lacks; it has to join again. */
+/* Event: the other peers no longer keep the inputs that this peer lacks; it has to join again. */
 #define LS2D_EVENT_TOO_FAR_BEHIND 10
-/* Event: the contact refuses; `value` is a `LS2D_REFUSED_` reason. */
+/* Event: the contact refuses the request to join; `value` is a `LS2D_REFUSED_` reason. */
 #define LS2D_EVENT_REFUSED 11
-/* Event: the state after `tick` ticks is here, as bytes with the handle `value`, which the caller frees. The game
- * has to restore it before it fulfils further requests. */
+/* Event: the state after `tick` ticks was downloaded, as bytes with the handle `value`, which the caller frees.
+ * The game has to restore it before it fulfils further requests. */
 #define LS2D_EVENT_STATE 12
-/* Event: what was downloaded is not a state; it is asked for again. */
+/* Event: the downloaded bytes are not a valid state; they are requested again. */
 #define LS2D_EVENT_BAD_STATE 13
 /* Reason: the offers differ. */
 #define LS2D_REFUSED_OFFER 0
-/* Reason: too many peers follow the match. */
+/* Reason: too many peers are joining through this contact. */
 #define LS2D_REFUSED_FULL 1
 /* Reason: another peer has the number of this peer. */
 #define LS2D_REFUSED_TAKEN 2
-/* Reason: the contact is not in a match yet. It is asked again. */
+/* Reason: the contact is not in a match yet. The request is repeated. */
 #define LS2D_REFUSED_NOT_READY 3
-/* Status: follows the match and asks for a seat. */
+/* Status: follows the match and requests a seat. */
 #define LS2D_MATCH_JOINING 0
 /* Status: follows the match. */
 #define LS2D_MATCH_WATCHING 1
-/* Status: has a seat; too few seats are taken for the first tick. */
+/* Status: has a seat in a match that has not begun, because too few seats are taken. */
 #define LS2D_MATCH_WAITING 2
 /* Status: plays. */
 #define LS2D_MATCH_PLAYING 3
-/* Status: cannot hear a majority. */
+/* Status: receives no packets from a majority of the peers. */
 #define LS2D_MATCH_PAUSED 4
-/* Status: the others went on without this peer, which asks for its seat again. */
+/* Status: the other peers went on without this peer, which requests its seat again. */
 #define LS2D_MATCH_DROPPED 5
 /* Status: removed for good. */
 #define LS2D_MATCH_KICKED 6
-/* Status: tells the others that it leaves. */
+/* Status: announces its departure to the other peers. */
 #define LS2D_MATCH_LEAVING 7
 /* Status: has left. */
 #define LS2D_MATCH_LEFT 8
@@ -310,11 +310,11 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MATCH_FINISHED 9
 /* Status: nothing more is sent. */
 #define LS2D_MATCH_CLOSED 10
-/* Status: asks the contact, or downloads the initial state. */
+/* Status: requests to join, or downloads the initial state. */
 #define LS2D_MATCH_CONNECTING 11
 /* `ls2d_query_filter.flags`: the query sees sensors. */
 #define LS2D_QUERY_SENSORS 1
-/* A ray reports shapes that it starts in, a cast those into which it would go deeper. */
+/* Rays report shapes that they start in; casts report only those into which they would move deeper. */
 #define LS2D_OVERLAP_RESIST 0
 /* Rays and casts report shapes that they start in. */
 #define LS2D_OVERLAP_REPORT 1
@@ -336,7 +336,7 @@ typedef uint64_t ls2d_joint;
 /* Kind of a shape: a rectangle with the half width `points[0].x` and the half height `points[0].y`, rounded by
  * `radius`. */
 #define LS2D_RECTANGLE 6
-/* Flag of a shape: detects overlaps, and pushes nothing. */
+/* Flag of a shape: detects overlaps, and does not collide. */
 #define LS2D_SHAPE_SENSOR 1
 /* Flag of a shape: other shapes pass in the direction `one_way`. */
 #define LS2D_SHAPE_ONE_WAY 2
@@ -360,7 +360,8 @@ typedef uint64_t ls2d_joint;
 #define LS2D_SHAPE_LINK_AFTER 1024
 /* Flag of a link: solid from the right side only, looking from `points[0]` to `points[1]`. */
 #define LS2D_SHAPE_LINK_ONE_SIDED 2048
-/* Rule of mixing: the mean of both values. Of two different rules the one with the larger number applies. */
+/* Rule of mixing: the mean of both values. If the rules of two shapes differ, the one with the larger number
+ * applies. */
 #define LS2D_MIX_AVERAGE 0
 /* Rule of mixing: the square root of the product. */
 #define LS2D_MIX_GEOMETRIC_MEAN 1
@@ -372,9 +373,9 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MIX_MAXIMUM 4
 /* Attraction that is the same at all distances. */
 #define LS2D_FALLOFF_CONSTANT 0
-/* Attraction that falls with the distance. */
+/* Attraction that is inversely proportional to the distance. */
 #define LS2D_FALLOFF_INVERSE 1
-/* Attraction that falls with the square of the distance. */
+/* Attraction that is inversely proportional to the square of the distance. */
 #define LS2D_FALLOFF_INVERSE_SQUARE 2
 
 /* A point or a vector. */
@@ -417,9 +418,9 @@ typedef struct ls2d_config {
     uint32_t contact;
     /* `LS2D_SLEEPING`, `LS2D_CONTINUOUS`. */
     uint32_t flags;
-    /* Stiffness of soft contacts in Hz; the share of the overlap that Baumgarte contacts correct. */
+    /* Stiffness of soft contacts in Hz, or share of the overlap that Baumgarte contacts correct in each sub-step. */
     ls2d_fx contact_stiffness;
-    /* Damping ratio of soft contacts; the overlap in metres that Baumgarte contacts leave. */
+    /* Damping ratio of soft contacts, or overlap in metres that Baumgarte contacts leave uncorrected. */
     ls2d_fx contact_damping;
     /* Largest speed in m/s with which contacts push shapes apart. */
     ls2d_fx contact_push_speed;
@@ -431,9 +432,9 @@ typedef struct ls2d_config {
     ls2d_fx restitution_threshold;
     /* Largest speed of a body in m/s. */
     ls2d_fx speed_max;
-    /* Distance in metres at which shapes get contact points before they touch. */
+    /* Largest distance in metres at which shapes have speculative contact points. */
     ls2d_fx speculative_distance;
-    /* Largest margin of the boxes of the broad phase in metres. */
+    /* Largest margin in metres of the bounding boxes in the broad phase. */
     ls2d_fx fat_margin;
     /* Lowest approach speed of a hit event in m/s. */
     ls2d_fx hit_speed;
@@ -455,13 +456,13 @@ typedef struct ls2d_body_def {
     uint32_t kind;
     /* `LS2D_BODY_` flags. */
     uint32_t flags;
-    /* `LS2D_SWEEP_OFF` and so on: the bodies that it does not pass through, however fast it is. */
+    /* `LS2D_SWEEP_OFF` and so on: the bodies through which it cannot tunnel. */
     uint32_t continuous;
     /* Origin in the world, in metres. */
     ls2d_vec2 position;
     /* Rotation. */
     ls2d_angle angle;
-    /* 0. */
+    /* Reserved: 0. */
     uint32_t reserved;
     /* Velocity of the centre of mass in m/s. */
     ls2d_vec2 velocity;
@@ -529,7 +530,7 @@ typedef struct ls2d_pose {
 typedef struct ls2d_explosion {
     /* Size of this struct in bytes. */
     uint32_t size;
-    /* 0. */
+    /* Reserved: 0. */
     uint32_t reserved;
     /* Centre in the world, in metres. */
     ls2d_vec2 centre;
@@ -537,7 +538,7 @@ typedef struct ls2d_explosion {
     ls2d_fx radius;
     /* Distance in metres beyond the radius over which the impulse falls to 0. */
     ls2d_fx falloff;
-    /* Impulse in N s per metre of width that a shape shows to the centre. */
+    /* Impulse in N s per metre of the width of a shape, as seen from the centre. */
     ls2d_fx impulse;
     /* Categories of shapes that it acts on. */
     uint64_t mask;
@@ -575,7 +576,8 @@ typedef struct ls2d_shape_def {
     uint64_t category;
     /* Categories that the shape collides with. */
     uint64_t mask;
-    /* Shapes of one group other than 0 always collide if it is positive, and never if it is negative. */
+    /* Shapes with the same group other than 0 always collide if the number is positive, and never if it is
+     * negative. */
     int32_t group;
     /* `LS2D_MIX_AVERAGE` and so on, for friction. */
     uint32_t friction_mixing;
@@ -585,13 +587,13 @@ typedef struct ls2d_shape_def {
     ls2d_angle one_way;
     /* Acceleration in m/s² of bodies in the area. */
     ls2d_vec2 area_acceleration;
-    /* Force in N per m² of a body in the area. */
+    /* Force in N per m² of the part of a body that is inside the area. */
     ls2d_vec2 area_force;
     /* Velocity of the medium in m/s. */
     ls2d_vec2 area_flow;
-    /* Rate at which bodies take the velocity of the medium, per second. */
+    /* Rate per second at which the velocity of bodies approaches that of the medium. */
     ls2d_fx area_linear_drag;
-    /* Rate at which bodies take the rotation of the medium, per second. */
+    /* Rate per second at which the angular velocity of bodies approaches that of the medium. */
     ls2d_fx area_angular_drag;
     /* Density of the medium in kg/m², for buoyancy. */
     ls2d_fx area_density;
@@ -601,14 +603,14 @@ typedef struct ls2d_shape_def {
     ls2d_fx attraction_radius;
     /* `LS2D_FALLOFF_CONSTANT` and so on. */
     uint32_t attraction_falloff;
-    /* 0. */
+    /* Reserved: 0. */
     uint32_t reserved;
     /* A number for the game, part of the state. */
     uint64_t user_data;
 } ls2d_shape_def;
 
-/* Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field that a flag names is read only with that
- * flag. */
+/* Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field that the description of a flag names is
+ * read only if the flag is set. */
 typedef struct ls2d_joint_def {
     /* Size of this struct in bytes. */
     uint32_t size;
@@ -624,11 +626,11 @@ typedef struct ls2d_joint_def {
     ls2d_angle angle_a;
     /* Angle of the joint's frame in B's frame. */
     ls2d_angle angle_b;
-    /* 0. */
+    /* Reserved: 0. */
     uint32_t reserved;
-    /* One body. */
+    /* Body A. */
     ls2d_body body_a;
-    /* The other body. */
+    /* Body B. */
     ls2d_body body_b;
     /* Anchor in A's frame in metres. */
     ls2d_vec2 anchor_a;
@@ -654,9 +656,9 @@ typedef struct ls2d_joint_def {
     ls2d_fx spring_force_upper;
     /* Length of a rod or of the rope of a pulley in metres. */
     ls2d_fx length;
-    /* Stiffness in Hz of what the joint holds rigidly. */
+    /* Stiffness in Hz of the rigid constraints of the joint. */
     ls2d_fx hertz;
-    /* Damping ratio of what the joint holds rigidly. */
+    /* Damping ratio of the rigid constraints of the joint. */
     ls2d_fx damping_ratio;
     /* Force in N beyond which the joint is reported or breaks. */
     ls2d_fx threshold_force;
@@ -664,7 +666,7 @@ typedef struct ls2d_joint_def {
     ls2d_fx threshold_torque;
     /* Target velocity of a motor joint in m/s. */
     ls2d_vec2 linear_velocity;
-    /* Largest force in N with which a motor joint drives. */
+    /* Largest driving force of a motor joint in N. */
     ls2d_fx linear_motor_max;
     /* Frequency in Hz of the spring between the anchors. */
     ls2d_fx linear_hertz;
@@ -684,19 +686,19 @@ typedef struct ls2d_joint_def {
     ls2d_vec2 wheel_a;
     /* Wheel of a pulley on B's side, in the world. */
     ls2d_vec2 wheel_b;
-    /* Factor by which the length on B's side of a pulley counts. */
+    /* Ratio of a pulley: the length on A's side plus `ratio` times the length on B's side is at most `length`. */
     ls2d_fx ratio;
     /* A number for the game, part of the state. */
     uint64_t user_data;
 } ls2d_joint_def;
 
-/* Which shapes a query sees. A null pointer stands for the defaults, as `ls2d_query_filter_init` sets them. */
+/* Selects the shapes that a query sees. A null pointer stands for the defaults of `ls2d_query_filter_init`. */
 typedef struct ls2d_query_filter {
     /* Size of this struct in bytes. */
     uint32_t size;
     /* `LS2D_QUERY_SENSORS`. */
     uint32_t flags;
-    /* `LS2D_OVERLAP_RESIST` and so on: shapes that a ray or a cast starts in. */
+    /* `LS2D_OVERLAP_RESIST` and so on, for shapes that a ray or a cast starts in. */
     uint32_t initial_overlap;
     /* Number of bodies that the query does not see, at most 8. */
     uint32_t except_count;
@@ -736,7 +738,7 @@ typedef struct ls2d_cast_hit {
     ls2d_vec2 travelled;
     /* Point on the surface that is met, in the world, in metres. */
     ls2d_vec2 point;
-    /* Outward normal of that surface. */
+    /* Outward normal of the surface at that point. */
     ls2d_vec2 normal;
     /* 1 if the shapes overlap at the start, otherwise 0. */
     uint64_t starts_inside;
@@ -772,7 +774,7 @@ typedef struct ls2d_probe {
     ls2d_angle angle;
     /* Position of the shape's centre in the world, in metres. */
     ls2d_vec2 position;
-    /* Its geometry; other fields of the definition do not matter. */
+    /* Its geometry; other fields of the definition have no effect. */
     ls2d_shape_def shape;
 } ls2d_probe;
 
@@ -780,13 +782,13 @@ typedef struct ls2d_probe {
 typedef struct ls2d_mover {
     /* Size of this struct in bytes. */
     uint32_t size;
-    /* Steepest slope that is ground, measured from level. */
+    /* Steepest slope that counts as ground, measured from the horizontal. */
     ls2d_angle slope_max;
     /* Height in metres of steps that it climbs without a jump. */
     ls2d_fx step_height;
     /* Distance in metres by which the ground may descend within a tick while the character follows it. */
     ls2d_fx snap_distance;
-    /* Its geometry; other fields of the definition do not matter. */
+    /* Its geometry; other fields of the definition have no effect. */
     ls2d_shape_def shape;
 } ls2d_mover;
 
@@ -796,7 +798,7 @@ typedef struct ls2d_mover_plane {
     ls2d_shape shape;
     /* Its body. */
     ls2d_body body;
-    /* Position of the body's origin at that time, in the world, in metres. */
+    /* Position of the body's origin in the world when the surface was met, in metres. */
     ls2d_vec2 body_position;
     /* Velocity of the surface in m/s. */
     ls2d_vec2 velocity;
@@ -804,15 +806,15 @@ typedef struct ls2d_mover_plane {
     ls2d_vec2 normal;
     /* Nearest point on the surface, in the world, in metres. */
     ls2d_vec2 point;
-    /* Distance in metres, negative if they overlap. */
+    /* Distance of the character from the surface in metres, negative if they overlap. */
     ls2d_fx separation;
-    /* Rotation of the body at that time. */
+    /* Rotation of the body when the surface was met. */
     ls2d_angle body_angle;
-    /* 0. */
+    /* Reserved: 0. */
     uint32_t reserved;
 } ls2d_mover_plane;
 
-/* State of a character, to be kept, saved and hashed by the game. `ls2d_mover_state_init` sets the first one. */
+/* State of a character, to be kept, saved and hashed by the game. `ls2d_mover_state_init` sets the first state. */
 typedef struct ls2d_mover_state {
     /* Size of this struct in bytes. */
     uint32_t size;
@@ -854,9 +856,9 @@ typedef struct ls2d_hit_event {
 typedef struct ls2d_sensor_event {
     /* The sensor. */
     ls2d_shape sensor;
-    /* The other shape. */
+    /* The shape that overlaps the sensor. */
     ls2d_shape visitor;
-    /* Fraction of the tick, 0 to 1. */
+    /* Time within the tick at which the overlap began or ceased, 0 to 1. */
     ls2d_fx fraction;
 } ls2d_sensor_event;
 
@@ -876,7 +878,7 @@ typedef struct ls2d_joint_event {
 typedef struct ls2d_limits {
     /* Size of this struct in bytes. */
     uint32_t size;
-    /* 0. */
+    /* Reserved: 0. */
     uint32_t reserved;
     /* Bytes of the file. */
     uint64_t file_bytes;
@@ -902,9 +904,9 @@ typedef struct ls2d_limits {
 typedef struct ls2d_verdict {
     /* `LS2D_MATCH` and so on. */
     uint32_t kind;
-    /* 0. */
+    /* Reserved: 0. */
     uint32_t reserved;
-    /* Number of ticks that were played; of the first different checkpoint for `LS2D_DIVERGED`. */
+    /* Number of ticks that were played; for `LS2D_DIVERGED`, the tick of the first checkpoint that differs. */
     uint64_t ticks;
     /* Hash of the last state, if all states up to it agreed with the recording; otherwise 0. */
     ls2d_hash hash;
@@ -916,7 +918,7 @@ typedef struct ls2d_match_config {
     uint32_t size;
     /* Number of seats of the match, 1 to 64. */
     uint32_t seats;
-    /* Own seats to play: 0 to watch, or to open a match as a dedicated server. */
+    /* Number of seats that this peer plays; 0 for a spectator or a dedicated server. */
     uint32_t own_seats;
     /* Number of seats that have to be taken before the first tick. */
     uint32_t start_with;
@@ -946,11 +948,12 @@ typedef struct ls2d_match_config {
     uint32_t peer;
     /* Distinguishes matches. */
     uint64_t match_tag;
-    /* Microseconds for which play stands still for a peer before the others go on without it. */
+    /* Time in microseconds for which play stalls because of a missing peer before the other peers go on without
+     * it. */
     uint64_t patience;
-    /* Identity that outlives processes: whoever returns with the same key gets its seat back. */
+    /* Identity of the player: a peer that joins again with the same key gets its seat back. */
     uint64_t key;
-    /* Random numbers that nobody else knows. */
+    /* Secret random numbers, which protect against packets with forged addresses. */
     uint64_t secret[2];
 } ls2d_match_config;
 
@@ -976,9 +979,9 @@ typedef struct ls2d_match_event {
     uint32_t seat;
     /* A tick. */
     uint32_t tick;
-    /* As the kind says. */
+    /* Its meaning depends on the kind. */
     uint32_t value;
-    /* 0. */
+    /* Reserved: 0. */
     uint32_t reserved;
     /* Hash of this peer, for `LS2D_EVENT_DESYNC`. */
     ls2d_hash ours;
@@ -988,20 +991,20 @@ typedef struct ls2d_match_event {
 
 /* ---- The library ---- */
 
-/* Version of this API. It has to be `LS2D_API_VERSION` of the header. */
+/* Version of this API. It has to be equal to `LS2D_API_VERSION` of the header. */
 uint32_t ls2d_api_version(void);
 
-/* Version of the engine's arithmetic: programs with different ones do not compute the same states. */
+/* Version of the engine's arithmetic: programs with different versions compute different states. */
 uint32_t ls2d_semantics(void);
 
 /* Copies the text of the last failure on this thread as UTF-8, and writes its length in bytes. It is not
  * terminated by a zero. If the buffer is shorter, the text is cut. */
 ls2d_status ls2d_last_error(uint8_t *buffer, size_t capacity, size_t *length);
 
-/* Frees an object of any kind. Its handle is an error from now on, also if it is freed again. */
+/* Frees an object of any kind. Afterwards every use of its handle is an error, including freeing it again. */
 ls2d_status ls2d_free(uint32_t handle);
 
-/* Number of objects that are not freed, to find leaks. */
+/* Number of objects that have not been freed, to find leaks. */
 size_t ls2d_object_count(void);
 
 /* Number of bytes of a bytes object. */
@@ -1013,8 +1016,9 @@ ls2d_status ls2d_bytes_copy(uint32_t bytes, uint8_t *buffer, size_t capacity);
 /* Makes a bytes object, for functions that take one. */
 ls2d_status ls2d_bytes_new(const uint8_t *data, size_t size, uint32_t *bytes);
 
-/* Memory of this thread with an alignment of 8, for callers that have none of their own, such as JavaScript.
- * Returns its address, or 0 without enough memory. A call with a larger size moves it and keeps its contents. */
+/* Returns the address of `size` bytes of memory with an alignment of 8, or 0 if there is not enough memory. It is
+ * for callers that cannot allocate memory, such as JavaScript. Each thread has one such buffer; a call with a
+ * larger size may move it and keeps its contents. */
 size_t ls2d_scratch(size_t size);
 
 /* ---- Worlds ---- */
@@ -1022,7 +1026,8 @@ size_t ls2d_scratch(size_t size);
 /* Sets the default settings of a world: 60 ticks per second, gravity of 10 m/s² downwards. */
 ls2d_status ls2d_config_init(ls2d_config *config);
 
-/* Raises the sub-steps and the stiffness of contacts to what stacks of bodies of `size` metres need. */
+/* Raises the number of sub-steps and the stiffness of contacts so that stacks of bodies of `size` metres are
+ * stable. */
 ls2d_status ls2d_config_for_smallest(ls2d_config *config, const ls2d_config *from, ls2d_fx size);
 
 /* Makes an empty world. A null pointer stands for the default settings. */
@@ -1037,7 +1042,7 @@ ls2d_status ls2d_world_step(uint32_t world);
 /* Advances a world by some ticks. Only the events of the last one are kept. */
 ls2d_status ls2d_world_steps(uint32_t world, uint32_t ticks);
 
-/* Hash of the state of a world: equal for equal edits in the same order, on every machine. */
+/* Hash of the state of a world. The same edits in the same order give the same hash on every machine. */
 ls2d_status ls2d_world_hash(uint32_t world, ls2d_hash *hash);
 
 /* Hash of a section of the state: 0 settings, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands, 6 random
@@ -1047,7 +1052,7 @@ ls2d_status ls2d_world_digest(uint32_t world, uint32_t section, ls2d_hash *hash)
 /* Number of ticks since the world was made. */
 ls2d_status ls2d_world_tick(uint32_t world, uint64_t *tick);
 
-/* Number of results that a clamp has changed since the world was made: 0 while all values stay in their ranges. */
+/* Number of results that were clamped since the world was made: 0 while all values stay in their ranges. */
 ls2d_status ls2d_world_faults(uint32_t world, uint64_t *faults);
 
 /* The settings of a world. */
@@ -1080,12 +1085,12 @@ ls2d_status ls2d_shape_def_init(uint32_t kind, ls2d_shape_def *def);
 ls2d_status ls2d_joint_def_init(uint32_t kind, ls2d_joint_def *def);
 
 /* Makes the links of a chain through some points, closed if `closed` is not 0, solid only from the right if
- * `one_sided` is not 0. The links have the material, filter and so on of `base`. */
+ * `one_sided` is not 0. The links have all properties of `base` except its geometry. */
 ls2d_status ls2d_chain_links(const ls2d_shape_def *base, const ls2d_vec2 *points, size_t point_count, uint32_t closed, uint32_t one_sided, ls2d_shape_def *links, size_t capacity, size_t *count);
 
 /* Mass, centre of mass and radius of gyration of a dynamic body with some shapes, for `mass`, `mass_centre` and
- * `mass_gyration` of its definition. Null pointers are not written. It is an error if no shape has an area and a
- * density. */
+ * `mass_gyration` of its definition. Null pointers are not written. It is an error if no shape has both an area
+ * and a density. */
 ls2d_status ls2d_shapes_mass(const ls2d_shape_def *shapes, size_t shape_count, ls2d_fx *mass, ls2d_vec2 *centre, ls2d_fx *gyration);
 
 /* ---- Edits of a world, or of a list of commands ---- */
@@ -1105,8 +1110,8 @@ ls2d_status ls2d_commands_encode(uint32_t commands, uint32_t *bytes);
 /* Replaces a list of commands by an encoded one, from any source. */
 ls2d_status ls2d_commands_decode(uint32_t commands, const uint8_t *data, size_t size);
 
-/* Executes a list of commands in order. Commands that the world refuses are skipped and counted; a null pointer is
- * not written. */
+/* Executes a list of commands in order. Commands that the world refuses are skipped; their number is written to
+ * `refused` unless it is null. */
 ls2d_status ls2d_world_execute(uint32_t world, uint32_t commands, uint32_t *refused);
 
 /* Adds a body with its shapes. Its handle is written, unless the pointer is null or the target is a list. */
@@ -1132,27 +1137,27 @@ ls2d_status ls2d_set_shape(uint32_t target, ls2d_shape shape, const ls2d_shape_d
 /* Adds a joint. Its handle is written, unless the pointer is null or the target is a list. */
 ls2d_status ls2d_add_joint(uint32_t target, const ls2d_joint_def *joint, ls2d_joint *id);
 
-/* Adds a joint with the same definition between each pair of bodies, or none if one of them is refused. A recording
- * stores the definition once. `ends` has the two bodies of each joint, one after the other. The handles are
- * written, unless the pointer is null or the target is a list. */
+/* Adds a joint with the same definition between each pair of bodies, or none if one of them is refused. A
+ * recording stores the definition once. `ends` has the two bodies of each joint, one after the other. The handles
+ * are written, unless the pointer is null or the target is a list. */
 ls2d_status ls2d_add_joint_each(uint32_t target, const ls2d_joint_def *joint, const ls2d_body *ends, size_t end_count, ls2d_joint *ids, size_t capacity);
 
 /* Removes a joint. */
 ls2d_status ls2d_remove_joint(uint32_t target, ls2d_joint joint);
 
-/* Changes a joint. Its bodies stay. */
+/* Changes a joint. Its bodies have to stay the same. */
 ls2d_status ls2d_set_joint(uint32_t target, ls2d_joint joint, const ls2d_joint_def *def);
 
-/* Makes a joint act. */
+/* Enables a joint. */
 ls2d_status ls2d_enable_joint(uint32_t target, ls2d_joint joint);
 
-/* Stops a joint from acting. */
+/* Disables a joint: it stays in the world without effect. */
 ls2d_status ls2d_disable_joint(uint32_t target, ls2d_joint joint);
 
-/* Pushes a body during the next tick by a force in N at a point of the world, in metres. */
+/* Applies a force in N to a body during the next tick, at a point of the world in metres. */
 ls2d_status ls2d_apply_force(uint32_t target, ls2d_body body, ls2d_fx force_x, ls2d_fx force_y, ls2d_fx x, ls2d_fx y);
 
-/* Turns a body during the next tick by a torque in N m. */
+/* Applies a torque in N m to a body during the next tick. */
 ls2d_status ls2d_apply_torque(uint32_t target, ls2d_body body, ls2d_fx torque);
 
 /* Changes the velocity of a body by an impulse in N s at a point of the world, in metres. */
@@ -1164,25 +1169,25 @@ ls2d_status ls2d_apply_angular_impulse(uint32_t target, ls2d_body body, ls2d_fx 
 /* Sets the velocity of a body's centre of mass in m/s, and its angular velocity in rad/s. */
 ls2d_status ls2d_set_velocity(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_fx y, ls2d_fx angular);
 
-/* Places a body. */
+/* Sets the position of a body's origin in metres, and its angle. */
 ls2d_status ls2d_set_transform(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_fx y, ls2d_angle angle);
 
 /* Gives a kinematic body the velocity with which it reaches a pose in the next tick. */
 ls2d_status ls2d_move_to(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_fx y, ls2d_angle angle);
 
-/* Changes the settings of a body: damping, gravity scale, locks, sweeps, sleep. The other fields do not matter. */
+/* Changes the settings of a body: damping, gravity scale, locks, sweeps, sleep. The other fields have no effect. */
 ls2d_status ls2d_set_body(uint32_t target, ls2d_body body, const ls2d_body_def *def);
 
 /* Changes the kind of a body. */
 ls2d_status ls2d_set_kind(uint32_t target, ls2d_body body, uint32_t kind);
 
-/* Changes the mass of a body to that of a definition. The other fields have no effect. */
+/* Sets the mass of a body from a definition. The other fields have no effect. */
 ls2d_status ls2d_set_mass(uint32_t target, ls2d_body body, const ls2d_body_def *def);
 
 /* Sets the number that the game stores with a body. */
 ls2d_status ls2d_set_user_data(uint32_t target, ls2d_body body, uint64_t user_data);
 
-/* Sets the name of a body, of at most 16 bytes; none for a length of 0. */
+/* Sets the name of a body, of at most 16 bytes. A length of 0 removes it. */
 ls2d_status ls2d_set_name(uint32_t target, ls2d_body body, const uint8_t *text, size_t length);
 
 /* Lets a body take part in the simulation. */
@@ -1209,7 +1214,7 @@ ls2d_status ls2d_explode(uint32_t target, const ls2d_explosion *explosion);
 /* Sets the defaults of an explosion at a point: radius and falloff of 1 m, all categories. */
 ls2d_status ls2d_explosion_init(ls2d_fx x, ls2d_fx y, ls2d_fx impulse, ls2d_explosion *explosion);
 
-/* ---- What is in a world ---- */
+/* ---- Contents of a world ---- */
 
 /* Properties of a body. */
 ls2d_status ls2d_body_get(uint32_t world, ls2d_body id, ls2d_body_info *info);
@@ -1226,7 +1231,7 @@ ls2d_status ls2d_body_shapes(uint32_t world, ls2d_body id, ls2d_shape *shapes, s
 /* Joints of a body in slot order. */
 ls2d_status ls2d_body_joints(uint32_t world, ls2d_body id, ls2d_joint *joints, size_t capacity, size_t *count);
 
-/* Name of a body: 16 bytes, ended by zeros; all zero for none. */
+/* Name of a body: 16 bytes, padded with zeros; all zeros if it has no name. */
 ls2d_status ls2d_body_name(uint32_t world, ls2d_body id, uint8_t *name);
 
 /* Velocity in m/s of the material point of a body at a point of the world. */
@@ -1235,7 +1240,7 @@ ls2d_status ls2d_body_velocity_at(uint32_t world, ls2d_body id, ls2d_fx x, ls2d_
 /* Definition of a shape and its body. */
 ls2d_status ls2d_shape_get(uint32_t world, ls2d_shape id, ls2d_shape_def *def, ls2d_body *owner);
 
-/* A box that contains a shape and some margin, in the world. */
+/* An axis-aligned box around a shape with some margin, in world coordinates. */
 ls2d_status ls2d_shape_box(uint32_t world, ls2d_shape id, ls2d_aabb *area);
 
 /* Shapes that a sensor overlaps, in slot order. */
@@ -1250,14 +1255,14 @@ ls2d_status ls2d_joint_get(uint32_t world, ls2d_joint id, ls2d_joint_def *def);
 /* The anchors of a joint in the world, in metres. */
 ls2d_status ls2d_joint_anchors(uint32_t world, ls2d_joint id, ls2d_vec2 *a, ls2d_vec2 *b);
 
-/* Angle of a joint in rad, with whole turns. */
+/* Angle of a joint in rad, including whole turns. */
 ls2d_status ls2d_joint_angle(uint32_t world, ls2d_joint id, ls2d_fx *angle);
 
 /* Force in N and torque in N m of a joint on body B in the last tick. */
 ls2d_status ls2d_joint_force(uint32_t world, ls2d_joint id, ls2d_vec2 *force, ls2d_fx *torque);
 
-/* Sets the anchors and angles of a definition so that the joint holds at the current poses, at a point of the
- * world and with its axis along a direction in the world. A direction of zero is the x axis. */
+/* Sets the anchors and angles of a definition for the current poses of the bodies: the anchor at a point of the
+ * world, and the axis along a direction in the world. A direction of zero is the x axis. */
 ls2d_status ls2d_joint_at(uint32_t world, const ls2d_joint_def *from, const ls2d_vec2 *anchor, const ls2d_vec2 *axis, ls2d_joint_def *def);
 
 /* ---- Drawing ---- */
@@ -1280,13 +1285,13 @@ ls2d_status ls2d_events_contact_end(uint32_t world, ls2d_contact_event *events, 
 /* Shapes that hit each other, sorted. Only shapes with `LS2D_SHAPE_HIT_EVENTS` report hits. */
 ls2d_status ls2d_events_hits(uint32_t world, ls2d_hit_event *events, size_t capacity, size_t *count);
 
-/* Shapes that began to overlap a sensor, sorted by the fraction of the tick. */
+/* Shapes that began to overlap a sensor, sorted by `fraction`. */
 ls2d_status ls2d_events_sensor_begin(uint32_t world, ls2d_sensor_event *events, size_t capacity, size_t *count);
 
-/* Shapes that ceased to overlap a sensor, sorted by the fraction of the tick. */
+/* Shapes that ceased to overlap a sensor, sorted by `fraction`. */
 ls2d_status ls2d_events_sensor_end(uint32_t world, ls2d_sensor_event *events, size_t capacity, size_t *count);
 
-/* Joints above their threshold, in slot order. */
+/* Joints whose force or torque has exceeded a threshold, in slot order. */
 ls2d_status ls2d_events_joints(uint32_t world, ls2d_joint_event *events, size_t capacity, size_t *count);
 
 /* ---- Queries ---- */
@@ -1318,7 +1323,7 @@ ls2d_status ls2d_overlap_point(uint32_t world, ls2d_fx x, ls2d_fx y, const ls2d_
 /* The shape nearest to a point, within a distance in metres. `LS2D_NONE` without one. */
 ls2d_status ls2d_closest(uint32_t world, ls2d_fx x, ls2d_fx y, ls2d_fx within, const ls2d_query_filter *filter, ls2d_closest_point *closest);
 
-/* Distance of two shapes in metres, negative if they overlap. `LS2D_NONE` if one is not in the world. */
+/* Distance between two shapes in metres, negative if they overlap. `LS2D_NONE` if one is not in the world. */
 ls2d_status ls2d_shape_distance(uint32_t world, ls2d_shape a, ls2d_shape b, ls2d_fx *distance);
 
 /* ---- Characters ---- */
@@ -1330,10 +1335,10 @@ ls2d_status ls2d_mover_init(uint32_t kind, ls2d_mover *mover);
 /* Sets the state of a character at rest in the air, at a position in metres. */
 ls2d_status ls2d_mover_state_init(ls2d_fx x, ls2d_fx y, ls2d_mover_state *state);
 
-/* Moves a character for one tick at its velocity, among the shapes that a filter sees. It slides along what it
- * meets, and moving ground carries it. The game adds gravity to its velocity. The world does not change. `from`
- * and `state` may be the same. `met` are the surfaces that it has met, in order; if the buffer is too short, the
- * state is written nevertheless. */
+/* Moves a character for one tick at its velocity, among the shapes that a filter accepts. It slides along surfaces
+ * that it meets, and moving ground carries it. The game adds gravity to its velocity. The world does not change.
+ * `from` and `state` may point to the same struct. The surfaces that it has met are written to `met` in order; if
+ * the buffer is too short, the state is written nevertheless. */
 ls2d_status ls2d_move_character(uint32_t world, const ls2d_mover *mover, const ls2d_mover_state *from, const ls2d_query_filter *filter, ls2d_mover_state *state, ls2d_mover_plane *met, size_t capacity, size_t *count);
 
 /* ---- Snapshots ---- */
@@ -1341,7 +1346,7 @@ ls2d_status ls2d_move_character(uint32_t world, const ls2d_mover *mover, const l
 /* Saves a world in memory. */
 ls2d_status ls2d_world_save(uint32_t world, uint32_t *snapshot);
 
-/* Saves a world into a snapshot that exists, and reuses its memory: the cheapest way to save every tick. */
+/* Saves a world into an existing snapshot, and reuses its memory: the fastest way to save every tick. */
 ls2d_status ls2d_world_save_into(uint32_t world, uint32_t snapshot);
 
 /* Restores a saved state. */
@@ -1353,16 +1358,16 @@ ls2d_status ls2d_snapshot_hash(uint32_t snapshot, ls2d_hash *hash);
 /* Encodes a world as bytes. */
 ls2d_status ls2d_world_encode(uint32_t world, uint32_t *bytes);
 
-/* Makes a world from bytes of any source: they are checked. */
+/* Makes a world from bytes, which may come from any source and are checked. */
 ls2d_status ls2d_world_decode(const uint8_t *data, size_t size, uint32_t *world);
 
 /* ---- Replays of worlds ---- */
 
-/* Sets the default limits of a replay: a day of play, hours of computing for a file made to be slow. */
+/* Sets the default limits of a replay. They allow a day of play. A file made to be slow can take hours to verify. */
 ls2d_status ls2d_limits_init(ls2d_limits *limits);
 
-/* Starts a recording: a world that the commands of a list set up, with a checkpoint every `interval` ticks. A null
- * pointer stands for the default settings. */
+/* Starts the recording of a world, which the commands of a list set up, with a checkpoint every `interval` ticks.
+ * A null pointer stands for the default settings. */
 ls2d_status ls2d_recording_new(const ls2d_config *config, uint32_t commands, uint32_t interval, uint32_t *recording);
 
 /* Executes a list of commands and advances the recorded world by one tick. The list is empty afterwards. Commands
@@ -1392,8 +1397,8 @@ ls2d_status ls2d_timeline_open(const uint8_t *data, size_t size, const ls2d_limi
 /* The current tick, and the number of ticks. Null pointers are not written. */
 ls2d_status ls2d_timeline_ticks(uint32_t timeline, uint64_t *tick, uint64_t *ticks);
 
-/* Goes to a tick. Ticks that were played before cost little. Checkpoints on the way are compared: if one differs,
- * the result is `LS2D_RECORD`, and the timeline stays there. */
+/* Goes to a tick. Going to a tick that was played before is fast. Checkpoints on the way are compared: if one
+ * differs, the result is `LS2D_RECORD`, and the timeline stays there. */
 ls2d_status ls2d_timeline_seek(uint32_t timeline, uint64_t tick);
 
 /* Goes forward by a tick. `LS2D_NONE` at the end. */
@@ -1407,23 +1412,25 @@ ls2d_status ls2d_timeline_world(uint32_t timeline, uint32_t *world);
 
 /* ---- Recorders of games with rules of their own ---- */
 
-/* Starts a recorder for a game with rules of its own. `rules` is the name of the rules in UTF-8, `setup` what the
- * first tick depends on, `start` the hash of the state before it. There is a checkpoint every `interval` ticks. */
+/* Starts a recorder for a game with rules of its own. `rules` is the name of the rules in UTF-8, `setup` the data
+ * from which the game makes its first state, and `start` the hash of that state. There is a checkpoint every
+ * `interval` ticks. */
 ls2d_status ls2d_recorder_new(const uint8_t *rules, size_t rules_length, uint32_t rules_version, uint32_t players, uint32_t tick_rate, uint32_t input_bytes, const uint8_t *setup, size_t setup_size, const ls2d_hash *start, uint32_t interval, uint32_t *recorder);
 
-/* Records the final inputs of the next tick: those of all players, one after another. `absent` has a bit for each
- * absent player, whose input is zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow with the hash
- * of the state after this tick. */
+/* Records the final inputs of the next tick: the inputs of all players, one after another. `absent` has a bit for
+ * each absent player; its input has to be zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow
+ * with the hash of the state after this tick. */
 ls2d_status ls2d_recorder_record(uint32_t recorder, const uint8_t *inputs, size_t size, uint64_t absent, uint32_t *due);
 
-/* Passes the hash of the state after the last recorded tick. Without a checkpoint due, nothing happens. */
+/* Passes the hash of the state after the last recorded tick. It has no effect if no checkpoint is due. */
 ls2d_status ls2d_recorder_checkpoint(uint32_t recorder, const ls2d_hash *hash);
 
 /* Takes the bytes that are finished, to be appended to the file. */
 ls2d_status ls2d_recorder_take(uint32_t recorder, uint32_t *bytes);
 
 /* Adds a result of the game, such as a score, before the recorder is finished: a name of 1 to 64 bytes of UTF-8,
- * and a number. A replay has at most 256 results with different names, which can be read without playing it. */
+ * and a number. A replay has at most 256 results with different names. They can be read without playing the
+ * replay. */
 ls2d_status ls2d_recorder_claim(uint32_t recorder, const uint8_t *name, size_t name_length, int64_t number);
 
 /* Ends a replay with the hash of the last state, and returns the bytes that have not been taken yet. */
@@ -1435,24 +1442,25 @@ ls2d_status ls2d_recorder_finish(uint32_t recorder, const ls2d_hash *hash, uint3
  * the handle is 0, and the result is `LS2D_RECORD`. */
 ls2d_status ls2d_replay_open(const uint8_t *data, size_t size, const ls2d_limits *limits, uint32_t *replay, ls2d_verdict *verdict);
 
-/* Name of the rules as bytes. The other figures of the header are written where a pointer is not null. */
+/* Name of the rules as bytes, and the figures of the header. Null pointers to figures are not written. */
 ls2d_status ls2d_replay_rules(uint32_t replay, uint32_t *rules, uint32_t *rules_version, uint32_t *players, uint32_t *tick_rate, uint32_t *input_bytes, uint64_t *ticks);
 
 /* The setup of the game as bytes. */
 ls2d_status ls2d_replay_setup(uint32_t replay, uint32_t *bytes);
 
-/* Name, as bytes, and number of a result that the file states. Results are in ascending order of names, and true
- * if the verdict is `LS2D_MATCH`. `LS2D_NONE` after the last one. */
+/* Name, as bytes, and number of a result that the file states. Results are in ascending order of names. They are
+ * true if the verdict is `LS2D_MATCH`. `LS2D_NONE` after the last one. */
 ls2d_status ls2d_replay_claim_at(uint32_t replay, uint32_t index, uint32_t *name, int64_t *number);
 
-/* The inputs of all players for the next tick, as `players` times `input_bytes` bytes, with a bit in `absent` for
- * each absent player; a null pointer is not written. `LS2D_NONE` at the end. */
+/* The inputs of all players for the next tick, `players` times `input_bytes` bytes. A bit for each absent player
+ * is written to `absent` unless it is null. `LS2D_NONE` at the end. */
 ls2d_status ls2d_replay_next(uint32_t replay, uint8_t *inputs, size_t capacity, size_t *size, uint64_t *absent);
 
-/* Passes the hash of the state before the first tick, and after each tick; or answers `LS2D_REQUEST_CHECKSUM`. */
+/* Compares the hash of the game's state with the file. Call it before the first tick and after each tick, or,
+ * while seeking, for each `LS2D_REQUEST_CHECKSUM`. */
 ls2d_status ls2d_replay_check(uint32_t replay, const ls2d_hash *hash);
 
-/* Adds a result of the game that was played. The verdict compares all of them with those that the file states. */
+/* Adds a result of the game that was played. The verdict compares all added results with those in the file. */
 ls2d_status ls2d_replay_claim(uint32_t replay, const uint8_t *name, size_t name_length, int64_t number);
 
 /* The verdict after the last tick, with the hash of the last state. */
@@ -1460,8 +1468,8 @@ ls2d_status ls2d_replay_verdict(uint32_t replay, const ls2d_hash *hash, ls2d_ver
 
 /* ---- Timelines of replays of games with rules of their own ---- */
 
-/* Sets the tick to go to; tick t is the state after t ticks. `ls2d_replay_next_request` then returns what the game
- * has to do. At the first request the game has to be in its first state. */
+/* Sets the tick to go to; tick t is the state after t ticks. `ls2d_replay_next_request` then returns the requests
+ * that the game has to fulfil. At the first request the game has to be in its first state. */
 ls2d_status ls2d_replay_seek(uint32_t replay, uint64_t tick);
 
 /* The next request on the way to a tick: `LS2D_REQUEST_SAVE`, `LS2D_REQUEST_LOAD`, `LS2D_REQUEST_ADVANCE` as in a
@@ -1470,8 +1478,8 @@ ls2d_status ls2d_replay_seek(uint32_t replay, uint64_t tick);
  * can be reached. */
 ls2d_status ls2d_replay_next_request(uint32_t replay, ls2d_request *request, uint8_t *inputs, size_t capacity, size_t *size);
 
-/* Sets the ticks between the states that seeking asks to save. At first it is 60, or more for replays that would
- * need more than 256 states. */
+/* Sets the interval in ticks at which seeking requests to save the state. The default is 60, or more for replays
+ * that would otherwise need more than 256 saved states. */
 ls2d_status ls2d_replay_set_interval(uint32_t replay, uint32_t ticks);
 
 /* ---- Matches ---- */
@@ -1483,7 +1491,8 @@ ls2d_status ls2d_match_config_init(uint32_t seats, ls2d_match_config *config);
 /* Opens a match. All peers have to pass the same `offer`: versions, rules, setup, at most 512 bytes. */
 ls2d_status ls2d_match_host(const ls2d_match_config *config, const uint8_t *offer, size_t offer_size, uint32_t *handle);
 
-/* Asks a participant of a match, whose address is known, to join or, without own seats, to watch. */
+/* Joins a match through the participant at the address `contact`, as a player or, if `own_seats` is 0, a
+ * spectator. */
 ls2d_status ls2d_match_join(const ls2d_match_config *config, const uint8_t *offer, size_t offer_size, const uint8_t *contact, size_t contact_size, uint32_t *handle);
 
 /* Sends the request to join to another participant, or again to the same one. */
@@ -1492,22 +1501,22 @@ ls2d_status ls2d_match_ask(uint32_t handle, const uint8_t *contact, size_t conta
 /* Takes a packet that arrived from an address. `now` is a time in microseconds that never decreases. */
 ls2d_status ls2d_match_receive(uint32_t handle, uint64_t now, const uint8_t *from, size_t from_size, const uint8_t *packet, size_t size);
 
-/* Passes the time. Call it every few milliseconds, and after packets have arrived. */
+/* Advances the match to the time `now`. Call it every few milliseconds, and after packets have arrived. */
 ls2d_status ls2d_match_update(uint32_t handle, uint64_t now);
 
 /* Writes 1 if it is time for `ls2d_match_advance`, otherwise 0. */
 ls2d_status ls2d_match_is_due(uint32_t handle, uint64_t now, uint32_t *due);
 
-/* Issues the inputs of your own seats, in the order of the seats, and plays a tick if that is possible: the
- * requests that follow say so. Writes 1 to `issued` if the inputs were issued; otherwise they may be used again.
- * Without seats of your own there are no bytes. */
+/* Issues the inputs of your own seats, in the order of the seats, and plays a tick if that is possible:
+ * `LS2D_REQUEST_ADVANCE` is then among the next requests. Writes 1 to `issued` if the inputs were issued;
+ * otherwise they may be passed again. Without own seats, `size` is 0. */
 ls2d_status ls2d_match_advance(uint32_t handle, uint64_t now, const uint8_t *inputs, size_t size, uint32_t *issued);
 
 /* The next request. Requests have to be fulfilled in order, before the next call of `ls2d_match_advance`. For
  * `LS2D_REQUEST_ADVANCE`, the inputs of all seats are written to the buffer. `LS2D_NONE` if there is none. */
 ls2d_status ls2d_match_next_request(uint32_t handle, ls2d_request *request, uint8_t *inputs, size_t capacity, size_t *size);
 
-/* Answers `LS2D_REQUEST_CHECKSUM`. */
+/* Passes the hash that `LS2D_REQUEST_CHECKSUM` requests. */
 ls2d_status ls2d_match_report_hash(uint32_t handle, uint32_t tick, const ls2d_hash *hash);
 
 /* The next packet to send, of at most 1472 bytes, and the address to send it to, of at most 32 bytes. `LS2D_NONE`
@@ -1520,33 +1529,34 @@ ls2d_status ls2d_match_next_event(uint32_t handle, ls2d_match_event *event);
 /* Writes 1 if a joining peer waits for its initial state, otherwise 0. */
 ls2d_status ls2d_match_wants_state(uint32_t handle, uint32_t *wants);
 
-/* Offers the state after a number of final ticks to those who join. It is kept until it has been sent. */
+/* Offers the state after a number of final ticks to peers that join. It is kept until it has been sent. */
 ls2d_status ls2d_match_offer_state(uint32_t handle, uint32_t tick, const uint8_t *state, size_t size);
 
-/* Where the match stands: `LS2D_MATCH_JOINING` and so on. */
+/* Status of the match: one of the `LS2D_MATCH_` constants. */
 ls2d_status ls2d_match_status(uint32_t handle, uint32_t *status);
 
-/* Numbers of ticks that were played, that are final, and that are final and played. Null pointers are not written. */
+/* Numbers of ticks: `played`, also with guessed inputs; `last`, whose inputs are final; `confirmed`, played with
+ * final inputs. Null pointers are not written. */
 ls2d_status ls2d_match_ticks(uint32_t handle, uint32_t *played, uint32_t *last, uint32_t *confirmed);
 
-/* Bit for each own seat. */
+/* Writes a bit for each own seat. */
 ls2d_status ls2d_match_seats(uint32_t handle, uint64_t *seats);
 
-/* The final inputs of all seats for a tick, while they are kept. `LS2D_NONE` otherwise. */
+/* The final inputs of all seats for a tick. `LS2D_NONE` if they are not final yet, or not kept any more. */
 ls2d_status ls2d_match_final_inputs(uint32_t handle, uint32_t tick, uint8_t *inputs, size_t capacity, size_t *size, uint64_t *absent);
 
-/* Delay of own inputs in ticks, and smoothed round trip in microseconds and lost packets in thousandths of the
- * link to a peer. Null pointers are not written. */
+/* Delay of own inputs in ticks, and for the link to a peer the smoothed round-trip time in microseconds and the
+ * packet loss in thousandths. Null pointers are not written. */
 ls2d_status ls2d_match_link(uint32_t handle, uint32_t peer, uint32_t *delay, uint64_t *round_trip, uint32_t *loss);
 
 /* Leaves the match. Call `ls2d_match_update` until the status is `LS2D_MATCH_CLOSED`. */
 ls2d_status ls2d_match_leave(uint32_t handle);
 
-/* Asks for an end of the match after a number of ticks. It is decided two seconds before; until then others can
- * join. */
+/* Requests an end of the match after a number of ticks. The end is decided two seconds before; until then, other
+ * peers can join. */
 ls2d_status ls2d_match_end_at(uint32_t handle, uint32_t ticks);
 
-/* Asks all others to pause, or, with 0, withdraws the request. */
+/* Requests a pause from all other peers, or, with 0, withdraws the request. */
 ls2d_status ls2d_match_pause(uint32_t handle, uint32_t paused);
 
 /* Votes for going on without a peer that is missing. */
@@ -1569,16 +1579,16 @@ ls2d_status ls2d_fx_format(ls2d_fx number, uint8_t *text, size_t capacity, size_
 /* `numerator / denominator`, rounded to nearest. */
 ls2d_status ls2d_fx_ratio(int64_t numerator, int64_t denominator, ls2d_fx *number);
 
-/* `a + b`, within the range of numbers. */
+/* `a + b`, saturating. */
 ls2d_fx ls2d_fx_add(ls2d_fx a, ls2d_fx b);
 
-/* `a - b`, within the range of numbers. */
+/* `a - b`, saturating. */
 ls2d_fx ls2d_fx_sub(ls2d_fx a, ls2d_fx b);
 
-/* `a b`, rounded to nearest, within the range of numbers. */
+/* `a b`, rounded to nearest, saturating. */
 ls2d_fx ls2d_fx_mul(ls2d_fx a, ls2d_fx b);
 
-/* `a / b`, rounded to nearest, within the range of numbers. `LS2D_NUMBER` if `b` is 0. */
+/* `a / b`, rounded to nearest, saturating. `LS2D_NUMBER` if `b` is 0. */
 ls2d_status ls2d_fx_div(ls2d_fx a, ls2d_fx b, ls2d_fx *number);
 
 /* Square root, rounded to nearest. `LS2D_NUMBER` for a negative number. */
@@ -1605,7 +1615,7 @@ ls2d_fx ls2d_angle_sin(ls2d_angle angle);
 /* Cosine of an angle. */
 ls2d_fx ls2d_angle_cos(ls2d_angle angle);
 
-/* Direction of a vector: 0 is along x. 0 for the zero vector. */
+/* Direction of a vector as an angle from the x axis; 0 for the zero vector. */
 ls2d_angle ls2d_angle_of(ls2d_fx x, ls2d_fx y);
 
 /* An angle of a number of degrees. */
@@ -1623,10 +1633,12 @@ ls2d_fx ls2d_angle_to_radians(ls2d_angle angle);
 /* Makes a random number generator, to be kept in the state of the game. */
 ls2d_status ls2d_rng_init(uint64_t seed, ls2d_rng *rng);
 
-/* Draws a uniform number from 0 to below `bound`. `from` and `rng` may be the same. */
+/* Draws a uniform number from 0 to below `bound`. `from` is the generator before the draw, `rng` the one after it;
+ * they may point to the same struct. */
 ls2d_status ls2d_rng_below(const ls2d_rng *from, ls2d_rng *rng, uint32_t bound, uint32_t *number);
 
-/* Draws a uniform number from `low` to below `high`. `from` and `rng` may be the same. */
+/* Draws a uniform number from `low` to below `high`. `from` is the generator before the draw, `rng` the one after
+ * it; they may point to the same struct. */
 ls2d_status ls2d_rng_range(const ls2d_rng *from, ls2d_rng *rng, ls2d_fx low, ls2d_fx high, ls2d_fx *number);
 
 /* Hash of bytes, for the state hash of a game with more state than a world. */

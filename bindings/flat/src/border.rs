@@ -1,16 +1,16 @@
-//! Memory of callers: the only place that dereferences their pointers.
+//! Access to the memory of callers. No other module dereferences their pointers.
 //!
 //! Functions of the API take [`In`] and [`Out`] instead of raw pointers. A value of these types is either made from a
-//! Rust reference, or passed by a foreign caller, who promises what `lockstep2d.h` asks for: the pointer is null, or it
-//! points to as many items as the function reads or writes, and nothing else accesses them during the call. Everything
-//! else is checked: null pointers, alignment, and counts.
+//! Rust reference, or passed by a foreign caller, who guarantees what `lockstep2d.h` requires: the pointer is null, or
+//! it points to as many items as the function reads or writes, and nothing else accesses them during the call.
+//! Everything else is checked: null pointers, alignment, and counts.
 
 use std::marker::PhantomData;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::status::{Failure, Outcome, Status, note};
 
-/// Types for which every byte pattern is a value and that have no padding, so that foreign memory may be read as them.
+/// Types that may be read from the memory of a caller.
 ///
 /// # Safety
 /// Every byte pattern has to be a value of the type, and the type must have no padding.

@@ -74,7 +74,7 @@ pub(crate) struct Function {
 
 /// A type of parameters, fields and results.
 pub(crate) trait CType {
-    /// Type of the value or of what it points to.
+    /// Type of the value, or of the items that it points to.
     const BASE: &'static str;
     /// Text before and after the type in C.
     const AROUND: [&'static str; 2] = ["", ""];

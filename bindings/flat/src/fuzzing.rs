@@ -1,5 +1,5 @@
-//! Calls of every function of the API with arguments that are drawn from bytes, often wrong ones: for tests, and for
-//! the fuzz target `flat`. All functions are drawn equally often, and need not be listed here.
+//! Calls functions of the API with arguments that are drawn from bytes and often wrong, for tests and for the fuzz
+//! target `flat`. All functions are drawn with equal probability. Their list comes from the `api!` macro.
 
 use crate::border::{In, Out, Plain};
 use crate::functions::DRAWN;
@@ -9,9 +9,9 @@ use crate::status::Status;
 /// A call of a function with drawn arguments.
 pub(crate) type DrawnCall = fn(&mut Caller<'_>);
 
-/// Number of items in a buffer, and largest count that follows a pointer to it.
+/// Number of items in a buffer, and largest count that is passed with it.
 const ITEMS: usize = 64;
-/// Number of items in a buffer of bytes, and largest count that follows a pointer to it.
+/// Number of items in a buffer of bytes, and largest count that is passed with it.
 const BYTES: usize = 4096;
 
 /// Number of objects, and of ids, that a caller remembers. It forgets the oldest first.
@@ -43,7 +43,7 @@ struct Buffer {
     words: Box<[u64]>,
 }
 
-/// A caller with handles, ids and structs that it has received.
+/// A caller, with the handles, ids and structs that earlier calls have returned.
 #[derive(Debug)]
 pub struct Caller<'a> {
     input: std::slice::Iter<'a, u8>,
@@ -52,7 +52,7 @@ pub struct Caller<'a> {
     /// The last contents of a buffer for each item size, such as definitions made by an `_init` function, or packets.
     known: Vec<(usize, Box<[u64]>)>,
     buffers: Vec<Buffer>,
-    /// Number of items of the last pointer.
+    /// Number of items in the buffer of the last pointer argument.
     items: usize,
     codes: Vec<i32>,
 }
@@ -85,14 +85,14 @@ fn hash(world: u32) -> Option<u64> {
     (crate::ls2d_world_hash(world, Out::of(&mut hash)) == 0).then_some(hash.low)
 }
 
-/// The name under which handles are remembered.
+/// The name under which the handles of a parameter are remembered; `None` if the parameter is no handle.
 fn family(name: &str) -> Option<&'static str> {
     let name = if name == "copy" { "world" } else { name };
     HANDLES.into_iter().find(|&handle| handle == name)
 }
 
 impl Caller<'_> {
-    /// Makes a world and a list of commands, to begin with, and returns their handles.
+    /// Makes the first world and list of commands, and returns their handles.
     fn begin(&mut self) -> Vec<u32> {
         let [mut world, mut commands] = [0; 2];
         let _ = crate::ls2d_world_new(In::null(), Out::of(&mut world));
@@ -139,8 +139,8 @@ impl Caller<'_> {
         known.unwrap_or_else(|| self.word())
     }
 
-    /// Memory for items of a size: null, misaligned, new, or what was written to such items before, with some changes.
-    /// Returns its address with an offset in bytes.
+    /// Draws memory for items of `item` bytes: null, misaligned, filled with zeros, or the last output for items of
+    /// this size with some words changed. Returns its address and an offset in bytes.
     fn buffer(&mut self, name: &str, item: usize, is_output: bool) -> Option<(*mut u64, usize)> {
         self.items = if item == 1 { BYTES } else { ITEMS };
         let kind = self.byte();
@@ -151,7 +151,7 @@ impl Caller<'_> {
         let mut words = known.unwrap_or_else(|| vec![0; (self.items * item).div_ceil(8) + 1].into());
         if !is_output {
             for _ in 0..self.byte() % 4 {
-                // Only words of about the first two items change: they matter most.
+                // Changes only words of about the first two items, which most calls read.
                 let (place, value) = (self.below((item / 4).max(8)), self.number());
                 if let Some(word) = words.get_mut(place) {
                     *word = value;
@@ -163,7 +163,7 @@ impl Caller<'_> {
         address.map(|address| (address, usize::from(kind == 1)))
     }
 
-    /// Remembers the values that the call has written. Returns the handles.
+    /// Remembers the values that the call has written. Returns the handles among them.
     fn harvest(&mut self) -> Vec<u32> {
         let mut made = Vec::new();
         for Buffer { item, handle, is_output, words } in std::mem::take(&mut self.buffers) {
@@ -192,7 +192,7 @@ impl Caller<'_> {
 
 /// A type of arguments.
 pub(crate) trait Drawn {
-    /// Draws an argument for a parameter of a name.
+    /// Draws an argument for the parameter `name`.
     fn draw(caller: &mut Caller<'_>, name: &'static str) -> Self;
 }
 
@@ -254,10 +254,10 @@ impl<T: Plain> Drawn for Out<'_, T> {
 
 /// A type of results.
 pub(crate) trait Returned {
-    /// The code, if it is one.
+    /// The status code; `None` for a function that returns a value.
     fn code(self) -> Option<i32>;
 
-    /// Notes the result of a call.
+    /// Records the status code of a call, and panics if it is an error in the library.
     fn check(self, caller: &mut Caller<'_>, name: &str)
     where
         Self: Sized,

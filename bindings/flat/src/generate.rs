@@ -13,8 +13,8 @@ const OPENING: &str = "\
  * Written by the tests of lockstep2d-flat; do not edit it.
  *
  * Functions return a status: LS2D_OK, LS2D_NONE if there is nothing to return, or an error, whose text ls2d_last_error
- * copies. Objects are handles, numbers that are never 0. A wrong or stale handle is an error, never undefined behaviour. ls2d_free
- * frees objects of all kinds.
+ * copies. Objects are referred to by handles, numbers that are never 0. A wrong or stale handle is an error, never
+ * undefined behaviour. ls2d_free frees objects of all kinds.
  *
  * Pointers are null or point to as many items as the function reads or writes, and nothing else uses that memory during
  * the call. Functions with a buffer take its capacity in items and write the number of items; if the buffer is too
@@ -22,8 +22,8 @@ const OPENING: &str = "\
  *
  * Structs that the caller fills begin with their size; ls2d_*_init functions set it and the defaults.
  *
- * Numbers are integers: ls2d_fx has 32 fraction bits (LS2D_FX(1) is a metre), ls2d_angle counts 2^-32 turn. Different
- * objects may be used on several threads at once. */
+ * Numbers are integers: ls2d_fx has 32 fraction bits (LS2D_FX(1) is a metre), ls2d_angle is in units of 2^-32 turn.
+ * Different objects may be used on several threads at once. */
 #ifndef LOCKSTEP2D_H
 #define LOCKSTEP2D_H
 
@@ -44,7 +44,7 @@ typedef uint32_t ls2d_handle;
 #define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)((int64_t)(numerator) * 4294967296 / (denominator)))
 /* An angle of whole degrees, rounded towards zero. */
 #define LS2D_DEGREES(whole) ((ls2d_angle)(int64_t)((int64_t)(whole) * 4294967296 / 360))
-/* No body, no shape, no joint. */
+/* Value of ls2d_body, ls2d_shape and ls2d_joint for none. */
 #define LS2D_NO_ID UINT64_MAX
 ";
 

@@ -1,4 +1,4 @@
-//! Numbers at the border, and their conversions.
+//! Number types of the flat API, and their conversions.
 
 use lockstep2d::body::{BodyId, JointId, ShapeId};
 use lockstep2d::codec;
@@ -13,12 +13,12 @@ aliases! {
     RawFx(i64) = "ls2d_fx";
     /// An angle in units of 2^-32 turn, counter-clockwise: a quarter turn is 1073741824.
     RawAngle(u32) = "ls2d_angle";
-    /// A body of a world: its slot in the lowest 21 bits, above them the number of earlier bodies in that slot. Less
-    /// than 2^53, so that it fits a number of JavaScript.
+    /// A body of a world: the lowest 21 bits are its slot, the bits above them the number of earlier bodies in that
+    /// slot. Always less than 2^53, so that a JavaScript number represents it exactly.
     RawBody(u64) = "ls2d_body";
-    /// A shape of a world, numbered as a body is.
+    /// A shape of a world, encoded like a body.
     RawShape(u64) = "ls2d_shape";
-    /// A joint of a world, numbered as a body is.
+    /// A joint of a world, encoded like a body.
     RawJoint(u64) = "ls2d_joint";
 }
 
@@ -48,9 +48,9 @@ records! {
     }
 }
 
-/// No body, no shape, no joint.
+/// Value of a handle that refers to no body, shape or joint.
 pub(crate) const NO_ID: u64 = u64::MAX;
-/// Bits of a handle that are the slot.
+/// Number of bits of a handle that hold the slot.
 const SLOT_BITS: u32 = 21;
 
 impl RawFx {

@@ -37,23 +37,23 @@ statuses! {
     Handle = 4, "LS2D_HANDLE";
     /// The handle belongs to an object of another kind.
     HandleKind = 5, "LS2D_HANDLE_KIND";
-    /// The `size` of a struct is not the one of this version of the library.
+    /// The `size` of a struct does not match this version of the library.
     Size = 6, "LS2D_SIZE";
     /// A kind, flag, count or index is out of its range.
     Value = 7, "LS2D_VALUE";
     /// The buffer is too short. The number of items that it has to hold was written.
     Buffer = 8, "LS2D_BUFFER";
-    /// A text is not what was expected, for example not UTF-8 or not a number.
+    /// A text is invalid, for example not UTF-8 or not a number.
     Text = 9, "LS2D_TEXT";
     /// A result has no value: division by zero, root of a negative number.
     Number = 10, "LS2D_NUMBER";
-    /// An error in the library itself. The objects that took part are unusable from now on.
+    /// An error in the library itself. The objects that the call used are unusable afterwards.
     Internal = 11, "LS2D_INTERNAL";
-    /// The object was unusable after `LS2D_INTERNAL`. Only freeing it is possible.
+    /// An earlier `LS2D_INTERNAL` has left the object unusable. It can only be freed.
     Broken = 12, "LS2D_BROKEN";
     /// There are too many objects.
     Exhausted = 13, "LS2D_EXHAUSTED";
-    /// Bytes are not the encoding of what was expected.
+    /// The bytes are not a valid encoding of the expected value.
     Decode = 14, "LS2D_DECODE";
     /// Geometry is not valid.
     Geometry = 20, "LS2D_GEOMETRY";
@@ -103,7 +103,7 @@ statuses! {
     WrongKind = 42, "LS2D_WRONG_KIND";
     /// The bytes are not a world of this version.
     Snapshot = 50, "LS2D_SNAPSHOT";
-    /// A replay cannot hold this.
+    /// A replay cannot be recorded, opened or played further.
     Record = 51, "LS2D_RECORD";
     /// A parameter of a match is out of its range.
     Config = 60, "LS2D_CONFIG";
@@ -113,7 +113,7 @@ statuses! {
     NotInMatch = 62, "LS2D_NOT_IN_MATCH";
 }
 
-/// Reason for which a function has failed.
+/// Reason why a function has failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Failure {
     pub(crate) status: Status,
@@ -198,7 +198,7 @@ thread_local! {
     static LAST: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Notes a failure for `ls2d_last_error`, and returns its status.
+/// Stores the text of a failure for `ls2d_last_error`, and returns the status.
 pub(crate) fn note(failure: Failure) -> Status {
     let Failure { status, text } = failure;
     LAST.with_borrow_mut(|last| *last = text);

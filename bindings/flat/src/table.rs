@@ -1,7 +1,7 @@
-//! The table of objects: handles are numbers that are looked up, so that a wrong one is an error and not a crash.
+//! Table of objects. Handles are looked up in it, so that a wrong handle is an error and not a crash.
 //!
-//! A handle is a slot and the number of objects that the slot has had before. A slot whose numbers are used up is not
-//! used again, so that a stale handle never means another object.
+//! A handle consists of a slot and a generation, which counts the objects that the slot has held. A slot whose
+//! generations are used up is not used again, so that a stale handle never refers to another object.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -57,10 +57,10 @@ pub(crate) trait Kind: Sized {
     fn wrap(self) -> Object;
 }
 
-/// Encoded bytes that wait to be copied.
+/// Bytes that the library returns to the caller, or takes from it, as an object.
 pub(crate) struct Bytes(pub(crate) Vec<u8>);
 
-/// Edits that wait to be executed.
+/// List of edits, to be executed later.
 pub(crate) struct Commands(pub(crate) Vec<Command>);
 
 kinds! {
@@ -187,7 +187,7 @@ pub(crate) fn with_any<R>(handle: u32, body: impl FnOnce(&mut Object) -> Outcome
     body(&mut object)
 }
 
-/// Takes an object out of the table. Its handle is stale from now on.
+/// Takes an object out of the table. Its handle is stale afterwards.
 fn remove(handle: u32) -> Outcome<Shared> {
     let (index, generation) = parts(handle);
     let mut table = table();

@@ -1,4 +1,4 @@
-//! The header and the layouts are those of the API. `LOCKSTEP2D_WRITE=1` writes them.
+//! The committed header and layout match the API. With `LOCKSTEP2D_WRITE=1` the tests write them.
 
 use std::path::Path;
 
@@ -25,7 +25,7 @@ fn the_layout_is_that_of_the_api() {
     check("../npm/src/layout.js", &lockstep2d_flat::layout());
 }
 
-/// Functions of several modules are in the header.
+/// The header contains functions of several modules.
 #[test]
 fn every_function_is_in_the_header() {
     let header = lockstep2d_flat::header();
@@ -34,7 +34,7 @@ fn every_function_is_in_the_header() {
     }
 }
 
-/// In C, types and functions share their names.
+/// In C, types and functions share one namespace.
 #[test]
 fn no_function_has_the_name_of_a_type() {
     let header = lockstep2d_flat::header();

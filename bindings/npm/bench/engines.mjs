@@ -1,4 +1,4 @@
-// The scenes in each engine: `build` returns a function that makes a step of 1/60 s, and what else is measured.
+// The scenes in each engine: `build` returns `step`, which simulates 1/60 s, and `hash` if the engine has one.
 import { SCENES, STATIC } from "./scenes.mjs";
 
 const number = Number;

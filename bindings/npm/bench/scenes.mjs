@@ -1,5 +1,5 @@
-// Scenes that are measured: heaps of one shape between walls, and ragdolls. Numbers are decimal text, which the engines with
-// floats convert.
+// Scenes that are measured: heaps of one shape between walls, and ragdolls. Numbers are decimal text. The engines that
+// compute with floats convert them.
 
 /** Positions of a heap: rows that are shifted against each other. */
 function* heap(count) {

@@ -1,11 +1,12 @@
-// Milliseconds of a step in Node, beside other engines or for other builds of the wasm module:
+// Time of a step in Node in milliseconds, for several engines or for several builds of the wasm module:
 //
 //     npm ci && node steps.mjs             this package, rapier2d, planck, matter-js
-//     node steps.mjs A.wasm B.wasm ...     modules
+//     node steps.mjs A.wasm B.wasm ...     builds of the module
 //
-// Each of them runs in processes of its own, in turns. A run is repeatable, so the time of a tick is the shortest one of the
-// rounds: a busy machine only makes ticks longer. Figures are means over the ticks, in brackets relative to the first column.
-// ROUNDS is 5 by default. Hashes, where there are any, have to be equal.
+// In each round, every engine or build runs in a new process. All rounds simulate the same ticks, so the time of a tick
+// is its shortest time over the rounds: load on the machine only makes ticks longer. Figures are means over the ticks,
+// and in brackets their ratio to the first column. ROUNDS is 5 by default. Hashes, if an engine has them, have to be
+// equal.
 import { execFileSync } from "node:child_process";
 import { fileURLToPath } from "node:url";
 import { ENGINES, measure, moduleOf } from "./engines.mjs";

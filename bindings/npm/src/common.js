@@ -10,7 +10,7 @@ export { Random, angleOf, cos, cross, dot, hashBytes, hypot, normalize, rotate, 
 
 import { library } from "./library.js";
 
-/** Version of the engine's arithmetic: programs with different versions do not compute the same states. */
+/** Version of the engine's arithmetic: programs with different versions compute different states. */
 export const semantics = () => library().ls2d_semantics();
-/** Number of objects that are not disposed. */
+/** Number of objects that have not been disposed of. */
 export const objectCount = () => library().ls2d_object_count();

@@ -6,7 +6,7 @@ import { Handle, call, give, giveText, id, idAt, putRaw, scratch, sizeOf, takeBy
 
 const raws = (vector, what) => vectorOf(vector, what);
 
-/** Edits: executed by a world at once, or collected by a list of commands. */
+/** Edits, which a world executes at once and a list of commands collects. */
 export class Edits extends Handle {
     /** Adds a body with its shapes, and returns its handle; a list of commands returns undefined. */
     spawn(options) {
@@ -16,7 +16,7 @@ export class Edits extends Handle {
         return this.added(at);
     }
 
-    /** Adds a body with the same definition at each pose: `{ position, angle }`, or none if one of them is refused.
+    /** Adds a body with the same definition at each pose `{ position, angle }`, or none if one of them is refused.
      * Returns their handles; a list of commands returns undefined. */
     spawnEach(options, poses) {
         const size = sizeOf("pose");
@@ -24,7 +24,7 @@ export class Edits extends Handle {
         const { rest, body, shapes, count } = writeBodyAndShapes(options, room);
         const ids = rest + poses.length * size;
         poses.forEach(({ position, angle = 0 }, index) => {
-            // Fields that are undefined are not written, and the memory has what was there before.
+            // `write` skips undefined fields, and the memory would keep its earlier contents.
             if (position === undefined) {
                 throw new Lockstep2dError("VALUE", `pose ${index} has no position`);
             }

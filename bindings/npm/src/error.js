@@ -1,4 +1,4 @@
-/** An error with a code: the name of a status of the library, or `FLOAT`, `INIT`, `DISPOSED`. */
+/** An error with a code: the name of a status of the library, or `FLOAT`, `INIT`, `DISPOSED`, `MEMORY`, `RELAY`. */
 export class Lockstep2dError extends Error {
     constructor(code, message) {
         super(message);

@@ -1,11 +1,11 @@
-// Numbers of the simulation: 64-bit integers with 32 fraction bits, so that every browser computes the same bits.
+// Fixed-point numbers: 64-bit integers with 32 fraction bits, so that every browser computes the same bits.
 import { Lockstep2dError } from "./error.js";
 
 const ONE = 1n << 32n;
 const MAX = (1n << 63n) - 1n;
 const MIN = -(1n << 63n);
 const NUMBER = /^([+-]?)(\d+)(?:\.(\d+))?$/;
-// Parsed strings, because the same few strings occur again and again.
+// Cache of parsed strings: a program parses the same few strings repeatedly.
 const CACHE = new Map();
 const CACHE_MAX = 4096;
 
@@ -69,7 +69,7 @@ export function rawOf(value, what = "a number") {
     throw new Lockstep2dError("VALUE", `${what} is ${typeof value}, and not an integer, a decimal text or an Fx`);
 }
 
-/** A number of the simulation. Immutable; arithmetic is exact or rounded to nearest, and saturates. */
+/** A fixed-point number. Immutable; arithmetic is exact or rounded to nearest, and saturates. */
 export class Fx {
     constructor(raw) {
         this.raw = raw;
@@ -140,7 +140,7 @@ export class Fx {
         return Number(this.raw >> 32n);
     }
 
-    /** A float for drawing. It must not come back into the simulation. */
+    /** A float for drawing. It must not enter the simulation. */
     toNumber() {
         return Number(this.raw) / 4294967296;
     }
@@ -158,7 +158,7 @@ export class Fx {
         return this.toString();
     }
 
-    // Otherwise `a < b` would compare floats, and `a + b` would concatenate strings.
+    // Refuses operators: otherwise `a < b` would compare floats, and `a + b` would concatenate strings.
     [Symbol.toPrimitive](hint) {
         if (hint === "string") {
             return this.toString();
@@ -167,7 +167,7 @@ export class Fx {
     }
 }
 
-/** A number of the simulation from an integer, or from decimal text: `fx("1.25")`. */
+/** Makes a fixed-point number from an integer, or from decimal text: `fx("1.25")`. */
 export function fx(value) {
     return value instanceof Fx ? value : new Fx(rawOf(value));
 }

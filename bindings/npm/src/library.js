@@ -5,7 +5,7 @@ import { API_VERSION, STATUS, STRUCTS } from "./layout.js";
 
 export const NO_ID = 0xffffffffffffffffn;
 const NAMES = Object.fromEntries(Object.entries(STATUS).map(([name, code]) => [code, name]));
-// A module that is valid only with SIMD: i8x16.popcnt of a splat.
+// A module that is valid only if the machine supports SIMD: i8x16.popcnt of a splat.
 const SIMD = [0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11];
 const DECODER = new TextDecoder();
 const ENCODER = new TextEncoder();
@@ -51,7 +51,7 @@ export const initializer = (modules) => (options) => {
     return starting;
 };
 
-/** Which module was loaded: `simd`, `plain` or `given`; undefined before `init`. */
+/** The module that was loaded: `simd`, `plain` or `given`; undefined before `init`. */
 export function loaded() {
     return variant;
 }
@@ -63,7 +63,7 @@ export function library() {
     return exports;
 }
 
-// The views are made again when the memory of the module has grown, because the old buffer is detached then.
+// Recreates the views when the memory of the module has grown, because growth detaches the old buffer.
 function memory() {
     if (bytes === undefined || bytes.buffer !== exports.memory.buffer) {
         bytes = new Uint8Array(exports.memory.buffer);
@@ -209,7 +209,7 @@ export function fieldAt(name, at, field) {
     return at + STRUCTS[name].fields[field][0];
 }
 
-/** Copies bytes into memory after `reserved` bytes. Returns the address of the reserved ones. */
+/** Copies bytes into memory, after `reserved` bytes for other values. Returns the address of the reserved bytes. */
 export function give(data, reserved = 64) {
     if (!(data instanceof Uint8Array)) {
         throw new Lockstep2dError("VALUE", "bytes have to be a Uint8Array");
@@ -248,8 +248,9 @@ export const text = (data) => DECODER.decode(data);
 
 let capacity = 64;
 
-/** Calls `ask`, which writes a list of items of `size` bytes, with a buffer that is large enough. Returns the address of
- * the list and the number of items. `before` bytes in front of it are for other arguments, which `prepare` writes. */
+/** Calls `ask`, which writes a list of items of `size` bytes, with larger and larger buffers until the list fits.
+ * Returns the address of the list and the number of items. `prepare` writes other arguments to `before` bytes in front
+ * of it. */
 export function list(size, before, ask, prepare = () => {}) {
     for (;;) {
         const at = scratch(8 + before + capacity * size);

@@ -1,4 +1,4 @@
-// Matches: the lockstep session over bytes, and a driver that plays a game with it.
+// Matches: the lockstep session with inputs, states and packets as bytes, and a driver that plays a game with it.
 import { Lockstep2dError } from "./error.js";
 import { C } from "./layout.js";
 import { Handle, call, copy, give, putBytes, read, scratch, sizeOf, takeBytes, u32, u64, write, writeHash } from "./library.js";
@@ -55,7 +55,7 @@ export class Match extends Handle {
         this.inputBytes = config.inputBytes ?? 1;
     }
 
-    /** Asks another participant for entry, or the same one again. */
+    /** Sends the request to join to another participant, or again to the same one. */
     ask(contact) {
         const at = give(contact);
         call("ls2d_match_ask", this.handle, at + 64, contact.length);
@@ -78,7 +78,7 @@ export class Match extends Handle {
         return u32(at) === 1;
     }
 
-    /** Issues the inputs of your own seats. Returns whether they were issued; otherwise they may be used again. */
+    /** Issues the inputs of your own seats. Returns whether they were issued; if not, they may be passed again. */
     advance(now, inputs) {
         const at = give(inputs);
         call("ls2d_match_advance", this.handle, micros(now), at + 64, inputs.length, at);
@@ -143,7 +143,8 @@ export class Match extends Handle {
         return STATUS[u32(at)];
     }
 
-    /** Numbers of ticks: played, final for the match, and played with final inputs here. */
+    /** Numbers of ticks: `played`, also with guessed inputs; `final`, whose inputs are final; `confirmed`, played with
+     * final inputs. */
     ticks() {
         const at = scratch(16);
         call("ls2d_match_ticks", this.handle, at, at + 4, at + 8);
@@ -206,7 +207,7 @@ const putAddress = (at, data) => {
  * - `hash()`: the hash of the whole state, 32 hexadecimal digits;
  * - `encode()`, `decode(bytes)`: converts the state to bytes and back, for peers that join.
  *
- * `send(to, packet)` carries packets. Call `update` every few milliseconds. */
+ * `send(to, packet)` sends a packet to an address. Call `update` every few milliseconds. */
 export class MatchDriver {
     #match;
     #game;
@@ -234,8 +235,8 @@ export class MatchDriver {
         this.#match.receive(now, from, packet);
     }
 
-    /** Advances the time, and plays the ticks that are due with the inputs that `read(seats)` returns. Returns the
-     * events. */
+    /** Advances the match to the time `now`, and plays the ticks that are due with the inputs that `readInputs(seats)`
+     * returns. Returns the events. */
     update(now, readInputs) {
         this.#match.update(now);
         const events = [];
@@ -327,7 +328,7 @@ export class MatchDriver {
         return found;
     }
 
-    // Offers the newest final state, as bytes. Afterwards the game is in its old state again.
+    // Offers the newest final state as bytes, and then restores the current state of the game.
     #offer() {
         const { confirmed } = this.#match.ticks();
         const tick = Math.max(-1, ...[...this.#saves.keys()].filter((kept) => kept <= confirmed));

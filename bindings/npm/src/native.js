@@ -1,4 +1,4 @@
-// Matches with native programs: what `lockstep2d::peer::Peer<G>` sends besides inputs.
+// Matches with native programs: encodes the data that `lockstep2d::peer::Peer<G>` sends besides inputs.
 import { Lockstep2dError } from "./error.js";
 import { library } from "./library.js";
 import { hashBytes } from "./maths.js";
@@ -9,7 +9,7 @@ const ENCODER = new TextEncoder();
 /** Little-endian bytes of a hash. */
 const hashOf = (digits) => Uint8Array.from({ length: 16 }, (_, index) => parseInt(digits.slice(30 - 2 * index, 32 - 2 * index), 16));
 
-/** The offer of a native `Peer<G>`. `setup` are the canonical bytes of `G::Setup`; empty for `()`. `patience` is
+/** The offer of a native `Peer<G>`. `setup` has the canonical bytes of `G::Setup`, and is empty for `()`. `patience` is
  * in milliseconds, as in `Match`. */
 export function nativeOffer({ rules, rulesVersion = 1, setup = new Uint8Array(), tickRate = 60, seats, inputBytes = 1, patience = 2000 }) {
     const name = ENCODER.encode(rules);

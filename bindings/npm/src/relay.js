@@ -3,18 +3,18 @@ import { Lockstep2dError } from "./error.js";
 
 const ADDRESS = 8;
 const SECRET = 16;
-// First pause in milliseconds before connecting again. The pause doubles with each failure.
+// First pause in milliseconds before a reconnection. The pause doubles with each failure.
 const PAUSE_MIN = 250;
-// Longest pause in milliseconds before connecting again.
+// Longest pause in milliseconds before a reconnection.
 const PAUSE_MAX = 8000;
 // Largest number of bytes that wait to be sent. Further packets are dropped, as in the buffer of a socket.
 const BUFFERED_MAX = 512 * 1024;
-// Close codes after which connecting again is of no use: a wrong secret, and another connection of the same member.
+// Close codes after which it does not reconnect: a wrong secret, and another connection of the same member.
 const FINAL = [4000, 4003];
 
 const addressOf = (digits) => Uint8Array.from({ length: ADDRESS }, (_, index) => parseInt(digits.slice(2 * index, 2 * index + 2), 16));
 
-/** A member of a room. A lost connection is opened again; packets are lost meanwhile. */
+/** A member of a room. After a lost connection it reconnects; packets are lost meanwhile. */
 export class Relay {
     #url;
     #secret;
@@ -26,15 +26,15 @@ export class Relay {
     #ready;
     /** Address of this peer. */
     own;
-    /** Addresses of the others in the room, in the order in which they came. */
+    /** Addresses of the other members of the room, in the order in which they entered. */
     others = [];
     /** Called with the sender and the bytes of each packet. */
     onPacket = () => {};
-    /** Called when somebody comes or goes, and after connecting again. */
+    /** Called when a member enters or leaves the room, and after a reconnection. */
     onMembers = () => {};
 
-    /** Enters a room, which exists from then on. `url` is `wss://HOST` or `ws://HOST:PORT`, `code` 1 to 32 letters,
-     * digits and `-`. With the same `secret`, 16 random bytes, a member gets the same address again. */
+    /** Enters a room, and creates it if it does not exist. `url` is `wss://HOST` or `ws://HOST:PORT`, `code` 1 to 32
+     * letters, digits and `-`. With the same `secret`, 16 random bytes, a member gets the same address again. */
     static async connect(url, code, { secret = crypto.getRandomValues(new Uint8Array(SECRET)), WebSocket = globalThis.WebSocket } = {}) {
         if (WebSocket === undefined) {
             throw new Lockstep2dError("VALUE", "there is no WebSocket here; pass one as option");

@@ -1,4 +1,4 @@
-// Replays: of worlds that commands change, and of games with rules of their own.
+// Replays of worlds that commands change, and of games with rules of their own.
 import { writeConfig } from "./definitions.js";
 import { Handle, call, copy, fieldAt, give, giveText, hashAt, lastText, scratch, sizeOf, statusOf, takeBytes, text, u32, u64, write, writeHash } from "./library.js";
 import { Lockstep2dError } from "./error.js";
@@ -109,7 +109,7 @@ export class Recorder extends Handle {
         super(u32(at + 16));
     }
 
-    /** Records the inputs of all players for the next tick, and a bit for each player that is absent, whose input is
+    /** Records the inputs of all players for the next tick, and a bit for each absent player, whose input has to be
      * zeros. Returns whether `checkpoint` has to follow. */
     record(inputs, absent = 0n) {
         const at = give(inputs);
@@ -182,7 +182,7 @@ export class Replay extends Handle {
         }
     }
 
-    /** The inputs of all players for the next tick and the bits of those that are absent, or undefined at the end. */
+    /** The inputs of all players for the next tick and a bit for each absent player, or undefined at the end. */
     next() {
         const at = scratch(16 + this.#inputs);
         if (!call("ls2d_replay_next", this.handle, at + 16, this.#inputs, at, at + 8)) {
@@ -191,7 +191,7 @@ export class Replay extends Handle {
         return { inputs: copy(at + 16, this.#inputs), absent: u64(at + 8) };
     }
 
-    /** Begins to go to a tick; `nextRequest` returns the requests. At the first call the game has to be in the state
+    /** Starts seeking to a tick: `nextRequest` returns the requests. At the first call the game has to be in the state
      * before the first tick. */
     seek(tick) {
         call("ls2d_replay_seek", this.handle, BigInt(tick));
@@ -202,17 +202,18 @@ export class Replay extends Handle {
         return nextRequest("ls2d_replay_next_request", this.handle, this.#inputs);
     }
 
-    /** Ticks between the states that `seek` asks to save. */
+    /** Sets the interval in ticks at which seeking requests to save the state. */
     setInterval(ticks) {
         call("ls2d_replay_set_interval", this.handle, ticks);
     }
 
-    /** Adds a result of the played game. The verdict compares all of them with those of the file. */
+    /** Adds a result of the game that was played. The verdict compares all added results with those in the file. */
     claim(name, number) {
         claim("ls2d_replay_claim", this.handle, name, number);
     }
 
-    /** Passes the hash of the state before the first tick and after every tick, or answers the request `checksum`. */
+    /** Compares the hash of the game's state with the file. Call it before the first tick and after every tick, or,
+     * while seeking, for each request `checksum`. */
     check(hash) {
         const at = scratch(16);
         writeHash(at, hash);
@@ -251,8 +252,9 @@ export class ReplayDriver {
         return this.#tick;
     }
 
-    /** Goes to a tick. Ticks that were played before cost less than an interval of simulation. Throws an error with the
-     * code RECORD if the game diverges from the file: the driver stays there, and earlier ticks can be reached. */
+    /** Goes to a tick. If it was played before, this simulates fewer ticks than the interval of the saved states.
+     * Throws an error with the code RECORD if the game diverges from the file. The driver then stays at that tick, and
+     * earlier ticks can be reached. */
     seek(tick) {
         this.#replay.seek(tick);
         for (let request = this.#replay.nextRequest(); request !== undefined; request = this.#replay.nextRequest()) {
@@ -320,7 +322,7 @@ export class Timeline extends Handle {
         return Number(u64(at));
     }
 
-    /** Goes to a tick. Ticks that were played before cost little. */
+    /** Goes to a tick, which is fast if it was played before. */
     seek(tick) {
         call("ls2d_timeline_seek", this.handle, BigInt(tick));
     }

@@ -1,4 +1,4 @@
-// Requests to a game: to save, restore and advance its state.
+// Requests of a match or a replay to a game: to save, restore and advance its state.
 import { call, copy, read, scratch, sizeOf, u32 } from "./library.js";
 
 const REQUESTS = ["save", "load", "advance", "checksum", "forget"];

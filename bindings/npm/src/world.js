@@ -19,7 +19,7 @@ export class Snapshot extends Handle {
     }
 }
 
-/** Writes a filter at an address, and returns the address; without a filter, 0, which stands for the defaults. */
+/** Writes a filter at an address, and returns the address. Without a filter, returns 0, which selects the defaults. */
 function filterAt(at, filter) {
     if (filter === undefined) {
         return 0;
@@ -86,7 +86,8 @@ export class World extends Edits {
         return hashAt(at);
     }
 
-    /** Hash of a section of the state: 0 settings, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands, 6 random numbers. */
+    /** Hash of a section of the state: 0 settings, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands, 6 random
+     * numbers. */
     digest(section) {
         const at = scratch(16);
         call("ls2d_world_digest", this.handle, section, at);
@@ -119,7 +120,7 @@ export class World extends Edits {
         return { ...rest, sleeping: (flags & C.SLEEPING) !== 0, continuous: (flags & C.CONTINUOUS) !== 0 };
     }
 
-    /** Changes settings; those that are not given stay. */
+    /** Changes settings. Settings that are not given keep their values. */
     setConfig(options) {
         const at = scratch(sizeOf("config"));
         call("ls2d_world_config", this.handle, at);
@@ -147,7 +148,7 @@ export class World extends Edits {
         return new Snapshot(u32(at));
     }
 
-    /** Saves into a snapshot that exists: the cheapest way to save every tick. */
+    /** Saves into an existing snapshot, and reuses its memory: the fastest way to save every tick. */
     saveInto(snapshot) {
         call("ls2d_world_save_into", this.handle, snapshot.handle);
     }

@@ -5,7 +5,7 @@ export const L = await (variant.startsWith("core") ? import("../src/core.js") : 
 export const root = new URL("../../../", import.meta.url);
 export const file = (path) => new Uint8Array(readFileSync(new URL(path, root)));
 
-// VARIANT=plain runs the tests with the module without SIMD, core and core-plain those of lockstep2d/core.
+// VARIANT selects the module: `simd` (the default) or `plain`; for lockstep2d/core, `core` or `core-plain`.
 await L.init({ simd: variant.endsWith("plain") ? false : undefined });
 
 export function fallingBox() {

@@ -1,4 +1,4 @@
-// The replays of the golden scenes end in their hashes, whatever the module.
+// The replays of the golden scenes end in their golden hashes with every module.
 import assert from "node:assert/strict";
 import { readdirSync } from "node:fs";
 import { test } from "node:test";

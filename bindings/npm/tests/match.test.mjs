@@ -1,11 +1,12 @@
-// Matches: peers in one process, on a network that loses and delays packets, have equal states; late joiners, too.
+// Matches: peers in one process, on a network that loses and delays packets, have equal states, also those who join
+// late.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { L } from "./common.mjs";
 
 const address = (index) => Uint8Array.of(index);
 
-/** Boxes that the players push: the state is the world alone. */
+/** Boxes that the players push. The world is the whole state. */
 class Push {
     constructor() {
         this.world = new L.World();

@@ -1,4 +1,4 @@
-// Replays: recorded, verified, limited; and those of games whose rules are in JavaScript.
+// Replays of worlds: recording, verification, limits, seeking. Replays of games whose rules are in JavaScript.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { library } from "../src/library.js";
@@ -52,7 +52,7 @@ test("a recorded world verifies, and a changed file does not", () => {
     timeline.dispose();
 });
 
-// A game: each player counts, and ticks without a player are counted. All sums are hashed.
+// A game that sums the inputs of each player and counts the ticks with an absent player. All sums are hashed.
 class Sums {
     sums = [0, 0, 0];
     step(inputs, absent) {
@@ -174,7 +174,7 @@ test("files are opened and refused, although reading them moves the memory", () 
     for (let attempt = 0; attempt < 20; attempt++) {
         const before = library().memory.buffer;
         assert.throws(() => new L.Timeline(damaged), (error) => error.code === "RECORD" && error.verdict.verdict === "malformed");
-        // A timeline that is kept takes the free memory, so that the next one makes the memory grow.
+        // The timelines that are kept use up the free memory, so that the memory grows for the next one.
         kept.push(new L.Timeline(replay));
         assert.equal(kept.at(-1).ticks, 20);
         moved += library().memory.buffer === before ? 0 : 1;

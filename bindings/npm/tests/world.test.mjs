@@ -167,7 +167,7 @@ test("10 000 worlds that are disposed leak nothing", () => {
             after = memory();
         }
     }
-    // The garbage collector may have freed what other tests left.
+    // The garbage collector may have freed objects of other tests.
     assert.ok(L.objectCount() <= before, `${L.objectCount() - before} objects more`);
     assert.equal(memory(), after, "the memory of the module has grown");
 });

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 const GOALS_TO_WIN: u32 = 5;
 /// Half of the length and of the height of the field, in metres.
 const FIELD: (Fx, Fx) = (fx!(8), fx!(4));
-/// Force of a player on itself, in N.
+/// Driving force of a player, in N.
 const FORCE: Fx = fx!(30);
 
 /// Everything that the first tick depends on.
@@ -129,7 +129,7 @@ impl Game for MyGame {
     type Input = Input;
     type Save = Save;
 
-    /// Raise the version whenever the same inputs lead to another state.
+    /// Raise the version whenever a change of the rules leads to other states from the same inputs.
     const RULES: RulesId = RulesId { name: "my game", version: 1 };
 
     fn new(setup: &Setup) -> Result<Self, SetupError> {
@@ -146,7 +146,7 @@ impl Game for MyGame {
 
     fn step(&mut self, inputs: &[Input]) {
         if !self.is_over() {
-            // Only a world from a hostile save refuses a change, and it does so on every machine.
+            // Fails only for a world that was loaded from a hostile save, and then on every machine.
             let _pushed = self.push(inputs);
         }
         self.world.step();

@@ -1,4 +1,4 @@
-//! The same inputs give the same match: in every way in which it can be played, and on every machine.
+//! A match depends only on its inputs: on every machine, in all variants of the determinism check, and in a replay.
 
 use lockstep2d::check::{CheckOptions, check};
 use lockstep2d::lockstep::Game;

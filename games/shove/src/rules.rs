@@ -64,7 +64,7 @@ pub(crate) struct Rules {
 }
 
 impl Rules {
-    /// State before the first tick, which begins a round with the players that are present.
+    /// State before the first tick. The first tick begins a round with the players that are present.
     pub(crate) fn new(seed: u64) -> Self {
         Rules {
             seats: [Seat::default(); SEATS_MAX],

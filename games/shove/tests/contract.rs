@@ -1,5 +1,5 @@
-//! The contract of [`Game`], tested with this game: the same pads give the same hashes, whatever the pads are and
-//! whatever is saved, loaded and encoded in between.
+//! The contract of [`Game`], tested with this game: the same pads give the same hashes, for any pads, and with any
+//! saves, loads and encodings in between.
 
 use lockstep2d::check::{self, CheckOptions, Phases};
 use lockstep2d::codec::{decode, encode};

@@ -222,7 +222,7 @@ fn an_interrupted_process_leaves_and_its_replay_verifies() {
     }
 }
 
-/// A replay that exists is not replaced, and the message says why.
+/// An existing replay is not replaced, and the error message names the reason.
 #[test]
 fn an_earlier_replay_is_not_replaced() {
     let folder = Folder::new("earlier");

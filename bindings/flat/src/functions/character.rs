@@ -22,10 +22,10 @@ api! {
         state.set(RawMoverState::at(RawVec2 { x, y }.vec()))
     }
 
-    /// Moves a character for one tick at its velocity, among the shapes that a filter sees. It slides along what it
-    /// meets, and moving ground carries it. The game adds gravity to its velocity. The world does not change. `from`
-    /// and `state` may be the same. `met` are the surfaces that it has met, in order; if the buffer is too short, the
-    /// state is written nevertheless.
+    /// Moves a character for one tick at its velocity, among the shapes that a filter accepts. It slides along surfaces
+    /// that it meets, and moving ground carries it. The game adds gravity to its velocity. The world does not change.
+    /// `from` and `state` may point to the same struct. The surfaces that it has met are written to `met` in order; if
+    /// the buffer is too short, the state is written nevertheless.
     fn ls2d_move_character(
         world: u32,
         mover: In<'_, RawMover>,

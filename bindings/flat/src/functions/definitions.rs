@@ -41,7 +41,7 @@ api! {
     }
 
     /// Makes the links of a chain through some points, closed if `closed` is not 0, solid only from the right if
-    /// `one_sided` is not 0. The links have the material, filter and so on of `base`.
+    /// `one_sided` is not 0. The links have all properties of `base` except its geometry.
     fn ls2d_chain_links(
         base: In<'_, RawShapeDef>,
         points: In<'_, RawVec2>,
@@ -75,8 +75,8 @@ api! {
     }
 
     /// Mass, centre of mass and radius of gyration of a dynamic body with some shapes, for `mass`, `mass_centre` and
-    /// `mass_gyration` of its definition. Null pointers are not written. It is an error if no shape has an area and a
-    /// density.
+    /// `mass_gyration` of its definition. Null pointers are not written. It is an error if no shape has both an area
+    /// and a density.
     fn ls2d_shapes_mass(
         shapes: In<'_, RawShapeDef>,
         shape_count: usize,

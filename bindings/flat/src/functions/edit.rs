@@ -90,8 +90,8 @@ api! {
         })
     }
 
-    /// Executes a list of commands in order. Commands that the world refuses are skipped and counted; a null pointer is
-    /// not written.
+    /// Executes a list of commands in order. Commands that the world refuses are skipped; their number is written to
+    /// `refused` unless it is null.
     fn ls2d_world_execute(world: u32, commands: u32, refused: Out<'_, u32>) {
         let mut refused = refused;
         with_two(world, commands, |world: &mut World, Commands(list)| {
@@ -171,9 +171,9 @@ api! {
         }
     }
 
-    /// Adds a joint with the same definition between each pair of bodies, or none if one of them is refused. A recording
-    /// stores the definition once. `ends` has the two bodies of each joint, one after the other. The handles are
-    /// written, unless the pointer is null or the target is a list.
+    /// Adds a joint with the same definition between each pair of bodies, or none if one of them is refused. A
+    /// recording stores the definition once. `ends` has the two bodies of each joint, one after the other. The handles
+    /// are written, unless the pointer is null or the target is a list.
     fn ls2d_add_joint_each(
         target: u32,
         joint: In<'_, RawJointDef>,
@@ -202,28 +202,28 @@ api! {
         edit(target, Command::RemoveJoint { joint: joint.id()? }).map(|_| ())
     }
 
-    /// Changes a joint. Its bodies stay.
+    /// Changes a joint. Its bodies have to stay the same.
     fn ls2d_set_joint(target: u32, joint: RawJoint, def: In<'_, RawJointDef>) {
         edit(target, Command::SetJoint { joint: joint.id()?, def: def.get()?.def()? }).map(|_| ())
     }
 
-    /// Makes a joint act.
+    /// Enables a joint.
     fn ls2d_enable_joint(target: u32, joint: RawJoint) {
         edit(target, Command::EnableJoint { joint: joint.id()? }).map(|_| ())
     }
 
-    /// Stops a joint from acting.
+    /// Disables a joint: it stays in the world without effect.
     fn ls2d_disable_joint(target: u32, joint: RawJoint) {
         edit(target, Command::DisableJoint { joint: joint.id()? }).map(|_| ())
     }
 
-    /// Pushes a body during the next tick by a force in N at a point of the world, in metres.
+    /// Applies a force in N to a body during the next tick, at a point of the world in metres.
     fn ls2d_apply_force(target: u32, body: RawBody, force_x: RawFx, force_y: RawFx, x: RawFx, y: RawFx) {
         let (force, point) = (vector(force_x, force_y), vector(x, y));
         edit(target, Command::ApplyForce { body: body.id()?, force, point }).map(|_| ())
     }
 
-    /// Turns a body during the next tick by a torque in N m.
+    /// Applies a torque in N m to a body during the next tick.
     fn ls2d_apply_torque(target: u32, body: RawBody, torque: RawFx) {
         edit(target, Command::ApplyTorque { body: body.id()?, torque: torque.fx() }).map(|_| ())
     }
@@ -245,7 +245,7 @@ api! {
         edit(target, Command::SetVelocity { body: body.id()?, velocity, angular_velocity }).map(|_| ())
     }
 
-    /// Places a body.
+    /// Sets the position of a body's origin in metres, and its angle.
     fn ls2d_set_transform(target: u32, body: RawBody, x: RawFx, y: RawFx, angle: RawAngle) {
         let (position, angle) = (vector(x, y), angle.angle());
         edit(target, Command::SetTransform { body: body.id()?, position, angle }).map(|_| ())
@@ -257,7 +257,7 @@ api! {
         edit(target, Command::MoveTo { body: body.id()?, position, angle }).map(|_| ())
     }
 
-    /// Changes the settings of a body: damping, gravity scale, locks, sweeps, sleep. The other fields do not matter.
+    /// Changes the settings of a body: damping, gravity scale, locks, sweeps, sleep. The other fields have no effect.
     fn ls2d_set_body(target: u32, body: RawBody, def: In<'_, RawBodyDef>) {
         edit(target, Command::SetBody { body: body.id()?, settings: def.get()?.settings()? }).map(|_| ())
     }
@@ -267,7 +267,7 @@ api! {
         edit(target, Command::SetKind { body: body.id()?, kind: body_kind(kind)? }).map(|_| ())
     }
 
-    /// Changes the mass of a body to that of a definition. The other fields have no effect.
+    /// Sets the mass of a body from a definition. The other fields have no effect.
     fn ls2d_set_mass(target: u32, body: RawBody, def: In<'_, RawBodyDef>) {
         let def = def.get()?;
         def.settings()?;
@@ -279,7 +279,7 @@ api! {
         edit(target, Command::SetUserData { body: body.id()?, user_data }).map(|_| ())
     }
 
-    /// Sets the name of a body, of at most 16 bytes; none for a length of 0.
+    /// Sets the name of a body, of at most 16 bytes. A length of 0 removes it.
     fn ls2d_set_name(target: u32, body: RawBody, text: In<'_, u8>, length: usize) {
         let name = name_of(text.text(length)?.as_bytes())?;
         edit(target, Command::SetName { body: body.id()?, name }).map(|_| ())

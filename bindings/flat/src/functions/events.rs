@@ -54,7 +54,7 @@ api! {
         copy(world, |world| &world.events().hits, RawHitEvent::of, events, capacity, count)
     }
 
-    /// Shapes that began to overlap a sensor, sorted by the fraction of the tick.
+    /// Shapes that began to overlap a sensor, sorted by `fraction`.
     fn ls2d_events_sensor_begin(
         world: u32,
         events: Out<'_, RawSensorEvent>,
@@ -64,7 +64,7 @@ api! {
         copy(world, |world| &world.events().sensor_begin, RawSensorEvent::of, events, capacity, count)
     }
 
-    /// Shapes that ceased to overlap a sensor, sorted by the fraction of the tick.
+    /// Shapes that ceased to overlap a sensor, sorted by `fraction`.
     fn ls2d_events_sensor_end(
         world: u32,
         events: Out<'_, RawSensorEvent>,
@@ -74,7 +74,7 @@ api! {
         copy(world, |world| &world.events().sensor_end, RawSensorEvent::of, events, capacity, count)
     }
 
-    /// Joints above their threshold, in slot order.
+    /// Joints whose force or torque has exceeded a threshold, in slot order.
     fn ls2d_events_joints(world: u32, events: Out<'_, RawJointEvent>, capacity: usize, count: Out<'_, usize>) {
         copy(world, |world| &world.events().joints, RawJointEvent::of, events, capacity, count)
     }

@@ -1,6 +1,7 @@
-//! Recorders of games whose rules are in another language: the game plays, and this library keeps the file.
+//! Recorders for games whose rules are written in another language: the host, the program that calls this library,
+//! simulates the game, and the library writes the replay.
 //!
-//! A checkpoint is a hash of the state, which the game computes, and of all inputs so far.
+//! A checkpoint is a hash of the host's state hash and of all inputs so far.
 
 use lockstep2d::hash::StateHash;
 use lockstep2d::lockstep::{Game, RulesId, SetupError};
@@ -26,7 +27,7 @@ pub(super) struct HostGame {
 
 impl Game for HostGame {
     type Setup = HostSetup;
-    /// The bytes of an input; none if nobody plays the seat.
+    /// The bytes of an input; empty if nobody plays the seat.
     type Input = Vec<u8>;
     type Save = StateHash;
 
@@ -68,7 +69,7 @@ impl Game for HostGame {
     }
 }
 
-/// A recorder of a host's game until it is finished.
+/// A recorder of a host's game. `recorder` is `None` once it is finished.
 pub(crate) struct HostRecorder {
     recorder: Option<Recorder<HostGame>>,
     game: HostGame,
@@ -106,7 +107,7 @@ pub(super) fn are_possible(players: u32, input_bytes: u32) -> bool {
     (1..=64).contains(&players) && (1..=512).contains(&input_bytes)
 }
 
-/// Adds a result of a game.
+/// Adds a claim, a named result of a game.
 pub(super) fn claim(claims: &mut Vec<(String, i64)>, name: &str, number: i64) -> Outcome {
     let length = u32::try_from(name.len()).unwrap_or(u32::MAX);
     if !(1..=CLAIM_NAME_BYTES_MAX).contains(&length) {
@@ -123,8 +124,9 @@ pub(super) fn claim(claims: &mut Vec<(String, i64)>, name: &str, number: i64) ->
 }
 
 api! {
-    /// Starts a recorder for a game with rules of its own. `rules` is the name of the rules in UTF-8, `setup` what the
-    /// first tick depends on, `start` the hash of the state before it. There is a checkpoint every `interval` ticks.
+    /// Starts a recorder for a game with rules of its own. `rules` is the name of the rules in UTF-8, `setup` the data
+    /// from which the game makes its first state, and `start` the hash of that state. There is a checkpoint every
+    /// `interval` ticks.
     fn ls2d_recorder_new(
         rules: In<'_, u8>,
         rules_length: usize,
@@ -152,9 +154,9 @@ api! {
         recorder.set(table::add(HostRecorder { recorder: Some(started), game, input_bytes })?)
     }
 
-    /// Records the final inputs of the next tick: those of all players, one after another. `absent` has a bit for each
-    /// absent player, whose input is zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow with the hash
-    /// of the state after this tick.
+    /// Records the final inputs of the next tick: the inputs of all players, one after another. `absent` has a bit for
+    /// each absent player; its input has to be zeros. Writes 1 to `due` if `ls2d_recorder_checkpoint` has to follow
+    /// with the hash of the state after this tick.
     fn ls2d_recorder_record(
         recorder: u32,
         inputs: In<'_, u8>,
@@ -171,7 +173,7 @@ api! {
         })
     }
 
-    /// Passes the hash of the state after the last recorded tick. Without a checkpoint due, nothing happens.
+    /// Passes the hash of the state after the last recorded tick. It has no effect if no checkpoint is due.
     fn ls2d_recorder_checkpoint(recorder: u32, hash: In<'_, RawHash>) {
         let hash = hash.get()?.hash();
         with(recorder, |recorder: &mut HostRecorder| {
@@ -189,7 +191,8 @@ api! {
     }
 
     /// Adds a result of the game, such as a score, before the recorder is finished: a name of 1 to 64 bytes of UTF-8,
-    /// and a number. A replay has at most 256 results with different names, which can be read without playing it.
+    /// and a number. A replay has at most 256 results with different names. They can be read without playing the
+    /// replay.
     fn ls2d_recorder_claim(recorder: u32, name: In<'_, u8>, name_length: usize, number: i64) {
         let name = name.text(name_length)?;
         with(recorder, |recorder: &mut HostRecorder| {

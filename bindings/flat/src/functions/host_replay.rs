@@ -1,4 +1,5 @@
-//! Replays of games whose rules are in another language: the game plays the inputs of a file and passes its hashes.
+//! Replays of games whose rules are written in another language: the host simulates the inputs of a file and passes its
+//! state hashes.
 
 use std::collections::BTreeSet;
 
@@ -32,8 +33,8 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// Returns the inputs of all players, zeros for those that are absent. A run stores only the inputs of present
-    /// players: with the zeros, a file without players could take 64 times its size in memory.
+    /// Returns the inputs of all players, zeros for absent players. A run stores only the inputs of present players:
+    /// with the zeros, a file without players could take 64 times its size in memory.
     fn inputs_of_all(&self, players: u32, input_bytes: usize) -> Vec<u8> {
         let mut present = self.inputs.chunks_exact(input_bytes);
         let zeros = vec![0; input_bytes];
@@ -60,10 +61,10 @@ pub(crate) struct HostReplay {
     pub(super) tick: u64,
     /// Tick of the last comparison with a checkpoint; `None` before the first, and after a saved state was loaded.
     pub(super) compared: Option<u64>,
-    /// Number of checkpoints, from the start, that have been equal.
+    /// Number of checkpoints, counted from the start, that have been compared and are equal.
     equal: usize,
     pub(super) failed: Option<Verdict>,
-    /// Results of the game that is played.
+    /// Claims of the game as the host has played it.
     claims: Vec<(String, i64)>,
     /// The tick to go to.
     pub(super) target: u64,
@@ -132,13 +133,13 @@ impl HostReplay {
         self.checkpoints.binary_search_by_key(&self.tick, |checkpoint| checkpoint.tick).ok()
     }
 
-    /// Compares the state after the ticks so far with the checkpoint, if there is one here.
+    /// Compares the state after the ticks so far with the checkpoint at the current tick, if there is one.
     fn check(&mut self, hash: StateHash) -> Outcome {
         let Some(index) = self.checkpoint() else { return Ok(()) };
         let Some(&Checkpoint { tick, stored, inputs }) = self.checkpoints.get(index) else { return Ok(()) };
         self.compared = Some(tick);
         if checkpoint_hash(hash, inputs) == stored {
-            // Checkpoints that were passed by without a hash are not known to be equal.
+            // Counts consecutive checkpoints only: a checkpoint that was skipped has not been compared.
             self.equal += usize::from(index == self.equal);
             return Ok(());
         }
@@ -189,8 +190,8 @@ fn read_setup(reader: &Reader<'_>) -> Result<HostSetup, Verdict> {
     setup.ok_or(Verdict::Malformed { offset: 0, flaw: Flaw::Setup })
 }
 
-/// Decodes the inputs of a run, a list of bytes for each player, without bytes for a player that is absent. Returns the
-/// bytes of the other players one after another, and the bits of those that are absent.
+/// Decodes the inputs of a run: a list of bytes for each player, which is empty for an absent player. Returns the
+/// inputs of the present players one after another, and a bit for each absent player.
 fn decode(setup: &HostSetup, encoded: &[u8]) -> Option<(Vec<u8>, u64)> {
     let (players, input_bytes) = (setup.2, usize::try_from(setup.4).ok()?);
     let mut list = u64::from(players).to_le_bytes().to_vec();
@@ -218,7 +219,7 @@ api! {
         set_opened(HostReplay::open(data.slice(size)?, &limits), &mut replay, &mut verdict)
     }
 
-    /// Name of the rules as bytes. The other figures of the header are written where a pointer is not null.
+    /// Name of the rules as bytes, and the figures of the header. Null pointers to figures are not written.
     fn ls2d_replay_rules(
         replay: u32,
         rules: Out<'_, u32>,
@@ -249,8 +250,8 @@ api! {
         bytes.set(table::add(Bytes(setup))?)
     }
 
-    /// Name, as bytes, and number of a result that the file states. Results are in ascending order of names, and true
-    /// if the verdict is `LS2D_MATCH`. `LS2D_NONE` after the last one.
+    /// Name, as bytes, and number of a result that the file states. Results are in ascending order of names. They are
+    /// true if the verdict is `LS2D_MATCH`. `LS2D_NONE` after the last one.
     fn ls2d_replay_claim_at(replay: u32, index: u32, name: Out<'_, u32>, number: Out<'_, i64>) {
         let (mut name, mut number) = (name, number);
         name.check()?;
@@ -264,8 +265,8 @@ api! {
         name.set(table::add(Bytes(found))?)
     }
 
-    /// The inputs of all players for the next tick, as `players` times `input_bytes` bytes, with a bit in `absent` for
-    /// each absent player; a null pointer is not written. `LS2D_NONE` at the end.
+    /// The inputs of all players for the next tick, `players` times `input_bytes` bytes. A bit for each absent player
+    /// is written to `absent` unless it is null. `LS2D_NONE` at the end.
     fn ls2d_replay_next(
         replay: u32,
         inputs: Out<'_, u8>,
@@ -284,13 +285,14 @@ api! {
         })
     }
 
-    /// Passes the hash of the state before the first tick, and after each tick; or answers `LS2D_REQUEST_CHECKSUM`.
+    /// Compares the hash of the game's state with the file. Call it before the first tick and after each tick, or,
+    /// while seeking, for each `LS2D_REQUEST_CHECKSUM`.
     fn ls2d_replay_check(replay: u32, hash: In<'_, RawHash>) {
         let hash = hash.get()?.hash();
         with(replay, |replay: &mut HostReplay| replay.check(hash))
     }
 
-    /// Adds a result of the game that was played. The verdict compares all of them with those that the file states.
+    /// Adds a result of the game that was played. The verdict compares all added results with those in the file.
     fn ls2d_replay_claim(replay: u32, name: In<'_, u8>, name_length: usize, number: i64) {
         let name = name.text(name_length)?;
         with(replay, |replay: &mut HostReplay| claim(&mut replay.claims, name, number))

@@ -1,5 +1,5 @@
-//! Seeking in replays of games whose rules are in another language: the game fulfils requests, as in a match. It saves,
-//! restores and advances its state, and passes its hash at the checkpoints.
+//! Seeking in replays of games whose rules are written in another language: the host fulfils requests, as in a match.
+//! It saves, restores and advances its state, and passes its state hash at the checkpoints.
 
 use super::host_replay::HostReplay;
 use crate::border::Out;
@@ -21,7 +21,7 @@ impl HostReplay {
             let failure = || value("the tick to go to, without a saved state before it,", self.target);
             return request(REQUEST_LOAD, latest.ok_or_else(failure)?, 0);
         }
-        // A single tick is always played, never loaded, so that the game shows what happens in it.
+        // A single tick is always played, never loaded, so that the game can show the events of this tick.
         if let Some(latest) = latest.filter(|&latest| latest > self.tick && self.target - self.tick > 1) {
             return request(REQUEST_LOAD, latest, 0);
         }
@@ -37,7 +37,7 @@ impl HostReplay {
         request(kind, self.tick, self.run().map_or(0, |run| run.absent))
     }
 
-    /// Notes that a request was passed to the game. A checksum is requested until it is answered.
+    /// Updates the position after a request was passed to the game. A checksum is requested until it is answered.
     fn fulfil(&mut self, request: RawRequest) {
         match request.kind {
             REQUEST_LOAD => (self.tick, self.compared) = (request.tick.into(), None),
@@ -55,8 +55,8 @@ fn request(kind: u32, tick: u64, absent: u64) -> Outcome<RawRequest> {
 }
 
 api! {
-    /// Sets the tick to go to; tick t is the state after t ticks. `ls2d_replay_next_request` then returns what the game
-    /// has to do. At the first request the game has to be in its first state.
+    /// Sets the tick to go to; tick t is the state after t ticks. `ls2d_replay_next_request` then returns the requests
+    /// that the game has to fulfil. At the first request the game has to be in its first state.
     fn ls2d_replay_seek(replay: u32, tick: u64) {
         with(replay, |replay: &mut HostReplay| {
             if tick > replay.ticks {
@@ -90,8 +90,8 @@ api! {
         })
     }
 
-    /// Sets the ticks between the states that seeking asks to save. At first it is 60, or more for replays that would
-    /// need more than 256 states.
+    /// Sets the interval in ticks at which seeking requests to save the state. The default is 60, or more for replays
+    /// that would otherwise need more than 256 saved states.
     fn ls2d_replay_set_interval(replay: u32, ticks: u32) {
         with(replay, |replay: &mut HostReplay| {
             if ticks == 0 {

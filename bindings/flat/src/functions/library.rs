@@ -7,7 +7,7 @@ use crate::describe::api;
 use crate::status::{Failure, Status, last_text};
 use crate::table::{self, Bytes};
 
-/// Version of the flat API: it changes with every change that breaks callers.
+/// Version of the flat API, increased by every incompatible change.
 pub const API_VERSION: u32 = 1;
 
 thread_local! {
@@ -15,10 +15,10 @@ thread_local! {
 }
 
 api! {
-    /// Version of this API. It has to be `LS2D_API_VERSION` of the header.
+    /// Version of this API. It has to be equal to `LS2D_API_VERSION` of the header.
     fn ls2d_api_version() -> u32 { API_VERSION }
 
-    /// Version of the engine's arithmetic: programs with different ones do not compute the same states.
+    /// Version of the engine's arithmetic: programs with different versions compute different states.
     fn ls2d_semantics() -> u32 { lockstep2d::SEMANTICS }
 
     /// Copies the text of the last failure on this thread as UTF-8, and writes its length in bytes. It is not
@@ -31,10 +31,10 @@ api! {
         length.set(text.len())
     }
 
-    /// Frees an object of any kind. Its handle is an error from now on, also if it is freed again.
+    /// Frees an object of any kind. Afterwards every use of its handle is an error, including freeing it again.
     fn ls2d_free(handle: u32) { table::free(handle) }
 
-    /// Number of objects that are not freed, to find leaks.
+    /// Number of objects that have not been freed, to find leaks.
     fn ls2d_object_count() -> usize { table::count() }
 
     /// Number of bytes of a bytes object.
@@ -57,8 +57,9 @@ api! {
         bytes.set(table::add(Bytes(data.slice(size)?.to_vec()))?)
     }
 
-    /// Memory of this thread with an alignment of 8, for callers that have none of their own, such as JavaScript.
-    /// Returns its address, or 0 without enough memory. A call with a larger size moves it and keeps its contents.
+    /// Returns the address of `size` bytes of memory with an alignment of 8, or 0 if there is not enough memory. It is
+    /// for callers that cannot allocate memory, such as JavaScript. Each thread has one such buffer; a call with a
+    /// larger size may move it and keeps its contents.
     fn ls2d_scratch(size: usize) -> usize {
         SCRATCH.with_borrow_mut(|scratch| {
             let words = size.div_ceil(size_of::<u64>()).max(1);

@@ -1,5 +1,5 @@
-//! Matches: the session of the library over bytes. The caller passes packets and the time, sends the packets that it is
-//! given, and saves, restores and advances its game when it is asked to.
+//! Matches: the session of lockstep2d with inputs, states and packets as bytes. The caller passes received packets and
+//! the time, sends the packets that it takes from the match, and saves, restores and advances its game on request.
 
 use std::collections::VecDeque;
 
@@ -27,7 +27,7 @@ pub(crate) struct Match {
     events: VecDeque<Happened>,
 }
 
-/// An event, with the state that it brings.
+/// An event, with the downloaded state if it has one.
 struct Happened {
     event: RawMatchEvent,
     state: Option<Vec<u8>>,
@@ -88,7 +88,7 @@ fn own_seats(config: &RawMatchConfig) -> u8 {
     u8::try_from(config.own_seats).unwrap_or(u8::MAX)
 }
 
-/// The request as a struct, and the inputs that it brings.
+/// The request as a struct, and the inputs if the game has to advance.
 fn describe(request: &Request) -> (RawRequest, Option<&TickInputs>) {
     let raw = |kind, tick| RawRequest { kind, tick, absent: 0, guessed: 0 };
     match request {
@@ -128,7 +128,8 @@ api! {
         handle.set(table::add(Match::new(Endpoint::host(config, identity, seats)?))?)
     }
 
-    /// Asks a participant of a match, whose address is known, to join or, without own seats, to watch.
+    /// Joins a match through the participant at the address `contact`, as a player or, if `own_seats` is 0, a
+    /// spectator.
     fn ls2d_match_join(
         config: In<'_, RawMatchConfig>,
         offer: In<'_, u8>,
@@ -175,7 +176,7 @@ api! {
         })
     }
 
-    /// Passes the time. Call it every few milliseconds, and after packets have arrived.
+    /// Advances the match to the time `now`. Call it every few milliseconds, and after packets have arrived.
     fn ls2d_match_update(handle: u32, now: u64) {
         with(handle, |game: &mut Match| {
             game.endpoint.update(now);
@@ -191,9 +192,9 @@ api! {
         })
     }
 
-    /// Issues the inputs of your own seats, in the order of the seats, and plays a tick if that is possible: the
-    /// requests that follow say so. Writes 1 to `issued` if the inputs were issued; otherwise they may be used again.
-    /// Without seats of your own there are no bytes.
+    /// Issues the inputs of your own seats, in the order of the seats, and plays a tick if that is possible:
+    /// `LS2D_REQUEST_ADVANCE` is then among the next requests. Writes 1 to `issued` if the inputs were issued;
+    /// otherwise they may be passed again. Without own seats, `size` is 0.
     fn ls2d_match_advance(handle: u32, now: u64, inputs: In<'_, u8>, size: usize, issued: Out<'_, u32>) {
         let mut issued = issued;
         with(handle, |game: &mut Match| {
@@ -226,7 +227,7 @@ api! {
         })
     }
 
-    /// Answers `LS2D_REQUEST_CHECKSUM`.
+    /// Passes the hash that `LS2D_REQUEST_CHECKSUM` requests.
     fn ls2d_match_report_hash(handle: u32, tick: u32, hash: In<'_, RawHash>) {
         let hash = hash.get()?.hash();
         with(handle, |game: &mut Match| {
@@ -275,7 +276,7 @@ api! {
         with(handle, |game: &mut Match| wants.set(game.endpoint.wants_state().into()))
     }
 
-    /// Offers the state after a number of final ticks to those who join. It is kept until it has been sent.
+    /// Offers the state after a number of final ticks to peers that join. It is kept until it has been sent.
     fn ls2d_match_offer_state(handle: u32, tick: u32, state: In<'_, u8>, size: usize) {
         let state = state.slice(size)?.to_vec();
         with(handle, |game: &mut Match| {
@@ -284,7 +285,7 @@ api! {
         })
     }
 
-    /// Where the match stands: `LS2D_MATCH_JOINING` and so on.
+    /// Status of the match: one of the `LS2D_MATCH_` constants.
     fn ls2d_match_status(handle: u32, status: Out<'_, u32>) {
         let mut status = status;
         with(handle, |game: &mut Match| {
@@ -293,7 +294,8 @@ api! {
         })
     }
 
-    /// Numbers of ticks that were played, that are final, and that are final and played. Null pointers are not written.
+    /// Numbers of ticks: `played`, also with guessed inputs; `last`, whose inputs are final; `confirmed`, played with
+    /// final inputs. Null pointers are not written.
     fn ls2d_match_ticks(handle: u32, played: Out<'_, u32>, last: Out<'_, u32>, confirmed: Out<'_, u32>) {
         let (mut played, mut last, mut confirmed) = (played, last, confirmed);
         with(handle, |game: &mut Match| {
@@ -304,13 +306,13 @@ api! {
         })
     }
 
-    /// Bit for each own seat.
+    /// Writes a bit for each own seat.
     fn ls2d_match_seats(handle: u32, seats: Out<'_, u64>) {
         let mut seats = seats;
         with(handle, |game: &mut Match| seats.set(game.endpoint.session().map_or(0, Session::seats)))
     }
 
-    /// The final inputs of all seats for a tick, while they are kept. `LS2D_NONE` otherwise.
+    /// The final inputs of all seats for a tick. `LS2D_NONE` if they are not final yet, or not kept any more.
     fn ls2d_match_final_inputs(
         handle: u32,
         tick: u32,
@@ -327,8 +329,8 @@ api! {
         })
     }
 
-    /// Delay of own inputs in ticks, and smoothed round trip in microseconds and lost packets in thousandths of the
-    /// link to a peer. Null pointers are not written.
+    /// Delay of own inputs in ticks, and for the link to a peer the smoothed round-trip time in microseconds and the
+    /// packet loss in thousandths. Null pointers are not written.
     fn ls2d_match_link(
         handle: u32,
         peer: u32,
@@ -354,8 +356,8 @@ api! {
         })
     }
 
-    /// Asks for an end of the match after a number of ticks. It is decided two seconds before; until then others can
-    /// join.
+    /// Requests an end of the match after a number of ticks. The end is decided two seconds before; until then, other
+    /// peers can join.
     fn ls2d_match_end_at(handle: u32, ticks: u32) {
         with(handle, |game: &mut Match| {
             game.session()?.end_at(ticks);
@@ -363,7 +365,7 @@ api! {
         })
     }
 
-    /// Asks all others to pause, or, with 0, withdraws the request.
+    /// Requests a pause from all other peers, or, with 0, withdraws the request.
     fn ls2d_match_pause(handle: u32, paused: u32) {
         with(handle, |game: &mut Match| {
             game.session()?.pause(paused != 0);

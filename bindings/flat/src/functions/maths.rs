@@ -49,16 +49,16 @@ api! {
         number.set(RawFx::of(ratio(numerator, denominator)))
     }
 
-    /// `a + b`, within the range of numbers.
+    /// `a + b`, saturating.
     fn ls2d_fx_add(a: RawFx, b: RawFx) -> RawFx { RawFx(a.0.saturating_add(b.0)) }
 
-    /// `a - b`, within the range of numbers.
+    /// `a - b`, saturating.
     fn ls2d_fx_sub(a: RawFx, b: RawFx) -> RawFx { RawFx(a.0.saturating_sub(b.0)) }
 
-    /// `a b`, rounded to nearest, within the range of numbers.
+    /// `a b`, rounded to nearest, saturating.
     fn ls2d_fx_mul(a: RawFx, b: RawFx) -> RawFx { RawFx::of(fx_mul(a.fx(), b.fx())) }
 
-    /// `a / b`, rounded to nearest, within the range of numbers. `LS2D_NUMBER` if `b` is 0.
+    /// `a / b`, rounded to nearest, saturating. `LS2D_NUMBER` if `b` is 0.
     fn ls2d_fx_div(a: RawFx, b: RawFx, number: Out<'_, RawFx>) {
         let mut number = number;
         number.set(RawFx::of(fx_div(a.fx(), b.fx()).ok_or_else(|| undefined("division by zero"))?))
@@ -103,7 +103,7 @@ api! {
     /// Cosine of an angle.
     fn ls2d_angle_cos(angle: RawAngle) -> RawFx { RawFx::of(widen(angle.angle().cos())) }
 
-    /// Direction of a vector: 0 is along x. 0 for the zero vector.
+    /// Direction of a vector as an angle from the x axis; 0 for the zero vector.
     fn ls2d_angle_of(x: RawFx, y: RawFx) -> RawAngle { RawAngle::of(Angle::of(Vec2::new(x.fx(), y.fx()))) }
 
     /// An angle of a number of degrees.
@@ -124,7 +124,8 @@ api! {
         rng.set(described(&Rng::new(seed))?)
     }
 
-    /// Draws a uniform number from 0 to below `bound`. `from` and `rng` may be the same.
+    /// Draws a uniform number from 0 to below `bound`. `from` is the generator before the draw, `rng` the one after it;
+    /// they may point to the same struct.
     fn ls2d_rng_below(from: In<'_, RawRng>, rng: Out<'_, RawRng>, bound: u32, number: Out<'_, u32>) {
         let (mut rng, mut number) = (rng, number);
         let mut drawn = generator(from.get()?)?;
@@ -132,7 +133,8 @@ api! {
         rng.set(described(&drawn)?)
     }
 
-    /// Draws a uniform number from `low` to below `high`. `from` and `rng` may be the same.
+    /// Draws a uniform number from `low` to below `high`. `from` is the generator before the draw, `rng` the one after
+    /// it; they may point to the same struct.
     fn ls2d_rng_range(
         from: In<'_, RawRng>,
         rng: Out<'_, RawRng>,

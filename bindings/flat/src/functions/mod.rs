@@ -56,7 +56,7 @@ pub(crate) const FUNCTIONS: &[(&str, &[Function])] = &[
     ("Worlds", world::FUNCTIONS),
     ("Definitions", definitions::FUNCTIONS),
     ("Edits of a world, or of a list of commands", edit::FUNCTIONS),
-    ("What is in a world", view::FUNCTIONS),
+    ("Contents of a world", view::FUNCTIONS),
     ("Drawing", drawing::FUNCTIONS),
     ("Events of the last tick", events::FUNCTIONS),
     ("Queries", query::FUNCTIONS),

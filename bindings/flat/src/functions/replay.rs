@@ -1,5 +1,5 @@
-//! Replays of worlds that are changed by commands alone: recorded, and verified by this library or by `lockstep2d
-//! verify`.
+//! Recording and verification of worlds that are changed by commands alone. The command `lockstep2d verify` also
+//! verifies the files.
 
 use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 use lockstep2d::replay::{self, Limits, Recording, Verdict};
@@ -11,7 +11,7 @@ use crate::records::{RawConfig, RawLimits, RawVerdict};
 use crate::status::{Failure, Outcome, Status, note};
 use crate::table::{self, Bytes, Commands, Kind, with, with_two};
 
-/// A recording until it is finished.
+/// A recording; `None` once it is finished.
 pub(crate) struct SandboxRecorder(Option<Recording<Sandbox>>);
 
 impl SandboxRecorder {
@@ -45,14 +45,14 @@ pub(super) fn set_opened<T: Kind>(
 }
 
 api! {
-    /// Sets the default limits of a replay: a day of play, hours of computing for a file made to be slow.
+    /// Sets the default limits of a replay. They allow a day of play. A file made to be slow can take hours to verify.
     fn ls2d_limits_init(limits: Out<'_, RawLimits>) {
         let mut limits = limits;
         limits.set(RawLimits::of(&Limits::default()))
     }
 
-    /// Starts a recording: a world that the commands of a list set up, with a checkpoint every `interval` ticks. A null
-    /// pointer stands for the default settings.
+    /// Starts the recording of a world, which the commands of a list set up, with a checkpoint every `interval` ticks.
+    /// A null pointer stands for the default settings.
     fn ls2d_recording_new(config: In<'_, RawConfig>, commands: u32, interval: u32, recording: Out<'_, u32>) {
         let mut recording = recording;
         recording.check()?;

@@ -16,7 +16,7 @@ api! {
         snapshot.set(table::add(saved)?)
     }
 
-    /// Saves a world into a snapshot that exists, and reuses its memory: the cheapest way to save every tick.
+    /// Saves a world into an existing snapshot, and reuses its memory: the fastest way to save every tick.
     fn ls2d_world_save_into(world: u32, snapshot: u32) {
         with_two(world, snapshot, |world: &mut World, snapshot: &mut Snapshot| {
             world.save_into(snapshot);
@@ -46,7 +46,7 @@ api! {
         bytes.set(table::add(Bytes(encoded))?)
     }
 
-    /// Makes a world from bytes of any source: they are checked.
+    /// Makes a world from bytes, which may come from any source and are checked.
     fn ls2d_world_decode(data: In<'_, u8>, size: usize, world: Out<'_, u32>) {
         let mut world = world;
         world.check()?;

@@ -1,4 +1,4 @@
-//! Replays of worlds that go to any tick, forwards and backwards.
+//! Seeking in replays of worlds, forwards and backwards to any tick.
 
 use lockstep2d::lockstep::Sandbox;
 use lockstep2d::replay::{SeekError, Step, Timeline, TimelineOptions};
@@ -71,8 +71,8 @@ api! {
         })
     }
 
-    /// Goes to a tick. Ticks that were played before cost little. Checkpoints on the way are compared: if one differs,
-    /// the result is `LS2D_RECORD`, and the timeline stays there.
+    /// Goes to a tick. Going to a tick that was played before is fast. Checkpoints on the way are compared: if one
+    /// differs, the result is `LS2D_RECORD`, and the timeline stays there.
     fn ls2d_timeline_seek(timeline: u32, tick: u64) {
         go(timeline, |timeline| timeline.seek(tick).map(|()| Step::Ticked))
     }

@@ -82,7 +82,7 @@ api! {
         })
     }
 
-    /// Name of a body: 16 bytes, ended by zeros; all zero for none.
+    /// Name of a body: 16 bytes, padded with zeros; all zeros if it has no name.
     fn ls2d_body_name(world: u32, id: RawBody, name: Out<'_, [u8; 16]>) {
         let mut name = name;
         with(world, |world: &mut World| {
@@ -112,7 +112,7 @@ api! {
         })
     }
 
-    /// A box that contains a shape and some margin, in the world.
+    /// An axis-aligned box around a shape with some margin, in world coordinates.
     fn ls2d_shape_box(world: u32, id: RawShape, area: Out<'_, RawAabb>) {
         let mut area = area;
         with(world, |world: &mut World| area.set(RawAabb::of(shape(world, id)?.fat_aabb())))
@@ -160,7 +160,7 @@ api! {
         })
     }
 
-    /// Angle of a joint in rad, with whole turns.
+    /// Angle of a joint in rad, including whole turns.
     fn ls2d_joint_angle(world: u32, id: RawJoint, angle: Out<'_, RawFx>) {
         let mut angle = angle;
         with(world, |world: &mut World| {
@@ -180,8 +180,8 @@ api! {
         })
     }
 
-    /// Sets the anchors and angles of a definition so that the joint holds at the current poses, at a point of the
-    /// world and with its axis along a direction in the world. A direction of zero is the x axis.
+    /// Sets the anchors and angles of a definition for the current poses of the bodies: the anchor at a point of the
+    /// world, and the axis along a direction in the world. A direction of zero is the x axis.
     fn ls2d_joint_at(
         world: u32,
         from: In<'_, RawJointDef>,

@@ -17,7 +17,8 @@ api! {
         config.set(RawConfig::of(&Config::default()))
     }
 
-    /// Raises the sub-steps and the stiffness of contacts to what stacks of bodies of `size` metres need.
+    /// Raises the number of sub-steps and the stiffness of contacts so that stacks of bodies of `size` metres are
+    /// stable.
     fn ls2d_config_for_smallest(config: Out<'_, RawConfig>, from: In<'_, RawConfig>, size: RawFx) {
         let mut config = config;
         let adapted = from.get()?.config()?.for_smallest(size.fx());
@@ -56,7 +57,7 @@ api! {
         })
     }
 
-    /// Hash of the state of a world: equal for equal edits in the same order, on every machine.
+    /// Hash of the state of a world. The same edits in the same order give the same hash on every machine.
     fn ls2d_world_hash(world: u32, hash: Out<'_, RawHash>) {
         let mut hash = hash;
         with(world, |world: &mut World| hash.set(RawHash::of(world.state_hash())))
@@ -89,7 +90,7 @@ api! {
         with(world, |world: &mut World| tick.set(world.tick()))
     }
 
-    /// Number of results that a clamp has changed since the world was made: 0 while all values stay in their ranges.
+    /// Number of results that were clamped since the world was made: 0 while all values stay in their ranges.
     fn ls2d_world_faults(world: u32, faults: Out<'_, u64>) {
         let mut faults = faults;
         with(world, |world: &mut World| faults.set(world.faults()))

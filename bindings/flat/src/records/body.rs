@@ -14,7 +14,7 @@ use crate::status::{Failure, Outcome, Status, value};
 constants! {
     /// Kind of a body: does not move.
     FIXED = 0, "LS2D_FIXED";
-    /// Kind of a body: moves with its velocity alone.
+    /// Kind of a body: moves at its velocity, which forces and contacts do not change.
     KINEMATIC = 1, "LS2D_KINEMATIC";
     /// Kind of a body: moved by forces, contacts and joints.
     DYNAMIC = 2, "LS2D_DYNAMIC";
@@ -60,13 +60,13 @@ records! {
         kind: u32,
         /// `LS2D_BODY_` flags.
         flags: u32,
-        /// `LS2D_SWEEP_OFF` and so on: the bodies that it does not pass through, however fast it is.
+        /// `LS2D_SWEEP_OFF` and so on: the bodies through which it cannot tunnel.
         continuous: u32,
         /// Origin in the world, in metres.
         position: RawVec2,
         /// Rotation.
         angle: RawAngle,
-        /// 0.
+        /// Reserved: 0.
         reserved: u32,
         /// Velocity of the centre of mass in m/s.
         velocity: RawVec2,
@@ -134,7 +134,7 @@ records! {
     struct RawExplosion = "ls2d_explosion" {
         /// Size of this struct in bytes.
         size: u32,
-        /// 0.
+        /// Reserved: 0.
         reserved: u32,
         /// Centre in the world, in metres.
         centre: RawVec2,
@@ -142,7 +142,7 @@ records! {
         radius: RawFx,
         /// Distance in metres beyond the radius over which the impulse falls to 0.
         falloff: RawFx,
-        /// Impulse in N s per metre of width that a shape shows to the centre.
+        /// Impulse in N s per metre of the width of a shape, as seen from the centre.
         impulse: RawFx,
         /// Categories of shapes that it acts on.
         mask: u64,
@@ -174,7 +174,7 @@ fn settings_flags(settings: &BodySettings) -> u32 {
         | flag(settings.may_sleep, BODY_MAY_SLEEP)
 }
 
-/// The name in a field, which ends with the first zero.
+/// Parses a name that ends with the first zero byte.
 pub(crate) fn name_of(bytes: &[u8]) -> Outcome<Option<Name>> {
     let text = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
     if text.is_empty() {
@@ -316,7 +316,7 @@ impl RawPose {
         }
     }
 
-    /// Position and rotation, to add a body there.
+    /// Position and rotation at which a body is added.
     pub(crate) const fn pose(&self) -> BodyPose {
         BodyPose { position: self.position.vec(), angle: self.angle.angle() }
     }

@@ -11,9 +11,9 @@ use crate::numbers::{RawAngle, RawBody, RawFx, RawShape, RawVec2};
 use crate::status::Outcome;
 
 constants! {
-    /// `ls2d_mover_state.flags`: it stands on ground.
+    /// `ls2d_mover_state.flags`: the character stands on ground.
     MOVER_ON_GROUND = 1, "LS2D_MOVER_ON_GROUND";
-    /// `ls2d_mover_state.flags`, a result: it hangs between two slopes that are both too steep to stand on.
+    /// `ls2d_mover_state.flags`, in results only: wedged between two slopes that are both too steep to stand on.
     MOVER_WEDGED = 2, "LS2D_MOVER_WEDGED";
 }
 
@@ -22,13 +22,13 @@ records! {
     struct RawMover = "ls2d_mover" {
         /// Size of this struct in bytes.
         size: u32,
-        /// Steepest slope that is ground, measured from level.
+        /// Steepest slope that counts as ground, measured from the horizontal.
         slope_max: RawAngle,
         /// Height in metres of steps that it climbs without a jump.
         step_height: RawFx,
         /// Distance in metres by which the ground may descend within a tick while the character follows it.
         snap_distance: RawFx,
-        /// Its geometry; other fields of the definition do not matter.
+        /// Its geometry; other fields of the definition have no effect.
         shape: RawShapeDef,
     }
 
@@ -38,7 +38,7 @@ records! {
         shape: RawShape,
         /// Its body.
         body: RawBody,
-        /// Position of the body's origin at that time, in the world, in metres.
+        /// Position of the body's origin in the world when the surface was met, in metres.
         body_position: RawVec2,
         /// Velocity of the surface in m/s.
         velocity: RawVec2,
@@ -46,15 +46,15 @@ records! {
         normal: RawVec2,
         /// Nearest point on the surface, in the world, in metres.
         point: RawVec2,
-        /// Distance in metres, negative if they overlap.
+        /// Distance of the character from the surface in metres, negative if they overlap.
         separation: RawFx,
-        /// Rotation of the body at that time.
+        /// Rotation of the body when the surface was met.
         body_angle: RawAngle,
-        /// 0.
+        /// Reserved: 0.
         reserved: u32,
     }
 
-    /// State of a character, to be kept, saved and hashed by the game. `ls2d_mover_state_init` sets the first one.
+    /// State of a character, to be kept, saved and hashed by the game. `ls2d_mover_state_init` sets the first state.
     struct RawMoverState = "ls2d_mover_state" {
         /// Size of this struct in bytes.
         size: u32,

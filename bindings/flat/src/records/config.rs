@@ -36,9 +36,9 @@ records! {
         contact: u32,
         /// `LS2D_SLEEPING`, `LS2D_CONTINUOUS`.
         flags: u32,
-        /// Stiffness of soft contacts in Hz; the share of the overlap that Baumgarte contacts correct.
+        /// Stiffness of soft contacts in Hz, or share of the overlap that Baumgarte contacts correct in each sub-step.
         contact_stiffness: RawFx,
-        /// Damping ratio of soft contacts; the overlap in metres that Baumgarte contacts leave.
+        /// Damping ratio of soft contacts, or overlap in metres that Baumgarte contacts leave uncorrected.
         contact_damping: RawFx,
         /// Largest speed in m/s with which contacts push shapes apart.
         contact_push_speed: RawFx,
@@ -50,9 +50,9 @@ records! {
         restitution_threshold: RawFx,
         /// Largest speed of a body in m/s.
         speed_max: RawFx,
-        /// Distance in metres at which shapes get contact points before they touch.
+        /// Largest distance in metres at which shapes have speculative contact points.
         speculative_distance: RawFx,
-        /// Largest margin of the boxes of the broad phase in metres.
+        /// Largest margin in metres of the bounding boxes in the broad phase.
         fat_margin: RawFx,
         /// Lowest approach speed of a hit event in m/s.
         hit_speed: RawFx,

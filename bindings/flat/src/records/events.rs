@@ -34,9 +34,9 @@ records! {
     struct RawSensorEvent = "ls2d_sensor_event" {
         /// The sensor.
         sensor: RawShape,
-        /// The other shape.
+        /// The shape that overlaps the sensor.
         visitor: RawShape,
-        /// Fraction of the tick, 0 to 1.
+        /// Time within the tick at which the overlap began or ceased, 0 to 1.
         fraction: RawFx,
     }
 

@@ -1,4 +1,4 @@
-//! Joints: one struct for all kinds, whose flags say which parts a joint has (`joint_parts.rs`).
+//! Joints: one struct for all kinds, whose flags select the optional parts of a joint (`joint_parts.rs`).
 
 use lockstep2d::math::Fx;
 use lockstep2d::solver::{JointDef, JointFrame, Soft, Threshold, ThresholdAction};
@@ -15,7 +15,7 @@ constants! {
     PRISMATIC = 1, "LS2D_PRISMATIC";
     /// Kind of a joint: a rod, a rope or a spring between the anchors.
     DISTANCE = 2, "LS2D_DISTANCE";
-    /// Kind of a joint: glue, rigid or soft.
+    /// Kind of a joint: B keeps its pose relative to A, rigidly or by springs.
     WELD = 3, "LS2D_WELD";
     /// Kind of a joint: B slides along the x axis of A's frame and turns.
     WHEEL = 4, "LS2D_WHEEL";
@@ -31,7 +31,7 @@ constants! {
     PULLEY = 9, "LS2D_PULLEY";
     /// Flag of a joint: its bodies collide with each other.
     JOINT_COLLIDE = 1, "LS2D_JOINT_COLLIDE";
-    /// Flag of a joint: it acts.
+    /// Flag of a joint: enabled.
     JOINT_ENABLED = 2, "LS2D_JOINT_ENABLED";
     /// Flag of a joint: has `limit_lower` and `limit_upper` (revolute, prismatic, distance, wheel).
     JOINT_LIMIT = 4, "LS2D_JOINT_LIMIT";
@@ -61,8 +61,8 @@ constants! {
 }
 
 records! {
-    /// Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field that a flag names is read only with that
-    /// flag.
+    /// Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field that the description of a flag names is
+    /// read only if the flag is set.
     struct RawJointDef = "ls2d_joint_def" {
         /// Size of this struct in bytes.
         size: u32,
@@ -78,11 +78,11 @@ records! {
         angle_a: RawAngle,
         /// Angle of the joint's frame in B's frame.
         angle_b: RawAngle,
-        /// 0.
+        /// Reserved: 0.
         reserved: u32,
-        /// One body.
+        /// Body A.
         body_a: RawBody,
-        /// The other body.
+        /// Body B.
         body_b: RawBody,
         /// Anchor in A's frame in metres.
         anchor_a: RawVec2,
@@ -108,9 +108,9 @@ records! {
         spring_force_upper: RawFx,
         /// Length of a rod or of the rope of a pulley in metres.
         length: RawFx,
-        /// Stiffness in Hz of what the joint holds rigidly.
+        /// Stiffness in Hz of the rigid constraints of the joint.
         hertz: RawFx,
-        /// Damping ratio of what the joint holds rigidly.
+        /// Damping ratio of the rigid constraints of the joint.
         damping_ratio: RawFx,
         /// Force in N beyond which the joint is reported or breaks.
         threshold_force: RawFx,
@@ -118,7 +118,7 @@ records! {
         threshold_torque: RawFx,
         /// Target velocity of a motor joint in m/s.
         linear_velocity: RawVec2,
-        /// Largest force in N with which a motor joint drives.
+        /// Largest driving force of a motor joint in N.
         linear_motor_max: RawFx,
         /// Frequency in Hz of the spring between the anchors.
         linear_hertz: RawFx,
@@ -138,7 +138,7 @@ records! {
         wheel_a: RawVec2,
         /// Wheel of a pulley on B's side, in the world.
         wheel_b: RawVec2,
-        /// Factor by which the length on B's side of a pulley counts.
+        /// Ratio of a pulley: the length on A's side plus `ratio` times the length on B's side is at most `length`.
         ratio: RawFx,
         /// A number for the game, part of the state.
         user_data: u64,

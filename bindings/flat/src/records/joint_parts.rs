@@ -1,4 +1,4 @@
-//! The parts of joints: what each kind has of limits, motors, springs and so on.
+//! Optional parts of joints: limits, motors and springs, by kind.
 
 use lockstep2d::math::Fx;
 use lockstep2d::solver::{

@@ -9,19 +9,19 @@ use crate::numbers::RawHash;
 use crate::status::{Outcome, value};
 
 constants! {
-    /// Verdict: the setup and the inputs lead to every checkpoint and to the end of the file.
+    /// Verdict: the setup and the inputs reproduce every checkpoint and the trailer of the file.
     MATCH = 0, "LS2D_MATCH";
-    /// Verdict: a claim or the final hash in the trailer differs from that of the game.
+    /// Verdict: a claim or the final hash in the trailer differs from the result of the simulation.
     CLAIM_MISMATCH = 1, "LS2D_CLAIM_MISMATCH";
     /// Verdict: the simulation diverges from the recorded game.
     DIVERGED = 2, "LS2D_DIVERGED";
     /// Verdict: the file ends before its trailer.
     INCOMPLETE = 3, "LS2D_INCOMPLETE";
-    /// Verdict: not what a recorder writes.
+    /// Verdict: the bytes are not a valid replay file.
     MALFORMED = 4, "LS2D_MALFORMED";
-    /// Verdict: the file costs more than is allowed.
+    /// Verdict: the file exceeds one of the limits.
     LIMIT_EXCEEDED = 5, "LS2D_LIMIT_EXCEEDED";
-    /// Verdict: of other versions or other rules.
+    /// Verdict: recorded by another version of the engine, or with other rules.
     UNVERIFIABLE = 6, "LS2D_UNVERIFIABLE";
     /// Request: keep a copy of the state before `tick`. An older copy for the same tick is replaced.
     REQUEST_SAVE = 0, "LS2D_REQUEST_SAVE";
@@ -41,50 +41,50 @@ constants! {
     EVENT_SEATED = 2, "LS2D_EVENT_SEATED";
     /// Event: `peer` no longer has `seat` from `tick` on.
     EVENT_UNSEATED = 3, "LS2D_EVENT_UNSEATED";
-    /// Event: play stands still because inputs of `peer` are missing; `value` is 1 if its packets arrive.
+    /// Event: play stalls because inputs of `peer` are missing; `value` is 1 if its packets arrive.
     EVENT_WAITING = 4, "LS2D_EVENT_WAITING";
-    /// Event: play goes on.
+    /// Event: play continues.
     EVENT_RESUMED = 5, "LS2D_EVENT_RESUMED";
-    /// Event: `peer` asks for a pause, or no longer does; `value` is 1 or 0.
+    /// Event: `peer` requests a pause (`value` is 1) or withdraws its request (0).
     EVENT_PAUSE = 6, "LS2D_EVENT_PAUSE";
     /// Event: the match ends after `tick` ticks.
     EVENT_END = 7, "LS2D_EVENT_END";
-    /// Event: after `tick` ticks, `peer` has another state; the hashes are `ours` and `theirs`.
+    /// Event: after `tick` ticks, `peer` has a different state; the hashes are `ours` and `theirs`.
     EVENT_DESYNC = 8, "LS2D_EVENT_DESYNC";
-    /// Event: `peer` has issued two inputs for `tick`.
+    /// Event: `peer` has issued two different inputs for `tick`.
     EVENT_CONFLICT = 9, "LS2D_EVENT_CONFLICT";
-    /// Event: the others no longer keep the inputs that this peer lacks; it has to join again.
+    /// Event: the other peers no longer keep the inputs that this peer lacks; it has to join again.
     EVENT_TOO_FAR_BEHIND = 10, "LS2D_EVENT_TOO_FAR_BEHIND";
-    /// Event: the contact refuses; `value` is a `LS2D_REFUSED_` reason.
+    /// Event: the contact refuses the request to join; `value` is a `LS2D_REFUSED_` reason.
     EVENT_REFUSED = 11, "LS2D_EVENT_REFUSED";
-    /// Event: the state after `tick` ticks is here, as bytes with the handle `value`, which the caller frees. The game
-    /// has to restore it before it fulfils further requests.
+    /// Event: the state after `tick` ticks was downloaded, as bytes with the handle `value`, which the caller frees.
+    /// The game has to restore it before it fulfils further requests.
     EVENT_STATE = 12, "LS2D_EVENT_STATE";
-    /// Event: what was downloaded is not a state; it is asked for again.
+    /// Event: the downloaded bytes are not a valid state; they are requested again.
     EVENT_BAD_STATE = 13, "LS2D_EVENT_BAD_STATE";
     /// Reason: the offers differ.
     REFUSED_OFFER = 0, "LS2D_REFUSED_OFFER";
-    /// Reason: too many peers follow the match.
+    /// Reason: too many peers are joining through this contact.
     REFUSED_FULL = 1, "LS2D_REFUSED_FULL";
     /// Reason: another peer has the number of this peer.
     REFUSED_TAKEN = 2, "LS2D_REFUSED_TAKEN";
-    /// Reason: the contact is not in a match yet. It is asked again.
+    /// Reason: the contact is not in a match yet. The request is repeated.
     REFUSED_NOT_READY = 3, "LS2D_REFUSED_NOT_READY";
-    /// Status: follows the match and asks for a seat.
+    /// Status: follows the match and requests a seat.
     MATCH_JOINING = 0, "LS2D_MATCH_JOINING";
     /// Status: follows the match.
     MATCH_WATCHING = 1, "LS2D_MATCH_WATCHING";
-    /// Status: has a seat; too few seats are taken for the first tick.
+    /// Status: has a seat in a match that has not begun, because too few seats are taken.
     MATCH_WAITING = 2, "LS2D_MATCH_WAITING";
     /// Status: plays.
     MATCH_PLAYING = 3, "LS2D_MATCH_PLAYING";
-    /// Status: cannot hear a majority.
+    /// Status: receives no packets from a majority of the peers.
     MATCH_PAUSED = 4, "LS2D_MATCH_PAUSED";
-    /// Status: the others went on without this peer, which asks for its seat again.
+    /// Status: the other peers went on without this peer, which requests its seat again.
     MATCH_DROPPED = 5, "LS2D_MATCH_DROPPED";
     /// Status: removed for good.
     MATCH_KICKED = 6, "LS2D_MATCH_KICKED";
-    /// Status: tells the others that it leaves.
+    /// Status: announces its departure to the other peers.
     MATCH_LEAVING = 7, "LS2D_MATCH_LEAVING";
     /// Status: has left.
     MATCH_LEFT = 8, "LS2D_MATCH_LEFT";
@@ -92,7 +92,7 @@ constants! {
     MATCH_FINISHED = 9, "LS2D_MATCH_FINISHED";
     /// Status: nothing more is sent.
     MATCH_CLOSED = 10, "LS2D_MATCH_CLOSED";
-    /// Status: asks the contact, or downloads the initial state.
+    /// Status: requests to join, or downloads the initial state.
     MATCH_CONNECTING = 11, "LS2D_MATCH_CONNECTING";
 }
 
@@ -101,7 +101,7 @@ records! {
     struct RawLimits = "ls2d_limits" {
         /// Size of this struct in bytes.
         size: u32,
-        /// 0.
+        /// Reserved: 0.
         reserved: u32,
         /// Bytes of the file.
         file_bytes: u64,
@@ -127,9 +127,9 @@ records! {
     struct RawVerdict = "ls2d_verdict" {
         /// `LS2D_MATCH` and so on.
         kind: u32,
-        /// 0.
+        /// Reserved: 0.
         reserved: u32,
-        /// Number of ticks that were played; of the first different checkpoint for `LS2D_DIVERGED`.
+        /// Number of ticks that were played; for `LS2D_DIVERGED`, the tick of the first checkpoint that differs.
         ticks: u64,
         /// Hash of the last state, if all states up to it agreed with the recording; otherwise 0.
         hash: RawHash,
@@ -141,7 +141,7 @@ records! {
         size: u32,
         /// Number of seats of the match, 1 to 64.
         seats: u32,
-        /// Own seats to play: 0 to watch, or to open a match as a dedicated server.
+        /// Number of seats that this peer plays; 0 for a spectator or a dedicated server.
         own_seats: u32,
         /// Number of seats that have to be taken before the first tick.
         start_with: u32,
@@ -171,11 +171,12 @@ records! {
         peer: u32,
         /// Distinguishes matches.
         match_tag: u64,
-        /// Microseconds for which play stands still for a peer before the others go on without it.
+        /// Time in microseconds for which play stalls because of a missing peer before the other peers go on without
+        /// it.
         patience: u64,
-        /// Identity that outlives processes: whoever returns with the same key gets its seat back.
+        /// Identity of the player: a peer that joins again with the same key gets its seat back.
         key: u64,
-        /// Random numbers that nobody else knows.
+        /// Secret random numbers, which protect against packets with forged addresses.
         secret: [u64; 2],
     }
 
@@ -201,9 +202,9 @@ records! {
         seat: u32,
         /// A tick.
         tick: u32,
-        /// As the kind says.
+        /// Its meaning depends on the kind.
         value: u32,
-        /// 0.
+        /// Reserved: 0.
         reserved: u32,
         /// Hash of this peer, for `LS2D_EVENT_DESYNC`.
         ours: RawHash,
@@ -383,7 +384,7 @@ impl RawMatchEvent {
         }
     }
 
-    /// The event that the contact refuses.
+    /// The event for a refusal by the contact.
     pub(crate) fn refused(reason: RefusalReason) -> Self {
         let value = match reason {
             RefusalReason::Offer => REFUSED_OFFER,

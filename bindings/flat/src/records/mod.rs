@@ -51,7 +51,7 @@ pub(crate) const STRUCTS: &[&[Struct]] = &[
     matches::STRUCTS,
 ];
 
-/// Size of a struct for its field.
+/// Size of a struct in bytes, for its `size` field.
 pub(crate) const fn size<T>() -> u32 {
     let size = size_of::<T>();
     assert!(size < 1 << 16, "structs are small");
@@ -69,7 +69,7 @@ fn check_size<T>(given: u32) -> Outcome {
     Err(Failure::new(Status::Size, format!("a struct of {given} bytes, this version expects {expected}")))
 }
 
-/// Checks that only flags of a set are given.
+/// Checks that only flags in `known` are set.
 fn check_flags(what: &str, flags: u32, known: u32) -> Outcome {
     if flags & !known == 0 {
         Ok(())
@@ -78,7 +78,7 @@ fn check_flags(what: &str, flags: u32, known: u32) -> Outcome {
     }
 }
 
-/// Checks a field that a later version may use.
+/// Checks that a reserved field is 0, so that a later version can use it.
 fn check_reserved(reserved: u32) -> Outcome {
     if reserved == 0 { Ok(()) } else { Err(value("a reserved field", reserved)) }
 }

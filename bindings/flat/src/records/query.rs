@@ -14,7 +14,7 @@ use crate::status::{Outcome, value};
 constants! {
     /// `ls2d_query_filter.flags`: the query sees sensors.
     QUERY_SENSORS = 1, "LS2D_QUERY_SENSORS";
-    /// A ray reports shapes that it starts in, a cast those into which it would go deeper.
+    /// Rays report shapes that they start in; casts report only those into which they would move deeper.
     OVERLAP_RESIST = 0, "LS2D_OVERLAP_RESIST";
     /// Rays and casts report shapes that they start in.
     OVERLAP_REPORT = 1, "LS2D_OVERLAP_REPORT";
@@ -23,13 +23,13 @@ constants! {
 }
 
 records! {
-    /// Which shapes a query sees. A null pointer stands for the defaults, as `ls2d_query_filter_init` sets them.
+    /// Selects the shapes that a query sees. A null pointer stands for the defaults of `ls2d_query_filter_init`.
     struct RawQueryFilter = "ls2d_query_filter" {
         /// Size of this struct in bytes.
         size: u32,
         /// `LS2D_QUERY_SENSORS`.
         flags: u32,
-        /// `LS2D_OVERLAP_RESIST` and so on: shapes that a ray or a cast starts in.
+        /// `LS2D_OVERLAP_RESIST` and so on, for shapes that a ray or a cast starts in.
         initial_overlap: u32,
         /// Number of bodies that the query does not see, at most 8.
         except_count: u32,
@@ -69,7 +69,7 @@ records! {
         travelled: RawVec2,
         /// Point on the surface that is met, in the world, in metres.
         point: RawVec2,
-        /// Outward normal of that surface.
+        /// Outward normal of the surface at that point.
         normal: RawVec2,
         /// 1 if the shapes overlap at the start, otherwise 0.
         starts_inside: u64,
@@ -105,7 +105,7 @@ records! {
         angle: RawAngle,
         /// Position of the shape's centre in the world, in metres.
         position: RawVec2,
-        /// Its geometry; other fields of the definition do not matter.
+        /// Its geometry; other fields of the definition have no effect.
         shape: RawShapeDef,
     }
 }

@@ -27,7 +27,7 @@ constants! {
     /// Kind of a shape: a rectangle with the half width `points[0].x` and the half height `points[0].y`, rounded by
     /// `radius`.
     RECTANGLE = 6, "LS2D_RECTANGLE";
-    /// Flag of a shape: detects overlaps, and pushes nothing.
+    /// Flag of a shape: detects overlaps, and does not collide.
     SHAPE_SENSOR = 1, "LS2D_SHAPE_SENSOR";
     /// Flag of a shape: other shapes pass in the direction `one_way`.
     SHAPE_ONE_WAY = 2, "LS2D_SHAPE_ONE_WAY";
@@ -51,7 +51,8 @@ constants! {
     SHAPE_LINK_AFTER = 1024, "LS2D_SHAPE_LINK_AFTER";
     /// Flag of a link: solid from the right side only, looking from `points[0]` to `points[1]`.
     SHAPE_LINK_ONE_SIDED = 2048, "LS2D_SHAPE_LINK_ONE_SIDED";
-    /// Rule of mixing: the mean of both values. Of two different rules the one with the larger number applies.
+    /// Rule of mixing: the mean of both values. If the rules of two shapes differ, the one with the larger number
+    /// applies.
     MIX_AVERAGE = 0, "LS2D_MIX_AVERAGE";
     /// Rule of mixing: the square root of the product.
     MIX_GEOMETRIC_MEAN = 1, "LS2D_MIX_GEOMETRIC_MEAN";
@@ -63,9 +64,9 @@ constants! {
     MIX_MAXIMUM = 4, "LS2D_MIX_MAXIMUM";
     /// Attraction that is the same at all distances.
     FALLOFF_CONSTANT = 0, "LS2D_FALLOFF_CONSTANT";
-    /// Attraction that falls with the distance.
+    /// Attraction that is inversely proportional to the distance.
     FALLOFF_INVERSE = 1, "LS2D_FALLOFF_INVERSE";
-    /// Attraction that falls with the square of the distance.
+    /// Attraction that is inversely proportional to the square of the distance.
     FALLOFF_INVERSE_SQUARE = 2, "LS2D_FALLOFF_INVERSE_SQUARE";
 }
 
@@ -106,7 +107,8 @@ records! {
         category: u64,
         /// Categories that the shape collides with.
         mask: u64,
-        /// Shapes of one group other than 0 always collide if it is positive, and never if it is negative.
+        /// Shapes with the same group other than 0 always collide if the number is positive, and never if it is
+        /// negative.
         group: i32,
         /// `LS2D_MIX_AVERAGE` and so on, for friction.
         friction_mixing: u32,
@@ -116,13 +118,13 @@ records! {
         one_way: RawAngle,
         /// Acceleration in m/s² of bodies in the area.
         area_acceleration: RawVec2,
-        /// Force in N per m² of a body in the area.
+        /// Force in N per m² of the part of a body that is inside the area.
         area_force: RawVec2,
         /// Velocity of the medium in m/s.
         area_flow: RawVec2,
-        /// Rate at which bodies take the velocity of the medium, per second.
+        /// Rate per second at which the velocity of bodies approaches that of the medium.
         area_linear_drag: RawFx,
-        /// Rate at which bodies take the rotation of the medium, per second.
+        /// Rate per second at which the angular velocity of bodies approaches that of the medium.
         area_angular_drag: RawFx,
         /// Density of the medium in kg/m², for buoyancy.
         area_density: RawFx,
@@ -132,7 +134,7 @@ records! {
         attraction_radius: RawFx,
         /// `LS2D_FALLOFF_CONSTANT` and so on.
         attraction_falloff: u32,
-        /// 0.
+        /// Reserved: 0.
         reserved: u32,
         /// A number for the game, part of the state.
         user_data: u64,
@@ -267,7 +269,7 @@ impl RawShapeDef {
         }
     }
 
-    /// The geometry, which is valid for polygons. For other kinds, the world checks it.
+    /// Converts and validates the geometry. The links of chains are validated by the world.
     pub(crate) fn geometry(&self) -> Outcome<Geometry> {
         check_size::<Self>(self.size)?;
         if self.kind != LINK {

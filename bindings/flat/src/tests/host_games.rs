@@ -31,7 +31,7 @@ impl Sums {
     }
 }
 
-/// Inputs and absent players of a tick: long runs, now and then without a player.
+/// Inputs and absent players of a tick. They are the same for eight ticks; in some of these runs players are absent.
 fn inputs_at(tick: u64) -> ([u8; 2 * PLAYERS], u64) {
     let mut rng = Rng::new(tick / 8);
     let absent = u64::from(rng.next_u32() % 8) & u64::from(rng.next_u32());

@@ -1,4 +1,4 @@
-//! Handles: stale ones, freed ones, those of other kinds, and a panic in the library.
+//! Misuse of handles that are stale, freed or of another kind, and a panic in the library.
 
 use super::done;
 use crate::status::{Failure, Outcome};

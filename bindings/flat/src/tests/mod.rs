@@ -1,4 +1,4 @@
-//! Tests with the conversions that foreign callers do not see.
+//! Tests that use internal conversions, which foreign callers cannot call.
 #![expect(clippy::indexing_slicing, reason = "a test fails by a panic")]
 
 #[cfg(feature = "lockstep")]
@@ -11,7 +11,7 @@ use lockstep2d::hash::StateHash;
 
 use crate::{In, Out, RawHash, Status};
 
-/// Result of a call that has to succeed.
+/// Asserts that a call has succeeded.
 fn done(status: i32) {
     assert_eq!(status, Status::Ok as i32, "{}", crate::status::last_text());
 }

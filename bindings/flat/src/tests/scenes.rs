@@ -1,5 +1,5 @@
-//! The scenes of the library, built and played through the flat API, have the hashes that they have without it: with
-//! the structs of definitions, with encoded commands, in recordings, and through snapshots.
+//! Scenes that are built and played through the flat API have the same hashes as through the Rust API: with the structs
+//! of definitions, with encoded commands, in recordings, and in replays.
 
 use lockstep2d::body::{Geometry, MassProperties, Polygon, ShapeDef};
 use lockstep2d::lockstep::{Game, Sandbox};
@@ -17,7 +17,7 @@ fn game(scene: &Scene) -> Sandbox {
     Sandbox::new(&scene.setup(SEED)).unwrap()
 }
 
-/// Executes a command through its function with structs, if there is one.
+/// Executes a command: common kinds through their functions with structs, all others as encoded bytes.
 fn edit(target: u32, command: &Command) {
     let id = Out::null;
     match command {
@@ -64,7 +64,7 @@ fn edit(target: u32, command: &Command) {
     }
 }
 
-/// A world that the structs of definitions build.
+/// Builds the world of a scene from the structs of definitions.
 fn build(scene: &Scene) -> u32 {
     let setup = scene.setup(SEED);
     let mut world = 0;

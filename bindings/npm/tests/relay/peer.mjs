@@ -1,7 +1,9 @@
-// A player of examples/web in a process of its own: node peer.mjs URL CODE KEY [--pause-at TICK] [--quit-at TICK] [-o FILE]
+// A player of examples/web in a process of its own:
 //
-// Prints a line of JSON when it plays, and one at the end. `--pause-at` stops for five seconds, like a page in the
-// background; `--quit-at` ends the process without leaving the match, like a closed page.
+//     node peer.mjs URL CODE KEY [--pause-at TICK] [--quit-at TICK] [-o FILE]
+//
+// Prints a line of JSON when it starts to play, and one at the end. `--pause-at` stops for five seconds, like a page in
+// the background; `--quit-at` ends the process without leaving the match, like a closed page.
 import { writeFileSync } from "node:fs";
 import { parseArgs } from "node:util";
 import { register } from "node:module";

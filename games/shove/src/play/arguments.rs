@@ -12,8 +12,8 @@ use lockstep2d_shove::online::{self, UdpPeer};
 
 /// Plays a match over UDP, with a bot as the local player.
 ///
-/// Ctrl-C leaves the match: the others go on at once, and the replay gets its end. A second Ctrl-C does not wait until
-/// the others know it.
+/// Ctrl-C leaves the match: the others continue at once, and the replay is completed. A second Ctrl-C exits without
+/// waiting for the others.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Exit codes:
@@ -56,7 +56,7 @@ pub(super) struct Arguments {
     /// Seconds for which the match waits for a player whose packets do not arrive; the same for all peers
     #[arg(long, value_name = "SECONDS", default_value_t = 2, value_parser = clap::value_parser!(u64).range(1..))]
     patience: u64,
-    /// Seconds without packets after which this peer gives up
+    /// Seconds without packets of other peers after which this peer gives up
     #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..))]
     pub(super) give_up: u64,
     /// Number of ticks of the match [default: until all have left]
@@ -79,7 +79,7 @@ struct Participation {
     /// Host a match at this address
     #[arg(long, value_name = "ADDRESS")]
     host: Option<String>,
-    /// Join the match at this address, which may be that of any participant
+    /// Join the match at this address: the address of any participant
     #[arg(long, value_name = "ADDRESS")]
     join: Option<String>,
     /// Join the match at this address as a spectator
@@ -88,7 +88,7 @@ struct Participation {
 }
 
 impl Arguments {
-    /// Time after which this peer gives up if it hears nobody.
+    /// Time without packets of other peers after which this peer gives up.
     pub(super) const fn give_up(&self) -> Duration {
         Duration::from_secs(self.give_up)
     }

@@ -11,7 +11,7 @@ use lockstep2d_shove::Shove;
 use lockstep2d_shove::online::{UdpPeer, describe};
 use serde_json::{Value, json};
 
-/// Writes a line for each event, and keeps the figures of the last one.
+/// Writes a line for each event, and keeps the figures for the last line.
 #[derive(Debug)]
 pub(super) struct Log {
     json: bool,
@@ -59,7 +59,7 @@ impl Log {
         }
     }
 
-    /// Notes progress. Writes the first tick and changes of the delay.
+    /// Tracks progress. Writes the first tick and changes of the delay.
     pub(super) fn watch(&mut self, peer: &UdpPeer, now: Duration) {
         let tick = peer.tick();
         match &mut self.tick {

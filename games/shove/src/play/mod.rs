@@ -60,7 +60,7 @@ fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
         peer.end_at(ticks);
     }
     let played = take_part(arguments, &mut peer, &interrupts, &mut log, file.as_mut());
-    // The replay is completed whatever ended the match.
+    // The replay is completed however the match has ended.
     let summary = log.summary(&peer);
     let end = peer.finish()?;
     if let Some(file) = &mut file {
@@ -135,7 +135,7 @@ fn take_part(
             // The peer is not in a match yet, so it can leave at once.
             (_, None) => break,
             (1, Some(_)) => peer.leave(),
-            // After a second interrupt, the peer does not wait until the others know that it leaves.
+            // After a second interrupt, the peer does not wait until the others have received its departure.
             (_, Some(_)) => break,
         }
         thread::sleep(UPDATE_INTERVAL);
