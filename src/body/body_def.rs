@@ -108,7 +108,8 @@ impl BodyDef {
         Self::new(BodyKind::Kinematic)
     }
 
-    /// Creates a definition of a dynamic body, which forces, contacts and joints move.
+    /// Creates a definition of a dynamic body, which forces, contacts and joints move. Its mass is that of its shapes,
+    /// unless [`BodyDef::mass`] sets it. Without mass nothing moves it.
     #[must_use]
     pub const fn dynamic() -> Self {
         Self::new(BodyKind::Dynamic)

@@ -102,7 +102,8 @@ impl ShapeDef {
         self
     }
 
-    /// Sets the density in kg/m², 0 to 2^20.
+    /// Sets the density in kg/m², 0 to 2^20. A dynamic body without any density has no mass: neither gravity nor forces
+    /// move it.
     #[must_use]
     pub fn density(mut self, density: Fx) -> Self {
         self.density = density;
@@ -151,7 +152,8 @@ impl ShapeDef {
         self
     }
 
-    /// Makes the shape a one-way platform, with the direction in the body's frame: see [`one_way`](Self::one_way).
+    /// Makes the shape a one-way platform, with the direction in the body's frame: see
+    /// [`one_way`](field@Self::one_way).
     #[must_use]
     pub fn one_way(mut self, direction: Angle) -> Self {
         self.one_way = Some(direction);

@@ -201,6 +201,11 @@ macro_rules! fx {
     ($numerator:literal / $denominator:literal) => {
         const { $crate::math::ratio($numerator, $denominator) }
     };
+    ($($other:tt)*) => {
+        ::core::compile_error!(
+            "fx! takes a literal or a fraction of two literals; a variable converts with Fx::from(n)"
+        )
+    };
 }
 
 #[cfg(test)]

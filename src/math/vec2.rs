@@ -1,5 +1,6 @@
 //! 2D vectors over any of the formats.
 
+use core::fmt::{self, Display, Formatter};
 use core::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
 use fixed::FixedI32;
@@ -13,14 +14,15 @@ use super::formats::{
 
 /// A vector or a point. Sums and differences saturate.
 ///
-/// Pairs and arrays convert to vectors. Builders take `impl Into<Vec2<Fx>>`, so that a position may be a vector or a
-/// pair: `BodyDef::dynamic().position((fx!(0), fx!(10)))`.
+/// Pairs and arrays convert to vectors. Builders, commands and queries of a world take `impl Into<Vec2<Fx>>`, so that a
+/// position may be a vector or a pair: `BodyDef::dynamic().position((fx!(0), fx!(10)))`.
 ///
 /// ```
 /// use lockstep2d::{fx, math::Vec2};
 /// let a = Vec2::new(fx!(3), fx!(4));
 /// assert_eq!(a.length(), fx!(5));
 /// assert_eq!(a - Vec2::new(fx!(3), fx!(0)), Vec2::from((fx!(0), fx!(4))));
+/// assert_eq!(format!("{a:.1}"), "(3.0, 4.0)");
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[repr(C)]
@@ -36,6 +38,17 @@ impl<T> Vec2<T> {
     #[inline]
     pub const fn new(x: T, y: T) -> Self {
         Vec2 { x, y }
+    }
+}
+
+/// Prints `(x, y)`. Width and precision apply to each component.
+impl<T: Display> Display for Vec2<T> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str("(")?;
+        self.x.fmt(f)?;
+        f.write_str(", ")?;
+        self.y.fmt(f)?;
+        f.write_str(")")
     }
 }
 

@@ -139,7 +139,11 @@ mod tests {
         run(&mut pace, TRIAL_MIN, 5, 3);
         pace.record(Mode::Alone, Duration::from_millis(5), 1000);
         for bodies in 1000..3000 {
-            pace.record(Mode::Team, Duration::from_micros(3 * bodies), usize::try_from(bodies).expect("small"));
+            pace.record(
+                Mode::Team,
+                Duration::from_micros(3 * bodies),
+                usize::try_from(bodies).expect("small"),
+            );
         }
         assert_eq!(pace.faster, Mode::Team);
         pace.record(Mode::Team, Duration::MAX, 0);

@@ -19,7 +19,7 @@ use crate::math::{Angle, Fx, Unit, Vec2};
 /// world.step();
 /// // Removes every body that touches the lava. All events are read before the world is changed.
 /// let other = |event: &ContactEvent| {
-///     let pair = [event.shape_a, event.shape_b].map(|shape| Some(world.shape(shape)?.body()));
+///     let pair = event.shapes().map(|shape| world.body_of(shape));
 ///     let is_lava = |body: &_| *body == Some(lava);
 ///     if pair.iter().any(is_lava) { pair.into_iter().find(|body| !is_lava(body))? } else { None }
 /// };
@@ -34,6 +34,14 @@ pub struct ContactEvent {
     pub shape_a: ShapeId,
     /// The shape in the larger slot. Its handle is stale if the contact ended because the shape was removed.
     pub shape_b: ShapeId,
+}
+
+impl ContactEvent {
+    /// Both shapes. [`World::body_of`](super::World::body_of) returns the body of a shape.
+    #[must_use]
+    pub const fn shapes(&self) -> [ShapeId; 2] {
+        [self.shape_a, self.shape_b]
+    }
 }
 
 /// Two shapes that hit each other: see [`super::Config::hit_speed`].
@@ -76,6 +84,14 @@ pub struct HitEvent {
     pub impulse: Fx,
 }
 
+impl HitEvent {
+    /// Both shapes. [`World::body_of`](super::World::body_of) returns the body of a shape.
+    #[must_use]
+    pub const fn shapes(&self) -> [ShapeId; 2] {
+        [self.shape_a, self.shape_b]
+    }
+}
+
 /// A sensor that began or ceased to overlap a shape.
 ///
 /// The overlaps of a sensor are those at the end of the tick. A shape that crosses a sensor within a tick has both
@@ -98,7 +114,7 @@ pub struct HitEvent {
 /// world.step();
 /// // Both cross the finish line in this tick; the fraction tells who was first.
 /// let order = world.events().sensor_begin.iter().map(|event: &SensorEvent| event.visitor);
-/// let order: Vec<_> = order.filter_map(|shape| Some(world.shape(shape)?.body())).collect();
+/// let order: Vec<_> = order.filter_map(|shape| world.body_of(shape)).collect();
 /// assert_eq!(order, [first, second]);
 /// # Ok::<(), lockstep2d::body::WorldError>(())
 /// ```

@@ -130,9 +130,9 @@ impl World {
         self.state.get().tick
     }
 
-    /// Number of results that a clamp has changed since the world was created, plus one for every tick in which
-    /// [`Config::pair_limit`] left pairs out. Never decreases. 0 as long as speeds, impulses and displacements stay in
-    /// their ranges.
+    /// Number of results of the solver that the range of a number has clamped since the world was created, plus one for
+    /// every tick in which [`Config::pair_limit`] left pairs out. Never decreases. A body that reaches
+    /// [`speed_max`](crate::solver::SolverSettings::speed_max) is not a fault.
     #[must_use]
     pub const fn faults(&self) -> u64 {
         self.state.get().faults
@@ -150,6 +150,12 @@ impl World {
     #[must_use]
     pub fn shape(&self, id: ShapeId) -> Option<&Shape> {
         self.state.shapes.get(id)
+    }
+
+    /// Returns the body of a shape, or `None` if the shape is not in the world.
+    #[must_use]
+    pub fn body_of(&self, shape: ShapeId) -> Option<BodyId> {
+        Some(self.shape(shape)?.body())
     }
 
     /// Returns a joint, or `None` if it is not in the world.
@@ -253,14 +259,15 @@ impl World {
     /// world compares the times of ticks with all threads and with the calling thread alone, and uses the faster way; at
     /// first all threads. A tick with fewer than 256 awake bodies always uses the calling thread alone. Threads keep
     /// their processors busy until the tick is over, even while only one of them has work. Clones of the world share its
-    /// threads: a tick that runs during a tick of another clone uses its calling thread alone.
+    /// threads: a tick that runs during a tick of another clone uses its calling thread alone. Needs the feature
+    /// `parallel`.
     #[cfg(feature = "parallel")]
     pub fn set_threads(&mut self, count: usize) -> bool {
         self.start_threads(count, Sharing::Adaptive)
     }
 
     /// Like [`World::set_threads`], but the threads share every tick with 256 awake bodies or more, also if that takes
-    /// longer. For tests and measurements.
+    /// longer. For tests and measurements. Needs the feature `parallel`.
     #[cfg(feature = "parallel")]
     pub fn force_threads(&mut self, count: usize) -> bool {
         self.start_threads(count, Sharing::Always)

@@ -333,7 +333,7 @@ fn a_command_sets_the_wind() {
     world.set_area(air, None).expect("a sensor");
     run(&mut world, 60);
     close(world.body(body).expect("valid").velocity().x, fx!(3), fx!(0.001));
-    world.set_velocity(body, (fx!(0), fx!(0)).into(), fx!(0)).expect("valid");
+    world.set_velocity(body, (fx!(0), fx!(0)), fx!(0)).expect("valid");
     run(&mut world, 60);
     world.set_area(air, None).expect("a sensor");
     assert!(world.body(body).expect("valid").is_asleep());

@@ -36,9 +36,9 @@ impl WorldEvent {
     pub const fn shapes(&self) -> Option<[ShapeId; 2]> {
         match self {
             WorldEvent::ContactBegin(contact) | WorldEvent::ContactEnd(contact) => {
-                Some([contact.shape_a, contact.shape_b])
+                Some(contact.shapes())
             }
-            WorldEvent::Hit(hit) => Some([hit.shape_a, hit.shape_b]),
+            WorldEvent::Hit(hit) => Some(hit.shapes()),
             WorldEvent::SensorBegin(event) | WorldEvent::SensorEnd(event) => {
                 Some([event.sensor, event.visitor])
             }
@@ -81,7 +81,6 @@ impl LoggedEvent {
 /// Passes the events of the last tick of a world to `found`, in their order: contacts, hits, sensors, joints, sleep.
 pub(crate) fn each_event(world: &World, tick: u64, found: &mut impl FnMut(LoggedEvent)) {
     let events = world.events();
-    let body_of = |shape: ShapeId| world.shape(shape).map(|shape| shape.body());
     let mut add = |event: WorldEvent| {
         let bodies = match event {
             WorldEvent::Joint(joint) => {
@@ -92,7 +91,7 @@ pub(crate) fn each_event(world: &World, tick: u64, found: &mut impl FnMut(Logged
                 })
             }
             WorldEvent::FellAsleep(body) => [Some(body), None],
-            _ => event.shapes().map_or([None; 2], |shapes| shapes.map(body_of)),
+            _ => event.shapes().map_or([None; 2], |shapes| shapes.map(|shape| world.body_of(shape))),
         };
         found(LoggedEvent { tick, event, bodies });
     };

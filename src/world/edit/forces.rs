@@ -13,7 +13,13 @@ impl World {
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, or the body is not dynamic or is disabled.
-    pub fn apply_force(&mut self, id: BodyId, force: Vec2<Fx>, point: Vec2<Fx>) -> Result<(), WorldError> {
+    pub fn apply_force(
+        &mut self,
+        id: BodyId,
+        force: impl Into<Vec2<Fx>>,
+        point: impl Into<Vec2<Fx>>,
+    ) -> Result<(), WorldError> {
+        let (force, point) = (force.into(), point.into());
         self.dynamic_body(id)?.apply_force(force, point);
         Ok(())
     }
@@ -22,7 +28,12 @@ impl World {
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, or the body is not dynamic or is disabled.
-    pub fn apply_force_to_centre(&mut self, id: BodyId, force: Vec2<Fx>) -> Result<(), WorldError> {
+    pub fn apply_force_to_centre(
+        &mut self,
+        id: BodyId,
+        force: impl Into<Vec2<Fx>>,
+    ) -> Result<(), WorldError> {
+        let force = force.into();
         let body = self.dynamic_body(id)?;
         body.apply_force(force, body.centre);
         Ok(())
@@ -38,25 +49,33 @@ impl World {
         Ok(())
     }
 
-    /// Changes the velocity of a dynamic body at once by an impulse in N s at a world point, in metres.
+    /// Changes the velocity of a dynamic body at once by an impulse in N s at a world point, in metres. The next tick
+    /// limits the speed to [`crate::solver::SolverSettings::speed_max`].
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, or the body is not dynamic or is disabled.
     pub fn apply_impulse(
         &mut self,
         id: BodyId,
-        impulse: Vec2<Fx>,
-        point: Vec2<Fx>,
+        impulse: impl Into<Vec2<Fx>>,
+        point: impl Into<Vec2<Fx>>,
     ) -> Result<(), WorldError> {
+        let (impulse, point) = (impulse.into(), point.into());
         self.dynamic_body(id)?.apply_impulse(impulse, point);
         Ok(())
     }
 
-    /// Changes the velocity of a dynamic body at once by an impulse in N s at its centre of mass.
+    /// Changes the velocity of a dynamic body at once by an impulse in N s at its centre of mass. The next tick limits
+    /// the speed to [`crate::solver::SolverSettings::speed_max`].
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, or the body is not dynamic or is disabled.
-    pub fn apply_impulse_to_centre(&mut self, id: BodyId, impulse: Vec2<Fx>) -> Result<(), WorldError> {
+    pub fn apply_impulse_to_centre(
+        &mut self,
+        id: BodyId,
+        impulse: impl Into<Vec2<Fx>>,
+    ) -> Result<(), WorldError> {
+        let impulse = impulse.into();
         let body = self.dynamic_body(id)?;
         body.apply_impulse(impulse, body.centre);
         Ok(())
@@ -76,7 +95,13 @@ impl World {
     /// # Errors
     /// [`WorldError`] if the handle is stale, the body is fixed, or a speed is above
     /// [`crate::solver::SolverSettings::speed_max`].
-    pub fn set_velocity(&mut self, id: BodyId, velocity: Vec2<Fx>, angular: Fx) -> Result<(), WorldError> {
+    pub fn set_velocity(
+        &mut self,
+        id: BodyId,
+        velocity: impl Into<Vec2<Fx>>,
+        angular: Fx,
+    ) -> Result<(), WorldError> {
+        let velocity = velocity.into();
         let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
         if body.kind() == BodyKind::Fixed {
             return Err(WorldError::WrongKind(id));
@@ -104,7 +129,13 @@ impl World {
     /// reached within a tick below [`crate::solver::SolverSettings::speed_max`].
     #[doc(alias = "set_target_transform")]
     #[doc(alias = "move_kinematic")]
-    pub fn move_to(&mut self, id: BodyId, position: Vec2<Fx>, angle: Angle) -> Result<(), WorldError> {
+    pub fn move_to(
+        &mut self,
+        id: BodyId,
+        position: impl Into<Vec2<Fx>>,
+        angle: Angle,
+    ) -> Result<(), WorldError> {
+        let position = position.into();
         check_position(position)?;
         let body = self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
         if body.kind() != BodyKind::Kinematic {
@@ -132,7 +163,13 @@ impl World {
     /// [`WorldError`] if the handle is stale or the position is out of range.
     #[doc(alias = "teleport")]
     #[doc(alias = "set_position")]
-    pub fn set_transform(&mut self, id: BodyId, position: Vec2<Fx>, angle: Angle) -> Result<(), WorldError> {
+    pub fn set_transform(
+        &mut self,
+        id: BodyId,
+        position: impl Into<Vec2<Fx>>,
+        angle: Angle,
+    ) -> Result<(), WorldError> {
+        let position = position.into();
         check_position(position)?;
         self.state.bodies.get(id).ok_or(WorldError::StaleBody(id))?;
         wake_overlapping(&mut self.state, &mut self.scratch, id.slot());

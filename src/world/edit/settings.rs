@@ -58,7 +58,8 @@ impl World {
     ///
     /// # Errors
     /// [`WorldError::Setting`] if a component is not within ±100 000.
-    pub fn set_gravity(&mut self, gravity: Vec2<Fx>) -> Result<(), WorldError> {
+    pub fn set_gravity(&mut self, gravity: impl Into<Vec2<Fx>>) -> Result<(), WorldError> {
+        let gravity = gravity.into();
         if !check_gravity(gravity) {
             return Err(WorldError::Setting { name: "gravity" });
         }

@@ -87,7 +87,13 @@ impl World {
     #[must_use]
     #[doc(alias = "raycast")]
     #[doc(alias = "ray_cast_closest")]
-    pub fn cast_ray(&self, origin: Vec2<Fx>, translation: Vec2<Fx>, filter: QueryFilter) -> Option<RayHit> {
+    pub fn cast_ray(
+        &self,
+        origin: impl Into<Vec2<Fx>>,
+        translation: impl Into<Vec2<Fx>>,
+        filter: QueryFilter,
+    ) -> Option<RayHit> {
+        let (origin, translation) = (origin.into(), translation.into());
         let mut closest: Option<Ordered<RayHit>> = None;
         self.each_hit(origin, translation, filter, |found| {
             let best = earlier(closest, found, found.hit.shape, |best| best.shape);
@@ -100,7 +106,13 @@ impl World {
     /// Returns every shape that a ray meets, in order along the ray.
     #[must_use]
     #[doc(alias = "raycast")]
-    pub fn cast_ray_all(&self, origin: Vec2<Fx>, translation: Vec2<Fx>, filter: QueryFilter) -> Vec<RayHit> {
+    pub fn cast_ray_all(
+        &self,
+        origin: impl Into<Vec2<Fx>>,
+        translation: impl Into<Vec2<Fx>>,
+        filter: QueryFilter,
+    ) -> Vec<RayHit> {
+        let (origin, translation) = (origin.into(), translation.into());
         let mut hits = Vec::new();
         self.each_hit(origin, translation, filter, |hit| {
             hits.push(hit);
@@ -114,7 +126,13 @@ impl World {
     #[must_use]
     #[doc(alias = "raycast")]
     #[doc(alias = "line_of_sight")]
-    pub fn cast_ray_any(&self, origin: Vec2<Fx>, translation: Vec2<Fx>, filter: QueryFilter) -> bool {
+    pub fn cast_ray_any(
+        &self,
+        origin: impl Into<Vec2<Fx>>,
+        translation: impl Into<Vec2<Fx>>,
+        filter: QueryFilter,
+    ) -> bool {
+        let (origin, translation) = (origin.into(), translation.into());
         let mut any = false;
         self.each_hit(origin, translation, filter, |_| {
             any = true;
@@ -131,7 +149,13 @@ impl World {
     #[must_use]
     #[doc(alias = "shapecast")]
     #[doc(alias = "sweep test")]
-    pub fn cast_shape(&self, probe: &Probe, translation: Vec2<Fx>, filter: QueryFilter) -> Option<CastHit> {
+    pub fn cast_shape(
+        &self,
+        probe: &Probe,
+        translation: impl Into<Vec2<Fx>>,
+        filter: QueryFilter,
+    ) -> Option<CastHit> {
+        let translation = translation.into();
         self.first_along(probe, translation, filter, Rest::CAST, |_, _, _| true)
     }
 

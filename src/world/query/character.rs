@@ -104,7 +104,8 @@ impl Mover {
 
     /// Returns the geometry at a position in the world, in metres, as a probe for queries.
     #[must_use]
-    pub fn probe(&self, position: Vec2<Fx>) -> Probe {
+    pub fn probe(&self, position: impl Into<Vec2<Fx>>) -> Probe {
+        let position = position.into();
         Probe::of(self.geometry, position)
     }
 

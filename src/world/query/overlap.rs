@@ -64,7 +64,8 @@ impl World {
     #[must_use]
     #[doc(alias = "point test")]
     #[doc(alias = "pick")]
-    pub fn overlap_point(&self, point: Vec2<Fx>, filter: QueryFilter) -> Vec<ShapeId> {
+    pub fn overlap_point(&self, point: impl Into<Vec2<Fx>>, filter: QueryFilter) -> Vec<ShapeId> {
+        let point = point.into();
         self.overlapping(Aabb::new(point, point), filter, |posed| {
             contains_point(&SupportShape::of(posed, point), Vec2::ZERO)
         })
@@ -77,10 +78,11 @@ impl World {
     #[doc(alias = "nearest")]
     pub fn closest(
         &self,
-        point: Vec2<Fx>,
+        point: impl Into<Vec2<Fx>>,
         within: Fx,
         filter: QueryFilter,
     ) -> Option<(ShapeId, ClosestPoints)> {
+        let point = point.into();
         if within < Fx::ZERO {
             return None;
         }

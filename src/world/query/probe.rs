@@ -24,7 +24,8 @@ impl Probe {
     ///
     /// # Errors
     /// [`GeometryError`] if its size is out of range.
-    pub fn new(geometry: impl Into<Geometry>, position: Vec2<Fx>) -> Result<Self, GeometryError> {
+    pub fn new(geometry: impl Into<Geometry>, position: impl Into<Vec2<Fx>>) -> Result<Self, GeometryError> {
+        let position = position.into();
         let geometry = geometry.into();
         geometry.validate()?;
         Ok(Probe { position, geometry, rotation: Rot::IDENTITY })
@@ -49,7 +50,8 @@ impl Probe {
 
     /// Sets the position in the world, in metres.
     #[must_use]
-    pub fn at(mut self, position: Vec2<Fx>) -> Self {
+    pub fn at(mut self, position: impl Into<Vec2<Fx>>) -> Self {
+        let position = position.into();
         self.position = position;
         self
     }

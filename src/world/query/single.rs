@@ -109,7 +109,8 @@ impl Probe {
     /// Whether the shape contains a point in the world, in metres, its border included.
     #[must_use]
     #[doc(alias = "point test")]
-    pub fn contains_point(&self, point: Vec2<Fx>) -> bool {
+    pub fn contains_point(&self, point: impl Into<Vec2<Fx>>) -> bool {
+        let point = point.into();
         contains_point(&self.support(point), Vec2::ZERO)
     }
 
@@ -117,7 +118,12 @@ impl Probe {
     /// is solid from one side lets rays from the other side pass.
     #[must_use]
     #[doc(alias = "raycast")]
-    pub fn cast_ray(&self, origin: Vec2<Fx>, translation: Vec2<Fx>) -> Option<ProbeHit> {
+    pub fn cast_ray(
+        &self,
+        origin: impl Into<Vec2<Fx>>,
+        translation: impl Into<Vec2<Fx>>,
+    ) -> Option<ProbeHit> {
+        let (origin, translation) = (origin.into(), translation.into());
         if !self.posed().is_solid_from(origin) {
             return None;
         }
@@ -135,7 +141,8 @@ impl Probe {
     /// in [`World::cast_shape`].
     #[must_use]
     #[doc(alias = "shapecast")]
-    pub fn cast(&self, translation: Vec2<Fx>, other: &Probe) -> Option<ProbeHit> {
+    pub fn cast(&self, translation: impl Into<Vec2<Fx>>, other: &Probe) -> Option<ProbeHit> {
+        let translation = translation.into();
         let origin = self.position();
         let (own, other) = (self.support(origin), other.support(origin));
         let hit = cast_shape(&other, &own, translation)?;

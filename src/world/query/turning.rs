@@ -42,10 +42,11 @@ impl World {
     pub fn cast_turning(
         &self,
         probe: &Probe,
-        translation: Vec2<Fx>,
+        translation: impl Into<Vec2<Fx>>,
         turns: Fx,
         filter: QueryFilter,
     ) -> Option<CastHit> {
+        let translation = translation.into();
         let origin = probe.position();
         let support = SupportShape::of(&probe.posed(), origin);
         let middle = origin + support.middle();

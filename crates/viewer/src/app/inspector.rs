@@ -35,8 +35,7 @@ pub(super) fn body_at(world: &World, camera: &Camera, at: [f32; 2]) -> Option<Bo
     let filter = QueryFilter::default();
     let hit = world.overlap_point(point, filter).into_iter().max();
     let near = || world.closest(point, beside, filter).map(|(shape, _)| shape);
-    let body = |shape: ShapeId| world.shape(shape).map(|shape| shape.body());
-    hit.or_else(near).and_then(body)
+    hit.or_else(near).and_then(|shape| world.body_of(shape))
 }
 
 impl Inspector {

@@ -19,11 +19,12 @@ pub(super) struct Picked {
 pub(super) fn pick(world: &World, aim: Aim, wanted: impl Fn(&Body) -> bool) -> Option<Picked> {
     let solid = QueryFilter::default();
     let all = QueryFilter { sensors: true, ..solid };
-    let is_wanted = |shape: &ShapeId| owner(world, *shape).and_then(|id| world.body(id)).is_some_and(&wanted);
+    let is_wanted =
+        |shape: &ShapeId| world.body_of(*shape).and_then(|id| world.body(id)).is_some_and(&wanted);
     [solid, all].into_iter().find_map(|filter| {
         // Bodies in later slots are drawn on top.
         let here = world.overlap_point(aim.at, filter).into_iter().rev().find(is_wanted);
-        let here = here.and_then(|shape| Some(Picked { body: owner(world, shape)?, point: aim.at }));
+        let here = here.and_then(|shape| Some(Picked { body: world.body_of(shape)?, point: aim.at }));
         here.or_else(|| nearest(world, aim, filter, is_wanted))
     })
 }
@@ -38,11 +39,7 @@ fn nearest(
     let near = world.overlap_shape(&disc, filter).into_iter().filter(is_wanted);
     let found = near.filter_map(|shape| Some((world.probe_distance(&disc, shape)?, shape)));
     let (proximity, shape) = found.min_by_key(|(proximity, shape)| (proximity.distance, *shape))?;
-    Some(Picked { body: owner(world, shape)?, point: proximity.point_b })
-}
-
-fn owner(world: &World, shape: ShapeId) -> Option<BodyId> {
-    world.shape(shape).map(|shape| shape.body())
+    Some(Picked { body: world.body_of(shape)?, point: proximity.point_b })
 }
 
 #[cfg(test)]
