@@ -84,7 +84,7 @@ fn every_backend_ends_in_the_same_hashes() {
 #[test]
 #[cfg(feature = "parallel")]
 fn any_number_of_threads_ends_in_the_same_hashes() {
-    all_end_in_their_hashes(&[2, 4, 8], World::set_threads);
+    all_end_in_their_hashes(&[2, 4, 8], World::force_threads);
 }
 
 /// Checks the helpers of all sweeps: every case is checked, the first and the last are in the sample, and a case that

@@ -117,7 +117,7 @@ impl<G: Game> Replica<G> {
             Variant::BroadPhase(kind) if world.tick() == 0 || self.steps == 0 => world.set_broad_phase(kind),
             #[cfg(feature = "parallel")]
             Variant::Threads(count) if world.threads() != count => {
-                let _are_available = world.set_threads(count);
+                let _are_available = world.force_threads(count);
             }
             _ => {}
         }

@@ -8,6 +8,8 @@
 #[cfg(feature = "parallel")]
 mod barrier;
 #[cfg(feature = "parallel")]
+mod pace;
+#[cfg(feature = "parallel")]
 mod team;
 
 use core::ops::Range;
@@ -22,6 +24,16 @@ use team::Team;
 pub(crate) struct Threads {
     #[cfg(feature = "parallel")]
     team: Option<alloc::sync::Arc<Team>>,
+}
+
+/// The rule by which several threads share ticks.
+#[cfg(feature = "parallel")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sharing {
+    /// They share the ticks that they make shorter.
+    Adaptive,
+    /// They share every tick.
+    Always,
 }
 
 /// A thread that runs a part of a stage.
@@ -126,13 +138,13 @@ pub(crate) fn split_at_ends<T>(
 }
 
 impl Threads {
-    /// Starts `count - 1` threads, which are `count` together with the calling one. Returns `None` if they cannot be
-    /// started.
+    /// Starts `count - 1` threads, which are `count` together with the calling one. `sharing` is the rule by which they
+    /// share ticks. Returns `None` if they cannot be started.
     #[cfg(feature = "parallel")]
-    pub(crate) fn new(count: usize) -> Option<Self> {
+    pub(crate) fn new(count: usize, sharing: Sharing) -> Option<Self> {
         match count {
             0 | 1 => Some(Threads::default()),
-            count => Some(Threads { team: Some(alloc::sync::Arc::new(Team::new(count)?)) }),
+            count => Some(Threads { team: Some(alloc::sync::Arc::new(Team::new(count, sharing)?)) }),
         }
     }
 
@@ -149,11 +161,12 @@ impl Threads {
         1
     }
 
-    /// Runs a tick. The argument of `tick` is the number of parts to pass to [`Self::run_team`].
+    /// Runs a tick of a world with a number of active bodies. The argument of `tick` is the number of parts to pass to
+    /// [`Self::run_team`].
     #[cfg(feature = "parallel")]
-    pub(crate) fn run_tick<R>(&self, tick: impl FnOnce(usize) -> R) -> R {
+    pub(crate) fn run_tick<R>(&self, bodies: usize, tick: impl FnOnce(usize) -> R) -> R {
         match &self.team {
-            Some(team) => team.run_tick(tick),
+            Some(team) => team.run_tick(bodies, tick),
             None => tick(1),
         }
     }
@@ -161,7 +174,7 @@ impl Threads {
     /// Runs a tick. The argument of `tick` is the number of parts to pass to [`Self::run_team`]: one.
     #[cfg(not(feature = "parallel"))]
     #[expect(clippy::unused_self, reason = "same signature as with the feature")]
-    pub(crate) fn run_tick<R>(&self, tick: impl FnOnce(usize) -> R) -> R {
+    pub(crate) fn run_tick<R>(&self, _bodies: usize, tick: impl FnOnce(usize) -> R) -> R {
         tick(1)
     }
 
@@ -235,7 +248,7 @@ mod team_tests {
     /// of members.
     fn add(threads: &Threads) -> u64 {
         let sums = [0; 20].map(AtomicU64::new);
-        threads.run_tick(|parts| {
+        threads.run_tick(1, |parts| {
             let parts = u64::try_from(parts).expect("few");
             let seen = threads.run_team(0..parts, |number, member| {
                 let mut seen = 0;
@@ -253,8 +266,8 @@ mod team_tests {
 
     #[test]
     fn a_tick_during_another_one_works_alone() {
-        let threads = Threads::new(4).expect("threads");
-        let inner = threads.run_tick(|parts| (parts, add(&threads)));
+        let threads = Threads::new(4, Sharing::Always).expect("threads");
+        let inner = threads.run_tick(1, |parts| (parts, add(&threads)));
         assert_eq!(inner, (4, 1));
         std::thread::scope(|scope| {
             for _ in 0..3 {
@@ -267,10 +280,10 @@ mod team_tests {
 
     #[test]
     fn a_panic_reaches_the_caller_and_leaves_the_threads_usable() {
-        let threads = Threads::new(4).expect("threads");
+        let threads = Threads::new(4, Sharing::Always).expect("threads");
         for panicking in 0..MEMBERS {
             let result = catch_unwind(AssertUnwindSafe(|| {
-                threads.run_tick(|_| {
+                threads.run_tick(1, |_| {
                     threads.run_team(0..MEMBERS, |number, member| {
                         assert_ne!(number, panicking, "planted");
                         member.wait();

@@ -5,8 +5,9 @@ use core::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use alloc::vec::Vec;
 use std::sync::{Mutex, PoisonError, TryLockError};
 
-use super::Member;
 use super::barrier::{Barrier, Guard};
+use super::pace::{Mode, Pace};
+use super::{Member, Sharing};
 
 /// Number of polls after which a thread without work yields to other threads of the machine.
 const LOOKS: u32 = 1000;
@@ -21,8 +22,9 @@ pub(super) struct Team {
     /// All threads but the calling one.
     pool: rayon::ThreadPool,
     /// Held during a tick: worlds that are clones of each other share a team. If two worlds used it at once, the
-    /// barrier of each could wait for a thread that waits at the barrier of the other.
-    turn: Mutex<()>,
+    /// barrier of each could wait for a thread that waits at the barrier of the other. `None` if the threads share
+    /// every tick.
+    turn: Mutex<Option<Pace>>,
 }
 
 /// Ends the tick for the other threads, also if the calling one panics.
@@ -51,24 +53,40 @@ fn run_stages(is_over: &AtomicBool) {
 
 impl Team {
     /// Starts `count - 1` threads.
-    pub(super) fn new(count: usize) -> Option<Self> {
+    pub(super) fn new(count: usize, sharing: Sharing) -> Option<Self> {
         let name = |number: usize| alloc::format!("lockstep2d {}", number + 1);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(count - 1).thread_name(name).build().ok()?;
-        Some(Team { pool, turn: Mutex::new(()) })
+        let pace = (sharing == Sharing::Adaptive).then(Pace::new);
+        Some(Team { pool, turn: Mutex::new(pace) })
     }
 
     pub(super) fn count(&self) -> usize {
         self.pool.current_num_threads() + 1
     }
 
-    /// Runs a tick with all threads, or with the calling thread alone while another tick uses the team. The threads
-    /// stay awake between the stages of the tick, because waking a thread takes 50 microseconds.
-    pub(super) fn run_tick<R>(&self, tick: impl FnOnce(usize) -> R) -> R {
-        let _turn = match self.turn.try_lock() {
+    /// Runs a tick of a world with a number of active bodies. All threads share it, unless they are slower than the
+    /// calling thread alone, or another tick uses the team.
+    pub(super) fn run_tick<R>(&self, bodies: usize, tick: impl FnOnce(usize) -> R) -> R {
+        let mut turn = match self.turn.try_lock() {
             Ok(turn) => turn,
             Err(TryLockError::Poisoned(turn)) => turn.into_inner(),
             Err(TryLockError::WouldBlock) => return tick(1),
         };
+        let Some(pace) = &mut *turn else { return self.share_tick(tick) };
+        let mode = pace.mode();
+        #[expect(clippy::disallowed_types, reason = "chooses threads; no result depends on their number")]
+        let start = std::time::Instant::now();
+        let result = match mode {
+            Mode::Alone => tick(1),
+            Mode::Team => self.share_tick(tick),
+        };
+        pace.record(mode, start.elapsed(), bodies);
+        result
+    }
+
+    /// Runs a tick with all threads. They stay awake between the stages of the tick, because waking a thread takes 50
+    /// microseconds.
+    fn share_tick<R>(&self, tick: impl FnOnce(usize) -> R) -> R {
         let is_over = &AtomicBool::new(false);
         self.pool.in_place_scope(|scope| {
             scope.spawn_broadcast(|_, _| run_stages(is_over));

@@ -50,7 +50,7 @@ use crate::math::{Aabb, Rng};
 pub use crate::solver::Backend;
 use crate::solver::{Joint, Machine};
 #[cfg(feature = "parallel")]
-use crate::threads::Threads;
+use crate::threads::{Sharing, Threads};
 use cache::Scratch;
 use snapshot::{HashedState, PhaseLog};
 use state::State;
@@ -240,22 +240,35 @@ impl World {
         self.scratch.rebuild(kind, &self.state);
     }
 
-    /// Number of threads that share a tick.
+    /// Largest number of threads that share a tick.
     #[must_use]
     pub fn threads(&self) -> usize {
         self.scratch.solver.threads.count()
     }
 
-    /// Sets the number of threads that share a tick, at least 1. Does not change any hash. Returns whether the threads
-    /// could be created; if not, nothing changes.
+    /// Sets the largest number of threads that share a tick, at least 1. Does not change any hash. Returns whether the
+    /// threads could be created; if not, nothing changes.
     ///
-    /// Several threads shorten a tick only with thousands of bodies. A tick with fewer than 256 awake bodies uses the
-    /// calling thread only. Threads keep their processors busy until the tick is over, even while only one of them has
-    /// work. Clones of the world share its threads: a tick that runs during a tick of another clone uses its calling
-    /// thread only.
+    /// The threads share a tick only if they make it shorter, which takes thousands of bodies and idle processors. The
+    /// world compares the times of ticks with all threads and with the calling thread alone, and uses the faster way; at
+    /// first all threads. A tick with fewer than 256 awake bodies always uses the calling thread alone. Threads keep
+    /// their processors busy until the tick is over, even while only one of them has work. Clones of the world share its
+    /// threads: a tick that runs during a tick of another clone uses its calling thread alone.
     #[cfg(feature = "parallel")]
     pub fn set_threads(&mut self, count: usize) -> bool {
-        let threads = Threads::new(count);
+        self.start_threads(count, Sharing::Adaptive)
+    }
+
+    /// Like [`World::set_threads`], but the threads share every tick with 256 awake bodies or more, also if that takes
+    /// longer. For tests and measurements.
+    #[cfg(feature = "parallel")]
+    pub fn force_threads(&mut self, count: usize) -> bool {
+        self.start_threads(count, Sharing::Always)
+    }
+
+    #[cfg(feature = "parallel")]
+    fn start_threads(&mut self, count: usize, sharing: Sharing) -> bool {
+        let threads = Threads::new(count, sharing);
         threads.map(|threads| self.scratch.solver.threads = threads).is_some()
     }
 

@@ -55,9 +55,10 @@ impl World {
     }
 
     fn advance(&mut self, begin: impl FnMut(Phase, PhaseView<'_>)) {
-        let is_small = self.scratch.awake.bodies().len() < BODIES_MIN;
+        let bodies = self.scratch.awake.bodies().len();
+        let is_small = bodies < BODIES_MIN;
         let threads = if is_small { Threads::default() } else { self.scratch.solver.threads.clone() };
-        threads.run_tick(|parts| {
+        threads.run_tick(bodies, |parts| {
             self.scratch.solver.parts = parts;
             self.run_phases(begin);
         });

@@ -1,0 +1,147 @@
+//! Decides which ticks the threads of a team share: those that they make shorter.
+//!
+//! The threads wait for each other a hundred times in a tick. If other programs use the processors as well, a wait lasts
+//! as long as a time slice of the operating system, and a tick takes up to thirty times as long as with one thread.
+//! Small worlds may be slower with several threads even on idle processors. The times of earlier ticks show both. They
+//! never influence a result, because no result depends on the number of threads.
+
+use core::time::Duration;
+
+/// Smallest number of ticks between two trials.
+const TRIAL_MIN: u32 = 16;
+
+/// Largest number of ticks between two trials: 17 s at 60 Hz.
+const TRIAL_MAX: u32 = 1024;
+
+/// The threads that work on a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Mode {
+    /// The calling thread.
+    Alone,
+    /// All threads of the team.
+    Team,
+}
+
+/// Compares the times of ticks in both modes. Most ticks use the faster mode. From time to time, a trial tick uses the
+/// other one: rarely if it has lost several trials in succession, because a tick in the wrong mode may take long.
+#[derive(Clone, Debug)]
+pub(super) struct Pace {
+    /// Time of a tick in nanoseconds per 1024 active bodies, by mode: the mean of the last few ticks, or the time of
+    /// the last trial. `None` before the first tick in the mode.
+    costs: [Option<u64>; 2],
+    faster: Mode,
+    /// Number of ticks before the next trial.
+    until_trial: u32,
+    /// Number of ticks between the last trial and the next one.
+    interval: u32,
+}
+
+impl Pace {
+    pub(super) fn new() -> Self {
+        Pace { costs: [None; 2], faster: Mode::Team, until_trial: TRIAL_MIN, interval: TRIAL_MIN }
+    }
+
+    /// The mode of the next tick.
+    pub(super) fn mode(&self) -> Mode {
+        if self.until_trial == 0 { self.faster.other() } else { self.faster }
+    }
+
+    /// Records the time of a tick with a number of active bodies.
+    pub(super) fn record(&mut self, mode: Mode, time: Duration, bodies: usize) {
+        let cost = time.as_nanos() * 1024 / (bodies as u128).max(1);
+        let cost = u64::try_from(cost).unwrap_or(u64::MAX);
+        let is_trial = mode != self.faster;
+        let known = &mut self.costs[mode as usize];
+        *known = Some(match *known {
+            Some(mean) if !is_trial => mean - mean / 4 + cost / 4,
+            _ => cost,
+        });
+        self.until_trial = self.until_trial.saturating_sub(1);
+        if self.other_is_faster() {
+            self.faster = self.faster.other();
+            self.interval = TRIAL_MIN;
+        } else if is_trial {
+            self.interval = (self.interval * 2).min(TRIAL_MAX);
+        } else {
+            return;
+        }
+        self.until_trial = self.interval;
+    }
+
+    /// Whether the other mode takes at least an eighth less time.
+    fn other_is_faster(&self) -> bool {
+        let [this, other] = [self.faster, self.faster.other()].map(|mode| self.costs[mode as usize]);
+        this.zip(other).is_some_and(|(this, other)| other < this - this / 8)
+    }
+}
+
+impl Mode {
+    fn other(self) -> Self {
+        match self {
+            Mode::Alone => Mode::Team,
+            Mode::Team => Mode::Alone,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Runs ticks of the given times in milliseconds, and returns the number of ticks with all threads.
+    fn run(pace: &mut Pace, ticks: u32, alone: u64, team: u64) -> u32 {
+        let mut shared = 0;
+        for _ in 0..ticks {
+            let mode = pace.mode();
+            shared += u32::from(mode == Mode::Team);
+            pace.record(mode, Duration::from_millis(if mode == Mode::Team { team } else { alone }), 1000);
+        }
+        shared
+    }
+
+    #[test]
+    fn threads_that_make_ticks_shorter_share_almost_all_ticks() {
+        // Trials after 16, 32, 64, 128, 256, 512 and 1024 ticks.
+        assert_eq!(run(&mut Pace::new(), 2040, 5, 3), 2040 - 7);
+        assert_eq!(run(&mut Pace::new(), 2040, 100, 99), 2040 - 7);
+    }
+
+    #[test]
+    fn threads_that_make_ticks_longer_share_few_ticks() {
+        let shared = run(&mut Pace::new(), 2040, 3, 60);
+        assert!((16..16 + 8).contains(&shared), "{shared}");
+    }
+
+    /// The processors are idle, then busy for 10 s, then idle again.
+    #[test]
+    fn busy_processors_are_left_to_other_programs() {
+        let mut pace = Pace::new();
+        run(&mut pace, 1000, 5, 3);
+        let shared = run(&mut pace, 600, 5, 40);
+        assert!((1..10).contains(&shared), "{shared}");
+        run(&mut pace, TRIAL_MAX, 5, 3);
+        assert_eq!(run(&mut pace, 100, 5, 3), 100 - 2);
+    }
+
+    /// A single tick that takes long, because the operating system interrupts it, does not end the sharing for long.
+    #[test]
+    fn an_interruption_is_forgotten() {
+        let mut pace = Pace::new();
+        run(&mut pace, 1000, 5, 3);
+        run(&mut pace, 1, 5, 100);
+        assert!(run(&mut pace, 100, 5, 3) >= 80);
+    }
+
+    #[test]
+    fn times_are_compared_per_body() {
+        let mut pace = Pace::new();
+        run(&mut pace, TRIAL_MIN, 5, 3);
+        pace.record(Mode::Alone, Duration::from_millis(5), 1000);
+        for bodies in 1000..3000 {
+            pace.record(Mode::Team, Duration::from_micros(3 * bodies), usize::try_from(bodies).expect("small"));
+        }
+        assert_eq!(pace.faster, Mode::Team);
+        pace.record(Mode::Team, Duration::MAX, 0);
+        assert_eq!(pace.faster, Mode::Alone);
+    }
+}
