@@ -126,12 +126,16 @@ fn only_enabled_dynamic_bodies_of_the_mask_are_pushed_and_they_wake() {
 fn what_is_out_of_range_is_refused_and_extremes_stay_in_range() {
     let mut world = weightless();
     let explosion = Explosion::new(Vec2::ZERO, fx!(1));
-    for wrong in [
-        Explosion { radius: fx!(-0.1), ..explosion },
-        Explosion { falloff: fx!(1000.1), ..explosion },
-        Explosion { impulse_per_length: fx!(1048576.1), ..explosion },
+    for (wrong, number) in [
+        (Explosion { radius: fx!(-0.1), ..explosion }, fx!(-0.1)),
+        (Explosion { falloff: fx!(1000.1), ..explosion }, fx!(1000.1)),
+        (Explosion { impulse_per_length: fx!(1048576.1), ..explosion }, fx!(1048576.1)),
     ] {
-        assert_eq!(world.explode(&wrong), Err(WorldError::Setting { name: "explosion" }));
+        let error = world.explode(&wrong).expect_err("refused");
+        assert!(
+            matches!(error, WorldError::ExplosionOutOfRange { value, .. } if value == number),
+            "{error:?}"
+        );
     }
     let far = Explosion { centre: at(Fx::MAX, fx!(0)), ..explosion };
     assert!(matches!(world.explode(&far), Err(WorldError::PositionOutOfRange { .. })));

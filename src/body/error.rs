@@ -30,7 +30,9 @@ pub enum GeometryError {
         /// The first of the two vertices.
         vertex: u64,
     },
-    /// The outline is concave, clockwise, collinear, or crosses itself.
+    /// The outline is convex, but its vertices are in clockwise order.
+    Clockwise,
+    /// The outline is concave, collinear, or crosses itself.
     NotConvex {
         /// First vertex of an edge that has another vertex on its outer side or on its line.
         vertex: u64,
@@ -49,8 +51,14 @@ pub enum GeometryError {
     },
     /// A coordinate, radius or length is too small or too large.
     SizeOutOfRange {
+        /// Name of the size, such as "radius of a circle".
+        what: &'static str,
         /// The value, in metres.
         value: Fx,
+        /// Smallest value allowed.
+        min: Fx,
+        /// Largest value allowed; [`Fx::MAX`] for no limit.
+        max: Fx,
     },
 }
 
@@ -61,6 +69,10 @@ impl fmt::Display for GeometryError {
             GeometryError::ShortEdge { vertex } => {
                 write!(f, "the edge from vertex {vertex} is shorter than 0.5 mm")
             }
+            GeometryError::Clockwise => write!(
+                f,
+                "clockwise, not counter-clockwise (reverse the order of the vertices, or use `Polygon::hull`)"
+            ),
             GeometryError::NotConvex { vertex } => {
                 write!(f, "not convex and counter-clockwise at the edge from vertex {vertex}")
             }
@@ -76,14 +88,38 @@ impl fmt::Display for GeometryError {
                     "a chain of {links} links takes no materials, one, or one per link: not {materials}"
                 )
             }
-            GeometryError::SizeOutOfRange { value } => {
-                write!(f, "a size or coordinate of {value} m is out of range")
+            GeometryError::SizeOutOfRange { what, value, min, max } => {
+                write!(f, "the {what} is {}, not {value}", Range { min, max, unit: " m" })
             }
         }
     }
 }
 
 impl core::error::Error for GeometryError {}
+
+/// The text of a range. [`Fx::MIN`] and [`Fx::MAX`] are open ends, and a range from [`Fx::DELTA`] excludes 0.
+struct Range<'a> {
+    min: &'a Fx,
+    max: &'a Fx,
+    unit: &'a str,
+}
+
+impl fmt::Display for Range<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Range { min, max, unit } = *self;
+        if *max == Fx::MAX {
+            write!(f, "{min}{unit} or more")
+        } else if *min == Fx::MIN {
+            write!(f, "{max}{unit} or less")
+        } else if *min == Fx::DELTA {
+            write!(f, "above 0 and at most {max}{unit}")
+        } else if *min < Fx::ZERO && *min == max.saturating_neg() {
+            write!(f, "within ±{max}{unit}")
+        } else {
+            write!(f, "{min} to {max}{unit}")
+        }
+    }
+}
 
 /// A change that the world rejects. The world stays as it was.
 ///
@@ -119,10 +155,15 @@ pub enum WorldError {
         /// The coordinate in metres.
         value: Fx,
     },
-    /// A speed exceeds the limit of the world, or a sleep speed is not within 0 to 400 m/s. The speed of a rotation is
-    /// the angular velocity in rad/s times the radius of gyration.
+    /// A speed exceeds the limit of the world. The speed of a rotation is the angular velocity in rad/s times the radius
+    /// of gyration.
     SpeedOutOfRange {
         /// The requested speed.
+        value: Fx,
+    },
+    /// A sleep speed is not within 0 to 400 m/s.
+    SleepSpeedOutOfRange {
+        /// The requested speed in m/s.
         value: Fx,
     },
     /// The density is negative, or above 2^20 kg/m².
@@ -169,15 +210,56 @@ pub enum WorldError {
         /// Name of the part.
         what: &'static str,
     },
-    /// A property of a joint is out of range.
+    /// A number of a joint is out of range.
     JointOutOfRange {
-        /// Name of the property.
+        /// Name of the number, such as "motor speed".
         what: &'static str,
+        /// The number.
+        value: Fx,
+        /// Smallest value allowed; [`Fx::MIN`] for no limit, [`Fx::DELTA`] for all above 0.
+        min: Fx,
+        /// Largest value allowed; [`Fx::MAX`] for no limit.
+        max: Fx,
+    },
+    /// The lower limit of a joint is above the upper one.
+    JointLimitReversed {
+        /// The lower limit.
+        lower: Fx,
+        /// The upper limit.
+        upper: Fx,
     },
     /// A world setting is out of range.
     Setting {
         /// Name of the setting.
         name: &'static str,
+        /// The requested value.
+        value: Fx,
+        /// Smallest value allowed.
+        min: Fx,
+        /// Largest value allowed.
+        max: Fx,
+    },
+    /// A world setting that is a whole number is out of range.
+    CountSetting {
+        /// Name of the setting.
+        name: &'static str,
+        /// The requested value.
+        value: u32,
+        /// Smallest value allowed.
+        min: u32,
+        /// Largest value allowed.
+        max: u32,
+    },
+    /// A number of an explosion is out of range.
+    ExplosionOutOfRange {
+        /// Name of the number.
+        what: &'static str,
+        /// The number.
+        value: Fx,
+        /// Smallest value allowed.
+        min: Fx,
+        /// Largest value allowed.
+        max: Fx,
     },
     /// The change would alter a limit of the world, which is fixed when the world is created.
     FixedSetting {
@@ -216,6 +298,9 @@ impl fmt::Display for WorldError {
                 write!(f, "a shape or anchor at {value} m from its body's origin is out of range")
             }
             WorldError::SpeedOutOfRange { value } => write!(f, "speed {value} is above the world's limit"),
+            WorldError::SleepSpeedOutOfRange { value } => {
+                write!(f, "a sleep speed is 0 to 400 m/s, not {value}")
+            }
             WorldError::DensityOutOfRange { value } => write!(f, "density {value} kg/m² is out of range"),
             WorldError::MaterialOutOfRange => write!(
                 f,
@@ -242,8 +327,21 @@ impl fmt::Display for WorldError {
             WorldError::JointToItself(id) => write!(f, "a joint cannot connect body {id} to itself"),
             WorldError::JointOfOtherBodies(id) => write!(f, "the bodies of joint {id} cannot be changed"),
             WorldError::JointWithout { joint, what } => write!(f, "joint {joint} has no {what}"),
-            WorldError::JointOutOfRange { what } => write!(f, "the {what} of a joint is out of range"),
-            WorldError::Setting { name } => write!(f, "the world setting `{name}` is out of range"),
+            WorldError::JointOutOfRange { what, value, min, max } => {
+                write!(f, "a joint's {what} is {}, not {value}", Range { min, max, unit: "" })
+            }
+            WorldError::JointLimitReversed { lower, upper } => {
+                write!(f, "a joint's lower limit of {lower} is above its upper limit of {upper}")
+            }
+            WorldError::Setting { name, value, min, max } => {
+                write!(f, "the world setting `{name}` is {}, not {value}", Range { min, max, unit: "" })
+            }
+            WorldError::CountSetting { name, value, min, max } => {
+                write!(f, "the world setting `{name}` is {min} to {max}, not {value}")
+            }
+            WorldError::ExplosionOutOfRange { what, value, min, max } => {
+                write!(f, "an explosion's {what} is {}, not {value}", Range { min, max, unit: "" })
+            }
             WorldError::FixedSetting { name } => write!(f, "the world limit `{name}` cannot be changed"),
             WorldError::NameInvalid => write!(f, "a name is 1 to 16 ASCII letters, digits, `-` and `_`"),
             WorldError::Full { what, limit } => write!(f, "the world already holds {limit} {what}"),

@@ -134,28 +134,25 @@ impl Geometry {
     pub(crate) fn validate(&self) -> Result<(), GeometryError> {
         match *self {
             Geometry::Circle { radius } => {
-                if !(SIZE_MIN..=SHAPE_EXTENT_MAX).contains(&radius) {
-                    return Err(GeometryError::SizeOutOfRange { value: radius });
-                }
+                check_size("radius of a circle", radius, SIZE_MIN, SHAPE_EXTENT_MAX)?;
             }
             Geometry::Segment { a, b } => {
-                check_within(&[a, b], WORLD_EXTENT_MAX)?;
-                check_length(a, b)?;
+                check_within("coordinate of a segment's end", &[a, b], WORLD_EXTENT_MAX)?;
+                check_length("length of a segment", a, b)?;
             }
             Geometry::Polygon(_) => {}
             Geometry::Capsule { a, b, radius } => {
-                if !(SIZE_MIN..=SHAPE_EXTENT_MAX).contains(&radius) {
-                    return Err(GeometryError::SizeOutOfRange { value: radius });
-                }
-                check_within(&[a, b], SHAPE_EXTENT_MAX - radius)?;
-                check_length(a, b)?;
+                check_size("radius of a capsule", radius, SIZE_MIN, SHAPE_EXTENT_MAX)?;
+                check_within("coordinate of a capsule's end", &[a, b], SHAPE_EXTENT_MAX - radius)?;
+                check_length("distance between a capsule's ends", a, b)?;
             }
             Geometry::Link { a, b, before, after, sides: _ } => {
                 let (first, last) = (before.unwrap_or(a), after.unwrap_or(b));
-                check_within(&[first, a, b, last], WORLD_EXTENT_MAX)?;
-                check_length(a, b)?;
-                before.map_or(Ok(()), |before| check_length(before, a))?;
-                after.map_or(Ok(()), |after| check_length(b, after))?;
+                check_within("coordinate of a link's end", &[first, a, b, last], WORLD_EXTENT_MAX)?;
+                let check_link = |a, b| check_length("length of a link", a, b);
+                check_link(a, b)?;
+                before.map_or(Ok(()), |before| check_link(before, a))?;
+                after.map_or(Ok(()), |after| check_link(b, after))?;
             }
         }
         Ok(())
@@ -176,17 +173,19 @@ impl Geometry {
     }
 }
 
+/// Checks a size in metres.
+pub(super) fn check_size(what: &'static str, value: Fx, min: Fx, max: Fx) -> Result<(), GeometryError> {
+    let in_range = (min..=max).contains(&value);
+    if in_range { Ok(()) } else { Err(GeometryError::SizeOutOfRange { what, value, min, max }) }
+}
+
 /// Checks that points are within `extent` of the shape's centre on each axis.
-fn check_within(points: &[Vec2<Fx>], extent: Fx) -> Result<(), GeometryError> {
-    let coordinates = points.iter().flat_map(|point| [point.x, point.y]);
-    match coordinates.into_iter().find(|c| c.unsigned_abs() > extent.unsigned_abs()) {
-        Some(value) => Err(GeometryError::SizeOutOfRange { value }),
-        None => Ok(()),
-    }
+fn check_within(what: &'static str, points: &[Vec2<Fx>], extent: Fx) -> Result<(), GeometryError> {
+    let mut coordinates = points.iter().flat_map(|point| [point.x, point.y]);
+    coordinates.try_for_each(|value| check_size(what, value, -extent, extent))
 }
 
 /// Checks that a segment is long enough to have a reliable direction.
-fn check_length(a: Vec2<Fx>, b: Vec2<Fx>) -> Result<(), GeometryError> {
-    let length = a.distance(b);
-    if length < SIZE_MIN { Err(GeometryError::SizeOutOfRange { value: length }) } else { Ok(()) }
+fn check_length(what: &'static str, a: Vec2<Fx>, b: Vec2<Fx>) -> Result<(), GeometryError> {
+    check_size(what, a.distance(b), SIZE_MIN, Fx::MAX)
 }

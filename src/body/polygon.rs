@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::error::GeometryError;
+use super::geometry::check_size;
 use crate::math::{Angle, Fx, Length, Rot, Unit, Vec2};
 
 /// Largest number of vertices of a polygon.
@@ -101,9 +102,8 @@ impl Polygon {
     /// If a half extent is out of range.
     pub fn rectangle(half_width: Fx, half_height: Fx) -> Result<Self, GeometryError> {
         let (x, y) = (half_width, half_height);
-        if x <= Fx::ZERO || y <= Fx::ZERO {
-            return Err(GeometryError::SizeOutOfRange { value: x.min(y) });
-        }
+        check_half("half width of a rectangle", x)?;
+        check_half("half height of a rectangle", y)?;
         let corner = |x, y| Vec2::new(x, y);
         Self::new(&[corner(-x, -y), corner(x, -y), corner(x, y), corner(-x, y)])
     }
@@ -113,6 +113,7 @@ impl Polygon {
     /// # Errors
     /// If the half extent is out of range.
     pub fn square(half_extent: Fx) -> Result<Self, GeometryError> {
+        check_half("half extent of a square", half_extent)?;
         Self::rectangle(half_extent, half_extent)
     }
 
@@ -131,7 +132,12 @@ impl Polygon {
                 Rot::from_angle(angle).apply_wide(Vec2::new(radius, Fx::ZERO))
             })
             .collect();
-        Self::new(&points)
+        Self::new(&points).map_err(|error| match error {
+            GeometryError::SizeOutOfRange { min, max, .. } => {
+                GeometryError::SizeOutOfRange { what: "radius of a regular polygon", value: radius, min, max }
+            }
+            other => other,
+        })
     }
 
     /// Returns the polygon rotated about the shape's centre.
@@ -165,9 +171,7 @@ impl Polygon {
             let vertex = vertex.widen();
             reach.max(vertex.x.saturating_abs()).max(vertex.y.saturating_abs())
         });
-        if radius < Fx::ZERO || reach.saturating_add(radius) > SHAPE_EXTENT_MAX {
-            return Err(GeometryError::SizeOutOfRange { value: radius });
-        }
+        check_size("rounding radius of a polygon", radius, Fx::ZERO, SHAPE_EXTENT_MAX - reach)?;
         self.radius = crate::math::narrow(radius);
         Ok(self)
     }
@@ -197,8 +201,8 @@ impl Polygon {
         }
         let mut vertices = [Vec2::ZERO; POLYGON_VERTICES_MAX];
         let mut normals = [Vec2::ZERO; POLYGON_VERTICES_MAX];
+        points.iter().try_for_each(|point| check_vertex(point.widen()))?;
         for (i, &point) in points.iter().enumerate() {
-            check_vertex(point.widen())?;
             let next = points[(i + 1) % count];
             let edge = next - point;
             if edge.widen().length() < EDGE_MIN {
@@ -211,7 +215,8 @@ impl Polygon {
                 j == i || j == (i + 1) % count || wide_cross(edge, other - point) > 0
             };
             if !points.iter().enumerate().all(strictly_left) {
-                return Err(GeometryError::NotConvex { vertex: i as u64 });
+                let not_convex = GeometryError::NotConvex { vertex: i as u64 };
+                return Err(if is_clockwise(points) { GeometryError::Clockwise } else { not_convex });
             }
             vertices[i] = point;
             normals[i] = -edge.perp().normalized().ok_or(GeometryError::ShortEdge { vertex: i as u64 })?;
@@ -222,13 +227,27 @@ impl Polygon {
 }
 
 fn check_vertex(vertex: Vec2<Fx>) -> Result<(), GeometryError> {
-    let range = -SHAPE_EXTENT_MAX..=SHAPE_EXTENT_MAX;
-    for value in [vertex.x, vertex.y] {
-        if !range.contains(&value) {
-            return Err(GeometryError::SizeOutOfRange { value });
-        }
+    [vertex.x, vertex.y].into_iter().try_for_each(|value| {
+        check_size("coordinate of a vertex", value, -SHAPE_EXTENT_MAX, SHAPE_EXTENT_MAX)
+    })
+}
+
+/// Checks half the width or height of a rectangle.
+fn check_half(what: &'static str, value: Fx) -> Result<(), GeometryError> {
+    if value > Fx::ZERO && value <= SHAPE_EXTENT_MAX {
+        return Ok(());
     }
-    Ok(())
+    Err(GeometryError::SizeOutOfRange { what, value, min: EDGE_MIN / 2, max: SHAPE_EXTENT_MAX })
+}
+
+/// Whether an outline is convex and clockwise: every other vertex lies strictly to the right of each edge.
+fn is_clockwise(points: &[Vec2<Length>]) -> bool {
+    let count = points.len();
+    (0..count).all(|i| {
+        let (point, next) = (points[i], (i + 1) % count);
+        let right = |j| j == i || j == next || wide_cross(points[next] - point, points[j] - point) < 0;
+        (0..count).all(right)
+    })
 }
 
 /// The exact cross product of two differences of vertices.
@@ -279,7 +298,9 @@ mod tests {
         assert_eq!(new(&[(0, 0), (1, 0)]), Err(GeometryError::VertexCount { count: 2 }));
         assert_eq!(new(&[(0, 0); 9]), Err(GeometryError::VertexCount { count: 9 }));
         let clockwise = [(0, 0), (0, 1), (1, 0)];
-        assert!(matches!(new(&clockwise), Err(GeometryError::NotConvex { .. })));
+        assert_eq!(new(&clockwise), Err(GeometryError::Clockwise));
+        let clockwise_and_concave = [(0, 4), (1, 1), (4, 0), (0, 0)];
+        assert!(matches!(new(&clockwise_and_concave), Err(GeometryError::NotConvex { .. })));
         let collinear = [(0, 0), (1, 0), (2, 0)];
         assert!(matches!(new(&collinear), Err(GeometryError::NotConvex { .. })));
         let concave = [(0, 0), (4, 0), (1, 1), (0, 4)];
@@ -291,6 +312,13 @@ mod tests {
         assert!(matches!(new(&[(0, 0), (121, 0), (0, 1)]), Err(GeometryError::SizeOutOfRange { .. })));
         assert!(Polygon::rectangle(fx!(0), fx!(1)).is_err());
         assert!(Polygon::rectangle(fx!(-1), fx!(1)).is_err());
+        // The bounds that the errors state.
+        let bounds = [fx!(0.00025), SHAPE_EXTENT_MAX];
+        assert!(bounds.map(Polygon::square).iter().all(Result::is_ok));
+        assert!(
+            Polygon::regular(4, -SHAPE_EXTENT_MAX).is_ok() && Polygon::regular(8, SHAPE_EXTENT_MAX).is_ok()
+        );
+        assert!(matches!(Polygon::square(fx!(0.00024)), Err(GeometryError::ShortEdge { vertex: 0 })));
     }
 
     #[test]

@@ -139,7 +139,7 @@ impl BodySettings {
             return Err(WorldError::GravityScaleOutOfRange { value: gravity_scale });
         }
         if !(Fx::ZERO..=fx!(400)).contains(&sleep_speed) {
-            return Err(WorldError::SpeedOutOfRange { value: sleep_speed });
+            return Err(WorldError::SleepSpeedOutOfRange { value: sleep_speed });
         }
         Ok(())
     }

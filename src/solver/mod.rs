@@ -48,7 +48,7 @@ use joint::{JointSet, JointSource};
 pub(crate) use limits::Faults;
 pub(crate) use limits::IMPULSE_MAX;
 pub use settings::{ContactTuning, DISTANCE_MAX, SolverSettings};
-pub(crate) use settings::{RATE_MAX, SUB_STEPS_MAX, Tuning};
+pub(crate) use settings::{RATE_MAX, SUB_STEPS_MAX, Tuning, check_count, check_setting};
 
 use crate::body::{Arena, Body, BodyId, JointId};
 use crate::collision::{Contact, Manifold};

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::softness::Softness;
+use crate::body::WorldError;
 use crate::fx;
 use crate::math::{Fx, Rate, Speed, Step, Vec2, narrow};
 
@@ -108,8 +109,8 @@ impl SolverSettings {
         self.speed_max.min(DISTANCE_MAX * i64::from(tick_rate))
     }
 
-    /// The name of the first setting that is out of range, for a world of `tick_rate` ticks per second.
-    pub(crate) fn first_invalid(&self, tick_rate: u32) -> Option<&'static str> {
+    /// Checks every setting, for a world of `tick_rate` ticks per second.
+    pub(crate) fn validate(&self, tick_rate: u32) -> Result<(), WorldError> {
         let SolverSettings {
             sub_steps,
             iterations,
@@ -119,29 +120,39 @@ impl SolverSettings {
             restitution_threshold,
             speed_max,
         } = *self;
-        let ratio = fx!(0)..=fx!(100);
-        let speed = fx!(0)..=fx!(400);
-        let checks = [
-            ((1..=SUB_STEPS_MAX).contains(&sub_steps), "sub_steps"),
-            ((60..=RATE_MAX).contains(&tick_rate.saturating_mul(sub_steps)), "tick_rate x sub_steps"),
-            ((1..=16).contains(&iterations), "iterations"),
-            ((fx!(1)..=fx!(1000)).contains(&joint_hertz), "joint_hertz"),
-            (ratio.contains(&joint_damping_ratio), "joint_damping_ratio"),
-            (speed.contains(&restitution_threshold), "restitution_threshold"),
-            ((fx!(1)..=fx!(400)).contains(&speed_max), "speed_max"),
-            match contact {
-                ContactTuning::Soft { hertz, damping_ratio, push_speed } => {
-                    let valid = (fx!(1)..=fx!(1000)).contains(&hertz) && ratio.contains(&damping_ratio);
-                    (valid && speed.contains(&push_speed), "contact")
-                }
-                ContactTuning::Baumgarte { share, slop, push_speed } => {
-                    let valid = (fx!(0)..=fx!(1)).contains(&share) && (fx!(0)..=fx!(1)).contains(&slop);
-                    (valid && speed.contains(&push_speed), "contact")
-                }
-            },
-        ];
-        checks.into_iter().find(|(valid, _)| !valid).map(|(_, name)| name)
+        check_count("sub_steps", sub_steps, 1, SUB_STEPS_MAX)?;
+        check_count("tick_rate x sub_steps", tick_rate.saturating_mul(sub_steps), 60, RATE_MAX)?;
+        check_count("iterations", iterations, 1, 16)?;
+        check_setting("joint_hertz", joint_hertz, fx!(1), fx!(1000))?;
+        check_setting("joint_damping_ratio", joint_damping_ratio, fx!(0), fx!(100))?;
+        check_setting("restitution_threshold", restitution_threshold, fx!(0), fx!(400))?;
+        check_setting("speed_max", speed_max, fx!(1), fx!(400))?;
+        let push_speed = match contact {
+            ContactTuning::Soft { hertz, damping_ratio, push_speed } => {
+                check_setting("contact.hertz", hertz, fx!(1), fx!(1000))?;
+                check_setting("contact.damping_ratio", damping_ratio, fx!(0), fx!(100))?;
+                push_speed
+            }
+            ContactTuning::Baumgarte { share, slop, push_speed } => {
+                check_setting("contact.share", share, fx!(0), fx!(1))?;
+                check_setting("contact.slop", slop, fx!(0), fx!(1))?;
+                push_speed
+            }
+        };
+        check_setting("contact.push_speed", push_speed, fx!(0), fx!(400))
     }
+}
+
+/// Checks a setting of a world.
+pub(crate) fn check_setting(name: &'static str, value: Fx, min: Fx, max: Fx) -> Result<(), WorldError> {
+    let in_range = (min..=max).contains(&value);
+    if in_range { Ok(()) } else { Err(WorldError::Setting { name, value, min, max }) }
+}
+
+/// Checks a setting of a world that is a whole number.
+pub(crate) fn check_count(name: &'static str, value: u32, min: u32, max: u32) -> Result<(), WorldError> {
+    let in_range = (min..=max).contains(&value);
+    if in_range { Ok(()) } else { Err(WorldError::CountSetting { name, value, min, max }) }
 }
 
 /// The settings in the formats of the solver, for one tick.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::body::WorldError;
 use crate::fx;
 use crate::math::{Aabb, Fx, Vec2, fx_div, fx_mul, sqrt};
-use crate::solver::{ContactTuning, RATE_MAX, SUB_STEPS_MAX, SolverSettings};
+use crate::solver::{ContactTuning, RATE_MAX, SUB_STEPS_MAX, SolverSettings, check_count, check_setting};
 
 /// Settings of a world. [`World::set_config`](crate::world::World::set_config) changes them at run time, except for the
 /// limits.
@@ -163,7 +163,7 @@ impl Config {
     /// Checks every setting.
     ///
     /// # Errors
-    /// [`WorldError::Setting`] with the name of the first setting that is out of range.
+    /// [`WorldError::Setting`] or [`WorldError::CountSetting`] with the name of the first setting that is out of range.
     pub fn validate(&self) -> Result<(), WorldError> {
         let Config {
             tick_rate,
@@ -179,30 +179,25 @@ impl Config {
             joint_limit,
             pair_limit,
         } = *self;
-        let checks = [
-            ((10..=1000).contains(&tick_rate), "tick_rate"),
-            (check_gravity(gravity), "gravity"),
-            ((SPECULATIVE_DISTANCE_MIN..=fx!(1)).contains(&speculative_distance), "speculative_distance"),
-            ((fx!(0.001)..=fx!(10)).contains(&fat_margin), "fat_margin"),
-            ((fx!(0)..=fx!(400)).contains(&hit_speed), "hit_speed"),
-            (body_limit <= 1 << 20, "body_limit"),
-            (shape_limit <= 1 << 20, "shape_limit"),
-            (joint_limit <= 1 << 20, "joint_limit"),
-            (pair_limit <= 1 << 20, "pair_limit"),
-        ];
-        let invalid = checks.into_iter().find(|(valid, _)| !valid).map(|(_, name)| name);
-        match invalid.or_else(|| solver.first_invalid(tick_rate)) {
-            Some(name) => Err(WorldError::Setting { name }),
-            None => Ok(()),
-        }
+        check_count("tick_rate", tick_rate, 10, 1000)?;
+        check_gravity(gravity)?;
+        check_setting("speculative_distance", speculative_distance, SPECULATIVE_DISTANCE_MIN, fx!(1))?;
+        check_setting("fat_margin", fat_margin, fx!(0.001), fx!(10))?;
+        check_setting("hit_speed", hit_speed, fx!(0), fx!(400))?;
+        check_count("body_limit", body_limit, 0, 1 << 20)?;
+        check_count("shape_limit", shape_limit, 0, 1 << 20)?;
+        check_count("joint_limit", joint_limit, 0, 1 << 20)?;
+        check_count("pair_limit", pair_limit, 0, 1 << 20)?;
+        solver.validate(tick_rate)
     }
 }
 
 /// Smallest speculative distance in metres.
 const SPECULATIVE_DISTANCE_MIN: Fx = fx!(0.001);
 
-/// Whether a gravity in m/s² is in range.
-pub(crate) fn check_gravity(gravity: Vec2<Fx>) -> bool {
-    let range = fx!(-100000)..=fx!(100000);
-    range.contains(&gravity.x) && range.contains(&gravity.y)
+/// Checks a gravity in m/s².
+pub(crate) fn check_gravity(gravity: Vec2<Fx>) -> Result<(), WorldError> {
+    [gravity.x, gravity.y]
+        .into_iter()
+        .try_for_each(|g| check_setting("gravity", g, fx!(-100000), fx!(100000)))
 }

@@ -95,7 +95,7 @@ impl World {
     /// An empty world.
     ///
     /// # Errors
-    /// [`WorldError::Setting`] if a setting is out of range.
+    /// [`WorldError::Setting`] or [`WorldError::CountSetting`] if a setting is out of range.
     pub fn new(config: Config) -> Result<Self, WorldError> {
         config.validate()?;
         Ok(World::of(State::new(config), BroadPhaseKind::default()))

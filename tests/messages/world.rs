@@ -1,8 +1,9 @@
 //! Messages about shapes, bodies, joints and settings.
 
-use lockstep2d::body::{BodyId, GeometryError, JointId, ShapeId, WorldError};
+use lockstep2d::body::{BodyId, Geometry, GeometryError, JointId, Polygon, ShapeId, WorldError};
 use lockstep2d::codec;
 use lockstep2d::fx;
+use lockstep2d::math::{Fx, Vec2};
 use lockstep2d::world::{Section, Violation};
 
 use crate::says;
@@ -28,10 +29,46 @@ fn geometry() {
             "a chain of 5 links takes no materials, one, or one per link: not 2",
         ),
         (
-            GeometryError::SizeOutOfRange { value: fx!(-1.5) },
-            "a size or coordinate of -1.5 m is out of range",
+            GeometryError::Clockwise,
+            "clockwise, not counter-clockwise (reverse the order of the vertices, or use `Polygon::hull`)",
         ),
     ]);
+}
+
+/// The size is named, with the value that the caller gave.
+#[test]
+fn sizes_out_of_range() {
+    let origin = (fx!(0), fx!(0));
+    let refused = |shape: Result<Geometry, GeometryError>| shape.expect_err("refused");
+    let polygon = |shape: Result<Polygon, GeometryError>| shape.expect_err("refused");
+    let square = || Polygon::square(fx!(100)).expect("valid");
+    let tip = [(fx!(0), fx!(0)), (fx!(121), fx!(0)), (fx!(0), fx!(1))].map(|(x, y)| Vec2::new(x, y));
+    says([
+        (refused(Geometry::circle(fx!(-1))), "the radius of a circle is 0.002 to 110 m, not -1"),
+        (refused(Geometry::circle(fx!(0.0001))), "the radius of a circle is 0.002 to 110 m, not 0.0001"),
+        (refused(Geometry::segment(origin, origin)), "the length of a segment is 0.002 m or more, not 0"),
+        (
+            refused(Geometry::capsule(origin, (fx!(0), fx!(110)), fx!(0.5))),
+            "the coordinate of a capsule's end is within ±109.5 m, not 110",
+        ),
+        (polygon(Polygon::square(fx!(200))), "the half extent of a square is 0.00025 to 110 m, not 200"),
+        (polygon(Polygon::square(fx!(0))), "the half extent of a square is 0.00025 to 110 m, not 0"),
+        (
+            polygon(Polygon::rectangle(fx!(-1), fx!(1))),
+            "the half width of a rectangle is 0.00025 to 110 m, not -1",
+        ),
+        (
+            polygon(Polygon::rectangle(fx!(1), fx!(111))),
+            "the half height of a rectangle is 0.00025 to 110 m, not 111",
+        ),
+        (
+            polygon(Polygon::regular(5, fx!(-200))),
+            "the radius of a regular polygon is within ±110 m, not -200",
+        ),
+        (polygon(Polygon::new(&tip)), "the coordinate of a vertex is within ±110 m, not 121"),
+        (polygon(square().rounded(fx!(11))), "the rounding radius of a polygon is 0 to 10 m, not 11"),
+    ]);
+    assert_eq!(Polygon::new(&[tip[0], tip[2], Vec2::new(fx!(1), fx!(0))]), Err(GeometryError::Clockwise));
 }
 
 #[test]
@@ -64,6 +101,7 @@ fn values_out_of_range() {
             "a shape or anchor at 2.25 m from its body's origin is out of range",
         ),
         (WorldError::SpeedOutOfRange { value }, "speed 2.25 is above the world's limit"),
+        (WorldError::SleepSpeedOutOfRange { value: fx!(-1) }, "a sleep speed is 0 to 400 m/s, not -1"),
         (WorldError::DensityOutOfRange { value }, "density 2.25 kg/m² is out of range"),
         (
             WorldError::MaterialOutOfRange,
@@ -83,11 +121,38 @@ fn values_out_of_range() {
             "a line has no inside, so that it cannot be an area",
         ),
         (WorldError::AreaOutOfRange { what: "flow" }, "the flow of an area is out of range"),
-        (WorldError::JointOutOfRange { what: "length" }, "the length of a joint is out of range"),
-        (WorldError::Setting { name: "tick_rate" }, "the world setting `tick_rate` is out of range"),
+        (
+            WorldError::JointLimitReversed { lower: value, upper: fx!(-1) },
+            "a joint's lower limit of 2.25 is above its upper limit of -1",
+        ),
+        (
+            WorldError::CountSetting { name: "tick_rate", value: 0, min: 10, max: 1000 },
+            "the world setting `tick_rate` is 10 to 1000, not 0",
+        ),
+        (
+            WorldError::Setting { name: "fat_margin", value: fx!(0), min: fx!(0.001), max: fx!(10) },
+            "the world setting `fat_margin` is 0.001 to 10, not 0",
+        ),
+        (
+            WorldError::ExplosionOutOfRange { what: "radius in m", value, min: fx!(0), max: fx!(2) },
+            "an explosion's radius in m is 0 to 2, not 2.25",
+        ),
         (WorldError::FixedSetting { name: "pair_limit" }, "the world limit `pair_limit` cannot be changed"),
         (WorldError::NameInvalid, "a name is 1 to 16 ASCII letters, digits, `-` and `_`"),
         (WorldError::Full { what: "bodies", limit: 12 }, "the world already holds 12 bodies"),
+    ]);
+}
+
+/// The forms of a range.
+#[test]
+fn ranges() {
+    let joint = |min, max| WorldError::JointOutOfRange { what: "motor speed", value: fx!(-7.5), min, max };
+    says([
+        (joint(fx!(0.25), fx!(4)), "a joint's motor speed is 0.25 to 4, not -7.5"),
+        (joint(fx!(-4), fx!(4)), "a joint's motor speed is within ±4, not -7.5"),
+        (joint(fx!(0), Fx::MAX), "a joint's motor speed is 0 or more, not -7.5"),
+        (joint(Fx::MIN, fx!(-8)), "a joint's motor speed is -8 or less, not -7.5"),
+        (joint(Fx::DELTA, fx!(4)), "a joint's motor speed is above 0 and at most 4, not -7.5"),
     ]);
 }
 

@@ -342,18 +342,27 @@ fn couplings_out_of_range_are_refused() {
     let (a, b) = (wheel(&mut world, fx!(1), fx!(0)), wheel(&mut world, fx!(1), fx!(3)));
     let mut refused = |kind: JointKind| {
         let error = world.add_joint(&JointDef::new(a, b, kind)).unwrap_err();
-        let WorldError::JointOutOfRange { what } = error else { panic!("{error:?}") };
+        let WorldError::JointOutOfRange { what, .. } = error else { panic!("{error:?}") };
         what
     };
-    for teeth in [[0, 5], [5, 1001], [-1001, 5], [-5, -6], [i32::MIN, i32::MAX]] {
-        assert_eq!(refused(Gear::new(teeth[0], teeth[1]).into()), "number of teeth");
+    for (teeth, side) in [
+        ([0, 5], "number of teeth on A"),
+        ([5, 1001], "number of teeth on B"),
+        ([-1001, 5], "number of teeth on A"),
+        ([-5, -6], "number of teeth on B, as A is a ring,"),
+        ([i32::MIN, i32::MAX], "number of teeth on A"),
+    ] {
+        assert_eq!(refused(Gear::new(teeth[0], teeth[1]).into()), side);
     }
     for radius in [fx!(0), fx!(129), Fx::MIN] {
-        assert_eq!(refused(Rack::new(radius).into()), "radius");
+        assert_eq!(refused(Rack::new(radius).into()), "radius in m");
     }
     let pulley = Pulley::new(Vec2::ZERO, Vec2::ZERO, fx!(1));
-    assert_eq!(refused(Pulley { length: fx!(-1), ..pulley }.into()), "length");
+    assert_eq!(refused(Pulley { length: fx!(-1), ..pulley }.into()), "rope length in m");
     assert_eq!(refused(pulley.ratio(fx!(0.2)).into()), "ratio");
     assert_eq!(refused(pulley.ratio(fx!(4.1)).into()), "ratio");
-    assert_eq!(refused(Pulley { wheel_b: Vec2::new(Fx::MAX, fx!(0)), ..pulley }.into()), "wheel");
+    assert_eq!(
+        refused(Pulley { wheel_b: Vec2::new(Fx::MAX, fx!(0)), ..pulley }.into()),
+        "wheel coordinate in m"
+    );
 }

@@ -56,14 +56,15 @@ fn settings_of_a_body_out_of_range_are_refused() {
     let usual = BodySettings::default();
     let damping = |error: &WorldError| matches!(error, WorldError::DampingOutOfRange { .. });
     let gravity = |error: &WorldError| matches!(error, WorldError::GravityScaleOutOfRange { .. });
+    let sleep_speed = |error: &WorldError| matches!(error, WorldError::SleepSpeedOutOfRange { .. });
     let mut refuses = |settings, matches: fn(&WorldError) -> bool| {
         stage.refuses(Command::SetBody { body, settings }, matches);
     };
     refuses(BodySettings { linear_damping: fx!(-1), ..usual }, damping);
     refuses(BodySettings { angular_damping: Fx::MAX, ..usual }, damping);
     refuses(BodySettings { gravity_scale: fx!(1001), ..usual }, gravity);
-    refuses(BodySettings { sleep_speed: fx!(401), ..usual }, fast);
-    refuses(BodySettings { sleep_speed: Fx::MIN, ..usual }, fast);
+    refuses(BodySettings { sleep_speed: fx!(401), ..usual }, sleep_speed);
+    refuses(BodySettings { sleep_speed: Fx::MIN, ..usual }, sleep_speed);
 }
 
 #[test]
@@ -163,12 +164,17 @@ fn changes_to_joints_out_of_range_are_refused() {
     });
     let def = JointDef { kind: Revolute::new().limit(fx!(2), fx!(1)).into(), ..old };
     stage.refuses(Command::SetJoint { joint, def }, |error| {
-        matches!(error, WorldError::JointOutOfRange { what: "limit" })
+        *error == WorldError::JointLimitReversed { lower: fx!(2), upper: fx!(1) }
     });
-    for (hertz, damping_ratio) in [(fx!(0), fx!(1)), (fx!(1001), fx!(1)), (fx!(1), fx!(-1))] {
-        stage.refuses(Command::SetJoint { joint, def: old.softness(hertz, damping_ratio) }, |error| {
-            matches!(error, WorldError::JointOutOfRange { what: "softness" })
-        });
+    for (hertz, damping_ratio, wrong) in [
+        (fx!(0), fx!(1), "softness frequency in Hz"),
+        (fx!(1001), fx!(1), "softness frequency in Hz"),
+        (fx!(1), fx!(-1), "softness damping ratio"),
+    ] {
+        stage.refuses(
+            Command::SetJoint { joint, def: old.softness(hertz, damping_ratio) },
+            |error| matches!(error, WorldError::JointOutOfRange { what, .. } if *what == wrong),
+        );
     }
     stage.world.remove_joint(joint).expect("there");
     let stale = |error: &WorldError| matches!(error, WorldError::StaleJoint(_));
@@ -237,7 +243,7 @@ fn explosions_out_of_range_are_refused() {
         Explosion { impulse_per_length: Fx::MAX, ..usual },
     ] {
         stage.refuses(Command::Explode { explosion }, |error| {
-            *error == WorldError::Setting { name: "explosion" }
+            matches!(error, WorldError::ExplosionOutOfRange { .. })
         });
     }
 }

@@ -196,7 +196,7 @@ fn what_a_body_cannot_do_is_refused() {
     }
     let fast = Config { tick_rate: 1001, ..config };
     stage.refuses(Command::SetConfig { config: fast }, |error| {
-        *error == WorldError::Setting { name: "tick_rate" }
+        *error == WorldError::CountSetting { name: "tick_rate", value: 1001, min: 10, max: 1000 }
     });
 }
 
@@ -204,22 +204,34 @@ fn refuses_impossible_joints(stage: &mut Stage) {
     let (one, two) = (fx!(1), fx!(2));
     let pushes = Distance { spring_force: Some(JointLimit { lower: one, upper: two }), ..Distance::new() };
     let kinds: [(JointKind, &str); 12] = [
-        (Revolute::new().limit(two, one).into(), "limit"),
-        (Revolute::new().spring(fx!(0), one, one).into(), "spring"),
-        (Revolute::new().spring(one, fx!(-1), one).into(), "spring"),
-        (Prismatic::new().motor(one, fx!(-1)).into(), "motor"),
-        (Wheel::new().motor(Fx::MAX, one).into(), "motor"),
-        (Distance::rod(fx!(0)).into(), "length"),
-        (Distance::rope(fx!(-1)).into(), "limit"),
-        (Distance::new().spring(one, one, fx!(-1)).into(), "spring"),
-        (pushes.into(), "spring force"),
-        (Weld::rigid().angular(fx!(1001), one).into(), "spring"),
-        (Motor::new().linear(Vec2::new(one, Fx::MIN), one).into(), "motor"),
-        (Motor::new().linear_spring(one, one, fx!(-1)).into(), "spring"),
+        (Revolute::new().limit(two, one).into(), "lower limit of 2 is above its upper limit of 1"),
+        (
+            Revolute::new().spring(fx!(0), one, one).into(),
+            "spring frequency in Hz is above 0 and at most 1000, not 0",
+        ),
+        (Revolute::new().spring(one, fx!(-1), one).into(), "spring damping ratio is 0 to 100, not -1"),
+        (Prismatic::new().motor(one, fx!(-1)).into(), "largest motor force or torque is 0 or more, not -1"),
+        (Wheel::new().motor(fx!(10000000), one).into(), "motor speed is within ±1048576, not 10000000"),
+        (Distance::rod(fx!(0)).into(), "rod length in m is 0.001 to 1048576, not 0"),
+        (Distance::rope(fx!(-1)).into(), "lower limit of 0 is above its upper limit of -1"),
+        (Distance::new().spring(one, one, fx!(-1)).into(), "spring length in m is 0 to 1048576, not -1"),
+        (pushes.into(), "smallest spring force in N is 0 or less, not 1"),
+        (
+            Weld::rigid().angular(fx!(1001), one).into(),
+            "angular frequency in Hz is above 0 and at most 1000, not 1001",
+        ),
+        (
+            Motor::new().linear(Vec2::new(one, fx!(-1048577)), one).into(),
+            "linear motor velocity in m/s is within ±1048576, not -1048577",
+        ),
+        (
+            Motor::new().linear_spring(one, one, fx!(-1)).into(),
+            "largest linear spring force in N is 0 or more, not -1",
+        ),
     ];
-    for (kind, what) in kinds {
+    for (kind, text) in kinds {
         let joint = JointDef::new(stage.floor, stage.ball, kind);
-        stage.refuses(Command::AddJoint { joint }, |error| *error == WorldError::JointOutOfRange { what });
+        stage.refuses(Command::AddJoint { joint }, |error| error.to_string() == format!("a joint's {text}"));
     }
     let threshold = Threshold { force: Some(fx!(-1)), ..Threshold::NONE };
     let joint = JointDef::new(stage.floor, stage.ball, JointKind::Filter).threshold(threshold);
@@ -272,7 +284,7 @@ fn settings_out_of_range_are_named() {
                 ..Config::default()
             },
         ),
-        ("contact", Config { solver: SolverSettings { contact: soft, ..solver }, ..Config::default() }),
+        ("contact.hertz", Config { solver: SolverSettings { contact: soft, ..solver }, ..Config::default() }),
         (
             "speed_max",
             Config { solver: SolverSettings { speed_max: fx!(401), ..solver }, ..Config::default() },
@@ -282,7 +294,12 @@ fn settings_out_of_range_are_named() {
         if name == "tick_rate x sub_steps" {
             config.solver.sub_steps = 5;
         }
-        assert_eq!(World::new(config).expect_err("refused"), WorldError::Setting { name });
+        let error = World::new(config).expect_err("refused");
+        let (WorldError::Setting { name: named, .. } | WorldError::CountSetting { name: named, .. }) = error
+        else {
+            panic!("{error:?}");
+        };
+        assert_eq!(named, name);
     }
 }
 

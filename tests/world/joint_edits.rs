@@ -303,7 +303,7 @@ fn a_setter_of_a_part_that_is_missing_is_refused() {
     assert_eq!(world.set_joint_motor_velocity(joint, Vec2::ZERO), without("linear motor"));
     assert_eq!(world.set_joint_spring_target(joint, fx!(1)), without("spring"));
     assert_eq!(world.set_joint_limit(joint, Some(JointLimit { lower: fx!(1), upper: fx!(0) })), {
-        Err(WorldError::JointOutOfRange { what: "limit" })
+        Err(WorldError::JointLimitReversed { lower: fx!(1), upper: fx!(0) })
     });
     assert_eq!(world.state_hash(), before);
     let weld = world.add_joint(&JointDef::new(a, b, Weld::rigid())).expect("valid");

@@ -272,7 +272,7 @@ fn values_out_of_range_are_refused() {
     });
     let restless = BodySettings { sleep_speed: fx!(401), ..settings };
     stage.refuses(&Command::SetBody { body, settings: restless }, |error| {
-        matches!(error, WorldError::SpeedOutOfRange { .. })
+        matches!(error, WorldError::SleepSpeedOutOfRange { .. })
     });
     let is_mass = |error: &WorldError| matches!(error, WorldError::MassOutOfRange { .. });
     let given = |mass, gyration| MassSource::Given { mass, centre: Vec2::ZERO, gyration };

@@ -152,7 +152,7 @@ impl From<WorldError> for Failure {
             WorldError::StaleJoint(_) => Status::StaleJoint,
             WorldError::PositionOutOfRange { .. } => Status::Position,
             WorldError::OffsetOutOfRange { .. } => Status::Offset,
-            WorldError::SpeedOutOfRange { .. } => Status::Speed,
+            WorldError::SpeedOutOfRange { .. } | WorldError::SleepSpeedOutOfRange { .. } => Status::Speed,
             WorldError::DensityOutOfRange { .. } => Status::Density,
             WorldError::MaterialOutOfRange => Status::Material,
             WorldError::MassOutOfRange { .. } => Status::Mass,
@@ -163,8 +163,10 @@ impl From<WorldError> for Failure {
             WorldError::JointToItself(_) => Status::JointToItself,
             WorldError::JointOfOtherBodies(_) => Status::JointBodies,
             WorldError::JointWithout { .. } => Status::JointPart,
-            WorldError::JointOutOfRange { .. } => Status::Joint,
-            WorldError::Setting { .. } => Status::Setting,
+            WorldError::JointOutOfRange { .. } | WorldError::JointLimitReversed { .. } => Status::Joint,
+            WorldError::Setting { .. }
+            | WorldError::CountSetting { .. }
+            | WorldError::ExplosionOutOfRange { .. } => Status::Setting,
             WorldError::FixedSetting { .. } => Status::FixedSetting,
             WorldError::NameInvalid => Status::Name,
             WorldError::Full { .. } => Status::Full,

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::options::{Drive, JointLimit, Soft, Spring};
+use super::options::{Drive, JointLimit, Soft, Spring, check_strength};
 use super::{Distance, Gear, Motor, Prismatic, Pulley, Rack, Revolute, Weld, Wheel};
 use crate::body::{Body, BodyId, BodyKind, Pose, REACH_MAX, WORLD_EXTENT_MAX, WorldError};
 use crate::math::{Angle, Fx, Vec2};
@@ -317,11 +317,10 @@ impl JointDef {
         for (frame, kind) in [self.frame_a, self.frame_b].iter().zip(kinds) {
             frame.validate(kind)?;
         }
-        Soft::check(self.softness).map_err(|_| WorldError::JointOutOfRange { what: "softness" })?;
+        Soft::check(self.softness, ["softness frequency in Hz", "softness damping ratio"])?;
         let Threshold { force, torque, action: _ } = self.threshold;
-        if [force, torque].into_iter().flatten().any(|most| most < Fx::ZERO) {
-            return Err(WorldError::JointOutOfRange { what: "threshold" });
-        }
+        force.map_or(Ok(()), |most| check_strength("force threshold in N", most))?;
+        torque.map_or(Ok(()), |most| check_strength("torque threshold in N m", most))?;
         match &self.kind {
             JointKind::Revolute(kind) => kind.validate(),
             JointKind::Prismatic(kind) => kind.validate(),

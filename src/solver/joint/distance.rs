@@ -3,7 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::options::{Drive, JointLimit, Spring, check, check_options, is_sane, option_builders};
+use super::options::{
+    Drive, JointLimit, SIZE_MAX, Spring, check, check_options, check_strength, option_builders,
+};
 use super::parts::{Direction, Parts, slot};
 use crate::body::WorldError;
 use crate::fx;
@@ -87,14 +89,19 @@ impl Distance {
     }
 
     pub(super) fn validate(&self) -> Result<(), WorldError> {
-        check(self.rod.is_none_or(|length| length >= ROD_MIN && is_sane(length)), "length")?;
-        check(self.limit.is_none_or(|limit| limit.lower >= Fx::ZERO), "limit")?;
+        if let Some(length) = self.rod {
+            check("rod length in m", length, ROD_MIN, SIZE_MAX)?;
+        }
+        if let Some(limit) = self.limit {
+            check("lower limit in m", limit.lower, Fx::ZERO, SIZE_MAX)?;
+        }
+        if let Some(spring) = self.spring {
+            check("spring length in m", spring.target, Fx::ZERO, SIZE_MAX)?;
+        }
         check_options(self.limit, self.motor, self.spring)?;
-        check(self.spring.is_none_or(|spring| spring.target >= Fx::ZERO), "spring")?;
-        check(
-            self.spring_force.is_none_or(|force| force.lower <= Fx::ZERO && Fx::ZERO <= force.upper),
-            "spring force",
-        )
+        let Some(JointLimit { lower, upper }) = self.spring_force else { return Ok(()) };
+        check("smallest spring force in N", lower, Fx::MIN, Fx::ZERO)?;
+        check_strength("largest spring force in N", upper)
     }
 
     pub(super) fn prepare(&self, parts: &mut Parts<'_>) {

@@ -22,11 +22,16 @@ use crate::fx;
 use crate::math::Fx;
 
 /// Largest number of teeth of a wheel.
-const TEETH_MAX: i32 = 1000;
+const TEETH_MAX: Fx = fx!(1000);
 /// Smallest radius of a wheel on a rack, in metres.
 const RADIUS_MIN: Fx = fx!(0.001);
 /// Largest radius of a wheel on a rack, in metres.
 const RADIUS_MAX: Fx = fx!(128);
+
+/// Checks that a number or its negative is within `min` to `max`. The error states the range of the number's sign.
+fn check_either_sign(what: &'static str, value: Fx, min: Fx, max: Fx) -> Result<(), WorldError> {
+    if value < Fx::ZERO { check(what, value, -max, -min) } else { check(what, value, min, max) }
+}
 
 /// A gear: two wheels about the anchors, whose teeth mesh. B turns by `-teeth_a / teeth_b` of the turn of A, both
 /// relative to the line between the anchors.
@@ -75,10 +80,12 @@ impl Gear {
     }
 
     pub(super) fn validate(&self) -> Result<(), WorldError> {
-        let is_valid = |teeth: i32| teeth != 0 && (-TEETH_MAX..=TEETH_MAX).contains(&teeth);
-        check(is_valid(self.teeth_a) && is_valid(self.teeth_b), "number of teeth")?;
+        let [a, b] = [self.teeth_a, self.teeth_b].map(Fx::from_num);
+        check_either_sign("number of teeth on A", a, Fx::ONE, TEETH_MAX)?;
+        check_either_sign("number of teeth on B", b, Fx::ONE, TEETH_MAX)?;
         // Two rings cannot be around each other.
-        check(self.teeth_a > 0 || self.teeth_b > 0, "number of teeth")
+        let one_ring = "number of teeth on B, as A is a ring,";
+        if a < Fx::ZERO { check(one_ring, b, Fx::ONE, TEETH_MAX) } else { Ok(()) }
     }
 
     pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
@@ -129,7 +136,7 @@ impl Rack {
     }
 
     pub(super) fn validate(&self) -> Result<(), WorldError> {
-        check((RADIUS_MIN..=RADIUS_MAX).contains(&self.radius.saturating_abs()), "radius")
+        check_either_sign("radius in m", self.radius, RADIUS_MIN, RADIUS_MAX)
     }
 
     pub(super) fn prepare(&self, parts: &mut Parts<'_>) {

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::options::{Drive, JointLimit, Soft, check, is_sane, option_builders};
+use super::options::{Drive, JointLimit, Soft, check_sane, check_strength, option_builders};
 use super::parts::{Direction, Parts, slot};
 use crate::body::WorldError;
 use crate::math::{Fx, Vec2};
@@ -134,14 +134,19 @@ impl Motor {
     }
 
     pub(super) fn validate(&self) -> Result<(), WorldError> {
-        let drive = |drive: LinearDrive| {
-            is_sane(drive.velocity.x) && is_sane(drive.velocity.y) && drive.max_force >= Fx::ZERO
-        };
-        check(self.linear.is_none_or(drive), "motor")?;
+        if let Some(LinearDrive { velocity, max_force }) = self.linear {
+            check_sane("linear motor velocity in m/s", velocity.x)?;
+            check_sane("linear motor velocity in m/s", velocity.y)?;
+            check_strength("largest linear motor force in N", max_force)?;
+        }
         Drive::check(self.angular)?;
-        for pull in [self.linear_spring, self.angular_spring] {
-            Soft::check(pull.map(|pull| pull.soft))?;
-            check(pull.is_none_or(|pull| pull.max >= Fx::ZERO), "spring")?;
+        if let Some(Pull { soft, max }) = self.linear_spring {
+            Soft::check(Some(soft), ["linear spring frequency in Hz", "linear spring damping ratio"])?;
+            check_strength("largest linear spring force in N", max)?;
+        }
+        if let Some(Pull { soft, max }) = self.angular_spring {
+            Soft::check(Some(soft), ["angular spring frequency in Hz", "angular spring damping ratio"])?;
+            check_strength("largest angular spring torque in N m", max)?;
         }
         Ok(())
     }

@@ -7,7 +7,7 @@ use crate::fx;
 use crate::math::Fx;
 
 /// Largest limit, target or speed of a joint. The solver saturates at much smaller values.
-const SIZE_MAX: Fx = fx!(1048576);
+pub(super) const SIZE_MAX: Fx = fx!(1048576);
 /// Largest frequency of a spring in Hz.
 const HERTZ_MAX: Fx = fx!(1000);
 /// Largest damping ratio of a spring.
@@ -172,45 +172,56 @@ pub(super) fn check_options(
     Spring::check(spring)
 }
 
-/// Returns an error that names `what`, unless `in_range` holds.
-pub(super) fn check(in_range: bool, what: &'static str) -> Result<(), WorldError> {
-    if in_range { Ok(()) } else { Err(WorldError::JointOutOfRange { what }) }
+/// Returns an error that names `what`, unless `value` is within `min` to `max`.
+pub(super) fn check(what: &'static str, value: Fx, min: Fx, max: Fx) -> Result<(), WorldError> {
+    let in_range = (min..=max).contains(&value);
+    if in_range { Ok(()) } else { Err(WorldError::JointOutOfRange { what, value, min, max }) }
 }
 
-/// Whether a length, an angle or a speed is within ±2^20.
-pub(super) fn is_sane(value: Fx) -> bool {
-    (-SIZE_MAX..=SIZE_MAX).contains(&value)
+/// Checks a length, an angle or a speed.
+pub(super) fn check_sane(what: &'static str, value: Fx) -> Result<(), WorldError> {
+    check(what, value, -SIZE_MAX, SIZE_MAX)
+}
+
+/// Checks a largest force or torque, which may be unlimited.
+pub(super) fn check_strength(what: &'static str, value: Fx) -> Result<(), WorldError> {
+    check(what, value, Fx::ZERO, Fx::MAX)
 }
 
 impl JointLimit {
-    pub(super) fn check(limit: Option<Self>) -> Result<(), WorldError> {
-        let valid =
-            |limit: JointLimit| limit.lower <= limit.upper && is_sane(limit.lower) && is_sane(limit.upper);
-        check(limit.is_none_or(valid), "limit")
+    fn check(limit: Option<Self>) -> Result<(), WorldError> {
+        let Some(JointLimit { lower, upper }) = limit else { return Ok(()) };
+        check_sane("lower limit", lower)?;
+        check_sane("upper limit", upper)?;
+        if lower <= upper { Ok(()) } else { Err(WorldError::JointLimitReversed { lower, upper }) }
     }
 }
 
 impl Drive {
     pub(super) fn check(drive: Option<Self>) -> Result<(), WorldError> {
-        check(drive.is_none_or(|drive| is_sane(drive.speed) && drive.max >= Fx::ZERO), "motor")
+        let Some(Drive { speed, max }) = drive else { return Ok(()) };
+        check_sane("motor speed", speed)?;
+        check_strength("largest motor force or torque", max)
     }
 }
 
 impl Soft {
-    pub(super) fn check(soft: Option<Self>) -> Result<(), WorldError> {
-        let valid = |soft: Soft| {
-            soft.hertz > Fx::ZERO
-                && soft.hertz <= HERTZ_MAX
-                && (Fx::ZERO..=DAMPING_RATIO_MAX).contains(&soft.damping_ratio)
-        };
-        check(soft.is_none_or(valid), "spring")
+    /// Checks the frequency and the damping ratio, which have the given names.
+    pub(super) fn check(
+        soft: Option<Self>,
+        [frequency, damping]: [&'static str; 2],
+    ) -> Result<(), WorldError> {
+        let Some(Soft { hertz, damping_ratio }) = soft else { return Ok(()) };
+        check(frequency, hertz, Fx::DELTA, HERTZ_MAX)?;
+        check(damping, damping_ratio, Fx::ZERO, DAMPING_RATIO_MAX)
     }
 }
 
 impl Spring {
-    pub(super) fn check(spring: Option<Self>) -> Result<(), WorldError> {
-        let soft = |Spring { hertz, damping_ratio, .. }| Soft { hertz, damping_ratio };
-        Soft::check(spring.map(soft))?;
-        check(spring.is_none_or(|spring| is_sane(spring.target)), "spring")
+    fn check(spring: Option<Self>) -> Result<(), WorldError> {
+        let Some(Spring { hertz, damping_ratio, target }) = spring else { return Ok(()) };
+        let soft = Soft { hertz, damping_ratio };
+        Soft::check(Some(soft), ["spring frequency in Hz", "spring damping ratio"])?;
+        check_sane("spring target", target)
     }
 }

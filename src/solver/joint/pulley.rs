@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::options::{check, is_sane};
+use super::options::{SIZE_MAX, check};
 use super::parts::{Direction, Parts};
 use crate::body::{WORLD_EXTENT_MAX, WorldError};
 use crate::fx;
@@ -70,11 +70,11 @@ impl Pulley {
 
     pub(super) fn validate(&self) -> Result<(), WorldError> {
         let Pulley { wheel_a, wheel_b, length, ratio } = *self;
-        let range = -WORLD_EXTENT_MAX..=WORLD_EXTENT_MAX;
-        let coordinates = [wheel_a.x, wheel_a.y, wheel_b.x, wheel_b.y];
-        check(coordinates.iter().all(|coordinate| range.contains(coordinate)), "wheel")?;
-        check(length >= Fx::ZERO && is_sane(length), "length")?;
-        check((RATIO_MIN..=RATIO_MAX).contains(&ratio), "ratio")
+        for coordinate in [wheel_a.x, wheel_a.y, wheel_b.x, wheel_b.y] {
+            check("wheel coordinate in m", coordinate, -WORLD_EXTENT_MAX, WORLD_EXTENT_MAX)?;
+        }
+        check("rope length in m", length, Fx::ZERO, SIZE_MAX)?;
+        check("ratio", ratio, RATIO_MIN, RATIO_MAX)
     }
 
     pub(super) fn prepare(&self, parts: &mut Parts<'_>) {

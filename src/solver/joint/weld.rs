@@ -57,8 +57,8 @@ impl Weld {
     }
 
     pub(super) fn validate(&self) -> Result<(), WorldError> {
-        Soft::check(self.linear)?;
-        Soft::check(self.angular)
+        Soft::check(self.linear, ["linear frequency in Hz", "linear damping ratio"])?;
+        Soft::check(self.angular, ["angular frequency in Hz", "angular damping ratio"])
     }
 
     /// The row on the angle, if the weld is a hinge. It is a hinge if its anchors are rigid.

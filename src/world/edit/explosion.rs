@@ -28,8 +28,8 @@ impl World {
     /// order, and wakes the body. Sensors and disabled bodies are left out. Speeds are clamped to their range.
     ///
     /// # Errors
-    /// [`WorldError::Setting`] if a value of the explosion is out of range, [`WorldError::PositionOutOfRange`] if its
-    /// centre is.
+    /// [`WorldError::ExplosionOutOfRange`] if a value of the explosion is out of range,
+    /// [`WorldError::PositionOutOfRange`] if its centre is.
     #[doc(alias = "blast")]
     pub fn explode(&mut self, explosion: &Explosion) -> Result<(), WorldError> {
         explosion.validate()?;
@@ -109,12 +109,13 @@ impl Explosion {
 
     fn validate(&self) -> Result<(), WorldError> {
         check_position(self.centre)?;
-        let distance = Fx::ZERO..=fx!(1000);
-        let strength = fx!(-1048576)..=fx!(1048576);
-        let valid = distance.contains(&self.radius)
-            && distance.contains(&self.falloff)
-            && strength.contains(&self.impulse_per_length);
-        if valid { Ok(()) } else { Err(WorldError::Setting { name: "explosion" }) }
+        let check = |what, value, min, max| match (min..=max).contains(&value) {
+            true => Ok(()),
+            false => Err(WorldError::ExplosionOutOfRange { what, value, min, max }),
+        };
+        check("radius in m", self.radius, Fx::ZERO, fx!(1000))?;
+        check("falloff in m", self.falloff, Fx::ZERO, fx!(1000))?;
+        check("impulse in N s per metre", self.impulse_per_length, fx!(-1048576), fx!(1048576))
     }
 
     fn pushes(&self, shape: &Shape) -> bool {

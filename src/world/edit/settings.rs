@@ -33,8 +33,8 @@ impl World {
     /// ```
     ///
     /// # Errors
-    /// [`WorldError::Setting`] if a setting is out of range, [`WorldError::FixedSetting`] if a limit differs from that
-    /// of the world.
+    /// [`WorldError::Setting`] or [`WorldError::CountSetting`] if a setting is out of range,
+    /// [`WorldError::FixedSetting`] if a limit differs from that of the world.
     #[doc(alias = "sub_steps")]
     #[doc(alias = "integration parameters")]
     pub fn set_config(&mut self, config: &Config) -> Result<(), WorldError> {
@@ -60,9 +60,7 @@ impl World {
     /// [`WorldError::Setting`] if a component is not within ±100 000.
     pub fn set_gravity(&mut self, gravity: impl Into<Vec2<Fx>>) -> Result<(), WorldError> {
         let gravity = gravity.into();
-        if !check_gravity(gravity) {
-            return Err(WorldError::Setting { name: "gravity" });
-        }
+        check_gravity(gravity)?;
         self.wake_all();
         self.state.config.gravity = gravity;
         Ok(())
