@@ -1,6 +1,8 @@
-//! Measures the cost of rollback with 1000 touching bodies: a save and a hash as a share of a step, and a frame in
-//! which 8 ticks are simulated again, in steps. Run with `cargo run --release --example rollback_cost`.
+//! Measures the cost of rollback with touching bodies: a save and a hash as a share of a step, and a frame in which 8
+//! ticks are simulated again, in steps. `cargo run --release --example rollback_cost` measures 1000 bodies. An argument
+//! sets another number: `cargo run --release --example rollback_cost 150`.
 
+use std::error::Error;
 use std::time::Duration;
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef, WorldError};
@@ -11,9 +13,11 @@ use lockstep2d::world::World;
 /// Number of ticks that a rollback simulates again.
 const TICKS: u32 = 8;
 const ROUNDS: u32 = 41;
+/// Number of bodies without an argument.
+const BODIES: i32 = 1000;
 
 /// Creates balls and boxes that fall into a trough in 40 columns.
-fn pile() -> Result<World, WorldError> {
+fn pile(bodies: i32) -> Result<World, WorldError> {
     let mut world = World::default();
     for (x, y, half_x, half_y) in [(0, -1, 30, 1), (-12, 20, 1, 20), (12, 20, 1, 20)] {
         let wall = Polygon::rectangle(Fx::from_num(half_x), Fx::from_num(half_y))?;
@@ -22,7 +26,7 @@ fn pile() -> Result<World, WorldError> {
             &[ShapeDef::new(wall).friction(fx!(0.3))],
         )?;
     }
-    for at in 0..1000 {
+    for at in 0..bodies {
         let (column, row) = (at % 40, at / 40);
         let x = Fx::from_num(column) * fx!(0.53) - fx!(10.4) + Fx::from_num(row % 3) * fx!(0.05);
         let y = Fx::from_num(row) * fx!(0.55) + fx!(0.4);
@@ -52,8 +56,9 @@ fn hundredths(part: Duration, whole: Duration) -> u128 {
     part.as_nanos() * 100 / whole.as_nanos().max(1)
 }
 
-fn main() -> Result<(), WorldError> {
-    let mut world = pile()?;
+fn main() -> Result<(), Box<dyn Error>> {
+    let bodies = std::env::args().nth(1).map_or(Ok(BODIES), |count| count.parse())?;
+    let mut world = pile(bodies)?;
     for _ in 0..120 {
         world.step();
     }

@@ -13,6 +13,7 @@ macro_rules! chapters {
 
 chapters! {
     rules "rules.md"
+    recipes "recipes.md"
     drawing "drawing.md"
     sensors "sensors.md"
     characters "characters.md"
