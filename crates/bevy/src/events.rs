@@ -35,9 +35,7 @@ impl WorldEvent {
     #[must_use]
     pub const fn shapes(&self) -> Option<[ShapeId; 2]> {
         match self {
-            WorldEvent::ContactBegin(contact) | WorldEvent::ContactEnd(contact) => {
-                Some(contact.shapes())
-            }
+            WorldEvent::ContactBegin(contact) | WorldEvent::ContactEnd(contact) => Some(contact.shapes()),
             WorldEvent::Hit(hit) => Some(hit.shapes()),
             WorldEvent::SensorBegin(event) | WorldEvent::SensorEnd(event) => {
                 Some([event.sensor, event.visitor])
