@@ -93,7 +93,7 @@ impl World {
     /// assert_eq!((hit.fraction, hit.point.x), (fx!(0.5), fx!(4)));
     /// let ball = Probe::new(Geometry::circle(fx!(0.5))?, Vec2::new(fx!(3), fx!(0)))?;
     /// assert_eq!(ball.distance(&wall).distance, fx!(0.5));
-    /// assert_eq!(ball.at((fx!(3.5), fx!(0)).into()).manifold(&wall, fx!(0.01)).points().len(), 1);
+    /// assert_eq!(ball.at((fx!(3.5), fx!(0))).manifold(&wall, fx!(0.01)).points().len(), 1);
     /// # Ok::<(), lockstep2d::body::WorldError>(())
     /// ```
     #[must_use]
