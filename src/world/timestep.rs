@@ -1,6 +1,7 @@
 //! Fixed time steps from real time (G. Fiedler, "Fix Your Timestep!", 2004).
 
-/// Converts elapsed real time to whole ticks. The game passes the time in, in nanoseconds: the engine has no clock.
+/// Converts elapsed real time to whole ticks. The game passes the time in, in nanoseconds, because the simulation reads
+/// no clock.
 ///
 /// ```
 /// use lockstep2d::world::FixedTimestep;

@@ -40,8 +40,8 @@ impl World {
         }
     }
 
-    /// [`World::step`] with an observer that is called at the beginning of each phase, for profiles. The engine has no
-    /// clock.
+    /// [`World::step`] with an observer that is called at the beginning of each phase, for profiles. The
+    /// caller reads the clock.
     ///
     /// ```
     /// # use lockstep2d::world::World;
