@@ -87,6 +87,26 @@ fn any_number_of_threads_ends_in_the_same_hashes() {
     all_end_in_their_hashes(&[2, 4, 8], World::force_threads);
 }
 
+/// The number of threads changes before every tick. It changes in a game as well, because threads share only the ticks
+/// that they make shorter.
+#[test]
+#[cfg(feature = "parallel")]
+fn the_number_of_threads_may_change_between_ticks() {
+    sweep::for_each(SCENES.to_vec(), |(name, _)| {
+        let scene = Scene::find(name).expect("a scene of this crate");
+        let new = || Sandbox::new(&scene.setup(lockstep2d_tests::SEED)).expect("valid");
+        let (mut alone, mut changing) = (new(), new());
+        for (tick, count) in (0..12).zip([1, 2, 3, 1, 4, 2].into_iter().cycle()) {
+            assert!(changing.world_mut().force_threads(count));
+            for game in [&mut alone, &mut changing] {
+                let commands = scene.commands(tick, game);
+                game.step(&[commands]);
+            }
+            assert_eq!(alone.state_hash(), changing.state_hash(), "{name}, tick {tick}, {count} threads");
+        }
+    });
+}
+
 /// Checks the helpers of all sweeps: every case is checked, the first and the last are in the sample, and a case that
 /// fails makes the sweep fail.
 #[test]
