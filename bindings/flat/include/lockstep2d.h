@@ -1052,7 +1052,8 @@ ls2d_status ls2d_world_digest(uint32_t world, uint32_t section, ls2d_hash *hash)
 /* Number of ticks since the world was made. */
 ls2d_status ls2d_world_tick(uint32_t world, uint64_t *tick);
 
-/* Number of results that were clamped since the world was made: 0 while all values stay in their ranges. */
+/* Number of results of the solver that were clamped since the world was made. A body at the speed limit does not
+ * count. */
 ls2d_status ls2d_world_faults(uint32_t world, uint64_t *faults);
 
 /* The settings of a world. */

@@ -90,7 +90,8 @@ api! {
         with(world, |world: &mut World| tick.set(world.tick()))
     }
 
-    /// Number of results that were clamped since the world was made: 0 while all values stay in their ranges.
+    /// Number of results of the solver that were clamped since the world was made. A body at the speed limit does not
+    /// count.
     fn ls2d_world_faults(world: u32, faults: Out<'_, u64>) {
         let mut faults = faults;
         with(world, |world: &mut World| faults.set(world.faults()))
