@@ -366,3 +366,22 @@ fn couplings_out_of_range_are_refused() {
         "wheel coordinate in m"
     );
 }
+
+/// The arm of a rack that is almost three million kilometres away is out of range, and saturates.
+#[test]
+fn a_rack_may_be_at_the_other_end_of_the_world() {
+    let mut world = world(fx!(0));
+    let corner = fx!(999999000);
+    let pinion = wheel(&mut world, fx!(0.5), fx!(0));
+    world.set_transform(pinion, (-corner, -corner), Angle::ZERO).expect("valid");
+    let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));
+    let rack = world.spawn(&BodyDef::dynamic().position((corner, corner)), &[square]).expect("valid");
+    for degrees in 0..8 {
+        let angle = Angle::from_degrees(fx!(45) * degrees);
+        let def = JointDef::new(pinion, rack, Rack::new(fx!(0.5))).angle_b(angle);
+        let joint = world.add_joint(&def).expect("valid");
+        world.step();
+        world.remove_joint(joint).expect("valid");
+    }
+    assert!(world.body(rack).is_some());
+}

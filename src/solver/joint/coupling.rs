@@ -196,7 +196,10 @@ fn gear_measure(gear: &Gear, angles: [Angle; 2], inverse: [Reciprocal; 2], pose:
     let n: Vec2<Unit> = tangent.widen().scale(linear).narrow();
     let across = |lever: Lever| lever.arm.widen().cross(n.widen());
     let of_teeth = |teeth: i32| scale.saturating_mul_int(teeth.into());
-    let arms = [across(pose.lever_a) + of_teeth(teeth_a), across(pose.lever_b) - of_teeth(teeth_b)];
+    let arms = [
+        across(pose.lever_a).saturating_add(of_teeth(teeth_a)),
+        across(pose.lever_b).saturating_sub(of_teeth(teeth_b)),
+    ];
     let apart = teeth_apart(gear, angles, pose.gap).to_radians();
     measured([n, n], arms, pose, -fx_mul(scale, apart), Fx::ONE)
 }
@@ -206,7 +209,8 @@ fn rack_measure(radius: Fx, along: Vec2<Unit>, rolled: Fx, pose: &JointPose) -> 
     let direction = along.widen();
     let across = |arm: Vec2<Fx>| arm.cross(direction);
     let (arm_a, arm_b) = (pose.lever_a.arm.widen(), pose.lever_b.arm.widen());
-    let arms = [across(arm_a) + radius, across(arm_b - pose.gap) + radius];
+    // The bodies may be so far apart that the arm saturates.
+    let arms = [across(arm_a), across(arm_b - pose.gap)].map(|arm| arm.saturating_add(radius));
     let position = pose.gap.dot(direction).saturating_add(rolled);
     measured([along, along], arms, pose, position, Fx::ONE)
 }
