@@ -31,7 +31,7 @@ pub struct EndState {
     pub deepest_mm: f64,
     /// Mean speed over all dynamic bodies, in m/s; sleeping bodies count as 0.
     pub mean_speed: f64,
-    /// Largest speed of a dynamic body, in m/s.
+    /// Largest speed of any dynamic body, in m/s.
     pub max_speed: f64,
     /// Pairs of shapes with contact points.
     pub contacts: usize,

@@ -1,7 +1,7 @@
 //! [`Script`]: a scene as a list of recorded commands, from which every engine is built and driven.
 //!
 //! Commands refer to bodies by lockstep2d's handles, and commands that spawn bodies create new handles. So each command
-//! is executed once on a world that is never stepped, and stored together with its outcome. The scripts of the scenes
+//! is executed once on a world that is never stepped, and stored together with its outcome. The commands of a scene
 //! depend only on which bodies exist, not on their positions, so the same list is valid for every engine.
 
 use anyhow::{Context, Result, anyhow};

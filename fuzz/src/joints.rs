@@ -29,7 +29,8 @@ pub fn joint(source: &mut Source<'_>, a: BodyId, b: BodyId) -> JointDef {
     finish(source, def)
 }
 
-/// Sets the properties that all kinds share: thresholds, softness, and whether the joint acts and the bodies collide.
+/// Sets the properties that all kinds share: threshold, user data, softness, whether the joint is enabled, and whether
+/// its bodies collide.
 pub fn finish(source: &mut Source<'_>, mut def: JointDef) -> JointDef {
     def.collide_connected = source.one_in(2);
     if source.one_in(4) {

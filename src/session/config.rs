@@ -219,7 +219,7 @@ pub enum Fault {
     LocalEnd,
     /// Ballots start while a promise is in force.
     CompetingBallots,
-    /// A proposal drops voters without a promise at once, without waiting for the time of patience.
+    /// A proposal drops voters without a promise at once, without waiting for `patience`.
     Accuse,
     /// A proposer ignores changes that others have accepted.
     ForgetAccepted,

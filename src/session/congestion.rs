@@ -109,8 +109,8 @@ impl Congestion {
 mod tests {
     use super::*;
 
-    /// Sends over a line of `rate` bytes a second with a queue of 100 ms and a loss in percent; returns the bytes a
-    /// second that arrive after ten seconds.
+    /// Sends over a link of `rate` bytes per second, with a queue of 100 ms and a loss of `loss` percent. Returns the
+    /// throughput after the first ten seconds, in bytes per second.
     fn run(rate: u64, loss: u64) -> u64 {
         let (mut control, mut queued, mut arrived, mut random) = (Congestion::new(), 0_u64, 0, 1_u64);
         let mut lost = 0;
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn the_rate_is_that_of_the_line() {
+    fn the_rate_is_that_of_the_link() {
         for rate in [500_000, 2_000_000, 10_000_000] {
             for loss in [0, 5] {
                 let reached = run(rate, loss);

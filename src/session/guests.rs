@@ -98,7 +98,7 @@ impl Guests {
         self.list.iter().any(|guest| guest.upload.is_none())
     }
 
-    /// Sends a state to all guests that wait for one.
+    /// Starts to send a state to all guests that wait for one.
     pub(super) fn serve(&mut self, state: &Arc<Pinned>) {
         for guest in self.list.iter_mut().filter(|guest| guest.upload.is_none()) {
             guest.upload = Some(Upload::new(Arc::clone(state)));

@@ -64,8 +64,8 @@ impl Session {
         ballot.saturating_mul(factor).min((ballot * ROUNDS_MAX).max(BALLOT_MAX))
     }
 
-    /// Whether a voter has been out of contact for the time of patience, and either play has stalled for that time or
-    /// the voter has no seat.
+    /// Whether a voter has been out of contact for `patience`, and either play has stalled for as long or the voter has
+    /// no seat. The time grows with `rank`, so that voters do not start ballots at the same time.
     fn is_stalled(&self, rank: u64) -> bool {
         let active = self.clock.active;
         let patience = self.config.timing.patience.saturating_add(rank * self.config.timing.ballot / 15);
@@ -283,7 +283,7 @@ impl Session {
     }
 
     /// Bit for each voter that the new view leaves out: it wants to leave, is removed, or has neither promised the
-    /// ballot nor been in contact for the time of patience.
+    /// ballot nor been in contact for `patience`.
     fn leaving(&self, promisers: u64) -> u64 {
         let active = self.clock.active;
         let number = self.view.number;

@@ -350,7 +350,7 @@ impl Session {
         self.play.confirmed
     }
 
-    /// Bit for each own seat.
+    /// Bit mask of this peer's own seats.
     #[must_use]
     pub fn seats(&self) -> u64 {
         self.view.seats_of(self.me)

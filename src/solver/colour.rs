@@ -84,8 +84,8 @@ impl<'a> Group<'a> {
         Group { indices, large: 0 }
     }
 
-    /// Splits into batches of up to `N` constraints. A batch has constraints of one size. Only the batch with the last
-    /// large constraints is filled up with small ones, if `mixes` holds for all of its constraints.
+    /// Splits into batches of up to `N` constraints of one size. The last batch of large constraints is filled up with
+    /// small ones, if `mixes` holds for all constraints in it.
     pub(super) fn batches<const N: usize>(
         self,
         mixes: impl Fn(u32) -> bool,

@@ -86,7 +86,7 @@ impl Symmetric<Unit> {
     }
 }
 
-/// The target velocity of [`PointBlock::solve_within`], reversed.
+/// The negated target velocity of [`PointBlock::solve_within`].
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PointGoal {
     pub(crate) bias: Vec2<Speed>,

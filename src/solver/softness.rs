@@ -70,7 +70,7 @@ impl Softness {
         [self.bias_rate.to_bits(), self.mass_scale.to_bits(), self.impulse_scale.to_bits()]
     }
 
-    /// The part of a spring's impulse that comes from its stretch, reversed: `massScale biasRate x`, about
+    /// The part of a spring's impulse that comes from its stretch, negated: `massScale biasRate x`, about
     /// `h omega^2 x`. The product of the bias rate and a long stretch would overflow.
     pub(crate) fn push(&self, stretch: Fx) -> Speed {
         narrow(fx_mul(fx_mul(stretch, self.bias_rate.into()), self.mass_scale.into()))

@@ -99,7 +99,7 @@ impl Assembly {
         }
     }
 
-    /// Returns the largest error of a joint in metres.
+    /// Returns the largest error of any joint in metres.
     pub(crate) fn gap(&self) -> f64 {
         let error = |&id: &JointId| self.world.joint_error(id).map_or(0.0, float);
         self.joints.iter().map(error).fold(0.0, f64::max)

@@ -69,7 +69,7 @@ fn energy(world: &World) -> Fx {
         .fold(Fx::ZERO, |a, b| a + b)
 }
 
-/// Returns the largest gap of a joint in metres.
+/// Returns the largest gap of any joint in metres.
 fn joint_gap(world: &World) -> Fx {
     let gap = |id| world.joint_anchors(id).map_or(Fx::ZERO, |(a, b)| a.distance(b));
     world.joints().map(|(id, _)| gap(id)).max().unwrap_or(Fx::ZERO)
@@ -90,7 +90,7 @@ fn speeds(world: &World) -> impl Iterator<Item = Fx> {
     world.bodies().filter(|(_, body)| body.is_dynamic()).map(|(_, body)| body.velocity().length())
 }
 
-/// Returns the deepest overlap of a contact in metres.
+/// Returns the deepest overlap of any contact in metres.
 fn deepest(world: &World) -> Fx {
     let depth = |point: &lockstep2d::collision::ManifoldPoint| -Fx::from(point.separation);
     world.contacts().flat_map(|contact| contact.manifold.points()).map(depth).max().unwrap_or(Fx::ZERO)

@@ -1,7 +1,7 @@
 //! Stacks of boxes of any size are as firm as stacks of boxes of 1 m, with the settings of `Config::for_smallest`.
 //!
 //! A contact yields by `g / omega^2` for each body that it carries, whatever the size is. The table in the
-//! documentation of `Config` lists the settings for each size; these are its rows.
+//! documentation of `Config` lists the settings for each size; the first test compares its rows.
 
 use lockstep2d::body::{BodyDef, BodyId, Polygon, ShapeDef};
 use lockstep2d::fx;

@@ -214,7 +214,7 @@ fn a_scissor_lift_rises_level() {
     let mut stage = Stage::of(Config { solver, ..Config::default() });
     let ground = stage.floor();
     let stiff = |def: JointDef| def.softness(fx!(120), fx!(5));
-    // The height of a stage is 5 sin; the sine is 0.15 at first.
+    // With the angle `a` of the beams, a stage is `5 sin a` high; `sin a` is 0.15 at first.
     let (sine, cosine) = (fx!(0.15), fx!(0.98868599));
     let (mut feet, mut anchors) = ([ground, ground], [at!(-2.5, 1.2), at!(2.5, 1.2)]);
     let mut strutted = ground;
@@ -251,7 +251,7 @@ fn a_scissor_lift_rises_level() {
         .join(stiff(JointDef::new(ground, strutted, strut).anchor_a(at!(-2.5, 1.2)).anchor_b(at!(0.5, 0))));
     stage.run_and(240, |stage| {
         near(stage.angle(platform), fx!(0), fx!(0.03));
-        // The strut spans 3 cos along and 7 sin up.
+        // The strut spans `3 cos a` along x and `7 sin a` along y.
         let length = stage.world.joint_length(strut).expect("there");
         let sine = sqrt((fx_mul(length, length) - fx!(9)) / 40).expect("longer than 3 m");
         near(stage.place(platform).y, fx!(0.6) + sine * 15, fx!(0.1));

@@ -33,7 +33,7 @@ impl Box2d {
         let ContactTuning::Soft { hertz, damping_ratio, push_speed } = config.solver.contact else {
             bail!("only soft contacts are supported");
         };
-        // SAFETY: takes no arguments.
+        // SAFETY: the function has no preconditions.
         let mut def = unsafe { b2DefaultWorldDef() };
         def.gravity = shapes::vector(config.gravity);
         def.restitutionThreshold = config.solver.restitution_threshold.to_num();

@@ -24,7 +24,7 @@ pub fn rotation(angle: Angle) -> b2Rot {
 pub fn body_def(body: &BodyDef, pose: BodyPose) -> Result<b2BodyDef> {
     ensure!(matches!(body.mass, MassSource::Shapes), "explicit masses are not supported");
     let settings = &body.settings;
-    // SAFETY: takes no arguments.
+    // SAFETY: the function has no preconditions.
     let mut def = unsafe { b2DefaultBodyDef() };
     def.type_ = match body.kind {
         BodyKind::Fixed => b2BodyType_b2_staticBody,
@@ -49,7 +49,7 @@ pub fn body_def(body: &BodyDef, pose: BodyPose) -> Result<b2BodyDef> {
 /// Adds a shape. Events other than hit events stay off, which is the default of Box2D and makes it faster.
 pub fn add_shape(body: b2BodyId, shape: &ShapeDef) -> Result<()> {
     ensure!(!shape.sensor && shape.one_way.is_none(), "sensors and one-way shapes are not supported");
-    // SAFETY: takes no arguments.
+    // SAFETY: the function has no preconditions.
     let mut def = unsafe { b2DefaultShapeDef() };
     def.density = shape.density.to_num();
     def.material.friction = shape.material.friction.to_num();
@@ -102,7 +102,7 @@ fn frame(frame: &JointFrame) -> b2Transform {
 /// Converts a joint between two bodies. The scenes contain only revolute joints.
 pub fn joint_def(joint: &JointDef, ends: [b2BodyId; 2], config: &Config) -> Result<b2RevoluteJointDef> {
     let JointKind::Revolute(hinge) = &joint.kind else { bail!("only revolute joints are supported") };
-    // SAFETY: takes no arguments.
+    // SAFETY: the function has no preconditions.
     let mut def = unsafe { b2DefaultRevoluteJointDef() };
     [def.base.bodyIdA, def.base.bodyIdB] = ends;
     def.base.localFrameA = frame(&joint.frame_a);

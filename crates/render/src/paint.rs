@@ -172,7 +172,7 @@ impl Look {
     fn of(style: Style, brush: &Brush) -> Self {
         let Paint { stroke, fill, width, .. } = style.paint();
         let width = f32::from(width) / 100.0;
-        // The outline of ground stays at least one pixel wide beside small bodies. A thinner line would be hard to see.
+        // Small bodies have thin lines. The outlines of fixed shapes keep one pixel, to remain visible.
         let width_min = if style == Style::Fixed { 1.0 } else { 0.4 };
         let width = (width * brush.marks).max(width.min(width_min));
         let fill = fill.map_or(Colour::NONE, |Fill { colour, opacity }| {

@@ -118,7 +118,7 @@ impl Ring {
         *points = left;
     }
 
-    /// The area or length. `None` if nothing is left.
+    /// The area or length, and its centre. `None` if nothing is left.
     pub(crate) fn extent(&self) -> Option<Extent> {
         let Ring(points) = self;
         let (&first, rest) = points.split_first()?;

@@ -29,7 +29,7 @@ impl<'a> Costs<'a> {
         Costs { world, added: AddedWork::default(), grown: 0, rounds }
     }
 
-    /// Counts the objects that a command of the tick adds.
+    /// Counts the objects that a command of the tick adds, and raises `rounds` to the passes that its settings need.
     pub(super) fn add(&mut self, command: &Command) {
         self.added.bodies = self.added.bodies.saturating_add(bodies_added(command));
         self.added.shapes = self.added.shapes.saturating_add(shapes_added(command));

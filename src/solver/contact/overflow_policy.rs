@@ -231,7 +231,7 @@ impl<L: Lanes<N>, const N: usize> Unchecked<L, N> {
     }
 }
 
-/// Mask of the lanes in which a lever ratio of a row is above a limit.
+/// Mask of the lanes in which the magnitude of a lever ratio of a row is above a limit.
 #[inline(always)]
 fn long<L: Lanes<N>, const N: usize>(row: &Row<N>, limit: L::Int) -> L::Mask {
     L::either(beyond::<L, N>(L::load(&row.e_a), limit), beyond::<L, N>(L::load(&row.e_b), limit))

@@ -149,7 +149,7 @@ impl<L: Lanes<N>, const N: usize> ContactSide<L, N> {
     #[inline(always)]
     fn new(fraction: L::Int, to_origin: [L::Int; 2], mantissa: L::Int, exponent: L::Int) -> Self {
         const DIFFERENCE: i32 = shift(Ratio::FRAC_NBITS - Length::FRAC_NBITS);
-        // Only a body that does not turn has a smaller exponent, and then the mantissa is 0.
+        // The exponent is at most `DIFFERENCE` only for a body that does not turn, whose mantissa is 0.
         let shift = L::max(L::sub(exponent, L::splat(DIFFERENCE)), L::splat(1));
         ContactSide { fraction, to_origin, mantissa, shift }
     }
@@ -214,7 +214,7 @@ fn fill_row<L: Lanes<N>, const N: usize>(
     }
 }
 
-/// Numbers from 0 to 2^45 with 30 fraction bits. They are stored in two parts, because they do not fit a lane.
+/// Numbers from 0 to 2^15 with 30 fraction bits. They are stored in two parts, because they do not fit a lane.
 #[derive(Clone, Copy)]
 struct Long<L: Lanes<N>, const N: usize> {
     whole: L::Int,

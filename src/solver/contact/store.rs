@@ -82,8 +82,8 @@ impl<const N: usize> Records<N> {
         self.shapes[lane] == pair.shapes
     }
 
-    /// The impulses of each point for the warm start in the next tick, along the normal and the tangent. Replaces the
-    /// impulses of the batch by those with which it would be filled in the next tick, for a batch that is kept.
+    /// Returns the impulses of each point along the normal and the tangent, for the warm start in the next tick. Also
+    /// replaces those of the batch, rounded as by filling a batch with them, because the next tick may keep the batch.
     #[inline(always)]
     fn impulses<L: Lanes<N>>(&self, batch: &mut Batch<N>) -> [[Ints<N>; 2]; 2] {
         let Denominators { normals, tangent } = &self.denominators;

@@ -90,9 +90,9 @@ pub(super) struct BlockedPart {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BlockedTask {
     Hold,
-    /// Solved in the bias pass only.
+    /// A spring, which is solved in the bias pass only.
     Spring,
-    /// Its impulse is never negative.
+    /// A limit, whose impulse is never negative.
     Limit,
     /// A motor, whose impulse is limited in magnitude.
     Drive,

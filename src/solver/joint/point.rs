@@ -26,7 +26,7 @@ pub(super) struct JointPoint {
     pub(super) slot: u8,
     task: PointTask,
     pub(super) block: PointBlock,
-    /// For a motor: the target velocity, reversed. For a spring: the part of its impulse that comes from its stretch.
+    /// For a motor: the negated target velocity. For a spring: [`Softness::push`] of its stretch.
     bias: Vec2<Speed>,
     /// Whether a block computes the impulse.
     pub(super) is_blocked: bool,

@@ -74,7 +74,7 @@ pub(super) struct JointRow {
     pub(super) direction: Direction,
     task: RowTask,
     pub(super) row: Row,
-    /// For a spring: the part of its impulse that comes from its stretch. For other rows: the target speed, reversed.
+    /// For a spring: [`Softness::push`] of its stretch. For other rows: the negated target speed.
     bias: Speed,
     /// For a spring: its softness at the current pose. For a limit or a row that holds a position: the softness of the
     /// joint.

@@ -76,7 +76,7 @@ impl Joint {
         self.impulses = JointImpulses::default();
     }
 
-    /// Whether the solver has a constraint for the joint.
+    /// Whether the joint needs a constraint when its bodies are simulated.
     pub(crate) fn is_solved(&self) -> bool {
         self.def.enabled && self.def.kind != JointKind::Filter
     }

@@ -11,7 +11,7 @@ use crate::world::islands::wake_island;
 
 impl World {
     /// Replaces the settings of the world: read [`World::config`], change a copy, and pass it here. The limits of
-    /// bodies, shapes, joints and pairs stay as they are.
+    /// bodies, shapes, joints and pairs cannot be changed.
     ///
     /// Wakes all bodies if a setting that affects the balance of forces changes: gravity, the tick rate, sub-steps,
     /// iterations, the tuning of contacts and joints, and [`Config::sleeping`] when it is switched off. Impulses that

@@ -13,7 +13,7 @@ pub(super) struct Recycling<'a> {
     extents: [Length; 2],
     /// Whether a round shape may roll on a body that no impulse moves.
     rolls: bool,
-    /// Largest change of a lever arm that is kept, in metres.
+    /// Largest change of a lever arm, in metres, at which the contact keeps the arm.
     arm_tolerance: Length,
     /// Largest relative movement of the shapes since their manifold was computed, in metres, at which the contact keeps
     /// it for another tick. Negative if they move too fast.

@@ -306,7 +306,7 @@ api! {
         })
     }
 
-    /// Writes a bit for each own seat.
+    /// Writes the bit mask of this peer's own seats.
     fn ls2d_match_seats(handle: u32, seats: Out<'_, u64>) {
         let mut seats = seats;
         with(handle, |game: &mut Match| seats.set(game.endpoint.session().map_or(0, Session::seats)))

@@ -51,8 +51,8 @@ api! {
         limits.set(RawLimits::of(&Limits::default()))
     }
 
-    /// Starts the recording of a world, which the commands of a list set up, with a checkpoint every `interval` ticks.
-    /// A null pointer stands for the default settings.
+    /// Starts recording a world that the list `commands` sets up, with a checkpoint every `interval` ticks. A null
+    /// `config` stands for the default settings.
     fn ls2d_recording_new(config: In<'_, RawConfig>, commands: u32, interval: u32, recording: Out<'_, u32>) {
         let mut recording = recording;
         recording.check()?;
@@ -98,7 +98,7 @@ api! {
         bytes.set(table::add(Bytes(rest))?)
     }
 
-    /// Verifies a replay of a world from any source. A null pointer stands for the default limits. `ls2d_last_error`
+    /// Verifies a replay of a world from any source. A null `limits` stands for the default limits. `ls2d_last_error`
     /// returns the verdict in words.
     fn ls2d_replay_verify(data: In<'_, u8>, size: usize, limits: In<'_, RawLimits>, verdict: Out<'_, RawVerdict>) {
         let mut verdict = verdict;

@@ -43,8 +43,8 @@ fn go(timeline: u32, by: impl FnOnce(&mut Seekable<'_>) -> Result<Step, SeekErro
 
 api! {
     /// Opens a replay of a world from any source, to go to any of its ticks: tick t is the state after t ticks. A null
-    /// pointer stands for the default limits. If the replay cannot be played, its verdict is written, and the result is
-    /// `LS2D_RECORD`.
+    /// `limits` stands for the default limits. If the replay cannot be played, its verdict is written, and the result
+    /// is `LS2D_RECORD`.
     fn ls2d_timeline_open(
         data: In<'_, u8>,
         size: usize,

@@ -25,7 +25,7 @@ api! {
         config.set(RawConfig::of(&adapted))
     }
 
-    /// Makes an empty world. A null pointer stands for the default settings.
+    /// Makes an empty world. A null `config` stands for the default settings.
     fn ls2d_world_new(config: In<'_, RawConfig>, world: Out<'_, u32>) {
         let mut world = world;
         world.check()?;

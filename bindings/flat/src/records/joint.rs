@@ -61,8 +61,8 @@ constants! {
 }
 
 records! {
-    /// Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field that the description of a flag names is
-    /// read only if the flag is set.
+    /// Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field named in the description of a flag is
+    /// read only if that flag is set.
     struct RawJointDef = "ls2d_joint_def" {
         /// Size of this struct in bytes.
         size: u32,

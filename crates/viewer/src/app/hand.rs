@@ -80,7 +80,7 @@ impl Hand {
         true
     }
 
-    /// Draws the line from the grabbed body to the pointer and the line of a body that is being drawn.
+    /// Draws the line from the grabbed body to the pointer, and the line of the drag that adds a body.
     pub(super) fn draw(&self, list: &mut DrawList, source: &mut dyn Source, camera: &Camera, at: [f32; 2]) {
         let Some(held) = source.playground().map(|playground| playground.held()) else { return };
         if let Some(held) = held

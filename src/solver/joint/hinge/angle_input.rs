@@ -140,7 +140,7 @@ pub(super) struct SpringInput {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DriveInput {
-    /// The target speed, reversed.
+    /// The negated target speed.
     pub(super) bias: Speed,
     pub(super) max: Speed,
     pub(super) lambda: Speed,

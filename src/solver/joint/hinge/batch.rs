@@ -18,7 +18,7 @@ pub(in crate::solver) struct Batch<const N: usize> {
     /// `g11, g12, g22` of A and of B.
     pub(super) g: [[Ints<N>; 3]; 2],
     pub(super) f: [[Ints<N>; 2]; 2],
-    /// The velocity that closes the gap, reversed.
+    /// The negated velocity that closes the gap.
     pub(super) bias: [Ints<N>; 2],
     /// `L`, in world axes.
     pub(super) lambda: [Ints<N>; 2],

@@ -172,7 +172,7 @@ fn moved_gap<L: Lanes<N>, const N: usize>(gap: L::Wide, moved: L::Int) -> L::Int
     L::narrow_saturating::<{ shift(ARM - Step::FRAC_NBITS) }>(L::add_wide(gap, moved)).0
 }
 
-/// The velocity that closes a gap, reversed.
+/// The negated velocity that closes a gap.
 #[inline(always)]
 fn closing<L: Lanes<N>, const N: usize>(gap: L::Int, softness: &Softness) -> L::Int {
     const RATE: i32 = shift(Step::FRAC_NBITS + Rate::FRAC_NBITS - Speed::FRAC_NBITS);
