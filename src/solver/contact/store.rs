@@ -87,7 +87,8 @@ impl<const N: usize> Records<N> {
     #[inline(always)]
     fn impulses<L: Lanes<N>>(&self, batch: &mut Batch<N>) -> [[Ints<N>; 2]; 2] {
         let Denominators { normals, tangent } = &self.denominators;
-        let shares = shares_of_friction::<L, N>(batch).map(|share| tangent.impulse::<L>(share));
+        let [first, second] = shares_of_friction::<L, N>(batch);
+        let shares = [tangent.impulse::<L>(first), tangent.impulse::<L>(second)];
         let mut impulses = [[Ints::ZERO; 2]; 2];
         let points = batch.points.iter_mut().zip(normals).zip(shares).zip(&mut impulses).take(batch.count);
         for (((point, denominator), share), [normal, tangent]) in points {
