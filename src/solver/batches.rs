@@ -34,7 +34,7 @@ pub(super) trait BatchKind: Clone + Debug + 'static {
     fn has_extra<const N: usize>(batch: &Self::Batch<N>) -> bool;
 }
 
-/// An operation of the solver on one batch.
+/// An operation of the solver on one batch. [`Run`] calls it for every batch of a colour.
 pub(super) trait Operation<K: BatchKind>: Copy + Send + Sync {
     /// Must be `#[inline(always)]`: see [`Kernel::run`].
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, K, N>);
@@ -196,10 +196,10 @@ impl<K: BatchKind> Coloured<K> {
     pub(super) fn run_coloured(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
         match self {
             Layout::Wide(batches, vectors) => {
-                batches.run_coloured(operation, context, |kernel| vectors.run(kernel));
+                batches.for_each_colour(operation, context, |kernel| vectors.run(kernel));
             }
             Layout::Single(batches) => {
-                batches.run_coloured(operation, context, |kernel| kernel.run::<Scalar<1>>());
+                batches.for_each_colour(operation, context, |kernel| kernel.run::<Scalar<1>>());
             }
         }
     }
@@ -207,7 +207,7 @@ impl<K: BatchKind> Coloured<K> {
 
 impl<K: BatchKind, const N: usize> Batches<K, N> {
     /// Runs an operation colour by colour. `run` runs it on the batches of a colour.
-    fn run_coloured<O: Operation<K>>(
+    fn for_each_colour<O: Operation<K>>(
         &mut self,
         operation: O,
         context: &StepContext<'_>,

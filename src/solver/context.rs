@@ -1,6 +1,7 @@
 //! The context of all stages of a sub-step, like `b2StepContext` of Box2D.
 
 use core::cell::Cell;
+use core::fmt::Debug;
 
 use super::body::SolverBody;
 use super::limits::Faults;
@@ -15,6 +16,33 @@ pub(super) enum Pass {
     Bias,
     /// Removes the velocity that the bias pass has added to remove position errors.
     Relax,
+}
+
+/// A pass as a type, so that the operations of each pass are compiled separately.
+pub(super) trait SolverPass: Copy + Debug + Send + Sync {
+    fn kind(self) -> Pass;
+}
+
+/// The type of [`Pass::Bias`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bias;
+
+/// The type of [`Pass::Relax`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Relax;
+
+impl SolverPass for Bias {
+    #[inline(always)]
+    fn kind(self) -> Pass {
+        Pass::Bias
+    }
+}
+
+impl SolverPass for Relax {
+    #[inline(always)]
+    fn kind(self) -> Pass {
+        Pass::Relax
+    }
 }
 
 /// Backend and settings of a tick, the thread that works on it, and the bodies that the stages change.

@@ -1,8 +1,8 @@
 //! The solver: sequential impulses in sub-steps, in a fixed order.
 //!
 //! `sub_step` lists the stages of a sub-step, those of E. Catto's soft step (Solver2D, `solve_soft_step.c`).
-//! Each stage has a file of its own: `integrate` for bodies; `contact_velocity`, `contact/warm_start`, `contact/solve`,
-//! `contact/relax` and `contact/restitution` for contacts; `joint/hinge` for hinges; `joint/list` for all other joints.
+//! Each stage has a file of its own: `integrate` for bodies; `contact_velocity`, `contact/warm_start`, `contact/solve`
+//! and `contact/restitution` for contacts; `joint/hinge` for hinges; `joint/list` for all other joints.
 //!
 //! A row removes velocity along one direction (`row`). A point block pins two points together (`point_block`). Contacts
 //! and hinges are solved in batches of eight (`batches`), by code that is written once for any number of lanes

@@ -7,7 +7,7 @@
 use super::COLD_ROUNDS;
 use super::contact::{self, Constants, ContactShare, Measure, MeasureApproach, PointOrder, PredictImpacts};
 use super::contact_velocity::ContactVelocities;
-use super::context::{Pass, StepContext};
+use super::context::{Bias, Relax, StepContext};
 use super::integrate::{MovingBody, integrate_displacements, integrate_velocities};
 use super::joint::JointShare;
 
@@ -31,8 +31,7 @@ impl SolverShare<'_, '_> {
 
         // Integrate velocities.
         if is_first && contacts.has_extras() {
-            contacts.run_overflow(MeasureApproach, context);
-            contacts.run_coloured(MeasureApproach, context);
+            contacts.run(MeasureApproach, context);
         }
         joints.predict_rotations(context);
         velocities.measure(context);
@@ -41,26 +40,27 @@ impl SolverShare<'_, '_> {
 
         // Warm start.
         if contacts.has_extras() {
-            contacts.run_overflow(PredictImpacts { constants, is_first }, context);
-            contacts.run_coloured(PredictImpacts { constants, is_first }, context);
+            contacts.run(PredictImpacts { constants, is_first }, context);
         }
         joints.warm_start(context);
         let is_warm = velocities.apply(context);
         context.wait();
         if !is_warm {
-            contacts.run_overflow(contact::WarmStart, context);
-            contacts.run_coloured(contact::WarmStart, context);
+            contacts.run(contact::WarmStart, context);
         }
 
         // Solve with bias.
         for iteration in 0..iterations {
-            let solve = contact::Solve { order: PointOrder::of(index, iteration), constants };
+            let solve = contact::Solve { pass: Bias, order: PointOrder::of(index, iteration), constants };
             contacts.run_overflow(solve, context);
-            velocities.exempt(context, || joints.solve(Pass::Bias, context));
+            velocities.exempt(context, || joints.solve(Bias, context));
             contacts.run_coloured(solve, context);
         }
         for iteration in iterations..cold_iterations {
-            contacts.run_cold(contact::Solve { order: PointOrder::of(index, iteration), constants }, context);
+            contacts.run_cold(
+                contact::Solve { pass: Bias, order: PointOrder::of(index, iteration), constants },
+                context,
+            );
         }
 
         // Integrate displacements.
@@ -71,17 +71,19 @@ impl SolverShare<'_, '_> {
         // Relax: solve without bias.
         let (iterations, cold_iterations) = if tuning.relax { (iterations, cold_iterations) } else { (0, 0) };
         for iteration in 0..iterations {
-            let relax = contact::Relax { order: PointOrder::of(index, iteration), constants };
-            contacts.run_overflow(relax, context);
-            velocities.exempt(context, || joints.solve(Pass::Relax, context));
-            contacts.run_coloured(relax, context);
+            let solve = contact::Solve { pass: Relax, order: PointOrder::of(index, iteration), constants };
+            contacts.run_overflow(solve, context);
+            velocities.exempt(context, || joints.solve(Relax, context));
+            contacts.run_coloured(solve, context);
         }
         for iteration in iterations..cold_iterations {
-            contacts.run_cold(contact::Relax { order: PointOrder::of(index, iteration), constants }, context);
+            contacts.run_cold(
+                contact::Solve { pass: Relax, order: PointOrder::of(index, iteration), constants },
+                context,
+            );
         }
         if !tuning.relax {
-            contacts.run_overflow(Measure, context);
-            contacts.run_coloured(Measure, context);
+            contacts.run(Measure, context);
         }
         if contacts.has_extras() {
             velocities.exempt(context, || contacts.bounce(context));

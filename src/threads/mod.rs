@@ -19,6 +19,11 @@ use barrier::Barrier;
 #[cfg(feature = "parallel")]
 use team::Team;
 
+/// Minimum number of active bodies for a tick on several threads. With fewer bodies, barriers take more time than a
+/// second thread saves.
+#[cfg(feature = "parallel")]
+const BODIES_MIN: usize = 256;
+
 /// Threads of a world: only the calling thread, unless the feature `parallel` is enabled and more are requested.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Threads {
@@ -166,8 +171,8 @@ impl Threads {
     #[cfg(feature = "parallel")]
     pub(crate) fn run_tick<R>(&self, bodies: usize, tick: impl FnOnce(usize) -> R) -> R {
         match &self.team {
-            Some(team) => team.run_tick(bodies, tick),
-            None => tick(1),
+            Some(team) if bodies >= BODIES_MIN => team.run_tick(bodies, tick),
+            _ => tick(1),
         }
     }
 
@@ -248,7 +253,7 @@ mod team_tests {
     /// of members.
     fn add(threads: &Threads) -> u64 {
         let sums = [0; 20].map(AtomicU64::new);
-        threads.run_tick(1, |parts| {
+        threads.run_tick(BODIES_MIN, |parts| {
             let parts = u64::try_from(parts).expect("few");
             let seen = threads.run_team(0..parts, |number, member| {
                 let mut seen = 0;
@@ -267,7 +272,7 @@ mod team_tests {
     #[test]
     fn a_tick_during_another_one_works_alone() {
         let threads = Threads::new(4, Sharing::Always).expect("threads");
-        let inner = threads.run_tick(1, |parts| (parts, add(&threads)));
+        let inner = threads.run_tick(BODIES_MIN, |parts| (parts, add(&threads)));
         assert_eq!(inner, (4, 1));
         std::thread::scope(|scope| {
             for _ in 0..3 {
@@ -283,7 +288,7 @@ mod team_tests {
         let threads = Threads::new(4, Sharing::Always).expect("threads");
         for panicking in 0..MEMBERS {
             let result = catch_unwind(AssertUnwindSafe(|| {
-                threads.run_tick(1, |_| {
+                threads.run_tick(BODIES_MIN, |_| {
                     threads.run_team(0..MEMBERS, |number, member| {
                         assert_ne!(number, panicking, "planted");
                         member.wait();

@@ -609,8 +609,8 @@ typedef struct ls2d_shape_def {
     uint64_t user_data;
 } ls2d_shape_def;
 
-/* Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field that the description of a flag names is
- * read only if the flag is set. */
+/* Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field named in the description of a flag is
+ * read only if that flag is set. */
 typedef struct ls2d_joint_def {
     /* Size of this struct in bytes. */
     uint32_t size;
@@ -1030,7 +1030,7 @@ ls2d_status ls2d_config_init(ls2d_config *config);
  * stable. */
 ls2d_status ls2d_config_for_smallest(ls2d_config *config, const ls2d_config *from, ls2d_fx size);
 
-/* Makes an empty world. A null pointer stands for the default settings. */
+/* Makes an empty world. A null `config` stands for the default settings. */
 ls2d_status ls2d_world_new(const ls2d_config *config, uint32_t *world);
 
 /* Makes a copy of a world. */
@@ -1367,8 +1367,8 @@ ls2d_status ls2d_world_decode(const uint8_t *data, size_t size, uint32_t *world)
 /* Sets the default limits of a replay. They allow a day of play. A file made to be slow can take hours to verify. */
 ls2d_status ls2d_limits_init(ls2d_limits *limits);
 
-/* Starts the recording of a world, which the commands of a list set up, with a checkpoint every `interval` ticks.
- * A null pointer stands for the default settings. */
+/* Starts recording a world that the list `commands` sets up, with a checkpoint every `interval` ticks. A null
+ * `config` stands for the default settings. */
 ls2d_status ls2d_recording_new(const ls2d_config *config, uint32_t commands, uint32_t interval, uint32_t *recording);
 
 /* Executes a list of commands and advances the recorded world by one tick. The list is empty afterwards. Commands
@@ -1384,15 +1384,15 @@ ls2d_status ls2d_recording_take(uint32_t recording, uint32_t *bytes);
 /* Ends a recording, and returns the bytes that have not been taken yet. */
 ls2d_status ls2d_recording_finish(uint32_t recording, uint32_t *bytes);
 
-/* Verifies a replay of a world from any source. A null pointer stands for the default limits. `ls2d_last_error`
+/* Verifies a replay of a world from any source. A null `limits` stands for the default limits. `ls2d_last_error`
  * returns the verdict in words. */
 ls2d_status ls2d_replay_verify(const uint8_t *data, size_t size, const ls2d_limits *limits, ls2d_verdict *verdict);
 
 /* ---- Timelines of replays of worlds ---- */
 
 /* Opens a replay of a world from any source, to go to any of its ticks: tick t is the state after t ticks. A null
- * pointer stands for the default limits. If the replay cannot be played, its verdict is written, and the result is
- * `LS2D_RECORD`. */
+ * `limits` stands for the default limits. If the replay cannot be played, its verdict is written, and the result
+ * is `LS2D_RECORD`. */
 ls2d_status ls2d_timeline_open(const uint8_t *data, size_t size, const ls2d_limits *limits, uint32_t *timeline, ls2d_verdict *verdict);
 
 /* The current tick, and the number of ticks. Null pointers are not written. */
@@ -1540,7 +1540,7 @@ ls2d_status ls2d_match_status(uint32_t handle, uint32_t *status);
  * final inputs. Null pointers are not written. */
 ls2d_status ls2d_match_ticks(uint32_t handle, uint32_t *played, uint32_t *last, uint32_t *confirmed);
 
-/* Writes a bit for each own seat. */
+/* Writes the bit mask of this peer's own seats. */
 ls2d_status ls2d_match_seats(uint32_t handle, uint64_t *seats);
 
 /* The final inputs of all seats for a tick. `LS2D_NONE` if they are not final yet, or not kept any more. */

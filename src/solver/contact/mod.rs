@@ -9,8 +9,8 @@
 //! vA -= gA d n,  uA -= fA d,  vB += gB d n,  uB += fB d
 //! ```
 //!
-//! Each operation on a batch has a file of its own: `warm_start`, `solve` (the equations for `w` and `L'`), `relax`,
-//! `restitution` and `hit`. `prepare` fills the batches of a tick, `rows` computes their rows, and `store` returns the
+//! Each operation on a batch has a file of its own: `warm_start`, `solve` (the equations for `w` and `L'`), `measure`,
+//! `impact`, `restitution` and `hit`. `jacobian` has `J v` and the velocity changes of impulses. `prepare` fills the batches of a tick, `rows` computes their rows, and `store` returns the
 //! impulses to the state. `overflow_policy` defines the two ways in which numbers are kept within their formats.
 //!
 //! Differences of two velocities fit because each velocity is below 512 m/s. A sum that may not fit saturates. Lanes
@@ -22,10 +22,10 @@ mod extras;
 mod hit;
 mod impact;
 mod input;
+mod jacobian;
+mod measure;
 mod overflow_policy;
-mod pair;
 mod prepare;
-mod relax;
 mod restitution;
 mod rolling;
 mod rows;
@@ -47,7 +47,7 @@ pub(super) use impact::{MeasureApproach, PredictImpacts};
 pub(crate) use input::ActiveContact;
 pub(super) use input::ContactSource;
 use input::Prospect;
-pub(super) use relax::{Measure, Relax};
+pub(super) use measure::Measure;
 use restitution::ApplyRestitution;
 pub(super) use solve::{PointOrder, Solve};
 pub(crate) use store::ContactResults;
@@ -129,6 +129,12 @@ impl ContactShare<'_> {
         self.cold.coloured.run_coloured(operation, context);
     }
 
+    /// Runs an operation over all contacts.
+    pub(super) fn run(&mut self, operation: impl Operation<Contacts>, context: &StepContext<'_>) {
+        self.run_overflow(operation, context);
+        self.run_coloured(operation, context);
+    }
+
     /// Whether any contact is cold.
     pub(super) fn has_cold(&self) -> bool {
         self.features.cold
@@ -149,16 +155,14 @@ impl ContactShare<'_> {
     pub(super) fn bounce(&mut self, context: &StepContext<'_>) {
         for pass in 0..if self.features.elastic { RESTITUTION_PASSES } else { 1 } {
             let restitution = ApplyRestitution { again: pass > 0 };
-            self.run_overflow(restitution, context);
-            self.run_coloured(restitution, context);
+            self.run(restitution, context);
         }
     }
 
     /// Adds the impulses of a sub-step to those of the tick, for contacts with a hit event.
     pub(super) fn add_hits(&mut self, context: &StepContext<'_>) {
         if self.features.hits {
-            self.run_overflow(AddHits, context);
-            self.run_coloured(AddHits, context);
+            self.run(AddHits, context);
         }
     }
 }

@@ -299,20 +299,20 @@ impl<L: Lanes<N>, const N: usize> OverflowPolicy<L, N> for Unchecked<L, N> {
     #[inline(always)]
     fn apply(&mut self, pair: &mut BodyPairW<L, N>, row: &Row<N>, d: L::Int) {
         self.see_small(d);
-        change(pair, row, d);
+        change_within_bounds(pair, row, d);
     }
 
     #[inline(always)]
     fn apply_again(&mut self, pair: &mut BodyPairW<L, N>, row: &Row<N>, lambda: L::Int) {
         self.see_impulse(lambda);
-        change(pair, row, lambda);
+        change_within_bounds(pair, row, lambda);
     }
 }
 
 /// Changes velocities by impulses within the bounds. These impulses can be multiplied by four, so that the velocity
 /// change is the upper half of a product, which saves a shift.
 #[inline(always)]
-fn change<L: Lanes<N>, const N: usize>(pair: &mut BodyPairW<L, N>, row: &Row<N>, d: L::Int) {
+fn change_within_bounds<L: Lanes<N>, const N: usize>(pair: &mut BodyPairW<L, N>, row: &Row<N>, d: L::Int) {
     let twice = L::add(d, d);
     pair.change::<{ UNIT + 2 }>(row, L::add(twice, twice));
 }

@@ -15,13 +15,13 @@ use core::cell::Cell;
 
 use super::super::batches::{BatchParts, Operation};
 use super::super::body::SolverBody;
-use super::super::context::Pass;
+use super::super::context::{Pass, SolverPass};
 use super::super::pair::{BodyPairW, UNIT, beyond, clamp, shift};
 use super::batch::{Batch, Point};
 use super::extras::ContactExtras;
 use super::impact::PointImpact;
+use super::measure::measure;
 use super::overflow_policy::{OverflowPolicy, Saturating, Unchecked};
-use super::relax::measure;
 use super::{Constants, Contacts, TANGENT_MAX};
 use crate::math::{Rate, Shift, Speed, Unit};
 use crate::simd::{Ints, Lanes};
@@ -54,49 +54,37 @@ impl PointOrder {
     }
 }
 
-/// One iteration with bias. Uses the separations that the last relax pass has measured.
+/// One iteration of a pass. The relax pass measures the separations first. The bias pass of the next sub-step uses the
+/// same separations, because no body moves in between.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct Solve {
+pub(in crate::solver) struct Solve<P> {
+    pub(in crate::solver) pass: P,
     pub(in crate::solver) order: PointOrder,
     pub(in crate::solver) constants: Constants,
 }
 
-impl Operation<Contacts> for Solve {
+impl<P: SolverPass> Operation<Contacts> for Solve<P> {
+    /// Solves a batch. An unchecked batch is first solved without overflow checks, and again with checks if a number
+    /// was out of bounds.
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
-        let settings = Settings { pass: Pass::Bias, order: self.order, constants: &self.constants };
-        solve::<L, N>(parts, settings);
-    }
-}
-
-/// The parameters of an iteration. Every caller sets `pass` to a constant, so that each pass is compiled separately.
-#[derive(Clone, Copy)]
-pub(super) struct Settings<'a> {
-    pub(super) pass: Pass,
-    pub(super) order: PointOrder,
-    pub(super) constants: &'a Constants,
-}
-
-/// Solves an iteration. An unchecked batch is first solved without overflow checks, and again with checks if a number
-/// was out of bounds.
-#[inline(always)]
-pub(super) fn solve<L: Lanes<N>, const N: usize>(parts: BatchParts<'_, Contacts, N>, settings: Settings<'_>) {
-    let BatchParts { batch, extra: mut extras, bodies, faults, .. } = parts;
-    if batch.unchecked && settings.constants.unchecked {
-        let mut unchecked = Unchecked::<L, N>::new();
-        let solved = iterate(batch, None, settings, bodies, &mut unchecked);
-        if unchecked.held() {
-            solved.store(batch, bodies);
-            return;
+        let BatchParts { batch, extra: mut extras, bodies, faults, .. } = parts;
+        if batch.unchecked && self.constants.unchecked {
+            let mut unchecked = Unchecked::<L, N>::new();
+            let solved = self.iterate(batch, None, bodies, &mut unchecked);
+            if unchecked.held() {
+                solved.store(batch, bodies);
+                return;
+            }
+            // A batch that was out of bounds once is likely to be out of bounds again in this tick.
+            batch.unchecked = false;
         }
-        // A batch that was out of bounds once is likely to be out of bounds again in this tick.
-        batch.unchecked = false;
-    }
-    let saturating = &mut Saturating::<L, N>::new(faults);
-    let solved: Solved<L, N> = iterate(batch, extras.as_deref_mut(), settings, bodies, saturating);
-    solved.store(batch, bodies);
-    if let (Some(extras), Pass::Bias) = (extras, settings.pass) {
-        extras.impacts.record_touches::<L>(batch);
+        let saturating = &mut Saturating::<L, N>::new(faults);
+        let solved: Solved<L, N> = self.iterate(batch, extras.as_deref_mut(), bodies, saturating);
+        solved.store(batch, bodies);
+        if let (Some(extras), Pass::Bias) = (extras, self.pass.kind()) {
+            extras.impacts.record_touches::<L>(batch);
+        }
     }
 }
 
@@ -110,72 +98,80 @@ struct Solved<L: Lanes<N>, const N: usize> {
     pair: BodyPairW<L, N>,
 }
 
-/// Solves one iteration with an overflow policy. `extras` is `None` without overflow checks.
-#[inline(always)]
-fn iterate<L: Lanes<N>, C: OverflowPolicy<L, N>, const N: usize>(
-    batch: &mut Batch<N>,
-    extras: Option<&mut ContactExtras<N>>,
-    settings: Settings<'_>,
-    bodies: &[Cell<SolverBody>],
-    policy: &mut C,
-) -> Solved<L, N> {
-    if settings.pass == Pass::Relax {
-        measure(batch, bodies, policy);
-    }
-    let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
-    policy.see(&pair);
-    let (n, t) = batch.directions::<L>();
-    let places = match (settings.order, batch.count) {
-        (PointOrder::Backward, 2) => [1, 0],
-        _ => [0, 1],
-    };
-    let points = [&batch.points[places[0]], &batch.points[places[1]]];
-    let normals = Normals::<L, N>::new(batch, settings, n);
-    let every = every::<L, N>();
-    points[0].show_to(policy);
-    let impacts = match &extras {
-        Some(extras) => {
-            let [first, second] = places;
-            let impacts = &extras.impacts;
-            [impacts.of_point::<L>(first, settings.pass), impacts.of_point::<L>(second, settings.pass)]
+impl<P: SolverPass> Solve<P> {
+    /// Solves one iteration with an overflow policy. `extras` is `None` without overflow checks.
+    #[inline(always)]
+    fn iterate<L: Lanes<N>, C: OverflowPolicy<L, N>, const N: usize>(
+        self,
+        batch: &mut Batch<N>,
+        extras: Option<&mut ContactExtras<N>>,
+        bodies: &[Cell<SolverBody>],
+        policy: &mut C,
+    ) -> Solved<L, N> {
+        if self.pass.kind() == Pass::Relax {
+            measure(batch, bodies, policy);
         }
-        None => [PointImpact::none(); 2],
-    };
-    let normal_lambdas = if batch.count == 2 {
-        points[1].show_to(policy);
-        let both = L::negative(L::load(&batch.both));
-        let present = if places[0] == 0 { [every, both] } else { [both, every] };
-        normals.solve_both(points, impacts, present, &mut pair, policy)
-    } else {
-        let old = L::load(&points[0].normal_lambda);
-        [normals.solve((points[0], impacts[0]), [old, L::splat(0)], every, &mut pair, policy), L::splat(0)]
-    };
-    let mut surface_speed = L::splat(0);
-    let mut pressing = normal_lambdas;
-    if let Some(extras) = extras {
-        surface_speed = L::load(&extras.surface_speed);
-        if settings.pass == Pass::Bias {
-            // Friction acts only after the time of impact, and its limit does not include the impulse of restitution.
-            surface_speed = C::sub(surface_speed, L::load(&extras.impacts.slip));
-            for (pressing, impact) in pressing.iter_mut().zip(&impacts) {
-                *pressing = L::max(C::sub(*pressing, impact.rebound), L::splat(0));
+        let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
+        policy.see(&pair);
+        let (n, t) = batch.directions::<L>();
+        let places = match (self.order, batch.count) {
+            (PointOrder::Backward, 2) => [1, 0],
+            _ => [0, 1],
+        };
+        let points = [&batch.points[places[0]], &batch.points[places[1]]];
+        let normals = Normals::<L, N>::new(batch, self.pass.kind(), &self.constants, n);
+        let every = every::<L, N>();
+        points[0].show_to(policy);
+        let impacts = match &extras {
+            Some(extras) => {
+                let [first, second] = places;
+                let impacts = &extras.impacts;
+                [
+                    impacts.of_point::<L>(first, self.pass.kind()),
+                    impacts.of_point::<L>(second, self.pass.kind()),
+                ]
+            }
+            None => [PointImpact::none(); 2],
+        };
+        let normal_lambdas = if batch.count == 2 {
+            points[1].show_to(policy);
+            let both = L::negative(L::load(&batch.both));
+            let present = if places[0] == 0 { [every, both] } else { [both, every] };
+            normals.solve_both(points, impacts, present, &mut pair, policy)
+        } else {
+            let old = L::load(&points[0].normal_lambda);
+            [
+                normals.solve((points[0], impacts[0]), [old, L::splat(0)], every, &mut pair, policy),
+                L::splat(0),
+            ]
+        };
+        let mut surface_speed = L::splat(0);
+        let mut pressing = normal_lambdas;
+        if let Some(extras) = extras {
+            surface_speed = L::load(&extras.surface_speed);
+            if self.pass.kind() == Pass::Bias {
+                // Friction acts only after the time of impact, and its limit does not include the impulse of restitution.
+                surface_speed = C::sub(surface_speed, L::load(&extras.impacts.slip));
+                for (pressing, impact) in pressing.iter_mut().zip(&impacts) {
+                    *pressing = L::max(C::sub(*pressing, impact.rebound), L::splat(0));
+                }
+            }
+            if extras.rolls {
+                let friction_ratios =
+                    [&extras.rolling.friction_ratios[places[0]], &extras.rolling.friction_ratios[places[1]]];
+                let limit = limit::<L, C, N>(friction_ratios, pressing);
+                extras.rolling.solve(limit, &mut pair, policy);
             }
         }
-        if extras.rolls {
-            let friction_ratios =
-                [&extras.rolling.friction_ratios[places[0]], &extras.rolling.friction_ratios[places[1]]];
-            let limit = limit::<L, C, N>(friction_ratios, pressing);
-            extras.rolling.solve(limit, &mut pair, policy);
-        }
+        // Coulomb friction: an impulse against sliding, at most as large as the normal impulses allow.
+        let vt = C::add(pair.velocity(t, &batch.tangent, policy), surface_speed);
+        let limit = limit::<L, C, N>([&points[0].friction_ratio, &points[1].friction_ratio], pressing);
+        let old = L::load(&batch.tangent_lambda);
+        policy.see_impulse(old);
+        let tangent_lambda = clamp::<L, N>(C::sub(old, vt), limit);
+        policy.apply(&mut pair, &batch.tangent, L::sub(tangent_lambda, old));
+        Solved { places, normal_lambdas, tangent_lambda, pair }
     }
-    // Coulomb friction: an impulse against sliding, at most as large as the normal impulses allow.
-    let vt = C::add(pair.velocity(t, &batch.tangent, policy), surface_speed);
-    let limit = limit::<L, C, N>([&points[0].friction_ratio, &points[1].friction_ratio], pressing);
-    let old = L::load(&batch.tangent_lambda);
-    policy.see_impulse(old);
-    let tangent_lambda = clamp::<L, N>(C::sub(old, vt), limit);
-    policy.apply(&mut pair, &batch.tangent, L::sub(tangent_lambda, old));
-    Solved { places, normal_lambdas, tangent_lambda, pair }
 }
 
 impl<const N: usize> Point<N> {
@@ -218,12 +214,12 @@ struct Normals<L: Lanes<N>, const N: usize> {
 
 impl<L: Lanes<N>, const N: usize> Normals<L, N> {
     #[inline(always)]
-    fn new(batch: &Batch<N>, settings: Settings<'_>, n: [L::Int; 2]) -> Self {
-        let &Constants { rate, separation_max, slop, push_speed, soft, stiff, .. } = settings.constants;
+    fn new(batch: &Batch<N>, pass: Pass, constants: &Constants, n: [L::Int; 2]) -> Self {
+        let &Constants { rate, separation_max, slop, push_speed, soft, stiff, .. } = constants;
         let immovable = L::negative(L::load(&batch.immovable));
         let (soft_impulse, stiff_impulse) = (soft.impulse_scale.to_bits(), stiff.impulse_scale.to_bits());
         Normals {
-            pass: settings.pass,
+            pass,
             n,
             rate: L::splat(rate),
             separation_max: L::splat(separation_max),

@@ -2,7 +2,7 @@
 //!
 //! Every thread has hinges of each colour. One thread also solves all other joints, while the other threads wait.
 
-use super::super::context::{Pass, StepContext};
+use super::super::context::{SolverPass, StepContext};
 use super::block::Blocks;
 use super::hinge::{HingeSet, HingeShare, Poses, Turning};
 use super::list::JointList;
@@ -106,16 +106,16 @@ impl JointShare<'_, '_> {
     }
 
     /// One iteration over all joints.
-    pub(in crate::solver) fn solve(&mut self, pass: Pass, context: &StepContext<'_>) {
+    pub(in crate::solver) fn solve(&mut self, pass: impl SolverPass, context: &StepContext<'_>) {
         if self.is_empty {
             return;
         }
         let rotations = self.rotations.read();
         let poses = rotations.poses();
         if let Some(OwnJoints { list, hinges, blocks, .. }) = &mut self.own {
-            list.solve(pass, context);
+            list.solve(pass.kind(), context);
             hinges.solve(pass, poses, context);
-            blocks.solve(pass, hinges, list, poses, context);
+            blocks.solve(pass.kind(), hinges, list, poses, context);
         }
         context.wait();
         self.part.solve(pass, poses, context);

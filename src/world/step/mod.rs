@@ -22,12 +22,7 @@ use super::World;
 use super::cache::Scratch;
 use super::stats::Phase;
 use crate::solver::Tuning;
-use crate::threads::Threads;
 use phases::PhaseView;
-
-/// Minimum number of awake bodies for a tick on several threads. With fewer bodies, barriers take more time than a
-/// second thread saves.
-const BODIES_MIN: usize = 256;
 
 impl World {
     /// Advances the world by one tick of `1 / tick_rate` seconds.
@@ -55,20 +50,17 @@ impl World {
     }
 
     fn advance(&mut self, begin: impl FnMut(Phase, PhaseView<'_>)) {
+        let threads = self.scratch.solver.threads.clone();
         let bodies = self.scratch.awake.bodies().len();
-        let is_small = bodies < BODIES_MIN;
-        let threads = if is_small { Threads::default() } else { self.scratch.solver.threads.clone() };
-        threads.run_tick(bodies, |parts| {
-            self.scratch.solver.parts = parts;
-            self.run_phases(begin);
-        });
+        threads.run_tick(bodies, |parts| self.run_phases(parts, begin));
     }
 
-    /// The algorithm of a tick. `begin` is called at the beginning of each phase with a view of the results of all
-    /// earlier phases.
-    fn run_phases(&mut self, mut begin: impl FnMut(Phase, PhaseView<'_>)) {
+    /// The algorithm of a tick. `parts` is the number of threads that share it. `begin` is called at the beginning of
+    /// each phase with a view of the results of all earlier phases.
+    fn run_phases(&mut self, parts: usize, mut begin: impl FnMut(Phase, PhaseView<'_>)) {
         let World { state, scratch, phases: _ } = self;
         let state = &mut **state;
+        scratch.solver.parts = parts;
         let settings = state.config.solver;
         let pairs_before = solver_work::pairs(state);
         let tuning = Tuning::new(&settings, state.config.gravity, state.config.tick_rate);

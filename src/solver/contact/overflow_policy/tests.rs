@@ -2,12 +2,13 @@
 
 use super::super::super::batches::{BatchParts, Operation};
 use super::super::super::body::SolverBody;
+use super::super::super::context::{Bias, Relax};
 use super::super::super::settings::SolverSettings;
 use super::super::batch::Point;
 use super::super::input::Input;
 use super::super::rows::fill;
 use super::super::store::Records;
-use super::super::{Constants, Contacts, PointOrder, Relax, Solve, WarmStart};
+use super::super::{Constants, Contacts, PointOrder, Solve, WarmStart};
 use super::*;
 use crate::fx;
 use crate::math::{Fx, Length, Reciprocal, Rng, Rot, Step, Vec2, narrow};
@@ -108,9 +109,9 @@ impl Kernel<WIDTH> for &mut Trial<'_> {
         let constants = self.constants;
         let mut applied = Applied { batch, record, cells, faults };
         applied.apply::<L>(WarmStart);
-        applied.apply::<L>(Solve { order: PointOrder::Forward, constants });
-        applied.apply::<L>(Relax { order: PointOrder::Backward, constants });
-        applied.apply::<L>(Solve { order: PointOrder::Backward, constants });
+        applied.apply::<L>(Solve { pass: Bias, order: PointOrder::Forward, constants });
+        applied.apply::<L>(Solve { pass: Relax, order: PointOrder::Backward, constants });
+        applied.apply::<L>(Solve { pass: Bias, order: PointOrder::Backward, constants });
         let Applied { batch, faults, .. } = applied;
         let mut numbers = Vec::new();
         let mut take = |ints: &Ints<WIDTH>| numbers.extend_from_slice(&ints.0);

@@ -10,7 +10,7 @@ mod angle_input;
 mod batch;
 mod blocked;
 mod input;
-mod pair;
+mod jacobian;
 mod prepare;
 mod refresh;
 mod solve;
@@ -22,7 +22,7 @@ use alloc::vec::Vec;
 use core::mem;
 
 use super::super::batches::{BatchKind, Batches, Coloured};
-use super::super::context::{Pass, StepContext};
+use super::super::context::{SolverPass, StepContext};
 use super::pose::BodyRotation;
 use crate::simd::Quad;
 use angle::AngleRows;
@@ -32,7 +32,7 @@ use batch::{Batch, Records};
 use input::Input;
 pub(super) use input::{HingeBody, Turning, node, shares};
 use refresh::{Refresh, Stiffness};
-use solve::{Relax, Solve};
+use solve::Solve;
 use warm_start::WarmStart;
 
 /// Hinges as a kind of constraint.
@@ -97,12 +97,9 @@ impl HingeSet {
     }
 
     /// One iteration over the overflow. Also refreshes the hinges in blocks.
-    pub(super) fn solve(&mut self, pass: Pass, poses: Poses<'_>, context: &StepContext<'_>) {
+    pub(super) fn solve(&mut self, pass: impl SolverPass, poses: Poses<'_>, context: &StepContext<'_>) {
         let [refresh, _] = refreshes(&mut self.is_stale, poses, context);
-        match pass {
-            Pass::Bias => self.overflow.run_in_order(Solve { refresh }, context),
-            Pass::Relax => self.overflow.run_in_order(Relax { refresh }, context),
-        }
+        self.overflow.run_in_order(Solve { pass, refresh }, context);
         self.refresh_blocked(refresh, context);
     }
 }
@@ -131,18 +128,10 @@ impl HingeShare {
     }
 
     /// One iteration over all hinges.
-    pub(super) fn solve(&mut self, pass: Pass, poses: Poses<'_>, context: &StepContext<'_>) {
+    pub(super) fn solve(&mut self, pass: impl SolverPass, poses: Poses<'_>, context: &StepContext<'_>) {
         let [refresh, refresh_anchored] = refreshes(&mut self.is_stale, poses, context);
-        match pass {
-            Pass::Bias => {
-                self.ordinary.run_coloured(Solve { refresh }, context);
-                self.anchored.run_coloured(Solve { refresh: refresh_anchored }, context);
-            }
-            Pass::Relax => {
-                self.ordinary.run_coloured(Relax { refresh }, context);
-                self.anchored.run_coloured(Relax { refresh: refresh_anchored }, context);
-            }
-        }
+        self.ordinary.run_coloured(Solve { pass, refresh }, context);
+        self.anchored.run_coloured(Solve { pass, refresh: refresh_anchored }, context);
     }
 }
 

@@ -8,7 +8,7 @@
 //! ```
 
 use super::super::super::batches::{BatchParts, Operation};
-use super::super::super::context::Pass;
+use super::super::super::context::{Pass, SolverPass};
 use super::super::super::limits::{Faults, IMPULSE_MAX, STEP_MAX};
 use super::super::super::pair::{BodyPairW, RATIO, UNIT, beyond, clamp};
 use super::super::super::softness::Softness;
@@ -18,50 +18,34 @@ use super::refresh::Refresh;
 use crate::math::Unit;
 use crate::simd::{Ints, Lanes, Quad, VelocityW};
 
-/// One iteration with bias.
+/// One iteration of a pass.
 #[derive(Clone, Copy)]
-pub(super) struct Solve<'a> {
+pub(super) struct Solve<'a, P> {
+    pub(super) pass: P,
     pub(super) refresh: Refresh<'a>,
 }
 
-/// One iteration without bias.
-#[derive(Clone, Copy)]
-pub(super) struct Relax<'a> {
-    pub(super) refresh: Refresh<'a>,
-}
-
-impl Operation<Hinges> for Solve<'_> {
+impl<P: SolverPass> Operation<Hinges> for Solve<'_, P> {
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Hinges, N>) {
-        solve::<L, N>(Pass::Bias, &self.refresh, parts);
+        let (pass, refresh) = (self.pass.kind(), &self.refresh);
+        let BatchParts { batch, record, extra: mut angle, bodies, faults } = parts;
+        refresh.refresh::<L, N>(batch, record, angle.as_deref_mut(), bodies);
+        // Both are copied, so that the compiler sees that writing to the batch does not change them.
+        let (stiffness, quads) = (refresh.stiffness_of(batch, record), refresh.poses.quads);
+        let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
+        if let Some(rows) = angle {
+            rows.solve(pass, &stiffness.limits, &mut pair, faults);
+        }
+        let (e_a, e_b) = ratios_of::<L, N>(batch, pass, quads);
+        let vr = relative_velocity::<L, N>(e_a, e_b, &pair, faults);
+        let d = [
+            accumulate::<L, N>(batch, 0, vr[0], pass, &stiffness.points, faults),
+            accumulate::<L, N>(batch, 1, vr[1], pass, &stiffness.points, faults),
+        ];
+        pair.apply_at_point(batch, d, faults);
+        pair.store(bodies, &batch.changed);
     }
-}
-
-impl Operation<Hinges> for Relax<'_> {
-    #[inline(always)]
-    fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Hinges, N>) {
-        solve::<L, N>(Pass::Relax, &self.refresh, parts);
-    }
-}
-
-#[inline(always)]
-fn solve<L: Lanes<N>, const N: usize>(pass: Pass, refresh: &Refresh<'_>, parts: BatchParts<'_, Hinges, N>) {
-    let BatchParts { batch, record, extra: mut angle, bodies, faults } = parts;
-    refresh.refresh::<L, N>(batch, record, angle.as_deref_mut(), bodies);
-    // Both are copied, so that the compiler sees that writing to the batch does not change them.
-    let (stiffness, quads) = (refresh.stiffness_of(batch, record), refresh.poses.quads);
-    let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
-    if let Some(rows) = angle {
-        rows.solve(pass, &stiffness.limits, &mut pair, faults);
-    }
-    let (e_a, e_b) = ratios_of::<L, N>(batch, pass, quads);
-    let vr = relative_velocity::<L, N>(e_a, e_b, &pair, faults);
-    let d = [
-        accumulate::<L, N>(batch, 0, vr[0], pass, &stiffness.points, faults),
-        accumulate::<L, N>(batch, 1, vr[1], pass, &stiffness.points, faults),
-    ];
-    pair.apply_at_point(batch, d, faults);
-    pair.store(bodies, &batch.changed);
 }
 
 /// The lever ratios with which a pass measures velocity.

@@ -7,6 +7,7 @@ use std::vec::Vec;
 use super::super::super::batches::Batches;
 use super::super::super::body::SolverBody;
 use super::super::super::body_list::GROUND;
+use super::super::super::context::{Bias, Relax};
 use super::super::super::limits::Faults;
 use super::super::super::point_block::PointBlock;
 use super::super::super::row::{Lever, MassFractions, Row};
@@ -155,10 +156,10 @@ impl Setting {
             part.expire();
             hinges.warm_start(poses, &context);
             part.warm_start(poses, &context);
-            for pass in [Pass::Bias, Pass::Relax] {
-                hinges.solve(pass, poses, &context);
-                part.solve(pass, poses, &context);
-            }
+            hinges.solve(Bias, poses, &context);
+            part.solve(Bias, poses, &context);
+            hinges.solve(Relax, poses, &context);
+            part.solve(Relax, poses, &context);
         }
         faults
     }
@@ -169,8 +170,8 @@ impl Setting {
         let Setting { hinges, part, bodies, quads, body_rotations, .. } = self;
         let context = StepContext::new(Machine::default(), &tuning, bodies, &mut faults);
         let poses = Poses { quads, body_rotations };
-        hinges.solve(Pass::Relax, poses, &context);
-        part.solve(Pass::Relax, poses, &context);
+        hinges.solve(Relax, poses, &context);
+        part.solve(Relax, poses, &context);
         faults
     }
 

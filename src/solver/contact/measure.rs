@@ -1,35 +1,15 @@
-//! Relax: removes the velocity that pushing out overlap has left, after displacements have been integrated.
-//!
-//! The relax pass also measures the separations at the new positions, `s = s0 + J dx`. The bias pass of the next
-//! sub-step reuses them, because no body moves in between.
+//! Measures separations at the current positions, `s = s0 + J dx`.
 
 use core::cell::Cell;
 
 use super::super::batches::{BatchParts, Operation};
 use super::super::body::SolverBody;
-use super::super::context::Pass;
 use super::super::pair::BodyPairW;
+use super::Contacts;
 use super::batch::Batch;
+use super::jacobian::along;
 use super::overflow_policy::{OverflowPolicy, Saturating};
-use super::pair::along;
-use super::solve::{self, PointOrder};
-use super::{Constants, Contacts};
 use crate::simd::Lanes;
-
-/// One iteration without bias. Measures the separations first.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct Relax {
-    pub(in crate::solver) order: PointOrder,
-    pub(in crate::solver) constants: Constants,
-}
-
-impl Operation<Contacts> for Relax {
-    #[inline(always)]
-    fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
-        let settings = solve::Settings { pass: Pass::Relax, order: self.order, constants: &self.constants };
-        solve::solve::<L, N>(parts, settings);
-    }
-}
 
 /// Measures the separations, for settings without a relax pass.
 #[derive(Clone, Copy, Debug)]
