@@ -35,8 +35,8 @@ fn floor(tiles: bool, slope: Angle, world: &mut World) {
     }
 }
 
-/// A shape that rests on a floor, up to 5 mm deep in it as bodies do, is cast along the floor: the cast passes the
-/// seams, and stops at a ledge of 1 cm.
+/// A shape that rests on a floor, up to 5 mm deep in it as bodies do, or 0.3 mm above it, is cast along the floor: the
+/// cast passes the seams, and stops at a ledge of 1 cm.
 #[test]
 fn casts_along_a_floor_pass_its_seams_and_stop_at_a_ledge() {
     let mut rng = Rng::new(1);
@@ -46,7 +46,7 @@ fn casts_along_a_floor_pass_its_seams_and_stop_at_a_ledge() {
         let turn = Rot::from_angle(slope);
         let mut world = World::default();
         floor(case % 2 == 0, slope, &mut world);
-        let (height, to) = (rng.range(fx!(-0.005), fx!(0.0001)), rng.range(fx!(-4), fx!(4)));
+        let (height, to) = (rng.range(fx!(-0.005), fx!(0.0003)), rng.range(fx!(-4), fx!(4)));
         let start = turn.apply_wide(at(rng.range(fx!(-3), fx!(3)), fx!(0.5) + height));
         let probe = Probe::new(shapes()[case % 4], start).expect("valid").turned(slope);
         let way = turn.apply_wide(at(to, fx!(0)));
@@ -70,6 +70,60 @@ fn casts_along_a_floor_pass_its_seams_and_stop_at_a_ledge() {
         }
     }
     assert!(ledges > 1000);
+}
+
+/// A cast between a floor and a ceiling that both touch the shape passes the seams of both, and stops at a ledge of
+/// 2 mm.
+#[test]
+fn casts_between_a_floor_and_a_ceiling_pass_the_seams_of_both() {
+    let mut rng = Rng::new(2);
+    for case in 0..sweep::size(4000, 400) {
+        let mut world = World::default();
+        floor(case % 2 == 0, Angle::ZERO, &mut world);
+        let gap = rng.range(fx!(-0.001), fx!(0.0006));
+        for i in -20..20 {
+            let place = at(Fx::from_num(i) / 2 + fx!(0.1), fx!(1.25) + gap);
+            let tile = ShapeDef::new(Polygon::rectangle(fx!(0.25), fx!(0.25)).expect("valid"));
+            world.spawn(&BodyDef::fixed().position(place), &[tile]).expect("valid");
+        }
+        let start = at(rng.range(fx!(-3), fx!(3)), fx!(0.5) + gap / 2);
+        let probe = Probe::new(Polygon::square(fx!(0.5)).expect("valid"), start).expect("valid");
+        let way = at(if case % 4 < 2 { fx!(4) } else { fx!(-4) }, fx!(0));
+        assert_eq!(world.cast_shape(&probe, way, QueryFilter::default()), None, "{case}: {gap}");
+        assert_eq!(world.cast_turning(&probe, way, fx!(0), QueryFilter::default()), None, "{case}: {gap}");
+
+        let side = if way.x > 0 { fx!(1) } else { fx!(-1) };
+        let ledge = ShapeDef::new(Polygon::rectangle(fx!(0.5), fx!(0.502)).expect("valid"));
+        let place = at(fx_mul(fx!(8.5), side), fx!(-0.5));
+        world.spawn(&BodyDef::fixed().position(place), &[ledge]).expect("valid");
+        let hit = world.cast_shape(&probe, way.scale(fx!(3)), QueryFilter::default()).expect("a ledge");
+        let away = fx!(8) - fx_mul(start.x + hit.travelled.x, side);
+        assert!(away > fx!(0.5) && away < fx!(0.501), "{case}: {gap} {hit:?}");
+    }
+}
+
+/// Every box of a pile that has fallen asleep can be cast to either side. The boxes are tilted by microradians.
+#[test]
+fn casts_of_the_boxes_of_a_pile_pass_the_boxes_above_and_below() {
+    let mut world = World::default();
+    floor(false, Angle::ZERO, &mut world);
+    let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));
+    let boxes: Vec<_> = (0..10)
+        .map(|row| {
+            let place = at(fx!(-2), Fx::from_num(row) + fx!(0.5));
+            world.spawn(&BodyDef::dynamic().position(place), &[square]).expect("valid")
+        })
+        .collect();
+    (0..600).for_each(|_| world.step());
+    for &body in &boxes {
+        assert!(world.body(body).expect("there").is_asleep());
+        let probe = world.probe_of(world.shapes_of(body)[0]).expect("there");
+        let filter = QueryFilter::default().except(body);
+        for to in [fx!(-4), fx!(4)] {
+            assert_eq!(world.cast_shape(&probe, at(to, fx!(0)), filter), None, "{body:?}");
+            assert_eq!(world.cast_turning(&probe, at(to, fx!(0)), fx!(0), filter), None, "{body:?}");
+        }
+    }
 }
 
 #[test]

@@ -5,7 +5,8 @@
 //! second cast, which starts where the shape just rests on the surfaces that it touches. An obstacle that the second
 //! cast does not meet is a seam.
 //!
-//! Only contacts that the cast leaves or slides along lift the shape. A contact that it moves into stops it.
+//! Only contacts that the cast leaves or slides along lift the shape. A contact that it moves into stops it. A shape
+//! between a floor and a ceiling cannot leave both, so that there is also a cast for each surface by itself.
 
 use smallvec::SmallVec;
 
@@ -22,47 +23,65 @@ use crate::world::World;
 /// Tolerances of the position in which a shape rests on the surfaces that it touches.
 #[derive(Clone, Copy)]
 pub(super) struct Rest {
+    /// Largest distance in metres of a surface that the shape touches: where a cast along the surface may stop.
+    touching: Fx,
     /// Distance in metres from the surfaces at which the second cast starts. Ledges of up to 5 µm, the difference to
     /// the gap of the first cast, count as seams: tiles of a ramp are flush to within a micrometre.
     gap: Fx,
-    /// Largest additional distance in metres by which the cast may approach a surface that it slides along.
-    grazing_max: Fx,
+    /// Largest distance in metres by which the cast may approach a surface that it slides along.
+    approach_max: Fx,
 }
 
 impl Rest {
-    pub(super) const CAST: Rest = Rest { gap: fx!(0.000105), grazing_max: fx!(0.00005) };
+    pub(super) const CAST: Rest =
+        Rest { touching: Self::SKIN_MAX, gap: fx!(0.000105), approach_max: fx!(0.001) };
 
     /// For casts that turn, whose gap is up to 0.15 mm.
-    pub(super) const TURNING: Rest = Rest { gap: fx!(0.000155), grazing_max: fx!(0.00005) };
+    pub(super) const TURNING: Rest =
+        Rest { touching: fx!(0.000155), gap: fx!(0.000155), approach_max: fx!(0.001) };
 
     /// For characters: no approach, because each move would bring them closer to the surface.
-    pub(super) const CHARACTER: Rest = Rest { gap: fx!(0.000105), grazing_max: Fx::ZERO };
+    pub(super) const CHARACTER: Rest =
+        Rest { touching: Self::SKIN_MAX, gap: fx!(0.000105), approach_max: Fx::ZERO };
 
-    /// Distance in metres by which a cast along a translation may approach a surface that it slides along: 1 µm per
-    /// metre, because directions and the sides of rotated tiles are parallel to within 0.5 µm per metre.
-    fn grazing(self, translation: Vec2<Fx>) -> Fx {
-        (translation.length() >> 20_u32).min(self.grazing_max)
+    const SKIN_MAX: Fx = SKIN.saturating_add(SKIN_TOLERANCE);
+
+    /// Distance in metres by which a cast along a translation approaches a surface, or `None` if it moves into the
+    /// surface. A cast slides along a surface that it approaches by at most half a millimetre per metre: the bodies of
+    /// a pile are parallel to within 0.1 mm per metre. The distance includes 1 µm per metre for the next tile, because
+    /// the sides of rotated tiles are parallel to within 0.5 µm per metre.
+    fn approach(self, normal: Vec2<Unit>, translation: Vec2<Fx>) -> Option<Fx> {
+        let length = translation.length();
+        let approach = normal.widen().dot(translation).saturating_neg().max(Fx::ZERO);
+        let limit = (length >> 11_u32).min(self.approach_max);
+        let slides = approach <= limit || !goes_against(normal, translation);
+        slides.then(|| approach.min(limit) + (length >> 20_u32).min(self.approach_max))
     }
 }
 
 /// Depth in metres up to which an overlap counts as a contact.
 const DEPTH_MAX: Fx = fx!(0.02);
 
-/// The second cast, from the position where the shape just rests on the surfaces that it touches.
+/// The second casts, from the positions where the shape just rests on the surfaces that it touches.
 pub(super) struct Resting {
-    /// The shape, relative to the position of the probe.
-    shape: SupportShape,
-    /// Displacement in metres from the start of the cast to where the shape rests.
-    pub(super) lift: Vec2<Fx>,
+    /// The shape at the start of the first cast, relative to the position of the probe.
+    moving: SupportShape,
+    /// Displacements in metres from the start of the first cast to where the shape rests on all surfaces, and to where
+    /// it rests on each of them.
+    pub(super) lifts: SmallVec<[Vec2<Fx>; 4]>,
     pub(super) translation: Vec2<Fx>,
 }
 
 impl Resting {
-    /// Confirms a hit on a shape; `None` if the hit is a seam. Takes the normal from the second cast, because the first
-    /// one may have met a corner below the surface.
+    /// Confirms a hit on a shape; `None` if the hit is a seam. Takes the normal from the first of the second casts,
+    /// because the first cast may have met a corner below the surface.
     pub(super) fn confirm(&self, other: &SupportShape, hit: ShapeHit) -> Option<ShapeHit> {
-        let confirmed = cast_shape(other, &self.shape, self.translation)?;
-        Some(ShapeHit { normal: confirmed.normal, point: confirmed.point, ..hit })
+        let mut confirmed = None;
+        for &lift in &self.lifts {
+            let again = cast_shape(other, &self.moving.moved(to_grid(lift)), self.translation)?;
+            confirmed.get_or_insert(again);
+        }
+        confirmed.map(|ShapeHit { normal, point, .. }| ShapeHit { normal, point, ..hit })
     }
 }
 
@@ -81,7 +100,6 @@ impl World {
         let origin = probe.position();
         let moving = SupportShape::of(&posed, origin);
         let middle = origin + moving.middle();
-        let grazing = rest.grazing(translation);
         let mut planes: SmallVec<[MoverPlane; 8]> = SmallVec::new();
         self.each_overlapping(posed.bounds.expanded(SKIN + SKIN), filter, |shape, other| {
             if !other.is_solid_from(middle) {
@@ -89,13 +107,14 @@ impl World {
             }
             let other = SupportShape::of(other, origin);
             let start = distance(&other, &moving);
-            let touches = (-DEPTH_MAX..=SKIN + SKIN_TOLERANCE).contains(&start.distance);
-            if touches
-                && (!goes_against(start.normal, translation)
-                    || start.normal.widen().dot(translation) >= -grazing)
+            let touches = (-DEPTH_MAX..=rest.touching).contains(&start.distance);
+            if !touches {
+                return;
+            }
+            if let Some(approach) = rest.approach(start.normal, translation)
                 && accept(shape, start.normal, [&other, &moving])
             {
-                let separation = start.distance - rest.gap - grazing;
+                let separation = start.distance - rest.gap - approach;
                 planes.push(self.mover_plane(shape, start.normal, separation, origin));
             }
         });
@@ -105,10 +124,11 @@ impl World {
         // From the resting position an obstacle may be further away, so the cast is longer by twice the displacement.
         let forwards = translation.normalized().unwrap_or(Vec2::ZERO).widen();
         let beyond = forwards.scale(out.length() * 2);
-        (!planes.is_empty()).then(|| Resting {
-            shape: moving.moved(to_grid(out)),
-            lift: out,
-            translation: translation + beyond,
-        })
+        let overlapping = planes.iter().filter(|plane| plane.separation < Fx::ZERO);
+        let off = |plane: &MoverPlane| plane.normal.widen().scale(-plane.separation);
+        let others =
+            if planes.len() > 1 { overlapping.map(off).collect() } else { SmallVec::<[_; 4]>::new() };
+        let lifts = core::iter::once(out).chain(others).collect();
+        (!planes.is_empty()).then(|| Resting { moving, lifts, translation: translation + beyond })
     }
 }

@@ -95,9 +95,11 @@ impl Turning {
             }
         }
         let fraction = self.touch(&a, other.centre, &self.sweep)?;
-        if let Some(Resting { lift, translation, .. }) = resting {
-            let start = self.sweep.start + *lift;
-            self.touch(&a, other.centre, &Sweep { start, end: start + *translation, ..self.sweep })?;
+        if let Some(Resting { lifts, translation, .. }) = resting {
+            for &lift in lifts {
+                let start = self.sweep.start + lift;
+                self.touch(&a, other.centre, &Sweep { start, end: start + *translation, ..self.sweep })?;
+            }
         }
         Some(fraction)
     }
