@@ -57,6 +57,28 @@ fn a_column_of_a_hundred_boxes_stands() {
     });
 }
 
+/// The outlines of rounded boxes are apart without their radii, so that each tick chooses the reference face anew.
+#[test]
+fn a_column_of_a_hundred_rounded_boxes_stands() {
+    let radii = [fx!(0.02), fx!(0.05), fx!(0.1)].into_iter();
+    let cases = radii.flat_map(|radius| [30, 60, 90, 120, 240].map(|rate| (radius, rate)));
+    let cases = cases.flat_map(|case| [60, 80, 100].map(|count| (case, count)));
+    sweep::for_each(sweep::sample(cases, 4), |((radius, rate), count): ((Fx, u32), i32)| {
+        let mut world = world_at(rate);
+        let half = fx!(0.5) - radius;
+        let rounded = Polygon::rectangle(half, half).and_then(|polygon| polygon.rounded(radius));
+        let rounded = ShapeDef::new(rounded.expect("valid"));
+        for i in 0..count {
+            let place = Vec2::new(fx!(0), Fx::from(i) + fx!(0.5));
+            world.spawn(&BodyDef::dynamic().position(place), &[rounded]).expect("valid");
+        }
+        // The stiffness of contacts depends on the tick rate.
+        let give = if rate < 60 { fx!(0.0015) } else { fx!(0.00036) };
+        let sink = give * i64::from(count * count) + fx!(0.02);
+        expect_stands(&format!("{count} boxes of radius {radius} at {rate} Hz"), world, fx!(0.05), sink);
+    });
+}
+
 #[test]
 fn plates_on_discs_stand() {
     for (count, rate) in [(5, 60), (15, 60), (15, 120)] {

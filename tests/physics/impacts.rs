@@ -186,6 +186,42 @@ fn a_closed_room_keeps_its_energy() {
     });
 }
 
+/// Several fast bodies in a closed room, in which bodies often hit walls and each other in the same sub-step.
+#[test]
+fn several_bodies_in_a_closed_room_keep_its_energy() {
+    let shapes = [rectangle(fx!(0.5), fx!(0.5)), rectangle(fx!(1), fx!(0.1)), circle(fx!(0.5))];
+    let cases = [30u32, 60, 120].into_iter().flat_map(|rate| [2, 3, 4, 5, 8].map(|count| (rate, count)));
+    let cases = cases.flat_map(|case| [fx!(20), fx!(30), fx!(60)].map(|speed| (case, speed)));
+    let cases = cases.flat_map(|(case, speed)| (0..3).map(move |shape| (case, speed, shape)));
+    let cases = cases.flat_map(|case| (0..6).map(move |start| (case, start)));
+    type Case = (((u32, i32), Fx, usize), i32);
+    sweep::for_each(sweep::sample(cases, 11), |(((rate, count), speed, shape), start): Case| {
+        let mut world = world_with(rate, fx!(0));
+        let friction = if start % 2 == 0 { fx!(0) } else { fx!(0.6) };
+        let elastic =
+            |shape: ShapeDef| shape.friction(friction).restitution(fx!(1)).restitution_threshold(fx!(0));
+        for (x, y, half_width, half_height) in [(0, -8, 9, 1), (0, 8, 9, 1), (-8, 0, 1, 9), (8, 0, 1, 9)] {
+            let def = BodyDef::fixed().position((Fx::from(x), Fx::from(y)));
+            let wall = rectangle(Fx::from(half_width), Fx::from(half_height));
+            world.spawn(&def, &[elastic(wall)]).expect("valid");
+        }
+        for i in 0..count {
+            let direction = Rot::from_angle(Angle::from_radians(Fx::from(i) * fx!(2.4) + Fx::from(start)));
+            let place = Vec2::new(Fx::from(i % 5) * fx!(2.5) - fx!(5), Fx::from(i / 5) * fx!(2.5) - fx!(5));
+            let def = BodyDef::dynamic().position(place).angular_velocity(Fx::from(3 + i));
+            let def = def.velocity(direction.apply_wide(Vec2::new(speed, fx!(0))));
+            world.spawn(&def, &[elastic(shapes[shape])]).expect("valid");
+        }
+        let before = kinetic(&world);
+        for tick in 0..rate * 30 {
+            world.step();
+            let ratio = fx_div(kinetic(&world), before).expect("moving");
+            let case = format!("{count} of shape {shape} at {speed} m/s, {rate} Hz, start {start}");
+            assert!(ratio <= fx!(1.003), "{case}, tick {tick}: {ratio}");
+        }
+    });
+}
+
 /// A ball of restitution 1 that is shot into a corner with friction has no more energy afterwards.
 #[test]
 fn a_corner_with_friction_adds_no_energy() {

@@ -5,6 +5,7 @@
 mod kernel;
 #[cfg(test)]
 mod tests;
+mod vector;
 
 use alloc::vec::Vec;
 use core::ops::Deref;

@@ -197,7 +197,7 @@ impl Facing {
     /// Contact of the nearest features of separate outlines, if the chain allows their normal.
     fn collide_apart(&self, b: &Hull, (face_a, face_b): (Face, Face), margin: Length) -> Manifold {
         let a = &self.hull;
-        let found = if face_b.separation > face_a.separation {
+        let found = if hull_hull::is_reference_of_b(a, b, face_a, face_b, true) {
             hull_hull::clip(b, a, Vec2::ZERO, face_b, true, margin).swapped()
         } else if face_a.edge == 0 {
             hull_hull::clip(a, b, Vec2::ZERO, face_a, true, margin)

@@ -149,7 +149,8 @@ impl Operation<Contacts> for PredictImpacts {
             }
             fast = L::either(fast, L::both(bounces, L::greater(threshold, v)));
             let gap = L::greater(L::load(&point.separation), L::splat(0));
-            let is_late = L::both(elastic, L::both(gap, L::greater(v, L::splat(-1))));
+            let parts = L::select(gap, L::splat(0), L::load(&extras.restitution_threshold));
+            let is_late = L::both(elastic, L::greater(v, L::sub(parts, L::splat(1))));
             L::store(L::to_int(is_late), &mut extras.impacts.late[i]);
             late = L::either(late, is_late);
         }

@@ -165,7 +165,9 @@ fn share_without_gain<const N: usize>(
         none += inverse * at(old) * (at(before) + approach);
         all += inverse * at(new) * (at(after) + approach);
     }
-    if all <= 0 || extras.restitution.0[lane] > Unit::ONE.to_bits() {
+    // Without a rebound, the contact adds energy if the rebound of another contact has driven its shapes apart. A
+    // smaller impulse then adds less.
+    if all <= none.max(0) || extras.restitution.0[lane] > Unit::ONE.to_bits() {
         Unit::ONE.to_bits()
     } else if none >= 0 {
         0

@@ -10,8 +10,9 @@
 //!
 //! is the separation of the other box from the face or from the opposite face, whichever faces the other box.
 
+use super::vector::{Vector, dot, minus, negated, plus, select_vector};
 use super::{Batch, Manifolds, Turned};
-use crate::collision::narrow_phase::hull_hull::{CLIP_BITS, FACE_BITS, FINER, TOLERANCE};
+use crate::collision::narrow_phase::hull_hull::{CLIP_BITS, FACE_BITS, FINER, PARALLEL_WIDE, TOLERANCE};
 use crate::math::{Step, Unit};
 use crate::simd::{Ints, Kernel, Lanes, WIDTH, shift};
 
@@ -25,9 +26,6 @@ pub(super) struct Collide<'a> {
     /// Faces of all boxes, by slot.
     pub(super) boxes: &'a [Turned],
 }
-
-/// A position or direction in each lane.
-type Vector<T> = [T; 2];
 
 /// The first two normals and vertices of a box.
 #[derive(Clone, Copy)]
@@ -98,10 +96,13 @@ fn collide<L: Lanes<WIDTH>>(batch: &mut Batch, boxes: &[Turned]) {
     let further = L::max_wide(separation_a, separation_b);
     let is_far = L::greater_wide(further, reach);
     let zero = L::splat(0);
-    // Boxes that are apart need the true best face, which is next to the nearest corner.
+    // Boxes that are apart need the true best face, which is next to the nearest corner, unless they are rounded and
+    // the faces are parallel.
     let (tolerance, as_product) = (L::splat(TOLERANCE.to_bits()), L::splat(1 << TO_STEP));
     let is_apart = L::greater_wide(further, L::mul(tolerance, as_product));
-    let preference = L::mul(L::select(is_apart, L::splat(0), tolerance), as_product);
+    let is_flush = L::both(L::greater(radii, zero), are_parallel::<L>(&a, face_a, &b, face_b));
+    let of_apart = L::select(is_flush, tolerance, zero);
+    let preference = L::mul(L::select(is_apart, of_apart, tolerance), as_product);
     let swapped = L::greater_wide(separation_b, L::add_wide(separation_a, preference));
 
     let reference_face = chosen::<L>(swapped, face_b, face_a);
@@ -242,6 +243,20 @@ fn further_of_opposite<L: Lanes<WIDTH>>(
     (L::greater_wide(nothing::<L>(), towards), separation)
 }
 
+/// Whether two faces are parallel.
+#[inline(always)]
+fn are_parallel<L: Lanes<WIDTH>>(
+    a: &Corners<L::Int>,
+    face_a: Choice<L::Mask>,
+    b: &Corners<L::Int>,
+    face_b: Choice<L::Mask>,
+) -> L::Mask {
+    let n_a = select_vector::<L>(face_a.second, a.n[1], a.n[0]);
+    let n_b = select_vector::<L>(face_b.second, b.n[1], b.n[0]);
+    let cosine = L::abs_wide(dot::<L>(n_a, n_b));
+    L::greater_wide(cosine, L::load_wide(&[PARALLEL_WIDE; WIDTH]))
+}
+
 /// Edge whose normal is most opposed to `n`. Ties go to edge 0 or 2.
 #[inline(always)]
 fn most_opposed<L: Lanes<WIDTH>>(of: &Corners<L::Int>, n: Vector<L::Int>) -> Choice<L::Mask> {
@@ -351,31 +366,6 @@ fn as_length<L: Lanes<WIDTH>>(step: L::Int) -> L::Int {
 #[inline(always)]
 fn nothing<L: Lanes<WIDTH>>() -> L::Wide {
     L::load_wide(&[0; WIDTH])
-}
-
-#[inline(always)]
-fn dot<L: Lanes<WIDTH>>(a: Vector<L::Int>, b: Vector<L::Int>) -> L::Wide {
-    L::add_wide(L::mul(a[0], b[0]), L::mul(a[1], b[1]))
-}
-
-#[inline(always)]
-fn plus<L: Lanes<WIDTH>>(a: Vector<L::Int>, b: Vector<L::Int>) -> Vector<L::Int> {
-    [L::add(a[0], b[0]), L::add(a[1], b[1])]
-}
-
-#[inline(always)]
-fn minus<L: Lanes<WIDTH>>(a: Vector<L::Int>, b: Vector<L::Int>) -> Vector<L::Int> {
-    [L::sub(a[0], b[0]), L::sub(a[1], b[1])]
-}
-
-#[inline(always)]
-fn negated<L: Lanes<WIDTH>>(v: Vector<L::Int>) -> Vector<L::Int> {
-    minus::<L>([L::splat(0); 2], v)
-}
-
-#[inline(always)]
-fn select_vector<L: Lanes<WIDTH>>(mask: L::Mask, yes: Vector<L::Int>, no: Vector<L::Int>) -> Vector<L::Int> {
-    [L::select(mask, yes[0], no[0]), L::select(mask, yes[1], no[1])]
 }
 
 #[inline(always)]
