@@ -8,7 +8,7 @@ use super::options::{CheckOptions, Phases, Variant};
 use super::replica::{Now, Replica};
 use crate::hash::StateHash;
 use crate::lockstep::{Game, SetupError};
-use crate::replay::{LimitKind, Verdict};
+use crate::replay::play_within;
 use crate::world::PhaseDigest;
 
 /// Result of a check that found no fault.
@@ -114,8 +114,13 @@ impl<'s, G: Game> Checker<'s, G> {
     /// The first [`Finding`].
     pub fn step(&mut self, inputs: &[G::Input]) -> Result<(), Box<Finding>> {
         self.begin()?;
-        self.check_work(inputs)?;
-        self.phases = step(&mut self.straight, inputs, self.options.phases);
+        let Checker { options, straight, work, .. } = self;
+        let played = play_within(straight, inputs, &options.limits, work, |game, inputs| {
+            step(game, inputs, options.phases)
+        });
+        self.phases = played.map_err(|verdict| {
+            Box::new(Finding::new(Variant::Recorded, Fault::Verdict(verdict), self.tick))
+        })?;
         self.hash = self.straight.state_hash();
         self.tick += 1;
         let now = Now {
@@ -167,23 +172,6 @@ impl<'s, G: Game> Checker<'s, G> {
         }
         self.replicas = replicas;
         Ok(())
-    }
-
-    fn check_work(&mut self, inputs: &[G::Input]) -> Result<(), Box<Finding>> {
-        let limits = &self.options.limits;
-        let work = self.straight.work(inputs);
-        self.work = self.work.saturating_add(work);
-        let spent = [
-            (LimitKind::TickWork, work, limits.tick_work),
-            (LimitKind::TotalWork, self.work, limits.total_work),
-        ];
-        match spent.into_iter().find(|(_, value, max)| value > max) {
-            Some((limit, value, max)) => {
-                let fault = Fault::Verdict(Verdict::LimitExceeded { limit, value, max });
-                Err(Box::new(Finding::new(Variant::Recorded, fault, self.tick)))
-            }
-            None => Ok(()),
-        }
     }
 }
 

@@ -66,7 +66,7 @@ pub fn check<G: Game>(
     for inputs in inputs {
         log.push(inputs)?;
     }
-    check_log(setup, &log, options)
+    minimise::run(setup, &log, options).map_err(|finding| failed(setup, &log, *finding, options))
 }
 
 /// Checks a game with the setup and the inputs of a replay, from [`CheckOptions::from`] to [`CheckOptions::to`]. The
@@ -77,18 +77,12 @@ pub fn check<G: Game>(
 /// allow.
 pub fn check_replay<G: Game>(file: &[u8], options: &CheckOptions) -> Result<Checked, CheckError> {
     let Logged { setup, log } = log::read::<G>(file, &options.limits, options.to)?;
-    match check_log(&setup, &log, options) {
-        Err(CheckError::Failed(failure)) => Err(match failure.finding.fault {
-            Fault::Verdict(verdict @ Verdict::LimitExceeded { .. }) => CheckError::Replay(verdict),
-            _ => CheckError::Failed(failure),
-        }),
-        result => result,
-    }
+    minimise::run(&setup, &log, options).map_err(|finding| match finding.fault {
+        Fault::Verdict(verdict @ Verdict::LimitExceeded { .. }) => CheckError::Replay(verdict),
+        _ => failed(&setup, &log, *finding, options),
+    })
 }
 
-fn check_log<G: Game>(setup: &G::Setup, log: &Log<G>, options: &CheckOptions) -> Result<Checked, CheckError> {
-    match minimise::run(setup, log, options) {
-        Ok(checked) => Ok(checked),
-        Err(finding) => Err(CheckError::Failed(Box::new(minimise::minimise(setup, log, *finding, options)))),
-    }
+fn failed<G: Game>(setup: &G::Setup, log: &Log<G>, finding: Finding, options: &CheckOptions) -> CheckError {
+    CheckError::Failed(Box::new(minimise::minimise(setup, log, finding, options)))
 }

@@ -28,6 +28,7 @@ mod flaw;
 mod format;
 mod header;
 mod limits;
+mod metered;
 mod raw_replay;
 mod reader;
 mod recorder;
@@ -46,6 +47,7 @@ pub use format::{
 };
 pub use header::Header;
 pub use limits::{LimitKind, Limits};
+pub(crate) use metered::play_within;
 pub use raw_replay::RawReplay;
 pub use reader::{InputBlock, Part, ReadError, Reader};
 pub use recorder::{CHECKPOINT_INTERVAL, RecordError, Recorder};

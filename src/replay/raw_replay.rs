@@ -3,7 +3,8 @@
 use alloc::vec::Vec;
 
 use super::flaw::Flaw;
-use super::limits::{LimitKind, Limits};
+use super::limits::Limits;
+use super::metered::play_within;
 use super::tick_inputs::TickInputs;
 use super::verdict::Verdict;
 use super::verified_replay::{Ending, Step, check_bodies, check_rules, decode_setup, scan, start};
@@ -141,21 +142,8 @@ impl<'a, G: Game> RawReplay<'a, G> {
 
     /// Plays the tick whose inputs were read, with a custom `step` function.
     pub(crate) fn play_with<T>(&mut self, step: impl FnOnce(&mut G, &[G::Input]) -> T) -> Result<T, Verdict> {
-        let work = self.game.work(&self.inputs);
-        LimitKind::TickWork.check(work, self.limits.tick_work)?;
-        let before = self.position.work;
-        LimitKind::TotalWork.check(before.saturating_add(work), self.limits.total_work)?;
-        let room = (self.limits.tick_work - work).min(self.limits.total_work - before - work);
-        if let Some(world) = self.game.world_mut() {
-            world.start_work_meter(room);
-        }
-        let done = step(&mut self.game, &self.inputs);
-        // A world whose work budget is exhausted has a wrong state, so this check precedes any use of the state.
-        let metered = self.game.world_mut().map_or(0, |world| world.metered_work());
-        let work = work.saturating_add(metered);
-        self.position.work = before.saturating_add(work);
-        LimitKind::TickWork.check(work, self.limits.tick_work)?;
-        LimitKind::TotalWork.check(self.position.work, self.limits.total_work)?;
+        let RawReplay { game, inputs, limits, position, .. } = self;
+        let done = play_within(game, inputs, limits, &mut position.work, step)?;
         self.position.tick += 1;
         check_bodies(&mut self.game, &self.limits)?;
         Ok(done)

@@ -69,6 +69,7 @@ fn play<G: Game>(
         limits,
         effort,
         found,
+        side,
         raw,
         previous: None,
         wrong: None,
@@ -138,6 +139,8 @@ struct Beside<'a, 'k, G: Game> {
     limits: &'a Limits,
     effort: Effort,
     found: &'a mut Comparison,
+    /// The side whose replay is played.
+    side: Side,
     raw: RawReplay<'k, G>,
     /// State of the rerun before the current tick.
     previous: Option<G::Save>,
@@ -163,6 +166,10 @@ impl<G: Game> Beside<'_, '_, G> {
             match self.raw.step() {
                 Ok(Step::Ticked) => {}
                 Ok(Step::Ended) => break,
+                // Without a difference, the result would be that of equal runs.
+                Err(verdict) if self.found.first_different.is_none() && self.wrong.is_none() => {
+                    return Err(CompareError::Replay { side: self.side, verdict });
+                }
                 Err(verdict) => {
                     let tick = self.raw.tick();
                     self.found.notes.push(format!("the rerun ends after tick {tick}: {verdict}"));
@@ -257,8 +264,7 @@ impl<G: Game> Beside<'_, '_, G> {
     }
 
     fn conclude(self) -> Result<(), CompareError> {
-        let Beside { known, limits, effort, found, raw, wrong, states, presumed, obstacle, previous: _ } =
-            self;
+        let Beside { known, limits, effort, found, raw, wrong, states, presumed, obstacle, .. } = self;
         found.notes.extend(obstacle);
         let trajectories = &found.trajectories;
         let came_later = |states: &States<G::Save>| {

@@ -1,8 +1,10 @@
 //! The sandbox passes the check.
 
-use lockstep2d::check::{CheckOptions, Phases, Variant, check, random_inputs};
+use lockstep2d::check::{CheckError, CheckOptions, Phases, Variant, check, check_replay, random_inputs};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::math::Rng;
+use lockstep2d::replay::{LimitKind, Limits, Step, Verdict, VerifiedReplay, verify};
+use lockstep2d::report::{CompareError, Evidence, bisect};
 
 /// Largest number of shapes of a scene in this test: all variants together take as long as twenty runs.
 const SHAPES_MAX: usize = 300;
@@ -38,5 +40,39 @@ fn random_commands_pass() {
     for _ in 0..10 {
         let inputs = random_inputs::<Sandbox>(1, 60, &mut rng);
         check::<Sandbox>(&SandboxSetup::default(), &inputs, &CheckOptions::default()).unwrap();
+    }
+}
+
+/// Work that the world spends within a tick counts for checks and comparisons as it does for verification.
+#[test]
+fn the_work_within_a_tick_is_limited_for_checks_and_comparisons() {
+    let file = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../replays/game.replay")).unwrap();
+    let mut replay = VerifiedReplay::<Sandbox>::open(&file, &Limits::default()).unwrap();
+    // The largest work of a tick, and the part of it that is known before the tick.
+    let (mut largest, mut known) = (0, 0);
+    loop {
+        let before = replay.work();
+        let world_work = replay.game().work(&[vec![]]);
+        if replay.step().unwrap() == Step::Ended {
+            break;
+        }
+        if replay.work() - before > largest {
+            (largest, known) = (replay.work() - before, world_work);
+        }
+    }
+    assert!(largest > known, "expected work within a tick: {known} of {largest} units");
+    let limits = Limits { tick_work: largest - 1, ..Limits::default() };
+    let verdict = verify::<Sandbox>(&file, &limits);
+    assert!(matches!(verdict, Verdict::LimitExceeded { limit: LimitKind::TickWork, .. }), "{verdict}");
+    let options = CheckOptions { limits: limits.clone(), ..CheckOptions::default() };
+    let options = options.only(&[Variant::Again]);
+    match check_replay::<Sandbox>(&file, &options) {
+        Err(CheckError::Replay(found)) => assert_eq!(found, verdict),
+        other => panic!("{other:?}"),
+    }
+    let evidence = Evidence::Replay(file);
+    match bisect::<Sandbox>(&evidence, None, &limits) {
+        Err(CompareError::Replay { verdict: found, .. }) => assert_eq!(found, verdict),
+        other => panic!("{other:?}"),
     }
 }
