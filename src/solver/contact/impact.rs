@@ -44,7 +44,8 @@ pub(super) struct Impacts<const N: usize> {
     pub(super) rebound: [Ints<N>; 2],
     /// For each point, -1 where it has pushed in the bias pass.
     touches: [Ints<N>; 2],
-    /// For each point of an elastic contact, -1 where the shapes are apart and do not approach.
+    /// For each point of an elastic contact, -1 where the shapes do not approach before contacts act: they are apart, or
+    /// separate faster than the restitution threshold.
     late: [Ints<N>; 2],
     /// The tangential velocity before contacts act.
     pub(super) slide: Ints<N>,
@@ -89,8 +90,8 @@ impl<const N: usize> Impacts<N> {
 pub(super) struct PointImpact<L: Lanes<N>, const N: usize> {
     /// `s' / h`. 0 for a point that does not hit.
     pub(super) rebound: L::Int,
-    /// Whether the point is apart and does not approach before contacts act. If the impulse of another point closes its
-    /// gap, the relax pass removes its own impulse. In the next sub-step the point approaches and may bounce.
+    /// Whether the point is elastic and does not approach before contacts act. If the impulse of another point drives it
+    /// to the surface, the relax pass removes its own impulse. In the next sub-step the point approaches and may bounce.
     pub(super) late: L::Mask,
 }
 
@@ -148,9 +149,10 @@ impl Operation<Contacts> for PredictImpacts {
                 L::store(forced, &mut extras.impacts.forced[i]);
             }
             fast = L::either(fast, L::both(bounces, L::greater(threshold, v)));
+            // Shapes at rest on each other separate at less than the threshold for single sub-steps.
             let gap = L::greater(L::load(&point.separation), L::splat(0));
-            let parts = L::select(gap, L::splat(0), L::load(&extras.restitution_threshold));
-            let is_late = L::both(elastic, L::greater(v, L::sub(parts, L::splat(1))));
+            let least = L::select(gap, L::splat(0), L::load(&extras.restitution_threshold));
+            let is_late = L::both(elastic, L::greater(v, L::sub(least, L::splat(1))));
             L::store(L::to_int(is_late), &mut extras.impacts.late[i]);
             late = L::either(late, is_late);
         }
