@@ -63,6 +63,16 @@ fn with_interval(ticks: u64, interval: u32) -> Vec<u8> {
 }
 
 #[test]
+fn a_file_of_keys_has_a_limit() {
+    let folder = keys("keys-limit", &["alice"]);
+    // A sparse file.
+    fs::File::create(folder.path("keys")).unwrap().set_len(1 << 25).unwrap();
+    let file = folder.write("game.replay", &fs::read(golden("free_fall")).unwrap());
+    let refused = run(&["verify", &file, "--keys", &folder.path("keys")]);
+    assert!(refused.exit == Exit::Trouble && refused.err.contains("too large"), "{}", refused.err);
+}
+
+#[test]
 fn a_signature_holds_for_the_same_game_in_another_encoding_only() {
     let folder = keys("sign", &["alice"]);
     folder.write("a.replay", &replay(35));

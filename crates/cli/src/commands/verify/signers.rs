@@ -46,13 +46,16 @@ enum State {
     Malformed,
 }
 
+/// Largest size of the file of public keys, for some 100 000 keys.
+const KEYS_BYTES_MAX: u64 = 16 << 20;
+
 impl Signers {
     /// Reads the file of public keys.
     ///
     /// # Errors
     /// When the file cannot be read or parsed, or has fewer than `required` names.
     pub(super) fn read(path: &Path, required: usize) -> Result<Self, CommandError> {
-        let text = sign::read_text(path, u64::MAX)?;
+        let text = sign::read_text(path, KEYS_BYTES_MAX)?;
         let keys: AllowedKeys = text.parse().map_err(CommandError::line(path))?;
         let names = keys.name_count();
         if names < required {
