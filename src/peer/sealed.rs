@@ -88,7 +88,7 @@ impl Window {
     /// Whether a packet has not arrived yet. A packet older than the window counts as arrived.
     fn is_new(&self, counter: u64) -> bool {
         if counter >= self.next {
-            // The largest counter is never sent, because `next` could not exceed it.
+            // `next` could not exceed the largest counter, so that it is refused. `Sealed` never sends it.
             return counter < u64::MAX;
         }
         let (word, bit) = Window::bit(counter);

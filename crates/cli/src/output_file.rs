@@ -222,7 +222,8 @@ fn is_at(file: &File, path: &Path) -> bool {
     (open.dev(), open.ino()) == (named.dev(), named.ino())
 }
 
-/// On systems other than Unix, an open file cannot be renamed or deleted.
+/// On systems other than Unix, the standard library cannot compare the identities of files. A file that was renamed or
+/// deleted after it was opened is not detected there.
 #[cfg(not(unix))]
 fn is_at(_: &File, _: &Path) -> bool {
     true

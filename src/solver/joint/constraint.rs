@@ -203,8 +203,8 @@ impl JointSet {
         self.quads.resize(list.len(), Quad::default());
     }
 
-    /// Returns the index of a body in `bodies`, the compact copies of the properties that joints need. Adds the body if
-    /// it is missing. A far anchor of a hinge is a body of its own, without mass.
+    /// Returns the index of a body in `self.bodies`, and adds the body if it is missing. A far anchor of a hinge is a
+    /// body of its own, without mass.
     fn index_of_body(
         &mut self,
         slot: u32,

@@ -175,7 +175,7 @@ impl JointFrame {
 }
 
 impl JointFrame {
-    /// Checks the anchor for a body of a kind.
+    /// Checks the anchor for a body of the given kind.
     fn validate(&self, kind: BodyKind) -> Result<(), WorldError> {
         let most = if kind == BodyKind::Fixed { WORLD_EXTENT_MAX } else { REACH_MAX };
         let outside = |value: &Fx| !(-most..=most).contains(value);

@@ -1,5 +1,5 @@
-//! The distance joint: rows along the line from anchor to anchor, with the Jacobian
-//! `n.(v_b - v_a) + (r_b x n) w_b - (r_a x n) w_a`.
+//! The distance joint: rows along the line from anchor to anchor, with
+//! `J v = n.(v_b - v_a) + (r_b x n) w_b - (r_a x n) w_a`.
 
 use serde::{Deserialize, Serialize};
 

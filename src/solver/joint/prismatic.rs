@@ -1,10 +1,10 @@
 //! The prismatic joint: B slides along A's x axis and does not rotate relative to A.
 //!
-//! With the axis `n` fixed in A and `d` from A's anchor to B's, the rows along the axis have the Jacobian
-//! `n.(v_b - v_a) + (r_b x n) w_b - ((d + r_a) x n) w_a` (E. Catto, Box2D). Two rows hold the joint: one on the angle,
-//! and one across the axis. The row across the axis acts at the point at which its impulse does not rotate the bodies
-//! relative to each other. At B's anchor the two rows would disturb each other, and a slider with a mass ratio of 100
-//! would rotate three to ten times as far.
+//! With the axis `n` fixed in A and `d` from A's anchor to B's, the rows along the axis have
+//! `J v = n.(v_b - v_a) + (r_b x n) w_b - ((d + r_a) x n) w_a` (E. Catto, Box2D). Two rows hold the joint: one on the
+//! angle, and one across the axis. The row across the axis acts at the point at which its impulse does not rotate the
+//! bodies relative to each other. At B's anchor the two rows would disturb each other, and a slider with a mass ratio
+//! of 100 would rotate three to ten times as far.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,5 +1,6 @@
-//! The pulley: a rope over two wheels that are fixed in the world, with the Jacobian
-//! `nA.(vA + wA x rA) + ratio nB.(vB + wB x rB)`, where `nA` and `nB` point from the wheels to the anchors (Box2D 2.4).
+//! The pulley: a rope over two wheels that are fixed in the world, with
+//! `J v = nA.(vA + wA x rA) + ratio nB.(vB + wB x rB)`, where `nA` and `nB` point from the wheels to the anchors (Box2D
+//! 2.4).
 
 use serde::{Deserialize, Serialize};
 

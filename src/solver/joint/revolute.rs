@@ -2,7 +2,7 @@
 //!
 //! If only the arms were updated, long arms would over-correct and explode. If neither were updated within a tick, a
 //! grid of joints would explode (`docs/DESIGN.md` has the figures). Spring, motor and limits are rows on the angle,
-//! with the Jacobian `w_b - w_a`.
+//! with `J v = w_b - w_a`.
 
 use serde::{Deserialize, Serialize};
 

@@ -147,7 +147,7 @@ impl JointRow {
         self.open
     }
 
-    /// The change of the impulse of a limit in a pass, if the impulse is 0 and may become negative.
+    /// The change of the impulse of a limit that one iteration would make if the impulse were 0 and had no bounds.
     pub(super) fn wanted_of_limit(
         &self,
         pass: Pass,

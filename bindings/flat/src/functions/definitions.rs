@@ -20,13 +20,13 @@ pub(super) fn shapes_of(shapes: &In<'_, RawShapeDef>, count: usize) -> Outcome<V
 }
 
 api! {
-    /// Sets the defaults of a body of a kind: at rest at the origin.
+    /// Sets the defaults of a body of the given kind, at rest at the origin.
     fn ls2d_body_def_init(kind: u32, def: Out<'_, RawBodyDef>) {
         let mut def = def;
         def.set(RawBodyDef::of(&BodyDef::new(body_kind(kind)?)))
     }
 
-    /// Sets the defaults of a shape of a kind. Its geometry has to be set.
+    /// Sets the defaults of a shape of the given kind. Its geometry has to be set.
     fn ls2d_shape_def_init(kind: u32, def: Out<'_, RawShapeDef>) {
         let mut def = def;
         let mut raw = RawShapeDef::of(&ShapeDef::new(Geometry::Circle { radius: Fx::ZERO }));
@@ -34,7 +34,7 @@ api! {
         def.set(raw)
     }
 
-    /// Sets the defaults of a joint of a kind, without its bodies.
+    /// Sets the defaults of a joint of the given kind, without its bodies.
     fn ls2d_joint_def_init(kind: u32, def: Out<'_, RawJointDef>) {
         let mut def = def;
         def.set(RawJointDef::of_kind(kind)?)

@@ -31,7 +31,7 @@ api! {
         filter.set(RawQueryFilter::default_filter())
     }
 
-    /// Sets the defaults of a probe: a shape of a kind at the origin.
+    /// Sets the defaults of a probe with a shape of the given kind, at the origin.
     fn ls2d_probe_init(kind: u32, probe: Out<'_, RawProbe>) {
         let mut probe = probe;
         probe.set(RawProbe::of_kind(kind))

@@ -192,7 +192,7 @@ impl RawJointDef {
         }
     }
 
-    /// The defaults of a kind.
+    /// The defaults of a joint of the given kind.
     pub(crate) fn of_kind(kind: u32) -> Outcome<Self> {
         if kind > PULLEY {
             return Err(value("the kind of a joint", kind));

@@ -45,7 +45,7 @@ impl AngleRows<1> {
         self.limits[side].open.0[0] < 0
     }
 
-    /// `w` of a limit whose impulse is 0 and may become negative.
+    /// `w` of a limit, as if its impulse were 0 and had no bounds.
     pub(in super::super) fn wanted_of_limit<L: Lanes<1>>(
         &self,
         side: usize,

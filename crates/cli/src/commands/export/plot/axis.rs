@@ -60,7 +60,7 @@ impl Axis {
         let mut axes = rounds.map(|(digit, power)| {
             // Parsing gives the nearest float. A product of powers of ten would not.
             let step: f64 = format!("{digit}e{power}").parse().unwrap_or(1.0);
-            // The casts saturate only for axes with far more than `steps_max` steps, which are rejected below.
+            // If the cast of one end saturates, the axis has far more than `steps_max` steps and is rejected below.
             let (first, last) = ((low / step).floor() as i64, (high / step).ceil() as i64);
             Axis { step, first, last, digits: usize::try_from(-power).unwrap_or(0) }
         });
