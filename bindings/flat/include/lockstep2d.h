@@ -1076,13 +1076,13 @@ ls2d_status ls2d_world_clear_scratch(uint32_t world);
 
 /* ---- Definitions ---- */
 
-/* Sets the defaults of a body of a kind: at rest at the origin. */
+/* Sets the defaults of a body of the given kind, at rest at the origin. */
 ls2d_status ls2d_body_def_init(uint32_t kind, ls2d_body_def *def);
 
-/* Sets the defaults of a shape of a kind. Its geometry has to be set. */
+/* Sets the defaults of a shape of the given kind. Its geometry has to be set. */
 ls2d_status ls2d_shape_def_init(uint32_t kind, ls2d_shape_def *def);
 
-/* Sets the defaults of a joint of a kind, without its bodies. */
+/* Sets the defaults of a joint of the given kind, without its bodies. */
 ls2d_status ls2d_joint_def_init(uint32_t kind, ls2d_joint_def *def);
 
 /* Makes the links of a chain through some points, closed if `closed` is not 0, solid only from the right if
@@ -1300,7 +1300,7 @@ ls2d_status ls2d_events_joints(uint32_t world, ls2d_joint_event *events, size_t 
 /* Sets the defaults of a query: it sees everything except sensors. */
 ls2d_status ls2d_query_filter_init(ls2d_query_filter *filter);
 
-/* Sets the defaults of a probe: a shape of a kind at the origin. */
+/* Sets the defaults of a probe with a shape of the given kind, at the origin. */
 ls2d_status ls2d_probe_init(uint32_t kind, ls2d_probe *probe);
 
 /* The first shape that a ray meets, from a point along a translation in metres. `LS2D_NONE` without a hit. */
@@ -1329,8 +1329,8 @@ ls2d_status ls2d_shape_distance(uint32_t world, ls2d_shape a, ls2d_shape b, ls2d
 
 /* ---- Characters ---- */
 
-/* Sets the defaults of a character: a shape of a kind, whose geometry has to be set. It stands on slopes up to 45
- * degrees, climbs no steps, and follows ground that falls by up to 0.1 m in a tick. */
+/* Sets the defaults of a character with a shape of the given kind, whose geometry has to be set. The character
+ * stands on slopes up to 45 degrees, climbs no steps, and follows ground that falls by up to 0.1 m in a tick. */
 ls2d_status ls2d_mover_init(uint32_t kind, ls2d_mover *mover);
 
 /* Sets the state of a character at rest in the air, at a position in metres. */

@@ -60,11 +60,14 @@ impl Axis {
         let mut axes = rounds.map(|(digit, power)| {
             // Parsing gives the nearest float. A product of powers of ten would not.
             let step: f64 = format!("{digit}e{power}").parse().unwrap_or(1.0);
-            // If the cast of one end saturates, the axis has far more than `steps_max` steps and is rejected below.
+            // A cast saturates if the step is far too small.
             let (first, last) = ((low / step).floor() as i64, (high / step).ceil() as i64);
             Axis { step, first, last, digits: usize::try_from(-power).unwrap_or(0) }
         });
-        let fitting = axes.find(|axis| axis.last.saturating_sub(axis.first) <= steps_max);
+        let fitting = axes.find(|axis| {
+            let is_exact = axis.first > i64::MIN && axis.last < i64::MAX;
+            is_exact && axis.last.saturating_sub(axis.first) <= steps_max
+        });
         fitting.unwrap_or(Axis { step: 1.0, first: 0, last: 1, digits: 0 })
     }
 
@@ -102,6 +105,7 @@ mod tests {
         assert_eq!(labels(-37.0, 120.0), ["-50", "0", "50", "100", "150"]);
         assert_eq!(labels(0.0, 0.0), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
         assert_eq!(labels(7.0, 7.0), ["0", "2", "4", "6", "8"]);
+        assert_eq!(labels(10_000.0, 10_020.0), ["10000", "10005", "10010", "10015", "10020"]);
         let counts = |high: f64| {
             Axis::around_counts(0.0, high, 5).numbers().map(|(_, label)| label).collect::<Vec<_>>()
         };
