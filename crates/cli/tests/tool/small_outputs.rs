@@ -245,16 +245,27 @@ fn the_shortest_failing_replay_is_written_as_a_whole() {
     assert_eq!((fs::read(&to).unwrap(), names(&folder)), (OLD.to_vec(), vec!["out".to_string()]));
 
     let busy = ["stress-saves", &stack, "-o", &to, "--force"];
-    let mut first = start(&["stress-saves", &golden("rain"), "-o", &to, "--force"]);
-    while !names(&folder).contains(&"out.unfinished".to_string()) {
-        std::thread::sleep(Duration::from_millis(1));
+    for _ in 0..20 {
+        let mut first = start(&["stress-saves", &golden("rain"), "-o", &to, "--force"]);
+        while !names(&folder).contains(&"out.unfinished".to_string()) {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        let second = tool(&busy);
+        let is_refused = second.status.code() == Some(2);
+        if is_refused {
+            assert!(message(&second).contains("another process is writing it"), "{}", message(&second));
+            first.kill().unwrap();
+        }
+        let mut told = String::new();
+        first.stderr.take().unwrap().read_to_string(&mut told).unwrap();
+        first.wait().unwrap();
+        assert_eq!(fs::read(&to).unwrap(), OLD);
+        if is_refused {
+            assert_eq!(told, "");
+            return;
+        }
+        // The second process has locked the file between the first one's creation of the file and its lock.
+        assert!(told.contains("another process is writing it"), "{told}");
     }
-    let second = tool(&busy);
-    assert_eq!(second.status.code(), Some(2));
-    assert!(message(&second).contains("another process is writing it"), "{}", message(&second));
-    first.kill().unwrap();
-    let mut told = String::new();
-    first.stderr.take().unwrap().read_to_string(&mut told).unwrap();
-    first.wait().unwrap();
-    assert_eq!((fs::read(&to).unwrap(), told.as_str()), (OLD.to_vec(), ""));
+    panic!("the first process should usually lock the file first");
 }
