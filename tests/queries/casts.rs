@@ -102,6 +102,35 @@ fn casts_between_a_floor_and_a_ceiling_pass_the_seams_of_both() {
     }
 }
 
+/// A shape that overlaps a floor and a ceiling meets a ramp just before the end of its cast. Lifted off the floor or the
+/// ceiling it would be up to 1 cm further away from one of the ramps.
+#[test]
+fn casts_between_a_floor_and_a_ceiling_stop_at_ramps_at_their_ends() {
+    for upside_down in [false, true] {
+        let up = if upside_down { fx!(-1) } else { fx!(1) };
+        for sunk in [fx!(0), fx!(0.002), fx!(0.01)] {
+            let mut world = World::default();
+            let slab = ShapeDef::new(Polygon::rectangle(fx!(9), fx!(0.5)).expect("valid"));
+            for y in [fx!(-1) + sunk, fx!(1) - sunk] {
+                world.spawn(&BodyDef::fixed().position((fx!(0), y)), &[slab]).expect("valid");
+            }
+            let ramp = [at(fx!(2), fx!(-0.5)), at(fx!(4), fx!(-0.5)), at(fx!(4), fx!(1.5))];
+            let ramp = ramp.map(|corner| at(corner.x, fx_mul(corner.y, up)));
+            let ramp = ShapeDef::new(Polygon::hull(&ramp).expect("valid"));
+            world.spawn(&BodyDef::fixed(), &[ramp]).expect("valid");
+            let probe = Probe::new(Polygon::square(fx!(0.5)).expect("valid"), Vec2::ZERO).expect("valid");
+            let filter = QueryFilter::default();
+            let hit = world.cast_shape(&probe, at(fx!(3), fx!(0)), filter).expect("the ramp");
+            assert!((hit.travelled.x - fx!(1.5)).abs() < fx!(0.001), "{hit:?}");
+            for beyond in [fx!(0.0005), fx!(0.003)] {
+                let way = at(hit.travelled.x + beyond, fx!(0));
+                assert!(world.cast_shape(&probe, way, filter).is_some(), "{sunk} {beyond} {upside_down}");
+                assert!(world.cast_turning(&probe, way, fx!(0), filter).is_some(), "{sunk} {beyond}");
+            }
+        }
+    }
+}
+
 /// Every box of a pile that has fallen asleep can be cast to either side. The boxes are tilted by microradians.
 #[test]
 fn casts_of_the_boxes_of_a_pile_pass_the_boxes_above_and_below() {

@@ -121,14 +121,16 @@ impl World {
         // The broad phase finds the shapes in no defined order.
         planes.sort_unstable_by_key(|plane| plane.shape);
         let out = solve_planes(Vec2::ZERO, &mut planes);
-        // From the resting position an obstacle may be further away, so the cast is longer by twice the displacement.
-        let forwards = translation.normalized().unwrap_or(Vec2::ZERO).widen();
-        let beyond = forwards.scale(out.length() * 2);
         let overlapping = planes.iter().filter(|plane| plane.separation < Fx::ZERO);
         let off = |plane: &MoverPlane| plane.normal.widen().scale(-plane.separation);
         let others =
             if planes.len() > 1 { overlapping.map(off).collect() } else { SmallVec::<[_; 4]>::new() };
-        let lifts = core::iter::once(out).chain(others).collect();
+        let lifts: SmallVec<[Vec2<Fx>; 4]> = core::iter::once(out).chain(others).collect();
+        // From a resting position an obstacle may be further away, so the casts are longer by twice the largest
+        // displacement.
+        let forwards = translation.normalized().unwrap_or(Vec2::ZERO).widen();
+        let furthest = lifts.iter().map(|lift| lift.length()).max().unwrap_or(Fx::ZERO);
+        let beyond = forwards.scale(furthest * 2);
         (!planes.is_empty()).then(|| Resting { moving, lifts, translation: translation + beyond })
     }
 }
