@@ -146,6 +146,16 @@ fn a_spinning_rod_gains_no_energy() {
     }
 }
 
+/// Adds the walls of a square room of `2 half` metres. `material` sets their material.
+fn add_room(world: &mut World, half: i32, material: impl Fn(ShapeDef) -> ShapeDef) {
+    let (place, length) = (half + 1, half + 2);
+    for (x, y) in [(0, -place), (0, place), (-place, 0), (place, 0)] {
+        let def = BodyDef::fixed().position((Fx::from(x), Fx::from(y)));
+        let [half_width, half_height] = [x, y].map(|at| if at == 0 { Fx::from(length) } else { fx!(1) });
+        world.spawn(&def, &[material(rectangle(half_width, half_height))]).expect("valid");
+    }
+}
+
 /// A body in a closed room with restitution 1 never has more energy than at the start, corners and friction included.
 #[test]
 fn a_closed_room_keeps_its_energy() {
@@ -165,11 +175,7 @@ fn a_closed_room_keeps_its_energy() {
     sweep::for_each(sweep::sample(cases, 13), |((shape, rate), friction, start): ((usize, u32), Fx, i32)| {
         let mut world = world_with(rate, fx!(0));
         let elastic = |shape: ShapeDef| shape.friction(friction).restitution(fx!(1));
-        for (x, y, half_width, half_height) in [(0, -6, 7, 1), (0, 6, 7, 1), (-6, 0, 1, 7), (6, 0, 1, 7)] {
-            let def = BodyDef::fixed().position((Fx::from(x), Fx::from(y)));
-            let wall = rectangle(Fx::from(half_width), Fx::from(half_height));
-            world.spawn(&def, &[elastic(wall)]).expect("valid");
-        }
+        add_room(&mut world, 5, elastic);
         let speed = [fx!(5), fx!(10), fx!(20), fx!(40)][start.unsigned_abs() as usize % 4];
         let direction = Rot::from_angle(Angle::from_radians(fx!(0.3) + Fx::from(start)));
         let velocity = direction.apply_wide(Vec2::new(speed, fx!(0)));
@@ -200,11 +206,7 @@ fn several_bodies_in_a_closed_room_keep_its_energy() {
         let friction = if start % 2 == 0 { fx!(0) } else { fx!(0.6) };
         let elastic =
             |shape: ShapeDef| shape.friction(friction).restitution(fx!(1)).restitution_threshold(fx!(0));
-        for (x, y, half_width, half_height) in [(0, -8, 9, 1), (0, 8, 9, 1), (-8, 0, 1, 9), (8, 0, 1, 9)] {
-            let def = BodyDef::fixed().position((Fx::from(x), Fx::from(y)));
-            let wall = rectangle(Fx::from(half_width), Fx::from(half_height));
-            world.spawn(&def, &[elastic(wall)]).expect("valid");
-        }
+        add_room(&mut world, 7, elastic);
         for i in 0..count {
             let direction = Rot::from_angle(Angle::from_radians(Fx::from(i) * fx!(2.4) + Fx::from(start)));
             let place = Vec2::new(Fx::from(i % 5) * fx!(2.5) - fx!(5), Fx::from(i / 5) * fx!(2.5) - fx!(5));

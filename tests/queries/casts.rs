@@ -102,8 +102,8 @@ fn casts_between_a_floor_and_a_ceiling_pass_the_seams_of_both() {
     }
 }
 
-/// A shape that overlaps a floor and a ceiling meets a ramp just before the end of its cast. Lifted off the floor or the
-/// ceiling it would be up to 1 cm further away from one of the ramps.
+/// A shape that overlaps a floor and a ceiling meets a ramp just before the end of its cast. Lifted off one of
+/// them, the shape is up to 1 cm further away from the ramp.
 #[test]
 fn casts_between_a_floor_and_a_ceiling_stop_at_ramps_at_their_ends() {
     for upside_down in [false, true] {
