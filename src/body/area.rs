@@ -32,7 +32,7 @@ const FLOW_MAX: Fx = fx!(400);
 /// Largest drag of an area per second.
 const DRAG_MAX: Fx = fx!(1000);
 /// Range of the radius of an attraction in metres.
-const RADIUS: core::ops::RangeInclusive<Fx> = fx!(0.01)..=fx!(1048576);
+const RADIUS: (Fx, Fx) = (fx!(0.01), fx!(1048576));
 
 /// Effect of a sensor on the bodies in it: wind, water, a field of gravity.
 ///
@@ -184,28 +184,30 @@ impl Area {
     /// Validates the area for a shape with the given geometry.
     pub(crate) fn validate(&self, geometry: &Geometry) -> Result<(), WorldError> {
         let Area { acceleration, attraction, force, flow, linear_drag, angular_drag, density } = *self;
-        let check = |holds: bool, what: &'static str| match holds {
-            true => Ok(()),
-            false => Err(WorldError::AreaOutOfRange { what }),
+        match geometry {
+            Geometry::Circle { .. } | Geometry::Polygon(_) | Geometry::Capsule { .. } => {}
+            Geometry::Segment { .. } | Geometry::Link { .. } => return Err(WorldError::AreaOfLine),
+        }
+        let check = |what: &'static str, value: Fx, (min, max): (Fx, Fx)| {
+            let is_valid = (min..=max).contains(&value);
+            is_valid.then_some(()).ok_or(WorldError::AreaOutOfRange { what, value, min, max })
         };
-        let within = |vector: Vec2<Fx>, most: Fx| {
-            [vector.x, vector.y].iter().all(|component| (-most..=most).contains(component))
-        };
-        let has_inside = match geometry {
-            Geometry::Circle { .. } | Geometry::Polygon(_) | Geometry::Capsule { .. } => true,
-            Geometry::Segment { .. } | Geometry::Link { .. } => false,
-        };
-        check(has_inside, "geometry")?;
-        check(within(acceleration, ACCELERATION_MAX), "acceleration")?;
-        check(within(force, FORCE_MAX), "force")?;
-        check(within(flow, FLOW_MAX), "flow")?;
-        check((Fx::ZERO..=DRAG_MAX).contains(&linear_drag), "linear drag")?;
-        check((Fx::ZERO..=DRAG_MAX).contains(&angular_drag), "angular drag")?;
-        check((Fx::ZERO..=DENSITY_MAX).contains(&density), "density")?;
-        let is_valid = |attraction: Attraction| {
-            (-ACCELERATION_MAX..=ACCELERATION_MAX).contains(&attraction.acceleration)
-                && RADIUS.contains(&attraction.radius)
-        };
-        check(attraction.is_none_or(is_valid), "attraction")
+        let vectors = [
+            ("acceleration", acceleration, ACCELERATION_MAX),
+            ("force", force, FORCE_MAX),
+            ("flow", flow, FLOW_MAX),
+        ];
+        for (what, vector, max) in vectors {
+            check(what, vector.x, (-max, max))?;
+            check(what, vector.y, (-max, max))?;
+        }
+        check("linear drag", linear_drag, (Fx::ZERO, DRAG_MAX))?;
+        check("angular drag", angular_drag, (Fx::ZERO, DRAG_MAX))?;
+        check("density", density, (Fx::ZERO, DENSITY_MAX))?;
+        if let Some(Attraction { acceleration, radius, falloff: _ }) = attraction {
+            check("attraction", acceleration, (-ACCELERATION_MAX, ACCELERATION_MAX))?;
+            check("radius of attraction", radius, RADIUS)?;
+        }
+        Ok(())
     }
 }

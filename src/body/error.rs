@@ -154,12 +154,16 @@ pub enum WorldError {
     OffsetOutOfRange {
         /// The coordinate in metres.
         value: Fx,
+        /// Largest distance allowed, in metres.
+        max: Fx,
     },
     /// A speed exceeds the limit of the world. The speed of a rotation is the angular velocity in rad/s times the radius
     /// of gyration.
     SpeedOutOfRange {
-        /// The requested speed.
+        /// The requested speed in m/s.
         value: Fx,
+        /// Largest speed allowed, in m/s.
+        max: Fx,
     },
     /// A sleep speed is not within 0 to 400 m/s.
     SleepSpeedOutOfRange {
@@ -171,9 +175,17 @@ pub enum WorldError {
         /// The density in kg/m².
         value: Fx,
     },
-    /// Friction is not within 0 to 16, restitution not within 0 to 1.5, rolling resistance not within 0 to 1, a
-    /// threshold is not within 0 to 400 m/s, or a surface speed is not within ±400 m/s.
-    MaterialOutOfRange,
+    /// A property of a material is out of range.
+    MaterialOutOfRange {
+        /// Name of the property, such as "friction".
+        what: &'static str,
+        /// The value.
+        value: Fx,
+        /// Smallest value allowed.
+        min: Fx,
+        /// Largest value allowed.
+        max: Fx,
+    },
     /// The mass of a dynamic body is not within 10 mg to 2^30 kg. A mass computed from shapes may also be 0.
     MassOutOfRange {
         /// The mass in kg.
@@ -194,11 +206,21 @@ pub enum WorldError {
         /// The requested scale.
         value: Fx,
     },
-    /// A property of an area is out of range, or the shape of the area is not a sensor or has no interior.
+    /// A property of an area is out of range.
     AreaOutOfRange {
-        /// Name of the property.
+        /// Name of the property, such as "flow".
         what: &'static str,
+        /// The value, or the component of the vector.
+        value: Fx,
+        /// Smallest value allowed.
+        min: Fx,
+        /// Largest value allowed.
+        max: Fx,
     },
+    /// A shape that is not a sensor cannot be an area.
+    AreaNotSensor,
+    /// A segment or a link of a chain has no interior, so that it cannot be an area.
+    AreaOfLine,
     /// A joint connects a body to itself.
     JointToItself(BodyId),
     /// The new definition of a joint names other bodies. The bodies of a joint cannot be changed.
@@ -294,19 +316,25 @@ impl fmt::Display for WorldError {
             WorldError::StaleShape(id) => write!(f, "shape {id} does not exist"),
             WorldError::StaleJoint(id) => write!(f, "joint {id} does not exist"),
             WorldError::PositionOutOfRange { value } => write!(f, "position {value} m is beyond 2^30 m"),
-            WorldError::OffsetOutOfRange { value } => {
-                write!(f, "a shape or anchor at {value} m from its body's origin is out of range")
+            WorldError::OffsetOutOfRange { value, max } => {
+                write!(
+                    f,
+                    "a shape or anchor is within ±{max} m of its body's origin on each axis, not {value}"
+                )
             }
-            WorldError::SpeedOutOfRange { value } => write!(f, "speed {value} is above the world's limit"),
+            WorldError::SpeedOutOfRange { value, max } => {
+                write!(
+                    f,
+                    "a speed, or an angular velocity times the radius of gyration, is at most {max} m/s, not {value}"
+                )
+            }
             WorldError::SleepSpeedOutOfRange { value } => {
                 write!(f, "a sleep speed is 0 to 400 m/s, not {value}")
             }
-            WorldError::DensityOutOfRange { value } => write!(f, "density {value} kg/m² is out of range"),
-            WorldError::MaterialOutOfRange => write!(
-                f,
-                "friction is 0 to 16, restitution 0 to 1.5, rolling resistance 0 to 1, \
-                 a restitution threshold 0 to 400 m/s, and surface speed is within ±400 m/s"
-            ),
+            WorldError::DensityOutOfRange { value } => write!(f, "a density is 0 to 2^20 kg/m², not {value}"),
+            WorldError::MaterialOutOfRange { what, value, min, max } => {
+                write!(f, "the {what} of a material is {}, not {value}", Range { min, max, unit: "" })
+            }
             WorldError::MassOutOfRange { value } => {
                 write!(f, "a dynamic body's mass is 1e-5 to 2^30 kg, not {value}")
             }
@@ -319,11 +347,11 @@ impl fmt::Display for WorldError {
             WorldError::GravityScaleOutOfRange { value } => {
                 write!(f, "gravity scale is within ±1000, not {value}")
             }
-            WorldError::AreaOutOfRange { what: "sensor" } => write!(f, "only a sensor can be an area"),
-            WorldError::AreaOutOfRange { what: "geometry" } => {
-                write!(f, "a line has no inside, so that it cannot be an area")
+            WorldError::AreaOutOfRange { what, value, min, max } => {
+                write!(f, "the {what} of an area is {}, not {value}", Range { min, max, unit: "" })
             }
-            WorldError::AreaOutOfRange { what } => write!(f, "the {what} of an area is out of range"),
+            WorldError::AreaNotSensor => write!(f, "only a sensor can be an area"),
+            WorldError::AreaOfLine => write!(f, "a line has no interior, so that it cannot be an area"),
             WorldError::JointToItself(id) => write!(f, "a joint cannot connect body {id} to itself"),
             WorldError::JointOfOtherBodies(id) => write!(f, "the bodies of joint {id} cannot be changed"),
             WorldError::JointWithout { joint, what } => write!(f, "joint {joint} has no {what}"),

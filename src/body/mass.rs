@@ -145,7 +145,7 @@ impl MassProperties {
             MassSource::Given { mass, centre, gyration } => {
                 for value in [centre.x, centre.y] {
                     if !(-super::REACH_MAX..=super::REACH_MAX).contains(&value) {
-                        return Err(WorldError::OffsetOutOfRange { value });
+                        return Err(WorldError::OffsetOutOfRange { value, max: super::REACH_MAX });
                     }
                 }
                 check_gyration(gyration)?;

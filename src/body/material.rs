@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::error::WorldError;
 use crate::fx;
 use crate::math::{Fx, fx_mul};
 
@@ -117,6 +118,11 @@ impl Material {
     /// Whether all properties are in range.
     #[must_use]
     pub fn is_valid(&self) -> bool {
+        self.validate().is_ok()
+    }
+
+    /// Checks the ranges of all properties.
+    pub(crate) fn validate(&self) -> Result<(), WorldError> {
         let Material {
             friction,
             friction_mixing: _,
@@ -126,13 +132,19 @@ impl Material {
             rolling_resistance,
             surface_speed,
         } = *self;
-        let fraction = Fx::ZERO..=Fx::ONE;
-        (Fx::ZERO..=Self::FRICTION_MAX).contains(&friction)
-            && (Fx::ZERO..=Self::RESTITUTION_MAX).contains(&restitution)
-            && restitution_threshold
-                .is_none_or(|speed| (Fx::ZERO..=Self::RESTITUTION_THRESHOLD_MAX).contains(&speed))
-            && fraction.contains(&rolling_resistance)
-            && (-Self::SURFACE_SPEED_MAX..=Self::SURFACE_SPEED_MAX).contains(&surface_speed)
+        let threshold = restitution_threshold.unwrap_or_default();
+        for (what, value, min, max) in [
+            ("friction", friction, Fx::ZERO, Self::FRICTION_MAX),
+            ("restitution", restitution, Fx::ZERO, Self::RESTITUTION_MAX),
+            ("restitution threshold", threshold, Fx::ZERO, Self::RESTITUTION_THRESHOLD_MAX),
+            ("rolling resistance", rolling_resistance, Fx::ZERO, Fx::ONE),
+            ("surface speed", surface_speed, -Self::SURFACE_SPEED_MAX, Self::SURFACE_SPEED_MAX),
+        ] {
+            if !(min..=max).contains(&value) {
+                return Err(WorldError::MaterialOutOfRange { what, value, min, max });
+            }
+        }
+        Ok(())
     }
 
     /// Combined friction of two surfaces.

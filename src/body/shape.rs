@@ -218,11 +218,9 @@ impl ShapeDef {
         if !(Fx::ZERO..=DENSITY_MAX).contains(density) {
             return Err(WorldError::DensityOutOfRange { value: *density });
         }
-        if !material.is_valid() {
-            return Err(WorldError::MaterialOutOfRange);
-        }
+        material.validate()?;
         match area {
-            Some(_) if !sensor => Err(WorldError::AreaOutOfRange { what: "sensor" }),
+            Some(_) if !sensor => Err(WorldError::AreaNotSensor),
             Some(area) => area.validate(geometry),
             None => Ok(()),
         }
@@ -234,7 +232,7 @@ fn check_reach(geometry: &Geometry, offset: Vec2<Fx>, reach_max: Fx) -> Result<(
     let bounds = geometry.local_bounds().translated(offset);
     let corners = [offset.x, offset.y, bounds.lower.x, bounds.lower.y, bounds.upper.x, bounds.upper.y];
     match corners.into_iter().find(|corner| !(-reach_max..=reach_max).contains(corner)) {
-        Some(value) => Err(WorldError::OffsetOutOfRange { value }),
+        Some(value) => Err(WorldError::OffsetOutOfRange { value, max: reach_max }),
         None => Ok(()),
     }
 }

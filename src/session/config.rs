@@ -67,7 +67,9 @@ impl Timing {
 /// let config = Config { input_bytes: 2, tick_micros: 33_333, start_with: 2, guess: 8, ..Config::new(17, 4) };
 /// assert_eq!(config.validate(), Ok(()));
 /// let config = Config { guess: GUESS_MAX + 1, ..config };
-/// assert_eq!(config.validate(), Err(ConfigError { field: "guess" }));
+/// let error = ConfigError { field: "guess", value: 33, min: 0, max: 32, step: 1 };
+/// assert_eq!(config.validate(), Err(error));
+/// assert_eq!(error.to_string(), "the session cannot start: `guess` is 0 to 32, not 33");
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Config {
@@ -116,11 +118,24 @@ pub struct Config {
 pub struct ConfigError {
     /// Name of the field.
     pub field: &'static str,
+    /// Its value.
+    pub value: u64,
+    /// Smallest value allowed.
+    pub min: u64,
+    /// Largest value allowed.
+    pub max: u64,
+    /// The value has to be a multiple of this number, which is 1 for most fields.
+    pub step: u64,
 }
 
 impl fmt::Display for ConfigError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the session cannot start: {} is out of its range", self.field)
+        let ConfigError { field, value, min, max, step } = self;
+        write!(f, "the session cannot start: `{field}` is {min} to {max}")?;
+        if *step > 1 {
+            write!(f, " in steps of {step}")?;
+        }
+        write!(f, ", not {value}")
     }
 }
 
@@ -157,28 +172,28 @@ impl Config {
     /// # Errors
     /// The first field that is out of its range.
     pub fn validate(&self) -> Result<(), ConfigError> {
-        let seats = usize::from(self.seats);
-        let ranges = [
-            ("seats", (1..=SEATS_MAX).contains(&seats)),
-            ("input_bytes", (1..=INPUT_BYTES_MAX).contains(&self.input_bytes)),
-            ("tick_micros", (1000..=1_000_000).contains(&self.tick_micros)),
-            ("start_with", self.start_with <= self.seats),
-            ("seats_wanted", self.seats_wanted & !self.seat_set() == 0),
-            ("guess", self.guess <= GUESS_MAX),
-            ("delay_min", self.delay_min <= self.delay_max),
-            ("delay_max", self.delay_max <= DELAY_MAX),
-            ("history", self.history >= 16),
-            ("save_interval", self.save_interval >= 1 && self.save_interval <= self.history / 2),
-            (
-                "check_interval",
-                self.check_interval >= 1 && self.check_interval.is_multiple_of(self.save_interval.max(1)),
-            ),
-            ("log_ticks", self.log_ticks >= u32::from(self.history)),
-        ];
-        match ranges.into_iter().find(|(_, right)| !right) {
-            Some((field, _)) => Err(ConfigError { field }),
-            None => Ok(()),
+        let check = |field: &'static str, value: u64, (min, max): (u64, u64), step: u64| {
+            let is_valid = (min..=max).contains(&value) && value.is_multiple_of(step);
+            is_valid.then_some(()).ok_or(ConfigError { field, value, min, max, step })
+        };
+        let [seats_max, history, save_interval] =
+            [SEATS_MAX as u64, self.history.into(), self.save_interval.into()];
+        for (field, value, range) in [
+            ("seats", self.seats.into(), (1, seats_max)),
+            ("input_bytes", self.input_bytes.into(), (1, INPUT_BYTES_MAX.into())),
+            ("tick_micros", self.tick_micros.into(), (1000, 1_000_000)),
+            ("start_with", self.start_with.into(), (0, self.seats.into())),
+            ("seats_wanted", self.seats_wanted, (0, self.seat_set())),
+            ("guess", self.guess.into(), (0, GUESS_MAX.into())),
+            ("delay_max", self.delay_max.into(), (0, DELAY_MAX.into())),
+            ("delay_min", self.delay_min.into(), (0, self.delay_max.into())),
+            ("history", history, (16, u16::MAX.into())),
+            ("save_interval", save_interval, (1, history / 2)),
+            ("log_ticks", self.log_ticks.into(), (history, u32::MAX.into())),
+        ] {
+            check(field, value, range, 1)?;
         }
+        check("check_interval", self.check_interval.into(), (save_interval, u16::MAX.into()), save_interval)
     }
 
     /// Bit for each seat of the match.

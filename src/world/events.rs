@@ -81,6 +81,7 @@ pub struct HitEvent {
     /// Impulse along the normal in N s: the sum over all points and the whole tick, including restitution. It changes
     /// the velocity of a free body by `impulse / mass`. An impact that takes several ticks, such as one into a soft
     /// pile, continues in the [forces](super::ContactView::forces) of the following ticks.
+    /// The largest impulse is 1024 m/s times the reduced mass of the two bodies.
     pub impulse: Fx,
 }
 

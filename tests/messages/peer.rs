@@ -17,8 +17,12 @@ fn peers() {
     says([
         (PeerError::from(RecordError::TickRate), "a tick rate of zero"),
         (
-            PeerError::from(ConfigError { field: "start_with" }),
-            "the session cannot start: start_with is out of its range",
+            PeerError::from(ConfigError { field: "start_with", value: 5, min: 0, max: 4, step: 1 }),
+            "the session cannot start: `start_with` is 0 to 4, not 5",
+        ),
+        (
+            PeerError::from(ConfigError { field: "check_interval", value: 12, min: 8, max: 65535, step: 8 }),
+            "the session cannot start: `check_interval` is 8 to 65535 in steps of 8, not 12",
         ),
         (PeerError::InputLength { bytes: 9, possible: 4 }, "an input of 9 bytes, 4 are possible"),
         (PeerError::InputCount { seats: 1, inputs: 2 }, "2 inputs for 1 own seats"),

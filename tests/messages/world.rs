@@ -97,16 +97,18 @@ fn values_out_of_range() {
         ),
         (WorldError::PositionOutOfRange { value }, "position 2.25 m is beyond 2^30 m"),
         (
-            WorldError::OffsetOutOfRange { value },
-            "a shape or anchor at 2.25 m from its body's origin is out of range",
+            WorldError::OffsetOutOfRange { value, max: fx!(2) },
+            "a shape or anchor is within ±2 m of its body's origin on each axis, not 2.25",
         ),
-        (WorldError::SpeedOutOfRange { value }, "speed 2.25 is above the world's limit"),
-        (WorldError::SleepSpeedOutOfRange { value: fx!(-1) }, "a sleep speed is 0 to 400 m/s, not -1"),
-        (WorldError::DensityOutOfRange { value }, "density 2.25 kg/m² is out of range"),
         (
-            WorldError::MaterialOutOfRange,
-            "friction is 0 to 16, restitution 0 to 1.5, rolling resistance 0 to 1, a restitution threshold 0 to 400 m/s, \
-         and surface speed is within ±400 m/s",
+            WorldError::SpeedOutOfRange { value, max: fx!(2) },
+            "a speed, or an angular velocity times the radius of gyration, is at most 2 m/s, not 2.25",
+        ),
+        (WorldError::SleepSpeedOutOfRange { value: fx!(-1) }, "a sleep speed is 0 to 400 m/s, not -1"),
+        (WorldError::DensityOutOfRange { value }, "a density is 0 to 2^20 kg/m², not 2.25"),
+        (
+            WorldError::MaterialOutOfRange { what: "restitution", value, min: fx!(0), max: fx!(1.5) },
+            "the restitution of a material is 0 to 1.5, not 2.25",
         ),
         (WorldError::MassOutOfRange { value }, "a dynamic body's mass is 1e-5 to 2^30 kg, not 2.25"),
         (
@@ -115,12 +117,12 @@ fn values_out_of_range() {
         ),
         (WorldError::DampingOutOfRange { value }, "damping is 0 to 1000 per second, not 2.25"),
         (WorldError::GravityScaleOutOfRange { value }, "gravity scale is within ±1000, not 2.25"),
-        (WorldError::AreaOutOfRange { what: "sensor" }, "only a sensor can be an area"),
+        (WorldError::AreaNotSensor, "only a sensor can be an area"),
+        (WorldError::AreaOfLine, "a line has no interior, so that it cannot be an area"),
         (
-            WorldError::AreaOutOfRange { what: "geometry" },
-            "a line has no inside, so that it cannot be an area",
+            WorldError::AreaOutOfRange { what: "flow", value, min: fx!(-2), max: fx!(2) },
+            "the flow of an area is within ±2, not 2.25",
         ),
-        (WorldError::AreaOutOfRange { what: "flow" }, "the flow of an area is out of range"),
         (
             WorldError::JointLimitReversed { lower: value, upper: fx!(-1) },
             "a joint's lower limit of 2.25 is above its upper limit of -1",

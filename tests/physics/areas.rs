@@ -370,24 +370,27 @@ fn a_moving_magnet_wakes_a_box_that_it_reaches() {
 fn areas_without_an_inside_or_out_of_range_are_refused() {
     let mut world = world(fx!(0));
     let body = world.spawn(&BodyDef::fixed(), &[]).expect("valid");
-    let mut refused = |shape: ShapeDef| {
-        let error = world.add_shape(body, &shape).unwrap_err();
-        let WorldError::AreaOutOfRange { what } = error else { panic!("{error:?}") };
-        what
-    };
+    let mut refused = |shape: ShapeDef| world.add_shape(body, &shape).unwrap_err();
     let line = Geometry::segment(Vec2::ZERO, Vec2::new(fx!(1), fx!(0))).expect("valid");
-    assert_eq!(refused(ShapeDef::new(line).area(Area::new())), "geometry");
+    assert_eq!(refused(ShapeDef::new(line).area(Area::new())), WorldError::AreaOfLine);
     let mut solid = square(fx!(1)).area(Area::new());
     solid.sensor = false;
-    assert_eq!(refused(solid), "sensor");
-    let too = |area: Area| square(fx!(1)).area(area);
-    assert_eq!(refused(too(Area::new().acceleration((fx!(10001), fx!(0))))), "acceleration");
-    assert_eq!(refused(too(Area::new().force((fx!(0), fx!(-1048577))))), "force");
-    assert_eq!(refused(too(Area::new().flow((fx!(401), fx!(0))))), "flow");
-    assert_eq!(refused(too(Area::new().drag(fx!(1001), fx!(0)))), "linear drag");
-    assert_eq!(refused(too(Area::new().drag(fx!(0), fx!(-1)))), "angular drag");
-    assert_eq!(refused(too(Area::fluid(fx!(1048577)))), "density");
-    assert_eq!(refused(too(Area::new().attraction(fx!(1), fx!(0), Falloff::Inverse))), "attraction");
+    assert_eq!(refused(solid), WorldError::AreaNotSensor);
+    for (area, expected) in [
+        (Area::new().acceleration((fx!(10001), fx!(0))), ("acceleration", fx!(10001))),
+        (Area::new().force((fx!(0), fx!(-1048577))), ("force", fx!(-1048577))),
+        (Area::new().flow((fx!(401), fx!(0))), ("flow", fx!(401))),
+        (Area::new().drag(fx!(1001), fx!(0)), ("linear drag", fx!(1001))),
+        (Area::new().drag(fx!(0), fx!(-1)), ("angular drag", fx!(-1))),
+        (Area::fluid(fx!(1048577)), ("density", fx!(1048577))),
+        (Area::new().attraction(fx!(10001), fx!(1), Falloff::Inverse), ("attraction", fx!(10001))),
+        (Area::new().attraction(fx!(1), fx!(0), Falloff::Inverse), ("radius of attraction", fx!(0))),
+    ] {
+        let error = refused(square(fx!(1)).area(area));
+        let WorldError::AreaOutOfRange { what, value, min, max } = error else { panic!("{error:?}") };
+        assert_eq!((what, value), expected);
+        assert!(!(min..=max).contains(&value), "{error}");
+    }
     // The speed that an area gives to a body does not exceed the speed limit.
     let strongest = Area::new().force((fx!(1048576), fx!(0))).acceleration((fx!(10000), fx!(0)));
     world.add_shape(body, &square(fx!(50)).area(strongest)).expect("valid");

@@ -131,7 +131,7 @@ fn changes_to_shapes_out_of_range_are_refused() {
         old.surface_speed(Fx::MIN),
         old.friction(fx!(17)),
     ] {
-        stage.refuses(set(def), |error| matches!(error, WorldError::MaterialOutOfRange));
+        stage.refuses(set(def), |error| matches!(error, WorldError::MaterialOutOfRange { .. }));
     }
     let point = lockstep2d::body::Geometry::Capsule { a: Vec2::ZERO, b: Vec2::ZERO, radius: fx!(1) };
     stage.refuses(set(ShapeDef { geometry: point, ..old }), |error| matches!(error, WorldError::Geometry(_)));
@@ -139,9 +139,9 @@ fn changes_to_shapes_out_of_range_are_refused() {
     stage.world.set_velocity(stage.ball, Vec2::ZERO, fx!(50)).expect("valid");
     let large = lockstep2d::body::Geometry::Circle { radius: fx!(100) };
     stage.refuses(set(ShapeDef { geometry: large, ..old }), fast);
-    let area = |what| move |error: &WorldError| matches!(error, WorldError::AreaOutOfRange { what: of } if *of == what);
+    let area = |what| move |error: &WorldError| matches!(error, WorldError::AreaOutOfRange { what: of, .. } if *of == what);
     let set_area = |area| Command::SetArea { shape, area: Some(area) };
-    stage.refuses(set_area(Area::new()), area("sensor"));
+    stage.refuses(set_area(Area::new()), |error| matches!(error, WorldError::AreaNotSensor));
     stage.world.set_shape(shape, &old.sensor()).expect("valid");
     stage.refuses(set_area(Area::fluid(fx!(-1))), area("density"));
     stage.refuses(set_area(Area::new().acceleration((fx!(10001), fx!(0)))), area("acceleration"));

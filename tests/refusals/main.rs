@@ -103,7 +103,7 @@ fn bodies_out_of_range_are_refused() {
     let offset = |error: &WorldError| matches!(error, WorldError::OffsetOutOfRange { .. });
     stage.refuses(spawn(BodyDef::dynamic(), ball().offset((fx!(129), fx!(0)))), offset);
     stage.refuses(spawn(BodyDef::fixed(), ball().offset((Fx::MIN, fx!(0)))), offset);
-    let material = |error: &WorldError| matches!(error, WorldError::MaterialOutOfRange);
+    let material = |error: &WorldError| matches!(error, WorldError::MaterialOutOfRange { .. });
     stage.refuses(spawn(BodyDef::dynamic(), ball().friction(fx!(-0.1))), material);
     stage.refuses(spawn(BodyDef::dynamic(), ball().restitution(fx!(1.501))), material);
     let damping = |error: &WorldError| matches!(error, WorldError::DampingOutOfRange { .. });
@@ -213,7 +213,7 @@ fn refuses_impossible_joints(stage: &mut Stage) {
         (Prismatic::new().motor(one, fx!(-1)).into(), "largest motor force or torque is 0 or more, not -1"),
         (Wheel::new().motor(fx!(10000000), one).into(), "motor speed is within ±1048576, not 10000000"),
         (Distance::rod(fx!(0)).into(), "rod length in m is 0.001 to 1048576, not 0"),
-        (Distance::rope(fx!(-1)).into(), "lower limit of 0 is above its upper limit of -1"),
+        (Distance::rope(fx!(-1)).into(), "upper limit in m is 0 or more, not -1"),
         (Distance::new().spring(one, one, fx!(-1)).into(), "spring length in m is 0 to 1048576, not -1"),
         (pushes.into(), "smallest spring force in N is 0 or less, not 1"),
         (

@@ -154,12 +154,14 @@ impl From<WorldError> for Failure {
             WorldError::OffsetOutOfRange { .. } => Status::Offset,
             WorldError::SpeedOutOfRange { .. } | WorldError::SleepSpeedOutOfRange { .. } => Status::Speed,
             WorldError::DensityOutOfRange { .. } => Status::Density,
-            WorldError::MaterialOutOfRange => Status::Material,
+            WorldError::MaterialOutOfRange { .. } => Status::Material,
             WorldError::MassOutOfRange { .. } => Status::Mass,
             WorldError::GyrationOutOfRange { .. } => Status::Gyration,
             WorldError::DampingOutOfRange { .. } => Status::Damping,
             WorldError::GravityScaleOutOfRange { .. } => Status::GravityScale,
-            WorldError::AreaOutOfRange { .. } => Status::Area,
+            WorldError::AreaOutOfRange { .. } | WorldError::AreaNotSensor | WorldError::AreaOfLine => {
+                Status::Area
+            }
             WorldError::JointToItself(_) => Status::JointToItself,
             WorldError::JointOfOtherBodies(_) => Status::JointBodies,
             WorldError::JointWithout { .. } => Status::JointPart,

@@ -14,6 +14,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use same_file::Handle;
 
 use crate::error::CommandError;
 
@@ -215,18 +216,9 @@ fn open(temporary: &Path, readers: Readers) -> io::Result<File> {
 }
 
 /// Whether `path` still names the open file.
-#[cfg(unix)]
 fn is_at(file: &File, path: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    let (Ok(open), Ok(named)) = (file.metadata(), fs::metadata(path)) else { return false };
-    (open.dev(), open.ino()) == (named.dev(), named.ino())
-}
-
-/// On systems other than Unix, the standard library cannot compare the identities of files. A file that was renamed or
-/// deleted after it was opened is not detected there.
-#[cfg(not(unix))]
-fn is_at(_: &File, _: &Path) -> bool {
-    true
+    let open = file.try_clone().and_then(Handle::from_file);
+    matches!((open, Handle::from_path(path)), (Ok(open), Ok(named)) if open == named)
 }
 
 /// Writes a whole file.

@@ -184,6 +184,7 @@ fn wrong_seats_are_refused() {
         let output = play(arguments, &folder.file("refused")).wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{}", text(&output));
         assert!(text(&output).contains(why), "{}", text(&output));
+        assert!(!folder.file("refused").exists(), "a match that did not begin leaves a replay");
     };
     refused(&["--join", &address, "--seat", "4"], "there is no seat 4: the match has seats 0 to 3");
     refused(&["--host", &address, "--players", "5"], "--players 5: the match has 4 seats");

@@ -177,10 +177,10 @@ impl JointFrame {
 impl JointFrame {
     /// Checks the anchor for a body of the given kind.
     fn validate(&self, kind: BodyKind) -> Result<(), WorldError> {
-        let most = if kind == BodyKind::Fixed { WORLD_EXTENT_MAX } else { REACH_MAX };
-        let outside = |value: &Fx| !(-most..=most).contains(value);
+        let max = if kind == BodyKind::Fixed { WORLD_EXTENT_MAX } else { REACH_MAX };
+        let outside = |value: &Fx| !(-max..=max).contains(value);
         match [self.anchor.x, self.anchor.y].into_iter().find(outside) {
-            Some(value) => Err(WorldError::OffsetOutOfRange { value }),
+            Some(value) => Err(WorldError::OffsetOutOfRange { value, max }),
             None => Ok(()),
         }
     }

@@ -94,6 +94,7 @@ impl Distance {
         }
         if let Some(limit) = self.limit {
             check("lower limit in m", limit.lower, Fx::ZERO, SIZE_MAX)?;
+            check("upper limit in m", limit.upper, Fx::ZERO, Fx::MAX)?;
         }
         if let Some(spring) = self.spring {
             check("spring length in m", spring.target, Fx::ZERO, SIZE_MAX)?;

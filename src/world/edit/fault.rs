@@ -116,7 +116,7 @@ impl World {
         };
         let flipped = Speed::from_bits(number.to_bits() ^ 1 << bit);
         if !(-SPEED_MAX..=SPEED_MAX).contains(&flipped) {
-            return Err(WorldError::SpeedOutOfRange { value: flipped.into() });
+            return Err(WorldError::SpeedOutOfRange { value: flipped.into(), max: SPEED_MAX.into() });
         }
         *number = flipped;
         Ok(())

@@ -29,10 +29,10 @@ impl World {
 
     /// Checks a velocity in m/s and an angular velocity in rad/s of a body with a radius of gyration in metres.
     fn check_velocity(&self, velocity: Vec2<Fx>, angular: Fx, gyration: Fx) -> Result<(), WorldError> {
-        let limit = self.state.config.solver.speed_limit(self.state.config.tick_rate);
+        let max = self.state.config.solver.speed_limit(self.state.config.tick_rate);
         for value in [velocity.length(), fx_mul(angular.saturating_abs(), gyration)] {
-            if value > limit {
-                return Err(WorldError::SpeedOutOfRange { value });
+            if value > max {
+                return Err(WorldError::SpeedOutOfRange { value, max });
             }
         }
         Ok(())

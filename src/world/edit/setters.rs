@@ -277,8 +277,8 @@ impl World {
     /// ```
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, or a value is out of range; [`WorldError::AreaOutOfRange`] also if there
-    /// is an effect and the shape is solid or has no inside.
+    /// [`WorldError`] if the handle is stale, or a value is out of range; with an area, also if the shape is not a
+    /// sensor or has no interior.
     #[doc(alias = "wind")]
     pub fn set_area(&mut self, id: ShapeId, area: Option<Area>) -> Result<(), WorldError> {
         let shape = self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?;

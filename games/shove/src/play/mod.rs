@@ -4,7 +4,7 @@ mod arguments;
 mod log;
 
 use std::error::Error;
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 use std::sync::Arc;
@@ -63,10 +63,15 @@ fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
     // The replay is completed however the match has ended.
     let summary = log.summary(&peer);
     let end = peer.finish()?;
-    if let Some(file) = &mut file {
+    if let (Some(file), Some(path)) = (&mut file, &arguments.output) {
         file.write_all(&end.replay)?;
-        if file.metadata()?.len() == 0 {
+        let is_recorded = file.metadata()?.len() > 0;
+        if !is_recorded {
             eprintln!("no replay: this peer was not in the match from the first tick");
+        }
+        // A pipe stays.
+        if path.is_file() && (end.ticks == 0 || !is_recorded) {
+            fs::remove_file(path)?;
         }
     }
     log.say_end(summary, &end);
