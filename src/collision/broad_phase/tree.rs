@@ -49,7 +49,8 @@ pub(crate) struct Tree {
     /// Number of leaves relinked or removed since the last rebuild. While it is 0, every node is in use and stored
     /// before its children.
     relinked: u32,
-    /// Number of leaves that left their neighbourhood since the last refit or rebuild without being relinked.
+    /// Number of leaves that have left their neighbourhood (see [`Self::stays_near`]) since the last refit or rebuild
+    /// without being relinked.
     strays: u32,
     rebuilt: Rebuilt,
 }

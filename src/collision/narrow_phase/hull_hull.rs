@@ -111,8 +111,9 @@ pub(in crate::collision) fn is_reference_of_b(
     face_b: Face,
     apart: bool,
 ) -> bool {
-    // Separate outlines need the true best face, which is next to the nearest corner, unless they are rounded and the
-    // faces are parallel.
+    // If the outlines are apart, the face with the larger separation is the reference face even if the difference is
+    // within the tolerance, because only that face is next to the nearest corner. Rounded outlines with parallel faces
+    // are an exception.
     let is_rounded = a.radius.saturating_add(b.radius) > 0;
     let prefers_a = !apart || is_rounded && are_parallel(a.normals()[face_a.edge], b.normals()[face_b.edge]);
     face_b.separation > face_a.separation + if prefers_a { TOLERANCE_WIDE } else { 0 }

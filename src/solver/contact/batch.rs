@@ -26,7 +26,7 @@ pub(in crate::solver) struct Batch<const N: usize> {
     /// along the tangent.
     pub(super) tangent: Row<N>,
     pub(super) tangent_lambda: Ints<N>,
-    /// Number of points that have a contact in any lane. Points beyond it are stale and never read.
+    /// Largest number of points of a contact in the batch. Points beyond it are stale and never read.
     pub(super) count: usize,
     /// Whether any contact in the batch has extras. The batch then has a [`super::extras::ContactExtras`].
     pub(super) extras: bool,

@@ -34,7 +34,8 @@ const NEAR: Shift = Shift::lit("0.005");
 #[derive(Clone, Debug)]
 pub(super) struct Impacts<const N: usize> {
     /// For each point, the change `a` of its relative normal velocity by forces in the first sub-step of the tick.
-    /// Until [`PredictImpacts`] runs in that sub-step, the relative normal velocity before forces act.
+    /// Before [`PredictImpacts`] runs in that sub-step, the field contains the relative normal velocity before forces
+    /// act.
     forced: [Ints<N>; 2],
     /// For each point, the relative normal velocity before contacts act: `va` for a point that hits, else `v`.
     pub(super) approach: [Ints<N>; 2],
@@ -73,7 +74,7 @@ impl<const N: usize> Impacts<N> {
         }
     }
 
-    /// The impact of a point. In the relax pass, only points that have pushed rebound.
+    /// The impact of a point. In the relax pass, only points that pushed in the bias pass rebound.
     #[inline(always)]
     pub(super) fn of_point<L: Lanes<N>>(&self, i: usize, pass: Pass) -> PointImpact<L, N> {
         let rebound = L::load(&self.rebound[i]);
@@ -149,7 +150,7 @@ impl Operation<Contacts> for PredictImpacts {
                 L::store(forced, &mut extras.impacts.forced[i]);
             }
             fast = L::either(fast, L::both(bounces, L::greater(threshold, v)));
-            // Shapes at rest on each other separate at less than the threshold for single sub-steps.
+            // Shapes that rest on each other may separate for single sub-steps, at less than the threshold.
             let gap = L::greater(L::load(&point.separation), L::splat(0));
             let least = L::select(gap, L::splat(0), L::load(&extras.restitution_threshold));
             let is_late = L::both(elastic, L::greater(v, L::sub(least, L::splat(1))));

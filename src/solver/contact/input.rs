@@ -95,7 +95,7 @@ pub(super) struct Input {
     pub(super) contact: u32,
     pub(super) shapes: Pair,
     pub(super) features: [u16; 2],
-    /// Whether one of the bodies is wedged.
+    /// Whether one of the bodies is wedged; see [`Prospect::is_wedged`].
     pub(super) wedged: bool,
     pub(super) count: u8,
     /// Whether the contact needs more than rows along the normal and the tangent.

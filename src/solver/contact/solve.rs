@@ -28,8 +28,8 @@ use crate::simd::{Ints, Lanes};
 
 /// Largest number of rounds in which the two points of a contact are solved against each other. At an impact, a single
 /// round would turn the body: ten boxes that fall on each other from 5 or 10 mm would sway by 12 mm, instead of 1 mm
-/// with up to four rounds. In a pile at rest the first round is usually enough: a pyramid of 5050 boxes takes a tenth
-/// more time.
+/// with up to four rounds. In a pile at rest the first round is usually enough: simulating a pyramid of 5050 boxes
+/// takes a tenth more time than with a single round.
 const NORMAL_ROUNDS_MAX: u32 = 4;
 
 /// Change of the second point's impulse, in m/s, below which the points are not solved again.

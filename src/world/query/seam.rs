@@ -23,10 +23,12 @@ use crate::world::World;
 /// Tolerances of the position in which a shape rests on the surfaces that it touches.
 #[derive(Clone, Copy)]
 pub(super) struct Rest {
-    /// Largest distance in metres of a surface that the shape touches: where a cast along the surface may stop.
+    /// Largest distance in metres at which a surface counts as touched. A cast along the surface may stop at this
+    /// distance.
     touching: Fx,
-    /// Distance in metres from the surfaces at which the second cast starts. Ledges of up to 5 µm, the difference to
-    /// the gap of the first cast, count as seams: tiles of a ramp are flush to within a micrometre.
+    /// Distance in metres from the surfaces at which the second cast starts. It is 5 µm larger than the gap at which
+    /// the first cast stops, so that ledges of up to 5 µm count as seams: tiles of a ramp are flush to within a
+    /// micrometre.
     gap: Fx,
     /// Largest distance in metres by which the cast may approach a surface that it slides along.
     approach_max: Fx,

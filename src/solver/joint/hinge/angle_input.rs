@@ -46,7 +46,7 @@ pub(super) struct Memo {
 }
 
 impl Memo {
-    /// Binary logarithm of the number of cached rows, which is enough for the joints of a few machines.
+    /// Binary logarithm of the number of cached rows, which is enough for the joints of a few mechanisms.
     const ANGULARS_BITS: u32 = 6;
 
     fn softness(&mut self, hertz: Fx, damping_ratio: Fx, rate: u32) -> Softness {
