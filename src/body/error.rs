@@ -155,8 +155,8 @@ pub enum WorldError {
         /// The coordinate in metres.
         value: Fx,
     },
-    /// A speed exceeds the limit of the world. The speed of a rotation is the angular velocity in rad/s times the radius
-    /// of gyration.
+    /// A speed exceeds the limit of the world. The speed of a rotation is the angular velocity in rad/s times the
+    /// radius of gyration.
     SpeedOutOfRange {
         /// The requested speed.
         value: Fx,

@@ -150,7 +150,8 @@ impl<P: SolverPass> Solve<P> {
         if let Some(extras) = extras {
             surface_speed = L::load(&extras.surface_speed);
             if self.pass.kind() == Pass::Bias {
-                // Friction acts only after the time of impact, and its limit does not include the impulse of restitution.
+                // Friction acts only after the time of impact, and its limit does not include the impulse of
+                // restitution.
                 surface_speed = C::sub(surface_speed, L::load(&extras.impacts.slip));
                 for (pressing, impact) in pressing.iter_mut().zip(&impacts) {
                     *pressing = L::max(C::sub(*pressing, impact.rebound), L::splat(0));
