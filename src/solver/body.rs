@@ -39,7 +39,7 @@ impl SolverBody {
         SolverBody { velocity: -self.velocity, spin: self.spin.saturating_neg(), ..*self }
     }
 
-    /// Changes two different bodies of a list.
+    /// Calls `change` with two different bodies of a list, and stores the results.
     #[inline]
     pub(super) fn change_pair(
         bodies: &[Cell<SolverBody>],

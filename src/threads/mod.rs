@@ -35,7 +35,7 @@ pub(crate) struct Threads {
 #[cfg(feature = "parallel")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sharing {
-    /// They share the ticks that they make shorter.
+    /// They share a tick only if this makes the tick shorter.
     Adaptive,
     /// They share every tick.
     Always,

@@ -1,4 +1,4 @@
-//! Decides which ticks the threads of a team share: those that they make shorter.
+//! Decides which ticks the threads of a team share: those that are shorter with all threads than with one.
 //!
 //! The threads wait for each other a hundred times in a tick. If other programs use the processors as well, a wait
 //! lasts as long as a time slice of the operating system, and a tick takes up to thirty times as long as with one

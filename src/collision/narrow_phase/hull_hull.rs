@@ -41,9 +41,9 @@ pub(crate) struct SatCounters {
     pub(crate) searches: u32,
 }
 
-/// Cosine of the angle between two faces that count as parallel, 2.6 degrees, as a product of two [`Unit`] numbers. The
-/// outlines of rounded shapes in contact are apart without their radii. If the reference face flickered there, columns
-/// of 50 to 100 rounded boxes would fall.
+/// Cosine of 2.6 degrees, the largest angle between two faces that count as parallel, as a product of two [`Unit`]
+/// numbers. Rounded shapes in contact have outlines that are apart without their radii. If the reference face
+/// alternated between two such outlines, columns of 50 to 100 rounded boxes would fall.
 pub(in crate::collision) const PARALLEL_WIDE: i64 = (Unit::lit("0.999").to_bits() as i64) << Unit::FRAC_NBITS;
 
 #[derive(Clone, Copy)]

@@ -5,8 +5,8 @@
 //! second cast, which starts where the shape just rests on the surfaces that it touches. An obstacle that the second
 //! cast does not meet is a seam.
 //!
-//! Only contacts that the cast leaves or slides along lift the shape. A contact that it moves into stops it. A shape
-//! between a floor and a ceiling cannot leave both, so that there is also a cast for each surface by itself.
+//! Contacts that the cast leaves or slides along lift the shape. A contact that the cast moves into stops it. A shape
+//! between a floor and a ceiling cannot be lifted off both, so that there is also a second cast for each surface alone.
 
 use smallvec::SmallVec;
 
