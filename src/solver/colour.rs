@@ -85,7 +85,7 @@ impl<'a> Group<'a> {
     }
 
     /// Splits into batches of up to `N` constraints of one size. The last batch of large constraints is filled up with
-    /// small ones, if `mixes` holds for all constraints in it.
+    /// small ones, if `mixes` holds for all constraints of the filled batch.
     pub(super) fn batches<const N: usize>(
         self,
         mixes: impl Fn(u32) -> bool,

@@ -240,7 +240,8 @@ fn target_of_contact(a: &SupportShape, b: &SupportShape, separation: Fx) -> Opti
     (start > deepest).then(|| (start + deepest) / 2)
 }
 
-/// Clips a long segment A to the part that B, at `b`, may meet: a unit normal has too few bits for its far ends.
+/// Clips a long segment A to the part that B, at `b`, may meet. A unit normal has too few bits to measure distances at
+/// the far ends of a long segment.
 fn near(a: &SupportShape, sweep: &Sweep, b: Vec2<Fx>, window: Fx) -> Option<SupportShape> {
     match *a.points() {
         [p, q] if sweep.turn == 0 => {
