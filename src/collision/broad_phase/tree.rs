@@ -267,7 +267,8 @@ impl Tree {
     /// node higher up grows.
     fn stays_near(&self, leaf: u32, fat: Aabb) -> bool {
         let parent_of = |&at: &u32| Some(self.at(at).parent).filter(|&parent| parent != NONE);
-        // With a lower level most moved boxes would be reinserted; with a higher one the tree would degrade.
+        // If a nearer ancestor had to contain the box, most moved boxes would be reinserted. If a higher ancestor were
+        // enough, the tree would degrade.
         let neighbourhood = core::iter::successors(Some(leaf), parent_of).nth(4);
         neighbourhood.is_some_and(|at| self.at(at).aabb.contains(fat))
     }

@@ -38,7 +38,7 @@ pub(in super::super) struct Candidate {
     /// The indices of its bodies: the ground for a body that no impulse changes.
     pub(in super::super) bodies: [u32; 2],
     /// Number of rows that a block would solve: rows that hold the bodies, springs, limits, and motors along one
-    /// direction. A joint without such rows takes no part.
+    /// direction. A joint without such rows is never solved in a block.
     pub(in super::super) rows: u32,
     /// Whether it has rows besides that of a motor. A motor alone makes no body crowded.
     pub(in super::super) holds: bool,
