@@ -157,8 +157,8 @@ pub enum WorldError {
         /// Largest distance allowed, in metres.
         max: Fx,
     },
-    /// A speed exceeds the limit of the world. The speed of a rotation is the angular velocity in rad/s times the radius
-    /// of gyration.
+    /// A speed exceeds the limit of the world. The speed of a rotation is the angular velocity in rad/s times the
+    /// radius of gyration.
     SpeedOutOfRange {
         /// The requested speed in m/s.
         value: Fx,

@@ -32,7 +32,8 @@ pub enum Variant {
     HashUnpolled,
     /// After every tick the state is saved, encoded, decoded and loaded into a new game, which continues.
     Reloaded,
-    /// After every tick the game is rolled back by some ticks and plays them again, also after wrong predictions.
+    /// After every tick the game is rolled back by some ticks and plays them again, sometimes with wrong predictions of
+    /// the inputs first and then with the actual inputs.
     RolledBack,
     /// All caches of the world are cleared after every tick.
     ClearedScratch,

@@ -8,8 +8,8 @@ use crate::fx;
 use crate::math::{Aabb, Fx, Vec2};
 use crate::world::World;
 
-/// Smallest reach of a scene in metres. Bodies within four times the reach of the median belong to the scene, hence all
-/// bodies within 64 m.
+/// Smallest reach of a scene in metres. The reach is the distance from the median position to the farthest body of the
+/// scene, and bodies within four times the reach belong to the scene. All bodies within 64 m therefore do.
 const SCENE_REACH_MIN: Fx = fx!(16);
 /// Maximum distance, in scene sizes, at which ground is included.
 const GROUND_SIZES: i64 = 12;

@@ -46,7 +46,7 @@ impl<'a> Compound<'a> {
         let bits = super::fields(value)?.first().and_then(|field| field.value.bits());
         match bits {
             Some(bits) => self.collector.push(Value::Fixed { bits, fraction_bits }),
-            // A number of more than 127 bits, or an unrelated struct of that name.
+            // A number of more than 127 bits, or another struct with the name of a fixed-point type.
             None => self.collector.named(name, value)?,
         }
         Ok(())

@@ -1,5 +1,5 @@
-//! [`History`]: saves of the last seconds of a game. A divergence that is detected late can be examined in them at its
-//! first tick.
+//! [`History`]: saves of the last seconds of a game. With them, a divergence that is detected late can be examined at
+//! its first tick.
 
 use alloc::collections::VecDeque;
 

@@ -4,8 +4,8 @@
 //! instead of wrapping, in every build profile. The binary point of the result is inferred from its type, so the
 //! compiler checks the scales: `let s: Step = mul(length, unit);` cannot be off by a shift.
 //!
-//! The ranges were chosen with a floating-point probe over the benchmark scenes; `docs/DESIGN.md` has the largest value
-//! of each quantity.
+//! The ranges were chosen from the values that occur when a floating-point version of the solver simulates the
+//! benchmark scenes. `docs/DESIGN.md` lists the largest value of each quantity.
 
 use fixed::types::extra::{LeEqU32, U18, U20, U21, U22, U24, U26, U27, U30, U32};
 use fixed::{FixedI32, FixedI64};

@@ -153,8 +153,8 @@ mod tests {
     #[test]
     fn every_remainder_is_equally_likely() {
         let mut rng = Rng::new(1);
-        // The first bound rejects a quarter of the draws. Without rejection, every third result would be twice as
-        // likely, so that results are counted by their remainder.
+        // The first bound rejects a quarter of the draws. Without rejection, every third number would be twice as
+        // likely as the others. Counting the numbers by their remainder modulo 3 shows this.
         for (bound, buckets) in [(3 << 30, 3), (6, 6), (1000, 10)] {
             let mut counts = [0_i64; 10];
             for _ in 0..60_000 {

@@ -122,7 +122,7 @@ mod tests {
         (sin, cos)
     }
 
-    /// Angles with a constant stride over the whole turn, and all angles near each eighth of it.
+    /// Angles with a constant stride over the whole turn, and all angles near each multiple of an eighth of a turn.
     fn angles() -> impl Iterator<Item = u32> {
         let all = (0..60_000_u32).map(|i| i.wrapping_mul(71_583));
         let borders = (0..8_u32)

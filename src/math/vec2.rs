@@ -240,7 +240,8 @@ const fn sum_of_products(a: Fx, x: Fx, b: Fx, y: Fx, sign: i128) -> Fx {
     Fx::from_bits(round_product(ax.saturating_add(sign * by)))
 }
 
-/// `a (1 - t) + b t`, rounded once, saturated. The 128-bit sum contains no difference that could overflow.
+/// `a (1 - t) + b t`, rounded once, saturated. The 128-bit sum of products avoids the difference `b - a`, which could
+/// overflow.
 const fn interpolate(a: Fx, b: Fx, t: Unit) -> Fx {
     let t = t.to_bits() as i128;
     let sum = a.to_bits() as i128 * ((1 << Unit::FRAC_NBITS) - t) + b.to_bits() as i128 * t;

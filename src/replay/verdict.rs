@@ -43,7 +43,7 @@ pub enum Verdict {
         /// Tick of the first checkpoint that differs.
         first_different: u64,
     },
-    /// The file ends before its trailer. All checkpoints before its end agree.
+    /// The file ends before its trailer. All checkpoints in the complete blocks agree.
     Incomplete {
         /// Number of ticks in the complete blocks, all of which were played.
         ticks: u64,

@@ -8,7 +8,8 @@
 //! [`bisect`] also examines a single file and finds the tick at which its trajectory diverges from the running
 //! engine's. A [`Trace`] contains more data for this than a replay.
 //!
-//! In this module *tick t* is the state after *t* ticks, as in replays: tick 0 is the start.
+//! In this module *tick t* is the state after *t* ticks, as in replays: tick 0 is the start. A *trajectory* is the
+//! sequence of the states that one machine computed.
 
 mod bisect;
 mod bytes;

@@ -166,7 +166,7 @@ impl<G: Game> Beside<'_, '_, G> {
             match self.raw.step() {
                 Ok(Step::Ticked) => {}
                 Ok(Step::Ended) => break,
-                // Without a difference, the result would be that of equal runs.
+                // If no difference has been found so far, an incomplete rerun would look like equal trajectories.
                 Err(verdict) if self.found.first_different.is_none() && self.wrong.is_none() => {
                     return Err(CompareError::Replay { side: self.side, verdict });
                 }

@@ -1,12 +1,13 @@
-//! Changes of the view: one instance of single-decree Paxos for each view number, with all of its state in rows.
+//! Changes of the view: one instance of single-decree Paxos for each view number. All of its state is in rows, the
+//! status records that peers send to each other (`row.rs`).
 //!
 //! A voter that sees a higher ballot promises it and freezes its acknowledgement. Once a quorum has promised a ballot,
 //! its proposer chooses the change: the change that the promisers accepted in the highest ballot or, if they accepted
 //! none, one of its own (`proposal.rs`). A voter accepts a change in the ballot that it promised, or in a higher one,
-//! if it holds all ticks before the cut. A change is decided once a quorum of the old view has accepted it in one
-//! ballot. Every peer that sees the decision installs the change. The cut is the largest frozen acknowledgement of a
-//! quorum. It lies at or above every final tick, because a quorum acknowledged every final tick before its members
-//! froze.
+//! if it holds the inputs of all ticks before the cut. A change is decided once a quorum of the old view has accepted
+//! it in one ballot. Every peer that sees the decision installs the change. The cut is the first tick that the change
+//! may affect: the largest frozen acknowledgement of the quorum that promised. It lies at or above every final tick,
+//! because a quorum acknowledged every final tick before its members froze.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;

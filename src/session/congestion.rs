@@ -29,7 +29,7 @@ const CHUNKS_MIN: u32 = 8;
 #[derive(Clone, Debug)]
 pub(super) struct Congestion {
     rate: u64,
-    /// Whether the rate has not been too high in any period yet.
+    /// Whether the rate has been acceptable in every period so far.
     is_starting: bool,
     /// Number of bytes that may be sent now.
     budget: u64,

@@ -63,7 +63,7 @@ pub enum JoinEvent {
         /// The bytes that [`Endpoint::offer_state`] was given on the other side.
         bytes: Vec<u8>,
     },
-    /// The downloaded bytes are not a state. The endpoint requests it again.
+    /// The downloaded bytes are not a valid state. The endpoint requests the state again.
     BadState,
 }
 

@@ -2,7 +2,7 @@
 
 use super::id::{PeerId, Tick};
 
-/// Status of a session.
+/// Status of a session: what this peer does in the match.
 ///
 /// ```
 /// use lockstep2d::session::Status;

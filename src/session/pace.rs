@@ -26,7 +26,8 @@ pub(super) struct Pace {
     held: bool,
     /// Number of ticks that may be played at once to catch up.
     behind: Tick,
-    /// Whether this peer has just got a seat, and plays all ticks that are complete at once.
+    /// Whether this peer has just got a seat. It then plays all complete ticks without waiting for the time at which
+    /// each is due.
     hurries: bool,
 }
 

@@ -255,14 +255,15 @@ impl Session {
         self.paused = paused;
     }
 
-    /// Votes for continuing without a missing peer, which may return later. The vote of the tie-holder is sufficient.
+    /// Votes for continuing without a missing peer, which may return later. The vote of the
+    /// [tie-holder](View::tie_holder) is sufficient.
     pub fn go_on_without(&mut self, peer: PeerId) {
         if self.view.voter(peer).is_some() {
             self.remove(Removal::Without(peer));
         }
     }
 
-    /// Votes for removing a peer permanently. The vote of the tie-holder is sufficient.
+    /// Votes for removing a peer permanently. The vote of the [tie-holder](View::tie_holder) is sufficient.
     pub fn kick(&mut self, key: Key) {
         self.remove(Removal::Kick(key));
     }

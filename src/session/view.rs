@@ -49,7 +49,7 @@ impl Span {
         self.from <= tick && tick < self.until
     }
 
-    /// Whether no end of the span is decided: its owner plays, or is going to play.
+    /// Whether the end of the span is still undecided: its owner plays, or is going to play.
     #[must_use]
     pub const fn is_open(&self) -> bool {
         self.until == NEVER

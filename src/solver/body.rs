@@ -17,8 +17,8 @@ impl SolverBody {
     pub(crate) fn set_velocity(&mut self, x: Speed, y: Speed, spin: Speed, faults: &mut Faults) {
         self.velocity = Vec2::new(x, y);
         self.spin = spin;
-        // One branch that is almost never taken replaces three clamps. A saturated sum may be the smallest signed
-        // number, whose magnitude only fits an unsigned one.
+        // One branch that is almost never taken replaces three clamps. Magnitudes are unsigned, because a saturated sum
+        // may be the minimum of its format, whose negative does not fit the format.
         let fastest = x.unsigned_abs().max(y.unsigned_abs()).max(spin.unsigned_abs());
         if fastest > SPEED_MAX.unsigned_abs() {
             self.clamp(faults);
@@ -39,7 +39,7 @@ impl SolverBody {
         SolverBody { velocity: -self.velocity, spin: self.spin.saturating_neg(), ..*self }
     }
 
-    /// Changes two different bodies of a list.
+    /// Calls `change` with two different bodies of a list, and stores the results.
     #[inline]
     pub(super) fn change_pair(
         bodies: &[Cell<SolverBody>],

@@ -16,7 +16,7 @@ pub(crate) struct BodyList {
     pub(super) bodies: Vec<SolverBody>,
     /// The pose of each body at the start of the tick.
     poses: Vec<Pose>,
-    /// The properties of each body that contacts depend on.
+    /// For each body, the properties on which its contacts depend.
     facts: Vec<BodyFacts>,
     /// For each body slot, the index of its body in `bodies`, or 0 if the body is not among the bodies of the tick.
     indices: Vec<u32>,
@@ -108,8 +108,8 @@ impl BodyList {
         self.index_of(slot)
     }
 
-    /// Adds a body without mass at a far anchor of the fixed body in a slot, and returns its index. [`Self::index_of`]
-    /// does not return it.
+    /// Adds a body without mass at a far anchor (see [`JointFrame::is_far`]) of the fixed body in a slot, and returns
+    /// its index. [`Self::index_of`] does not return this index.
     pub(super) fn add_far_anchor(&mut self, slot: u32, pose: Pose) -> u32 {
         let index = u32::try_from(self.bodies.len()).expect("fewer than 2^32 bodies");
         self.slots.push(slot);

@@ -85,7 +85,7 @@ impl<'a> Group<'a> {
     }
 
     /// Splits into batches of up to `N` constraints of one size. The last batch of large constraints is filled up with
-    /// small ones, if `mixes` holds for all constraints in it.
+    /// small ones, if `mixes` holds for all constraints of the filled batch.
     pub(super) fn batches<const N: usize>(
         self,
         mixes: impl Fn(u32) -> bool,
@@ -209,20 +209,20 @@ impl Colouring {
         })
     }
 
-    /// The start of the constraints of a place and a part in the order.
+    /// Index in `order` of the first constraint with a place (see [`place_of`]) that belongs to the thread `part`.
     fn start(&self, place: u8, part: usize) -> usize {
         let rank = self.ranks.rank_of(place, part);
         rank.checked_sub(1).and_then(|last| self.ends.get(last)).map_or(0, |&end| end as usize)
     }
 
-    /// The end of the constraints of a place and a part in the order.
+    /// Index in `order` after the last constraint with a place that belongs to the thread `part`.
     fn end(&self, place: u8, part: usize) -> usize {
         self.ends.get(self.ranks.rank_of(place, part)).map_or(0, |&end| end as usize)
     }
 }
 
-/// The order of the constraints: first the overflow, then colour by colour, within a colour part by part, and within a
-/// part first the large and then the small constraints. Cold constraints follow in the same order.
+/// Ranks: the order of the constraints. The overflow comes first, then the colours. A colour is ordered by thread
+/// (`part`), and each thread's constraints by size, large ones first. Cold constraints follow in the same order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Ranks {
     /// Number of threads.

@@ -92,7 +92,7 @@ impl ContactVelocities {
         core::mem::replace(&mut self.known, true)
     }
 
-    /// Runs `change`, and excludes its velocity changes from those by contacts.
+    /// Runs `change`. Its velocity changes do not count as changes by contacts.
     pub(super) fn exempt(&mut self, context: &StepContext<'_>, change: impl FnOnce()) {
         if self.shared {
             self.perform(Task::Suspend, context);

@@ -70,8 +70,9 @@ impl Softness {
         [self.bias_rate.to_bits(), self.mass_scale.to_bits(), self.impulse_scale.to_bits()]
     }
 
-    /// The part of a spring's impulse that comes from its stretch, negated: `massScale biasRate x`, about
-    /// `h omega^2 x`. The product of the bias rate and a long stretch would overflow.
+    /// The part of a spring's impulse that comes from its stretch, negated: `massScale biasRate x`, about `h omega^2
+    /// x`. The products are computed as [`Fx`], because the product of the bias rate and a long stretch does not fit a
+    /// [`Speed`].
     pub(crate) fn push(&self, stretch: Fx) -> Speed {
         narrow(fx_mul(fx_mul(stretch, self.bias_rate.into()), self.mass_scale.into()))
     }

@@ -3,8 +3,8 @@
 use core::hint;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Number of spins after which a waiting member yields to other threads of the machine: microseconds. The member that it
-/// waits for may need the same processor.
+/// Number of spins, which take some microseconds, after which a waiting member yields to other threads of the machine.
+/// The member that it waits for may need the same processor.
 const SPINS: u32 = 100;
 
 /// Lets `count` members wait for each other, any number of times.

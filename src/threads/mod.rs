@@ -35,9 +35,9 @@ pub(crate) struct Threads {
 #[cfg(feature = "parallel")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sharing {
-    /// They share the ticks that they make shorter.
+    /// The threads share a tick only if this makes the tick shorter.
     Adaptive,
-    /// They share every tick.
+    /// The threads share every tick.
     Always,
 }
 

@@ -1,9 +1,9 @@
-//! Decides which ticks the threads of a team share: those that they make shorter.
+//! Decides which ticks the threads of a team share: those that are shorter with all threads than with one.
 //!
-//! The threads wait for each other a hundred times in a tick. If other programs use the processors as well, a wait lasts
-//! as long as a time slice of the operating system, and a tick takes up to thirty times as long as with one thread.
-//! Small worlds may be slower with several threads even on idle processors. The times of earlier ticks show both. They
-//! never influence a result, because no result depends on the number of threads.
+//! The threads wait for each other a hundred times in a tick. If other programs use the processors as well, a wait
+//! lasts as long as a time slice of the operating system, and a tick takes up to thirty times as long as with one
+//! thread. Small worlds may be slower with several threads even on idle processors. The times of earlier ticks show
+//! both effects. Times never influence a result, because no result depends on the number of threads.
 
 use core::time::Duration;
 
@@ -23,7 +23,8 @@ pub(super) enum Mode {
 }
 
 /// Compares the times of ticks in both modes. Most ticks use the faster mode. From time to time, a trial tick uses the
-/// other one: rarely if it has lost several trials in succession, because a tick in the wrong mode may take long.
+/// other mode. If that mode loses several trials in succession, trials become rare, because a tick in the slower mode
+/// may take long.
 #[derive(Clone, Debug)]
 pub(super) struct Pace {
     /// Time of a tick in nanoseconds per 1024 active bodies, by mode: the mean of the last few ticks, or the time of

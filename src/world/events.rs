@@ -122,8 +122,8 @@ impl HitEvent {
 #[doc(alias = "trigger")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct SensorEvent {
-    /// Fraction of the tick at which the overlap began or ended, 0 to 1. Sorting the events of both lists by it gives
-    /// the order of the crossings. 0 if the cause is a change between ticks.
+    /// Fraction of the tick at which the overlap began or ended, 0 to 1. Sorting the events of both lists by
+    /// this fraction gives the order of the crossings. 0 if the cause is a change between ticks.
     pub fraction: Fx,
     /// The sensor. Its handle may be stale in an end event.
     pub sensor: ShapeId,

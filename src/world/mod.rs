@@ -256,11 +256,11 @@ impl World {
     /// threads could be created; if not, nothing changes.
     ///
     /// The threads share a tick only if they make it shorter, which takes thousands of bodies and idle processors. The
-    /// world compares the times of ticks with all threads and with the calling thread alone, and uses the faster way; at
-    /// first all threads. A tick with fewer than 256 awake bodies always uses the calling thread alone. Threads keep
-    /// their processors busy until the tick is over, even while only one of them has work. Clones of the world share its
-    /// threads: a tick that runs during a tick of another clone uses its calling thread alone. Needs the feature
-    /// `parallel`.
+    /// world compares the times of ticks with all threads and with the calling thread alone, and uses the faster way.
+    /// It starts with all threads. A tick with fewer than 256 awake bodies always uses the calling thread alone.
+    /// Threads keep their processors busy until the tick is over, even while only one of them has work. Clones of the
+    /// world share its threads: a tick that runs during a tick of another clone uses its calling thread alone. Needs
+    /// the feature `parallel`.
     #[cfg(feature = "parallel")]
     pub fn set_threads(&mut self, count: usize) -> bool {
         self.start_threads(count, Sharing::Adaptive)

@@ -72,7 +72,8 @@ fn play(tick: u64, game: &Sandbox) -> Option<Vec<Command>> {
     Some(store_state(id, world.move_character(&mover, &state, filter).state).into())
 }
 
-/// Lowest bit of the body's user data. The other bits are the upward speed, whose lowest bit is insignificant.
+/// Lowest bit of the body's user data: whether the character is on ground. The other bits are those of the upward
+/// speed, whose own lowest bit is dropped.
 const ON_GROUND: u64 = 1;
 
 /// Reads the state of the character from its body and the body's user data.

@@ -36,7 +36,7 @@ pub(super) const LONG_ARM: Scene = Scene::new(
     "long_arm",
     600,
     "the same rod with its pin 16 radii of gyration away: 92 m/s on a circle",
-    // 16 / sqrt(12) m.
+    // 16 radii of gyration: 16 / sqrt(12) m.
     |_| rod(fx!(4.618802153517)),
 );
 

@@ -230,7 +230,7 @@ fn who_goes_back_lets_go() {
     assert_eq!((live.recorded(), anchors(&mut live)), (20, 1));
     play(&mut live, 1);
     assert_eq!((live.recorded(), anchors(&mut live)), (21, 0));
-    // An act that cuts the recording does not change this.
+    // If an act at an earlier tick cuts the recording, the abandoned anchor is removed as well.
     live.seek(10).unwrap();
     live.act(Act::Gravity(Vec2::new(fx!(0), fx!(-1))));
     play(&mut live, 2);

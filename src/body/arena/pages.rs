@@ -142,7 +142,7 @@ impl<T, H> Arena<T, H> {
         self.kept.revision
     }
 
-    /// Number of restores. It changes whenever the fields that every step changes have been restored.
+    /// Number of restores of the fields that every step changes.
     pub(crate) fn returns(&self) -> u64 {
         self.kept.returns
     }

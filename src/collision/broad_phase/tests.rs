@@ -355,7 +355,7 @@ fn what_is_near_is_found_while_the_radius_shrinks() {
         let nearest = point.max(fat.lower).min(fat.upper);
         let axis = |a: Fx, b: Fx| u128::from(a.to_bits().abs_diff(b.to_bits()) >> 1);
         let (x, y) = (axis(point.x, nearest.x), axis(point.y, nearest.y));
-        // In units of 2, rounded up, so that every distance in the world fits.
+        // In units of 2^-31 m, rounded up. In these units the square of every distance in the world fits 128 bits.
         let root = (x * x + y * y).isqrt() + 1;
         Fx::from_bits(i64::try_from(root.saturating_mul(2)).unwrap_or(i64::MAX))
     };

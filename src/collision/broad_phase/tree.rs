@@ -49,7 +49,8 @@ pub(crate) struct Tree {
     /// Number of leaves relinked or removed since the last rebuild. While it is 0, every node is in use and stored
     /// before its children.
     relinked: u32,
-    /// Number of leaves that left their neighbourhood since the last refit or rebuild without being relinked.
+    /// Number of leaves that have left their neighbourhood (see [`Self::stays_near`]) since the last refit or rebuild
+    /// without being relinked.
     strays: u32,
     rebuilt: Rebuilt,
 }
@@ -266,7 +267,8 @@ impl Tree {
     /// node higher up grows.
     fn stays_near(&self, leaf: u32, fat: Aabb) -> bool {
         let parent_of = |&at: &u32| Some(self.at(at).parent).filter(|&parent| parent != NONE);
-        // With a lower level most moved boxes would be reinserted; with a higher one the tree would degrade.
+        // If a nearer ancestor had to contain the box, most moved boxes would be reinserted. If a higher ancestor were
+        // enough, the tree would degrade.
         let neighbourhood = core::iter::successors(Some(leaf), parent_of).nth(4);
         neighbourhood.is_some_and(|at| self.at(at).aabb.contains(fat))
     }

@@ -41,9 +41,9 @@ pub(crate) struct SatCounters {
     pub(crate) searches: u32,
 }
 
-/// Cosine of the angle between two faces that count as parallel, 2.6 degrees, as a product of two [`Unit`] numbers. The
-/// outlines of rounded shapes in contact are apart without their radii. If the reference face flickered there, columns
-/// of 50 to 100 rounded boxes would fall.
+/// Cosine of 2.6 degrees, the largest angle between two faces that count as parallel, as a product of two [`Unit`]
+/// numbers. Rounded shapes in contact have outlines that are apart without their radii. If the reference face
+/// alternated between two such outlines, columns of 50 to 100 rounded boxes would fall.
 pub(in crate::collision) const PARALLEL_WIDE: i64 = (Unit::lit("0.999").to_bits() as i64) << Unit::FRAC_NBITS;
 
 #[derive(Clone, Copy)]
@@ -111,8 +111,9 @@ pub(in crate::collision) fn is_reference_of_b(
     face_b: Face,
     apart: bool,
 ) -> bool {
-    // Separate outlines need the true best face, which is next to the nearest corner, unless they are rounded and the
-    // faces are parallel.
+    // If the outlines are apart, the face with the larger separation is the reference face even if the difference is
+    // within the tolerance, because only that face is next to the nearest corner. Rounded outlines with parallel faces
+    // are an exception.
     let is_rounded = a.radius.saturating_add(b.radius) > 0;
     let prefers_a = !apart || is_rounded && are_parallel(a.normals()[face_a.edge], b.normals()[face_b.edge]);
     face_b.separation > face_a.separation + if prefers_a { TOLERANCE_WIDE } else { 0 }

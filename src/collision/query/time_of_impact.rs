@@ -24,9 +24,9 @@ use crate::math::{Angle, Fx, Rot, TAU, Unit, Vec2, fx_mul, round_shift_wide, sat
 /// Largest distance in metres from the target at which a contact counts as found.
 pub(crate) const TOLERANCE: Fx = fx!(0.00005);
 
-/// Largest number of steps before the search gives up; nine of ten searches take at most 5. Only faces that stay near
-/// the target while they rotate by a large part of a turn need so many: about one in a thousand random set-ups in
-/// contact.
+/// Largest number of steps before the search gives up; nine of ten searches take at most 5. More are needed only for
+/// faces that stay near the target while they rotate by a large part of a turn: in about one of a thousand random
+/// set-ups in contact.
 const STEPS_MAX: u32 = 48;
 
 /// Largest number of steps of a query. Queries are rare, so the limit can be higher.
@@ -240,7 +240,8 @@ fn target_of_contact(a: &SupportShape, b: &SupportShape, separation: Fx) -> Opti
     (start > deepest).then(|| (start + deepest) / 2)
 }
 
-/// Clips a long segment A to the part that B, at `b`, may meet: a unit normal has too few bits for its far ends.
+/// Clips a long segment A to the part that B, at `b`, may meet. A unit normal has too few bits to measure distances at
+/// the far ends of a long segment.
 fn near(a: &SupportShape, sweep: &Sweep, b: Vec2<Fx>, window: Fx) -> Option<SupportShape> {
     match *a.points() {
         [p, q] if sweep.turn == 0 => {

@@ -24,7 +24,8 @@ pub(crate) struct Directions {
 }
 
 impl Link {
-    /// Creates the link from `a` to `b` between its neighbours' other ends.
+    /// Creates the link from `a` to `b`. `before` is the far end of the neighbour that ends at `a`, and `after` the far
+    /// end of the neighbour that starts at `b`.
     pub(crate) fn new([a, b]: [Vec2<Fx>; 2], [before, after]: [Option<Vec2<Fx>>; 2], sides: Sides) -> Self {
         let directions = Directions {
             before: before.and_then(|before| (a - before).normalized()),

@@ -5,8 +5,8 @@
 //!
 //! - *Keyframes*, one every [`interval`](Timeline::interval) ticks, as the canonical bytes of the game's save. When
 //!   they exceed their memory budget, the interval doubles and every second keyframe is removed, so that the remaining
-//!   ones are evenly spaced. Any tick that has been played once therefore stays less than one interval of simulation
-//!   away.
+//!   ones are evenly spaced. Seeking to a tick that has been played once therefore takes less than one interval of
+//!   simulation.
 //! - A *trail* of saves before the current tick while stepping backwards, so that the ticks between two keyframes are
 //!   simulated once and not once per step.
 //!

@@ -198,7 +198,7 @@ impl Lanes<WIDTH> for Avx512 {
 
     #[inline(always)]
     fn narrow_by(a: __m512i, shift: __m512i) -> __m512i {
-        // SAFETY: see `Avx512`. The rounding constant, half a unit of the result, is 1 shifted by one less.
+        // SAFETY: see `Avx512`. The rounding constant, half a unit of the result, is `2^(shift - 1)`.
         unsafe {
             let shift = _mm512_maskz_mov_epi32(LANES, shift);
             let one = _mm512_set1_epi64(1);

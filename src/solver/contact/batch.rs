@@ -18,15 +18,15 @@ pub(in crate::solver) struct Batch<const N: usize> {
     pub(super) n_y: Ints<N>,
     /// -1 in lanes in which one of the bodies is not moved by impulses. These contacts are stiffer.
     pub(super) immovable: Ints<N>,
-    /// -1 in lanes with two points. In the other lanes of a batch of two points, the second is a copy of the first
-    /// without an impulse.
+    /// -1 in lanes with two points. In the other lanes of a batch of two points, the second point is a copy of the
+    /// first point, without an impulse.
     pub(super) both: Ints<N>,
     pub(super) points: [Point<N>; 2],
     /// The friction row, half-way between the points. Both points would have the same row, because they lie on one line
     /// along the tangent.
     pub(super) tangent: Row<N>,
     pub(super) tangent_lambda: Ints<N>,
-    /// Number of points that have a contact in any lane. Points beyond it are stale and never read.
+    /// Largest number of points of a contact in the batch. Points beyond this number are stale and never read.
     pub(super) count: usize,
     /// Whether any contact in the batch has extras. The batch then has a [`super::extras::ContactExtras`].
     pub(super) extras: bool,

@@ -1,4 +1,4 @@
-//! Impacts of points with restitution: when a point hits within a sub-step, and how far it rebounds by the end of it.
+//! Impacts of points with restitution: when a point hits within a sub-step, and how far it has rebounded by its end.
 //!
 //! Semi-implicit Euler is a leapfrog scheme: the velocity that moves a body in a sub-step is the velocity at the middle
 //! of the sub-step. With the relative normal velocity `v` of the point, its change `a` by forces in the sub-step, and
@@ -34,7 +34,8 @@ const NEAR: Shift = Shift::lit("0.005");
 #[derive(Clone, Debug)]
 pub(super) struct Impacts<const N: usize> {
     /// For each point, the change `a` of its relative normal velocity by forces in the first sub-step of the tick.
-    /// Until [`PredictImpacts`] runs in that sub-step, the relative normal velocity before forces act.
+    /// Before [`PredictImpacts`] runs in that sub-step, the field contains the relative normal velocity before forces
+    /// act.
     forced: [Ints<N>; 2],
     /// For each point, the relative normal velocity before contacts act: `va` for a point that hits, else `v`.
     pub(super) approach: [Ints<N>; 2],
@@ -44,8 +45,8 @@ pub(super) struct Impacts<const N: usize> {
     pub(super) rebound: [Ints<N>; 2],
     /// For each point, -1 where it has pushed in the bias pass.
     touches: [Ints<N>; 2],
-    /// For each point of an elastic contact, -1 where the shapes do not approach before contacts act: they are apart, or
-    /// separate faster than the restitution threshold.
+    /// For each point of an elastic contact, -1 where the shapes do not approach before contacts act: they are apart,
+    /// or separate faster than the restitution threshold.
     late: [Ints<N>; 2],
     /// The tangential velocity before contacts act.
     pub(super) slide: Ints<N>,
@@ -73,7 +74,7 @@ impl<const N: usize> Impacts<N> {
         }
     }
 
-    /// The impact of a point. In the relax pass, only points that have pushed rebound.
+    /// The impact of a point. In the relax pass, only points that pushed in the bias pass rebound.
     #[inline(always)]
     pub(super) fn of_point<L: Lanes<N>>(&self, i: usize, pass: Pass) -> PointImpact<L, N> {
         let rebound = L::load(&self.rebound[i]);
@@ -90,8 +91,9 @@ impl<const N: usize> Impacts<N> {
 pub(super) struct PointImpact<L: Lanes<N>, const N: usize> {
     /// `s' / h`. 0 for a point that does not hit.
     pub(super) rebound: L::Int,
-    /// Whether the point is elastic and does not approach before contacts act. If the impulse of another point drives it
-    /// to the surface, the relax pass removes its own impulse. In the next sub-step the point approaches and may bounce.
+    /// Whether the point is elastic and does not approach before contacts act. If the impulse of another point drives
+    /// it to the surface, the relax pass removes its own impulse. In the next sub-step the point approaches and may
+    /// bounce.
     pub(super) late: L::Mask,
 }
 
@@ -149,7 +151,7 @@ impl Operation<Contacts> for PredictImpacts {
                 L::store(forced, &mut extras.impacts.forced[i]);
             }
             fast = L::either(fast, L::both(bounces, L::greater(threshold, v)));
-            // Shapes at rest on each other separate at less than the threshold for single sub-steps.
+            // Shapes that rest on each other may separate for single sub-steps, at less than the threshold.
             let gap = L::greater(L::load(&point.separation), L::splat(0));
             let least = L::select(gap, L::splat(0), L::load(&extras.restitution_threshold));
             let is_late = L::both(elastic, L::greater(v, L::sub(least, L::splat(1))));

@@ -27,8 +27,8 @@ pub(crate) struct ActiveContact {
     pub(crate) is_impact: bool,
     /// Whether the shapes approach each other fast enough for a hit event, which reports the impulse of the tick.
     pub(crate) is_hit: bool,
-    /// Whether the contact needs more than rows along the normal and the tangent: if its surface has extras or it is a
-    /// hit.
+    /// Whether the contact needs more than rows along the normal and the tangent. It does if its surface has extras or
+    /// if it has a hit event.
     pub(crate) extras: bool,
     /// Whether the rows are those of the last tick: the contact has kept its manifold and its surface.
     pub(crate) keeps_rows: bool,
@@ -95,7 +95,7 @@ pub(super) struct Input {
     pub(super) contact: u32,
     pub(super) shapes: Pair,
     pub(super) features: [u16; 2],
-    /// Whether one of the bodies is wedged.
+    /// Whether one of the bodies is wedged; see [`Prospect::is_wedged`].
     pub(super) wedged: bool,
     pub(super) count: u8,
     /// Whether the contact needs more than rows along the normal and the tangent.

@@ -10,11 +10,12 @@
 //! ```
 //!
 //! Each operation on a batch has a file of its own: `warm_start`, `solve` (the equations for `w` and `L'`), `measure`,
-//! `impact`, `restitution` and `hit`. `jacobian` has `J v` and the velocity changes of impulses. `prepare` fills the batches of a tick, `rows` computes their rows, and `store` returns the
-//! impulses to the state. `overflow_policy` defines the two ways in which numbers are kept within their formats.
+//! `impact`, `restitution` and `hit`. `jacobian` computes `J v` and the velocity changes by impulses. `prepare` fills
+//! the batches of a tick, `rows` computes their rows, and `store` returns the impulses to the state. `overflow_policy`
+//! defines the two ways in which numbers are kept within their formats.
 //!
-//! Differences of two velocities fit because each velocity is below 512 m/s. A sum that may not fit saturates. Lanes
-//! without a contact have gains of 0, so that their other numbers do not matter.
+//! The difference of two velocities fits its format, because each velocity is below 512 m/s. A sum that may not fit
+//! saturates. Lanes without a contact have gains of 0, so that their other numbers do not matter.
 
 mod batch;
 mod constants;

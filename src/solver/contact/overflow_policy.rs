@@ -185,7 +185,7 @@ pub(super) struct Unchecked<L: Lanes<N>, const N: usize> {
     /// Bitwise OR of all numbers so far that must be within the bound of [`LARGE_BITS`], with the bound added to each.
     /// The bound is a power of two, so that a number within it sets no bit at or above twice the bound.
     large: L::Int,
-    /// Bitwise OR of all numbers so far that must be within the bound of [`SMALL_BITS`], likewise.
+    /// Bitwise OR of all numbers so far that must be within the bound of [`SMALL_BITS`], with that bound added to each.
     small: L::Int,
 }
 

@@ -43,8 +43,8 @@ impl Operation<Contacts> for ApplyRestitution {
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
         let BatchParts { batch, record, extra: Some(extras), bodies, faults } = parts else { return };
         let policy = &mut Saturating::<L, N>::new(faults);
-        // Velocities that do not fit are not counted as faults here, because the other lanes decide whether a lane is
-        // read.
+        // Velocities are read for all lanes before it is known which lanes bounce. Velocities that do not fit are
+        // therefore not counted as faults here.
         let mut unread = 0;
         let reader = &mut Saturating::<L, N>::new(&mut unread);
         let restitution = L::load(&extras.restitution);

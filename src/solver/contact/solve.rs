@@ -28,8 +28,8 @@ use crate::simd::{Ints, Lanes};
 
 /// Largest number of rounds in which the two points of a contact are solved against each other. At an impact, a single
 /// round would turn the body: ten boxes that fall on each other from 5 or 10 mm would sway by 12 mm, instead of 1 mm
-/// with up to four rounds. In a pile at rest the first round is usually enough: a pyramid of 5050 boxes takes a tenth
-/// more time.
+/// with up to four rounds. In a pile at rest the first round is usually enough: simulating a pyramid of 5050 boxes
+/// takes a tenth more time than with a single round.
 const NORMAL_ROUNDS_MAX: u32 = 4;
 
 /// Change of the second point's impulse, in m/s, below which the points are not solved again.
@@ -150,7 +150,8 @@ impl<P: SolverPass> Solve<P> {
         if let Some(extras) = extras {
             surface_speed = L::load(&extras.surface_speed);
             if self.pass.kind() == Pass::Bias {
-                // Friction acts only after the time of impact, and its limit does not include the impulse of restitution.
+                // Friction acts only after the time of impact, and its limit does not include the impulse of
+                // restitution.
                 surface_speed = C::sub(surface_speed, L::load(&extras.impacts.slip));
                 for (pressing, impact) in pressing.iter_mut().zip(&impacts) {
                     *pressing = L::max(C::sub(*pressing, impact.rebound), L::splat(0));

@@ -83,7 +83,8 @@ impl<const N: usize> Records<N> {
     }
 
     /// Returns the impulses of each point along the normal and the tangent, for the warm start in the next tick. Also
-    /// replaces those of the batch, rounded as by filling a batch with them, because the next tick may keep the batch.
+    /// writes them back to the batch, because the next tick may keep the batch. They are rounded in the same way as
+    /// when a batch is filled with them.
     #[inline(always)]
     fn impulses<L: Lanes<N>>(&self, batch: &mut Batch<N>) -> [[Ints<N>; 2]; 2] {
         let Denominators { normals, tangent } = &self.denominators;

@@ -121,7 +121,7 @@ fn velocities<L: Lanes<N>, const N: usize>(
 fn towards_rest<L: Lanes<N>, const N: usize>(speed: L::Int, factor: L::Int) -> L::Int {
     let reversed = L::sub(L::splat(0), speed);
     let size = L::mul(L::max(speed, reversed), factor);
-    // Rounding to nearest rounds down after half a unit is subtracted.
+    // Subtracting half a unit first turns rounding to nearest into rounding down.
     let less = L::narrow::<UNIT>(L::sub_wide(size, L::mul(L::splat(1 << (UNIT - 1)), L::splat(1))));
     L::select(L::negative(speed), L::sub(L::splat(0), less), less)
 }

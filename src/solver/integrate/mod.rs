@@ -1,7 +1,7 @@
 //! Semi-implicit Euler: velocities first, then displacements from the new velocities.
 //!
-//! Eight bodies are integrated at a time if all of them are dynamic, have no locked axis and are within all limits
-//! (`kernel`), as most bodies are. All other bodies are integrated one by one.
+//! Eight bodies are integrated at a time (`kernel`) if all of them are dynamic, have no locked axis and are within all
+//! limits. Most bodies are. All other bodies are integrated one by one.
 
 mod area_effect;
 mod kernel;

@@ -64,7 +64,8 @@ pub(in crate::solver) struct JointSource<'a> {
     pub(in crate::solver) tuning: &'a Tuning,
 }
 
-/// A body that has joints but is not among the active bodies of the tick, or a far anchor.
+/// A body that has joints but is not among the active bodies of the tick, or a far anchor: an anchor on a fixed body
+/// that is too far from the body's origin for a lever arm (see [`JointFrame::is_far`]).
 #[derive(Clone, Copy, Debug)]
 struct Anchor {
     slot: u32,

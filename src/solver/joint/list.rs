@@ -295,7 +295,7 @@ impl JointList {
     }
 }
 
-/// Number of parts of one joint.
+/// Number of rows, or of points, of one joint.
 fn count<T>(parts: &[T]) -> u16 {
     u16::try_from(parts.len()).expect("a joint has a handful of parts")
 }

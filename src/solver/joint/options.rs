@@ -103,9 +103,9 @@ pub struct Spring {
 /// Softness of a joint that is not rigid.
 ///
 /// An angular spring has this frequency if both bodies are free. A linear spring, between anchors, has it if both
-/// bodies are point masses: its stiffness is `(2 pi hertz)^2 m` N/m in all directions, with the masses
-/// `m = MA MB / (MA + MB)`, or the mass of the moving body if the other one does not move. A body that hangs on a fixed
-/// one sags by `g / (2 pi hertz)^2`, wherever its anchor is. If the anchor is off the centre of mass by `r`, across the
+/// bodies are point masses: its stiffness is `(2 pi hertz)^2 m` N/m in all directions, with the reduced mass `m = MA MB
+/// / (MA + MB)`, which is the mass of the moving body if the other one does not move. A body that hangs on a fixed one
+/// sags by `g / (2 pi hertz)^2`, wherever its anchor is. If the anchor is off the centre of mass by `r`, across the
 /// pull, the body also turns: it swings `sqrt(1 + r^2 / k^2)` times as fast, with `k` its radius of gyration, and its
 /// damping ratio is larger by the same factor.
 ///

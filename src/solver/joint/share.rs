@@ -163,7 +163,7 @@ struct Stretch {
 }
 
 /// Largest predicted rotation of a body, in radians. Impulses do not act along the averaged lever ratios, so that an
-/// iteration may add energy to joints that it does not solve exactly. With this limit, no star of hinges gains any
+/// iteration may add energy to joints that it does not solve exactly. With this limit, no star of hinges gains energy
 /// (`docs/DESIGN.md`).
 const TURN_MAX: Unit = Unit::lit("0.04");
 

@@ -1,9 +1,9 @@
 //! The weld joint: a row on the angle and a point block at the anchors, each rigid or a spring.
 //!
 //! A prismatic joint acts at the point at which its impulse does not rotate the bodies relative to each other. The
-//! point block of a weld acts at the anchors instead. If it acted at that point too, a plank on a wall would sag a
-//! fifth as far, but the anchors of a loaded chain would open four times as wide, and a weld of 1 cm that carries a
-//! hundredfold weight would gain energy.
+//! point block of a weld acts at the anchors instead. If it acted at that point too, a plank that is welded to a wall
+//! would sag a fifth as far. But the gaps of a loaded chain of planks would be four times as wide, and a weld of two
+//! boxes of 1 cm that carries 100 times their mass would gain energy.
 
 use serde::{Deserialize, Serialize};
 

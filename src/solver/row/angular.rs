@@ -27,7 +27,7 @@ impl Row {
         let (e_a, e_b) = (ratio(a), ratio(b));
         let denominator = turning(fractions.a, e_a, e_a) + turning(fractions.b, e_b, e_b);
         let gain = |fraction: Unit, e: Ratio| {
-            // 54 fraction bits divided by 30.
+            // The product has 54 fraction bits, the denominator 30.
             let product = i64::from(fraction.to_bits()) * i64::from(e.to_bits());
             // A velocity change must not be larger than `L`. Only physically impossible bodies reach this limit.
             Unit::from_bits(saturate(quotient(product, denominator.max(1)))).min(Unit::ONE)

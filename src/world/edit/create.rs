@@ -94,7 +94,7 @@ impl World {
         for pose in poses {
             check_position(pose.position)?;
         }
-        // Every other error would already occur with the first body.
+        // All other errors come from the definitions, so that they occur with the first body, before any body is added.
         poses
             .iter()
             .map(|pose| self.spawn(&BodyDef { position: pose.position, angle: pose.angle, ..*body }, shapes))

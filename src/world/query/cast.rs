@@ -142,10 +142,10 @@ impl World {
     }
 
     /// Returns the first shape that a probe meets as it moves along a translation in metres without rotation. The probe
-    /// stops 0.1 mm before it touches. A shape that it touches at the start stops it only if the probe moves into that
-    /// shape, so that a probe slides along chains and flush tiles. [`QueryFilter::initial_overlap`] selects another
-    /// treatment of shapes that the probe overlaps at the start. [`World::cast_turning`] also rotates the probe. A
-    /// chain link that is solid from one side is met only by probes whose middle is on that side.
+    /// stops 0.1 mm before it touches. A shape that the probe touches at the start stops the probe only if it moves
+    /// into that shape, so that probes slide along chains and flush tiles. [`QueryFilter::initial_overlap`] selects
+    /// another treatment of shapes that the probe overlaps at the start. [`World::cast_turning`] also rotates the
+    /// probe. A chain link that is solid from one side is met only by probes whose middle is on that side.
     #[must_use]
     #[doc(alias = "shapecast")]
     #[doc(alias = "sweep test")]

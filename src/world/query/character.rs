@@ -212,9 +212,9 @@ impl World {
     /// world does not change. To let the character push bodies or be seen by queries, give it a kinematic body, leave
     /// that body out by [`QueryFilter::except`], and let it follow by [`World::move_to`].
     ///
-    /// The game adds gravity. Moving ground carries the character without further code: by the movement of its body
-    /// since the character's last move, and by the surface speed of a belt. Move characters after [`World::step`]: a
-    /// character that is moved before the step is one tick behind its lift.
+    /// The game adds gravity. Moving ground carries the character without further code: by the movement of the ground's
+    /// body since the character's last move, and by the surface speed of a belt. Move characters after [`World::step`]:
+    /// a character that is moved before the step is one tick behind its lift.
     ///
     /// Between slopes that are both too steep a character rests without ground: see [`Moved::is_wedged`].
     ///

@@ -5,8 +5,8 @@
 //! second cast, which starts where the shape just rests on the surfaces that it touches. An obstacle that the second
 //! cast does not meet is a seam.
 //!
-//! Only contacts that the cast leaves or slides along lift the shape. A contact that it moves into stops it. A shape
-//! between a floor and a ceiling cannot leave both, so that there is also a cast for each surface by itself.
+//! Contacts that the cast leaves or slides along lift the shape. A contact that the cast moves into stops it. A shape
+//! between a floor and a ceiling cannot be lifted off both, so that there is also a second cast for each surface alone.
 
 use smallvec::SmallVec;
 
@@ -23,10 +23,12 @@ use crate::world::World;
 /// Tolerances of the position in which a shape rests on the surfaces that it touches.
 #[derive(Clone, Copy)]
 pub(super) struct Rest {
-    /// Largest distance in metres of a surface that the shape touches: where a cast along the surface may stop.
+    /// Largest distance in metres at which a surface counts as touched. A cast along the surface may stop at this
+    /// distance.
     touching: Fx,
-    /// Distance in metres from the surfaces at which the second cast starts. Ledges of up to 5 µm, the difference to
-    /// the gap of the first cast, count as seams: tiles of a ramp are flush to within a micrometre.
+    /// Distance in metres from the surfaces at which the second cast starts. It is 5 µm larger than the gap at which
+    /// the first cast stops, so that ledges of up to 5 µm count as seams: tiles of a ramp are flush to within a
+    /// micrometre.
     gap: Fx,
     /// Largest distance in metres by which the cast may approach a surface that it slides along.
     approach_max: Fx,

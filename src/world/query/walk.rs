@@ -160,8 +160,8 @@ impl<'a> Walk<'a> {
         self.climbed = (self.position().y - start).max(Fx::ZERO);
     }
 
-    /// Finds the ground below a character that was on ground or has met it, and moves down to it. A character that has
-    /// walked off the ground falls.
+    /// Finds the ground below the character, if it was on ground or has met ground, and moves the character down to the
+    /// ground. A character that has walked off the ground falls.
     pub(super) fn ground(&mut self, carrier: Option<Carrier>) -> Option<MoverPlane> {
         let walked = self.along.is_some();
         let found = self.find_ground().filter(|plane| !self.leaves(plane));

@@ -109,7 +109,7 @@ fn pack_motion(body: &Body, mut record: Record<'_, BODY_BYTES>) {
     record.put(body.rest_ticks.to_bits());
 }
 
-/// The flags of the optional parts that a body has. Without branches, because most bodies have none.
+/// The flags of the optional parts that a body has, computed without branches.
 #[inline(always)]
 fn optional_parts(body: &Body) -> u8 {
     let force = body.force.x.to_bits() | body.force.y.to_bits() | body.torque.to_bits();

@@ -100,7 +100,7 @@ pub(super) fn pack_joints(joints: &Arena<Joint, JointId>, bytes: &mut Vec<u8>) {
     let mut writer = Writer::new(bytes, joints.len() * JOINT_BYTES);
     for (_, joint) in joints.iter() {
         let mut there = 0;
-        // Each word is written, and overwritten by the next one if it is 0: branches here would be unpredictable.
+        // Each word is written; if it is 0, the next word overwrites it. Branches here would be unpredictable.
         let (mut words, mut count) = ([0i32; 8], 0);
         for (place, impulse) in (0..JOINT_IMPULSES).zip(joint.impulses.0) {
             let bits = impulse.to_bits();

@@ -110,7 +110,7 @@ impl HashedState {
         HashedState { state, digest: OnceBox::new() }
     }
 
-    /// The state, for constant functions.
+    /// The state, for `const` functions.
     pub(crate) const fn get(&self) -> &State {
         &self.state
     }

@@ -1,9 +1,10 @@
 //! Areas: the effects of sensors with an [`Area`] on the bodies in them, for one tick.
 //!
-//! Forces are computed once per tick, at the poses that velocities predict for a fraction `(s - 1) / 2 s` of the tick
-//! ahead, with `s` sub-steps: the mean of the poses at which the sub-steps begin. With a force at the pose at the start
-//! of the tick, a spring such as a floating box would gain `h^2 omega^2 (s - 1) / 2 s` of its energy in each tick,
-//! because the sub-steps move it by less than the symplectic Euler method does.
+//! Forces are computed once per tick. With `s` sub-steps, the mean of the times at which the sub-steps begin is a
+//! fraction `(s - 1) / 2 s` of the tick after its start. Forces are computed at the poses that the velocities predict
+//! for that time. With forces at the poses at the start of the tick, a spring such as a floating box would gain `h^2
+//! omega^2 (s - 1) / 2 s` of its energy in each tick, because the sub-steps move it by less than the symplectic Euler
+//! method does.
 
 use crate::body::{Area, Attraction, Body, Falloff, Geometry, Handle, Shape, area_of};
 use crate::collision::{Pair, RelativePose, Ring, SupportShape, overlap};

@@ -93,11 +93,12 @@ impl Visit {
         let (begin, end) = match (was_inside, is_inside) {
             (true, true) => (None, None),
             (false, true) => (Some(first().unwrap_or(Fx::ONE)), None),
-            // If there is no overlap during the tick, an edit has moved one of the bodies before it.
+            // If there is no overlap during the tick, an edit before the tick has moved one of the bodies.
             (true, false) => (None, Some(last().unwrap_or(Fx::ZERO))),
             (false, false) => {
                 let begin = first();
-                // A fraction of 0 marks a change between ticks, so that the end would be sorted before the beginning.
+                // The end has a fraction above 0: a fraction of 0 marks a change between ticks, which is sorted before
+                // the beginnings of the tick.
                 (begin, begin.map(|begin| last().unwrap_or(begin).max(begin).max(Fx::DELTA)))
             }
         };

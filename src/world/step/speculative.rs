@@ -113,8 +113,8 @@ impl SpeculativePair<'_> {
         let motions = [motion.motion(self.a), motion.motion(self.b)];
         let closing_at = approach(motions[0], motions[1], manifold);
         let (speculative, slack) = (raw::<U27>(convert(self.margins.speculative)), raw(self.slack()));
-        // Largest approach at a point that acts within the tick. Points that are deeper than the slack do not pass by,
-        // and do not count.
+        // Largest approach at a point that acts within the tick. Points deeper than the slack are left out, because
+        // shapes that overlap so deeply do not pass by each other.
         let mut fastest = 0;
         manifold.retain(|point| {
             let separation = raw(point.separation);

@@ -18,11 +18,11 @@ pub(crate) struct AddedWork {
 impl World {
     /// Returns an upper bound of the cost of the next tick in work units, as far as it is known before the tick.
     /// `bodies` and `shapes` are the largest numbers of bodies and shapes that are added before it.
-    /// [`Game::work`](crate::lockstep::Game::work) can be based on the result. It counts bodies, shapes, pairs and
-    /// joints, times the solver's sub-steps and iterations, 4 more for each pair, and 8 for the tick. Because shapes
-    /// may be added on top of each other, it assumes that as many pairs begin as the world allows, for which every
-    /// shape is compared with every other. The work of solving these pairs is known only in the tick, and verification
-    /// counts it there.
+    /// [`Game::work`](crate::lockstep::Game::work) can be based on the result. The bound is the number of bodies,
+    /// shapes, pairs and joints, times the solver's sub-steps and iterations, plus 4 for each pair and 8 for the tick.
+    /// Because shapes may be added on top of each other, it also assumes that as many pairs begin as the world allows,
+    /// and that every shape is compared with every other to find them. The work of solving these pairs is known only in
+    /// the tick, and verification counts it there.
     ///
     /// ```
     /// # use lockstep2d::world::World;

@@ -102,7 +102,7 @@ impl HostRecorder {
     }
 }
 
-/// Whether a game can have this number of players, and bytes of an input.
+/// Whether a game can have this number of players and inputs of this number of bytes.
 pub(super) fn are_possible(players: u32, input_bytes: u32) -> bool {
     (1..=64).contains(&players) && (1..=512).contains(&input_bytes)
 }

@@ -49,7 +49,8 @@ fn every_tick_has_its_hash_whichever_way_one_comes() {
     wait_for(&mut app, 50);
 }
 
-/// Includes derived data outside the state, such as contact points, which restoring a save alone does not bring back.
+/// The comparison includes derived data outside the state, such as contact points, which restoring a save alone does
+/// not bring back.
 #[test]
 fn ten_ticks_back_everything_is_seen_as_it_was() {
     let mut app = app_of(file());

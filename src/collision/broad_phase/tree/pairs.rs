@@ -55,7 +55,7 @@ pub(in crate::collision::broad_phase) struct Meetings {
 
 impl Meetings {
     /// Calls `found` with every pair of overlapping boxes of a tree once, except for most pairs within one collision
-    /// class. Skips pairs of nodes without a wanted node.
+    /// class. Skips a pair of nodes if `wanted` holds for neither of them.
     pub(in crate::collision::broad_phase) fn within(
         &mut self,
         tree: &Tree,

@@ -96,8 +96,9 @@ fn collide<L: Lanes<WIDTH>>(batch: &mut Batch, boxes: &[Turned]) {
     let further = L::max_wide(separation_a, separation_b);
     let is_far = L::greater_wide(further, reach);
     let zero = L::splat(0);
-    // Boxes that are apart need the true best face, which is next to the nearest corner, unless they are rounded and
-    // the faces are parallel.
+    // If the boxes are apart, the face with the larger separation is the reference face even if the difference is
+    // within the tolerance, because only that face is next to the nearest corner. Rounded boxes with parallel faces are
+    // an exception.
     let (tolerance, as_product) = (L::splat(TOLERANCE.to_bits()), L::splat(1 << TO_STEP));
     let is_apart = L::greater_wide(further, L::mul(tolerance, as_product));
     let is_flush = L::both(L::greater(radii, zero), are_parallel::<L>(&a, face_a, &b, face_b));

@@ -20,7 +20,7 @@ pub(in crate::collision) const FINER: u32 = Step::FRAC_NBITS - Length::FRAC_NBIT
 /// bits.
 pub(in crate::collision) const CLIP_BITS: u32 = 26;
 
-/// End of an edge relative to the start of the reference edge, in unsaturated units of `Length` and `Step`.
+/// End of an edge relative to the start of the reference edge, in units of `Length` and `Step`, not saturated.
 #[derive(Clone, Copy)]
 struct ClipPoint {
     vertex: usize,
@@ -87,9 +87,9 @@ pub(in crate::collision) fn clip(
     let low = if lower.along < first.along { clipped(lower, upper, first.along) } else { lower };
     let high = if upper.along > last.along { clipped(upper, lower, last.along) } else { upper };
     if let Some((vertex_a, vertex_b)) = corners {
-        // Nearly parallel rounded edges are nearest at corners too, but need a contact point at each end. In this case,
-        // within the tolerance, the distance of the corners is at least the distance of the clipped edge and at most
-        // the separation from the face.
+        // The nearest points of nearly parallel rounded edges are corners too, but such edges need a contact point at
+        // each end. They are recognised by two differences that are within the tolerance: the distance of the corners
+        // is not much less than that of the clipped edge, and not much more than the separation from the face.
         let gap = Gap::between(&context, vertex_a, vertex_b);
         let distance = step_bits(gap.distance);
         let nearer = low.above.min(high.above);

@@ -5,7 +5,7 @@
 //!
 //! - one of them holds more than a point: a weld, a slider, a spring, or
 //! - it is so light, or its arms are so long, that its share in the mobility of the points of two hinges is large, or
-//!   the sum of its shares over all hinges but one.
+//!   that the sum of its shares over all hinges, without the largest share, is large.
 //!
 //! All joints of a crowded body are solved in a block. Two crowded bodies with a common joint share a block, as long as
 //! it does not grow beyond [`ROWS_MAX`]. The choice depends on the joints of a body alone, so that joints elsewhere do
@@ -38,7 +38,7 @@ pub(in super::super) struct Candidate {
     /// The indices of its bodies: the ground for a body that no impulse changes.
     pub(in super::super) bodies: [u32; 2],
     /// Number of rows that a block would solve: rows that hold the bodies, springs, limits, and motors along one
-    /// direction. A joint without such rows takes no part.
+    /// direction. A joint without such rows is never solved in a block.
     pub(in super::super) rows: u32,
     /// Whether it has rows besides that of a motor. A motor alone makes no body crowded.
     pub(in super::super) holds: bool,

@@ -30,11 +30,11 @@ pub(super) enum Leverage {
     /// The point turns with the body and the force does not: the derivative is `F . r`. Contains the lever ratios of
     /// both bodies, which are the arms over the radii of gyration, turned by a right angle.
     AtPoint([Vec2<Ratio>; 2]),
-    /// The force turns with A, and acts at a point of B. With `d` from A's centre to that point, `r` from B's, and the
-    /// position `n . d` on the axis `n`, the derivatives of the torques are `F n . d` and `F n . r` with respect to the
-    /// rotations of A and B, and `F` with respect to a translation across the axis. For each body, `|F|` times the
-    /// length of its own arm is used instead, which is at least the derivative with respect to its own rotation for any
-    /// direction of the force. Contains the lengths of the lever ratios.
+    /// The force turns with A, and acts at a point of B. Let `d` be the vector from A's centre to that point, `r` the
+    /// vector from B's centre to it, and `n` the axis. The derivatives of the torques are `F n . d` with respect to A's
+    /// rotation, `F n . r` with respect to B's rotation, and `F` with respect to a translation across the axis. For
+    /// each body, `|F|` times the length of its own arm is used instead. For any direction of the force, this is at
+    /// least the derivative with respect to the body's own rotation. Contains the lengths of the lever ratios.
     AlongAxis([Ratio; 2]),
 }
 

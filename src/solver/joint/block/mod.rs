@@ -100,7 +100,7 @@ struct Block {
     places: Vec<[u32; 2]>,
     /// For each body, the share of its rotation that geometric stiffness leaves it.
     spins: Vec<i64>,
-    /// The changes that each row by itself would make.
+    /// The changes of the impulses that each row by itself would make.
     wanted: Vec<i64>,
     /// The unknowns, with 32 fraction bits.
     x: Vec<i64>,

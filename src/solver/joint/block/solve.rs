@@ -48,7 +48,7 @@ impl Block {
         }
     }
 
-    /// Computes the changes that each row by itself would make.
+    /// Computes the changes of the impulses that each row by itself would make.
     pub(super) fn want(
         &mut self,
         pass: Pass,

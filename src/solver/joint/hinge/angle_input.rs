@@ -46,7 +46,7 @@ pub(super) struct Memo {
 }
 
 impl Memo {
-    /// Binary logarithm of the number of cached rows, which is enough for the joints of a few machines.
+    /// Binary logarithm of the number of cached rows, which is enough for the joints of a few mechanisms.
     const ANGULARS_BITS: u32 = 6;
 
     fn softness(&mut self, hertz: Fx, damping_ratio: Fx, rate: u32) -> Softness {
@@ -130,7 +130,7 @@ pub(super) struct SpringInput {
     pub(super) impulse_scale: Unit,
     /// Target angle in units of 2^-32 turn.
     pub(super) target: i64,
-    /// Speed per turn away from the target.
+    /// Push of the spring, a speed, per turn of the distance from the target: `massScale biasRate 2 pi s`.
     pub(super) stiffness: Fx,
     /// Largest impulse. 0 if neither body turns.
     pub(super) max: Speed,
@@ -152,9 +152,9 @@ pub(super) struct LimitInput {
     pub(super) lower: i64,
     /// Upper limit in units of 2^-32 turn.
     pub(super) upper: i64,
-    /// Speed per turn beyond a limit.
+    /// Push towards a limit that is exceeded, a speed, per turn of the excess: `massScale biasRate 2 pi s`.
     pub(super) closed: Fx,
-    /// Speed per turn before a limit.
+    /// Speed at which a limit is reached within a sub-step, per turn of the distance from it: `2 pi s / h`.
     pub(super) open: Fx,
     /// Largest impulse. 0 if neither body turns.
     pub(super) max: Speed,

@@ -57,9 +57,9 @@ impl HingeSet {
         }
     }
 
-    /// Adds batches for the hinges of a colour to a part. `indices` are those of the inputs of the hinges. Hinges with
-    /// rows on the angle and anchored hinges have separate batches. `is_alone` returns whether the body with an index
-    /// has only one joint.
+    /// Adds batches for the hinges of a colour to the share of one thread, `part`. `indices` are those of the inputs of
+    /// the hinges. Hinges with rows on the angle and anchored hinges have separate batches. `is_alone` returns whether
+    /// the body with the given index has only one joint.
     pub(in super::super) fn push_colour(
         &mut self,
         part: &mut HingeShare,
