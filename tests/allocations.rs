@@ -95,7 +95,7 @@ fn piles_and_joints_at_rest_allocate_nothing() {
     }
 }
 
-/// A hanging chain whose joints are checked against thresholds.
+/// The world checks the loads of a hanging chain's joints against thresholds in every tick.
 #[test]
 fn joints_with_thresholds_allocate_nothing() {
     let config = Config { sleeping: false, ..Config::default() };

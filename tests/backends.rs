@@ -11,7 +11,8 @@ use lockstep2d_tests::sweep;
 
 const HASHES: &str = "tests/backends.txt";
 
-/// Scenes with their numbers of ticks. The block of `smash` takes a while to arrive.
+/// Scenes with their numbers of ticks. `smash` runs longer, because its heavy box needs a while to reach the block of
+/// boxes.
 const SCENES: [(&str, u64); 10] = [
     ("large_pyramid", 60),
     ("many_pyramids", 60),
@@ -87,8 +88,8 @@ fn any_number_of_threads_ends_in_the_same_hashes() {
     all_end_in_their_hashes(&[2, 4, 8], World::force_threads);
 }
 
-/// The number of threads changes before every tick. It changes in a game as well, because threads share only the ticks
-/// that they make shorter.
+/// The number of threads changes before every tick. In a game it changes as well: a world uses its threads only in
+/// ticks that they make shorter.
 #[test]
 #[cfg(feature = "parallel")]
 fn the_number_of_threads_may_change_between_ticks() {

@@ -5,7 +5,8 @@
 //! as one module. Imports do not count, nor does text that readers do not see as code: hidden lines, comments and
 //! literals. `cargo test --doc` checks that the code compiles and is correct.
 //!
-//! All types that are declared `pub` count, because the lint `unreachable_pub` refuses those that no user can name.
+//! Every type that is declared `pub` counts. The lint `unreachable_pub` makes sure that users can name all of these
+//! types.
 
 mod source;
 

@@ -89,7 +89,8 @@ fn friction_is_what_slows_a_sliding_box() {
     let slowed = (world.body(body).unwrap().velocity().x - before) * 60;
     assert!(slowed < fx!(-1), "expected the box to be slowed by friction");
     let contact = world.contacts().next().unwrap();
-    // The normal points from the ground, in the smaller slot, to the box; turned counter-clockwise it points left.
+    // The normal points up, from the ground, which has the lower slot, to the box. Friction is measured along the
+    // normal rotated counter-clockwise by a quarter turn, which points left.
     assert!(contact.manifold.normal.y > 0);
     let (_, friction) = sum_of_forces(&world);
     assert_near(friction, -mass * slowed, fx!(0.001));

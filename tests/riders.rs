@@ -232,7 +232,8 @@ fn level(rng: &mut Rng) -> Vec<Vec2<Fx>> {
             y += fx_mul(fx_mul(slope, run), up);
             points.push(at(x, y));
         }
-        // A level stretch follows each slope: to feet that are still on the slope, a step would be higher.
+        // A level stretch follows each slope. If a step followed directly, it would be higher than its nominal height
+        // for feet that are still on the slope.
         x += rng.range(fx!(0.8), fx!(3));
         points.push(at(x, y));
     }

@@ -1,4 +1,4 @@
-//! Changed packets to sessions that play and join. See `bytes::session`.
+//! Sends changed packets to sessions that play, and to one that joins. See `bytes::session`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Snapshot files of a few kilobytes. See `bytes::snapshot`.
+//! Snapshot files of a few kilobytes for the decoder of worlds. See `bytes::snapshot`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

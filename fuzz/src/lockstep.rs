@@ -16,7 +16,7 @@ const COST_MAX: u64 = 60_000;
 /// Maximum depth of the rollback, in ticks.
 const ROLLBACK_MAX: usize = 30;
 /// Interval in ticks of the invariant checks, in addition to those after commands and at the end. In a small world the
-/// checks take most of the time, and a broken invariant stays broken.
+/// checks take most of the time, and an invariant that is broken stays broken until the next check.
 const CHECK_INTERVAL: u64 = 8;
 
 /// Statistics of a run.

@@ -30,8 +30,8 @@ fn caches_decide_nothing(world: &mut World, ticks: u64) {
 
 #[test]
 fn an_outline_that_goes_back_on_itself_is_refused() {
-    // Every vertex is an endpoint of every edge, so no vertex is on the wrong side of an edge. The mass of an accepted
-    // outline would be divided by an area of zero.
+    // Every vertex is an endpoint of every edge, so no vertex is on the wrong side of an edge. If such an outline were
+    // accepted, the computation of its mass would divide by an area of zero.
     let there_and_back = [(0, 0), (1, 0), (0, 0), (1, 0)].map(|(x, y)| Vec2::new(Fx::from(x), Fx::from(y)));
     assert!(Polygon::new(&there_and_back).is_err());
 }
@@ -239,7 +239,7 @@ fn many_fixed_shapes_at_one_point_wake_nobody_for_long() {
 
 #[test]
 fn a_shape_that_comes_wakes_who_lies_where_it_comes() {
-    // Only overlaps of the new shape are searched, not those of all shapes of its body.
+    // Only the new shape is tested for overlaps, not the other shapes of its body.
     let mut world = World::default();
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let ground = world.spawn(&BodyDef::fixed(), &[ball]).unwrap();
@@ -321,8 +321,9 @@ fn a_body_that_a_joint_drags_out_of_range_is_not_slow() {
 
 #[test]
 fn a_shape_in_the_slot_of_one_that_slept_has_its_own_surface() {
-    // The contacts of a body that falls asleep leave the list that is searched for removed shapes. A surface that is
-    // cached by the slots of its pair must not be used for a new shape that reuses a slot before the next tick.
+    // The contacts of a body that falls asleep leave the list that is searched for removed shapes. The combined
+    // material of two shapes is cached under their slots. It must not be used for a new shape that reuses one of these
+    // slots before the next tick.
     let mut world = World::default();
     let ground = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).unwrap());
     world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[ground]).unwrap();
@@ -362,7 +363,8 @@ fn a_circle_in_line_with_a_turned_capsule_is_beyond_its_end() {
 
 #[test]
 fn a_bar_below_an_outline_that_hardly_bends_touches_it_where_it_is() {
-    // The edge whose normal is most opposed to the normal of the bar's side lies beside the bar. The contact must not.
+    // The edge whose normal is most opposed to the normal of the bar's side lies beside the bar. The contact points
+    // must lie on the bar.
     let corners =
         [(fx!(-0.5), fx!(-0.5)), (fx!(-0.37), fx!(-0.5)), (fx!(0.182), fx!(-0.499)), (fx!(-0.5), fx!(0.394))];
     let outline = Polygon::new(&corners.map(|(x, y)| Vec2::new(x, y))).expect("convex");

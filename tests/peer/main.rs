@@ -156,7 +156,7 @@ fn late_joiners_and_spectators_follow() {
         table.peer(1).session_mut().expect("valid").leave();
         table.play(4000);
         assert!(table.peers[1].is_none());
-        // The spectator has lost its contact, and has found another one.
+        // The spectator has lost its contact (the peer that relays the match to it), and has found another contact.
         assert_eq!(table.peer(2).status(), Some(Status::Watching));
         let lead = table.peer(0).tick();
         for at in [2, 3] {
@@ -180,7 +180,7 @@ fn late_joiners_and_spectators_follow() {
     }
 }
 
-/// Both peers continue after an outage; the guest has its former seat again, and continues its replay.
+/// Both peers continue after an outage; the guest gets its seat back and continues its replay.
 #[test]
 fn an_outage_costs_no_replay() {
     let options = PeerOptions::lockstep();

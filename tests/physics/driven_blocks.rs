@@ -1,4 +1,4 @@
-//! Motors at bodies whose joints are solved in blocks.
+//! Motors of joints that are solved in blocks: all joints of a block are solved together as one system of equations.
 
 use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;

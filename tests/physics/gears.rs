@@ -80,8 +80,8 @@ fn the_ratio_is_kept_under_load() {
             *worst = (*worst).max(world.joint_error(gear).expect("valid"));
         }
         run(&mut world, 0);
-        // Gears yield by a / (2 pi 60 Hz)^2, as all joints do: 4 mm where the brake holds a wheel of 0.3 kg.
-        // Without a pitch point the error is in radians of a tooth.
+        // Under an acceleration a, gears yield by a / (2 pi 60 Hz)^2, as all joints do: 4 mm where the brake holds a
+        // wheel of 0.3 kg. Without a pitch point the error is in radians, where 2 pi are one tooth.
         let unit = if teeth[0] + teeth[1] == 0 { fx!(10) } else { fx!(1) };
         let most = [fx_mul(fx!(0.008), unit), fx_mul(fx!(0.006), unit)];
         assert!(worst[0] < most[0] && worst[1] < most[1], "{teeth:?}: the teeth are {worst:?} m apart");
@@ -89,7 +89,7 @@ fn the_ratio_is_kept_under_load() {
         let turned = [axle_a, axle_b].map(|axle| world.joint_angle(axle).expect("valid"));
         let apart = turned[0] * i64::from(teeth[0]) + turned[1] * i64::from(teeth[1]);
         assert!(turned[0] > fx!(500));
-        // The difference is in radians of a tooth: a skipped tooth would change it by 2 pi.
+        // In `apart`, 2 pi are one tooth: a skipped tooth would change it by 2 pi.
         close(apart, fx!(0), fx!(1));
     }
 }

@@ -77,7 +77,7 @@ fn every_heap_whose_bodies_resist_rolling_comes_to_rest() {
     });
 }
 
-/// Without resistance, at most one heap in forty is still awake after 40 s, and none gathers energy.
+/// Without rolling resistance, at most one heap in forty is still awake after 40 s, and no heap gains energy.
 #[test]
 fn few_heaps_are_restless_and_none_gathers_energy() {
     let count = sweep::size(2400, 120);

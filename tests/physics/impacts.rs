@@ -240,7 +240,7 @@ fn a_corner_with_friction_adds_no_energy() {
         let speed = [fx!(5), fx!(10), fx!(20), fx!(40)][shot.unsigned_abs() as usize % 4];
         let angle = Angle::from_radians(PI + fx!(0.05) + fx!(0.0049) * i64::from(shot % 300));
         let velocity = Rot::from_angle(angle).apply_wide(Vec2::new(speed, fx!(0)));
-        // The ball touches both walls after a time, or one of them a little earlier.
+        // After `seconds` the ball reaches both walls at once, or one of them a little earlier than the other.
         let seconds = fx!(0.3) + fx!(0.0013) * i64::from(shot % 53);
         let aside = fx!(0.01) * i64::from(shot % 11 - 5);
         let start = Vec2::new(fx!(0.5) + aside.max(Fx::ZERO), fx!(0.5) - aside.min(Fx::ZERO));

@@ -33,7 +33,7 @@ const BEYOND: [Case; 6] = [
 const GAPING: [Case; 2] = [
     // 300 kg hang on a disc of 1 kg, at an arm of 15 radii of gyration.
     Case { shape: Shape::Tree, mix: Mix::Wheel, start: Start::Hang, seed: 0 },
-    // Three bodies of 100 kg on springs jerk at one of 1 kg at 21 m/s in tick 112.
+    // In tick 112 three bodies of 100 kg, connected by springs to a body of 1 kg, pull at it with a speed of 21 m/s.
     Case { shape: Shape::Mesh, mix: Mix::LimitedSpring, start: Start::Hang, seed: 5 },
 ];
 

@@ -99,8 +99,8 @@ fn a_cantilever_of_rigid_welds_hardly_bends() {
 }
 
 /// At rest a soft joint yields to a load `m g` on a mass `m` by `g / omega^2`, as a spring does. With two rods, the
-/// upper hinge bears both at 60 Hz. With one rod, it is an anchored hinge with twice that frequency, and yields a
-/// quarter as much.
+/// upper hinge has 60 Hz and bears both. With one rod, the hinge connects a body without other joints to a fixed body.
+/// Such an anchored hinge has 120 Hz, and under an equal load yields a quarter as much.
 #[test]
 fn a_hinge_sags_as_its_stiffness_says_and_an_anchored_hinge_is_twice_as_stiff() {
     let sag = |rods: i64| {

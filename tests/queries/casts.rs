@@ -102,8 +102,8 @@ fn casts_between_a_floor_and_a_ceiling_pass_the_seams_of_both() {
     }
 }
 
-/// A shape that overlaps a floor and a ceiling meets a ramp just before the end of its cast. Lifted off one of
-/// them, the shape is up to 1 cm further away from the ramp.
+/// A shape that overlaps a floor and a ceiling meets a ramp just before the end of its cast. A cast that first pushed
+/// the shape out of the floor or the ceiling would see it up to 1 cm further away from the ramp.
 #[test]
 fn casts_between_a_floor_and_a_ceiling_stop_at_ramps_at_their_ends() {
     for upside_down in [false, true] {
@@ -181,7 +181,7 @@ fn a_cast_says_when_it_starts_inside_or_ignores_it() {
         let hit = cast(way, report).expect("the near wall");
         assert!(hit.shape == near && hit.starts_inside && hit.fraction == 0 && hit.normal.x == 1);
         assert_eq!(cast(way, ignore).expect("the far wall").shape, far);
-        // The cast would go deeper into the near wall, which it hits at once.
+        // A cast that would go deeper into the near wall hits this wall at once.
         let hit = cast(-way, resist).expect("the near wall");
         assert!(hit.shape == near && hit.travelled.length() < fx!(0.0002), "{hit:?}");
         assert_eq!(cast(-way, ignore), None);

@@ -104,7 +104,7 @@ impl Churn {
                 let shape = self.shape();
                 self.world.add_shape(id, &shape).map(|_| ())
             }
-            // Every body keeps a shape, so that there is something to be found.
+            // Every body keeps at least one shape, so that queries find it.
             7 if self.world.body(id).expect("alive").shapes().len() < 2 => Ok(()),
             7 => shape.map_or(Ok(()), |shape| self.world.remove_shape(shape)),
             8 => {

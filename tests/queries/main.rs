@@ -250,7 +250,8 @@ fn check_cast(
     for _ in 0..100 {
         let free = gap(way).expect("solids") - skin;
         if free < fx!(0.000001) {
-            // The cast ended at a contact, or the probe passes a shape closely.
+            // The oracle stops here: the probe touches a shape or passes very close to one. A miss is not judged in
+            // this case.
             tally.casts += u32::from(hit.is_some());
             break;
         }

@@ -164,7 +164,7 @@ fn a_bit_that_flips_after_a_step_is_found() {
 }
 
 /// Checks flips before a step. Everything that touches the body then differs in the same tick, so that the comparison
-/// finds the bit by trying. Some flips make no difference, but fewer than those that do.
+/// finds the bit by trying all bits. Fewer than half of the flips leave no difference after the step.
 fn check_flips_before_a_step(seed: u64) {
     let (count, stride) = sweep::size((50, 1), (10, 5));
     let swallowed = cases(seed, count, When::Before, stride);

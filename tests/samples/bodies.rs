@@ -131,7 +131,7 @@ fn a_body_without_mass_coasts() {
     near(stage.place(good).y, fx!(2), fx!(0.02));
 }
 
-/// Pivot. The angular velocity is chosen for the velocity so that the lower end of a bar is at rest at first.
+/// Pivot. A bar starts with a velocity and an angular velocity for which its lower end is at rest at first.
 #[test]
 fn a_bar_starts_to_turn_about_its_lower_end() {
     let mut stage = Stage::weightless();

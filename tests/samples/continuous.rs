@@ -35,7 +35,8 @@ fn a_bullet_bounces_in_a_room() {
         });
         if is_ball {
             near(stage.velocity(body).length(), fx!(22.3607), fx!(0.02));
-            // In 20 s the centre travels 200 m along one axis and 400 m along the other, 19 m from wall to wall.
+            // In 20 s the centre travels 200 m along one axis and 400 m along the other. From wall to wall it travels
+            // 19 m.
             assert!((29..=33).contains(&hits), "{hits} hits");
         }
     }

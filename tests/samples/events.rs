@@ -258,7 +258,7 @@ fn sensors_of_every_kind_of_body_detect() {
     assert_eq!(stage.world.sensor_overlaps(eyes[2]).iter().filter(|&&id| id != visitor).count(), 0);
 }
 
-/// Persistent Contact. A ball that rolls over links touches without a gap, and its load is its weight.
+/// Persistent Contact. A ball that rolls over links touches without a gap, and its contact force equals its weight.
 #[test]
 fn a_rolling_ball_keeps_touching() {
     let mut stage = Stage::new();

@@ -67,8 +67,9 @@ fn a_distance_joint_is_a_spring_with_limits() {
     // The ball weighs 39.3 N. A spring that only pushes does not hold it: free fall, h = g t^2 / 2.
     let fallen = hang(Distance::new().spring(fx!(5), fx!(0), fx!(1)).spring_force(fx!(0), fx!(100)), 60);
     near(fallen, fx!(6), fx!(0.1));
-    // A spring that pulls with half the weight leaves 5 m/s², once it is stretched by half its sag, which takes a
-    // sixth of its period: then the ball has (g / w) sin(60 degrees) = 0.276 m/s.
+    // This spring pulls with at most half the weight. It reaches this force when it is stretched by half its sag, after
+    // a sixth of its period. The ball then has (g / w) sin(60 degrees) = 0.276 m/s, and accelerates at 5 m/s² from
+    // there on.
     let fallen =
         hang(Distance::new().spring(fx!(5), fx!(0), fx!(1)).spring_force(fx!(-19.635), fx!(100)), 60);
     near(fallen, fx!(3.61), fx!(0.03));
@@ -93,7 +94,8 @@ fn a_motor_joint_follows_its_target() {
         let place = Vec2::new(widen((time + time).sin()) * 6, fx!(8) + widen(time.sin()) * 4);
         stage.world.move_to(target, place, time + time).expect("in range");
         stage.run(1);
-        // The target accelerates by at most 24 and 4 m/s², next to gravity: sqrt(24^2 + 14^2) = 28 m/s².
+        // The target accelerates by at most 24 m/s² along x and 4 m/s² along y. With gravity: sqrt(24^2 + 14^2) = 28
+        // m/s².
         let bound = sag(fx!(28), fx!(4)) * 2;
         // The first second is left out, because the target starts with 12 m/s at once.
         assert!(
@@ -203,9 +205,10 @@ fn a_slider_stays_on_its_axis() {
     // g sin(45) t^2 / 2
     near(slide(limited, 60), fx!(-3.5355), fx!(0.07));
     near(slide(limited, 600), fx!(-10), fx!(0.01));
-    // 4 kg pull with 28.28 N; 25 N of the motor leave 0.8211 m/s².
+    // The weight of 4 kg pulls with 28.28 N along the axis. A motor of 25 N leaves 0.8211 m/s².
     near(slide(limited.motor(fx!(2), fx!(25)), 120), fx!(-1.642), fx!(0.03));
-    // 100 N accelerate it by 17.9 m/s², so that it is v^2 / 2 a behind.
+    // A motor of 100 N accelerates the box by a = 17.9 m/s² until it has the motor's speed v, so it is v^2 / 2 a behind
+    // 2 s times v.
     near(slide(limited.motor(fx!(2), fx!(100)), 120), fx!(3.888), fx!(0.02));
     near(slide(limited.spring(fx!(1), fx!(0.5), fx!(0)), 900), -sag(fx!(7.0711), fx!(1)), fx!(0.002));
 }
@@ -347,8 +350,8 @@ fn a_constraint_of_ones_own_holds_a_box() {
         let length = rope(&stage, corner);
         let lean = sqrt(fx_mul(length, length) - fx!(0.25)).expect("longer than half a metre");
         let tension = fx_div(fx_mul(fx!(200), length), lean).expect("positive");
-        // A part of the tension is damping: between the ticks the box is 1.5 sub-steps of gravity below its mean speed
-        // of 0.
+        // A part of the tension is damping: when the impulses are computed, between two ticks, the box moves at 1.5
+        // sub-steps of gravity below its mean speed of 0.
         let damped = fx_div(fx_mul(damping, lean), length * 16).expect("positive");
         near(length, fx!(1) + fx_div(tension - damped, stiffness).expect("positive"), fx!(0.001));
     }

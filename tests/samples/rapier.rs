@@ -213,8 +213,9 @@ fn boxes_in_one_place_come_apart() {
     assert!(momentum.length() < fx!(0.01), "{momentum:?}");
 }
 
-/// inv_pyramid2. Each box carries one twice its size. A box of 1 kg carries four boxes, or five with contacts at
-/// 120 Hz: with contacts at 30 Hz, the lowest of six boxes would yield by 1364 g / (2 pi 30 Hz)^2 = 0.38 m.
+/// inv_pyramid2. Each box carries a box of twice its size. The lowest box, of 1 kg, carries four boxes, or five if
+/// contacts have a frequency of 120 Hz. At 30 Hz the lowest of six boxes would yield by 1364 g / (2 pi 30 Hz)^2 = 0.38
+/// m.
 #[test]
 fn an_inverted_pyramid_stands() {
     for (count, sub_steps, hertz) in [(5, 4, fx!(30)), (6, 16, fx!(120))] {

@@ -207,8 +207,8 @@ fn a_body_that_became_fixed_stops_a_bullet() {
     }
 }
 
-/// Unstable Prismatic Joints. A light ball between two heavy ones on stiff springs comes to rest; even one so small
-/// that the sample names it as the cause of a crash.
+/// Unstable Prismatic Joints. A light ball between two heavy ones on stiff springs comes to rest, even with the small
+/// radius that the sample names as the cause of a crash.
 #[test]
 fn a_light_ball_between_heavy_ones_is_stable() {
     for radius in [fx!(0.5), fx!(0.1)] {

@@ -26,7 +26,8 @@ fn a_stack_falls_when_it_leans_too_far() {
         let place = |i: i32| Vec2::new(lean * i64::from(i), num(i) + fx!(0.5));
         let stack: Vec<_> = (0..10).map(|i| stage.add(place(i), crate_)).collect();
         stage.run(900);
-        // The common centre of the upper nine boxes is five times the lean to the side of the lowest box's centre.
+        // The common centre of mass of the upper nine boxes is offset from the lowest box's centre by five times
+        // `lean`.
         let top = stage.place(stack[9]).y;
         assert_eq!(top < fx!(9), falls, "a lean of {lean} m: the top is at {top} m");
         assert!(stack.iter().all(|&id| stage.place(id).y > fx!(0.49)), "expected no box in the ground");

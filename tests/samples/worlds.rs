@@ -64,8 +64,8 @@ fn heap(origin: Vec2<Fx>) -> Vec<(Vec2<Fx>, Angle)> {
 }
 
 /// Far Pyramid and Far Ragdolls. Up to a million kilometres from the origin no precision is lost. The lever arms of
-/// contacts with fixed bodies are rounded relative to the origin, up to 512 m. Beyond that, to the right and above,
-/// the last bits differ from those at the origin, but are the same everywhere.
+/// contacts with fixed bodies are rounded relative to the origin, up to 512 m. Further to the right and above, the last
+/// bits of results differ from the results at the origin, but are equal at all such places.
 #[test]
 fn the_world_is_the_same_everywhere() {
     let (here, there) = (heap(Vec2::ZERO), heap(at!(1000, 1000)));

@@ -9,7 +9,7 @@ pub(crate) fn mix(hash: u64, value: u64) -> u64 {
     mixed ^ mixed >> 32
 }
 
-/// Mixes the inputs of a tick into a hash. Guesses count like inputs.
+/// Mixes the inputs of a tick into a hash. Predicted inputs are mixed in like received ones.
 pub(crate) fn mix_inputs(hash: u64, inputs: &TickInputs) -> u64 {
     let hash = inputs.bytes().iter().fold(hash, |hash, &byte| mix(hash, u64::from(byte)));
     mix(hash, inputs.absent())

@@ -1,4 +1,5 @@
-//! Whole matches of session cores in simulated time, over links that delay, lose, double, reorder and cut.
+//! Whole matches of session cores in simulated time, over links that delay, drop, duplicate and reorder packets, and
+//! that fail for a while.
 
 #![expect(
     clippy::cast_possible_truncation,

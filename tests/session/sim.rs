@@ -1,4 +1,5 @@
-//! A match in simulated time: peers with clocks of their own, and links that delay, lose, double, reorder and cut.
+//! A match in simulated time: peers with clocks of their own, and links that delay, drop, duplicate and reorder
+//! packets, and that fail for a while.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
@@ -101,7 +102,7 @@ pub(crate) struct Sim {
     pub(crate) links: Vec<Vec<LinkConditions>>,
     /// Percentage of packets that are very late.
     pub(crate) late: u64,
-    /// Percentage of packets that are doubled.
+    /// Percentage of packets that are duplicated.
     pub(crate) doubled: u64,
     /// Percentage of new views at which a peer crashes.
     pub(crate) assassin: u64,

@@ -91,7 +91,7 @@ fn somebody_who_is_kicked_does_not_return_and_knows_it() {
     assert!(played(&sim, 0) > 60 * 9 && sim.failure.is_none());
 }
 
-/// The vote of peer 0, the tie-holder, decides alone. The votes of other peers need a quorum.
+/// Peer 0 has the casting vote (`View::tie_holder`) and can remove a peer alone. Other peers need a quorum of votes.
 #[test]
 fn two_votes_of_five_kick_nobody_and_three_do() {
     let mut sim = players(5, link(30 * MS), |_| ());

@@ -57,8 +57,8 @@ fn removed_and_broken_joints() {
     assert!(wrong.iter().all(Option::is_none), "{wrong:#?}");
 }
 
-/// Hinges at one body, with motors of very different strength that all slip, so that a block finds their bounds in many
-/// rounds.
+/// Hinges at one body, with motors of very different strength that all slip: the block solver needs many rounds to find
+/// the motors that are at their limit.
 #[test]
 fn motors_in_blocks() {
     let case = |count: i64| -> Case<'_> {

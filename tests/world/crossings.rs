@@ -196,7 +196,7 @@ fn a_deflected_visitor_is_noticed_in_the_same_tick() {
             run(&mut world, 1);
             let after = world.body(flying).expect("there").position();
             let filter = QueryFilter { sensors: true, ..QueryFilter::default() };
-            // Naive oracle: the overlaps of a thousand points of the way.
+            // Naive oracle: tests for overlap at a thousand points of the path.
             let inside = |point: Vec2<Fx>| {
                 let probe = Probe::new(Geometry::circle(fx!(0.2)).expect("valid"), point).expect("valid");
                 world.overlap_shape(&probe, filter).contains(&gate)
@@ -246,7 +246,8 @@ fn sensors_notice_sensors_that_let_them() {
     assert_eq!(count(zone(), seeing()), [0, 1]);
     assert_eq!(count(seeing(), seeing()), [1, 1]);
     assert_eq!(count(seeing(), hidden), [0, 0]);
-    // A solid visitor needs no switch of the sensor, and its own switch for sensors does nothing.
+    // A sensor without the switch for other sensors still reports solid visitors. On a solid shape this switch has no
+    // effect.
     assert_eq!(count(zone(), super::square(fx!(1))), [1, 0]);
     assert_eq!(count(zone(), ShapeDef { sensor: false, ..seeing() }), [1, 0]);
 }

@@ -192,7 +192,7 @@ fn nothing_that_is_done_to_the_caches_is_seen() {
     let seeds = sweep::sample(0..30, 4);
     let count = seeds.len();
     let Seen { slept, woken, visits, contacts, hits } = churn_each(seeds);
-    // `least` is for 30 seeds.
+    // `least` is the count that 30 seeds must exceed.
     let enough = |happened: usize, least: usize| {
         assert!(
             happened * 30 > least * count,

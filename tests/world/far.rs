@@ -1,4 +1,5 @@
-//! Distant bodies change no bit: a world by itself, and the same world beside another one a kilometre away.
+//! Distant bodies change no bit of a simulation: a group of bodies moves equally by itself and with another group a
+//! kilometre away.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;

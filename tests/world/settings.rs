@@ -48,7 +48,8 @@ fn a_stack_stays_at_rest_when_the_length_of_sub_steps_changes() {
             // from 4 to 16 sub-steps.
             assert!(fastest < fx!(0.015), "from {from} to {to} at {tick_rate}: {fastest} m/s");
             for (now, then) in heights(&world).iter().zip(&before) {
-                // The contact stiffness is 30 Hz in all cases, unless an eighth of the sub-step rate is less.
+                // Boxes hardly move: contacts have 30 Hz before and after, or an eighth of the sub-step rate where that
+                // is less.
                 let moved = (*now - *then).abs();
                 assert!(moved < fx!(0.005), "from {from} to {to} at {tick_rate}: moved by {moved}");
             }
@@ -102,7 +103,8 @@ fn a_world_continues_as_one_that_was_made_with_the_settings() {
     }
 }
 
-/// The surface of a pair, with the threshold of restitution, is cached while the shapes touch.
+/// While two shapes touch, their combined material, including the restitution threshold, is cached. A new threshold in
+/// the settings must still apply.
 #[test]
 fn a_new_threshold_of_restitution_applies_to_shapes_in_contact() {
     let rebounds = |changed: bool| {

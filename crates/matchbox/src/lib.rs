@@ -73,7 +73,7 @@ impl Matchbox {
         }
     }
 
-    /// This peer's own address, once the signalling server has given it.
+    /// This peer's own address. `None` until the signalling server has assigned it.
     pub fn own(&mut self) -> Option<Address> {
         self.socket.id().map(address_of)
     }

@@ -99,8 +99,8 @@ async fn first_frame(socket: &mut Socket) -> Result<Option<Vec<u8>>, Error> {
     Ok(None)
 }
 
-/// The address of the member with this secret: a hash, which does not reveal the secret. Nothing has to be stored, so a
-/// member keeps its address after a lost connection or a restart of the relay.
+/// The address of the member with this secret: a hash, which does not reveal the secret. The address follows from the
+/// secret alone, so a member keeps it after a lost connection or a restart of the relay, and the relay stores nothing.
 fn member_of(secret: &[u8]) -> Option<Member> {
     let valid = secret.len() == SECRET_BYTES;
     valid.then(|| blake3::hash(secret).as_bytes().first_chunk().copied()).flatten()

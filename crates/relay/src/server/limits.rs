@@ -18,7 +18,8 @@ pub struct Limits {
     /// Bytes per second from one member, with a burst of a second. Datagrams above this rate are dropped; a member that
     /// sends eight times as much is disconnected.
     pub bytes_per_second: u32,
-    /// Datagrams per second from one member, with the same burst and the same treatment of excess.
+    /// Datagrams per second from one member, with a burst of a second. Datagrams above this rate are dropped; a member
+    /// that sends eight times as many is disconnected.
     pub datagrams_per_second: u32,
     /// Time without any frame after which a member is disconnected. The member is pinged three times within this time.
     pub idle: Duration,

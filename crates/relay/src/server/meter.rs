@@ -48,7 +48,8 @@ impl Bucket {
 pub(super) struct Meter {
     /// Buckets of bytes and of datagrams. A datagram that exceeds one of them is dropped.
     allowed: [Bucket; 2],
-    /// Buckets with [`EXCESS`] times these rates. A datagram that exceeds one of them closes the connection.
+    /// Buckets whose rates are [`EXCESS`] times those of `allowed`. A datagram that exceeds one of them closes the
+    /// connection.
     tolerated: [Bucket; 2],
     last: Duration,
 }
