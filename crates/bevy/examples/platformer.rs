@@ -116,7 +116,7 @@ impl Game for Platformer {
     }
     fn step(&mut self, inputs: &[u8]) {
         let driven = self.drive_lift();
-        // Whatever the world refuses, it advances.
+        // The world steps even if it has refused a command.
         self.world.step();
         let walked = self.walk(inputs.first().copied().unwrap_or(0));
         if let Err(error) = driven.and(walked) {

@@ -1,4 +1,4 @@
-//! Two players push each other off a platform: the game of `versus`, and of the page in `crates/bevy/web`.
+//! Two players push each other off a platform: the game of the example `versus` and of the page in `crates/bevy/web`.
 
 use bevy::prelude::*;
 use bevy_lockstep2d::prelude::*;

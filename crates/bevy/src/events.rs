@@ -127,14 +127,14 @@ pub struct PredictedEvent {
     pub tick: u64,
     /// The event.
     pub event: WorldEvent,
-    /// As in [`ConfirmedEvent`].
+    /// Views of the bodies, as in [`ConfirmedEvent::views`].
     pub views: [Option<Entity>; 2],
 }
 
-/// A [`PredictedEvent`] that did not happen after all, to stop its sound, for example.
+/// A [`PredictedEvent`] that a rollback has removed for good. A game can stop its sound, for example.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RetractedEvent {
-    /// Tick that had been predicted.
+    /// Number of ticks played, including the tick of the predicted event.
     pub tick: u64,
     /// The event that was predicted.
     pub event: WorldEvent,

@@ -2,9 +2,9 @@
 //!
 //! The simulation is one resource, [`Lockstep<G>`](Lockstep), for any [`Game`](lockstep2d::lockstep::Game). A driver
 //! plays it: [local](Lockstep::local), a [replay](Lockstep::replay), or a [match](Lockstep::host) over a network.
-//! Entities are *views* of its bodies: they appear and disappear with the bodies, also through rollbacks, late joins
-//! and seeks, and their `Transform` is written every frame, interpolated, and never read. So nothing that Bevy does can
-//! change the simulation, and no component needs to be registered for rollback.
+//! Entities are *views* of the bodies in the game: they appear and disappear with the bodies, also through rollbacks,
+//! late joins and seeks. The plugin writes an interpolated pose to their `Transform` in every frame and never reads it.
+//! So nothing that Bevy does can change the simulation, and no component needs to be registered for rollback.
 //!
 //! ```
 //! use bevy::prelude::*;

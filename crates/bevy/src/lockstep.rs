@@ -58,8 +58,8 @@ impl<G: LockstepGame> Lockstep<G> {
         Ok(Self::new(Driver::Local(Box::new(LocalDriver::new(setup)?))))
     }
 
-    /// A local game for tests: after every tick the state of `depth` ticks ago is loaded and played up to it again, and
-    /// all state hashes are compared. It fails with [`LockstepError::SyncTest`] if they differ.
+    /// A local game for tests: after every tick it loads the state of `depth` ticks ago, plays these ticks again, and
+    /// compares all state hashes. It stops with [`LockstepError::SyncTest`] if they differ.
     ///
     /// # Errors
     /// [`LockstepError::Setup`] when the setup cannot start a game.
@@ -185,8 +185,8 @@ impl<G: LockstepGame> Lockstep<G> {
         self.single_steps = self.single_steps.saturating_add(1);
     }
 
-    /// The reason why the driver has stopped for good, if it has. The message
-    /// [`LockstepFailed`](crate::LockstepFailed) was sent, and the log has it too.
+    /// The reason why the driver has stopped for good, if it has. The plugin has also sent it as the message
+    /// [`LockstepFailed`](crate::LockstepFailed) and written it to the log.
     #[must_use]
     pub const fn failure(&self) -> Option<&LockstepError> {
         self.failure.as_ref()
@@ -266,8 +266,8 @@ impl<G: LockstepGame> Lockstep<G> {
         }
     }
 
-    /// The participant of a match, to leave, end or kick. Do not call `update` and `advance`: the plugin does. Reports
-    /// are made by [`Lockstep::report`].
+    /// The participant of a match, to leave, end or kick. Do not call `update` and `advance`: the plugin calls them.
+    /// Use [`Lockstep::report`] to make a report.
     pub fn peer_mut(&mut self) -> Option<&mut AnyPeer<G>> {
         match &mut self.driver {
             Driver::Match(network) => Some(network.peer_mut()),

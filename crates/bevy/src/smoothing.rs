@@ -22,7 +22,8 @@ impl DrawnPose {
         DrawnPose { position: metres(pose.position), angle: radians(pose.angle) }
     }
 
-    /// The pose at a fraction of the way from one to the other, with the rotation on the shorter way.
+    /// Interpolates between two poses, with the rotation along the shorter arc. Fraction 0 is `previous`, 1 is
+    /// `current`.
     pub(crate) fn between(previous: Pose, current: Pose, fraction: f32) -> Self {
         let start = Self::at(previous);
         let way = Offset::between(previous, current);
@@ -37,7 +38,7 @@ impl DrawnPose {
     }
 }
 
-/// A vector as floats: the same as `draw::to_f32`, in a few instructions.
+/// Converts a vector to floats: the result equals that of `draw::to_f32`, with fewer instructions.
 pub(crate) fn metres(vector: FixedVec2<Fx>) -> Vec2 {
     const UNIT: f32 = 1.0 / (1_u64 << Fx::FRAC_NBITS) as f32;
     Vec2::new(vector.x.to_bits() as f32 * UNIT, vector.y.to_bits() as f32 * UNIT)

@@ -49,7 +49,7 @@ pub(crate) struct StepLog {
     shown: Option<Stamp>,
     /// Poses of the tick `shown` after it was played again.
     pub(crate) shown_again: Option<Poses>,
-    /// Bodies that were missing in a loaded state. A later body with the same id may be another one.
+    /// Bodies that were missing in a loaded state. A later body with the same id may be a different body.
     pub(crate) missing: Vec<BodyId>,
     /// Number of ticks played since the last frame, including those played again.
     pub(crate) stepped: u32,
@@ -218,7 +218,7 @@ impl StepLog {
             .collect()
     }
 
-    /// Takes the announced events that did not happen after all: their ticks have been played without them.
+    /// Takes the withdrawn events that have not occurred again within [`SAME_EVENT_TICKS`] ticks.
     pub(crate) fn retract(&mut self) -> Vec<LoggedEvent> {
         let (base, played) = (self.base(), self.ticks);
         let is_over = |event: &LoggedEvent| event.tick + SAME_EVENT_TICKS < played;

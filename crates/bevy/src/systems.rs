@@ -57,7 +57,8 @@ pub(crate) fn write_views<G: LockstepGame>(
     fresh: Query<(Entity, &BodyView), Added<BodyView>>,
     mut shown: Query<(&BodyView, Entity, &mut Transform)>,
 ) {
-    // Entities that the game has prepared, not those that the plugin has spawned in the last frame.
+    // Finds entities that the game has prepared as views. Entities that the plugin spawned in the last frame do not
+    // count.
     let is_foreign = |(entity, view): &(Entity, &BodyView)| views.entity(view.body()) != Some(*entity);
     let prepared: HashMap<BodyId, Entity> =
         fresh.iter().filter(is_foreign).map(|(entity, view)| (view.body(), entity)).collect();

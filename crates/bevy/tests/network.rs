@@ -1,5 +1,6 @@
-//! Two apps that play over a network which loses, doubles, delays and reorders packets, and a third that watches from
-//! the middle on: they have the same states and the same confirmed events, and their views follow the bodies.
+//! Two apps play over a network that drops, duplicates, delays and reorders packets, and a third app watches from the
+//! middle of the match on. All three have the same states and the same confirmed events, and their views follow the
+//! bodies.
 
 mod common;
 
@@ -19,7 +20,7 @@ fn identity(number: u64) -> PeerIdentity {
     PeerIdentity::new([number, number * 77 + 1, number * 91 + 5, number * 13 + 7])
 }
 
-/// A network that loses, doubles, delays and reorders packets.
+/// A network that drops, duplicates, delays and reorders packets.
 fn bad_network() -> Network {
     let ms = Duration::from_millis;
     let conditions =
@@ -113,7 +114,7 @@ fn two_apps_and_a_late_spectator_have_the_same_match() {
     check_replay(players, end);
 }
 
-/// The confirmed events of all are the same, and predicted ones come once.
+/// All players have the same confirmed events, and each predicted event is sent once.
 fn check_events(players: &[Player], end: u64) {
     let all = players[0].events(1, end);
     assert!(all.values().map(Vec::len).sum::<usize>() > 500);
@@ -125,8 +126,8 @@ fn check_events(players: &[Player], end: u64) {
     let retracted: usize = players.iter().map(|player| player.heard().retracted.len()).sum();
     assert!(retracted > 0, "no prediction was wrong");
     for player in &players[..2] {
-        // Predicted events that were not retracted are the confirmed ones, except in the last ticks, and for events
-        // that a rollback moves from one side of the end to the other.
+        // The predicted events that were not retracted equal the confirmed events. Exceptions: the last ticks, and
+        // events that a rollback moves across the end of the compared ticks.
         let heard = player.heard();
         let confirmed: usize = heard.confirmed.values().map(Vec::len).sum();
         let predicted = heard.predicted.len() - heard.retracted.len();

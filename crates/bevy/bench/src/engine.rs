@@ -11,7 +11,7 @@ pub trait Engine {
     /// Saves the state after the tick. Drops the oldest save if there are more than [`DEPTH`].
     fn save(&mut self);
 
-    /// Returns to the oldest save that is kept, and drops those after it.
+    /// Returns to the oldest save that is kept, and drops the later saves.
     fn load(&mut self);
 
     /// The state for comparison after a rollback: bits of all positions, rotations and velocities, or a hash.

@@ -1,5 +1,6 @@
-//! Saves and rollbacks of the same pile of boxes in three engines, as a rollback game has them in every tick: this
-//! plugin, and bevy_rapier2d and Avian with the snapshots of bevy_ggrs. `cargo run --release` prints a table.
+//! Measures saves and rollbacks of one pile of boxes in three engines, with a save in every tick as in a rollback game:
+//! this plugin, bevy_rapier2d and Avian. The latter two use the snapshots of bevy_ggrs. `cargo run --release` prints a
+//! table.
 
 mod avian;
 mod engine;

@@ -1,4 +1,5 @@
-//! bevy_rapier2d: the components of its context entity are saved, and the transforms of the bodies, which it reads.
+//! bevy_rapier2d: a save contains the components of its context entity, and the transforms of the bodies, because
+//! bevy_rapier2d reads transforms.
 
 use bevy::prelude::*;
 use bevy_ggrs::{ComponentSnapshotPlugin, RollbackApp, Strategy};

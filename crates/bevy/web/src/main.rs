@@ -1,4 +1,4 @@
-//! `versus` over WebRTC: in web pages, natively, and between both. Arrow keys.
+//! `versus` over WebRTC, for web pages and native programs, which can play against each other. Arrow keys.
 //!
 //! A page without a room in its address creates a room and opens a match. Every other page that is opened with `#ROOM`
 //! joins the match. Natively: `bevy_lockstep2d_web [ROOM [SERVER]]`. Needs a signalling server of matchbox: `cargo run
