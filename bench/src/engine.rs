@@ -156,7 +156,7 @@ pub const SAVES: usize = 9;
 
 /// World in one of the engines.
 pub trait Engine {
-    /// Executes a recorded command, with the handles of its recorded outcome.
+    /// Executes a recorded command. Bodies that it creates are registered under the handles that lockstep2d gave them.
     fn apply(&mut self, event: &Event) -> Result<()>;
 
     /// Advances by one step with the scene's configuration: 1/60 s in 4 sub-steps.

@@ -35,7 +35,7 @@ pub const WORLDS: [World; 3] = [
 /// Parameters of a measurement.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Approximate numbers of bodies.
+    /// Approximate numbers of bodies; each is one measurement.
     pub sizes: Vec<u32>,
     /// Number of timed steps.
     pub steps: u64,

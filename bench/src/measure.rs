@@ -27,7 +27,7 @@ pub struct EndState {
     pub top: f64,
     /// Height of the lowest dynamic body's centre of mass, in metres: shows bodies that fall through the floor.
     pub bottom: f64,
-    /// Deepest penetration in mm, as found in the last step.
+    /// Deepest penetration in mm, measured at the contacts of the last step.
     pub deepest_mm: f64,
     /// Mean speed over all dynamic bodies, in m/s; sleeping bodies count as 0.
     pub mean_speed: f64,

@@ -54,7 +54,7 @@ impl Game for Tug {
         self.world.step();
     }
 
-    /// `ball` never changes, so the world is the complete state.
+    /// The handle `ball` never changes, so the world is the complete state.
     fn state_hash(&self) -> StateHash {
         self.world.state_hash()
     }

@@ -1,9 +1,9 @@
-// WebRTC data channels between the members of a room. The relay carries the WebRTC signals, and the packets between
-// members without an open channel.
+// WebRTC data channels between the members of a room. The relay carries the WebRTC signals. It also carries the packets
+// between members without an open channel.
 //
 // A channel is unordered and does not resend lost packets, like UDP. Packets of both routes have the addresses that the
 // relay assigns, so a match does not depend on the route. A signal is JSON after a prefix with which no packet of a
-// match begins. The relay interprets neither.
+// match begins. The relay interprets neither signals nor packets.
 const SIGNAL = new TextEncoder().encode("lockstep2d signal ");
 const DECODER = new TextDecoder();
 // Between networks, a STUN server is needed: { iceServers: [{ urls: "stun:HOST:PORT" }] }.

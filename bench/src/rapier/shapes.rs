@@ -178,10 +178,10 @@ fn groups(filter: &Filter) -> InteractionGroups {
     InteractionGroups::new(memberships, accepted, InteractionTestMode::And)
 }
 
-/// Converts a joint. The stiffness is rapier2d's default, because with the 60 Hz and the damping ratio of 2 of the
-/// other engines, the cloth of `joint_grid` moves at 13 m/s after 100 steps, compared with 1.4 m/s in the other
-/// engines. rapier2d has one motor per axis, so a spring takes precedence over a motor. The hinges of a ragdoll have
-/// both, so their friction is left out.
+/// Converts a joint. The stiffness is rapier2d's default. The other engines use 60 Hz and a damping ratio of 2: with
+/// these values the cloth of `joint_grid` moves at 13 m/s in rapier2d after 100 steps, and at 1.4 m/s in the other
+/// engines. rapier2d has one motor per axis, so a spring takes precedence over a motor. The hinges of a ragdoll have a
+/// spring and a motor that acts as friction, so their friction is left out.
 pub fn joint(def: &JointDef) -> Result<GenericJoint> {
     let JointKind::Revolute(hinge) = &def.kind else { bail!("only revolute joints are supported") };
     let frame = |frame: &JointFrame| Pose::new(vector(frame.anchor), radians(frame.angle));
@@ -202,7 +202,8 @@ pub fn joint(def: &JointDef) -> Result<GenericJoint> {
             damping,
         );
     } else if let Some(motor) = hinge.motor {
-        // The factor is so large that only the maximum torque limits the motor, as in the other engines.
+        // The factor 1e6 is so large that only the maximum torque limits the motor. Motors of the other engines work
+        // like this.
         joint = joint
             .motor_model(JointAxis::AngX, MotorModel::AccelerationBased)
             .motor_velocity(JointAxis::AngX, motor.speed.to_num(), 1e6)

@@ -103,9 +103,9 @@ fn saving(rounds: &[Round]) -> Saving {
 
 /// Measures a frame, as the mean of [`FRAMES`].
 ///
-/// Slot 0 holds the start of the frame, which is the same for all frames, and the other slots hold its ticks. The time
-/// of the saves and hashes is the difference between frames with and without them, because reading the clock takes as
-/// long as saving a small world.
+/// Slot 0 holds the start of the frame, which all frames share, and the other slots hold the ticks of the frame. The
+/// time of the saves and hashes is the difference between frames with and without them, because reading the clock takes
+/// as long as saving a small world.
 fn measure(engine: &mut dyn Engine) -> Result<Round> {
     engine.save(0);
     let (bare, done) = timed(|| frames(engine, |_, _| {}));

@@ -14,7 +14,7 @@ use url::Url;
 use crate::error::WorkerError;
 use crate::submit::Names;
 
-/// Time for which a failing request is repeated: the same as for requests to NATS.
+/// Time for which a failing request is repeated. Requests to NATS are repeated for about this time, too.
 const RETRY: Duration = Duration::from_secs(60);
 
 /// A folder of a bucket.
@@ -46,8 +46,8 @@ impl Bucket {
         if Pin::new(&mut found).peek().await.is_some() {
             return Ok(found.boxed());
         }
-        // The object is looked up after the folder, because some services answer a request for an object that is a
-        // folder with an error.
+        // The folder is looked up first, because some services return an error when the name of a folder is looked up
+        // as an object.
         match self.store.head(&path).await {
             Ok(_) if !name.is_empty() => Ok(stream::iter([Ok(path.into())]).boxed()),
             Ok(_) | Err(object_store::Error::NotFound { .. }) => {

@@ -40,7 +40,7 @@ pub(crate) fn check(job: &Job, bytes: Vec<u8>, bytes_max: u64) -> io::Result<Vec
     Ok(bytes)
 }
 
-/// The path, if it is relative and stays inside the folder that it is relative to.
+/// Returns the path if it is relative and does not lead out of its folder.
 pub(crate) fn inside(path: &Path) -> Option<PathBuf> {
     let is_inside = |component| matches!(component, Component::Normal(_) | Component::CurDir);
     (path.components().all(is_inside) && path.file_name().is_some()).then(|| path.to_path_buf())

@@ -48,7 +48,7 @@ pub(crate) struct Queue {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Added {
     New,
-    /// The stream has it already.
+    /// The stream already has the message.
     Known,
 }
 
@@ -116,7 +116,7 @@ impl Queue {
             ack_wait,
             // No limit, because the workers check the number of deliveries: a file that kills workers gets a result.
             max_deliver: -1,
-            // No limit, because there are as many unacknowledged jobs as workers.
+            // No limit, because each worker has at most one unacknowledged job.
             max_ack_pending: -1,
             ..Default::default()
         };

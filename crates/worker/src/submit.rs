@@ -20,7 +20,7 @@ use crate::queue::{Added, Queue, json, retry};
 /// Maximum number of files that are submitted at the same time. The acknowledgements of the queue limit the rate.
 const AT_ONCE: usize = 16;
 
-/// Names of files, as their jobs and results have them.
+/// Names of files, in the form that jobs and results contain.
 pub(crate) type Names<'a> = BoxStream<'a, Result<String, WorkerError>>;
 
 /// The line of a file that was submitted.
@@ -34,7 +34,7 @@ struct Line<'a> {
 
 /// Location of the submitted files, for this command and for the workers.
 enum Files {
-    /// In the folder of the worker, at the same paths as here.
+    /// In the folders of the workers, at the paths that the files have in the folder of this command.
     Folder,
     /// On this machine; workers find them in the object store of the queue.
     Objects(Box<ObjectStore>),

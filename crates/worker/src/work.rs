@@ -34,7 +34,7 @@ const LOST: Duration = Duration::from_secs(5);
 /// Pause before another attempt to read a file, multiplied by the number of deliveries so far.
 const READ_AGAIN: Duration = Duration::from_secs(1);
 
-/// The verdict on a file whose workers have ended several times without a result.
+/// The verdict on a file that was delivered several times, but whose workers always ended without a result.
 const CRASHED: &str = "crashed";
 /// Name, in the metrics, for the result of a file that cannot be read.
 const UNREAD: &str = "unread";
@@ -56,7 +56,7 @@ struct Work<G: Game + 'static> {
 enum Done {
     /// The job has a result, with this verdict.
     Result(Judged),
-    /// Another worker has to try again, after a pause.
+    /// The job goes back to the queue, to be delivered again after this pause.
     Again(Duration),
 }
 
@@ -185,7 +185,7 @@ impl<G: Game + 'static> Work<G> {
         };
         let (judge, file) = (Arc::clone(&self.judge), job.file.clone());
         let judged = tokio::task::spawn_blocking(move || judge.judge(&file, &bytes)).await;
-        // `None` after a signal: the file goes to another worker at once.
+        // `judge` returns `None` after a signal: the file goes to another worker at once.
         judged.ok().flatten().map_or(Done::Again(Duration::ZERO), Done::Result)
     }
 
@@ -213,7 +213,7 @@ async fn acknowledge(message: &Message, kind: AckKind) {
     let _ = message.double_ack_with(kind).await;
 }
 
-/// The result of a file whose workers have ended without a result: it is not read again.
+/// The result of a file whose workers have all ended without a result. The file is not read again.
 fn crashed(job: &Job, deliveries: u64) -> Judged {
     #[derive(Serialize)]
     struct Line<'a> {

@@ -77,7 +77,7 @@ impl Role {
     }
 }
 
-/// Returns the radius of the platform without this number of outer rings, in metres.
+/// Returns the radius in metres that the platform has after it has lost `rings_lost` rings.
 pub(crate) fn radius(rings_lost: u8) -> Fx {
     START_RADIUS.saturating_sub(RING.saturating_mul_int(rings_lost.into()))
 }

@@ -10,15 +10,16 @@ use crate::view::Player;
 
 /// Computer player. Its pads depend only on its seed, its seat and the states of the match.
 ///
-/// It tries to be closer to the centre than its opponent, pushes the opponent outwards, and turns back before the edge.
+/// The bot tries to be closer to the centre than its opponent, pushes the opponent outwards, and turns back before the
+/// edge.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bot {
     seat: usize,
     rng: Rng,
-    /// Distance from the edge at which it turns back, in metres.
+    /// Distance from the edge at which the bot turns back, in metres.
     caution: Fx,
     pad: Pad,
-    /// Ticks for which it keeps the current pad, so that it does not decide anew in every tick.
+    /// Ticks for which the bot keeps the current pad, so that it does not decide anew in every tick.
     hold: u32,
 }
 
@@ -60,8 +61,8 @@ impl Bot {
             return if margin < Fx::ZERO { back.with(Pad::DASH) } else { back };
         }
         let distance = |other: &Player| other.position.distance(me.position);
-        // Among equally close opponents it takes the next seat after its own, so that not all bots attack the first
-        // seat.
+        // Among equally close opponents the bot takes the next seat after its own, so that not all bots attack the
+        // first seat.
         let others = (1..game.seats()).filter_map(|next| game.player((self.seat + next) % game.seats()));
         let others = others.filter(Player::is_alive);
         let Some(other) = others.min_by_key(distance) else {

@@ -98,8 +98,8 @@ impl Shove {
         }
     }
 
-    /// Advances the rules and applies the pads, up to the first change that the world refuses. It refuses none,
-    /// unless the state was loaded from an untrusted save.
+    /// Advances the rules and applies the pads, up to the first change that the world refuses. The world refuses a
+    /// change only if the state was loaded from an untrusted save.
     fn try_step(&mut self, pads: &[Pad]) -> Result<(), WorldError> {
         self.rules.advance(&mut self.world, self.setup.rounds)?;
         if self.rules.is_on() {

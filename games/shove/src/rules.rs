@@ -90,8 +90,8 @@ impl Rules {
         matches!(self.phase, Phase::Fight | Phase::Pause)
     }
 
-    /// Updates the presence of a player. The body of a player who leaves is removed, which does not count as a fall.
-    /// A player who joins gets a body in the next round, which begins at once if the current one is practice.
+    /// Updates the presence of a player. The body of a player who leaves is removed, which does not count as a fall. A
+    /// player who joins gets a body in the next round. If the current round is practice, the next round begins at once.
     pub(crate) fn seat(&mut self, world: &mut World, seat: usize, present: bool) {
         let Some(seat) = self.seats.get_mut(seat) else { return };
         seat.present = present;

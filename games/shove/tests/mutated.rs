@@ -1,4 +1,4 @@
-//! A damaged or forged replay of this game never verifies as another match: see the engine's test of the same name.
+//! A damaged or forged replay of this game never verifies as another match: see `tests/mutated` of the engine.
 #![expect(clippy::unwrap_used, reason = "the files of this repository are valid")]
 
 #[path = "../../../tests/mutated/judge.rs"]

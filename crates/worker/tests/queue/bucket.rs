@@ -53,7 +53,7 @@ fn files_of_a_bucket_have_the_results_of_files() {
     write_files(&folder, 30);
     folder.write("in/notes.txt", b"not a replay");
     let expected = verified(&folder);
-    // Neither command runs in the folder with the files.
+    // `submit` and `work` both run in a folder without the files.
     let elsewhere = Folder::new("bucket-elsewhere");
     let program = Program { folder: elsewhere.0.clone(), ..worker(&server, &folder) };
     let program = buckets.with_key(program, "secret");
@@ -97,7 +97,7 @@ fn a_folder_of_a_bucket_holds_what_is_in_it() {
     assert_eq!(names(&["s3://uploads", "day"]), ["day/b.replay", "day/night/c.replay"]);
     assert_eq!(names(&["s3://uploads/day"]), ["b.replay", "night/c.replay"]);
     assert_eq!(names(&["s3://uploads/day", "night", "b.replay"]), ["b.replay", "night/c.replay"]);
-    // Files with the same bytes are one job, with the name that it had first.
+    // Files with the same bytes are one job. The job has the name of the file that was submitted first.
     let mut child = program.work(&["--bucket", "s3://uploads"]);
     wait_until("all results are there", || program.results().len() == 2);
     assert_eq!(child.terminate(), Some(0));
@@ -128,7 +128,7 @@ fn a_bucket_that_cannot_be_read_is_an_error() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
         assert!(error.contains(expected), "{arguments:?}: {error}");
     }
-    // For a worker without the bucket or without the right key, the file counts as one that cannot be read.
+    // A worker without the bucket, or without the right key, reports the file as unreadable.
     allowed.submit(&["--bucket", "s3://uploads"]);
     let mut child = forged.work(&["--bucket", "s3://uploads", "--max-deliver", "1"]);
     wait_until("there is a result", || forged.results().len() == 1);

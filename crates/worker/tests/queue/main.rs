@@ -106,7 +106,7 @@ fn every_file_has_one_result_though_workers_and_the_server_are_killed() {
     assert_eq!(submitted.len() as u64, count);
     assert!(submitted.iter().all(|line| line.ends_with("\"queued\":true}")), "{}", submitted[0]);
 
-    // Kills are not caused by the files, so many deliveries are allowed.
+    // The test kills workers at random, so many deliveries are allowed before a file counts as the cause.
     let arguments = ["--ack-seconds", "1", "--max-deliver", "1000"];
     let mut workers: Vec<Process> = (0..WORKERS).map(|_| program.work(&arguments)).collect();
     let (mut state, mut kills, mut restarts) = (7, 0, 0);
@@ -211,8 +211,8 @@ fn the_same_bytes_have_one_result_and_are_not_simulated_again() {
     assert_eq!(queued, [true, false]);
     assert_eq!(submitted[0]["blake3"], submitted[1]["blake3"]);
 
-    // The second worker has other limits, so that its results have other keys. It adds none, because the queue has no
-    // second job for these bytes.
+    // The second worker has other limits, so that its results have other keys. The second worker adds no result,
+    // because the queue has no second job for these bytes.
     for (arguments, count) in [(&["--max-ticks", "30"][..], 1), (&["--max-ticks", "29"], 1)] {
         let mut child = program.work(arguments);
         wait_until("there is a result", || program.results().len() == count);

@@ -98,7 +98,7 @@ pub(crate) fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
     }
 }
 
-/// The worker program, or another one with the same commands.
+/// The worker program, or another program with the commands of a worker.
 pub(crate) struct Program {
     pub(crate) path: PathBuf,
     pub(crate) url: String,

@@ -69,7 +69,7 @@ fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
         if !is_recorded {
             eprintln!("no replay: this peer was not in the match from the first tick");
         }
-        // A pipe stays.
+        // A pipe is not removed.
         if path.is_file() && (end.ticks == 0 || !is_recorded) {
             fs::remove_file(path)?;
         }
