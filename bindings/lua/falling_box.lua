@@ -1,4 +1,5 @@
---- A box falls on the ground, as in bindings/c/falling_box.c. The last line of the output has the same hash.
+--- A box falls on the ground, as in bindings/c/falling_box.c. The last line of the output has the hash that the C
+--- program prints.
 local ls = require("lockstep2d")
 
 local out = ls.out("handle")

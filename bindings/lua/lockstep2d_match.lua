@@ -115,8 +115,8 @@ function Driver:status()
     return self.flag[0]
 end
 
---- Numbers of ticks: played, also with guessed inputs; final, whose inputs are final; played with final inputs. All
---- are 0 before the peer has joined.
+--- Returns three numbers of ticks: those that were played, also with guessed inputs; those whose inputs are final; and
+--- those that were played with final inputs. All are 0 before the peer has joined.
 function Driver:ticks()
     if self:status() == ls.MATCH_CONNECTING then
         return 0, 0, 0
@@ -173,7 +173,7 @@ local answers = {
     [ls.REQUEST_CHECKSUM] = function(self, tick)
         ls.match_report_hash(self.match, tick, self.saves[tick].hash)
     end,
-    -- The newest of the states that are no longer needed is kept for peers that join.
+    -- Keeps the newest of the states that are no longer needed, for peers that join.
     [ls.REQUEST_FORGET] = function(self, tick)
         local newest = self:newest(tick)
         self:forget(function(kept) return newest ~= nil and kept < newest end)

@@ -26,7 +26,7 @@ export interface InitOptions {
 }
 /** Loads the wasm module. Call it once before all other functions except `fx`, `degrees`, `radians` and `turns`. */
 export function init(options?: InitOptions): Promise<void>;
-/** The module that was loaded. */
+/** The module that was loaded: with SIMD, without SIMD, or `InitOptions.wasm`. Undefined before `init`. */
 export function loaded(): "simd" | "plain" | "given" | undefined;
 /** Version of the engine's arithmetic: programs with different versions compute different states. */
 export function semantics(): number;
@@ -36,7 +36,7 @@ export function objectCount(): number;
 /** An error with a code, such as `FLOAT`, `STALE_BODY`, `GEOMETRY`, `DISPOSED`. */
 export class Lockstep2dError extends Error {
     readonly code: string;
-    /** The verdict, if a replay cannot be played. */
+    /** The verdict on a replay that cannot be played. */
     readonly verdict?: Verdict;
 }
 
@@ -124,7 +124,7 @@ export interface ShapeOptions {
     restitutionThreshold?: Num;
     rollingResistance?: Num;
     surfaceSpeed?: Num;
-    /** Bits of the categories that the shape belongs to. `mask` has the categories that it collides with. */
+    /** Bits of the categories that the shape belongs to. `mask` has the categories that the shape collides with. */
     category?: bigint | number;
     mask?: bigint | number;
     group?: number;
@@ -136,7 +136,7 @@ export interface ShapeOptions {
     hitEvents?: boolean;
     sensorEvents?: boolean;
     detectSensors?: boolean;
-    /** Rounds a polygon, in metres. */
+    /** Radius in metres by which a polygon is rounded. */
     rounding?: Num;
     userData?: bigint | number;
 }
@@ -185,7 +185,7 @@ export interface BodyOptions {
     lockY?: boolean;
     lockRotation?: boolean;
     userData?: bigint | number;
-    /** For reports: at most 16 letters, digits, `-` and `_`. */
+    /** Name of the body in reports: at most 16 letters, digits, `-` and `_`. */
     name?: string;
     shapes?: readonly (ShapeDef | ChainDef)[];
 }
@@ -199,8 +199,8 @@ export interface JointOptions {
     type: "revolute" | "prismatic" | "distance" | "weld" | "wheel" | "motor" | "filter" | "gear" | "rack" | "pulley";
     a: BodyId;
     b: BodyId;
-    /** Anchor in world coordinates at the current poses. Prismatic and wheel joints also need `axis`. A world is
-     * needed: `Commands` refuse it. */
+    /** Anchor in world coordinates at the current poses. Prismatic and wheel joints also need `axis`. Only a world
+     * accepts `anchor` and `axis`; `Commands` refuse them. */
     anchor?: Vec;
     axis?: Vec;
     /** Anchors and angles in the frames of the bodies. */
@@ -363,7 +363,7 @@ export interface Events {
     moved: { body: BodyId; position: Vec2; angle: Angle; fellAsleep: boolean }[];
     contactBegin: ContactEvent[];
     contactEnd: ContactEvent[];
-    /** `impulse` along the normal, over the whole tick, in N s. */
+    /** `impulse` is along the normal and summed over the tick, in N s; `approachSpeed` is in m/s. */
     hits: (ContactEvent & { point: Vec2; normal: Vec2; approachSpeed: Fx; impulse: Fx })[];
     sensorBegin: SensorEvent[];
     sensorEnd: SensorEvent[];
@@ -380,12 +380,12 @@ export class World extends Edits {
     toBytes(): Uint8Array;
     clone(): World;
     spawn(options: BodyOptions): BodyId;
-    /** Adds a body with the same definition at each pose, or none if one of them is refused. A recording stores the
+    /** Adds a body with the same definition at each pose, or no body if one of them is refused. A recording stores the
      * definition once. */
     spawnEach(options: Omit<BodyOptions, "position" | "angle">, poses: BodyPose[]): BodyId[];
     addShape(body: BodyId, shape: ShapeDef): ShapeId;
     addJoint(options: JointOptions): JointId;
-    /** Adds a joint with the same definition between each pair of bodies, or none if one of them is refused. */
+    /** Adds a joint with the same definition between each pair of bodies, or no joint if one of them is refused. */
     addJointEach(options: Omit<JointOptions, "a" | "b" | "anchor" | "axis">, pairs: [BodyId, BodyId][]): JointId[];
     step(ticks?: number): void;
     /** Executes a list of commands, and returns how many were refused. */
@@ -427,12 +427,12 @@ export class World extends Edits {
     closest(point: Vec, within: Num, filter?: Filter): { shape: ShapeId; body: BodyId; distance: Fx; point: Vec2; normal: Vec2 } | undefined;
 }
 
-/** Geometry and abilities of a character. It is upright, and y is up. */
+/** Geometry and abilities of a character, which stays upright. The y axis points up. */
 export interface MoverOptions {
     shape: ShapeDef;
     /** Steepest slope that counts as ground, measured from the horizontal; 45 degrees by default. */
     slopeMax?: Rotation;
-    /** Height in metres of steps that it climbs without a jump; 0 by default. */
+    /** Height in metres of steps that the character climbs without a jump; 0 by default. */
     stepHeight?: Num;
     /** Largest descent of the ground within a tick that the character follows, in metres; 0.1 by default. */
     snapDistance?: Num;
@@ -447,14 +447,14 @@ export interface MoverPlane {
     velocity: Vec2;
     /** Outward normal. */
     normal: Vec2;
-    /** Nearest point on the surface. */
+    /** Point on the surface that is nearest to the character. */
     point: Vec2;
     separation: Fx;
 }
 /** State of a character, which belongs to the state of the game: save it, and hash it. */
 export interface MoverState {
     position: Vec;
-    /** In m/s: relative to the ground while it stands on ground, otherwise in the world. */
+    /** Velocity in m/s: relative to the ground while the character stands on ground, otherwise in the world. */
     velocity?: Vec;
     ground?: MoverPlane;
 }
@@ -464,14 +464,14 @@ export interface Moved {
         velocity: Vec2;
         ground: MoverPlane | undefined;
         isOnGround: boolean;
-        /** It is wedged between two slopes that are both too steep to stand on. */
+        /** Whether the character is wedged between two slopes that are both too steep to stand on. */
         isWedged: boolean;
     };
-    /** The surfaces that it has met, in order. */
+    /** The surfaces that the character has met, in order. */
     met: MoverPlane[];
 }
-/** Moves a character for one tick at its velocity: it slides along surfaces, climbs steps, and moving ground carries
- * it. The game adds gravity to the velocity. The world does not change. */
+/** Moves a character for one tick at its velocity. The character slides along surfaces, climbs steps, and is carried by
+ * moving ground. The game adds gravity to the velocity. The world does not change. */
 export function moveCharacter(world: World, mover: MoverOptions, state: MoverState, filter?: Filter): Moved;
 /** The state of a character as bytes, for saves and hashes. */
 export function encodeMoverState(state: MoverState): Uint8Array;
@@ -498,17 +498,18 @@ export interface Verdict {
 }
 /** Goes to any tick of a replay of a world: tick t is the state after t ticks. */
 export class Timeline extends Handle {
-    /** Throws a Lockstep2dError with the code RECORD, and the `verdict`, if it cannot be played. */
+    /** Throws a Lockstep2dError with the code RECORD, and the `verdict`, if the file cannot be played. */
     constructor(bytes: Uint8Array, limits?: Limits);
     readonly ticks: number;
     readonly tick: number;
-    /** Goes to a tick, which is fast if it was played before. Checkpoints on the way are compared. */
+    /** Goes to a tick. This is fast if the tick was played before. States on the way are compared with the checkpoints
+     * of the file. */
     seek(tick: number): void;
     /** Goes forward by a tick. Returns false at the end. */
     step(): boolean;
     /** Goes back by a tick. Returns false at the start. */
     stepBack(): boolean;
-    /** A copy of the world at the current tick, to draw and query it. The caller disposes of it. */
+    /** A copy of the world at the current tick, for drawing and queries. The caller has to dispose of the copy. */
     world(): World;
 }
 
@@ -528,7 +529,7 @@ export class Recording extends Handle {
 export interface TickInputs {
     /** Inputs of all players or seats, one after another. */
     inputs: Uint8Array;
-    /** Bit for each player or seat that nobody plays. Its input is zeros. */
+    /** Bit for each player or seat that nobody plays. The input of such a seat is zeros. */
     absent: bigint;
 }
 /** Records a game with rules of its own. */
@@ -548,7 +549,7 @@ export class Recorder extends Handle {
      * `Match.finalInputs` returns both in this form. Returns whether `checkpoint` has to follow. */
     record(inputs: Uint8Array, absent?: bigint): boolean;
     /** Adds a result such as a score, with a name of 1 to 64 bytes. Call it before `finish`. A replay has at most 256
-     * results with different names, which can be read without playing it. */
+     * results with different names. They can be read without playing the replay. */
     claim(name: string, number: number | bigint): void;
     checkpoint(hash: string): void;
     take(): Uint8Array;
@@ -628,7 +629,7 @@ export interface MatchOptions {
     saveInterval?: number;
     /** Interval in ticks at which states are compared: a multiple of `saveInterval`. */
     checkInterval?: number;
-    /** Ticks that may be played beyond the last final one, at least 16. */
+    /** Ticks that may be played beyond the last final tick, at least 16. */
     history?: number;
     /** Number of final ticks whose inputs are kept for peers that return. After a longer absence a peer downloads a
      * state. */
@@ -639,9 +640,9 @@ export interface MatchOptions {
     seatWithin?: number;
     /** Distinguishes matches: packets with another tag are ignored. */
     matchTag?: bigint | number;
-    /** Milliseconds for which play stalls because of a missing peer before the other peers go on without it. */
+    /** Milliseconds for which the match waits for a missing peer before the other peers go on without it. */
     patience?: number;
-    /** Number of this peer: random by default. It has to be a new one each time a page is loaded. */
+    /** Number of this peer: random by default. A page has to use a new number each time it is loaded. */
     peer?: number;
     /** Identity of the player: random by default. A peer that joins again with the same key gets its seat back. */
     key?: bigint;
@@ -716,7 +717,7 @@ export interface MatchRequest {
     kind: "save" | "load" | "advance" | "checksum" | "forget";
     tick: number;
     inputs: Uint8Array;
-    /** Bit for each seat that nobody plays. Its input is zeros. */
+    /** Bit for each seat that nobody plays. The input of such a seat is zeros. */
     absent: bigint;
     /** Bit for each seat whose input is guessed. */
     guessed: bigint;
@@ -783,7 +784,8 @@ export class MatchDriver<Saved = unknown> {
     readonly match: Match;
     readonly tick: number;
     receive(now: number, from: Uint8Array, packet: Uint8Array): void;
-    /** Call it every few milliseconds. `readInputs` returns the inputs of your own seats, one after another. */
+    /** Advances the match to the time `now`, and plays the ticks that are due. Call it every few milliseconds.
+     * `readInputs` returns the inputs of your own seats, one after another. */
     update(now: number, readInputs: (seats: number[]) => Uint8Array): MatchEvent[];
 }
 
@@ -805,8 +807,8 @@ export function encodeNativeState(world: World): Uint8Array;
  * come from any source. */
 export function decodeNativeState(bytes: Uint8Array): World;
 
-/** A member of a room of a relay (`crates/relay`): carries the packets of a match over a WebSocket. After a lost
- * connection it reconnects; packets are lost meanwhile. */
+/** A member of a room of a relay (`crates/relay`): carries the packets of a match over a WebSocket. When the connection
+ * is lost, the member reconnects; packets are lost meanwhile. */
 export class Relay {
     private constructor();
     /** Enters a room, and creates it if it does not exist. `url` is `wss://HOST` or `ws://HOST:PORT`, `code` 1 to 32

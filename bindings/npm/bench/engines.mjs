@@ -112,7 +112,7 @@ export const ENGINES = {
     "matter-js": matter,
 };
 
-/** Milliseconds of each tick of all scenes, and the hash of the last state where there is one. */
+/** Milliseconds of each tick of all scenes, and the hash of the last state if the engine has one. */
 export async function measure(make, ticks) {
     const build = await make();
     const play = (scene, count) => {

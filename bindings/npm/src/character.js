@@ -38,7 +38,7 @@ function readPlane(at) {
 }
 
 /** Moves a character for one tick at its velocity, among the shapes that the filter accepts. Returns its new state, and
- * the surfaces that it has met. The game adds gravity to the velocity; the world does not change. */
+ * the surfaces that the character has met. The game adds gravity to the velocity; the world does not change. */
 export function moveCharacter(world, mover, state, filter = {}) {
     const [abilities, pose, plane] = [sizeOf("mover"), sizeOf("mover_state"), sizeOf("mover_plane")];
     const before = abilities + 2 * pose + sizeOf("query_filter");

@@ -16,7 +16,7 @@ export class Edits extends Handle {
         return this.added(at);
     }
 
-    /** Adds a body with the same definition at each pose `{ position, angle }`, or none if one of them is refused.
+    /** Adds a body with the same definition at each pose `{ position, angle }`, or no body if one of them is refused.
      * Returns their handles; a list of commands returns undefined. */
     spawnEach(options, poses) {
         const size = sizeOf("pose");
@@ -81,8 +81,8 @@ export class Edits extends Handle {
         return this.added(at);
     }
 
-    /** Adds a joint with the same definition between each pair of bodies, or none if one of them is refused. Returns
-     * their handles; a list of commands returns undefined. */
+    /** Adds a joint with the same definition between each pair of bodies, or no joint if one of them is refused.
+     * Returns their handles; a list of commands returns undefined. */
     addJointEach(options, pairs) {
         const size = sizeOf("joint_def");
         const at = scratch(size + 24 * pairs.length);

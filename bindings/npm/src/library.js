@@ -209,7 +209,8 @@ export function fieldAt(name, at, field) {
     return at + STRUCTS[name].fields[field][0];
 }
 
-/** Copies bytes into memory, after `reserved` bytes for other values. Returns the address of the reserved bytes. */
+/** Copies bytes into memory, behind `reserved` bytes that the caller fills. Returns the address of the reserved
+ * bytes. */
 export function give(data, reserved = 64) {
     if (!(data instanceof Uint8Array)) {
         throw new Lockstep2dError("VALUE", "bytes have to be a Uint8Array");
@@ -249,8 +250,8 @@ export const text = (data) => DECODER.decode(data);
 let capacity = 64;
 
 /** Calls `ask`, which writes a list of items of `size` bytes, with larger and larger buffers until the list fits.
- * Returns the address of the list and the number of items. `prepare` writes other arguments to `before` bytes in front
- * of it. */
+ * Returns the address of the list and the number of items. `prepare` writes other arguments to the `before` bytes in
+ * front of the list. */
 export function list(size, before, ask, prepare = () => {}) {
     for (;;) {
         const at = scratch(8 + before + capacity * size);

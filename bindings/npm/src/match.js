@@ -310,7 +310,7 @@ export class MatchDriver {
                 this.#match.reportHash(tick, this.#saved(tick).hash);
                 break;
             default:
-                // The newest of the states that are no longer needed is kept for peers that join.
+                // Keeps the newest of the states that are no longer needed, for peers that join.
                 this.#forgetBefore(tick);
         }
     }

@@ -9,12 +9,12 @@ const PAUSE_MIN = 250;
 const PAUSE_MAX = 8000;
 // Largest number of bytes that wait to be sent. Further packets are dropped, as in the buffer of a socket.
 const BUFFERED_MAX = 512 * 1024;
-// Close codes after which it does not reconnect: a wrong secret, and another connection of the same member.
+// Close codes after which a member does not reconnect: a wrong secret, and another connection of the same member.
 const FINAL = [4000, 4003];
 
 const addressOf = (digits) => Uint8Array.from({ length: ADDRESS }, (_, index) => parseInt(digits.slice(2 * index, 2 * index + 2), 16));
 
-/** A member of a room. After a lost connection it reconnects; packets are lost meanwhile. */
+/** A member of a room. When the connection is lost, the member reconnects; packets are lost meanwhile. */
 export class Relay {
     #url;
     #secret;
@@ -100,7 +100,7 @@ export class Relay {
         this.#pause = Math.min(2 * this.#pause, PAUSE_MAX);
     }
 
-    /** Sends a packet. It is dropped if there is no connection, or if too many bytes wait to be sent. */
+    /** Sends a packet. The packet is dropped if there is no connection, or if too many bytes wait to be sent. */
     send(to, packet) {
         if (!this.isOpen || to.length !== ADDRESS || this.#socket.bufferedAmount > BUFFERED_MAX) {
             return;

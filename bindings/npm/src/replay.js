@@ -47,7 +47,7 @@ export function verifyReplay(bytes, limits) {
     return verdictAt(at);
 }
 
-/** A world that is recorded while it runs. It is changed by lists of commands alone. */
+/** A world that is recorded while it runs. Only lists of commands change the world. */
 export class Recording extends Handle {
     /** Starts from settings and the commands that set up the world. */
     constructor({ config = {}, setup, interval = 60 }) {
@@ -70,7 +70,7 @@ export class Recording extends Handle {
         return new World(new Adopted(u32(at)));
     }
 
-    /** Returns the bytes that are finished, to be appended to a file. */
+    /** Returns the bytes that were finished since the last call, to be appended to a file. */
     take() {
         const at = scratch(8);
         call("ls2d_recording_take", this.handle, at);
@@ -322,7 +322,7 @@ export class Timeline extends Handle {
         return Number(u64(at));
     }
 
-    /** Goes to a tick, which is fast if it was played before. */
+    /** Goes to a tick. This is fast if the tick was played before. */
     seek(tick) {
         call("ls2d_timeline_seek", this.handle, BigInt(tick));
     }
@@ -337,7 +337,7 @@ export class Timeline extends Handle {
         return call("ls2d_timeline_step_back", this.handle);
     }
 
-    /** A copy of the world at the current tick, to draw and query it. */
+    /** A copy of the world at the current tick, for drawing and queries. */
     world() {
         const at = scratch(8);
         call("ls2d_timeline_world", this.handle, at);

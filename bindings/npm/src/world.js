@@ -277,7 +277,7 @@ export class World extends Edits {
         return call("ls2d_cast_ray", this.handle, ...ray, seen, at) ? this.#hit("ray_hit", at) : undefined;
     }
 
-    /** Every shape that a ray meets, in order along the ray. */
+    /** Every shape that a ray meets, in the order of the hits along the ray. */
     castRayAll(origin, translation, filter) {
         const ray = [...raws(origin, "origin"), ...raws(translation, "translation")];
         const size = sizeOf("ray_hit");
@@ -342,7 +342,7 @@ export class World extends Edits {
     }
 }
 
-/** A handle of an existing object, for the constructor of a world. */
+/** Marks a handle of an existing world, which the constructor of `World` takes over. */
 export class Adopted {
     constructor(handle) {
         this.handle = handle;

@@ -1,5 +1,5 @@
-// Matches: peers in one process, on a network that loses and delays packets, have equal states, also those who join
-// late.
+// Matches: peers in one process, on a network that drops and delays packets, have equal states. Peers that join late
+// do, too.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { L } from "./common.mjs";
