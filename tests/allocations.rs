@@ -114,7 +114,7 @@ fn joints_with_thresholds_allocate_nothing() {
     assert_eq!(allocations(&mut world, 60, 60), 0);
 }
 
-/// A save packs 52 bytes for each body into the memory of the snapshot that it replaces. It allocates only lists of
+/// A save packs 52 bytes for each body into the memory of the snapshot that it replaces. A save allocates only lists of
 /// digests, half a byte per body, shape and joint.
 #[test]
 fn saving_every_tick_allocates_no_room_for_bodies() {

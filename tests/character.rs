@@ -282,7 +282,7 @@ fn random_shape(rng: &mut Rng) -> Geometry {
     }
 }
 
-/// A shape that moves into a character pushes it out if there is room.
+/// A shape that moves into a character pushes the character out if there is room.
 #[test]
 fn a_lift_that_comes_up_takes_the_character_along() {
     let mut world = chain(&[(fx!(-20), fx!(0)), (fx!(20), fx!(0))]);

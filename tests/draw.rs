@@ -277,7 +277,7 @@ fn pictures_are_well_formed_for_any_view() {
 fn a_picture_has_an_element_for_each_body_and_style() {
     let view = View { layers: Layers::ALL, ..View::default() };
     let picture = svg(&scene(), &view);
-    // The four bodies that have shapes, and the two dynamic ones again as islands.
+    // The four bodies that have shapes, and the two dynamic bodies once more, as islands.
     assert_eq!(picture.matches("<title>body ").count(), 4 + 2);
     // The bodies, 12 styles (boxes of the broad phase, fat boxes, arm, velocity, centres, anchors, gap, normals,
     // points, forces, friction and the solver's graph colour), and the scale bar.

@@ -90,7 +90,7 @@ pub struct Summary {
     pub scenes: usize,
     /// Geometric mean of the scenes' median ratios to Box2D.
     pub geomean_vs_box2d: Option<f64>,
-    /// Geometric mean of the scenes' median ratios to rapier2d, over the scenes in which it runs.
+    /// Geometric mean of the scenes' median ratios to rapier2d, over the scenes in which rapier2d runs.
     pub geomean_vs_rapier: Option<f64>,
     /// Largest of the scenes' median ratios to Box2D.
     pub worst_vs_box2d: Option<f64>,

@@ -104,12 +104,19 @@ export class Random {
 
 export type Mixing = "average" | "geometricMean" | "minimum" | "product" | "maximum";
 export interface AreaOptions {
+    /** Acceleration in m/s² of bodies in the area. */
     acceleration?: Vec;
+    /** Force in N per m² of the part of a body that is inside the area. */
     force?: Vec;
+    /** Velocity of the medium in m/s. */
     flow?: Vec;
+    /** Rate per second at which the velocity of bodies approaches that of the medium. */
     linearDrag?: Num;
+    /** Rate per second at which the angular velocity of bodies approaches that of the medium. */
     angularDrag?: Num;
+    /** Density of the medium in kg/m², for buoyancy. */
     density?: Num;
+    /** Acceleration in m/s² towards the centre of the area, at the distance `radius` in metres. */
     attraction?: { acceleration: Num; radius: Num; falloff?: "constant" | "inverse" | "inverseSquare" };
 }
 export interface ShapeOptions {
@@ -117,16 +124,23 @@ export interface ShapeOptions {
     offset?: Vec;
     /** Mass per area in kg/m². */
     density?: Num;
+    /** Friction coefficient. */
     friction?: Num;
     frictionMixing?: Mixing;
+    /** Fraction of the approach speed that a bounce returns. */
     restitution?: Num;
     restitutionMixing?: Mixing;
+    /** Approach speed in m/s below which the shape does not bounce. */
     restitutionThreshold?: Num;
+    /** Rolling resistance of a round shape. */
     rollingResistance?: Num;
+    /** Speed of the surface around the shape, clockwise, in m/s. */
     surfaceSpeed?: Num;
     /** Bits of the categories that the shape belongs to. `mask` has the categories that the shape collides with. */
     category?: bigint | number;
     mask?: bigint | number;
+    /** Shapes with the same group other than 0 always collide if the number is positive, and never if it is
+     * negative. */
     group?: number;
     /** Direction in which other shapes pass through a one-way platform. */
     oneWay?: Rotation;
@@ -165,15 +179,22 @@ export type BodyType = "fixed" | "kinematic" | "dynamic";
 export interface BodyOptions {
     /** `dynamic` by default. */
     type?: BodyType;
+    /** Origin of the body in the world, in metres. */
     position?: Vec;
     angle?: Rotation;
+    /** Velocity of the centre of mass in m/s. */
     velocity?: Vec;
+    /** Angular velocity in rad/s, counter-clockwise. */
     angularVelocity?: Num;
     /** Mass, centre of mass and radius of gyration, instead of the values that follow from the shapes. */
     mass?: { mass: Num; centre?: Vec; gyration: Num };
+    /** Decay rate of the velocity, per second. */
     linearDamping?: Num;
+    /** Decay rate of the angular velocity, per second. */
     angularDamping?: Num;
+    /** Factor on the world's gravity. */
     gravityScale?: Num;
+    /** Speed in m/s below which the body becomes ready to sleep. */
     sleepSpeed?: Num;
     /** Bodies through which the body cannot tunnel: `fixed` by default. `bullet`: all except bullets. `kinematic`:
      * fixed and kinematic bodies. */
@@ -191,8 +212,10 @@ export interface BodyOptions {
 }
 
 export interface Spring {
+    /** Frequency in Hz. */
     hertz: Num;
     dampingRatio?: Num;
+    /** Rest position of the spring, in rad or m. */
     target?: Num;
 }
 export interface JointOptions {
@@ -208,46 +231,75 @@ export interface JointOptions {
     anchorB?: Vec;
     angleA?: Rotation;
     angleB?: Rotation;
+    /** Lower and upper end of the range, in rad or m. */
     limit?: readonly [Num, Num];
+    /** Target speed in rad/s or m/s, and largest torque in N m or force in N. */
     motor?: { speed: Num; max: Num };
     spring?: Spring;
+    /** Smallest and largest force of the spring in N. */
     springForce?: readonly [Num, Num];
+    /** Length of a rod in metres. */
     rod?: Num;
+    /** Frequency in Hz and damping ratio of the rigid constraints of the joint. */
     softness?: { hertz: Num; dampingRatio: Num };
+    /** Whether the two bodies collide with each other. */
     collide?: boolean;
     enabled?: boolean;
+    /** Force in N and torque in N m beyond which the joint is reported or, with `breaks`, removed. */
     threshold?: { force?: Num; torque?: Num; breaks?: boolean };
+    /** Target velocity in m/s and largest force in N of a motor joint. */
     linearMotor?: { velocity: Vec; max: Num };
+    /** Spring between the anchors: frequency in Hz, damping ratio, largest force in N. */
     linearSpring?: { hertz: Num; dampingRatio: Num; max?: Num };
+    /** Spring on the angle: frequency in Hz, damping ratio, largest torque in N m. */
     angularSpring?: { hertz: Num; dampingRatio: Num; max?: Num };
+    /** Teeth of A's wheel and of B's wheel of a gear. */
     teeth?: readonly [number, number];
+    /** Radius of the wheel of a rack in metres. */
     radius?: Num;
+    /** Wheels of a pulley on A's side and on B's side, in world coordinates. */
     wheels?: readonly [Vec, Vec];
+    /** Length of the rope of a pulley in metres. */
     length?: Num;
+    /** Ratio of a pulley: the length on A's side plus `ratio` times the length on B's side is at most `length`. */
     ratio?: Num;
     userData?: bigint | number;
 }
 
 export interface ConfigOptions {
+    /** Ticks per second, 10 to 1000. */
     tickRate?: number;
+    /** Gravity in m/s². */
     gravity?: Vec;
+    /** Sub-steps of a tick. */
     subSteps?: number;
+    /** Iterations of a sub-step. */
     iterations?: number;
     /** 0 soft, 1 Baumgarte. */
     contact?: number;
+    /** Stiffness of soft contacts in Hz, or share of the overlap that Baumgarte contacts correct in each sub-step. */
     contactStiffness?: Num;
+    /** Damping ratio of soft contacts, or overlap in metres that Baumgarte contacts leave uncorrected. */
     contactDamping?: Num;
+    /** Largest speed in m/s with which contacts push shapes apart. */
     contactPushSpeed?: Num;
+    /** Stiffness of joints in Hz. */
     jointHertz?: Num;
     jointDampingRatio?: Num;
+    /** Approach speed in m/s below which shapes do not bounce. */
     restitutionThreshold?: Num;
+    /** Largest speed of a body in m/s. */
     speedMax?: Num;
+    /** Largest distance in metres at which shapes have speculative contact points. */
     speculativeDistance?: Num;
+    /** Largest margin in metres of the bounding boxes in the broad phase. */
     fatMargin?: Num;
+    /** Lowest approach speed of a hit event in m/s. */
     hitSpeed?: Num;
     bodyLimit?: number;
     shapeLimit?: number;
     jointLimit?: number;
+    /** Largest number of pairs of near shapes. */
     pairLimit?: number;
     sleeping?: boolean;
     continuous?: boolean;
@@ -277,10 +329,13 @@ declare class Edits extends Handle {
     disableJoint(joint: JointId): void;
     /** A force in N during the next tick, at a point of the world. */
     applyForce(body: BodyId, force: Vec, point: Vec): void;
+    /** A torque in N m during the next tick. */
     applyTorque(body: BodyId, torque: Num): void;
     /** An impulse in N s at a point of the world. */
     applyImpulse(body: BodyId, impulse: Vec, point: Vec): void;
+    /** An angular impulse in N m s. */
     applyAngularImpulse(body: BodyId, impulse: Num): void;
+    /** Sets the velocity of the centre of mass in m/s, and the angular velocity in rad/s. */
     setVelocity(body: BodyId, velocity: Vec, angular?: Num): void;
     setTransform(body: BodyId, position: Vec, angle?: Rotation): void;
     /** Gives a kinematic body the velocity with which it reaches this pose in the next tick. */
@@ -294,6 +349,8 @@ declare class Edits extends Handle {
     wake(body: BodyId): void;
     sleep(body: BodyId): void;
     setGravity(gravity: Vec): void;
+    /** Applies impulses away from `centre`, in N s per metre of the width of a shape as seen from there. The impulse
+     * is full within `radius` metres, and falls to 0 over the next `falloff` metres. */
     explode(options: { centre: Vec; impulse: Num; radius?: Num; falloff?: Num; mask?: bigint | number }): void;
 }
 
@@ -319,35 +376,49 @@ export class Snapshot extends Handle {
 
 export interface BodyInfo {
     type: BodyType;
+    /** Origin in the world, in metres. */
     position: Vec2;
     angle: Angle;
+    /** Velocity of the centre of mass in m/s. */
     velocity: Vec2;
+    /** Angular velocity in rad/s. */
     angularVelocity: Fx;
+    /** Centre of mass in the world, in metres. */
     centre: Vec2;
+    /** Mass in kg. */
     mass: Fx;
+    /** Moment of inertia about the centre of mass in kg m². */
     inertia: Fx;
+    /** Number of shapes. */
     shapes: number;
     userData: bigint;
     enabled: boolean;
     asleep: boolean;
 }
 export interface Filter {
+    /** Categories that the query belongs to. */
     category?: bigint | number;
+    /** Categories that the query sees. */
     mask?: bigint | number;
     sensors?: boolean;
     /** At most 8 bodies. */
     except?: readonly BodyId[];
+    /** Treatment of shapes that a ray or a cast starts in. */
     initialOverlap?: "resist" | "report" | "ignore";
 }
 export interface RayHit {
     shape: ShapeId;
     body: BodyId;
+    /** Fraction of the translation, 0 to 1. */
     fraction: Fx;
+    /** Point in the world, in metres. */
     point: Vec2;
+    /** Outward normal of the surface; zero for a ray that starts inside. */
     normal: Vec2;
     startsInside: boolean;
 }
 export interface CastHit extends RayHit {
+    /** Displacement up to the hit, in metres. */
     travelled: Vec2;
 }
 export interface ContactEvent {
@@ -357,6 +428,7 @@ export interface ContactEvent {
 export interface SensorEvent {
     sensor: ShapeId;
     visitor: ShapeId;
+    /** Time within the tick at which the overlap began or ceased, 0 to 1. */
     fraction: Fx;
 }
 export interface Events {
@@ -395,6 +467,8 @@ export class World extends Edits {
     /** Hash of a section: 0 settings, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands, 6 random numbers. */
     digest(section: number): string;
     readonly tick: number;
+    /** Number of results of the solver that were clamped since the world was made. A body at the speed limit does
+     * not count. */
     readonly faults: number;
     counts(): { bodies: number; shapes: number; joints: number; awake: number; pairs: number };
     config(): Record<string, unknown>;
@@ -410,20 +484,31 @@ export class World extends Edits {
     joints(): JointId[];
     shapesOf(body: BodyId): ShapeId[];
     jointsOf(body: BodyId): JointId[];
+    /** Shapes that a sensor overlaps, in slot order. */
     sensorOverlaps(shape: ShapeId): ShapeId[];
     shape(shape: ShapeId): { type: "circle" | "segment" | "polygon" | "capsule" | "link"; body: BodyId; points: Vec2[]; radius: Fx; offset: Vec2 };
+    /** The anchors of a joint in the world, in metres. */
     jointAnchors(joint: JointId): [Vec2, Vec2];
+    /** Angle of a joint in rad, including whole turns. */
     jointAngle(joint: JointId): Fx | undefined;
+    /** Force in N and torque in N m of a joint on body B in the last tick. */
     jointForce(joint: JointId): { force: Vec2; torque: Fx } | undefined;
     /** For drawing: five floats for each enabled body: its handle, x, y, angle in radians, and 1 if it is awake. */
     poses(target?: Float64Array): Float64Array;
     events(): Events;
+    /** The first shape that a ray meets, from a point along a translation in metres. */
     castRay(origin: Vec, translation: Vec, filter?: Filter): RayHit | undefined;
+    /** Every shape that a ray meets, in the order of the hits along the ray. */
     castRayAll(origin: Vec, translation: Vec, filter?: Filter): RayHit[];
+    /** The first shape of the world that a given shape meets as it moves along a translation in metres. */
     castShape(shape: ShapeDef, position: Vec, translation: Vec, options?: Filter & { angle?: Rotation }): CastHit | undefined;
+    /** Shapes of the world that overlap a given shape, in slot order. */
     overlapShape(shape: ShapeDef, position: Vec, options?: Filter & { angle?: Rotation }): ShapeId[];
+    /** Shapes that overlap a box from its lower left to its upper right corner, in slot order. */
     overlapBox(lower: Vec, upper: Vec, filter?: Filter): ShapeId[];
+    /** Shapes that contain a point, in slot order. */
     overlapPoint(point: Vec, filter?: Filter): ShapeId[];
+    /** The shape nearest to a point, within a distance in metres. The distance is negative inside a shape. */
     closest(point: Vec, within: Num, filter?: Filter): { shape: ShapeId; body: BodyId; distance: Fx; point: Vec2; normal: Vec2 } | undefined;
 }
 
@@ -441,6 +526,7 @@ export interface MoverOptions {
 export interface MoverPlane {
     shape: ShapeId;
     body: BodyId;
+    /** Position in metres of the body's origin in the world when the surface was met. */
     bodyPosition: Vec2;
     bodyAngle: Angle;
     /** Velocity of the surface in m/s. */
@@ -449,10 +535,12 @@ export interface MoverPlane {
     normal: Vec2;
     /** Point on the surface that is nearest to the character. */
     point: Vec2;
+    /** Distance of the character from the surface in metres, negative if they overlap. */
     separation: Fx;
 }
 /** State of a character, which belongs to the state of the game: save it, and hash it. */
 export interface MoverState {
+    /** Position of the shape's centre in the world, in metres. */
     position: Vec;
     /** Velocity in m/s: relative to the ground while the character stands on ground, otherwise in the world. */
     velocity?: Vec;
@@ -483,10 +571,15 @@ export interface Limits {
     setupBytes?: number;
     players?: number;
     blockBytes?: number;
+    /** Ticks between checkpoints. */
     blockTicks?: number;
+    /** Ticks of the game. */
     ticks?: number;
+    /** Bodies of the world. */
     bodies?: number;
+    /** Work units of a tick. */
     tickWork?: number;
+    /** Work units of the game. */
     totalWork?: number;
 }
 export interface Verdict {

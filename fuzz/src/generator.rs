@@ -1,7 +1,7 @@
 //! Generates scenes: settings, and commands for the current state of a world.
 //!
-//! Three of four scenes are ordinary ones ([`crate::ordinary`]). This module generates the others, in which all values
-//! may be at or beyond their limits. Most bodies are small and close together, so that most of them touch.
+//! Three of four scenes are ordinary ones ([`crate::ordinary`]). This module generates the other scenes, in which all
+//! values may be at or beyond their limits. Most bodies are small and close together, so that most of them touch.
 
 use lockstep2d::body::{BodyDef, BodyId, JointId, ShapeDef, ShapeId, WORLD_EXTENT_MAX};
 use lockstep2d::math::{Fx, Rng, Vec2};

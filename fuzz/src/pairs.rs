@@ -43,7 +43,7 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
     let mut second = Pair::new(config, still, moving, true)?;
     let mut bare = first.clone();
     bare.world.set_broad_phase(BroadPhaseKind::BruteForce);
-    // This world tests boxes one pair at a time, while the others may test several in SIMD lanes.
+    // This world tests boxes one pair at a time, while the other worlds may test several pairs in SIMD lanes.
     let scalar = bare.world.set_backend(Backend::Scalar);
     assert!(scalar, "every machine has the scalar backend");
     let mut contacts = 0;

@@ -31,7 +31,7 @@ struct Body {
     replay: Vec<u8>,
 }
 
-/// The phase digests of a tick, as described in the same document.
+/// The phase digests of a tick, as described in `docs/FORMAT.md`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Phases {
     digests: Vec<StateHash>,
@@ -56,8 +56,8 @@ struct Trajectory {
     interval: u32,
 }
 
-/// Reads the report of a peer that may have diverged or forged it, and compares it with the report of a peer that
-/// followed the rules. Returns the result as one word.
+/// Reads the report of a peer that may have diverged or may have forged its report, and compares it with the report of
+/// a peer that followed the rules. Returns the result as one word.
 ///
 /// # Panics
 /// If a report that was changed without correcting its hash is accepted, or if a side that followed the rules is

@@ -83,7 +83,7 @@ pub(crate) fn repair(snapshot: &mut [u8]) {
     snapshot[end..].copy_from_slice(&hash.0.to_le_bytes());
 }
 
-/// Reads the bytes. If they are a world, it has to stay valid and independent of its caches.
+/// Reads the bytes. If they decode to a world, this world has to stay valid and independent of its caches.
 fn accept(bytes: &[u8], mut player: Option<(&mut Source<'_>, &mut Generator)>) -> bool {
     let Ok(mut world) = World::from_bytes(bytes) else { return false };
     assert_eq!(world.validate(), Ok(()), "an accepted world is valid");

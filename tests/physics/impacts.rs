@@ -255,8 +255,8 @@ fn a_corner_with_friction_adds_no_energy() {
     });
 }
 
-/// A ball of restitution 1 flies to and fro between two walls. It is where it would be if every rebound took place at
-/// the time of the impact.
+/// A ball of restitution 1 flies to and fro between two walls. Its position is the one that follows from rebounds
+/// exactly at the times of the impacts.
 #[test]
 fn a_ball_between_walls_keeps_time() {
     for speed in [fx!(3), fx!(10), fx!(40), fx!(123)] {

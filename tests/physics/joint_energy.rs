@@ -33,7 +33,7 @@ const BEYOND: [Case; 6] = [
 const GAPING: [Case; 2] = [
     // 300 kg hang on a disc of 1 kg, at an arm of 15 radii of gyration.
     Case { shape: Shape::Tree, mix: Mix::Wheel, start: Start::Hang, seed: 0 },
-    // In tick 112 three bodies of 100 kg, connected by springs to a body of 1 kg, pull at it with a speed of 21 m/s.
+    // In tick 112, three bodies of 100 kg on springs jerk at a body of 1 kg, at a speed of 21 m/s.
     Case { shape: Shape::Mesh, mix: Mix::LimitedSpring, start: Start::Hang, seed: 5 },
 ];
 
@@ -283,8 +283,8 @@ fn a_star_of_hinges_that_turns_fast_gains_no_energy() {
     });
 }
 
-/// Half of the bodies of a star are thrown in directions of their own, or the star falls straight down. It is asleep
-/// after a minute.
+/// Half of the bodies of a star are thrown in directions of their own, or the star falls straight down. The star is
+/// asleep after a minute.
 #[test]
 fn a_star_of_welds_comes_to_rest_on_a_floor() {
     let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));

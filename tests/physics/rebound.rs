@@ -236,7 +236,7 @@ fn elastic_falls_rebound_to_the_same_height() {
 }
 
 /// A bumper without gravity: a ball or a flat box leaves it at `e` times its speed, as long as the change of velocity
-/// is below the 511 m/s of an impulse.
+/// is below 511 m/s, the limit of an impulse.
 #[test]
 fn a_bumper_returns_more_than_the_speed() {
     let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid"));

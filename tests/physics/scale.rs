@@ -60,8 +60,8 @@ fn sink(config: Config, size: Fx) -> Fx {
 }
 
 /// A column of 20 boxes with offsets of 1 % of their size, and a pyramid of 10 rows, come to rest without losing their
-/// form. Small boxes fall asleep after the same half second as large ones, but sway more often in that time: a column
-/// of boxes of 1 cm leans by 0.11 of a box in the end, one of 1 m by 0.002.
+/// form. Small boxes fall asleep after the same half second as large ones, but sway more often in that time: in the end
+/// a column of boxes of 1 cm leans by 0.11 of a box, a column of boxes of 1 m by 0.002 of a box.
 fn check_piles(config: Config, size: Fx) {
     let mut floor = Floor::new(config, size);
     let mut rng = Rng::new(5);

@@ -30,7 +30,8 @@ fn keyframes_of_a_file_spare_the_way() {
         assert_eq!((timeline.played(), timeline.tick()), (400, tick));
         assert!((360..440).contains(&(timeline.simulated() - before)), "expected all ticks and the way back");
     }
-    // With a different interval, the keyframes that fit it are used.
+    // A requested interval is rounded up to a multiple of the file's interval, 40 ticks. Only keyframes at multiples of
+    // the result are used.
     for (interval, then) in [(20, 40), (40, 40), (60, 80), (100, 120)] {
         let mut timeline = open::<Sandbox>(&file, interval, 64 << 20);
         timeline.use_keyframes(&bytes).unwrap();

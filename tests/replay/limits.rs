@@ -43,7 +43,7 @@ fn each_limit_is_exact() {
 
 #[test]
 fn limits_come_before_the_rest_of_the_file() {
-    // A length beyond the limit is refused even if the file ends right after it.
+    // A length beyond the limit is refused even if the file ends right after the length field.
     let file = record(35, 10, inputs_at);
     let head = 40 + 7 + 13 + 16 + 8;
     let mut cut = file[..head].to_vec();

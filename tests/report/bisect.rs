@@ -1,5 +1,5 @@
-//! Bisection finds the tick, the stage, the body and the field of a random bit flip. It simulates fewer ticks than
-//! three verifications of the replay.
+//! Bisection finds the tick, the stage of the tick, the body and the field of a random bit flip. It simulates fewer
+//! ticks than three verifications of the replay.
 
 use std::cell::Cell;
 use std::collections::BTreeSet;
@@ -208,7 +208,8 @@ fn checkpoints_of_every_tick_tell_the_tick() {
         let found = bisect::<Sound>(&replay, None, &Limits::default()).unwrap();
         assert!(STEPS.get() < 3 * TICKS);
         assert_eq!(found.first_different, Some(flip.tick), "{found:?}");
-        // There are too many bits to try them all, but a blamed body must be the right one.
+        // The comparison cannot try all bits, so it may blame no body. If it blames a body, this must be the body with
+        // the flip.
         let told = found.explanation.map(|told| told.path);
         assert!(told.as_ref().is_none_or(|told| *told == path), "blamed {told:?} instead of {path}");
     }

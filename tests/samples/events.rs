@@ -342,7 +342,8 @@ fn a_projectile_explodes_on_impact() {
         break;
     }
     let (centre, _) = at.expect("a hit");
-    // It hits after a quarter of a tick, and pushes the box ahead for the rest: by 0.75 / 60 s x 60 m/s x 0.2 / 1.2.
+    // The projectile hits after a quarter of a tick, and pushes the box ahead for the rest of the tick: by 0.75 / 60 s
+    // x 60 m/s x 0.2 / 1.2.
     assert!(centre.x > fx!(7.2) && centre.x < fx!(7.25) + fx!(0.125), "exploded at {centre:?}");
     assert!(stage.world.body(shot).is_none());
     stage.run(180);

@@ -207,8 +207,8 @@ fn a_slider_stays_on_its_axis() {
     near(slide(limited, 600), fx!(-10), fx!(0.01));
     // The weight of 4 kg pulls with 28.28 N along the axis. A motor of 25 N leaves 0.8211 m/s².
     near(slide(limited.motor(fx!(2), fx!(25)), 120), fx!(-1.642), fx!(0.03));
-    // A motor of 100 N accelerates the box by a = 17.9 m/s² until it has the motor's speed v, so it is v^2 / 2 a behind
-    // 2 s times v.
+    // A motor of 100 N accelerates the box by a = 17.9 m/s² up to the motor's speed v = 2 m/s. After 2 s the box has
+    // moved by 2 s * v - v^2 / 2 a.
     near(slide(limited.motor(fx!(2), fx!(100)), 120), fx!(3.888), fx!(0.02));
     near(slide(limited.spring(fx!(1), fx!(0.5), fx!(0)), 900), -sag(fx!(7.0711), fx!(1)), fx!(0.002));
 }

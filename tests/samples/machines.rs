@@ -275,8 +275,8 @@ fn toothed(along: Fx) -> Vec<ShapeDef> {
     shapes
 }
 
-/// Gear Lift, and Far Gate of the group "World". Two wheels with teeth lift a door on a chain. At any place in the
-/// world it is the same to the last bit.
+/// Gear Lift, and Far Gate of the group "World". Two wheels with teeth lift a door on a chain. The result is equal to
+/// the last bit at any place in the world.
 #[test]
 fn toothed_wheels_lift_a_door() {
     let lift = |origin: Vec2<Fx>| {

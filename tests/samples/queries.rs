@@ -116,7 +116,7 @@ fn overlaps_of_a_world() {
     let all = QueryFilter::default();
     let plank = probe(Polygon::rectangle(fx!(2), fx!(0.4)).expect("valid"), at!(7, 0));
     assert_eq!(stage.world.overlap_shape(&plank, all), shapes[3..5]);
-    // Turned upright it reaches neither.
+    // Turned upright, the plank reaches neither of these two shapes.
     assert_eq!(stage.world.overlap_shape(&plank.turned(degrees(90)), all), []);
     assert_eq!(stage.world.overlap_shape(&disc(fx!(1), at!(4, 1.2)), all), shapes[2..3]);
     assert_eq!(stage.world.overlap_point(at!(6.4, 0.4), all), shapes[3..4]);

@@ -67,7 +67,7 @@ fn nets_hang() {
         }
         nodes.push(node);
     }
-    // Rows of welds and of sliders beside it.
+    // Rows of welds and of sliders beside the net.
     for (x, is_weld) in [(12, true), (22, false)] {
         let mut before = stage.spawn(BodyDef::fixed().position(Vec2::new(num(x), Fx::ZERO)), &[]);
         for i in 1..5 {

@@ -109,7 +109,7 @@ impl Sim {
         }
     }
 
-    /// All final ticks belong to the one history.
+    /// The final ticks of a peer belong to the history that all peers share.
     fn check_final(&mut self, index: usize) {
         let fin = self.peers[index].session.final_tick();
         let from = self.peers[index].seen_final;
@@ -136,7 +136,7 @@ impl Sim {
         self.peers[index].seen_final = fin;
     }
 
-    /// The confirmed ticks that the game has played belong to the one history; memory is bounded.
+    /// The confirmed ticks that the game has played belong to the history that all peers share; memory is bounded.
     fn check_played(&mut self, index: usize) {
         let peer = &self.peers[index];
         let confirmed = peer.session.confirmed();

@@ -107,7 +107,7 @@ pub(crate) struct Sim {
     /// Percentage of new views at which a peer crashes.
     pub(crate) assassin: u64,
     pub(crate) look: Us,
-    /// State before each tick of the one history.
+    /// State before each tick of the history that all peers share.
     pub(crate) history: Vec<u64>,
     pub(crate) views: BTreeMap<u32, View>,
     pub(crate) failure: Option<String>,

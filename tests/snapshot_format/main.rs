@@ -79,7 +79,7 @@ fn the_state_hash_is_made_of_the_sections() {
         assert_eq!(read.digest(), world.digest(), "digests must not depend on earlier saves");
         let digests = world.digest().sections;
         assert!(sections.iter().map(|(section, _)| section).eq(digests.iter().map(|(section, _)| section)));
-        // Only these two sections are hashed as a whole; the others are hashed in pages.
+        // Only these two sections are hashed as a whole; the other sections are hashed in pages.
         for ((section, range), (_, digest)) in sections.into_iter().zip(&digests) {
             if matches!(section, Section::World | Section::Random) {
                 assert_eq!(*digest, StateHash::of_bytes(&bytes[range]), "{section}");

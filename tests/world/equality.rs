@@ -206,8 +206,8 @@ fn nothing_that_is_done_to_the_caches_is_seen() {
     enough(hits, 400);
 }
 
-/// Runs a thousand other seeds, or those of the environment: `SEEDS=1000..3000 cargo test --test world -- --ignored
-/// many`.
+/// Runs a thousand other seeds, or those in the environment variable `SEEDS`: `SEEDS=1000..3000 cargo test --test world
+/// -- --ignored many`.
 #[test]
 #[ignore = "takes minutes: .ci/long"]
 fn nothing_that_is_done_to_the_caches_is_seen_with_many_seeds() {

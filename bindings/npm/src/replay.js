@@ -150,7 +150,7 @@ export class Recorder extends Handle {
 export class Replay extends Handle {
     #inputs;
 
-    /** Throws an error with the code RECORD, and the `verdict`, if it cannot be played. */
+    /** Throws an error with the code RECORD, and the `verdict`, if the file cannot be played. */
     constructor(bytes, limits) {
         super(openAt("ls2d_replay_open", bytes, limits));
         this.#describe();
@@ -308,7 +308,7 @@ export class ReplayDriver {
 
 /** Goes to any tick of a replay of a world: tick t is the state after t ticks. */
 export class Timeline extends Handle {
-    /** Throws an error with the code RECORD, and the `verdict`, if it cannot be played. */
+    /** Throws an error with the code RECORD, and the `verdict`, if the file cannot be played. */
     constructor(bytes, limits) {
         super(openAt("ls2d_timeline_open", bytes, limits));
         const at = scratch(8);

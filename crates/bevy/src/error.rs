@@ -30,7 +30,7 @@ pub enum LockstepError {
         tick: u64,
         /// Hash when the tick was played first.
         first: StateHash,
-        /// Hash when it was played again.
+        /// Hash when the tick was played again.
         again: StateHash,
     },
     /// The driver cannot do this: only replays can seek, for example.

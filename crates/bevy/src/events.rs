@@ -119,8 +119,8 @@ pub struct ConfirmedEvent {
     pub views: [Option<Entity>; 2],
 }
 
-/// An event that a rollback may still remove. Each event is sent once, when it first occurs in a played tick. A
-/// rollback that moves it by a few ticks does not repeat it.
+/// An event that a rollback may still remove. Each event is sent once, when it first occurs in a played tick. If a
+/// rollback moves the event by a few ticks, it is not sent again.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PredictedEvent {
     /// Number of ticks played, including the tick of the event.

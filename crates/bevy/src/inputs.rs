@@ -6,9 +6,10 @@ use crate::game::LockstepGame;
 
 /// Inputs of the local players for the coming ticks. Write them in [`LockstepSystems::Inputs`](crate::LockstepSystems).
 ///
-/// A frame plays no tick, one, or several. A *held* input is the input of every tick until it changes: directions,
-/// buttons that are down. A *once* input replaces the held one for exactly one tick, the next that is played: a jump,
-/// a list of commands. So no press is lost in a frame without a tick, and none counts twice in a frame with two.
+/// A frame may play no tick, one tick or several ticks. A *held* input is the input of every tick until it changes:
+/// directions, buttons that are down. A *once* input replaces the held input for exactly one tick, the next tick that
+/// is played: a jump, a list of commands. So a press is neither lost in a frame without a tick nor counted twice in a
+/// frame with two ticks.
 ///
 /// ```
 /// # use bevy_lockstep2d::Inputs;

@@ -35,8 +35,8 @@ impl SpawnBody {
     }
 }
 
-/// A joint to be created by [`build_level`], between two entities with a [`SpawnBody`]. It may be on an entity of its
-/// own, or on one of the two.
+/// A joint to be created by [`build_level`], between two entities with a [`SpawnBody`]. The component may be on an
+/// entity of its own, or on one of the two entities.
 #[derive(Component, Clone, Debug)]
 pub struct SpawnJoint {
     /// Entity of body A.
@@ -110,11 +110,10 @@ impl core::error::Error for LevelError {}
 /// one peer builds the level and the others receive the commands: entities may differ between machines, commands do
 /// not.
 ///
-/// # Errors
-/// [`LevelError`]. It leaves all entities unchanged.
+/// # Errors [`LevelError`]. All entities are then unchanged.
 pub fn build_level(app: &mut BevyWorld, config: Config) -> Result<Vec<Command>, LevelError> {
     let refused = |entity: Entity| move |error| LevelError::Refused { entity: Some(entity), error };
-    // The commands are executed in a scratch world: they will give the same ids in the game.
+    // The commands are executed in a scratch world to find the ids of the bodies. In the game they give the same ids.
     let mut scratch = World::new(config).map_err(|error| LevelError::Refused { entity: None, error })?;
     let mut commands = Vec::new();
     let mut bodies = EntityHashMap::default();

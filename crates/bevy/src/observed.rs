@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use crate::step_log::{Stamp, StepLog};
 
-/// A game, and a log of its steps. For peers and replays it is the same game: its rules, inputs, saves and hashes are
-/// those of `G`, byte for byte, so that it plays with peers and replays that do not use Bevy.
+/// A game, and a log of its steps. Its rules, inputs, saves and hashes are those of `G`, byte for byte, so it works
+/// with peers and replays that do not use Bevy.
 pub struct Observed<G> {
     game: G,
     log: Mutex<StepLog>,

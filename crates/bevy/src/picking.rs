@@ -27,7 +27,7 @@ use crate::views::{BodyView, BodyViews};
 /// [`bevy::picking`], with the exact shapes of their bodies as hit areas. A view with [`Pickable::IGNORE`] is left out.
 /// Where bodies overlap, the view with the largest z is in front.
 ///
-/// It needs the plugins of `bevy::picking`, which `DefaultPlugins` contains.
+/// The backend needs the plugins of `bevy::picking`, which `DefaultPlugins` contains.
 ///
 /// ```
 /// # use bevy::picking::{InteractionPlugin, PickingPlugin};

@@ -57,9 +57,10 @@ pub(crate) struct Offset {
     angle: f32,
 }
 
-/// Displacement in metres below which an offset is dropped, if its angle is small, too: it is less than a pixel.
+/// Displacement in metres below which an offset is dropped if its angle is also small: such an offset is less than a
+/// pixel.
 const POSITION_MIN: f32 = 1e-3;
-/// Angle in radians below which an offset is dropped, if its displacement is small, too.
+/// Angle in radians below which an offset is dropped if its displacement is also small.
 const ANGLE_MIN: f32 = 1e-3;
 
 impl Offset {

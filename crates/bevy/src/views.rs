@@ -112,7 +112,7 @@ impl BodyViews {
         true
     }
 
-    /// Adds a view. Returns the one that had the slot before.
+    /// Adds a view. Returns the view that had the slot before.
     pub(crate) fn insert(
         &mut self,
         body: BodyId,

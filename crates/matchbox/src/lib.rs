@@ -57,7 +57,8 @@ impl Matchbox {
         Matchbox { socket, received: VecDeque::new(), others: Vec::new(), is_closed: false }
     }
 
-    /// Updates the members that have come and gone. [`Transport::receive`] does so as well.
+    /// Updates [`Matchbox::others`] with the members that have come and gone. [`Transport::receive`] calls this method
+    /// when no received packet is left.
     pub fn update(&mut self) {
         match self.socket.try_update_peers() {
             Ok(changes) if changes.is_empty() => {}

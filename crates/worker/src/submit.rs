@@ -117,7 +117,7 @@ fn blake3_of(path: &Path) -> Result<String, WorkerError> {
     Ok(hasher.finalize().to_hex().to_string())
 }
 
-/// Adds a file to the object store, unless it is there.
+/// Adds a file to the object store, unless the store already has it.
 async fn upload(store: &ObjectStore, path: &Path, blake3: &str) -> Result<(), WorkerError> {
     if store.info(blake3).await.is_ok() {
         return Ok(());

@@ -15,7 +15,7 @@ use crate::source::Source;
 /// A file made from an input.
 struct Attempt<'a> {
     file: Vec<u8>,
-    /// The file before the changes, if it is a changed copy.
+    /// The original, if `file` is a changed copy of an original file.
     original: Option<&'a [u8]>,
 }
 

@@ -1,5 +1,5 @@
-//! An app whose physics is saved by bevy_ggrs. A session would run the same schedules; without one, every save and load
-//! can be timed.
+//! An app whose physics is saved by bevy_ggrs. A session of bevy_ggrs would run the same schedules; without a session,
+//! every save and load can be timed.
 
 use std::time::Duration;
 

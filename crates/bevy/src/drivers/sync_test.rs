@@ -12,8 +12,8 @@ use crate::game::LockstepGame;
 use crate::inputs::Inputs;
 use crate::observed::Observed;
 
-/// Plays every tick, then loads the state of some ticks ago and plays up to it again. Every state has to be the same
-/// both times.
+/// Plays every tick, then loads the state of `depth` ticks ago and plays these ticks again. The states after each tick
+/// have to be equal both times.
 pub(crate) struct SyncTestDriver<G: LockstepGame> {
     game: Observed<G>,
     timestep: FixedTimestep,
