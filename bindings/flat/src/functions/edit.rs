@@ -257,7 +257,8 @@ api! {
         edit(target, Command::MoveTo { body: body.id()?, position, angle }).map(|_| ())
     }
 
-    /// Changes the settings of a body: damping, gravity scale, locks, sweeps, sleep. The other fields have no effect.
+    /// Sets all settings of a body: damping, gravity scale, locks, sweeps, sleep. The other fields have no effect.
+    /// `ls2d_body_get` returns the current settings.
     fn ls2d_set_body(target: u32, body: RawBody, def: In<'_, RawBodyDef>) {
         edit(target, Command::SetBody { body: body.id()?, settings: def.get()?.settings()? }).map(|_| ())
     }
