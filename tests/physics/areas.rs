@@ -1,5 +1,4 @@
-//! Areas against theory: Archimedes, terminal velocity, Kepler, and the quantities that a field without drag
-//! conserves.
+//! Areas against theory: Archimedes, terminal velocity, Kepler, and quantities that are conserved without drag.
 //!
 //! ```text
 //! floating    submerged area * fluid density = area * density

@@ -15,7 +15,7 @@ enum Load {
     Inertia,
 }
 
-/// A motor that needs 2 s accelerates at `max / mass`, and finally reaches its speed.
+/// A motor that needs 2 s to reach its speed accelerates at `max / mass` until then, and holds the speed afterwards.
 fn accelerates(
     kind: impl Fn(Fx, Fx) -> JointKind,
     place: Vec2<Fx>,

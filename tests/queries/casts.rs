@@ -175,7 +175,7 @@ fn a_cast_says_when_it_starts_inside_or_ignores_it() {
             true => world.cast_shape(&probe, way, filter),
             false => world.cast_turning(&probe, way, turns, filter),
         };
-        // The cast leaves the near wall, and stops at the far one.
+        // The cast leaves the near wall, and stops at the far wall.
         let hit = cast(way, resist).expect("the far wall");
         assert!(hit.shape == far && !hit.starts_inside && (hit.travelled.x - fx!(3.3)).abs() < fx!(0.0002));
         let hit = cast(way, report).expect("the near wall");
