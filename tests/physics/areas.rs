@@ -303,7 +303,7 @@ fn what_floats_sleeps_and_wakes() {
     assert!(at(&world, carrier).x > fx!(8));
     run(&mut world, 400);
     assert_eq!(asleep(&world), [true, true]);
-    // A change of the sea wakes everything in it.
+    // A change of the sea's settings wakes all bodies in it.
     let shape = world.shapes_of(sea)[0];
     let denser = world.shape(shape).expect("valid").def().area(water.density(fx!(2)));
     world.set_shape(shape, &denser).expect("valid");

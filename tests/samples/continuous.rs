@@ -102,8 +102,8 @@ fn a_fast_ball_follows_the_floor_to_the_wall() {
     }
 }
 
-/// Sample "Skinny Box". A spinning plank that is thrown at a post on the floor passes through neither, and neither does
-/// the box behind it.
+/// Sample "Skinny Box". A spinning plank that is thrown at a post on the floor does not pass through the post or the
+/// floor. The box behind the plank does not, either.
 #[test]
 fn a_spinning_plank_does_not_go_through() {
     for shape in [rect(fx!(2), fx!(0.05)), capsule(at!(0, -1), at!(0, 1), fx!(0.1))] {
@@ -247,7 +247,7 @@ fn a_dropped_box_does_not_sink_in() {
             stage.spawn(BodyDef::dynamic().position(place).angle(tilt), &[square(fx!(0.5))]);
             stage.run_and(90, |stage| {
                 let overlap = stage.world.deepest_overlap();
-                // At rest it may overlap by the slop of 5 mm.
+                // At rest the box may overlap the floor by the slop of 5 mm.
                 assert!(overlap < fx!(0.006), "{overlap} m after {height} m");
             });
         }

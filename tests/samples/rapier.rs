@@ -64,8 +64,8 @@ fn thin_walls_stop_fast_compounds() {
     assert_eq!(seen.len(), 16, "expected the sensor to see all");
 }
 
-/// Example `collision_groups2`. Green boxes land on the green floor, blue ones on the blue floor above; what misses its
-/// floor lands on the ground.
+/// Example `collision_groups2`. Green boxes land on the green floor, blue boxes on the blue floor above; a box that
+/// misses its floor lands on the ground.
 #[test]
 fn groups_land_on_their_floors() {
     let mut stage = Stage::with_floor();
