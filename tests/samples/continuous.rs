@@ -14,8 +14,8 @@ fn room(change: impl Fn(ShapeDef) -> ShapeDef) -> [ShapeDef; 4] {
     [line(a, b), line(b, c), line(c, d), line(d, a)].map(change)
 }
 
-/// Sample "Bounce House". A bullet without friction bounces in a room: a ball keeps its speed, nothing gains energy or
-/// gets out.
+/// Sample "Bounce House". A bullet without friction bounces in a room: a ball keeps its speed, and no shape gains
+/// energy or leaves the room.
 #[test]
 fn a_bullet_bounces_in_a_room() {
     for (shape, is_ball) in
