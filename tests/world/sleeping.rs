@@ -185,7 +185,7 @@ fn sleeper_on_platform() -> (World, BodyId, BodyId) {
 fn a_platform_that_begins_to_move_wakes_its_rider_and_keeps_it_awake() {
     for by_target in [false, true] {
         let (mut world, platform, rider) = sleeper_on_platform();
-        // Below the sleep speed.
+        // Below the default sleep speed of 0.05 m/s.
         let creep = fx!(0.03);
         for tick in 1..=120 {
             if by_target {
