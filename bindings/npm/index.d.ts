@@ -232,13 +232,13 @@ export interface ChainDef {
 }
 /** A disc with a radius in metres, 0.002 to 110. */
 export function circle(radius: Num, options?: ShapeOptions): ShapeDef;
-/** A rectangle with half its width and half its height in metres. */
+/** A rectangle with half its width and half its height in metres, each up to 110. */
 export function box(halfWidth: Num, halfHeight: Num, options?: ShapeOptions): ShapeDef;
 /** A convex polygon of 3 to 8 points in counter-clockwise order, in metres from the shape's centre, within ±110. */
 export function polygon(points: readonly Vec[], options?: ShapeOptions): ShapeDef;
 /** The convex hull of 3 to 8 points in any order, in metres from the shape's centre, within ±110. */
 export function hull(points: readonly Vec[], options?: ShapeOptions): ShapeDef;
-/** All points within `radius` metres of the line from `a` to `b`. */
+/** All points within `radius` metres, at least 0.002, of the line from `a` to `b`, which are at least 0.002 m apart. */
 export function capsule(a: Vec, b: Vec, radius: Num, options?: ShapeOptions): ShapeDef;
 /** A line without area, of any length. It has no mass, and does not collide with segments and chains. */
 export function segment(a: Vec, b: Vec, options?: ShapeOptions): ShapeDef;
@@ -339,7 +339,7 @@ export interface JointOptions {
     /** Body B, another one than A. A joint has no effect while neither body is dynamic. */
     b: BodyId;
     /** Place of both anchors in the world, in metres, at the current poses: sets `anchorA`, `anchorB`, `angleA` and
-     * `angleB`. Only `World.addJoint` accepts it. */
+     * `angleB`, so that the angle of the joint is 0 now. Only `World.addJoint` accepts it. */
     anchor?: Vec;
     /** With `anchor`: direction in the world of the axis of a prismatic joint, wheel or rack. The x axis by default. */
     axis?: Vec;
@@ -390,7 +390,8 @@ export interface JointOptions {
     radius?: Num;
     /** Wheels on A's side and on B's side, in world coordinates in metres (pulley). */
     wheels?: readonly [Vec, Vec];
-    /** Length of the rope in metres, 0 to 2^20, without the part between the wheels (pulley). */
+    /** Length of the rope in metres, 0 to 2^20, without the part between the wheels (pulley). With `anchor` it follows from
+     * the current poses. */
     length?: Num;
     /** The length on A's side plus `ratio` times the length on B's side is at most `length`: 0.25 to 4, 1 by default
      * (pulley). */
@@ -609,7 +610,7 @@ export interface BodyInfo {
     angularVelocity: Fx;
     /** Centre of mass in the world, in metres. */
     centre: Vec2;
-    /** Mass in kg; 0 for a body that is not dynamic, and for a dynamic body that nothing can move. */
+    /** Mass in kg; 0 for a fixed or kinematic body, and for a dynamic body that has no mass (`BodyOptions.mass`). */
     mass: Fx;
     /** Moment of inertia about the centre of mass in kg m². */
     inertia: Fx;
@@ -1247,8 +1248,8 @@ export class Match extends Handle {
     /** Status of this peer. */
     readonly status: MatchStatus;
     /** Numbers of ticks: `played`, also with guessed inputs; `final`, whose inputs are final; `confirmed`, played with
-     * final inputs. Throws `NOT_IN_MATCH` while the status is `connecting`, as do `finalInputs`, `link` and the functions
-     * below. */
+     * final inputs. While the status is `connecting`, this, `finalInputs`, `link`, `advance` and all functions from `leave`
+     * on throw `NOT_IN_MATCH`. */
     ticks(): { played: number; final: number; confirmed: number };
     /** The final inputs of all seats for a tick, or undefined if they are not kept. */
     finalInputs(tick: number): TickInputs | undefined;
