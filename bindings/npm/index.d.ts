@@ -22,6 +22,7 @@ export type JointId = number & { readonly [handleBrand]: "joint" };
 /** A rotation as an argument, counter-clockwise: `degrees(45)`, `radians("0.5")`, `turns("0.25")`, or 0. */
 export type Rotation = Angle | 0;
 
+/** Options of `init`. */
 export interface InitOptions {
     /** Chooses the module with or without SIMD; by default, with SIMD if the machine has it. */
     simd?: boolean | undefined;
@@ -94,6 +95,7 @@ export function fx(value: Num): Fx;
 /** A rotation in units of 2^-32 turn, counter-clockwise. Immutable. Sums and differences drop whole turns. */
 export class Angle {
     #private;
+    /** `bits` is an integer in units of 2^-32 turn. */
     constructor(bits: number);
     /** The rotation in units of 2^-32 turn, 0 to 2^32 - 1. */
     readonly bits: number;
@@ -141,6 +143,7 @@ export function rotate(vector: Vec, angle: Rotation): Vec2;
 export function hashBytes(bytes: Uint8Array): string;
 /** A random number generator. Keep `state` in the state of the game. */
 export class Random {
+    /** `seed` is an integer, of which the lower 64 bits count. */
     constructor(seed: number | bigint);
     /** State of the generator. Assign it to continue from a saved state. */
     state: { state: bigint; increment: bigint };
@@ -172,6 +175,7 @@ export interface AreaOptions {
      * metres (0.01 to 2^20). `falloff` applies beyond `radius`: `constant` by default. */
     attraction?: { acceleration: Num; radius: Num; falloff?: "constant" | "inverse" | "inverseSquare" };
 }
+/** Properties of a shape. */
 export interface ShapeOptions {
     /** Centre in the body's frame, in metres: within ±128 on each axis if the body can move. The origin by default. */
     offset?: Vec;
@@ -285,6 +289,7 @@ export interface BodySettings {
     /** Whether the body cannot turn: false by default. */
     lockRotation?: boolean;
 }
+/** Definition of a body. */
 export interface BodyOptions extends BodySettings {
     /** `dynamic` by default. */
     type?: BodyType;
@@ -312,6 +317,7 @@ export interface BodyOptions extends BodySettings {
     shapes?: readonly (ShapeDef | ChainDef)[];
 }
 
+/** A damped spring of a joint. */
 export interface Spring {
     /** Frequency in Hz, above 0 and up to 1000. */
     hertz: Num;
@@ -399,34 +405,58 @@ export interface JointOptions {
     /** A number of 64 bits for the game, part of the state: 0 by default. */
     userData?: bigint | number;
 }
-/** A joint as `World.joint` returns it: `setJoint` takes it with changes. */
+/** A joint as `World.joint` returns it: `setJoint` takes it with changes. The fields are those of `JointOptions`. Parts that
+ * the joint does not have are missing. */
 export interface JointInfo {
+    /** Type of the joint. */
     type: JointOptions["type"];
+    /** Body A. */
     a: BodyId;
+    /** Body B. */
     b: BodyId;
     /** Anchor in A's frame, in metres. `World.jointAnchors` has the anchors in the world. */
     anchorA: Vec2;
     /** Anchor in B's frame, in metres. */
     anchorB: Vec2;
+    /** Angle of the joint's frame in A's frame. */
     angleA: Angle;
+    /** Angle of the joint's frame in B's frame. */
     angleB: Angle;
+    /** Whether the two bodies collide with each other. */
     collide: boolean;
+    /** Whether the joint acts. */
     enabled: boolean;
+    /** Number that the game stores with the joint. */
     userData: bigint;
+    /** Lower and upper end of the range, in rad or m. */
     limit?: [Fx, Fx];
+    /** Target speed in rad/s or m/s, and largest torque in N m or force in N. */
     motor?: { speed: Fx; max: Fx };
+    /** Frequency in Hz, damping ratio, and rest position in rad or m. */
     spring?: { hertz: Fx; dampingRatio: Fx; target: Fx };
+    /** Smallest and largest force of the spring in N. */
     springForce?: [Fx, Fx];
+    /** Length of a rod in metres. */
     rod?: Fx;
+    /** Frequency in Hz and damping ratio of the rigid constraints. */
     softness?: { hertz: Fx; dampingRatio: Fx };
+    /** Force in N and torque in N m beyond which the joint is reported or breaks. */
     threshold?: { force?: Fx; torque?: Fx; breaks?: boolean };
+    /** Target velocity in m/s and largest force in N of a motor joint. */
     linearMotor?: { velocity: Vec2; max: Fx };
+    /** Frequency in Hz, damping ratio and largest force in N of the spring between the anchors. */
     linearSpring?: { hertz: Fx; dampingRatio: Fx; max?: Fx };
+    /** Frequency in Hz, damping ratio and largest torque in N m of the spring on the angle. */
     angularSpring?: { hertz: Fx; dampingRatio: Fx; max?: Fx };
+    /** Teeth of both wheels of a gear. */
     teeth?: [number, number];
+    /** Radius of the wheel of a rack in metres. */
     radius?: Fx;
+    /** Wheels of a pulley in the world, in metres. */
     wheels?: [Vec2, Vec2];
+    /** Length of the rope of a pulley in metres. */
     length?: Fx;
+    /** Ratio of a pulley. */
     ratio?: Fx;
 }
 
@@ -569,6 +599,7 @@ declare class Edits extends Handle {
  * is the first body. */
 export class Commands extends Edits {
     #private;
+    /** Makes an empty list. */
     constructor();
     /** Adds a body with its shapes. */
     spawn(options: BodyOptions): undefined;
@@ -598,7 +629,9 @@ export class Snapshot extends Handle {
     hash(): string;
 }
 
+/** Properties of a body. */
 export interface BodyInfo {
+    /** Kind of motion. */
     type: BodyType;
     /** Origin in the world, in metres. */
     position: Vec2;
@@ -627,6 +660,7 @@ export interface BodyInfo {
 export interface ShapeInfo {
     /** Boxes and hulls are polygons. */
     type: "circle" | "segment" | "polygon" | "capsule" | "link";
+    /** The body that has the shape. */
     body: BodyId;
     /** Points in metres from the shape's centre: none of a circle, the ends of a segment or capsule, the corners of a
      * polygon, or the ends of a link and the far ends of its neighbours. */
@@ -649,6 +683,7 @@ export interface ShapeInfo {
     category: bigint;
     /** Bits of the categories that the shape collides with. */
     mask: bigint;
+    /** Group, or 0. */
     group: number;
     /** Number that the game stores with the shape. */
     userData: bigint;
@@ -667,7 +702,9 @@ export interface Filter {
      * not seen. `resist`: they are hits of rays, and of casts only if the shape would move deeper into them. */
     initialOverlap?: "resist" | "report" | "ignore";
 }
+/** Hit of a ray. */
 export interface RayHit {
+    /** The shape that is met. */
     shape: ShapeId;
     /** The body of the shape. */
     body: BodyId;
@@ -680,6 +717,7 @@ export interface RayHit {
     /** Whether the ray or the cast starts in the shape. */
     startsInside: boolean;
 }
+/** Hit of a moving shape. */
 export interface CastHit extends RayHit {
     /** Displacement up to the hit, in metres. */
     travelled: Vec2;
@@ -693,6 +731,7 @@ export interface ContactEvent {
 }
 /** A sensor and a shape. A handle may be stale if its shape was removed. */
 export interface SensorEvent {
+    /** The sensor. */
     sensor: ShapeId;
     /** The shape that overlaps the sensor. */
     visitor: ShapeId;
@@ -839,10 +878,13 @@ export interface MoverOptions {
 }
 /** A surface that a character has met. */
 export interface MoverPlane {
+    /** The shape that was met. */
     shape: ShapeId;
+    /** The body of the shape. */
     body: BodyId;
     /** Position in metres of the body's origin in the world when the surface was met. */
     bodyPosition: Vec2;
+    /** Rotation of the body when the surface was met. */
     bodyAngle: Angle;
     /** Velocity of the surface in m/s. */
     velocity: Vec2;
@@ -910,6 +952,7 @@ export interface Limits {
     /** Work units of the game: 20 000 million by default. */
     totalWork?: number;
 }
+/** Result of verifying a replay. */
 export interface Verdict {
     /** Only `match` means that the file is valid.
      *
@@ -980,6 +1023,7 @@ export interface TickInputs {
 /** Records a game with rules of its own. */
 export class Recorder extends Handle {
     #private;
+    /** Starts recording. */
     constructor(options: {
         /** Name of the rules. */
         rules: string;
@@ -1067,6 +1111,7 @@ export interface ReplayGame<Saved = unknown> {
 /** Goes to any tick of a replay with a game, which begins in the state before the first tick. */
 export class ReplayDriver<Saved = unknown> {
     #private;
+    /** The game has to be in the state before the first tick. */
     constructor(replay: Replay, game: ReplayGame<Saved>);
     /** Number of ticks that the game has played. */
     readonly tick: number;
@@ -1082,6 +1127,7 @@ export class ReplayDriver<Saved = unknown> {
     dispose(): void;
 }
 
+/** Parameters of a match and of a peer. The numbers of seats, ticks and bytes are integers. */
 export interface MatchOptions {
     /** Number of seats of the match, 1 to 64. */
     seats: number;
@@ -1203,7 +1249,9 @@ export interface MatchEvent {
  * - `forget`: copies of states before `tick` are no longer needed.
  */
 export interface MatchRequest {
+    /** Kind of the request. */
     kind: "save" | "load" | "advance" | "checksum" | "forget";
+    /** A tick, from 0. */
     tick: number;
     /** The inputs of all seats, one after another, of the kind `advance`; otherwise empty. */
     inputs: Uint8Array;
@@ -1307,6 +1355,7 @@ export function nativeOffer(options: {
     rules: string;
     /** Version of the rules: 1 by default. */
     rulesVersion?: number;
+    /** Canonical bytes of the setup: none by default. */
     setup?: Uint8Array;
     /** Ticks per second: 60 by default. */
     tickRate?: number;
