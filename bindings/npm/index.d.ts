@@ -1216,6 +1216,7 @@ export type MatchStatus =
  * - `badState`: a downloaded state is not valid; it is requested again.
  */
 export interface MatchEvent {
+    /** Kind of the event. */
     kind:
         | "status" | "view" | "seated" | "unseated" | "waiting" | "resumed" | "pause" | "end" | "desync" | "conflict" | "tooFarBehind"
         | "refused" | "state" | "badState";
