@@ -13,7 +13,7 @@ pub(crate) use forged::Forged;
 use forged::{CHAIN, TRAILER};
 
 impl Forged {
-    /// Makes one change.
+    /// Makes one random change to the replay.
     pub(crate) fn change(&mut self, source: &mut Source<'_>) {
         let index = source.below(self.blocks.len());
         match source.below(8) {

@@ -146,7 +146,7 @@ fn a_rollback_shows_before_it_has_happened() {
     assert_eq!((failure.ticks, failure.failed), (1, (4, 4)), "{failure}");
 }
 
-/// The wind is lost before the step begins, so no phase of the step differs first.
+/// The wind is lost before the step begins, so the report blames no phase of the step.
 #[test]
 fn a_loss_before_the_step_is_the_fault_of_no_phase() {
     let options =

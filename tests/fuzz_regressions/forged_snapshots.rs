@@ -56,7 +56,7 @@ fn a_snapshot_of_a_kinematic_body_that_rests_and_moves_is_refused() {
     let push = |bytes: &mut Vec<u8>| {
         let place = fx!(3.25).to_bits().to_le_bytes();
         let body = bytes.windows(8).position(|window| window == place).expect("the body is there");
-        // The velocity follows two coordinates and an angle.
+        // In the bytes of a body, the velocity follows two coordinates and an angle.
         bytes[body + 20..body + 24].copy_from_slice(&1000i32.to_le_bytes());
     };
     let refusal = World::from_bytes(&forged(&world, push)).unwrap_err().to_string();

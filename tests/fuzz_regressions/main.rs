@@ -339,8 +339,8 @@ fn a_shape_in_the_slot_of_one_that_slept_has_its_own_surface() {
 
 #[test]
 fn a_circle_in_line_with_a_turned_capsule_is_beyond_its_end() {
-    // At one in four angles, rounding may put the centre between the two sides of the capsule. The contact would then
-    // be a radius deep.
+    // At one in four angles, rounding may put the ball's centre between the two sides of the capsule. The contact would
+    // then be a radius deep.
     let ends = [fx!(-0.03), fx!(-0.5)].map(|along| Vec2::new(along, along));
     let capsule = Geometry::capsule(ends[0], ends[1], fx!(0.018)).expect("valid");
     let ball = Geometry::circle(fx!(0.007)).expect("valid");

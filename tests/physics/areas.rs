@@ -1,5 +1,4 @@
-//! Areas against theory: Archimedes, terminal velocity, Kepler, and the quantities that a field without drag
-//! conserves.
+//! Areas against theory: Archimedes, terminal velocity, Kepler, and quantities that are conserved without drag.
 //!
 //! ```text
 //! floating    submerged area * fluid density = area * density
@@ -304,7 +303,7 @@ fn what_floats_sleeps_and_wakes() {
     assert!(at(&world, carrier).x > fx!(8));
     run(&mut world, 400);
     assert_eq!(asleep(&world), [true, true]);
-    // A change of the sea wakes everything in it.
+    // A change of the sea's settings wakes all bodies in it.
     let shape = world.shapes_of(sea)[0];
     let denser = world.shape(shape).expect("valid").def().area(water.density(fx!(2)));
     world.set_shape(shape, &denser).expect("valid");

@@ -334,7 +334,7 @@ pub(crate) struct Outcome {
     pub(crate) gain: f64,
     pub(crate) faults: u64,
     pub(crate) gap: f64,
-    /// Change of energy from the start to the end, as a share of the same energy.
+    /// Change of energy from the start to the end, as a share of the energy to which `gain` refers.
     pub(crate) left: f64,
 }
 

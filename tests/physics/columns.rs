@@ -57,7 +57,8 @@ fn a_column_of_a_hundred_boxes_stands() {
     });
 }
 
-/// The outlines of rounded boxes are apart without their radii, so that each tick chooses the reference face anew.
+/// Without their radii, the outlines of rounded boxes do not touch. Each tick therefore chooses the reference face
+/// anew.
 #[test]
 fn a_column_of_a_hundred_rounded_boxes_stands() {
     let radii = [fx!(0.02), fx!(0.05), fx!(0.1)].into_iter();

@@ -255,8 +255,8 @@ fn a_corner_with_friction_adds_no_energy() {
     });
 }
 
-/// A ball of restitution 1 flies to and fro between two walls. Its position is the one that follows from rebounds
-/// exactly at the times of the impacts.
+/// A ball of restitution 1 flies to and fro between two walls. Its position equals that of a ball that rebounds exactly
+/// at the time of each impact.
 #[test]
 fn a_ball_between_walls_keeps_time() {
     for speed in [fx!(3), fx!(10), fx!(40), fx!(123)] {

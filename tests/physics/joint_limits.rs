@@ -80,7 +80,7 @@ fn a_limit_bears_a_falling_rod() {
     close(torque, fx!(21.612), fx!(0.3), "N m");
 }
 
-/// A rope of 3 m: free fall until it is taut, and no further.
+/// A body on a rope of 3 m falls freely until the rope is taut, and no further.
 #[test]
 fn a_rope_is_slack_and_then_taut() {
     let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0), fx!(-1)), fx!(0));

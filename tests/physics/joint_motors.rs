@@ -15,7 +15,7 @@ enum Load {
     Inertia,
 }
 
-/// A motor that needs 2 s accelerates at `max / mass`, and finally reaches its speed.
+/// A motor that needs 2 s to reach its speed accelerates at `max / mass` until then, and holds the speed afterwards.
 fn accelerates(
     kind: impl Fn(Fx, Fx) -> JointKind,
     place: Vec2<Fx>,
@@ -69,7 +69,7 @@ fn a_motor_stalls_under_a_larger_load() {
         let angle = bench.world.joint_angle(joint).expect("there");
         assert_eq!(angle > fx!(0), rises, "{torque} N m: {angle} rad");
     }
-    // The same load on a slider: a weight of 20 N.
+    // A slider whose motor has to lift a weight of 20 N.
     for (force, rises) in [(fx!(18), false), (fx!(22), true)] {
         let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::ZERO, fx!(0));
         let kind = Prismatic::new().motor(fx!(1), force);

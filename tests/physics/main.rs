@@ -32,7 +32,9 @@ mod scale;
 mod seams;
 mod slope;
 mod spring_pairs;
+mod squeezed;
 mod surface;
+mod turning;
 
 use lockstep2d::lockstep::{Game, Sandbox};
 use lockstep2d::math::{Fx, fx_mul};

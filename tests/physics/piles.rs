@@ -31,8 +31,8 @@ fn a_pyramid_of_30_rows_comes_to_rest_and_loses_no_warm_start() {
     assert!(fastest < fx!(0.00001), "{fastest} m/s after 10 s");
 }
 
-/// Reference: Box2D 3.2 after 300 steps has its top at 98.77 m, a deepest overlap of 21.2 mm, and a mean speed of 0.017
-/// m/s.
+/// Reference: in Box2D 3.2 after 300 steps the top is at 98.77 m, the deepest overlap is 21.2 mm, and the mean speed is
+/// 0.017 m/s.
 #[test]
 fn a_pyramid_of_5050_boxes_stands() {
     let mut game = open("large_pyramid");

@@ -175,7 +175,7 @@ fn a_cast_says_when_it_starts_inside_or_ignores_it() {
             true => world.cast_shape(&probe, way, filter),
             false => world.cast_turning(&probe, way, turns, filter),
         };
-        // The cast leaves the near wall, and stops at the far one.
+        // The cast leaves the near wall, and stops at the far wall.
         let hit = cast(way, resist).expect("the far wall");
         assert!(hit.shape == far && !hit.starts_inside && (hit.travelled.x - fx!(3.3)).abs() < fx!(0.0002));
         let hit = cast(way, report).expect("the near wall");
@@ -280,8 +280,8 @@ fn a_turning_cast_stops_at_the_first_touch_of_small_steps() {
     assert!(hits > 300 && misses > 100, "{hits} {misses}");
 }
 
-/// A time-of-impact search that gives up reports its shape early. The first shape that is hit must not depend on the
-/// order in which the broad phase visits the shapes.
+/// A time-of-impact search that gives up may report its shape too early. Which shape is hit first must still not depend
+/// on the order in which the broad phase visits the shapes.
 #[test]
 fn turning_casts_do_not_depend_on_the_broad_phase() {
     let mut rng = Rng::new(17);

@@ -35,7 +35,7 @@ impl Outline {
         self.corners.iter().copied().zip(self.corners.iter().copied().cycle().skip(1))
     }
 
-    /// Whether a point is inside the corners, without the radius.
+    /// Whether a point is inside the polygon of the corners, without the radius.
     fn holds(&self, point: Vec2<Fx>) -> bool {
         self.corners.len() > 2 && point_in_polygon(&self.corners, point)
     }

@@ -17,7 +17,7 @@ pub(crate) struct Input {
     pub(crate) add: i8,
     /// Ignored by the rules.
     pub(crate) wink: bool,
-    /// Not encoded.
+    /// Not encoded: 0 in every decoded input.
     #[serde(skip)]
     pub(crate) mood: u8,
 }
@@ -26,7 +26,7 @@ pub(crate) struct Input {
 pub(crate) struct Counter {
     pub(crate) sum: i64,
     pub(crate) tick: u64,
-    /// Sum of all moods: 0, unless the game is stepped with inputs that were not decoded.
+    /// Sum of `Input::mood`. Greater than 0 only if the game is stepped with inputs that were not decoded.
     pub(crate) moods: u64,
 }
 

@@ -1,5 +1,5 @@
-//! A timeline seeks to any tick, and finds the same state as a straight playback. A seek simulates at most two
-//! intervals, the keyframes stay within their memory budget, and no invalid keyframe file is used.
+//! A timeline seeks to any tick, and finds the state that a playback without seeks has at this tick. A seek simulates
+//! at most two intervals, the keyframes stay within their memory budget, and no invalid keyframe file is used.
 
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;
@@ -18,7 +18,7 @@ pub(crate) fn open<'a, G: Game>(file: &'a [u8], interval: u32, bytes: usize) -> 
     Timeline::open(file, &options, &Limits::default()).unwrap()
 }
 
-/// Returns the state hash of every tick of a straight playback.
+/// Returns the state hash of every tick of a playback without seeks.
 pub(crate) fn hashes<G: Game>(file: &[u8]) -> Vec<StateHash> {
     let mut replay = VerifiedReplay::<G>::open(file, &Limits::default()).unwrap();
     let mut hashes = vec![replay.game().state_hash()];

@@ -8,7 +8,7 @@ use lockstep2d::world::Explosion;
 
 use super::{Stage, ball, capsule, line, near, num, pill, rect, square};
 
-/// Body Type. A jointed platform with a load becomes kinematic, fixed, dynamic, and is disabled.
+/// Sample "Body Type". A jointed platform with a load becomes kinematic, fixed, dynamic, and is disabled.
 #[test]
 fn a_jointed_platform_changes_its_kind() {
     let mut stage = Stage::new();
@@ -48,7 +48,7 @@ fn a_jointed_platform_changes_its_kind() {
     near(stage.place(platform).y, fx!(5), fx!(0.01));
 }
 
-/// Weeble. A body with a low centre of mass stands up again after an explosion.
+/// Sample "Weeble". A body with a low centre of mass stands up again after an explosion.
 #[test]
 fn a_weeble_rights_itself() {
     let mut stage = Stage::with_floor();
@@ -71,7 +71,7 @@ fn a_weeble_rights_itself() {
     assert_eq!(body.velocity_at(point), at!(-5, 3.5));
 }
 
-/// Sleep. A sleeper floats until something wakes it; its sensors work; a body that never sleeps starts awake.
+/// Sample "Sleep". A sleeper floats until something wakes it; its sensors work; a body that never sleeps starts awake.
 #[test]
 fn sleepers_wait_to_be_woken() {
     let mut stage = Stage::with_floor();
@@ -100,7 +100,7 @@ fn sleepers_wait_to_be_woken() {
     near(stage.place(upper).y, fx!(2.5), fx!(0.02));
 }
 
-/// Sleep: the long pendulum falls asleep only where it hangs, not where it turns round.
+/// Sample "Sleep". The long pendulum falls asleep only where it hangs, not where it turns round.
 #[test]
 fn a_long_pendulum_does_not_fall_asleep_at_its_turning_point() {
     let mut stage = Stage::new();
@@ -118,7 +118,7 @@ fn a_long_pendulum_does_not_fall_asleep_at_its_turning_point() {
     near(stage.angle(pendulum), -fx!(1.5708), fx!(0.02));
 }
 
-/// Bad. A dynamic body without mass coasts like a kinematic one.
+/// Sample "Bad". A dynamic body without mass coasts like a kinematic body.
 #[test]
 fn a_body_without_mass_coasts() {
     let mut stage = Stage::with_floor();
@@ -131,7 +131,7 @@ fn a_body_without_mass_coasts() {
     near(stage.place(good).y, fx!(2), fx!(0.02));
 }
 
-/// Pivot. A bar starts with a velocity and an angular velocity for which its lower end is at rest at first.
+/// Sample "Pivot". A bar starts with a velocity and an angular velocity for which its lower end is at rest at first.
 #[test]
 fn a_bar_starts_to_turn_about_its_lower_end() {
     let mut stage = Stage::weightless();
@@ -151,7 +151,7 @@ fn a_bar_starts_to_turn_about_its_lower_end() {
     }
 }
 
-/// Kinematic. A body reaches a moving target in each tick.
+/// Sample "Kinematic". A body reaches a moving target in each tick.
 #[test]
 fn a_kinematic_body_follows_a_figure_of_eight() {
     let mut stage = Stage::new();
@@ -165,7 +165,7 @@ fn a_kinematic_body_follows_a_figure_of_eight() {
     }
 }
 
-/// Mixed Locks. A locked degree of freedom does not move at all, whatever falls on the body.
+/// Sample "Mixed Locks". A locked degree of freedom does not move at all, whatever falls on the body.
 #[test]
 fn locks_hold_exactly() {
     let mut stage = Stage::with_floor();
@@ -187,7 +187,7 @@ fn locks_hold_exactly() {
     near(stage.place(upright).y, fx!(0.5), fx!(0.02));
 }
 
-/// Set Velocity. A box that is driven into the floor in every tick stays on it.
+/// Sample "Set Velocity". A box that is driven into the floor in every tick stays on it.
 #[test]
 fn a_box_that_is_pushed_down_does_not_sink() {
     let mut stage = Stage::with_floor();
@@ -198,7 +198,7 @@ fn a_box_that_is_pushed_down_does_not_sink() {
     });
 }
 
-/// Wake Touching. Waking a fixed body wakes everything that lies on it.
+/// Sample "Wake Touching". Waking a fixed body wakes everything that lies on it.
 #[test]
 fn waking_the_ground_wakes_what_lies_on_it() {
     let mut stage = Stage::new();

@@ -14,8 +14,8 @@ fn room(change: impl Fn(ShapeDef) -> ShapeDef) -> [ShapeDef; 4] {
     [line(a, b), line(b, c), line(c, d), line(d, a)].map(change)
 }
 
-/// Bounce House. A bullet without friction bounces in a room: a ball keeps its speed, nothing gains energy or gets
-/// out.
+/// Sample "Bounce House". A bullet without friction bounces in a room: a ball keeps its speed, and no shape gains
+/// energy or leaves the room.
 #[test]
 fn a_bullet_bounces_in_a_room() {
     for (shape, is_ball) in
@@ -42,7 +42,7 @@ fn a_bullet_bounces_in_a_room() {
     }
 }
 
-/// Bounce Humans. Ragdolls stay in a room whose walls have a restitution above 1, under turning gravity.
+/// Sample "Bounce Humans". Ragdolls stay in a room whose walls have a restitution above 1, under turning gravity.
 #[test]
 fn ragdolls_stay_in_a_room_of_bumpers() {
     let mut stage = Stage::of_scene("ragdoll");
@@ -64,7 +64,7 @@ fn ragdolls_stay_in_a_room_of_bumpers() {
     }
 }
 
-/// Chain Drop. A ball that is thrown at a closed chain stays on its outside.
+/// Sample "Chain Drop". A ball that is thrown at a closed chain stays on its outside.
 #[test]
 fn a_thrown_ball_lands_on_a_chain() {
     let points = [at!(-10, -8), at!(10, -8), at!(10, -5), at!(-10, -5)];
@@ -80,7 +80,7 @@ fn a_thrown_ball_lands_on_a_chain() {
     }
 }
 
-/// Chain Slide and Segment Slide. A ball at 100 m/s along the floor stays on it, and stops at the wall.
+/// Samples "Chain Slide" and "Segment Slide". A ball at 100 m/s along the floor stays on it, and stops at the wall.
 #[test]
 fn a_fast_ball_follows_the_floor_to_the_wall() {
     let mut points = Vec::new();
@@ -102,8 +102,8 @@ fn a_fast_ball_follows_the_floor_to_the_wall() {
     }
 }
 
-/// Skinny Box. A spinning plank that is thrown at a post on the floor passes through neither, and neither does the box
-/// behind it.
+/// Sample "Skinny Box". A spinning plank that is thrown at a post on the floor does not pass through the post or the
+/// floor. The box behind the plank does not, either.
 #[test]
 fn a_spinning_plank_does_not_go_through() {
     for shape in [rect(fx!(2), fx!(0.05)), capsule(at!(0, -1), at!(0, 1), fx!(0.1))] {
@@ -124,7 +124,7 @@ fn a_spinning_plank_does_not_go_through() {
     }
 }
 
-/// Ghost Bumps. Ball, capsule and box slide over level tiles and over a chain without a bump.
+/// Sample "Ghost Bumps". Ball, capsule and box slide over level tiles and over a chain without a bump.
 #[test]
 fn seams_do_not_bump() {
     let points: Vec<_> = (0..12).map(|i| Vec2::new(num(8 * i - 40), Fx::ZERO)).collect();
@@ -149,7 +149,7 @@ fn seams_do_not_bump() {
     }
 }
 
-/// Speculative Fallback and Sliver. Thin shapes that are thrown at thin shapes stay above them.
+/// Samples "Speculative Fallback" and "Speculative Sliver". Thin shapes that are thrown at thin shapes stay above them.
 #[test]
 fn slivers_stay_above() {
     let mut stage = Stage::new();
@@ -167,7 +167,7 @@ fn slivers_stay_above() {
     assert!(stage.body(sliver).is_asleep());
 }
 
-/// Speculative Ghost and Pixel Imperfect. A body that passes a corner at a distance of a few millimetres or
+/// Samples "Speculative Ghost" and "Pixel Imperfect". A body that passes a corner at a distance of a few millimetres or
 /// centimetres is not touched.
 #[test]
 fn what_passes_by_is_not_touched() {
@@ -193,7 +193,8 @@ fn what_passes_by_is_not_touched() {
     });
 }
 
-/// Restitution Threshold. With a low threshold a slow graze of a steep plank is reflected: `v' = v - 2 (v.n) n`.
+/// Sample "Restitution Threshold". With a low threshold a slow graze of a steep plank is reflected: `v' = v - 2 (v.n)
+/// n`.
 #[test]
 fn a_slow_graze_is_reflected() {
     let solver = SolverSettings { restitution_threshold: fx!(0.1), ..SolverSettings::default() };
@@ -215,7 +216,7 @@ fn a_slow_graze_is_reflected() {
     );
 }
 
-/// Drop. Fast bodies of every kind stop at thin tiles.
+/// Sample "Drop". Fast bodies of every kind stop at thin tiles.
 #[test]
 fn thin_tiles_stop_what_drops_on_them() {
     let tiles: Vec<_> =
@@ -233,8 +234,8 @@ fn thin_tiles_stop_what_drops_on_them() {
     }
 }
 
-/// Safety Factor. A box that drops does not sink into the floor, from any height: contacts are made before the shapes
-/// meet, so that slow bodies need no sweep.
+/// Sample "Safety Factor". A box that drops does not sink into the floor, from any height: contacts are made before the
+/// shapes meet, so that slow bodies need no sweep.
 #[test]
 fn a_dropped_box_does_not_sink_in() {
     for height in (1..=80).map(|step| num(step) / 40) {
@@ -246,14 +247,14 @@ fn a_dropped_box_does_not_sink_in() {
             stage.spawn(BodyDef::dynamic().position(place).angle(tilt), &[square(fx!(0.5))]);
             stage.run_and(90, |stage| {
                 let overlap = stage.world.deepest_overlap();
-                // At rest it may overlap by the slop of 5 mm.
+                // At rest the box may overlap the floor by the slop of 5 mm.
                 assert!(overlap < fx!(0.006), "{overlap} m after {height} m");
             });
         }
     }
 }
 
-/// Pinball. Flippers throw the ball up; it stays in the cabinet.
+/// Sample "Pinball". Flippers throw the ball up; it stays in the cabinet.
 #[test]
 fn flippers_throw_the_ball_up() {
     let mut stage = Stage::new();
@@ -286,7 +287,7 @@ fn flippers_throw_the_ball_up() {
     assert!(highest > fx!(4), "expected a flipper to throw the ball up, it reached {highest} m");
 }
 
-/// Wedge. A ball that is shot into a wedge comes to rest where it touches both walls.
+/// Sample "Wedge". A ball that is shot into a wedge comes to rest where it touches both walls.
 #[test]
 fn a_ball_rests_in_a_wedge() {
     for speed in [5, 40, 100] {

@@ -8,8 +8,8 @@ use lockstep2d::world::{Explosion, SensorChange};
 
 use super::{Stage, ball, capsule, line, near, num, rect, rounded, square};
 
-/// Sensor Funnel. Bodies that fall through a funnel with paddles are reported once by the sensor at its bottom, and
-/// removed.
+/// Sample "Sensor Funnel". Bodies that fall through a funnel with paddles are reported once by the sensor at its
+/// bottom, and removed.
 #[test]
 fn a_funnel_empties_into_its_sensor() {
     let mut stage = Stage::new();
@@ -63,7 +63,8 @@ fn a_funnel_empties_into_its_sensor() {
     assert_eq!(stage.world.body_count(), 4);
 }
 
-/// Sensor Bookend. Each begin has its end, whatever ends the visit: leaving, disabling or removing either side.
+/// Sample "Sensor Bookend". Each begin has its end, whatever ends the visit: leaving, disabling or removing either
+/// side.
 #[test]
 fn every_begin_has_its_end() {
     for ending in 0..5 {
@@ -115,7 +116,7 @@ fn every_begin_has_its_end() {
     }
 }
 
-/// Foot Sensor. The sensor at the feet counts the ground under it, and nothing in a jump.
+/// Sample "Foot Sensor". The sensor at the feet counts the ground under it, and nothing in a jump.
 #[test]
 fn a_foot_sensor_knows_the_ground() {
     let mut stage = Stage::new();
@@ -144,7 +145,7 @@ fn a_foot_sensor_knows_the_ground() {
     assert!(!stage.world.sensor_overlaps(sole).is_empty());
 }
 
-/// Contact. Debris that touches the player becomes a part of it; a part that touches the wall is lost.
+/// Sample "Contact". Debris that touches the player becomes a part of it; a part that touches the wall is lost.
 #[test]
 fn what_touches_the_player_becomes_a_part_of_it() {
     let mut stage = Stage::weightless();
@@ -187,7 +188,7 @@ fn what_touches_the_player_becomes_a_part_of_it() {
     assert!(stage.energy() < start + fx!(0.1));
 }
 
-/// Body Move. Each body that moved is reported with its pose, and once when it falls asleep.
+/// Sample "Body Move". Each body that moved is reported with its pose, and once when it falls asleep.
 #[test]
 fn moves_are_reported_until_sleep() {
     let mut stage = Stage::with_floor();
@@ -222,7 +223,7 @@ fn moves_are_reported_until_sleep() {
     assert!(stage.world.events().moved.len() >= 6, "expected the explosion to move some");
 }
 
-/// Sensor Types. Sensors on fixed, kinematic and dynamic bodies detect a ball that their filter accepts.
+/// Sample "Sensor Types". Sensors on fixed, kinematic and dynamic bodies detect a ball that their filter accepts.
 #[test]
 fn sensors_of_every_kind_of_body_detect() {
     let (ground, sensor, default) = (2, 4, 1);
@@ -258,7 +259,8 @@ fn sensors_of_every_kind_of_body_detect() {
     assert_eq!(stage.world.sensor_overlaps(eyes[2]).iter().filter(|&&id| id != visitor).count(), 0);
 }
 
-/// Persistent Contact. A ball that rolls over links touches without a gap, and its contact force equals its weight.
+/// Sample "Persistent Contact". A ball that rolls over links touches without a gap, and its contact force equals its
+/// weight.
 #[test]
 fn a_rolling_ball_keeps_touching() {
     let mut stage = Stage::new();
@@ -284,7 +286,7 @@ fn a_rolling_ball_keeps_touching() {
     assert!(begun > 5, "expected one link after the other, {begun}");
 }
 
-/// Sensor Hits. A fast ball crosses sensors of every kind of body, each once and in order, as a bullet too.
+/// Sample "Sensor Hits". A fast ball crosses sensors of every kind of body, each once and in order, as a bullet too.
 #[test]
 fn a_fast_ball_hits_every_sensor_in_order() {
     for speed in [200, 250, 300, 399] {
@@ -318,7 +320,7 @@ fn a_fast_ball_hits_every_sensor_in_order() {
     }
 }
 
-/// Projectile Event. A projectile explodes where it hits and is gone; the stack falls.
+/// Sample "Projectile Event". A projectile explodes where it hits and is gone; the stack falls.
 #[test]
 fn a_projectile_explodes_on_impact() {
     let mut stage = Stage::with_floor();
@@ -350,8 +352,8 @@ fn a_projectile_explodes_on_impact() {
     assert!(stage.place(stack[7]).y < fx!(7), "the top is at {}", stage.place(stack[7]).y);
 }
 
-/// Circle Impulse. A ball of 1 kg hits at 25 m/s: the event has the speed and the impulse, and the ball leaves at its
-/// restitution times this speed.
+/// Sample "Circle Impulse". A ball of 1 kg hits at 25 m/s: the event has the speed and the impulse, and the ball leaves
+/// at its restitution times this speed.
 #[test]
 fn a_hit_reports_its_speed() {
     for (restitution, returned) in [(fx!(0), fx!(0)), (fx!(0.25), fx!(6.25))] {

@@ -21,7 +21,7 @@ fn sag(gravity: Fx, hertz: Fx) -> Fx {
     fx_div(gravity, fx_mul(omega, omega)).expect("positive")
 }
 
-/// Distance Joint. A rod keeps its length while it swings, and a chain of rods too.
+/// Sample "Distance Joint". A rod keeps its length while it swings, and a chain of rods too.
 #[test]
 fn rods_keep_their_lengths() {
     let mut stage = Stage::new();
@@ -42,7 +42,7 @@ fn rods_keep_their_lengths() {
     });
 }
 
-/// Distance Joint: a spring yields by its law, limits end its range, and a spring may only pull.
+/// Sample "Distance Joint". A spring yields by `g / (2 pi f)^2`, limits end its range, and a spring may only pull.
 #[test]
 fn a_distance_joint_is_a_spring_with_limits() {
     let hang = |kind: Distance, ticks: u32| {
@@ -75,7 +75,7 @@ fn a_distance_joint_is_a_spring_with_limits() {
     near(fallen, fx!(3.61), fx!(0.03));
 }
 
-/// Motor Joint. A body follows a moving target, and a spring to the ground holds a box by its law.
+/// Sample "Motor Joint". A body follows a moving target, and a box on a spring to the ground sags by `g / (2 pi f)^2`.
 #[test]
 fn a_motor_joint_follows_its_target() {
     let mut stage = Stage::with_floor();
@@ -108,7 +108,8 @@ fn a_motor_joint_follows_its_target() {
     assert!(stage.world.joint_force(joint).is_some_and(|(force, _)| force.length() < fx!(5000)));
 }
 
-/// Top Down Friction. A force of 10 N stops 1 kg at 5 m/s after half a second and 1.25 m. A torque stops its rotation.
+/// Sample "Top Down Friction". A force of 10 N stops 1 kg at 5 m/s after half a second and 1.25 m. A torque stops its
+/// rotation.
 #[test]
 fn a_motor_joint_is_friction_seen_from_above() {
     let mut stage = Stage::weightless();
@@ -126,7 +127,8 @@ fn a_motor_joint_is_friction_seen_from_above() {
     near(stage.body(body).angular_velocity(), fx!(0), fx!(0.001));
 }
 
-/// Filter Joint. Two boxes overlap undisturbed while the joint exists, and push each other apart once it is removed.
+/// Sample "Filter Joint". Two boxes overlap undisturbed while the joint exists, and push each other apart once it is
+/// removed.
 #[test]
 fn a_filter_joint_lets_two_bodies_overlap() {
     let mut stage = Stage::with_floor();
@@ -141,7 +143,7 @@ fn a_filter_joint_lets_two_bodies_overlap() {
     assert!(apart.x.abs().max(apart.y.abs()) > fx!(3.97), "still at {apart:?}");
 }
 
-/// Revolute. Motor, limit and spring of a hinge, and a lever that a falling ball presses against its limit.
+/// Sample "Revolute". Motor, limit and spring of a hinge, and a lever that a falling ball presses against its limit.
 #[test]
 fn a_hinge_has_motor_limit_and_spring() {
     let hinge = |kind: Revolute, gravity: Fx, ticks: u32| {
@@ -187,7 +189,7 @@ fn a_hinge_has_motor_limit_and_spring() {
     assert!(stage.place(ball).y < fx!(13));
 }
 
-/// Prismatic. A box slides down an inclined axis to the limit; a motor of limited force slows it.
+/// Sample "Prismatic". A box slides down an inclined axis to the limit; a motor of limited force slows it.
 #[test]
 fn a_slider_stays_on_its_axis() {
     let slide = |kind: Prismatic, ticks: u32| {
@@ -213,7 +215,7 @@ fn a_slider_stays_on_its_axis() {
     near(slide(limited.spring(fx!(1), fx!(0.5), fx!(0)), 900), -sag(fx!(7.0711), fx!(1)), fx!(0.002));
 }
 
-/// Wheel. The spring yields along its axis by its law while the motor turns the wheel.
+/// Sample "Wheel". The spring yields along its axis by `g / (2 pi f)^2` while the motor turns the wheel.
 #[test]
 fn a_wheel_turns_on_its_spring() {
     let mut stage = Stage::new();
@@ -253,7 +255,7 @@ fn held_boxes(stage: &mut Stage, locks: BodyDef, change: impl Fn(JointDef) -> Jo
     bodies
 }
 
-/// Motion Locks. Each kind of joint holds a body whose rotation, or whose place, is locked.
+/// Sample "Motion Locks". Each kind of joint holds a body whose rotation, or whose place, is locked.
 #[test]
 fn locks_and_joints_agree() {
     let mut stage = Stage::new();
@@ -271,8 +273,8 @@ fn locks_and_joints_agree() {
     }
 }
 
-/// Breakable, and Joint of the group "Events". A box weighs 40 N. A box that swings on a hinge loads it with
-/// `m g (1 + 2 r^2 / (r^2 + k^2)) = 88 N` at the lowest point: 100 N hold all, 30 N none.
+/// Sample "Breakable", and sample "Joint" of the group "Events". A box weighs 40 N. A box that swings on a hinge loads
+/// it with `m g (1 + 2 r^2 / (r^2 + k^2)) = 88 N` at the lowest point: 100 N hold all, 30 N none.
 #[test]
 fn joints_break_above_their_threshold() {
     for action in [ThresholdAction::Break, ThresholdAction::Event] {
@@ -296,7 +298,7 @@ fn joints_break_above_their_threshold() {
     }
 }
 
-/// Separation. A blow opens the joints a little, and they close again.
+/// Sample "Separation". A blow opens the joints a little, and they close again.
 #[test]
 fn joints_close_after_a_blow() {
     let mut stage = Stage::new();
@@ -316,7 +318,7 @@ fn joints_close_after_a_blow() {
     }
 }
 
-/// User Constraint. Two ropes, applied as impulses between the ticks as in the sample, hold a box.
+/// Sample "User Constraint". Two ropes, applied as impulses between the ticks as in the sample, hold a box.
 #[test]
 fn a_constraint_of_ones_own_holds_a_box() {
     let mut stage = Stage::new();

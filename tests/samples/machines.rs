@@ -8,7 +8,7 @@ use lockstep2d::world::Config;
 
 use super::{Stage, ball, capsule, hull, near, num, pill, rect, square};
 
-/// Bridge. Planks between two banks carry balls and wedges.
+/// Sample "Bridge". Planks between two banks carry balls and wedges.
 #[test]
 fn a_bridge_carries() {
     let mut stage = Stage::new();
@@ -33,7 +33,7 @@ fn a_bridge_carries() {
     }
 }
 
-/// Ball & Chain. Thirty links of 6 kg hold a ball of 1 t, and it swings no higher than it began.
+/// Sample "Ball & Chain". Thirty links of 6 kg hold a ball of 1 t, and it swings no higher than it began.
 #[test]
 fn a_chain_holds_a_heavy_ball() {
     let mut stage = Stage::new();
@@ -69,8 +69,8 @@ fn cantilever(stage: &mut Stage, links: i32, weld: Weld) -> BodyId {
     before
 }
 
-/// Cantilever. A row of soft welds bends under its weight and comes to rest; a stiffer one bends less. The cantilever
-/// of the sample, which falls and swings, gains no energy.
+/// Sample "Cantilever". A row of soft welds bends under its weight and comes to rest; a stiffer one bends less. The
+/// cantilever of the sample, which falls and swings, gains no energy.
 #[test]
 fn a_stiffer_cantilever_bends_less() {
     let tip = |hertz: Fx| {
@@ -102,7 +102,7 @@ fn car(stage: &mut Stage, place: Vec2<Fx>, torque: Fx) -> (BodyId, [JointId; 2])
     (chassis, axles)
 }
 
-/// Driving. A car drives over hills, through a dip and over a teeter, upright.
+/// Sample "Driving". A car drives over hills, through a dip and over a teeter, upright.
 #[test]
 fn a_car_drives_over_hills_and_a_teeter() {
     let mut stage = Stage::new();
@@ -136,7 +136,7 @@ fn a_car_drives_over_hills_and_a_teeter() {
     assert!(crossed < 1800, "it got to {:?}", stage.place(chassis));
 }
 
-/// Ragdoll. Figures fall in a heap; their joints hold, and they come to rest.
+/// Sample "Ragdoll". Figures fall in a heap; their joints hold, and they come to rest.
 #[test]
 fn ragdolls_hold_together() {
     let mut stage = Stage::of_scene("ragdoll");
@@ -148,7 +148,7 @@ fn ragdolls_hold_together() {
     assert!(stage.fastest() < fx!(0.2), "still {} m/s", stage.fastest());
 }
 
-/// Soft Body. A ring of capsules with soft welds falls, bends, and is a ring again.
+/// Sample "Soft Body". A ring of capsules with soft welds falls, bends, and is a ring again.
 #[test]
 fn a_soft_ring_keeps_its_shape() {
     let mut stage = Stage::with_floor();
@@ -177,7 +177,7 @@ fn a_soft_ring_keeps_its_shape() {
     assert!(stage.world.widest_joint_gap() < fx!(0.02), "{} m", stage.world.widest_joint_gap());
 }
 
-/// Doohickey. Two wheels whose bars slide in each other fall in a heap; the sliders keep to their limits.
+/// Sample "Doohickey". Two wheels whose bars slide in each other fall in a heap; the sliders keep to their limits.
 #[test]
 fn doohickeys_hold_together() {
     let mut stage = Stage::with_floor();
@@ -205,9 +205,9 @@ fn doohickeys_hold_together() {
     assert!(stage.world.widest_joint_gap() < fx!(0.02), "{} m", stage.world.widest_joint_gap());
 }
 
-/// Scissor Lift. A motor lengthens a strut; the platform rises level, by the height that follows from the geometry of
-/// the links. The platform moves seven times as fast as the strut: with one iteration, the motor would hold, but the
-/// links would give way by up to 0.23 m.
+/// Sample "Scissor Lift". A motor lengthens a strut; the platform rises level, by the height that follows from the
+/// geometry of the links. The platform moves seven times as fast as the strut: with one iteration, the motor would
+/// hold, but the links would give way by up to 0.23 m.
 #[test]
 fn a_scissor_lift_rises_level() {
     let solver = SolverSettings { sub_steps: 8, iterations: 8, ..SolverSettings::default() };
@@ -275,8 +275,8 @@ fn toothed(along: Fx) -> Vec<ShapeDef> {
     shapes
 }
 
-/// Gear Lift, and Far Gate of the group "World". Two wheels with teeth lift a door on a chain. The result is equal to
-/// the last bit at any place in the world.
+/// Sample "Gear Lift", and sample "Far Gate" of the group "World". Two wheels with teeth lift a door on a chain. The
+/// result is equal to the last bit at any place in the world.
 #[test]
 fn toothed_wheels_lift_a_door() {
     let lift = |origin: Vec2<Fx>| {
@@ -319,7 +319,7 @@ fn toothed_wheels_lift_a_door() {
     assert_eq!(lift(at!(1000000, -3000)), (turned, door, start, gap));
 }
 
-/// Door. A blow throws a heavy door against its limit; it swings back and comes to rest shut.
+/// Sample "Door". A blow throws a heavy door against its limit; it swings back and comes to rest shut.
 #[test]
 fn a_door_swings_back_and_stops_at_its_limits() {
     for blow in [2000, 10000, 50000] {
@@ -341,7 +341,7 @@ fn a_door_swings_back_and_stops_at_its_limits() {
     }
 }
 
-/// Scale Ragdoll. Shapes and anchors grow while the figure lies on the ground, and its joints hold.
+/// Sample "Scale Ragdoll". Shapes and anchors grow while the figure lies on the ground, and its joints hold.
 #[test]
 fn a_figure_grows() {
     let mut stage = Stage::with_floor();

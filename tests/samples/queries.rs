@@ -22,7 +22,7 @@ fn disc(radius: Fx, place: Vec2<Fx>) -> Probe {
     probe(Geometry::circle(radius).expect("valid"), place)
 }
 
-/// Shape Distance, and its benchmark: two shapes outside of a world, with poses and radii.
+/// Sample "Shape Distance" and its benchmark. Two shapes outside of a world, with poses and radii.
 #[test]
 fn distances_of_loose_shapes() {
     let triangle = Polygon::new(&[at!(-0.5, 0), at!(0.5, 0), at!(0, 1)]).expect("valid");
@@ -44,7 +44,7 @@ fn distances_of_loose_shapes() {
     assert!(probe(square, at!(0.5, 0)).overlaps(&block));
 }
 
-/// Ray Cast: a ray against each kind of shape.
+/// Sample "Ray Cast". A ray hits each kind of shape at the expected fraction, point and normal.
 #[test]
 fn rays_meet_single_shapes() {
     let triangle = Polygon::new(&[at!(-2, 0), at!(2, 0), at!(2, 3)]).expect("valid");
@@ -79,8 +79,8 @@ fn row(count: i32) -> (Stage, Vec<ShapeId>) {
     (stage, shapes)
 }
 
-/// Cast World, and the benchmark Cast. The closest, any, all and the first few hits, by ray, ball, capsule and box;
-/// one body is left out.
+/// Sample "Cast World", and the benchmark "Cast". The closest, any, all and the first few hits, by ray, ball, capsule
+/// and box; one body is left out.
 #[test]
 fn casts_through_a_world() {
     let (stage, shapes) = row(10);
@@ -109,7 +109,7 @@ fn casts_through_a_world() {
     }
 }
 
-/// Overlap World. Boxes, balls and points find the shapes that they overlap, in slot order.
+/// Sample "Overlap World". Boxes, balls and points find the shapes that they overlap, in slot order.
 #[test]
 fn overlaps_of_a_world() {
     let (stage, shapes) = row(10);
@@ -124,7 +124,7 @@ fn overlaps_of_a_world() {
     assert_eq!(stage.world.overlap_shape(&plank, skipped), shapes[4..5]);
 }
 
-/// Manifold. The number of points and the normal of each pair of shapes.
+/// Sample "Manifold". The number of points and the normal of each pair of shapes.
 #[test]
 fn manifolds_of_loose_shapes() {
     let pill = |place| {
@@ -161,7 +161,7 @@ fn manifolds_of_loose_shapes() {
     }
 }
 
-/// Smooth Manifold. A box that straddles two level links meets them without a sideways normal.
+/// Sample "Smooth Manifold". A box that straddles two level links meets them without a sideways normal.
 #[test]
 fn links_have_no_sideways_normals() {
     let points: Vec<_> = (0..9).map(|i| Vec2::new(num(2 * i - 8), Fx::ZERO)).collect();
@@ -178,7 +178,7 @@ fn links_have_no_sideways_normals() {
     }
 }
 
-/// Shape Cast and Time of Impact of two shapes outside of a world.
+/// Samples "Shape Cast" and "Time of Impact". Two shapes outside of a world.
 #[test]
 fn casts_and_times_of_impact_of_loose_shapes() {
     let target = block(fx!(0.5), at!(5, 0));
@@ -206,7 +206,7 @@ fn casts_and_times_of_impact_of_loose_shapes() {
     near(fraction, fx!(0.5878), fx!(0.0005));
 }
 
-/// The benchmarks Cast and Sensor: casts among thousands of boxes agree with a linear search, and a sensor that sweeps
+/// Benchmarks "Cast" and "Sensor". Casts among thousands of boxes agree with a linear search, and a sensor that sweeps
 /// over the boxes and a ball reports the begin of each overlap once.
 #[test]
 fn casts_among_many_boxes_agree_with_a_walk_over_all() {
@@ -237,8 +237,8 @@ fn casts_among_many_boxes_agree_with_a_walk_over_all() {
     assert!(stage.place(sweeper).y > fx!(60) && seen == 2001, "seen {seen}, {:?}", stage.place(crossing));
 }
 
-/// Geometric Mover. A character that the test moves with planes and clipping, as the sample does, walks to a wall and
-/// stops there, above the floor; `move_character` does the same.
+/// Sample "Geometric Mover". A character that the test moves with planes and clipping, as the sample does, walks to a
+/// wall and stops there, above the floor; `move_character` does the same.
 #[test]
 fn a_mover_of_planes_walks_to_a_wall() {
     let mut stage = Stage::with_floor();
@@ -266,7 +266,8 @@ fn a_mover_of_planes_walks_to_a_wall() {
     assert!(state.is_on_ground());
 }
 
-/// Dynamic Mover. A body that floats on a spring under a ray keeps its height over level ground and over steps.
+/// Sample "Dynamic Mover". A body that floats on a spring under a ray keeps its height over level ground and over
+/// steps.
 #[test]
 fn a_body_on_a_spring_leg_keeps_its_height() {
     let mut stage = Stage::with_floor();
@@ -299,8 +300,8 @@ fn a_body_on_a_spring_leg_keeps_its_height() {
     assert!(stage.place(body).x > fx!(5));
 }
 
-/// Dynamic Mover, with its pogo: a spring between the body and the ground under it, which pushes with at most three
-/// times the weight and pulls with half of it. As in the sample, the spring is created again in every tick.
+/// Sample "Dynamic Mover" with its pogo. A spring between the body and the ground under it, which pushes with at most
+/// three times the weight and pulls with half of it. As in the sample, the spring is created again in every tick.
 #[test]
 fn a_pogo_is_a_spring_to_the_ground() {
     let mut stage = Stage::with_floor();

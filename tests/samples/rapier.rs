@@ -8,7 +8,7 @@ use lockstep2d::world::{Config, Probe, QueryFilter};
 
 use super::{Stage, ball, degrees, hull, near, num, pill, rect, square};
 
-/// add_remove2. Boxes rain on turning platforms and are removed below them; the world keeps its size.
+/// Example `add_remove2`. Boxes rain on turning platforms and are removed below them; the world keeps its size.
 #[test]
 fn what_falls_off_is_removed() {
     let mut stage = Stage::new();
@@ -33,7 +33,7 @@ fn what_falls_off_is_removed() {
     assert!(removed > 50, "only {removed} fell off");
 }
 
-/// ccd2. Fast compounds are stopped by a thin wall, and the thin sensor in front of the wall detects them.
+/// Example `ccd2`. Fast compounds are stopped by a thin wall, and the thin sensor in front of the wall detects them.
 #[test]
 fn thin_walls_stop_fast_compounds() {
     let mut stage = Stage::new();
@@ -64,8 +64,8 @@ fn thin_walls_stop_fast_compounds() {
     assert_eq!(seen.len(), 16, "expected the sensor to see all");
 }
 
-/// collision_groups2. Green boxes land on the green floor, blue ones on the blue floor above; what misses its floor
-/// lands on the ground.
+/// Example `collision_groups2`. Green boxes land on the green floor, blue boxes on the blue floor above; a box that
+/// misses its floor lands on the ground.
 #[test]
 fn groups_land_on_their_floors() {
     let mut stage = Stage::with_floor();
@@ -86,7 +86,7 @@ fn groups_land_on_their_floors() {
     }
 }
 
-/// damping2. `v = v0 exp(-c t)`, for velocity and angular velocity.
+/// Example `damping2`. `v = v0 exp(-c t)`, for velocity and angular velocity.
 #[test]
 fn damping_is_exponential() {
     // exp(-c / 2) for c = 1 to 10.
@@ -114,7 +114,7 @@ fn damping_is_exponential() {
     }
 }
 
-/// debug_box_ball2. A ball on the corner of a box does not sink into it.
+/// Example `debug_box_ball2`. A ball on the corner of a box does not sink into it.
 #[test]
 fn a_ball_on_a_corner_does_not_sink() {
     let mut stage = Stage::new();
@@ -127,7 +127,8 @@ fn a_ball_on_a_corner_does_not_sink() {
     });
 }
 
-/// debug_compression2. Planks press a block of balls with more and more force; the balls stay between the plates.
+/// Example `debug_compression2`. Planks press a block of balls with more and more force; the balls stay between the
+/// plates.
 #[test]
 fn a_press_does_not_squeeze_balls_out() {
     let mut stage = Stage::new();
@@ -155,8 +156,8 @@ fn a_press_does_not_squeeze_balls_out() {
     }
 }
 
-/// debug_intersection2. A probe that circles over a grid of balls finds those that are nearer than the sum of the
-/// radii.
+/// Example `debug_intersection2`. A probe that circles over a grid of balls finds those that are nearer than the sum of
+/// the radii.
 #[test]
 fn a_circling_probe_finds_its_ball() {
     let mut stage = Stage::new();
@@ -182,7 +183,7 @@ fn a_circling_probe_finds_its_ball() {
     assert!(found > 50);
 }
 
-/// debug_many_colliders2. Bodies of hundreds of parts fall on each other.
+/// Example `debug_many_colliders2`. Bodies of hundreds of parts fall on each other.
 #[test]
 fn bodies_of_hundreds_of_parts_stack() {
     let mut stage = Stage::with_floor();
@@ -200,7 +201,7 @@ fn bodies_of_hundreds_of_parts_stack() {
     }
 }
 
-/// debug_total_overlap2. Fifty boxes at one place come apart, and their total momentum stays zero.
+/// Example `debug_total_overlap2`. Fifty boxes at one place come apart, and their total momentum stays zero.
 #[test]
 fn boxes_in_one_place_come_apart() {
     let mut stage = Stage::weightless();
@@ -213,9 +214,9 @@ fn boxes_in_one_place_come_apart() {
     assert!(momentum.length() < fx!(0.01), "{momentum:?}");
 }
 
-/// inv_pyramid2. Each box carries a box of twice its size. The lowest box, of 1 kg, carries four boxes, or five if
-/// contacts have a frequency of 120 Hz. At 30 Hz the lowest of six boxes would yield by 1364 g / (2 pi 30 Hz)^2 = 0.38
-/// m.
+/// Example `inv_pyramid2`. Each box carries a box of twice its size. The lowest box, of 1 kg, carries four boxes, or
+/// five if contacts have a frequency of 120 Hz. At 30 Hz the lowest of six boxes would yield by 1364 g / (2 pi 30 Hz)^2
+/// = 0.38 m.
 #[test]
 fn an_inverted_pyramid_stands() {
     for (count, sub_steps, hertz) in [(5, 4, fx!(30)), (6, 16, fx!(120))] {
@@ -237,8 +238,8 @@ fn an_inverted_pyramid_stands() {
     }
 }
 
-/// one_way_platforms2. A belt that is solid from above and one, upside down, that is solid from below: a body rides
-/// the first, falls through the second, and is pulled up to its lower side by reversed gravity.
+/// Example `one_way_platforms2`. A belt that is solid from above and one, upside down, that is solid from below: a body
+/// rides the first, falls through the second, and is pulled up to its lower side by reversed gravity.
 #[test]
 fn one_way_belts_pass_bodies_on() {
     let mut stage = Stage::new();
@@ -268,7 +269,7 @@ fn one_way_belts_pass_bodies_on() {
     assert!(rode && hung, "rode {rode}, hung {hung}: {:?}", stage.place(body));
 }
 
-/// platform2. A platform with a velocity and one that `move_to` moves carry boxes without losing any.
+/// Example `platform2`. A platform with a velocity and one that `move_to` moves carry boxes without losing any.
 #[test]
 fn platforms_carry_boxes() {
     for moved in [false, true] {
@@ -303,7 +304,7 @@ fn platforms_carry_boxes() {
     }
 }
 
-/// sensor2. A sensor on a falling box detects the boxes on the ground, and reports the end of an overlap.
+/// Example `sensor2`. A sensor on a falling box detects the boxes on the ground, and reports the end of an overlap.
 #[test]
 fn a_carried_sensor_sees_what_it_passes() {
     let mut stage = Stage::with_floor();
@@ -329,8 +330,8 @@ fn a_carried_sensor_sees_what_it_passes() {
     assert_eq!(stage.world.sensor_overlaps(eye).len(), before - 1);
 }
 
-/// heightfield2, polyline2, trimesh2, voxels2. The same hill as a chain, as triangles and as boxes carries falling
-/// bodies. A box slides over level triangles without ghost collisions.
+/// Examples `heightfield2`, `polyline2`, `trimesh2` and `voxels2`. The same hill as a chain, as triangles and as boxes
+/// carries falling bodies. A box slides over level triangles without ghost collisions.
 #[test]
 fn terrain_of_every_kind_carries() {
     let height = |i: i32| widen(Angle::from_turns(num(i) / 10).cos());

@@ -7,7 +7,7 @@ use lockstep2d::solver::{Distance, JointDef, Prismatic, Revolute, Weld, Wheel};
 
 use super::{Stage, ball, capsule, degrees, near, num, pill, rect, square};
 
-/// debug_angular_limits2. Motors drive arms to both ends of ranges of every kind, also beyond a turn.
+/// Example `debug_angular_limits2`. Motors drive arms to both ends of ranges of every kind, also beyond a turn.
 #[test]
 fn arms_stop_at_limits_beyond_half_a_turn() {
     for (lower, upper) in [(-45, 45), (0, 270), (135, 225), (-350, 0), (-200, 200), (-700, 500)] {
@@ -30,7 +30,7 @@ fn arms_stop_at_limits_beyond_half_a_turn() {
     }
 }
 
-/// joint_motor_position2. Springs turn arms to their targets all around; motors turn arms to their limits.
+/// Example `joint_motor_position2`. Springs turn arms to their targets all around; motors turn arms to their limits.
 #[test]
 fn springs_turn_arms_to_their_targets() {
     for eighth in -3..=4 {
@@ -51,7 +51,8 @@ fn springs_turn_arms_to_their_targets() {
     }
 }
 
-/// joint_ball2, joint_fixed2, joint_prismatic2, joints2. Nets and rows of each kind of joint hang from fixed bodies.
+/// Examples `joint_ball2`, `joint_fixed2`, `joint_prismatic2` and `joints2`. Nets and rows of each kind of joint hang
+/// from fixed bodies.
 #[test]
 fn nets_hang() {
     let mut stage = Stage::new();
@@ -91,7 +92,7 @@ fn nets_hang() {
     assert!(nodes.iter().all(|&id| stage.place(id).y > fx!(-12)));
 }
 
-/// locked_rotations2. A bar that only turns is turned by a capsule that only moves.
+/// Example `locked_rotations2`. A bar that only turns is turned by a capsule that only moves.
 #[test]
 fn locks_of_rotation_and_of_translation() {
     let mut stage = Stage::with_floor();
@@ -107,7 +108,7 @@ fn locks_of_rotation_and_of_translation() {
     assert!(turned > fx!(0.3) && stage.place(pill).y < fx!(2), "{turned} rad, {:?}", stage.place(pill));
 }
 
-/// multi_pendulum2. Pendulums of several bars swing without gaining energy.
+/// Example `multi_pendulum2`. Pendulums of several bars swing without gaining energy.
 #[test]
 fn pendulums_of_bars_gain_no_energy() {
     for bars in 1..=6 {
@@ -129,7 +130,7 @@ fn pendulums_of_bars_gain_no_energy() {
     }
 }
 
-/// pin_slot_joint2. A cube slides along an inclined slot and turns in it; a ball is welded to its side.
+/// Example `pin_slot_joint2`. A cube slides along an inclined slot and turns in it; a ball is welded to its side.
 #[test]
 fn a_cube_slides_and_turns_in_a_slot() {
     let mut stage = Stage::new();
@@ -147,8 +148,8 @@ fn a_cube_slides_and_turns_in_a_slot() {
     near(stage.world.joint_translation(slot).expect("there").x, fx!(-1), fx!(0.02));
 }
 
-/// rope_joints2. A ball on a rope follows the body that it is tied to, and is never farther away than the length of
-/// the rope.
+/// Example `rope_joints2`. A ball on a rope follows the body that it is tied to, and is never farther away than the
+/// length of the rope.
 #[test]
 fn a_rope_tows() {
     let mut stage = Stage::with_floor();

@@ -22,7 +22,7 @@ fn pyramid(stage: &mut Stage, half: Fx, rows: i32, top: Fx) -> lockstep2d::body:
     last.expect("at least one row")
 }
 
-/// HighMassRatio1. A pyramid carries a top of 100 to 300 times the mass of a box.
+/// Sample "HighMassRatio1". A pyramid carries a top of 100 to 300 times the mass of a box.
 #[test]
 fn a_pyramid_carries_a_heavy_top() {
     for density in [100, 200, 300] {
@@ -36,7 +36,8 @@ fn a_pyramid_carries_a_heavy_top() {
     }
 }
 
-/// HighMassRatio2 and 3. A box of 400 kg falls on two boxes of 1 kg, or on two triangles of half a kilogram.
+/// Samples "HighMassRatio2" and "HighMassRatio3". A box of 400 kg falls on two boxes of 1 kg, or on two triangles of
+/// half a kilogram.
 #[test]
 fn small_things_carry_a_large_box() {
     let triangle = hull(&[at!(-0.5, 0), at!(0.5, 0), at!(0, 1)]);
@@ -53,7 +54,7 @@ fn small_things_carry_a_large_box() {
     }
 }
 
-/// Overlap Recovery. Boxes that start deep in each other come apart no faster than the push speed, and rest.
+/// Sample "Overlap Recovery". Boxes that start deep in each other come apart no faster than the push speed, and rest.
 #[test]
 fn overlaps_are_resolved_gently() {
     let mut stage = Stage::with_floor();
@@ -69,7 +70,7 @@ fn overlaps_are_resolved_gently() {
     assert!(stage.fastest() < fx!(0.05));
 }
 
-/// Tiny Pyramid. Boxes of 5 cm stand with the settings for their size.
+/// Sample "Tiny Pyramid". Boxes of 5 cm stand with the settings for their size.
 #[test]
 fn a_tiny_pyramid_stands() {
     let mut stage = Stage::of(Config::default().for_smallest(fx!(0.05)));
@@ -80,7 +81,8 @@ fn a_tiny_pyramid_stands() {
     near(stage.place(top).x, fx!(0), fx!(0.005));
 }
 
-/// Cart. Twice the gravity, a chassis 600 times as heavy as a wheel: with stiff settings it lands on its wheels.
+/// Sample "Cart". Twice the gravity, a chassis 600 times as heavy as a wheel: with stiff settings it lands on its
+/// wheels.
 #[test]
 fn a_heavy_cart_stands_on_light_wheels() {
     let contact = ContactTuning::Soft { hertz: fx!(90), damping_ratio: fx!(10), push_speed: fx!(0.5) };
@@ -105,7 +107,7 @@ fn a_heavy_cart_stands_on_light_wheels() {
     assert!(stage.world.widest_joint_gap() < fx!(0.02), "{} m", stage.world.widest_joint_gap());
 }
 
-/// Multiple Prismatic. A row of sliders that is pulled far out of shape returns to its limits.
+/// Sample "Multiple Prismatic". A row of sliders that is pulled far out of shape returns to its limits.
 #[test]
 fn a_row_of_sliders_recovers() {
     let solver = SolverSettings { sub_steps: 16, ..SolverSettings::default() };
@@ -131,7 +133,7 @@ fn a_row_of_sliders_recovers() {
     }
 }
 
-/// Bad Steiner. A sliver of a few centimetres, 78 m from the origin of its body, lands on the ground.
+/// Sample "Bad Steiner". A sliver of a few centimetres, 78 m from the origin of its body, lands on the ground.
 #[test]
 fn a_sliver_far_from_its_origin_has_a_mass() {
     let mut stage = Stage::new();
@@ -146,7 +148,7 @@ fn a_sliver_far_from_its_origin_has_a_mass() {
     assert!(centre.y > fx!(0) && centre.y < fx!(0.03) && stage.fastest() < fx!(0.05), "{centre:?}");
 }
 
-/// Disable, and Crash01. Bodies with joints are disabled, enabled, and change their kinds in every order.
+/// Samples "Disable" and "Crash01". Bodies with joints are disabled, enabled, and change their kinds in every order.
 #[test]
 fn jointed_bodies_bear_every_change() {
     let mut stage = Stage::new();
@@ -172,9 +174,9 @@ fn jointed_bodies_bear_every_change() {
     assert!(stage.world.widest_joint_gap() < fx!(0.01));
 }
 
-/// StaticVsBulletBug. A body that was dynamic and is now fixed stops a bullet of 300 m/s. The bullet bounces back at
-/// 0.9 of its normal speed; a bounce changes a velocity by at most 511 m/s, and a larger change is clamped and counts
-/// as a fault.
+/// Sample "StaticVsBulletBug". A body that was dynamic and is now fixed stops a bullet of 300 m/s. The bullet bounces
+/// back at 0.9 of its normal speed; a bounce changes a velocity by at most 511 m/s, and a larger change is clamped and
+/// counts as a fault.
 #[test]
 fn a_body_that_became_fixed_stops_a_bullet() {
     let corners = [
@@ -207,8 +209,8 @@ fn a_body_that_became_fixed_stops_a_bullet() {
     }
 }
 
-/// Unstable Prismatic Joints. A light ball between two heavy ones on stiff springs comes to rest, even with the small
-/// radius that the sample names as the cause of a crash.
+/// Sample "Unstable Prismatic Joints". A light ball between two heavy ones on stiff springs comes to rest, even with
+/// the small radius that the sample names as the cause of a crash.
 #[test]
 fn a_light_ball_between_heavy_ones_is_stable() {
     for radius in [fx!(0.5), fx!(0.1)] {
@@ -227,7 +229,7 @@ fn a_light_ball_between_heavy_ones_is_stable() {
     }
 }
 
-/// Unstable Windmill. Four heavy arms welded to a hub, without gravity, gain no energy, even after a push.
+/// Sample "Unstable Windmill". Four heavy arms welded to a hub, without gravity, gain no energy, even after a push.
 #[test]
 fn a_welded_windmill_gains_no_energy() {
     let mut stage = Stage::weightless();

@@ -11,7 +11,7 @@ fn valley() -> [Vec2<Fx>; 8] {
     [at!(-20, 30), at!(-20, 12), at!(-14, 8), at!(-7, 3), at!(-1, 0), at!(9, 0), at!(20, 0), at!(20, 30)]
 }
 
-/// Chain Shape. Ball, capsule and box come down a chain of slopes, and gain no energy on the way.
+/// Sample "Chain Shape". Ball, capsule and box come down a chain of slopes, and gain no energy on the way.
 #[test]
 fn things_come_down_a_chain() {
     for shape in [ball(fx!(0.5)), pill(fx!(0.5), fx!(0.25)), square(fx!(0.5))] {
@@ -31,7 +31,7 @@ fn things_come_down_a_chain() {
     }
 }
 
-/// Chain Segment. Single links with neighbours of their own, one of which is changed while a body is on it.
+/// Sample "Chain Segment". Single links with neighbours of their own, one of which is changed while a body is on it.
 #[test]
 fn links_of_ones_own_are_smooth_and_can_change() {
     let mut stage = Stage::new();
@@ -62,8 +62,8 @@ fn links_of_ones_own_are_smooth_and_can_change() {
     assert!(stage.place(body).y < fx!(0.3), "{:?}", stage.place(body));
 }
 
-/// Compound Shapes. Tables stand on their legs; the mass of a body is that of its parts; a body that is spawned inside
-/// another does not blow up.
+/// Sample "Compound Shapes". Tables stand on their legs; the mass of a body is that of its parts; a body that is
+/// spawned inside another does not blow up.
 #[test]
 fn compounds_stand_and_bear_an_intruder() {
     let mut stage = Stage::with_floor();
@@ -89,7 +89,7 @@ fn compounds_stand_and_bear_an_intruder() {
     assert!(stage.fastest() < fx!(0.05), "still {} m/s", stage.fastest());
 }
 
-/// Filter. Players of three teams, two of which cease to collide while they are piled up.
+/// Sample "Filter". Players of three teams, two of which cease to collide while they are piled up.
 #[test]
 fn filters_change_at_run_time() {
     let mut stage = Stage::with_floor();
@@ -111,7 +111,7 @@ fn filters_change_at_run_time() {
     heights(&stage, [fx!(1), fx!(1), fx!(3)]);
 }
 
-/// Custom Filter. The rule "odd and even pass each other" as two categories.
+/// Sample "Custom Filter". The rule "odd and even pass each other" as two categories.
 #[test]
 fn odd_and_even_pass_each_other() {
     let mut stage = Stage::with_floor();
@@ -127,7 +127,7 @@ fn odd_and_even_pass_each_other() {
     }
 }
 
-/// Modify Geometry. A shape grows under a box and changes its kind; the box stays on top.
+/// Sample "Modify Geometry". A shape grows under a box and changes its kind; the box stays on top.
 #[test]
 fn a_shape_grows_and_changes_its_kind() {
     let mut stage = Stage::with_floor();
@@ -151,7 +151,7 @@ fn a_shape_grows_and_changes_its_kind() {
     }
 }
 
-/// Chain Link. Two chains whose ends name each other's points are one smooth floor.
+/// Sample "Chain Link". Two chains whose ends name each other's points are one smooth floor.
 #[test]
 fn two_chains_link_up() {
     for shape in [ball(fx!(0.5)), pill(fx!(0.5), fx!(0.5)), square(fx!(0.5))] {
@@ -172,7 +172,7 @@ fn two_chains_link_up() {
     }
 }
 
-/// Rounded. A heap of random rounded polygons comes to rest in a trough without sinking into each other.
+/// Sample "Rounded". A heap of random rounded polygons comes to rest in a trough without sinking into each other.
 #[test]
 fn a_heap_of_rounded_polygons_rests() {
     let mut stage = trough();
@@ -189,7 +189,7 @@ fn a_heap_of_rounded_polygons_rests() {
     rests_in_the_trough(&mut stage);
 }
 
-/// Ellipse. A thin diamond with a large radius.
+/// Sample "Ellipse". An ellipse is a thin diamond with a large radius; a heap of them comes to rest.
 #[test]
 fn a_heap_of_ellipses_rests() {
     let mut stage = trough();
@@ -226,7 +226,7 @@ fn rests_in_the_trough(stage: &mut Stage) {
     }
 }
 
-/// Offset. Shapes far from the origins of their bodies.
+/// Sample "Offset". Shapes far from the origins of their bodies.
 #[test]
 fn shapes_far_from_their_origins_stack() {
     let mut stage = Stage::new();
@@ -243,7 +243,7 @@ fn shapes_far_from_their_origins_stack() {
     near(stage.body(upper).centre_of_mass().x, fx!(9), fx!(0.02));
 }
 
-/// Recreate Static. The ground is replaced in every tick and still carries.
+/// Sample "Recreate Static". The ground is replaced in every tick and still carries.
 #[test]
 fn a_ground_that_is_replaced_in_every_tick_carries() {
     let mut stage = Stage::new();
@@ -257,7 +257,8 @@ fn a_ground_that_is_replaced_in_every_tick_carries() {
     }
 }
 
-/// Geometry, Convex Hull. Points inside a hull are left out; more than eight corners are refused.
+/// Sample "Convex Hull" of the group "Geometry". Points inside a hull are left out; more than eight corners are
+/// refused.
 #[test]
 fn a_hull_leaves_out_what_is_inside() {
     let mut rng = Rng::new(11);

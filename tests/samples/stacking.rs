@@ -6,7 +6,7 @@ use lockstep2d::math::{Angle, Fx, Vec2};
 
 use super::{Stage, ball, capsule, hull, line, near, num, pill, rect, rounded, square};
 
-/// Single Box. It slides `v^2 / (2 mu g)` and stays upright.
+/// Sample "Single Box". A box slides by `v^2 / (2 mu g)` and stays upright.
 #[test]
 fn a_box_slides_to_rest() {
     let mut stage = Stage::with_floor();
@@ -17,7 +17,7 @@ fn a_box_slides_to_rest() {
     assert!(stage.body(body).is_asleep());
 }
 
-/// Tilted Stack. A stack whose upper part leans beyond its lowest box falls over; one that leans less stands.
+/// Sample "Tilted Stack". A stack whose upper part leans beyond its lowest box falls over; one that leans less stands.
 #[test]
 fn a_stack_falls_when_it_leans_too_far() {
     for (lean, falls) in [(fx!(0.2), true), (fx!(0.05), false)] {
@@ -35,7 +35,7 @@ fn a_stack_falls_when_it_leans_too_far() {
     }
 }
 
-/// Vertical Stack. It stands, and a bullet knocks it over.
+/// Sample "Vertical Stack". The stack stands, and a bullet knocks it over.
 #[test]
 fn a_vertical_stack_stands_until_it_is_shot_at() {
     let mut stage = Stage::with_floor();
@@ -54,7 +54,7 @@ fn a_vertical_stack_stands_until_it_is_shot_at() {
     assert!(stage.place(top).y < fx!(11), "the top is at {}", stage.place(top).y);
 }
 
-/// Circle Stack. Balls on a common axis stay on it, and hit each other in order.
+/// Sample "Circle Stack". Balls on a common axis stay on it, and hit each other in order.
 #[test]
 fn balls_on_an_axis_bounce_in_order() {
     let mut stage = Stage::with_gravity(at!(0, -20));
@@ -77,7 +77,7 @@ fn balls_on_an_axis_bounce_in_order() {
     assert!(balls.windows(2).all(|pair| stage.place(pair[0]).y < stage.place(pair[1]).y));
 }
 
-/// Capsule Stack. Lying capsules stand on each other.
+/// Sample "Capsule Stack". Lying capsules stand on each other.
 #[test]
 fn lying_capsules_stack() {
     let mut stage = Stage::with_floor();
@@ -90,7 +90,7 @@ fn lying_capsules_stack() {
     }
 }
 
-/// Cliff. Bodies that slide over an edge go on without a kick.
+/// Sample "Cliff". Bodies that slide over an edge go on without a kick.
 #[test]
 fn an_edge_does_not_kick() {
     for direction in [1, -1] {
@@ -123,7 +123,7 @@ fn an_edge_does_not_kick() {
     }
 }
 
-/// Arch. Wedge-shaped blocks stand in a semicircle, with a load on top.
+/// Sample "Arch". Wedge-shaped blocks stand in a semicircle, with a load on top.
 #[test]
 fn an_arch_carries_a_load() {
     // A semicircle of 17 blocks between radii of 4 and 6 m.
@@ -143,7 +143,7 @@ fn an_arch_carries_a_load() {
     near(stage.place(load).y, fx!(6.5), fx!(0.1));
 }
 
-/// Double Domino. A push at the first domino fells all.
+/// Sample "Double Domino". A push at the first domino fells all.
 #[test]
 fn all_dominoes_fall() {
     let mut stage = Stage::with_floor();
@@ -158,7 +158,7 @@ fn all_dominoes_fall() {
     }
 }
 
-/// Confined. More balls than a room can hold without overlap stay in it.
+/// Sample "Confined". More balls than a room can hold without overlap stay in it.
 #[test]
 fn a_crowded_room_does_not_leak() {
     let mut stage = Stage::weightless();
@@ -176,7 +176,7 @@ fn a_crowded_room_does_not_leak() {
     }
 }
 
-/// Card House. Cards 2 mm thick stand on each other by friction.
+/// Sample "Card House". Cards 2 mm thick stand on each other by friction.
 #[test]
 fn a_house_of_cards_stands() {
     let mut stage = Stage::new();

@@ -8,7 +8,7 @@ use lockstep2d::world::Explosion;
 
 use super::{Stage, ball, line, near, num, rect, rounded, square};
 
-/// Restitution. A body that falls from a height `h` bounces up to `e^2 h`.
+/// Sample "Restitution". A body that falls from a height `h` bounces up to `e^2 h`.
 #[test]
 fn a_bounce_returns_the_square_of_the_restitution() {
     for shape in [ball(fx!(0.5)), square(fx!(0.5))] {
@@ -31,7 +31,7 @@ fn a_bounce_returns_the_square_of_the_restitution() {
     }
 }
 
-/// Friction. On a slope a box stays if `mu > tan(angle)`; otherwise it slides with `g (sin - mu cos)`.
+/// Sample "Friction". On a slope a box stays if `mu > tan(angle)`; otherwise it slides with `g (sin - mu cos)`.
 #[test]
 fn friction_decides_who_stays_on_the_slope() {
     let angle = Angle::from_radians(fx!(-0.25));
@@ -52,7 +52,7 @@ fn friction_decides_who_stays_on_the_slope() {
     }
 }
 
-/// Rolling Resistance. The more of it, the earlier a ball stops: after `v^2 / 2 a` with `a = 2/3 c g`.
+/// Sample "Rolling Resistance". A ball with rolling resistance `c` stops after `v^2 / 2 a` with `a = 2/3 c g`.
 #[test]
 fn rolling_resistance_decides_how_far_a_ball_gets() {
     for i in [2, 5, 10, 15] {
@@ -67,7 +67,7 @@ fn rolling_resistance_decides_how_far_a_ball_gets() {
     }
 }
 
-/// Conveyor Belt. It carries boxes at its speed and drops them at its end.
+/// Sample "Conveyor Belt". A belt carries boxes at its speed and drops them at its end.
 #[test]
 fn a_belt_carries_boxes_and_drops_them_at_its_end() {
     let mut stage = Stage::with_floor();
@@ -84,7 +84,7 @@ fn a_belt_carries_boxes_and_drops_them_at_its_end() {
     assert!(boxes.iter().all(|&id| stage.place(id).x > fx!(4.5) && stage.place(id).y < fx!(3)));
 }
 
-/// Tangent Speed. Each link of a chain is a belt of its own.
+/// Sample "Tangent Speed". Each link of a chain is a belt of its own.
 #[test]
 fn each_link_of_a_chain_has_its_own_speed() {
     let mut stage = Stage::new();
@@ -102,7 +102,8 @@ fn each_link_of_a_chain_has_its_own_speed() {
     }
 }
 
-/// Explosion. Balls in a ring, held by soft welds, get equal pushes outwards and return; meanwhile the welds turn them.
+/// Sample "Explosion". Balls in a ring, held by soft welds, get equal pushes outwards and return; meanwhile the welds
+/// turn them.
 #[test]
 fn an_explosion_pushes_a_ring_evenly_and_welds_pull_it_back() {
     let mut stage = Stage::weightless();
@@ -140,7 +141,7 @@ fn an_explosion_pushes_a_ring_evenly_and_welds_pull_it_back() {
     }
 }
 
-/// Box Restitution. Boxes on boxes gain no energy at any restitution.
+/// Sample "Box Restitution". Boxes on boxes gain no energy at any restitution.
 #[test]
 fn boxes_on_boxes_make_no_energy() {
     for tenths in [0, 2, 5, 8, 10] {
@@ -160,7 +161,8 @@ fn boxes_on_boxes_make_no_energy() {
     }
 }
 
-/// Wind. A hanging chain in a steady wind leans by `atan(c u / g)`, where the wind `u` drags with the rate `c`.
+/// Sample "Wind". A hanging chain in a steady wind leans by `atan(c u / g)`, where the wind `u` drags with the rate
+/// `c`.
 #[test]
 fn a_chain_leans_in_the_wind() {
     for shape in

@@ -9,7 +9,7 @@ use lockstep2d::world::{BodyPose, Explosion, QueryFilter, World};
 
 use super::{Stage, ball, capsule, line, near, num, rect, rounded, square};
 
-/// Tiles. Boxes lie on columns of rounded tiles; explosions throw them up, and none gets through.
+/// Sample "Tiles". Boxes lie on columns of rounded tiles; explosions throw them up, and none gets through.
 #[test]
 fn tiles_carry() {
     let mut stage = Stage::new();
@@ -63,9 +63,9 @@ fn heap(origin: Vec2<Fx>) -> Vec<(Vec2<Fx>, Angle)> {
     dynamic.map(|(_, body)| (body.position() - origin, body.angle())).collect()
 }
 
-/// Far Pyramid and Far Ragdolls. Up to a million kilometres from the origin no precision is lost. The lever arms of
-/// contacts with fixed bodies are rounded relative to the origin, up to 512 m. Further to the right and above, the last
-/// bits of results differ from the results at the origin, but are equal at all such places.
+/// Samples "Far Pyramid" and "Far Ragdolls". Up to a million kilometres from the origin no precision is lost. The lever
+/// arms of contacts with fixed bodies are rounded relative to the origin, up to 512 m. Further to the right and above,
+/// the last bits of results differ from the results at the origin, but are equal at all such places.
 #[test]
 fn the_world_is_the_same_everywhere() {
     let (here, there) = (heap(Vec2::ZERO), heap(at!(1000, 1000)));
@@ -110,8 +110,8 @@ fn until_asleep(world: &mut World) -> (u64, lockstep2d::hash::StateHash) {
     (world.tick(), world.state_hash())
 }
 
-/// Falling Hinges and Rollback. All bodies sleep in the same tick with the same hash in every run, and from every
-/// saved state.
+/// Samples "Falling Hinges" and "Rollback". All bodies sleep in the same tick with the same hash in every run, and from
+/// every saved state.
 #[test]
 fn falling_hinges_end_alike_from_every_saved_state() {
     let mut world = falling_hinges();
@@ -130,7 +130,7 @@ fn falling_hinges_end_alike_from_every_saved_state() {
     }
 }
 
-/// Barrel. A hundred bodies of one kind fall into a barrel and stay in it.
+/// Sample "Barrel". A hundred bodies of one kind fall into a barrel and stay in it.
 #[test]
 fn a_barrel_holds_what_falls_into_it() {
     let mix = [square(fx!(0.25)), rect(fx!(0.4), fx!(0.1))];
@@ -158,7 +158,7 @@ fn a_barrel_holds_what_falls_into_it() {
     }
 }
 
-/// Many Tumblers. Drums that turn carry their boxes round and lose none.
+/// Sample "Many Tumblers". Drums that turn carry their boxes round and lose none.
 #[test]
 fn tumblers_lose_nothing() {
     let mut stage = Stage::new();
@@ -182,7 +182,7 @@ fn tumblers_lose_nothing() {
     });
 }
 
-/// CreateDestroy. Pyramids are built and removed over and over; slots are used again, and nothing is left.
+/// Sample "CreateDestroy". Pyramids are built and removed over and over; slots are used again, and nothing is left.
 #[test]
 fn what_is_removed_leaves_nothing() {
     let mut stage = Stage::with_floor();
@@ -202,8 +202,8 @@ fn what_is_removed_leaves_nothing() {
     }
 }
 
-/// Sleep and Kinematic. A sleeping pyramid is woken as a whole and sleeps again; a large kinematic body of many shapes
-/// turns exactly.
+/// Benchmark samples "Sleep" and "Kinematic". A sleeping pyramid is woken as a whole and sleeps again; a large
+/// kinematic body of many shapes turns exactly.
 #[test]
 fn a_pyramid_is_woken_as_a_whole() {
     let mut stage = Stage::with_floor();
@@ -229,7 +229,8 @@ fn a_pyramid_is_woken_as_a_whole() {
     near(stage.angle(body), fx!(1), fx!(0.0001));
 }
 
-/// Capacity. Rows of boxes are added until there are a thousand; the world stays valid, and its counters agree.
+/// Sample "Capacity". Rows of boxes are added until there are a thousand; the world stays valid, and its counters
+/// agree.
 #[test]
 fn the_world_grows() {
     let mut stage = Stage::with_floor();

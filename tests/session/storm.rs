@@ -221,8 +221,7 @@ impl Match {
         self.check_healed(figures);
         let now = self.sim.now;
         let finals: Vec<u32> = self.sim.peers.iter().map(|peer| peer.session.confirmed()).collect();
-        // A peer may have crashed just before. The others then stop until they have waited for it long enough
-        // (`patience`) and have agreed on a new view.
+        // If a peer has just crashed, the other peers stop for `patience` and a change of the view.
         for wait in [MOVED, 3 * MOVED, 5 * MOVED] {
             if !self.run(now + wait) {
                 return;

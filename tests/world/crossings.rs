@@ -170,7 +170,7 @@ fn check_course(case: u64) {
     }
 }
 
-/// A ball that a slanted wall deflects into a direction in which its fat box does not reach.
+/// A slanted wall deflects a ball into a direction in which the ball's enlarged AABB (fat box) does not reach.
 #[test]
 fn a_deflected_visitor_is_noticed_in_the_same_tick() {
     let mut rng = Rng::new(5);

@@ -66,7 +66,7 @@ fn a_named_body_moves_as_one_without_a_name() {
     assert_eq!(run_with(None), run_with(Some(name("ball"))));
 }
 
-/// Bytes from outside may decode to a name that no text gives.
+/// Untrusted bytes may decode to a name that cannot be made from a text. The world refuses such a name.
 #[test]
 fn invalid_bytes_are_refused_as_a_name() {
     let mut world = World::default();

@@ -1,6 +1,6 @@
 //! Sleeping: bodies at rest fall asleep, are not simulated, and wake whenever something affects them.
 
-use lockstep2d::body::{BodyDef, BodyId, BodySettings, Filter};
+use lockstep2d::body::{BodyDef, BodyId, BodySettings, Filter, ShapeDef, WorldError};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::solver::{JointDef, Revolute};
@@ -185,7 +185,7 @@ fn sleeper_on_platform() -> (World, BodyId, BodyId) {
 fn a_platform_that_begins_to_move_wakes_its_rider_and_keeps_it_awake() {
     for by_target in [false, true] {
         let (mut world, platform, rider) = sleeper_on_platform();
-        // Below the sleep speed.
+        // Below the default sleep speed of 0.05 m/s.
         let creep = fx!(0.03);
         for tick in 1..=120 {
             if by_target {
@@ -320,4 +320,61 @@ fn a_row_of_sleepers_wakes_in_one_tick() {
     world.set_velocity(row[0], Vec2::new(fx!(1), fx!(0)), fx!(0)).expect("valid");
     run(&mut world, 1);
     assert_eq!(world.stats().bodies, 500);
+}
+
+/// Removes the support of a box that has been at rest for long, while another body keeps their island awake. At 240 Hz
+/// the box is slower than the limit of sleep for three ticks. With its old count of ticks at rest it would fall asleep
+/// in the air.
+#[test]
+fn a_body_that_loses_its_support_does_not_fall_asleep_in_the_air() {
+    type Edit = fn(&mut World, BodyId) -> Result<(), WorldError>;
+    let edits: [Edit; 6] = [
+        World::despawn,
+        World::disable,
+        |world, body| world.set_transform(body, (fx!(30), fx!(0.5)), Angle::ZERO),
+        |world, body| world.remove_shape(shape_of(world, body)),
+        |world, body| {
+            let (shape, filter) = (shape_of(world, body), Filter { mask: 0, ..Filter::default() });
+            world.set_filter(shape, filter)
+        },
+        |world, body| {
+            let shape = shape_of(world, body);
+            let def = *world.shape(shape).expect("there").def();
+            world.set_shape(shape, &ShapeDef { geometry: square(fx!(0.1)).geometry, ..def })
+        },
+    ];
+    for (tick_rate, (number, edit)) in
+        [60, 240].into_iter().flat_map(|rate| edits.iter().enumerate().map(move |edit| (rate, edit)))
+    {
+        let mut world = World::new(Config { tick_rate, ..Config::default() }).expect("valid");
+        spawn(&mut world, BodyDef::fixed().position((fx!(0), fx!(-1))), rectangle(fx!(50), fx!(1)));
+        let lower = BodyDef::dynamic().position((fx!(0), fx!(0.5))).never_sleeps();
+        let lower = spawn(&mut world, lower, square(fx!(0.5)));
+        let upper = spawn(&mut world, BodyDef::dynamic().position((fx!(0), fx!(1.5))), square(fx!(0.5)));
+        run(&mut world, 2 * tick_rate);
+        assert!(!is_asleep(&world, upper));
+        edit(&mut world, lower).expect("valid");
+        run(&mut world, 5 * tick_rate);
+        let y = world.body(upper).expect("there").position().y;
+        assert!(y < fx!(0.71), "edit {number} at {tick_rate} Hz: the box is at {y} m");
+    }
+}
+
+/// The player keeps the seesaw down, and is in motion in every tick. When the player jumps off, the seesaw begins to
+/// turn more slowly than the limit of sleep.
+#[test]
+fn a_seesaw_turns_back_when_the_player_leaves() {
+    let mut world = World::default();
+    let post = world.spawn(&BodyDef::fixed(), &[]).expect("valid");
+    let weight = square(fx!(0.3)).offset((fx!(-2.7), fx!(0))).density(fx!(0.1));
+    let board = world.spawn(&BodyDef::dynamic(), &[rectangle(fx!(3), fx!(0.1)), weight]).expect("valid");
+    let hinge = JointDef::new(post, board, Revolute::new().limit(fx!(-0.25), fx!(0.25)));
+    world.add_joint(&hinge).expect("valid");
+    let def = BodyDef::dynamic().position((fx!(2), fx!(0.7))).lock_rotation().never_sleeps();
+    let player = spawn(&mut world, def, rectangle(fx!(0.3), fx!(0.5)).friction(fx!(2)));
+    run(&mut world, 240);
+    assert!(world.body(board).expect("there").angle().to_radians() < fx!(-0.24));
+    world.set_velocity(player, (fx!(6), fx!(6)), fx!(0)).expect("there");
+    run(&mut world, 600);
+    assert!(world.body(board).expect("there").angle().to_radians() > fx!(0.24));
 }

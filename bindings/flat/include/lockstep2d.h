@@ -512,6 +512,18 @@ typedef struct ls2d_body_info {
     ls2d_fx inertia;
     /* Number that the game stores with the body. */
     uint64_t user_data;
+    /* Decay rate of the velocity, per second. */
+    ls2d_fx linear_damping;
+    /* Decay rate of the angular velocity, per second. */
+    ls2d_fx angular_damping;
+    /* Factor on gravity. */
+    ls2d_fx gravity_scale;
+    /* Speed in m/s below which the body may fall asleep. */
+    ls2d_fx sleep_speed;
+    /* An `LS2D_SWEEP_` number. */
+    uint32_t continuous;
+    /* 0. */
+    uint32_t reserved;
 } ls2d_body_info;
 
 /* Position and rotation of a body. */
@@ -1082,7 +1094,7 @@ ls2d_status ls2d_body_def_init(uint32_t kind, ls2d_body_def *def);
 /* Sets the defaults of a shape of the given kind. Its geometry has to be set. */
 ls2d_status ls2d_shape_def_init(uint32_t kind, ls2d_shape_def *def);
 
-/* Sets the defaults of a joint of the given kind, without its bodies. */
+/* Sets the defaults of a joint of the given kind. The caller sets its bodies, which are `LS2D_NO_ID`. */
 ls2d_status ls2d_joint_def_init(uint32_t kind, ls2d_joint_def *def);
 
 /* Makes the links of a chain through some points, closed if `closed` is not 0, solid only from the right if
@@ -1176,7 +1188,8 @@ ls2d_status ls2d_set_transform(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_
 /* Gives a kinematic body the velocity with which it reaches a pose in the next tick. */
 ls2d_status ls2d_move_to(uint32_t target, ls2d_body body, ls2d_fx x, ls2d_fx y, ls2d_angle angle);
 
-/* Changes the settings of a body: damping, gravity scale, locks, sweeps, sleep. The other fields have no effect. */
+/* Sets all settings of a body: damping, gravity scale, locks, sweeps, sleep. The other fields have no effect.
+ * `ls2d_body_get` returns the current settings. */
 ls2d_status ls2d_set_body(uint32_t target, ls2d_body body, const ls2d_body_def *def);
 
 /* Changes the kind of a body. */
@@ -1485,8 +1498,9 @@ ls2d_status ls2d_replay_set_interval(uint32_t replay, uint32_t ticks);
 
 /* ---- Matches ---- */
 
-/* Sets the defaults of a match with a number of seats: lockstep at 60 ticks per second, inputs of one byte. The
- * caller sets `peer`, `key` and `secret` to random numbers. */
+/* Sets the defaults of a match with a number of seats: lockstep at 60 ticks per second, inputs of one byte, and
+ * a start as soon as two seats are taken, or the only one. The caller sets `peer`, `key` and `secret` to random
+ * numbers. */
 ls2d_status ls2d_match_config_init(uint32_t seats, ls2d_match_config *config);
 
 /* Opens a match. All peers have to pass the same `offer`: versions, rules, setup, at most 512 bytes. */

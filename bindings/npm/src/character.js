@@ -1,23 +1,27 @@
 // Characters: shapes that a game moves by its own rules instead of forces.
+import { byteArray, fail, instance, onlyKnown } from "./check.js";
 import { writeFilter, writeShape } from "./definitions.js";
 import { Lockstep2dError } from "./error.js";
 import { C } from "./layout.js";
 import { call, copy, fieldAt, give, library, list, read, scratch, sizeOf, write } from "./library.js";
+import { World } from "./world.js";
 
+const STATE_FIELDS = ["position", "velocity", "ground", "isOnGround", "isWedged"];
 const MOVER_OPTIONS = ["shape", "slopeMax", "stepHeight", "snapDistance"];
 
 function writeMover(at, options) {
-    const unknown = Object.keys(options).find((key) => !MOVER_OPTIONS.includes(key));
-    if (unknown !== undefined) {
-        throw new Lockstep2dError("VALUE", `a mover has no option ${unknown}; there are ${MOVER_OPTIONS.join(", ")}`);
-    }
+    onlyKnown(options, MOVER_OPTIONS, "a mover");
     call("ls2d_mover_init", C.CIRCLE, at);
     const { shape, ...abilities } = options;
     write("mover", at, abilities);
     writeShape(fieldAt("mover", at, "shape"), shape);
 }
 
-function writeState(at, { position, velocity = [0, 0], ground }) {
+function writeState(at, state) {
+    const { position, velocity = [0, 0], ground } = onlyKnown(state, STATE_FIELDS, "the state of a character");
+    if (position === undefined) {
+        fail("the state of a character has a position");
+    }
     call("ls2d_mover_state_init", 0n, 0n, at);
     write("mover_state", at, { position, velocity, flags: ground === undefined ? 0 : C.MOVER_ON_GROUND });
     if (ground !== undefined) {
@@ -42,6 +46,7 @@ function readPlane(at) {
 export function moveCharacter(world, mover, state, filter = {}) {
     const [abilities, pose, plane] = [sizeOf("mover"), sizeOf("mover_state"), sizeOf("mover_plane")];
     const before = abilities + 2 * pose + sizeOf("query_filter");
+    instance(world, World, "the world");
     let to;
     const prepare = (at) => {
         writeMover(at, mover);
@@ -66,7 +71,7 @@ export function encodeMoverState(state) {
 
 /** The state of a character from bytes. `moveCharacter` checks it. */
 export function decodeMoverState(bytes) {
-    if (bytes.length !== sizeOf("mover_state")) {
+    if (byteArray(bytes, "the argument").length !== sizeOf("mover_state")) {
         throw new Lockstep2dError("DECODE", `the state of a character has ${sizeOf("mover_state")} bytes, and not ${bytes.length}`);
     }
     return readState(give(bytes, 0));

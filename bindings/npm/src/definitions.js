@@ -1,8 +1,8 @@
 // Definitions of shapes, bodies, joints and worlds as objects, and their structs.
-import { Lockstep2dError } from "./error.js";
-import { vectorOf } from "./fx.js";
+import { array, fail, flag, onlyKnown, shown } from "./check.js";
+import { Fx, rawOf, vectorOf } from "./fx.js";
 import { C } from "./layout.js";
-import { call, copy as copyOf, fieldAt, fxAt, list, putBytes, putRaw, scratch, sizeOf, statusOf, struct, u32, write } from "./library.js";
+import { call, copy as copyOf, fieldAt, fxAt, list, optionsOf, putBytes, putRaw, scratch, sizeOf, statusOf, u32, write } from "./library.js";
 
 const BODY_KINDS = { fixed: C.FIXED, kinematic: C.KINEMATIC, dynamic: C.DYNAMIC };
 const SWEEPS = { off: C.SWEEP_OFF, fixed: C.SWEEP_FIXED, bullet: C.SWEEP_BULLET, kinematic: C.SWEEP_KINEMATIC };
@@ -29,19 +29,22 @@ const JOINT_KINDS = {
 
 function lookup(table, name, what) {
     if (!Object.hasOwn(table, name)) {
-        throw new Lockstep2dError("VALUE", `${what} is one of ${Object.keys(table).join(", ")}, and not ${name}`);
+        fail(`${what} is one of ${Object.keys(table).join(", ")}, and not ${typeof name === "string" ? name : shown(name)}`);
     }
     return table[name];
 }
 
 const optionalLookup = (table, name, what) => (name === undefined ? undefined : lookup(table, name, what));
 
-/** Throws an error for a misspelt option, which would otherwise be ignored. */
-function onlyKnown(options, known, what) {
-    const unknown = Object.keys(options).find((key) => !known.includes(key));
-    if (unknown !== undefined) {
-        throw new Lockstep2dError("VALUE", `${what} has no option ${unknown}; there are ${known.join(", ")}`);
+/** Bits of the options of a struct that are true, and of those that are false. */
+function bitsOfFlags(options, bits) {
+    let [set, cleared] = [0, 0];
+    for (const [name, bit] of Object.entries(bits)) {
+        const value = flag(options[name], name);
+        set |= value ? bit : 0;
+        cleared |= value === false ? bit : 0;
     }
+    return [set, cleared];
 }
 
 function flags(at, name, bits, cleared = 0) {
@@ -49,28 +52,40 @@ function flags(at, name, bits, cleared = 0) {
     write(name, at, { flags: ((u32(field) & ~cleared) | bits) >>> 0 });
 }
 
-const shape = (kind, geometry, options = {}) => ({ kind, geometry, options });
+const shape = (kind, geometry, options = {}) => ({ kind, geometry, options: onlyKnown(options, SHAPE_OPTIONS, "a shape") });
+const points = (given) => array(given, "points");
 
 /** A disc with a radius in metres. */
 export const circle = (radius, options) => shape(C.CIRCLE, { radius }, options);
 /** A rectangle with half its width and height in metres. */
-export const box = (halfWidth, halfHeight, options) => shape(C.RECTANGLE, { points: [[halfWidth, halfHeight]] }, options);
+export const box = (halfWidth, halfHeight, options) => {
+    const half = [rawOf(halfWidth, "half the width of a box"), rawOf(halfHeight, "half the height of a box")];
+    return shape(C.RECTANGLE, { points: [half.map((raw) => new Fx(raw))] }, options);
+};
 /** A convex polygon of 3 to 8 points, counter-clockwise. */
-export const polygon = (points, options) => shape(C.POLYGON, { points, count: points.length }, options);
+export const polygon = (corners, options) => shape(C.POLYGON, { points: points(corners), count: corners.length }, options);
 /** The convex hull of 3 to 8 points in any order. */
-export const hull = (points, options) => shape(C.HULL, { points, count: points.length }, options);
+export const hull = (corners, options) => shape(C.HULL, { points: points(corners), count: corners.length }, options);
 /** A capsule: all points within a radius of a line. */
 export const capsule = (a, b, radius, options) => shape(C.CAPSULE, { points: [a, b], radius }, options);
 /** A line without area. */
 export const segment = (a, b, options) => shape(C.SEGMENT, { points: [a, b] }, options);
 /** A smooth outline of any length, for ground and walls. */
-export const chain = (points, { closed = false, oneSided = false, ...options } = {}) => ({ points, closed, oneSided, options });
+export const chain = (corners, { closed = false, oneSided = false, ...options } = {}) => {
+    flag(closed, "closed");
+    flag(oneSided, "oneSided");
+    return { points: points(corners), closed, oneSided, options: onlyKnown(options, SHAPE_OPTIONS, "a chain") };
+};
 
 const SHAPE_OPTIONS = [
     "offset", "density", "friction", "restitution", "restitutionThreshold", "rollingResistance", "surfaceSpeed", "category",
     "mask", "group", "frictionMixing", "restitutionMixing", "oneWay", "sensor", "area", "contactEvents", "hitEvents",
     "sensorEvents", "detectSensors", "rounding", "userData",
 ];
+const SHAPE_FLAGS = {
+    sensor: C.SHAPE_SENSOR, contactEvents: C.SHAPE_CONTACT_EVENTS, hitEvents: C.SHAPE_HIT_EVENTS, sensorEvents: C.SHAPE_SENSOR_EVENTS,
+    detectSensors: C.SHAPE_DETECT_SENSORS,
+};
 const AREA_OPTIONS = ["acceleration", "force", "flow", "linearDrag", "angularDrag", "density", "attraction"];
 
 function writeArea(at, area) {
@@ -85,6 +100,7 @@ function writeArea(at, area) {
         areaDensity: density,
     });
     if (attraction !== undefined) {
+        onlyKnown(attraction, ["acceleration", "radius", "falloff"], "an attraction");
         write("shape_def", at, {
             attractionAcceleration: attraction.acceleration,
             attractionRadius: attraction.radius,
@@ -93,12 +109,20 @@ function writeArea(at, area) {
     }
 }
 
-/** Writes one shape. */
-export function writeShape(at, { kind, geometry, options }) {
-    if (kind === undefined) {
-        throw new Lockstep2dError("VALUE", "a shape is made by circle, box, polygon, hull, capsule, segment or chain");
+/** A shape as `circle` and so on return it. */
+function shapeOf(value) {
+    if (value === null || typeof value !== "object" || !("options" in value)) {
+        fail(`a shape is made by circle, box, polygon, hull, capsule, segment or chain, and is not ${shown(value)}`);
     }
-    onlyKnown(options, SHAPE_OPTIONS, "a shape");
+    return value;
+}
+
+/** Writes one shape. */
+export function writeShape(at, value) {
+    const { kind, geometry, options } = shapeOf(value);
+    if (kind === undefined) {
+        fail("a chain consists of several shapes; here is one shape possible");
+    }
     call("ls2d_shape_def_init", kind, at);
     const { rounding, frictionMixing, restitutionMixing, area, ...plain } = options;
     write("shape_def", at, {
@@ -108,18 +132,9 @@ export function writeShape(at, { kind, geometry, options }) {
         frictionMixing: optionalLookup(MIXING, frictionMixing, "a rule of mixing"),
         restitutionMixing: optionalLookup(MIXING, restitutionMixing, "a rule of mixing"),
     });
-    let [set, cleared] = [0, 0];
-    const flag = (value, bit) => {
-        set |= value ? bit : 0;
-        cleared |= value === false ? bit : 0;
-    };
-    flag(options.sensor, C.SHAPE_SENSOR);
-    flag(options.oneWay !== undefined, C.SHAPE_ONE_WAY);
-    flag(options.restitutionThreshold !== undefined, C.SHAPE_RESTITUTION_THRESHOLD);
-    flag(options.contactEvents, C.SHAPE_CONTACT_EVENTS);
-    flag(options.hitEvents, C.SHAPE_HIT_EVENTS);
-    flag(options.sensorEvents, C.SHAPE_SENSOR_EVENTS);
-    flag(options.detectSensors, C.SHAPE_DETECT_SENSORS);
+    let [set, cleared] = bitsOfFlags(options, SHAPE_FLAGS);
+    set |= options.oneWay === undefined ? 0 : C.SHAPE_ONE_WAY;
+    set |= options.restitutionThreshold === undefined ? 0 : C.SHAPE_RESTITUTION_THRESHOLD;
     if (area !== undefined) {
         writeArea(at, area);
         set |= C.SHAPE_AREA | C.SHAPE_SENSOR | (area.attraction === undefined ? 0 : C.SHAPE_ATTRACTION);
@@ -129,7 +144,7 @@ export function writeShape(at, { kind, geometry, options }) {
 
 /** Replaces the chains among the shapes of a body by their links, as bytes. */
 export function expand(shapes) {
-    return shapes.flatMap((each) => (each.closed === undefined ? [each] : chainLinks(each)));
+    return array(shapes, "shapes").flatMap((each) => (shapeOf(each).closed === undefined ? [each] : chainLinks(each)));
 }
 
 function chainLinks({ points, closed, oneSided, options }) {
@@ -158,6 +173,11 @@ const BODY_OPTIONS = [
     "sleepSpeed", "userData", "name", "continuous", "enabled", "asleep", "maySleep", "lockX", "lockY", "lockRotation", "shapes",
 ];
 
+export const BODY_FLAGS = {
+    enabled: C.BODY_ENABLED, asleep: C.BODY_ASLEEP, maySleep: C.BODY_MAY_SLEEP, lockX: C.BODY_LOCK_X, lockY: C.BODY_LOCK_Y,
+    lockRotation: C.BODY_LOCK_ROTATION,
+};
+
 /** Writes a body definition. */
 export function writeBody(at, options) {
     onlyKnown(options, BODY_OPTIONS, "a body");
@@ -166,18 +186,20 @@ export function writeBody(at, options) {
     write("body_def", at, {
         ...plain,
         continuous: optionalLookup(SWEEPS, continuous, "`continuous`"),
-        mass: mass?.mass,
-        massCentre: mass?.centre,
-        massGyration: mass?.gyration,
     });
-    let [set, cleared] = [mass === undefined ? 0 : C.BODY_GIVEN_MASS, 0];
-    const bits = { enabled: C.BODY_ENABLED, asleep: C.BODY_ASLEEP, maySleep: C.BODY_MAY_SLEEP, lockX: C.BODY_LOCK_X,
-        lockY: C.BODY_LOCK_Y, lockRotation: C.BODY_LOCK_ROTATION };
-    for (const [name, bit] of Object.entries(bits)) {
-        set |= options[name] ? bit : 0;
-        cleared |= options[name] === false ? bit : 0;
+    if (mass !== undefined) {
+        writeMass(at, mass);
     }
-    flags(at, "body_def", set, cleared);
+    const [set, cleared] = bitsOfFlags(options, BODY_FLAGS);
+    flags(at, "body_def", set | (mass === undefined ? 0 : C.BODY_GIVEN_MASS), cleared);
+}
+
+function writeMass(at, options) {
+    const { mass, centre, gyration } = onlyKnown(options, ["mass", "centre", "gyration"], "`mass`");
+    if (mass === undefined || gyration === undefined) {
+        fail("`mass` has a `mass` in kg and a radius of `gyration` in m; `massOf` computes them");
+    }
+    write("body_def", at, { mass, massCentre: centre, massGyration: gyration });
 }
 
 /** Writes a body and its shapes into memory. Returns their addresses, the number of shapes, and the address `rest` of
@@ -214,9 +236,30 @@ const JOINT_OPTIONS = [
     "wheels", "length", "ratio", "userData",
 ];
 
+// Options of the parts of joints.
+const JOINT_PARTS = {
+    motor: ["speed", "max"], spring: ["hertz", "dampingRatio", "target"], softness: ["hertz", "dampingRatio"],
+    threshold: ["force", "torque", "breaks"], linearMotor: ["velocity", "max"], linearSpring: ["hertz", "dampingRatio", "max"],
+    angularSpring: ["hertz", "dampingRatio", "max"],
+};
+
+function checkJoint(options) {
+    onlyKnown(options, JOINT_OPTIONS, "a joint");
+    for (const [part, known] of Object.entries(JOINT_PARTS)) {
+        if (options[part] !== undefined) {
+            onlyKnown(options[part], known, `\`${part}\` of a joint`);
+        }
+    }
+    for (const name of ["limit", "springForce", "teeth", "wheels"]) {
+        if (options[name] !== undefined && array(options[name], name).length !== 2) {
+            fail(`${name} has 2 items, and not ${options[name].length}`);
+        }
+    }
+}
+
 /** Writes a joint definition. */
 export function writeJoint(at, options) {
-    onlyKnown(options, JOINT_OPTIONS, "a joint");
+    checkJoint(options);
     call("ls2d_joint_def_init", lookup(JOINT_KINDS, options.type, "the type of a joint"), at);
     const { a, b, anchorA, anchorB, angleA, angleB, limit, motor, spring, springForce, rod, softness } = options;
     const { threshold, linearMotor, linearSpring, angularSpring, teeth, radius, wheels, length, ratio, userData } = options;
@@ -235,11 +278,12 @@ export function writeJoint(at, options) {
         teethA: teeth?.[0], teethB: teeth?.[1],
         wheelA: wheels?.[0], wheelB: wheels?.[1],
     });
+    flag(options.enabled, "enabled");
     const parts = [
-        [options.collide, C.JOINT_COLLIDE], [limit, C.JOINT_LIMIT], [motor, C.JOINT_MOTOR], [spring, C.JOINT_SPRING],
+        [flag(options.collide, "collide"), C.JOINT_COLLIDE], [limit, C.JOINT_LIMIT], [motor, C.JOINT_MOTOR], [spring, C.JOINT_SPRING],
         [springForce, C.JOINT_SPRING_FORCE], [rod, C.JOINT_ROD], [softness, C.JOINT_SOFTNESS],
         [threshold?.force, C.JOINT_THRESHOLD_FORCE], [threshold?.torque, C.JOINT_THRESHOLD_TORQUE],
-        [threshold?.breaks, C.JOINT_BREAKS], [linearMotor, C.JOINT_LINEAR_MOTOR], [linearSpring, C.JOINT_LINEAR_SPRING],
+        [flag(threshold?.breaks, "breaks"), C.JOINT_BREAKS], [linearMotor, C.JOINT_LINEAR_MOTOR], [linearSpring, C.JOINT_LINEAR_SPRING],
         [angularSpring, C.JOINT_ANGULAR_SPRING],
     ];
     const set = parts.reduce((bits, [part, bit]) => bits | (part === undefined || part === false ? 0 : bit), 0);
@@ -248,13 +292,10 @@ export function writeJoint(at, options) {
 
 /** Writes the given settings of a world, and keeps all others. */
 export function writeConfig(at, options) {
-    const known = Object.keys(struct("config").fields).map((name) => name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase()));
-    const { sleeping, continuous, ...plain } = options;
-    onlyKnown(plain, known.filter((name) => !["size", "flags"].includes(name)), "a world");
+    const known = [...optionsOf("config", ["size", "flags"]), "sleeping", "continuous"];
+    const { sleeping: _, continuous: __, ...plain } = onlyKnown(options, known, "a world");
     write("config", at, plain);
-    const set = (sleeping ? C.SLEEPING : 0) | (continuous ? C.CONTINUOUS : 0);
-    const cleared = (sleeping === false ? C.SLEEPING : 0) | (continuous === false ? C.CONTINUOUS : 0);
-    flags(at, "config", set, cleared);
+    flags(at, "config", ...bitsOfFlags(options, { sleeping: C.SLEEPING, continuous: C.CONTINUOUS }));
 }
 
 const OVERLAPS = { resist: C.OVERLAP_RESIST, report: C.OVERLAP_REPORT, ignore: C.OVERLAP_IGNORE };
@@ -265,7 +306,8 @@ export function writeFilter(at, filter) {
     const { category, mask, sensors, except = [], initialOverlap } = filter;
     call("ls2d_query_filter_init", at);
     write("query_filter", at, {
-        category, mask, except, exceptCount: except.length, flags: sensors ? C.QUERY_SENSORS : 0,
+        category, mask, except: array(except, "except"), exceptCount: except.length,
+        flags: flag(sensors, "sensors") ? C.QUERY_SENSORS : 0,
         initialOverlap: optionalLookup(OVERLAPS, initialOverlap, "`initialOverlap`"),
     });
 }

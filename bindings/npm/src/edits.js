@@ -1,9 +1,12 @@
 // Edits of a world, executed at once or collected in a list of commands.
-import { Lockstep2dError } from "./error.js";
+import { array, fail, long, object, onlyKnown } from "./check.js";
 import { bodyKind, writeBody, writeBodyAndShapes, writeJoint, writeShape } from "./definitions.js";
 import { bitsOf, rawOf, vectorOf } from "./fx.js";
 import { Handle, call, give, giveText, id, idAt, putRaw, scratch, sizeOf, takeBytes, u32, u64, write } from "./library.js";
 
+// Options of bodies that `setBody` can change.
+const SETTINGS = ["linearDamping", "angularDamping", "gravityScale", "sleepSpeed", "maySleep", "continuous", "lockX", "lockY",
+    "lockRotation"];
 const raws = (vector, what) => vectorOf(vector, what);
 
 /** Edits, which a world executes at once and a list of commands collects. */
@@ -19,14 +22,16 @@ export class Edits extends Handle {
     /** Adds a body with the same definition at each pose `{ position, angle }`, or no body if one of them is refused.
      * Returns their handles; a list of commands returns undefined. */
     spawnEach(options, poses) {
+        array(poses, "poses");
         const size = sizeOf("pose");
         const room = poses.length * (size + 8);
         const { rest, body, shapes, count } = writeBodyAndShapes(options, room);
         const ids = rest + poses.length * size;
-        poses.forEach(({ position, angle = 0 }, index) => {
+        poses.forEach((pose, index) => {
+            const { position, angle = 0 } = object(pose, `pose ${index}`);
             // `write` skips undefined fields, and the memory would keep its earlier contents.
             if (position === undefined) {
-                throw new Lockstep2dError("VALUE", `pose ${index} has no position`);
+                fail(`pose ${index} has no position`);
             }
             write("pose", rest + index * size, { position, angle });
         });
@@ -73,6 +78,9 @@ export class Edits extends Handle {
         const size = sizeOf("joint_def");
         const at = scratch(48 + size);
         writeJoint(at + 48, options);
+        if (options.a === undefined || options.b === undefined) {
+            fail("a joint connects two bodies, `a` and `b`");
+        }
         if (options.anchor !== undefined) {
             this.place(at, options);
         }
@@ -84,16 +92,17 @@ export class Edits extends Handle {
     /** Adds a joint with the same definition between each pair of bodies, or no joint if one of them is refused.
      * Returns their handles; a list of commands returns undefined. */
     addJointEach(options, pairs) {
+        array(pairs, "pairs");
         const size = sizeOf("joint_def");
         const at = scratch(size + 24 * pairs.length);
         const ids = at + size + 16 * pairs.length;
-        if (options.anchor !== undefined) {
-            throw new Lockstep2dError("VALUE", "joints of `addJointEach` have `anchorA` and `anchorB`, and no `anchor`");
-        }
         writeJoint(at, options);
+        if (options.anchor !== undefined) {
+            fail("joints of `addJointEach` have `anchorA` and `anchorB`, and no `anchor`");
+        }
         pairs.forEach((pair, index) => {
-            if (pair.length !== 2) {
-                throw new Lockstep2dError("VALUE", `pair ${index} has ${pair.length} bodies`);
+            if (array(pair, `pair ${index}`).length !== 2) {
+                fail(`pair ${index} has 2 bodies, and not ${pair.length}`);
             }
             pair.forEach((body, end) => putRaw(at + size + 16 * index + 8 * end, id(body)));
         });
@@ -154,8 +163,10 @@ export class Edits extends Handle {
         call("ls2d_move_to", this.handle, id(body), ...raws(position, "position"), bitsOf(angle));
     }
 
-    /** Changes damping, gravity scale, locks, sweeps and sleep settings. */
+    /** Sets damping, gravity scale, locks, sweeps and sleep settings. Settings that are not given get their defaults:
+     * `world.body` returns the current ones. */
     setBody(body, options) {
+        onlyKnown(options, SETTINGS, "the settings of a body");
         const at = scratch(sizeOf("body_def"));
         writeBody(at, options);
         call("ls2d_set_body", this.handle, id(body), at);
@@ -174,7 +185,7 @@ export class Edits extends Handle {
     }
 
     setUserData(body, data) {
-        call("ls2d_set_user_data", this.handle, id(body), BigInt(data));
+        call("ls2d_set_user_data", this.handle, id(body), long(data, "the user data"));
     }
 
     setName(body, name) {
@@ -202,7 +213,9 @@ export class Edits extends Handle {
         call("ls2d_set_gravity", this.handle, ...raws(gravity, "gravity"));
     }
 
-    explode({ centre, impulse, radius, falloff, mask }) {
+    explode(options) {
+        const { centre, impulse, radius, falloff, mask } =
+            onlyKnown(options, ["centre", "impulse", "radius", "falloff", "mask"], "an explosion");
         const at = scratch(sizeOf("explosion"));
         call("ls2d_explosion_init", ...raws(centre, "centre"), rawOf(impulse, "impulse"), at);
         write("explosion", at, { radius, falloff, mask });

@@ -1,4 +1,5 @@
 // Fixed-point numbers: 64-bit integers with 32 fraction bits, so that every browser computes the same bits.
+import { integer, shown } from "./check.js";
 import { Lockstep2dError } from "./error.js";
 
 const ONE = 1n << 32n;
@@ -19,14 +20,14 @@ function divide(numerator, denominator) {
     return negative ? -quotient : quotient;
 }
 
-function parse(text) {
+function parse(text, what) {
     const known = CACHE.get(text);
     if (known !== undefined) {
         return known;
     }
     const parts = NUMBER.exec(text);
     if (parts === null) {
-        throw new Lockstep2dError("TEXT", `"${text}" is not a decimal number such as "-1.25"`);
+        throw new Lockstep2dError("TEXT", `${what} is "${text}", and not a decimal number such as "-1.25"`);
     }
     const [, sign, whole, fraction = ""] = parts;
     const scale = 10n ** BigInt(fraction.length);
@@ -39,7 +40,7 @@ function parse(text) {
     }
     raw = sign === "-" ? -raw : raw;
     if (raw > MAX || raw < MIN) {
-        throw new Lockstep2dError("TEXT", `${text} is beyond the range of numbers, 2^31`);
+        throw new Lockstep2dError("TEXT", `${what} is ${text}, beyond the range of numbers, ±2^31`);
     }
     if (CACHE.size >= CACHE_MAX) {
         CACHE.clear();
@@ -54,11 +55,11 @@ export function rawOf(value, what = "a number") {
         return value.raw;
     }
     if (typeof value === "string") {
-        return parse(value);
+        return parse(value, what);
     }
     if (typeof value === "number") {
-        if (Number.isInteger(value) && Math.abs(value) < 2 ** 31) {
-            return BigInt(value) * ONE;
+        if (Number.isInteger(value)) {
+            return BigInt(integer(value, what, -(2 ** 31), 2 ** 31 - 1)) * ONE;
         }
         throw new Lockstep2dError(
             "FLOAT",
@@ -66,18 +67,21 @@ export function rawOf(value, what = "a number") {
                 `enter the simulation: write an integer, a text such as "0.1", or fx("0.1").`,
         );
     }
-    throw new Lockstep2dError("VALUE", `${what} is ${typeof value}, and not an integer, a decimal text or an Fx`);
+    throw new Lockstep2dError("VALUE", `${what} is ${shown(value)}, and not an integer, a decimal text or an Fx`);
 }
 
 /** A fixed-point number. Immutable; arithmetic is exact or rounded to nearest, and saturates. */
 export class Fx {
     constructor(raw) {
+        if (typeof raw !== "bigint") {
+            throw new Lockstep2dError("VALUE", `a number is made by fx("1.25") or Fx.fromRaw, and not of ${shown(raw)}`);
+        }
         this.raw = raw;
         Object.freeze(this);
     }
 
     static fromRaw(raw) {
-        return new Fx(BigInt.asIntN(64, BigInt(raw)));
+        return new Fx(BigInt.asIntN(64, BigInt(integer(raw, "a raw number", MIN, 2n ** 64n - 1n))));
     }
 
     add(other) {
@@ -175,7 +179,7 @@ export function fx(value) {
 /** A rotation in units of 2^-32 turn, counter-clockwise. */
 export class Angle {
     constructor(bits) {
-        this.bits = bits >>> 0;
+        this.bits = Number(integer(bits, "bits of an angle", Number.MIN_SAFE_INTEGER, Number.MAX_SAFE_INTEGER)) >>> 0;
         Object.freeze(this);
     }
 
@@ -234,14 +238,14 @@ export function turns(value) {
 }
 
 /** The bits of an argument that is an angle. */
-export function bitsOf(value) {
+export function bitsOf(value, what = "an angle") {
     if (value instanceof Angle) {
         return value.bits;
     }
     if (value === 0) {
         return 0;
     }
-    throw new Lockstep2dError("VALUE", "an angle is degrees(45), radians(\"0.5\"), turns(\"0.25\") or 0");
+    throw new Lockstep2dError("VALUE", `${what} is degrees(45), radians("0.5"), turns("0.25") or 0, and not ${shown(value)}`);
 }
 
 /** Components of an argument that is a vector: `[x, y]` or `{ x, y }`. */
@@ -252,5 +256,5 @@ export function vectorOf(value, what = "a vector") {
     if (value !== null && typeof value === "object" && "x" in value && "y" in value) {
         return [rawOf(value.x, what), rawOf(value.y, what)];
     }
-    throw new Lockstep2dError("VALUE", `${what} has to be [x, y] or { x, y }`);
+    throw new Lockstep2dError("VALUE", `${what} is [x, y] or { x, y }, and not ${Array.isArray(value) ? `an array of ${value.length}` : shown(value)}`);
 }

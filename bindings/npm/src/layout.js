@@ -225,7 +225,7 @@ export const STRUCTS = {
         user_data: [128, "uint64_t"],
         name: [136, "uint8_t", 16],
     } },
-    body_info: { bytes: 96, fields: {
+    body_info: { bytes: 136, fields: {
         kind: [0, "uint32_t"],
         flags: [4, "uint32_t"],
         position: [8, "vec2"],
@@ -237,6 +237,12 @@ export const STRUCTS = {
         mass: [72, "fx"],
         inertia: [80, "fx"],
         user_data: [88, "uint64_t"],
+        linear_damping: [96, "fx"],
+        angular_damping: [104, "fx"],
+        gravity_scale: [112, "fx"],
+        sleep_speed: [120, "fx"],
+        continuous: [128, "uint32_t"],
+        reserved: [132, "uint32_t"],
     } },
     pose: { bytes: 32, fields: {
         body: [0, "body"],

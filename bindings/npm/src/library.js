@@ -1,4 +1,5 @@
 // The wasm module: loading, memory, structs, handles.
+import { byteArray, count as u32Of, fail, integer, long, shown, string } from "./check.js";
 import { Lockstep2dError } from "./error.js";
 import { Angle, Fx, bitsOf, rawOf, vectorOf } from "./fx.js";
 import { API_VERSION, STATUS, STRUCTS } from "./layout.js";
@@ -27,7 +28,15 @@ async function inlined(load) {
     return new Response(stream).arrayBuffer();
 }
 
-async function start(modules, { simd, wasm } = {}) {
+async function start(modules, options) {
+    try {
+        await load(modules, options ?? {});
+    } catch (error) {
+        throw error instanceof Lockstep2dError ? error : new Lockstep2dError("INIT", `the wasm module cannot be loaded: ${error.message}`);
+    }
+}
+
+async function load(modules, { simd, wasm }) {
     const chosen = simd ?? WebAssembly.validate(new Uint8Array(SIMD));
     let source = wasm ?? (await inlined(chosen ? modules.simd : modules.plain));
     if (typeof Response !== "undefined" && source instanceof Response) {
@@ -90,12 +99,24 @@ export function lastText() {
 }
 
 export function failure(status) {
-    return new Lockstep2dError(NAMES[status] ?? `STATUS_${status}`, lastText());
+    // The library names options in snake case.
+    const message = lastText().replace(/`[a-z]+(_[a-z]+)+`/g, camel);
+    return new Lockstep2dError(NAMES[status] ?? `STATUS_${status}`, message);
 }
 
 /** Calls a function, and returns its status. */
 export function statusOf(name, ...given) {
-    const status = library()[name](...given);
+    const called = library()[name];
+    if (called === undefined) {
+        throw new Lockstep2dError("INIT", "`init` of `lockstep2d/core` was called first: it loads a module without replays and matches");
+    }
+    for (const value of given) {
+        // WebAssembly would convert any other argument to an integer without an error.
+        if (typeof value !== "bigint" && !(Number.isInteger(value) && value >= 0 && value <= 0xffffffff)) {
+            fail(`an argument of ${name.replace("ls2d_", "")} is an integer from 0 to 4294967295, and not ${shown(value)}`);
+        }
+    }
+    const status = called(...given);
     memory();
     return status;
 }
@@ -118,9 +139,9 @@ export const idAt = (at) => view.getUint32(at + 4, true) * 4294967296 + view.get
 export const hashAt = (at) => u64(at + 8).toString(16).padStart(16, "0") + u64(at).toString(16).padStart(16, "0");
 export const f64s = (at, count) => new Float64Array(exports.memory.buffer, at, count);
 
-export function writeHash(at, text) {
-    if (!/^[0-9a-f]{32}$/.test(text)) {
-        throw new Lockstep2dError("VALUE", "a hash is 32 hexadecimal digits");
+export function writeHash(at, text, what = "a hash") {
+    if (typeof text !== "string" || !/^[0-9a-f]{32}$/.test(text)) {
+        fail(`${what} is 32 hexadecimal digits, and not ${shown(text)}`);
     }
     view.setBigUint64(at + 8, BigInt(`0x${text.slice(0, 16)}`), true);
     view.setBigUint64(at, BigInt(`0x${text.slice(16)}`), true);
@@ -131,29 +152,22 @@ export function id(value, what = "a body") {
     if (Number.isSafeInteger(value) && value >= 0) {
         return BigInt(value);
     }
-    throw new Lockstep2dError("VALUE", `${what} is a number that the world has returned`);
+    return fail(`${what} is a number that the world has returned, and not ${shown(value)}`);
 }
-
-const integer = (value, what) => {
-    if (!Number.isInteger(value)) {
-        throw new Lockstep2dError("VALUE", `${what} has to be an integer, and not ${value}`);
-    }
-    return value;
-};
 
 const WRITE = {
     fx: (at, value, what) => view.setBigInt64(at, rawOf(value, what), true),
-    angle: (at, value) => view.setUint32(at, bitsOf(value), true),
+    angle: (at, value, what) => view.setUint32(at, bitsOf(value, what), true),
     vec2: (at, value, what) => {
         const [x, y] = vectorOf(value, what);
         view.setBigInt64(at, x, true);
         view.setBigInt64(at + 8, y, true);
     },
-    uint32_t: (at, value, what) => view.setUint32(at, integer(value, what), true),
-    int32_t: (at, value, what) => view.setInt32(at, integer(value, what), true),
-    uint64_t: (at, value, what) => view.setBigUint64(at, typeof value === "bigint" ? value : BigInt(integer(value, what)), true),
-    body: (at, value) => view.setBigUint64(at, id(value), true),
-    shape: (at, value) => view.setBigUint64(at, id(value, "a shape"), true),
+    uint32_t: (at, value, what) => view.setUint32(at, u32Of(value, what), true),
+    int32_t: (at, value, what) => view.setInt32(at, Number(integer(value, what, -(2 ** 31), 2 ** 31 - 1)), true),
+    uint64_t: (at, value, what) => view.setBigUint64(at, long(value, what), true),
+    body: (at, value, what) => view.setBigUint64(at, id(value, what), true),
+    shape: (at, value, what) => view.setBigUint64(at, id(value, what), true),
     hash: writeHash,
 };
 const READ = {
@@ -172,23 +186,35 @@ const STRIDE = { fx: 8, vec2: 16, uint64_t: 8, body: 8, uint8_t: 1 };
 
 const camel = (name) => name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
 
-/** Writes the given fields of a struct. */
-export function write(name, at, values) {
-    for (const [field, [offset, kind, count]] of Object.entries(STRUCTS[name].fields)) {
-        const value = values[camel(field)];
+// For each struct, its fields with their names in JavaScript: name, offset, kind, and number of items of an array.
+const FIELDS = Object.fromEntries(
+    Object.entries(STRUCTS).map(([name, { fields }]) => [name, Object.entries(fields).map(([field, rest]) => [camel(field), ...rest])]),
+);
+
+/** Names of the fields of a struct as options, without some fields that are not options. */
+export const optionsOf = (name, without) => Object.keys(STRUCTS[name].fields).filter((field) => !without.includes(field)).map(camel);
+
+/** Writes the given fields of a struct. `what` precedes the name of a field in errors. */
+export function write(name, at, values, what = "") {
+    for (const [field, offset, kind, count] of FIELDS[name]) {
+        const value = values[field];
         if (value === undefined) {
             continue;
         }
         if (kind === "uint8_t") {
+            const data = ENCODER.encode(string(value, what + field));
+            if (data.length > count) {
+                fail(`${what}${field} has ${data.length} bytes, at most ${count} are possible`);
+            }
             memory().fill(0, at + offset, at + offset + count);
-            memory().set(ENCODER.encode(value).subarray(0, count), at + offset);
+            memory().set(data, at + offset);
         } else if (count === undefined) {
-            WRITE[kind](at + offset, value, camel(field));
+            WRITE[kind](at + offset, value, what + field);
         } else {
             if (value.length > count) {
-                throw new Lockstep2dError("VALUE", `${camel(field)} has ${value.length} items, at most ${count} are possible`);
+                fail(`${what}${field} has ${value.length} items, at most ${count} are possible`);
             }
-            value.forEach((item, index) => WRITE[kind](at + offset + index * STRIDE[kind], item, camel(field)));
+            value.forEach((item, index) => WRITE[kind](at + offset + index * STRIDE[kind], item, what + field));
         }
     }
 }
@@ -196,9 +222,9 @@ export function write(name, at, values) {
 /** Reads a struct as an object. */
 export function read(name, at) {
     const result = {};
-    for (const [field, [offset, kind, count]] of Object.entries(STRUCTS[name].fields)) {
+    for (const [field, offset, kind, count] of FIELDS[name]) {
         if (count === undefined && READ[kind] !== undefined) {
-            result[camel(field)] = READ[kind](at + offset);
+            result[field] = READ[kind](at + offset);
         }
     }
     return result;
@@ -211,17 +237,15 @@ export function fieldAt(name, at, field) {
 
 /** Copies bytes into memory, behind `reserved` bytes that the caller fills. Returns the address of the reserved
  * bytes. */
-export function give(data, reserved = 64) {
-    if (!(data instanceof Uint8Array)) {
-        throw new Lockstep2dError("VALUE", "bytes have to be a Uint8Array");
-    }
+export function give(data, reserved = 64, what = "the argument") {
+    byteArray(data, what);
     const at = scratch(reserved + data.length);
     memory().set(data, at + reserved);
     return at;
 }
 
 export const giveText = (text, reserved = 64) => {
-    const data = ENCODER.encode(text);
+    const data = ENCODER.encode(string(text, "a name"));
     return [give(data, reserved), data.length];
 };
 

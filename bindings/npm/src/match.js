@@ -1,7 +1,8 @@
 // Matches: the lockstep session with inputs, states and packets as bytes, and a driver that plays a game with it.
+import { byteArray, count, fail, instance, integer, long, onlyKnown } from "./check.js";
 import { Lockstep2dError } from "./error.js";
 import { C } from "./layout.js";
-import { Handle, call, copy, give, putBytes, read, scratch, sizeOf, takeBytes, u32, u64, write, writeHash } from "./library.js";
+import { Handle, call, copy, give, optionsOf, putBytes, read, scratch, sizeOf, takeBytes, u32, u64, write, writeHash } from "./library.js";
 import { nextRequest } from "./requests.js";
 
 const STATUS = ["joining", "watching", "waiting", "playing", "paused", "dropped", "kicked", "leaving", "left", "finished", "closed",
@@ -12,8 +13,15 @@ const REASONS = ["offer", "full", "taken", "notReady"];
 const ADDRESS_MAX = 32;
 const PACKET_MAX = 2048;
 
-// Converts milliseconds, as performance.now() returns them, to microseconds.
-const micros = (now) => BigInt(Math.max(0, Math.floor(now * 1000)));
+const MATCH_OPTIONS = ["contact", "offer", "tickRate", ...optionsOf("match_config", ["size", "tick_micros"])];
+
+/** Converts milliseconds, as performance.now() returns them, to microseconds. */
+function micros(milliseconds, what = "the time") {
+    if (typeof milliseconds !== "number" || !(milliseconds >= 0 && milliseconds < Number.MAX_SAFE_INTEGER / 1000)) {
+        fail(`${what} is a number of milliseconds from 0, and not ${milliseconds}`);
+    }
+    return BigInt(Math.floor(milliseconds * 1000));
+}
 
 function random(count) {
     return crypto.getRandomValues(new BigUint64Array(count));
@@ -21,6 +29,9 @@ function random(count) {
 
 function identity({ peer, key, secret }) {
     const [a, b, c, d] = random(4);
+    if (secret !== undefined && (!Array.isArray(secret) || secret.length !== 2)) {
+        fail("a secret is an array of two integers of 64 bits");
+    }
     return { peer: peer ?? Number(a & 0xffffffffn), key: key ?? b, secret: secret ?? [c, d] };
 }
 
@@ -29,7 +40,14 @@ export class Match extends Handle {
     #inputs;
 
     /** Opens a match, or joins one if there is a `contact`: the address of a participant, as bytes. */
-    constructor({ contact, offer = new Uint8Array(), seats, peer, key, secret, ...config }) {
+    constructor(options) {
+        const { contact, offer = new Uint8Array(), seats, peer, key, secret, ...config } =
+            onlyKnown(options, MATCH_OPTIONS, "a match");
+        count(seats, "`seats`");
+        byteArray(offer, "`offer`");
+        if (contact !== undefined) {
+            byteArray(contact, "`contact`");
+        }
         const data = new Uint8Array(offer.length + (contact?.length ?? 0));
         data.set(offer);
         data.set(contact ?? [], offer.length);
@@ -38,10 +56,9 @@ export class Match extends Handle {
         call("ls2d_match_config_init", seats, at + 8);
         const { patience, tickRate, ...plain } = config;
         write("match_config", at + 8, {
-            startWith: Math.min(2, seats),
             ...plain,
-            tickMicros: tickRate === undefined ? undefined : Math.floor(1_000_000 / tickRate),
-            patience: patience === undefined ? undefined : micros(patience),
+            tickMicros: tickRate === undefined ? undefined : Math.floor(1_000_000 / Number(integer(tickRate, "`tickRate`", 1, 1000))),
+            patience: patience === undefined ? undefined : micros(patience, "`patience`"),
             ...identity({ peer, key, secret }),
         });
         const to = at + before;
@@ -57,13 +74,13 @@ export class Match extends Handle {
 
     /** Sends the request to join to another participant, or again to the same one. */
     ask(contact) {
-        const at = give(contact);
+        const at = give(contact, 64, "a contact");
         call("ls2d_match_ask", this.handle, at + 64, contact.length);
     }
 
     /** Takes a packet from an address. `now` is in milliseconds. */
     receive(now, from, packet) {
-        const at = give(packet);
+        const at = give(packet, 64, "a packet");
         putAddress(at, from);
         call("ls2d_match_receive", this.handle, micros(now), at, from.length, at + 64, packet.length);
     }
@@ -80,7 +97,7 @@ export class Match extends Handle {
 
     /** Issues the inputs of your own seats. Returns whether they were issued; if not, they may be passed again. */
     advance(now, inputs) {
-        const at = give(inputs);
+        const at = give(inputs, 64, "the inputs");
         call("ls2d_match_advance", this.handle, micros(now), at + 64, inputs.length, at);
         return u32(at) === 1;
     }
@@ -93,7 +110,7 @@ export class Match extends Handle {
     reportHash(tick, hash) {
         const at = scratch(16);
         writeHash(at, hash);
-        call("ls2d_match_report_hash", this.handle, tick, at);
+        call("ls2d_match_report_hash", this.handle, count(tick, "a tick"), at);
     }
 
     /** The next packet to send: `{ to, packet }`. */
@@ -133,8 +150,8 @@ export class Match extends Handle {
 
     /** Offers the state after a number of final ticks to peers that join. */
     offerState(tick, state) {
-        const at = give(state);
-        call("ls2d_match_offer_state", this.handle, tick, at + 64, state.length);
+        const at = give(state, 64, "the state");
+        call("ls2d_match_offer_state", this.handle, count(tick, "a tick"), at + 64, state.length);
     }
 
     get status() {
@@ -154,7 +171,7 @@ export class Match extends Handle {
     /** The final inputs of all seats for a tick, as `Recorder.record` takes them, or undefined if they are not kept. */
     finalInputs(tick) {
         const at = scratch(16 + this.#inputs);
-        if (!call("ls2d_match_final_inputs", this.handle, tick, at + 16, this.#inputs, at, at + 8)) {
+        if (!call("ls2d_match_final_inputs", this.handle, count(tick, "a tick"), at + 16, this.#inputs, at, at + 8)) {
             return undefined;
         }
         return { inputs: copy(at + 16, u32(at)), absent: u64(at + 8) };
@@ -182,7 +199,7 @@ export class Match extends Handle {
     }
 
     endAt(ticks) {
-        call("ls2d_match_end_at", this.handle, ticks);
+        call("ls2d_match_end_at", this.handle, count(ticks, "the number of ticks"));
     }
 
     pause(paused) {
@@ -190,15 +207,15 @@ export class Match extends Handle {
     }
 
     goOnWithout(peer) {
-        call("ls2d_match_go_on_without", this.handle, peer);
+        call("ls2d_match_go_on_without", this.handle, count(peer, "a peer"));
     }
 
     kick(key) {
-        call("ls2d_match_kick", this.handle, key);
+        call("ls2d_match_kick", this.handle, long(key, "a key"));
     }
 
     setGuess(ticks) {
-        call("ls2d_match_set_guess", this.handle, ticks);
+        call("ls2d_match_set_guess", this.handle, count(ticks, "the number of ticks"));
     }
 }
 
@@ -223,9 +240,10 @@ export class MatchDriver {
     #send;
     #saves = new Map();
     #tick = 0;
+    #failure;
 
     constructor(match, game, send) {
-        this.#match = match;
+        this.#match = instance(match, Match, "the match");
         this.#game = game;
         this.#send = send;
         this.#keep(0);
@@ -240,13 +258,31 @@ export class MatchDriver {
         return this.#tick;
     }
 
+    /** Whether the match has finished and the game has played all of its ticks. */
+    get ended() {
+        return ["finished", "closed"].includes(this.#match.status) && this.#tick === this.#match.ticks().final;
+    }
+
     receive(now, from, packet) {
         this.#match.receive(now, from, packet);
     }
 
     /** Advances the match to the time `now`, and plays the ticks that are due with the inputs that `readInputs(seats)`
-     * returns. Returns the events. */
+     * returns. Returns the events. If the game throws an error, its state is unknown: the driver throws the same error
+     * from then on. */
     update(now, readInputs) {
+        if (this.#failure !== undefined) {
+            throw this.#failure.error;
+        }
+        try {
+            return this.#update(now, readInputs);
+        } catch (error) {
+            this.#failure = { error };
+            throw error;
+        }
+    }
+
+    #update(now, readInputs) {
         this.#match.update(now);
         const events = [];
         for (let event = this.#match.nextEvent(); event !== undefined; event = this.#match.nextEvent()) {

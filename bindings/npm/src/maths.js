@@ -1,4 +1,5 @@
 // Mathematics for the rules of a game. `fx` has the arithmetic.
+import { count, integer } from "./check.js";
 import { Angle, bitsOf, rawOf, vectorOf, Fx } from "./fx.js";
 import { call, fxAt, give, hashAt, library, scratch, u32, read } from "./library.js";
 
@@ -31,7 +32,8 @@ export const rotate = (value, angle) => {
 export class Random {
     constructor(seed) {
         const at = scratch(16);
-        call("ls2d_rng_init", BigInt.asUintN(64, BigInt(seed)), at);
+        const bits = BigInt(integer(seed, "a seed", -(1n << 63n), (1n << 64n) - 1n));
+        call("ls2d_rng_init", BigInt.asUintN(64, bits), at);
         this.state = read("rng", at);
     }
 
@@ -46,7 +48,7 @@ export class Random {
     /** A uniform integer from 0 to below `bound`. */
     below(bound) {
         const at = this.#at();
-        call("ls2d_rng_below", at, at, bound, at + 16);
+        call("ls2d_rng_below", at, at, count(bound, "the bound"), at + 16);
         this.state = read("rng", at);
         return u32(at + 16);
     }
@@ -62,7 +64,7 @@ export class Random {
 
 /** Hash of bytes: 32 hexadecimal digits. */
 export function hashBytes(bytes) {
-    const at = give(bytes);
+    const at = give(bytes, 64, "the data");
     call("ls2d_hash_bytes", at + 64, bytes.length, at);
     return hashAt(at);
 }

@@ -1,4 +1,5 @@
 // A member of a room of a relay (crates/relay): carries the packets of matches over a WebSocket.
+import { byteArray, fail, string } from "./check.js";
 import { Lockstep2dError } from "./error.js";
 
 const ADDRESS = 8;
@@ -36,11 +37,14 @@ export class Relay {
     /** Enters a room, and creates it if it does not exist. `url` is `wss://HOST` or `ws://HOST:PORT`, `code` 1 to 32
      * letters, digits and `-`. With the same `secret`, 16 random bytes, a member gets the same address again. */
     static async connect(url, code, { secret = crypto.getRandomValues(new Uint8Array(SECRET)), WebSocket = globalThis.WebSocket } = {}) {
-        if (WebSocket === undefined) {
-            throw new Lockstep2dError("VALUE", "there is no WebSocket here; pass one as option");
+        if (typeof WebSocket !== "function") {
+            fail("there is no WebSocket here; pass one as option");
         }
-        if (!/^[0-9A-Za-z-]{1,32}$/.test(code) || secret.length !== SECRET) {
-            throw new Lockstep2dError("VALUE", `a code is 1 to 32 letters, digits and -, a secret ${SECRET} bytes`);
+        if (!/^wss?:\/\//.test(string(url, "the address of the relay"))) {
+            fail(`the address of the relay is wss://HOST or ws://HOST:PORT, and not ${url}`);
+        }
+        if (!/^[0-9A-Za-z-]{1,32}$/.test(string(code, "a code")) || byteArray(secret, "a secret").length !== SECRET) {
+            fail(`a code is 1 to 32 letters, digits and -, a secret ${SECRET} bytes`);
         }
         const relay = new Relay(`${url.replace(/\/+$/, "")}/${code}`, secret, WebSocket);
         try {
@@ -73,6 +77,8 @@ export class Relay {
         this.#socket = socket;
         socket.onopen = () => socket.send(this.#secret);
         socket.onmessage = ({ data }) => (typeof data === "string" ? this.#members(JSON.parse(data)) : this.#packet(new Uint8Array(data)));
+        // After an error the socket is closed as well. The package `ws` throws errors that nobody listens to.
+        socket.onerror = () => {};
         socket.onclose = ({ code, reason }) => socket === this.#socket && this.#lost(code, reason);
     }
 

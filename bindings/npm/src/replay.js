@@ -1,12 +1,15 @@
 // Replays of worlds that commands change, and of games with rules of their own.
+import { byteArray, count, instance, integer, long, onlyKnown, string } from "./check.js";
 import { writeConfig } from "./definitions.js";
-import { Handle, call, copy, fieldAt, give, giveText, hashAt, lastText, scratch, sizeOf, statusOf, takeBytes, text, u32, u64, write, writeHash } from "./library.js";
+import { Commands } from "./edits.js";
+import { Handle, call, copy, fieldAt, give, giveText, hashAt, lastText, optionsOf, scratch, sizeOf, statusOf, takeBytes, text, u32, u64, write, writeHash } from "./library.js";
 import { Lockstep2dError } from "./error.js";
 import { STATUS } from "./layout.js";
 import { nextRequest } from "./requests.js";
 import { Adopted, World } from "./world.js";
 
 const VERDICTS = ["match", "claim_mismatch", "diverged", "incomplete", "malformed", "limit_exceeded", "unverifiable"];
+const RECORDER_OPTIONS = ["rules", "rulesVersion", "players", "tickRate", "inputBytes", "setup", "start", "interval"];
 const ENCODER = new TextEncoder();
 
 function verdictAt(at) {
@@ -34,6 +37,7 @@ function limitsAt(at, limits) {
     if (limits === undefined) {
         return 0;
     }
+    onlyKnown(limits, optionsOf("limits", ["size"]), "`limits`");
     call("ls2d_limits_init", at);
     write("limits", at, limits);
     return at;
@@ -50,17 +54,19 @@ export function verifyReplay(bytes, limits) {
 /** A world that is recorded while it runs. Only lists of commands change the world. */
 export class Recording extends Handle {
     /** Starts from settings and the commands that set up the world. */
-    constructor({ config = {}, setup, interval = 60 }) {
+    constructor(options) {
+        const { config = {}, setup, interval = 60 } = onlyKnown(options, ["config", "setup", "interval"], "a recording");
+        instance(setup, Commands, "`setup`");
         const at = scratch(8 + sizeOf("config"));
         call("ls2d_config_init", at + 8);
         writeConfig(at + 8, config);
-        call("ls2d_recording_new", at + 8, setup.handle, interval, at);
+        call("ls2d_recording_new", at + 8, setup.handle, count(interval, "`interval`"), at);
         super(u32(at));
     }
 
     /** Executes the commands and advances by one tick. The list is empty afterwards. */
     step(commands) {
-        call("ls2d_recording_step", this.handle, commands.handle);
+        call("ls2d_recording_step", this.handle, instance(commands, Commands, "the list").handle);
     }
 
     /** A copy of the world. */
@@ -87,23 +93,23 @@ export class Recording extends Handle {
 
 function claim(name, handle, what, number) {
     const [at, length] = giveText(what);
-    const value = typeof number === "bigint" || Number.isSafeInteger(number) ? BigInt(number) : undefined;
-    if (value === undefined || BigInt.asIntN(64, value) !== value) {
-        throw new Lockstep2dError("VALUE", `a claim is an integer of 64 bits, and not ${number}`);
-    }
-    call(name, handle, at + 64, length, value);
+    call(name, handle, at + 64, length, BigInt(integer(number, "a claim", -(1n << 63n), (1n << 63n) - 1n)));
 }
 
 /** Records a game with rules of its own: the final inputs of every tick, and hashes of its states. */
 export class Recorder extends Handle {
     /** `start` is the hash of the state before the first tick. */
-    constructor({ rules, rulesVersion = 1, players, tickRate = 60, inputBytes, setup = new Uint8Array(), start, interval = 60 }) {
-        const name = ENCODER.encode(rules);
+    constructor(options) {
+        const { rules, rulesVersion = 1, players, tickRate = 60, inputBytes, setup = new Uint8Array(), start, interval = 60 } =
+            onlyKnown(options, RECORDER_OPTIONS, "a recorder");
+        Object.entries({ rulesVersion, players, tickRate, inputBytes, interval }).forEach(([field, value]) => count(value, `\`${field}\``));
+        byteArray(setup, "`setup`");
+        const name = ENCODER.encode(string(rules, "`rules`"));
         const all = new Uint8Array(name.length + setup.length);
         all.set(name);
         all.set(setup, name.length);
         const at = give(all);
-        writeHash(at, start);
+        writeHash(at, start, "`start`");
         call("ls2d_recorder_new", at + 64, name.length, rulesVersion, players, tickRate, inputBytes, at + 64 + name.length,
             setup.length, at, interval, at + 16);
         super(u32(at + 16));
@@ -112,8 +118,8 @@ export class Recorder extends Handle {
     /** Records the inputs of all players for the next tick, and a bit for each absent player, whose input has to be
      * zeros. Returns whether `checkpoint` has to follow. */
     record(inputs, absent = 0n) {
-        const at = give(inputs);
-        call("ls2d_recorder_record", this.handle, at + 64, inputs.length, absent, at);
+        const at = give(inputs, 64, "the inputs");
+        call("ls2d_recorder_record", this.handle, at + 64, inputs.length, long(absent, "the absent players"), at);
         return u32(at) === 1;
     }
 
@@ -194,7 +200,7 @@ export class Replay extends Handle {
     /** Starts seeking to a tick: `nextRequest` returns the requests. At the first call the game has to be in the state
      * before the first tick. */
     seek(tick) {
-        call("ls2d_replay_seek", this.handle, BigInt(tick));
+        call("ls2d_replay_seek", this.handle, long(tick, "a tick"));
     }
 
     /** The next request on the way to a tick: `save`, `load`, `advance`, or `checksum`, which `check` answers. */
@@ -204,7 +210,7 @@ export class Replay extends Handle {
 
     /** Sets the interval in ticks at which seeking requests to save the state. */
     setInterval(ticks) {
-        call("ls2d_replay_set_interval", this.handle, ticks);
+        call("ls2d_replay_set_interval", this.handle, count(ticks, "the interval"));
     }
 
     /** Adds a result of the game that was played. The verdict compares all added results with those in the file. */
@@ -241,9 +247,10 @@ export class ReplayDriver {
     #game;
     #saves = new Map();
     #tick = 0;
+    #isDisposed = false;
 
     constructor(replay, game) {
-        this.#replay = replay;
+        this.#replay = instance(replay, Replay, "the replay");
         this.#game = game;
     }
 
@@ -256,6 +263,9 @@ export class ReplayDriver {
      * Throws an error with the code RECORD if the game diverges from the file. The driver then stays at that tick, and
      * earlier ticks can be reached. */
     seek(tick) {
+        if (this.#isDisposed) {
+            throw new Lockstep2dError("DISPOSED", "this ReplayDriver was disposed");
+        }
         this.#replay.seek(tick);
         for (let request = this.#replay.nextRequest(); request !== undefined; request = this.#replay.nextRequest()) {
             this.#answer(request);
@@ -276,6 +286,7 @@ export class ReplayDriver {
     dispose() {
         this.#saves.forEach((saved) => this.#game.drop?.(saved));
         this.#saves.clear();
+        this.#isDisposed = true;
     }
 
     #by(ticks) {
@@ -324,7 +335,7 @@ export class Timeline extends Handle {
 
     /** Goes to a tick. This is fast if the tick was played before. */
     seek(tick) {
-        call("ls2d_timeline_seek", this.handle, BigInt(tick));
+        call("ls2d_timeline_seek", this.handle, long(tick, "a tick"));
     }
 
     /** Goes forward by a tick. Returns false at the end. */

@@ -1,5 +1,6 @@
 // Worlds and snapshots.
-import { writeConfig, writeFilter, writeShape } from "./definitions.js";
+import { count as u32Of, fail, instance, object, shown } from "./check.js";
+import { BODY_FLAGS, writeConfig, writeFilter, writeShape } from "./definitions.js";
 import { rawOf, vectorOf } from "./fx.js";
 import { readJoint } from "./joints.js";
 import { C } from "./layout.js";
@@ -7,10 +8,11 @@ import {
     Handle, call, copy, f64s, fieldAt, fxAt, give, hashAt, id, idAt, library, list, read, scratch, sizeOf, takeBytes, text, u32, u64,
     write,
 } from "./library.js";
-import { Edits } from "./edits.js";
+import { Commands, Edits } from "./edits.js";
 
 const raws = (vector, what) => vectorOf(vector, what);
 const KINDS = ["fixed", "kinematic", "dynamic"];
+const SWEEPS = ["off", "fixed", "bullet", "kinematic"];
 
 /** A saved state in memory. */
 export class Snapshot extends Handle {
@@ -41,7 +43,7 @@ export class World extends Edits {
     static #make(options) {
         const at = scratch(8 + sizeOf("config"));
         call("ls2d_config_init", at + 8);
-        const { smallest, ...settings } = options;
+        const { smallest, ...settings } = object(options, "the options of a world");
         writeConfig(at + 8, settings);
         if (smallest !== undefined) {
             call("ls2d_config_for_smallest", at + 8, at + 8, rawOf(smallest, "smallest"));
@@ -71,13 +73,13 @@ export class World extends Edits {
 
     /** Advances the world by one tick, or by several. */
     step(ticks = 1) {
-        call("ls2d_world_steps", this.handle, ticks);
+        call("ls2d_world_steps", this.handle, u32Of(ticks, "the number of ticks"));
     }
 
     /** Executes a list of commands, and returns how many of them were refused. */
     execute(commands) {
         const at = scratch(8);
-        call("ls2d_world_execute", this.handle, commands.handle, at);
+        call("ls2d_world_execute", this.handle, instance(commands, Commands, "the list").handle, at);
         return u32(at);
     }
 
@@ -92,7 +94,7 @@ export class World extends Edits {
      * numbers. */
     digest(section) {
         const at = scratch(16);
-        call("ls2d_world_digest", this.handle, section, at);
+        call("ls2d_world_digest", this.handle, u32Of(section, "a section"), at);
         return hashAt(at);
     }
 
@@ -133,7 +135,7 @@ export class World extends Edits {
     /** A uniform integer from 0 to below `bound`, from the generator of the world, which is part of its state. */
     random(bound) {
         const at = scratch(8);
-        call("ls2d_world_random_below", this.handle, bound, at);
+        call("ls2d_world_random_below", this.handle, u32Of(bound, "the bound"), at);
         return u32(at);
     }
 
@@ -152,11 +154,11 @@ export class World extends Edits {
 
     /** Saves into an existing snapshot, and reuses its memory: the fastest way to save every tick. */
     saveInto(snapshot) {
-        call("ls2d_world_save_into", this.handle, snapshot.handle);
+        call("ls2d_world_save_into", this.handle, instance(snapshot, Snapshot, "the snapshot").handle);
     }
 
     restore(snapshot) {
-        call("ls2d_world_restore", this.handle, snapshot.handle);
+        call("ls2d_world_restore", this.handle, instance(snapshot, Snapshot, "the snapshot").handle);
     }
 
     /** Properties of a body, or undefined if it is not in the world. */
@@ -170,13 +172,9 @@ export class World extends Edits {
             }
             throw error;
         }
-        const { kind, flags, ...rest } = read("body_info", at);
-        return {
-            ...rest,
-            type: KINDS[kind],
-            enabled: (flags & C.BODY_ENABLED) !== 0,
-            asleep: (flags & C.BODY_ASLEEP) !== 0,
-        };
+        const { kind, flags, continuous, reserved: _, ...rest } = read("body_info", at);
+        const options = Object.entries(BODY_FLAGS).map(([name, bit]) => [name, (flags & bit) !== 0]);
+        return { ...rest, type: KINDS[kind], continuous: SWEEPS[continuous], ...Object.fromEntries(options) };
     }
 
     /** Name of a body, or undefined if it has none. */
@@ -269,6 +267,9 @@ export class World extends Edits {
 
     /** For drawing: five floats for each enabled body: its handle, x, y, angle in radians, and 1 if it is awake. */
     poses(target) {
+        if (target !== undefined && !(target instanceof Float64Array)) {
+            fail(`the target is a Float64Array, and not ${shown(target)}`);
+        }
         const ask = (rows, capacity, count) => library().ls2d_draw_poses(this.handle, rows, capacity, count);
         const { at, count } = list(8, 0, ask);
         const found = f64s(at, count);

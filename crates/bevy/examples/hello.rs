@@ -45,7 +45,7 @@ fn throw(
     }
 }
 
-/// Events are messages.
+/// Events of the world are Bevy messages.
 fn name_hits(mut events: MessageReader<ConfirmedEvent>) {
     for event in events.read() {
         if let WorldEvent::Hit(hit) = event.event {

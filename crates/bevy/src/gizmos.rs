@@ -60,7 +60,7 @@ pub struct LockstepGizmos {
 }
 
 impl LockstepGizmos {
-    /// The layers.
+    /// Converts these settings to [`Layers`].
     #[must_use]
     pub const fn layers(self) -> Layers {
         Layers {

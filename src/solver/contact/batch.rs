@@ -16,7 +16,8 @@ pub(in crate::solver) struct Batch<const N: usize> {
     /// The normal, from A to B, with the fraction bits of a lever ratio. The tangent is perpendicular to it.
     pub(super) n_x: Ints<N>,
     pub(super) n_y: Ints<N>,
-    /// -1 in lanes in which one of the bodies is not moved by impulses. These contacts are stiffer.
+    /// -1 in lanes in which one of the bodies is not moved by impulses, or -2 if in addition the other one has an
+    /// impact. These contacts are stiffer.
     pub(super) immovable: Ints<N>,
     /// -1 in lanes with two points. In the other lanes of a batch of two points, the second point is a copy of the
     /// first point, without an impulse.

@@ -144,6 +144,9 @@ impl<const N: usize> Batches<Contacts, N> {
             records.take(lane, input);
         }
         rows::fill::<L, N>(&inputs, batch, &mut records.denominators);
+        for (lane, _) in inputs.iter().enumerate().filter(|(_, input)| input.struck) {
+            batch.immovable.0[lane] *= 2;
+        }
         let mut extra = None;
         if batch.extras {
             let extra = extra.insert(ContactExtras::NONE);
@@ -181,9 +184,13 @@ fn keep<L: Lanes<N>, const N: usize>(
         }
         let bodies = source.bodies_of(pair);
         let changed = source.changed(bodies);
-        let is_wedged = changed.iter().any(|&body| prospects[body as usize].is_wedged());
+        let is_struck = changed.iter().any(|&body| prospects[body as usize].is_struck());
         let has = |of: &[[u32; N]; 2], bodies: [u32; 2]| [of[0][lane], of[1][lane]] == bodies;
-        if is_wedged || !has(&batch.bodies, bodies) || !has(&batch.changed, changed) {
+        if is_struck
+            || batch.immovable.0[lane] < -1
+            || !has(&batch.bodies, bodies)
+            || !has(&batch.changed, changed)
+        {
             return false;
         }
         let manifold = &source.manifolds[pair.manifold as usize];

@@ -35,8 +35,9 @@ const NORMAL_ROUNDS_MAX: u32 = 4;
 /// Change of the second point's impulse, in m/s, below which the points are not solved again.
 const SETTLED: Speed = Speed::lit("0.005");
 
-/// Normal velocity below which an overlap with a body that no impulse moves is as rigid as a gap. A soft contact would
-/// remove only a part of the approach velocity.
+/// Normal velocity below which an overlap with a body that no impulse moves is as rigid as a gap, if the other body has
+/// an impact. A soft contact would remove only a part of the approach velocity. Without an impact the velocity comes
+/// from other constraints: a wheel on a fixed axle that overlaps the ground would shake.
 const IMPACT_SPEED: Speed = Speed::lit("-1");
 
 /// Order in which the two points of a contact are solved. It alternates, because the point that is solved first turns
@@ -217,7 +218,9 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
     #[inline(always)]
     fn new(batch: &Batch<N>, pass: Pass, constants: &Constants, n: [L::Int; 2]) -> Self {
         let &Constants { rate, separation_max, slop, push_speed, soft, stiff, .. } = constants;
-        let immovable = L::negative(L::load(&batch.immovable));
+        let immovable = L::load(&batch.immovable);
+        let struck = L::greater(L::splat(-1), immovable);
+        let immovable = L::negative(immovable);
         let (soft_impulse, stiff_impulse) = (soft.impulse_scale.to_bits(), stiff.impulse_scale.to_bits());
         Normals {
             pass,
@@ -229,7 +232,7 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
             bias_rate: chosen::<L, N>(immovable, soft.bias_rate.to_bits(), stiff.bias_rate.to_bits()),
             mass_scale: chosen::<L, N>(immovable, soft.mass_scale.to_bits(), stiff.mass_scale.to_bits()),
             impulse_scale: chosen::<L, N>(immovable, soft_impulse, stiff_impulse),
-            impact_speed: chosen::<L, N>(immovable, i32::MIN, IMPACT_SPEED.to_bits()),
+            impact_speed: chosen::<L, N>(struck, i32::MIN, IMPACT_SPEED.to_bits()),
         }
     }
 

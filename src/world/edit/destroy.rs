@@ -6,7 +6,7 @@ use crate::body::{BodyId, Handle, JointId, ShapeId, WorldError};
 use crate::collision::Pair;
 use crate::world::World;
 use crate::world::derived::mass_of;
-use crate::world::islands::{joints_changed, wake_overlapping};
+use crate::world::islands::{contact_ended, joints_changed, wake_overlapping};
 use crate::world::state::State;
 
 impl World {
@@ -81,12 +81,16 @@ impl World {
         let State { contacts, sleeping_contacts, .. } = &*self.state;
         self.scratch.contacts.remove_surfaces(|pair| ends(pair.shapes));
         let is_listed = contacts.iter().any(|contact| ends(contact.shapes));
-        let touching = contacts
-            .iter()
-            .chain(sleeping_contacts.iter())
-            .filter(|contact| contact.touching && ends(contact.shapes));
-        let removed: Vec<_> = touching.filter_map(|contact| self.state.reported(contact)).collect();
-        self.state.removed_contacts.extend(removed);
+        let touching = contacts.iter().chain(sleeping_contacts.iter());
+        let ended: Vec<_> =
+            touching.filter(|contact| contact.touching && ends(contact.shapes)).copied().collect();
+        for contact in ended {
+            let removed = self.state.reported(&contact);
+            self.state.removed_contacts.extend(removed);
+            if self.state.sensor_of(contact.shapes).is_none() {
+                contact_ended(&mut self.state, contact.shapes);
+            }
+        }
         self.state.sleeping_contacts.retain(|contact| !ends(contact.shapes));
         if is_listed {
             // The manifolds of all other contacts stay, so that `World::contacts` still returns them.

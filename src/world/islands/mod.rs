@@ -16,6 +16,6 @@ mod wake;
 
 pub(crate) use sleep::{put_sleepy_sets_to_sleep, put_to_sleep, unite, unite_connected, unite_touching};
 pub(crate) use wake::{
-    joint_retuned, joints_changed, wake_body, wake_island, wake_joined, wake_overlapping,
+    contact_ended, joint_retuned, joints_changed, wake_body, wake_island, wake_joined, wake_overlapping,
     wake_overlapping_shape, wake_touching,
 };

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
 use crate::body::{BodyId, BodyKind, Handle, IslandId};
-use crate::collision::Contact;
+use crate::collision::{Contact, Pair};
 use crate::world::cache::Scratch;
 use crate::world::state::State;
 
@@ -36,6 +36,17 @@ pub(crate) fn wake_body(state: &mut State, scratch: &mut Scratch, slot: u32) {
             scratch.pairs.changes.sleeping_contacts_changed();
         }
         None => {}
+    }
+}
+
+/// Restarts the count of ticks at rest of the dynamic bodies of two shapes that no longer touch. A body that the other
+/// one supported, and that has been slow for long, would otherwise fall asleep before it has begun to move.
+pub(crate) fn contact_ended(state: &mut State, (a, b): Pair) {
+    for shape in [a, b] {
+        let slot = state.shapes.at(shape).body().slot();
+        if state.bodies.at(slot).is_dynamic() {
+            state.bodies.at_mut(slot).rest_ticks.reset();
+        }
     }
 }
 

@@ -12,6 +12,7 @@ mod overlap;
 mod probe;
 mod seam;
 mod single;
+mod step_edge;
 mod turning;
 mod walk;
 

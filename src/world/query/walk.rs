@@ -3,9 +3,10 @@
 
 use alloc::vec::Vec;
 
-use super::character::{Mover, MoverState, SLOPE_ROUNDING, in_tick};
+use super::character::{Mover, MoverState, in_tick};
 use super::mover_planes::{MoverPlane, along_surface, clipped, solve_planes};
 use super::seam::Rest;
+use super::step_edge::Surface;
 use super::{InitialOverlap, Probe, QueryFilter};
 use crate::body::{BodyId, BodyKind, Geometry, Handle, ShapeId, Sides};
 use crate::collision::{SKIN, SupportShape, distance};
@@ -19,23 +20,8 @@ const TURNS_MAX: u32 = 8;
 /// Length in metres below which the rest of a translation is dropped.
 const LEFT_OVER: Fx = fx!(0.000001);
 
-/// Distance in metres behind the edge of a step at which there has to be ground.
-const STEP_DEPTH: Fx = fx!(0.02);
-
 /// Largest distance in metres from a surface on which a character stands: the gap of casts and its rounding.
 const STANDING: Fx = fx!(0.000105);
-
-/// Kind of a surface for a character.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Surface {
-    Ground,
-    /// The edge of a step, which the character slides up.
-    Step,
-    /// A slope that is too steep to stand on.
-    Steep,
-    /// A wall or a ceiling.
-    Wall,
-}
 
 /// Treatment of shapes that overlap the character, in a cast.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -56,13 +42,13 @@ pub(super) struct Carrier {
 
 /// A move in progress.
 pub(super) struct Walk<'a> {
-    world: &'a World,
-    mover: &'a Mover,
-    filter: QueryFilter,
+    pub(super) world: &'a World,
+    pub(super) mover: &'a Mover,
+    pub(super) filter: QueryFilter,
     /// The state at the start of the move.
     from: MoverState,
-    probe: Probe,
-    on_ground: bool,
+    pub(super) probe: Probe,
+    pub(super) on_ground: bool,
     /// Normal of the ground that the character walks along.
     along: Option<Vec2<Unit>>,
     /// Height in metres that the character has gained by walking along ground.
@@ -111,7 +97,7 @@ impl<'a> Walk<'a> {
         if by == Vec2::ZERO {
             return Some(Carrier { body: ground.body, velocity: body.velocity_at(ground.point) });
         }
-        let hit = self.cast_among(by, Overlaps::Pass, Some(ground.body));
+        let hit = self.cast_among(&self.probe, by, Overlaps::Pass, Some(ground.body));
         self.advance(hit.map_or(by, |(travelled, _)| travelled));
         let rate = i64::from(self.world.state.config.tick_rate);
         let velocity = Vec2::new(by.x.saturating_mul_int(rate), by.y.saturating_mul_int(rate));
@@ -312,46 +298,19 @@ impl<'a> Walk<'a> {
         None
     }
 
-    fn surface(&self, plane: &MoverPlane) -> Surface {
-        if self.mover.is_ground(plane.normal) {
-            Surface::Ground
-        } else if self.on_ground && self.is_step(plane) {
-            Surface::Step
-        } else if plane.normal.y > 0 {
-            Surface::Steep
-        } else {
-            Surface::Wall
-        }
-    }
-
-    /// Whether there is ground just behind a surface, above the feet by at most the step height.
-    fn is_step(&self, plane: &MoverPlane) -> bool {
-        let Vec2 { x, y } = plane.normal;
-        // A ceiling is no step, but the normal of a wall may be rounded downwards.
-        if y < -SLOPE_ROUNDING || x == 0 || self.mover.step_max() == Fx::ZERO {
-            return false;
-        }
-        let feet = self.probe.posed().bounds.lower.y;
-        let onwards = if x < 0 { STEP_DEPTH } else { -STEP_DEPTH };
-        let top = feet.saturating_add(self.mover.step_max());
-        let above = Vec2::new(plane.point.x.saturating_add(onwards), top);
-        let here = Vec2::new(self.position().x, top);
-        if self.world.cast_ray_any(here, above - here, self.filter) {
-            return false;
-        }
-        // An edge that the character only just leaves may be below its feet, by no more than the gap of a cast.
-        let down = Vec2::new(Fx::ZERO, -(SKIN + SKIN) - self.mover.step_max());
-        let found = self.world.cast_ray(above, down, self.filter);
-        found.is_some_and(|hit| self.mover.is_ground(hit.normal))
-    }
-
     /// Casts the character along a translation. Returns the displacement up to the first hit, and the surface there.
     fn cast(&self, translation: Vec2<Fx>) -> Option<(Vec2<Fx>, MoverPlane)> {
-        self.cast_among(translation, Overlaps::Stop, None)
+        self.cast_among(&self.probe, translation, Overlaps::Stop, None)
+    }
+
+    /// [`Self::cast`] from another position.
+    pub(super) fn cast_from(&self, probe: &Probe, translation: Vec2<Fx>) -> Option<(Vec2<Fx>, MoverPlane)> {
+        self.cast_among(probe, translation, Overlaps::Stop, None)
     }
 
     fn cast_among(
         &self,
+        probe: &Probe,
         translation: Vec2<Fx>,
         overlaps: Overlaps,
         without: Option<BodyId>,
@@ -364,7 +323,7 @@ impl<'a> Walk<'a> {
                 && without != self.world.shape(shape).map(|shape| shape.body())
                 && !self.passes(shape, normal, overlapped)
         };
-        let hit = self.world.first_along(&self.probe, translation, self.filter, Rest::CHARACTER, stops)?;
+        let hit = self.world.first_along(probe, translation, self.filter, Rest::CHARACTER, stops)?;
         Some((hit.travelled, self.world.mover_plane(hit.shape, hit.normal, SKIN, hit.point)))
     }
 

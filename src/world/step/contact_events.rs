@@ -7,6 +7,7 @@ use crate::math::{Fx, fx_mul, widen};
 use crate::solver::ContactResults;
 use crate::world::cache::{MotionCache, Scratch};
 use crate::world::events::{Events, HitEvent};
+use crate::world::islands::contact_ended;
 use crate::world::state::{Reported, State};
 
 /// Updates whether each contact touches, and reports the changes as events. A pair touches if it is near at the start
@@ -22,6 +23,9 @@ pub(super) fn report_contacts(state: &mut State, scratch: &mut Scratch) {
     }
     for contact in pairs.ended.drain(..).filter(|contact| contact.touching) {
         end(reported(state, motion, &contact), events);
+        if !is_with_sensor(motion, &contact) {
+            contact_ended(state, contact.shapes);
+        }
     }
     let (near, apart) = (state.config.touching_distance(), state.config.speculative_distance);
     let mut contacts = core::mem::take(&mut state.contacts);
@@ -42,6 +46,9 @@ pub(super) fn report_contacts(state: &mut State, scratch: &mut Scratch) {
             contact.touching = touching;
             let report = if touching { begin } else { end };
             report(reported(state, motion, contact), events);
+            if !touching && !is_with_sensor(motion, contact) {
+                contact_ended(state, contact.shapes);
+            }
         }
     }
     state.contacts = contacts;

@@ -1,6 +1,6 @@
 //! Contact recycling: how far shapes may move before their contact gets a new manifold.
 
-use crate::body::Body;
+use crate::body::{Body, BodyKind};
 use crate::collision::{Contact, KeptManifold, KeptSide, Manifold};
 use crate::math::{Length, Vec2};
 use crate::world::cache::{ClosingBound, Margins, Recycled, ShapeMotion};
@@ -28,6 +28,9 @@ impl<'a> Recycling<'a> {
     /// If a round shape may roll on a body that is not dynamic, the limits are 256 times smaller: an outdated normal
     /// stops a slow ball at a seam between two blocks, and lets a roly-poly toy lean. Between two dynamic bodies the
     /// limits are not reduced, because plates on rollers are stable only with kept arms.
+    ///
+    /// Nothing is kept on a kinematic body that turns. The arms would lag behind the rotation, so that the velocity at
+    /// the contact would be wrong: a crate of 4 m x 2 m would creep by 35 mm/s at 1 rad/s.
     #[inline]
     pub(super) fn new(
         state: &'a State,
@@ -40,7 +43,11 @@ impl<'a> Recycling<'a> {
         let extents = shapes.map(ShapeMotion::extent);
         let is_round = count < 2 && (shapes[0].radius > 0 || shapes[1].radius > 0);
         let rolls = is_round && !(bodies[0].is_dynamic() && bodies[1].is_dynamic());
-        let arm_tolerance: Length = extents[0].min(extents[1]) >> 6;
+        let turns = |body: &Body| body.kind() == BodyKind::Kinematic && body.spin != 0;
+        let arm_tolerance: Length = match bodies.into_iter().any(turns) {
+            true => Length::ZERO,
+            false => extents[0].min(extents[1]) >> 6,
+        };
         let most = if rolls { arm_tolerance >> 8 } else { arm_tolerance.min(margins.kept) };
         Recycling { bodies, shapes, extents, rolls, arm_tolerance, movement_max: closing.rest_of(most) }
     }

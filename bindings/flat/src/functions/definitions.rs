@@ -34,7 +34,7 @@ api! {
         def.set(raw)
     }
 
-    /// Sets the defaults of a joint of the given kind, without its bodies.
+    /// Sets the defaults of a joint of the given kind. The caller sets its bodies, which are `LS2D_NO_ID`.
     fn ls2d_joint_def_init(kind: u32, def: Out<'_, RawJointDef>) {
         let mut def = def;
         def.set(RawJointDef::of_kind(kind)?)

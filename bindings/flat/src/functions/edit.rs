@@ -183,10 +183,12 @@ api! {
         capacity: usize,
     ) {
         check_room(&ids, capacity, end_count / 2)?;
-        let joint = joint.get()?.def()?;
         let (pairs, []) = ends.slice(end_count)?.as_chunks() else {
             return Err(value("the number of ends of joints", end_count));
         };
+        // The bodies of the definition have no effect. They may be those of `ls2d_joint_def_init`, which do not exist.
+        let [body_a, body_b] = pairs.first().copied().unwrap_or([RawBody(0); 2]);
+        let joint = RawJointDef { body_a, body_b, ..joint.get()? }.def()?;
         let pair = |&[a, b]: &[RawBody; 2]| Ok((a.id()?, b.id()?));
         let ends = pairs.iter().map(pair).collect::<Outcome<_>>()?;
         match edit(target, Command::AddJointEach { joint, ends })? {
@@ -257,7 +259,8 @@ api! {
         edit(target, Command::MoveTo { body: body.id()?, position, angle }).map(|_| ())
     }
 
-    /// Changes the settings of a body: damping, gravity scale, locks, sweeps, sleep. The other fields have no effect.
+    /// Sets all settings of a body: damping, gravity scale, locks, sweeps, sleep. The other fields have no effect.
+    /// `ls2d_body_get` returns the current settings.
     fn ls2d_set_body(target: u32, body: RawBody, def: In<'_, RawBodyDef>) {
         edit(target, Command::SetBody { body: body.id()?, settings: def.get()?.settings()? }).map(|_| ())
     }

@@ -116,6 +116,18 @@ records! {
         inertia: RawFx,
         /// Number that the game stores with the body.
         user_data: u64,
+        /// Decay rate of the velocity, per second.
+        linear_damping: RawFx,
+        /// Decay rate of the angular velocity, per second.
+        angular_damping: RawFx,
+        /// Factor on gravity.
+        gravity_scale: RawFx,
+        /// Speed in m/s below which the body may fall asleep.
+        sleep_speed: RawFx,
+        /// An `LS2D_SWEEP_` number.
+        continuous: u32,
+        /// 0.
+        reserved: u32,
     }
 
     /// Position and rotation of a body.
@@ -166,6 +178,15 @@ const fn kind_number(kind: BodyKind) -> u32 {
     }
 }
 
+const fn sweep_number(continuous: Continuous) -> u32 {
+    match continuous {
+        Continuous::Off => SWEEP_OFF,
+        Continuous::Fixed => SWEEP_FIXED,
+        Continuous::Bullet => SWEEP_BULLET,
+        Continuous::Kinematic => SWEEP_KINEMATIC,
+    }
+}
+
 fn settings_flags(settings: &BodySettings) -> u32 {
     let MotionLocks { x, y, rotation } = settings.locks;
     flag(x, BODY_LOCK_X)
@@ -207,12 +228,7 @@ impl RawBodyDef {
             size: size::<Self>(),
             kind: kind_number(kind),
             flags,
-            continuous: match settings.continuous {
-                Continuous::Off => SWEEP_OFF,
-                Continuous::Fixed => SWEEP_FIXED,
-                Continuous::Bullet => SWEEP_BULLET,
-                Continuous::Kinematic => SWEEP_KINEMATIC,
-            },
+            continuous: sweep_number(settings.continuous),
             position: RawVec2::of(position),
             angle: RawAngle::of(angle),
             reserved: 0,
@@ -290,9 +306,10 @@ fn state_flags(body: &Body) -> u32 {
 
 impl BodyInfo {
     pub(crate) fn of(body: &Body) -> Self {
+        let settings = body.settings();
         BodyInfo {
             kind: kind_number(body.kind()),
-            flags: state_flags(body) | settings_flags(body.settings()),
+            flags: state_flags(body) | settings_flags(settings),
             position: RawVec2::of(body.position()),
             angle: RawAngle::of(body.angle()),
             shapes: u32::try_from(body.shapes().len()).unwrap_or(u32::MAX),
@@ -302,6 +319,12 @@ impl BodyInfo {
             mass: RawFx::of(body.mass()),
             inertia: RawFx::of(body.inertia()),
             user_data: body.user_data(),
+            linear_damping: RawFx::of(settings.linear_damping),
+            angular_damping: RawFx::of(settings.angular_damping),
+            gravity_scale: RawFx::of(settings.gravity_scale),
+            sleep_speed: RawFx::of(settings.sleep_speed),
+            continuous: sweep_number(settings.continuous),
+            reserved: 0,
         }
     }
 }

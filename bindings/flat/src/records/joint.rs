@@ -5,7 +5,7 @@ use lockstep2d::solver::{JointDef, JointFrame, Soft, Threshold, ThresholdAction}
 
 use super::{check_size, flag, has, size};
 use crate::describe::{constants, records};
-use crate::numbers::{RawAngle, RawBody, RawFx, RawVec2};
+use crate::numbers::{NO_ID, RawAngle, RawBody, RawFx, RawVec2};
 use crate::status::{Outcome, value};
 
 constants! {
@@ -158,8 +158,8 @@ impl RawJointDef {
             angle_a: RawAngle(0),
             angle_b: RawAngle(0),
             reserved: 0,
-            body_a: RawBody(0),
-            body_b: RawBody(0),
+            body_a: RawBody(NO_ID),
+            body_b: RawBody(NO_ID),
             anchor_a: origin,
             anchor_b: origin,
             limit_lower: zero,

@@ -1,6 +1,8 @@
 //! Characters stay on their ground: on lifts, turning platforms, trains and belts, and on random stairs and slopes
 //! between walls, for each kind of mover shape and from 30 to 240 ticks a second.
 
+mod overhangs;
+
 use lockstep2d::body::{BodyDef, BodyId, Chain, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, Rng, Vec2, fx_div, fx_mul};

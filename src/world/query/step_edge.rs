@@ -1,0 +1,75 @@
+//! Kinds of surfaces that a character meets, and the edges of steps that it climbs.
+
+use super::character::SLOPE_ROUNDING;
+use super::mover_planes::MoverPlane;
+use super::walk::Walk;
+use crate::collision::SKIN;
+use crate::fx;
+use crate::math::{Fx, Vec2};
+
+/// Distance in metres behind the edge of a step at which there has to be ground.
+const STEP_DEPTH: Fx = fx!(0.02);
+
+/// Kind of a surface for a character.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Surface {
+    Ground,
+    /// The edge of a step, which the character slides up.
+    Step,
+    /// A slope that is too steep to stand on.
+    Steep,
+    /// A wall or a ceiling.
+    Wall,
+}
+
+impl Walk<'_> {
+    pub(super) fn surface(&self, plane: &MoverPlane) -> Surface {
+        if self.mover.is_ground(plane.normal) {
+            Surface::Ground
+        } else if self.on_ground && self.is_step(plane) {
+            Surface::Step
+        } else if plane.normal.y > 0 {
+            Surface::Steep
+        } else {
+            Surface::Wall
+        }
+    }
+
+    /// Whether there is ground just behind a surface, above the feet by at most the step height, and room to stand on it.
+    fn is_step(&self, plane: &MoverPlane) -> bool {
+        let Vec2 { x, y } = plane.normal;
+        // A ceiling is no step, but the normal of a wall may be rounded downwards.
+        if y < -SLOPE_ROUNDING || x == 0 || self.mover.step_max() == Fx::ZERO {
+            return false;
+        }
+        let feet = self.probe.posed().bounds.lower.y;
+        let onwards = if x < 0 { STEP_DEPTH } else { -STEP_DEPTH };
+        let top = feet.saturating_add(self.mover.step_max());
+        let above = Vec2::new(plane.point.x.saturating_add(onwards), top);
+        let here = Vec2::new(self.probe.position().x, top);
+        if self.world.cast_ray_any(here, above - here, self.filter) {
+            return false;
+        }
+        // An edge that the character only just leaves may be below its feet, by no more than the gap of a cast.
+        let down = Vec2::new(Fx::ZERO, -(SKIN + SKIN) - self.mover.step_max());
+        let found = self.world.cast_ray(above, down, self.filter);
+        // Ground below the surface is the floor under something that hangs over it, such as a table.
+        let is_edge = |ground: Vec2<Fx>| plane.point.y <= ground.y.saturating_add(STEP_DEPTH);
+        found.is_some_and(|hit| {
+            self.mover.is_ground(hit.normal)
+                && is_edge(hit.point)
+                && self.has_room(hit.point.y - feet, onwards)
+        })
+    }
+
+    /// Whether the character can rise by a height and then move on, along ground at most.
+    fn has_room(&self, height: Fx, onwards: Fx) -> bool {
+        let up = Vec2::new(Fx::ZERO, height.saturating_add(SKIN + SKIN).max(Fx::ZERO));
+        if self.cast_from(&self.probe, up).is_some() {
+            return false;
+        }
+        let raised = self.probe.at(self.probe.position() + up);
+        let met = self.cast_from(&raised, Vec2::new(onwards, Fx::ZERO));
+        met.is_none_or(|(_, plane)| self.mover.is_ground(plane.normal))
+    }
+}
