@@ -568,7 +568,8 @@ declare class Edits extends Handle {
     /** Gives a kinematic body the velocity with which it reaches this pose in the next tick. Throws `WRONG_KIND` for other
      * bodies. */
     moveTo(body: BodyId, position: Vec, angle?: Rotation): void;
-    /** Replaces the settings of a body, and wakes it. Settings that are not given have their defaults. */
+    /** Replaces the settings of a body, and wakes it. Settings that are not given have their defaults; `World.body` has the
+     * current ones. */
     setBody(body: BodyId, settings: BodySettings): void;
     /** Makes a body fixed, kinematic or dynamic. A body that becomes fixed stops. */
     setType(body: BodyId, type: BodyType): void;
@@ -655,6 +656,24 @@ export interface BodyInfo {
     enabled: boolean;
     /** Whether the body sleeps. */
     asleep: boolean;
+    /** Decay rate of the velocity, per second. */
+    linearDamping: Fx;
+    /** Decay rate of the angular velocity, per second. */
+    angularDamping: Fx;
+    /** Factor on the world's gravity. */
+    gravityScale: Fx;
+    /** Speed in m/s below which the body becomes ready to sleep. */
+    sleepSpeed: Fx;
+    /** Bodies through which the body cannot tunnel. */
+    continuous: "off" | "fixed" | "bullet" | "kinematic";
+    /** Whether the body may fall asleep. */
+    maySleep: boolean;
+    /** Whether the body cannot move along the x axis of the world. */
+    lockX: boolean;
+    /** Whether the body cannot move along the y axis of the world. */
+    lockY: boolean;
+    /** Whether the body cannot turn. */
+    lockRotation: boolean;
 }
 /** A shape of a world. A link is a line of a chain. */
 export interface ShapeInfo {
@@ -1345,7 +1364,8 @@ export class MatchDriver<Saved = unknown> {
     receive(now: number, from: Uint8Array, packet: Uint8Array): void;
     /** Advances the match to the time `now`, and plays the ticks that are due. Call it every few milliseconds.
      * `readInputs` returns the inputs of your own seats, one after another. Returns the events of the match; the driver
-     * has already passed a `state` to `decode`. */
+     * has already passed a `state` to `decode`. If the game throws an error, its state is unknown, and every further call
+     * throws the same error. */
     update(now: number, readInputs: (seats: number[]) => Uint8Array): MatchEvent[];
 }
 

@@ -61,7 +61,8 @@ export function handles(): number {
     const [shape] = world.shapesOf(crate);
     const joint: JointId = world.addJoint({ type: "revolute", a: post, b: crate, anchor: [0, 1] });
     world.setJoint(joint, { ...world.joint(joint), motor: { speed: 1, max: 10 } });
-    world.setBody(crate, { linearDamping: 1, lockRotation: true });
+    const { linearDamping, continuous, lockX } = world.body(crate)!;
+    world.setBody(crate, { linearDamping, continuous, lockX, lockRotation: true });
     world.setMass(crate, massOf([box(1, 1)]));
     world.setMass(crate);
     world.setConfig({ ...world.config(), tickRate: world.config().tickRate * 2, gravity: world.config().gravity });
