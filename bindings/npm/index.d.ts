@@ -156,8 +156,8 @@ export class Random {
 /** Rule that combines the values of two shapes: `(a + b) / 2`, `sqrt(a b)`, the smaller value, `a b`, the larger value.
  * If the shapes have different rules, the one that comes later in this list applies. */
 export type Mixing = "average" | "geometricMean" | "minimum" | "product" | "maximum";
-/** Effect of a sensor on the dynamic bodies in it, in proportion to the part of each shape that is inside. Directions are
- * in the frame of the area's body. Every effect is 0 by default. */
+/** Effect of a sensor on the dynamic bodies in it, in proportion to the part of each shape that is inside. Directions
+ * are in the frame of the area's body. Every effect is 0 by default. */
 export interface AreaOptions {
     /** Acceleration in m/s² of bodies in the area, within ±10 000 on each axis. It is added to gravity. */
     acceleration?: Vec;
@@ -171,8 +171,8 @@ export interface AreaOptions {
     angularDrag?: Num;
     /** Density of the medium in kg/m², for buoyancy, 0 to 2^20. */
     density?: Num;
-    /** Acceleration in m/s² towards the centre of the area (±10 000, a negative one repels), at the distance `radius` in
-     * metres (0.01 to 2^20). `falloff` applies beyond `radius`: `constant` by default. */
+    /** Acceleration in m/s² towards the centre of the area (±10 000, a negative one repels), at the distance `radius`
+     * in metres (0.01 to 2^20). `falloff` applies beyond `radius`: `constant` by default. */
     attraction?: { acceleration: Num; radius: Num; falloff?: "constant" | "inverse" | "inverseSquare" };
 }
 /** Properties of a shape. */
@@ -189,8 +189,8 @@ export interface ShapeOptions {
     restitution?: Num;
     /** Rule that combines the restitution of two shapes: `maximum` by default. */
     restitutionMixing?: Mixing;
-    /** Approach speed in m/s below which the shape does not bounce, 0 to 400: that of the world by default. Of two shapes
-     * the smaller value applies. */
+    /** Approach speed in m/s below which the shape does not bounce, 0 to 400: that of the world by default. Of two
+     * shapes the smaller value applies. */
     restitutionThreshold?: Num;
     /** Rolling resistance of a round shape as a fraction of its radius, 0 to 1: 0 by default. */
     rollingResistance?: Num;
@@ -211,8 +211,8 @@ export interface ShapeOptions {
     sensor?: boolean;
     /** Makes the shape a sensor that acts on the bodies in it. Not for segments and chains. */
     area?: AreaOptions;
-    /** Whether the contacts of the shape are in `contactBegin` and `contactEnd`: true by default. One of the two shapes is
-     * enough. */
+    /** Whether the contacts of the shape are in `contactBegin` and `contactEnd`: true by default. One of the two shapes
+     * is enough. */
     contactEvents?: boolean;
     /** Whether the hits of the shape are in `hits`: false by default. One of the two shapes is enough. */
     hitEvents?: boolean;
@@ -246,17 +246,17 @@ export function hull(points: readonly Vec[], options?: ShapeOptions): ShapeDef;
 export function capsule(a: Vec, b: Vec, radius: Num, options?: ShapeOptions): ShapeDef;
 /** A line without area, of any length. It has no mass, and does not collide with segments and chains. */
 export function segment(a: Vec, b: Vec, options?: ShapeOptions): ShapeDef;
-/** A smooth outline of 2 points or more, with up to 4096 lines, for ground and walls. It has no mass. `closed` connects the
- * last point with the first. `oneSided` makes it solid only from the right side, along the points in their order. Both are
- * false by default. */
+/** A smooth outline of 2 points or more, with up to 4096 lines, for ground and walls. It has no mass. `closed` connects
+ * the last point with the first. `oneSided` makes it solid only from the right side, along the points in their order.
+ * Both are false by default. */
 export function chain(points: readonly Vec[], options?: ShapeOptions & { closed?: boolean; oneSided?: boolean }): ChainDef;
 
 /** Mass in kg, centre of mass and radius of gyration in metres of a dynamic body with some shapes, for the option
  * `mass`: `{ ...massOf(shapes), mass: 80 }` is a mass of 80 kg with the distribution of the shapes. */
 export function massOf(shapes: readonly ShapeDef[]): { mass: Fx; centre: Vec2; gyration: Fx };
 
-/** `fixed`: does not move. `kinematic`: moves at its velocity, which forces and contacts do not change. `dynamic`: moved by
- * forces, contacts and joints. */
+/** `fixed`: does not move. `kinematic`: moves at its velocity, which forces and contacts do not change. `dynamic`:
+ * moved by forces, contacts and joints. */
 export type BodyType = "fixed" | "kinematic" | "dynamic";
 /** Mass of a body that does not follow from its shapes. */
 export interface MassOptions {
@@ -326,8 +326,8 @@ export interface Spring {
     /** Rest position of the spring, in rad or m: 0 by default. */
     target?: Num;
 }
-/** A joint. It has a frame on each body: an anchor and an angle. An option that its type does not have throws `VALUE` or is
- * ignored; a value out of range throws `JOINT`. */
+/** A joint. It has a frame on each body: an anchor and an angle. An option that its type does not have throws `VALUE`
+ * or is ignored; a value out of range throws `JOINT`. */
 export interface JointOptions {
     /** - `revolute`: a hinge.
      * - `prismatic`: B slides along the x axis of A's frame and does not turn.
@@ -365,8 +365,8 @@ export interface JointOptions {
     motor?: { speed: Num; max: Num };
     /** Spring on the angle in rad (revolute), the translation in m (prismatic, wheel) or the length in m (distance). */
     spring?: Spring;
-    /** Smallest force of the spring in N, 0 or less, and largest force, 0 or more (distance). A positive force pushes the
-     * anchors apart. Unlimited by default. */
+    /** Smallest force of the spring in N, 0 or less, and largest force, 0 or more (distance). A positive force pushes
+     * the anchors apart. Unlimited by default. */
     springForce?: readonly [Num, Num];
     /** Length in metres that is held rigidly, at least 0.001 (distance). */
     rod?: Num;
@@ -377,27 +377,28 @@ export interface JointOptions {
     collide?: boolean;
     /** Whether the joint acts (all types): true by default. */
     enabled?: boolean;
-    /** Force in N and torque in N m, 0 or more, beyond which the joint is reported in `Events.joints` or, with `breaks`,
-     * also removed (all types). Without a threshold by default. */
+    /** Force in N and torque in N m, 0 or more, beyond which the joint is reported in `Events.joints` or, with
+     * `breaks`, also removed (all types). Without a threshold by default. */
     threshold?: { force?: Num; torque?: Num; breaks?: boolean };
-    /** Target velocity of B's anchor relative to A in m/s, along the axes of the world, and largest force in N (motor). */
+    /** Target velocity of B's anchor relative to A in m/s, along the axes of the world, and largest force in N (motor).
+     * */
     linearMotor?: { velocity: Vec; max: Num };
-    /** Spring between the anchors: frequency in Hz, damping ratio (weld, motor), and largest force in N (motor, which needs
-     * it: the default is 0). Without it the anchors of a weld are rigid. */
+    /** Spring between the anchors: frequency in Hz, damping ratio (weld, motor), and largest force in N (motor, which
+     * needs it: the default is 0). Without it the anchors of a weld are rigid. */
     linearSpring?: { hertz: Num; dampingRatio: Num; max?: Num };
-    /** Spring on the angle: frequency in Hz, damping ratio (weld, motor), and largest torque in N m (motor, which needs it:
-     * the default is 0). Without it the angle of a weld is rigid. */
+    /** Spring on the angle: frequency in Hz, damping ratio (weld, motor), and largest torque in N m (motor, which needs
+     * it: the default is 0). Without it the angle of a weld is rigid. */
     angularSpring?: { hertz: Num; dampingRatio: Num; max?: Num };
-    /** Teeth of A's wheel and of B's wheel, 1 to 1000, or -1 to -1000 for a ring around the other wheel (gear). [1, 1] by
-     * default. */
+    /** Teeth of A's wheel and of B's wheel, 1 to 1000, or -1 to -1000 for a ring around the other wheel (gear). [1, 1]
+     * by default. */
     teeth?: readonly [number, number];
-    /** Radius of the wheel in metres, 0.001 to 128; negative for a rack on the other side of the wheel (rack, which needs
-     * it). */
+    /** Radius of the wheel in metres, 0.001 to 128; negative for a rack on the other side of the wheel (rack, which
+     * needs it). */
     radius?: Num;
     /** Wheels on A's side and on B's side, in world coordinates in metres (pulley). */
     wheels?: readonly [Vec, Vec];
-    /** Length of the rope in metres, 0 to 2^20, without the part between the wheels (pulley). With `anchor` it follows from
-     * the current poses. */
+    /** Length of the rope in metres, 0 to 2^20, without the part between the wheels (pulley). With `anchor` it follows
+     * from the current poses. */
     length?: Num;
     /** The length on A's side plus `ratio` times the length on B's side is at most `length`: 0.25 to 4, 1 by default
      * (pulley). */
@@ -405,8 +406,8 @@ export interface JointOptions {
     /** A number of 64 bits for the game, part of the state: 0 by default. */
     userData?: bigint | number;
 }
-/** A joint as `World.joint` returns it: `setJoint` takes it with changes. The fields are those of `JointOptions`. Parts that
- * the joint does not have are missing. */
+/** A joint as `World.joint` returns it: `setJoint` takes it with changes. The fields are those of `JointOptions`. Parts
+ * that the joint does not have are missing. */
 export interface JointInfo {
     /** Type of the joint. */
     type: JointOptions["type"];
@@ -480,13 +481,15 @@ export interface ConfigOptions {
     contactDamping?: Num;
     /** Largest speed in m/s with which contacts push shapes apart, 0 to 400: 3 by default. */
     contactPushSpeed?: Num;
-    /** Stiffness of joints in Hz, 1 to 1000, effectively at most a quarter of the sub-steps per second: 60 by default. */
+    /** Stiffness of joints in Hz, 1 to 1000, effectively at most a quarter of the sub-steps per second: 60 by default.
+     * */
     jointHertz?: Num;
     /** Damping ratio of joints, 0 to 100: 2 by default. */
     jointDampingRatio?: Num;
     /** Approach speed in m/s below which shapes do not bounce, 0 to 400: 1 by default. */
     restitutionThreshold?: Num;
-    /** Largest speed of a body in m/s, 1 to 400: 400 by default. Below 27 ticks per second, also at most 15 m per tick. */
+    /** Largest speed of a body in m/s, 1 to 400: 400 by default. Below 27 ticks per second, also at most 15 m per tick.
+     * */
     speedMax?: Num;
     /** Largest distance in metres at which shapes have speculative contact points, 0.001 to 1: 0.02 by default. */
     speculativeDistance?: Num;
@@ -500,8 +503,8 @@ export interface ConfigOptions {
     shapeLimit?: number;
     /** Largest number of joints, at most 2^20, which is the default. */
     jointLimit?: number;
-    /** Largest number of pairs of near shapes in a tick, at most 2^20: 2^18 by default. A tick with more pairs leaves some
-     * out, and counts as a fault. */
+    /** Largest number of pairs of near shapes in a tick, at most 2^20: 2^18 by default. A tick with more pairs leaves
+     * some out, and counts as a fault. */
     pairLimit?: number;
     /** Whether bodies at rest fall asleep: true by default. */
     sleeping?: boolean;
@@ -543,15 +546,15 @@ declare class Edits extends Handle {
     setShape(shape: ShapeId, definition: ShapeDef): void;
     /** Removes a joint. */
     removeJoint(joint: JointId): void;
-    /** Replaces the definition of a joint: `setJoint(joint, { ...world.joint(joint), motor })`. The bodies have to stay the
-     * same. Options that are not given have their defaults. */
+    /** Replaces the definition of a joint: `setJoint(joint, { ...world.joint(joint), motor })`. The bodies have to stay
+     * the same. Options that are not given have their defaults. */
     setJoint(joint: JointId, options: Omit<JointOptions, "anchor" | "axis">): void;
     /** Enables a joint. */
     enableJoint(joint: JointId): void;
     /** Disables a joint: it keeps its handle and has no effect. */
     disableJoint(joint: JointId): void;
-    /** A force in N during the next tick, at a point of the world in metres. Forces add up. The body has to be dynamic and
-     * enabled, otherwise this throws `WRONG_KIND`; so do torques and impulses. */
+    /** A force in N during the next tick, at a point of the world in metres. Forces add up. The body has to be dynamic
+     * and enabled, otherwise this throws `WRONG_KIND`; so do torques and impulses. */
     applyForce(body: BodyId, force: Vec, point: Vec): void;
     /** A torque in N m during the next tick, counter-clockwise. */
     applyTorque(body: BodyId, torque: Num): void;
@@ -562,14 +565,14 @@ declare class Edits extends Handle {
     /** Sets the velocity of the centre of mass in m/s, and the angular velocity in rad/s (0 by default). Throws
      * `WRONG_KIND` for a fixed body, and `SPEED` above `speedMax` of the world. */
     setVelocity(body: BodyId, velocity: Vec, angular?: Num): void;
-    /** Moves the origin of a body at once to a position in metres, with an angle (0 by default), regardless of shapes in
-     * between. */
+    /** Moves the origin of a body at once to a position in metres, with an angle (0 by default), regardless of shapes
+     * in between. */
     setTransform(body: BodyId, position: Vec, angle?: Rotation): void;
-    /** Gives a kinematic body the velocity with which it reaches this pose in the next tick. Throws `WRONG_KIND` for other
-     * bodies. */
+    /** Gives a kinematic body the velocity with which it reaches this pose in the next tick. Throws `WRONG_KIND` for
+     * other bodies. */
     moveTo(body: BodyId, position: Vec, angle?: Rotation): void;
-    /** Replaces the settings of a body, and wakes it. Settings that are not given have their defaults; `World.body` has the
-     * current ones. */
+    /** Replaces the settings of a body, and wakes it. Settings that are not given have their defaults; `World.body` has
+     * the current ones. */
     setBody(body: BodyId, settings: BodySettings): void;
     /** Makes a body fixed, kinematic or dynamic. A body that becomes fixed stops. */
     setType(body: BodyId, type: BodyType): void;
@@ -577,11 +580,13 @@ declare class Edits extends Handle {
     setMass(body: BodyId, mass?: MassOptions): void;
     /** Sets the number of 64 bits that the game stores with a body. */
     setUserData(body: BodyId, data: bigint | number): void;
-    /** Sets the name of a body: at most 16 letters, digits, `-` and `_`, otherwise this throws `NAME`. `""` removes it. */
+    /** Sets the name of a body: at most 16 letters, digits, `-` and `_`, otherwise this throws `NAME`. `""` removes it.
+     * */
     setName(body: BodyId, name: string): void;
     /** Lets a body take part in the simulation again. */
     enable(body: BodyId): void;
-    /** Takes a body out of the simulation: it keeps its pose and velocity, collides with nothing, and no query finds it. */
+    /** Takes a body out of the simulation: it keeps its pose and velocity, collides with nothing, and no query finds
+     * it. */
     disable(body: BodyId): void;
     /** Wakes a body, with all bodies that contacts and joints connect it to. */
     wake(body: BodyId): void;
@@ -589,15 +594,15 @@ declare class Edits extends Handle {
     sleep(body: BodyId): void;
     /** Sets the gravity in m/s², and wakes all bodies. */
     setGravity(gravity: Vec): void;
-    /** Applies impulses away from `centre`, in N s per metre of the width of a shape as seen from there. The impulse
-     * is full within `radius` metres, and falls to 0 over the next `falloff` metres; both are 0 to 1000, and 1 by default.
+    /** Applies impulses away from `centre`, in N s per metre of the width of a shape as seen from there. The impulse is
+     * full within `radius` metres, and falls to 0 over the next `falloff` metres; both are 0 to 1000, and 1 by default.
      * `mask` has the categories of the shapes that it acts on: all by default. */
     explode(options: { centre: Vec; impulse: Num; radius?: Num; falloff?: Num; mask?: bigint | number }): void;
 }
 
-/** A list of edits, for replays and networks. The list does not know the handles of what it adds. In a new world, the bodies
- * that it spawns have the handles 0, 1, 2 and so on in the order of the list, and so have shapes and joints: `0 as BodyId`
- * is the first body. */
+/** A list of edits, for replays and networks. The list does not know the handles of what it adds. In a new world, the
+ * bodies that it spawns have the handles 0, 1, 2 and so on in the order of the list, and so have shapes and joints: `0
+ * as BodyId` is the first body. */
 export class Commands extends Edits {
     #private;
     /** Makes an empty list. */
@@ -717,8 +722,8 @@ export interface Filter {
     sensors?: boolean;
     /** Bodies that the query does not see, at most 8: none by default. */
     except?: readonly BodyId[];
-    /** Treatment of shapes that a ray or a cast starts in: `resist` by default. `report`: they are hits. `ignore`: they are
-     * not seen. `resist`: they are hits of rays, and of casts only if the shape would move deeper into them. */
+    /** Treatment of shapes that a ray or a cast starts in: `resist` by default. `report`: they are hits. `ignore`: they
+     * are not seen. `resist`: they are hits of rays, and of casts only if the shape would move deeper into them. */
     initialOverlap?: "resist" | "report" | "ignore";
 }
 /** Hit of a ray. */
@@ -766,15 +771,15 @@ export interface Events {
     /** Shapes that ceased to touch, sorted. */
     contactEnd: ContactEvent[];
     /** Shapes that hit each other at `hitSpeed` of the world or faster, sorted. One of the two has to have `hitEvents`.
-     * `point` is in the world, in metres; `normal` is the unit vector from A to B; `impulse` is along the normal and summed
-     * over the tick, in N s; `approachSpeed` is in m/s. */
+     * `point` is in the world, in metres; `normal` is the unit vector from A to B; `impulse` is along the normal and
+     * summed over the tick, in N s; `approachSpeed` is in m/s. */
     hits: (ContactEvent & { point: Vec2; normal: Vec2; approachSpeed: Fx; impulse: Fx })[];
     /** Shapes that began to overlap a sensor, sorted by `fraction`. */
     sensorBegin: SensorEvent[];
     /** Shapes that ceased to overlap a sensor, sorted by `fraction`. */
     sensorEnd: SensorEvent[];
-    /** Joints whose force in N on body B or torque in N m exceeded the `threshold`, in slot order. The handle of a joint that
-     * broke is stale. */
+    /** Joints whose force in N on body B or torque in N m exceeded the `threshold`, in slot order. The handle of a
+     * joint that broke is stale. */
     joints: { joint: JointId; force: Vec2; torque: Fx; broke: boolean }[];
 }
 
@@ -850,8 +855,8 @@ export class World extends Edits {
     shape(shape: ShapeId): ShapeInfo;
     /** A box around a shape with some margin, in the world, in metres: its lower left and its upper right corner. */
     shapeBox(shape: ShapeId): { lower: Vec2; upper: Vec2 };
-    /** Distance between two shapes in metres, negative if they overlap. Undefined if one of them is not in the world, or
-     * its body is disabled. */
+    /** Distance between two shapes in metres, negative if they overlap. Undefined if one of them is not in the world,
+     * or its body is disabled. */
     shapeDistance(a: ShapeId, b: ShapeId): Fx | undefined;
     /** Type, bodies, anchors and parts of a joint. */
     joint(joint: JointId): JointInfo;
@@ -864,8 +869,8 @@ export class World extends Edits {
     /** For drawing: five floats for each enabled body: its handle, x, y, angle in radians, and 1 if it is awake. With a
      * `target` that is long enough, the result is a part of it. In TypeScript, `poses[i] as BodyId` is the handle. */
     poses(target?: Float64Array): Float64Array;
-    /** The events of the last tick: after `step(120)`, those of the 120th tick only. To see all of them, call it after each
-     * `step()`. */
+    /** The events of the last tick: after `step(120)`, those of the 120th tick only. To see all of them, call it after
+     * each `step()`. */
     events(): Events;
     /** The first shape that a ray meets, from a point along a translation in metres. */
     castRay(origin: Vec, translation: Vec, filter?: Filter): RayHit | undefined;
@@ -879,8 +884,8 @@ export class World extends Edits {
     overlapBox(lower: Vec, upper: Vec, filter?: Filter): ShapeId[];
     /** Shapes that contain a point, in slot order. */
     overlapPoint(point: Vec, filter?: Filter): ShapeId[];
-    /** The shape nearest to a point, within a distance in metres. The distance is negative inside a shape. `point` is on the
-     * surface, `normal` the unit vector from the given point to the shape. */
+    /** The shape nearest to a point, within a distance in metres. The distance is negative inside a shape. `point` is
+     * on the surface, `normal` the unit vector from the given point to the shape. */
     closest(point: Vec, within: Num, filter?: Filter): { shape: ShapeId; body: BodyId; distance: Fx; point: Vec2; normal: Vec2 } | undefined;
 }
 
@@ -949,8 +954,8 @@ export function encodeMoverState(state: MoverState): Uint8Array;
 /** The state of a character from bytes. */
 export function decodeMoverState(bytes: Uint8Array): Moved["state"];
 
-/** Bounds on the cost of reading and playing a replay. The defaults allow a day of play. With them, a file made to be slow
- * can take hours to verify: a server should set narrower limits for its game. */
+/** Bounds on the cost of reading and playing a replay. The defaults allow a day of play. With them, a file made to be
+ * slow can take hours to verify: a server should set narrower limits for its game. */
 export interface Limits {
     /** Bytes of the file: 64 MiB by default. */
     fileBytes?: number;
@@ -985,10 +990,10 @@ export interface Verdict {
     verdict: "match" | "claim_mismatch" | "diverged" | "incomplete" | "malformed" | "limit_exceeded" | "unverifiable";
     /** Number of ticks that were played; for `diverged`, the tick of the first checkpoint that differs. */
     ticks: number;
-    /** Hash of the last state, or 32 zeros if a state before it differed. For a `Replay` this is the hash that was passed to
-     * `verdict`. For a `Recording` it covers the world and the number of refused commands, so that it differs from
-     * `World.hash()`: compare it with verdicts only. To compare worlds, take `Recording.world().hash()` before `finish`, and
-     * `Timeline.world().hash()` at the last tick. */
+    /** Hash of the last state, or 32 zeros if a state before it differed. For a `Replay` this is the hash that was
+     * passed to `verdict`. For a `Recording` it covers the world and the number of refused commands, so that it differs
+     * from `World.hash()`: compare it with verdicts only. To compare worlds, take `Recording.world().hash()` before
+     * `finish`, and `Timeline.world().hash()` at the last tick. */
     hash: string;
     /** The verdict in words. */
     text: string;
@@ -1019,8 +1024,8 @@ export function verifyReplay(bytes: Uint8Array, limits?: Limits): Verdict;
 /** A world that is recorded while it runs, and changed by lists of commands alone. */
 export class Recording extends Handle {
     #private;
-    /** `setup` makes the contents of the world, and is an error if the world refuses a command. Its bodies have the handles
-     * 0, 1, 2 and so on, in order. There is a checkpoint every `interval` ticks, 1 to 3600: 60 by default. */
+    /** `setup` makes the contents of the world, and is an error if the world refuses a command. Its bodies have the
+     * handles 0, 1, 2 and so on, in order. There is a checkpoint every `interval` ticks, 1 to 3600: 60 by default. */
     constructor(options: { config?: ConfigOptions; setup: Commands; interval?: number });
     /** Executes the commands, advances the world by a tick, and empties the list. Commands that the world refuses are
      * skipped. */
@@ -1158,7 +1163,8 @@ export interface MatchOptions {
     inputBytes?: number;
     /** Ticks a second, 1 to 1000: 60 by default. */
     tickRate?: number;
-    /** Ticks that may be played with guessed inputs, 0 to 32; 0, the default, is lockstep. Each peer chooses its own. */
+    /** Ticks that may be played with guessed inputs, 0 to 32; 0, the default, is lockstep. Each peer chooses its own.
+     * */
     guess?: number;
     /** Smallest delay of your own inputs in ticks: 0 by default. The delay follows the latency, between `delayMin` and
      * `delayMax`. */
@@ -1171,18 +1177,18 @@ export interface MatchOptions {
     checkInterval?: number;
     /** Ticks that may be played beyond the last final tick, at least 16: 128 by default. */
     history?: number;
-    /** Number of final ticks whose inputs are kept for peers that return: 36 000 by default. After a longer absence a peer
-     * downloads a state. */
+    /** Number of final ticks whose inputs are kept for peers that return: 36 000 by default. After a longer absence a
+     * peer downloads a state. */
     logTicks?: number;
-    /** Ticks from the cut, where a change of the players takes effect, to the first tick that a joining peer plays: 8 by
-     * default. */
+    /** Ticks from the cut, where a change of the players takes effect, to the first tick that a joining peer plays: 8
+     * by default. */
     seatLead?: number;
     /** A peer that lags by at most this many ticks may have a seat: 40 by default. */
     seatWithin?: number;
     /** Distinguishes matches: packets with another tag are ignored. 0 by default. */
     matchTag?: bigint | number;
-    /** Milliseconds for which the match waits for a missing peer before the other peers go on without it: 2000 by default.
-     * The same for all peers. */
+    /** Milliseconds for which the match waits for a missing peer before the other peers go on without it: 2000 by
+     * default. The same for all peers. */
     patience?: number;
     /** Number of this peer, of 32 bits: random by default. A page has to use a new number each time it is loaded. */
     peer?: number | undefined;
@@ -1209,8 +1215,8 @@ export interface MatchOptions {
  * - `kicked`: removed permanently.
  * - `leaving`: announces its departure.
  * - `left`: has left, and still answers peers that lack packets.
- * - `finished`: all ticks of the match are final, and this peer still answers peers that lack packets. The game has played
- *   all of them when `MatchDriver.ended` is true.
+ * - `finished`: all ticks of the match are final, and this peer still answers peers that lack packets. The game has
+ *   played all of them when `MatchDriver.ended` is true.
  * - `closed`: sends nothing more; follows `left` and `finished` after some seconds.
  */
 export type MatchStatus =
@@ -1316,16 +1322,16 @@ export class Match extends Handle {
     /** Status of this peer. */
     readonly status: MatchStatus;
     /** Numbers of ticks: `played`, also with guessed inputs; `final`, whose inputs are final; `confirmed`, played with
-     * final inputs. While the status is `connecting`, this, `finalInputs`, `link`, `advance` and all functions from `leave`
-     * on throw `NOT_IN_MATCH`. */
+     * final inputs. While the status is `connecting`, this, `finalInputs`, `link`, `advance` and all functions from
+     * `leave` on throw `NOT_IN_MATCH`. */
     ticks(): { played: number; final: number; confirmed: number };
     /** The final inputs of all seats for a tick, or undefined if they are not kept. */
     finalInputs(tick: number): TickInputs | undefined;
     /** Seats that this peer plays, in ascending order: none before it is seated. */
     readonly seats: number[];
-    /** The network path to a peer: the smoothed round trip `ping` in milliseconds (0 if none was measured), and the share of
-     * about the last 64 packets that were lost, 0 to 1. `delay` is the current delay of your own inputs in ticks. Undefined
-     * if there is no such peer. */
+    /** The network path to a peer: the smoothed round trip `ping` in milliseconds (0 if none was measured), and the
+     * share of about the last 64 packets that were lost, 0 to 1. `delay` is the current delay of your own inputs in
+     * ticks. Undefined if there is no such peer. */
     link(peer: number): { ping: number; loss: number; delay: number } | undefined;
     /** Leaves the match. Call `update` until the status is `closed`, so that the other peers are informed. */
     leave(): void;
@@ -1364,8 +1370,8 @@ export class MatchDriver<Saved = unknown> {
     receive(now: number, from: Uint8Array, packet: Uint8Array): void;
     /** Advances the match to the time `now`, and plays the ticks that are due. Call it every few milliseconds.
      * `readInputs` returns the inputs of your own seats, one after another. Returns the events of the match; the driver
-     * has already passed a `state` to `decode`. If the game throws an error, its state is unknown, and every further call
-     * throws the same error. */
+     * has already passed a `state` to `decode`. If the game throws an error, its state is unknown, and every further
+     * call throws the same error. */
     update(now: number, readInputs: (seats: number[]) => Uint8Array): MatchEvent[];
 }
 
@@ -1412,7 +1418,8 @@ export class Relay {
     onPacket: (from: Uint8Array, packet: Uint8Array) => void;
     /** Called when a member enters or leaves the room, and after a reconnection. */
     onMembers: (others: Uint8Array[]) => void;
-    /** Sends a packet to a member. The packet is dropped if there is no connection, or if too many bytes wait to be sent. */
+    /** Sends a packet to a member. The packet is dropped if there is no connection, or if too many bytes wait to be
+     * sent. */
     send(to: Uint8Array, packet: Uint8Array): void;
     /** Leaves the room. */
     close(): void;
