@@ -176,6 +176,14 @@ export class Edits extends Handle {
         call("ls2d_set_kind", this.handle, id(body), bodyKind(type));
     }
 
+    /** Sets mass, centre of mass and radius of gyration, as `massOf` returns them. Without them, the body has the mass of
+     * its shapes. */
+    setMass(body, mass) {
+        const at = scratch(sizeOf("body_def"));
+        writeBody(at, { mass });
+        call("ls2d_set_mass", this.handle, id(body), at);
+    }
+
     setUserData(body, data) {
         call("ls2d_set_user_data", this.handle, id(body), long(data, "the user data"));
     }

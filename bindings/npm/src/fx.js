@@ -195,6 +195,16 @@ export class Angle {
         return new Angle(-this.bits);
     }
 
+    /** Degrees above -180 and up to 180, exact. */
+    toDegrees() {
+        return new Fx(signed(this.bits) * 360n);
+    }
+
+    /** Radians above -pi and up to pi, rounded to nearest. */
+    toRadians() {
+        return new Fx((signed(this.bits) * 7244019458077122842n + (1n << 59n)) >> 60n);
+    }
+
     /** Radians above -pi and up to pi, for drawing. */
     toNumber() {
         return ((this.bits | 0) / 4294967296) * 2 * Math.PI;
@@ -204,6 +214,9 @@ export class Angle {
         return this.bits;
     }
 }
+
+/** Units of 2^-32 turn, above minus one half turn and up to plus one half turn. */
+const signed = (bits) => (bits === 0x80000000 ? BigInt(bits) : BigInt.asIntN(32, BigInt(bits)));
 
 const angleOf = (raw) => new Angle(Number(BigInt.asUintN(32, raw)));
 

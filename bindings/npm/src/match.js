@@ -185,6 +185,15 @@ export class Match extends Handle {
         return Array.from({ length: 64 }, (_, seat) => seat).filter((seat) => ((bits >> BigInt(seat)) & 1n) === 1n);
     }
 
+    /** Measurements of the network path to a peer, or undefined if there are none. */
+    link(peer) {
+        const at = scratch(24);
+        if (!call("ls2d_match_link", this.handle, count(peer, "a peer"), at, at + 8, at + 16)) {
+            return undefined;
+        }
+        return { ping: Number(u64(at + 8)) / 1000, loss: u32(at + 16) / 1000, delay: u32(at) };
+    }
+
     leave() {
         call("ls2d_match_leave", this.handle);
     }

@@ -2,9 +2,11 @@
 import { count as u32Of, fail, instance, object, shown } from "./check.js";
 import { BODY_FLAGS, writeConfig, writeFilter, writeShape } from "./definitions.js";
 import { rawOf, vectorOf } from "./fx.js";
+import { readJoint } from "./joints.js";
 import { C } from "./layout.js";
 import {
-    Handle, call, f64s, fieldAt, fxAt, give, hashAt, id, idAt, library, list, read, scratch, sizeOf, takeBytes, u32, u64, write,
+    Handle, call, copy, f64s, fieldAt, fxAt, give, hashAt, id, idAt, library, list, read, scratch, sizeOf, takeBytes, text, u32, u64,
+    write,
 } from "./library.js";
 import { Commands, Edits } from "./edits.js";
 
@@ -175,6 +177,20 @@ export class World extends Edits {
         return { ...rest, type: KINDS[kind], continuous: SWEEPS[continuous], ...Object.fromEntries(options) };
     }
 
+    /** Name of a body, or undefined if it has none. */
+    bodyName(body) {
+        const at = scratch(16);
+        call("ls2d_body_name", this.handle, id(body), at);
+        return text(copy(at, 16)).replace(/\0+$/, "") || undefined;
+    }
+
+    /** Velocity of the material point of a body at a point of the world. */
+    velocityAt(body, point) {
+        const at = scratch(16);
+        call("ls2d_body_velocity_at", this.handle, id(body), ...raws(point, "point"), at);
+        return { x: fxAt(at), y: fxAt(at + 8) };
+    }
+
     #ids(name, before = []) {
         const { at, count } = list(8, 0, (items, capacity, length) => library()[name](this.handle, ...before, items, capacity, length));
         return Array.from({ length: count }, (_, index) => idAt(at + 8 * index));
@@ -210,6 +226,26 @@ export class World extends Edits {
         const used = [0, 2, count, 2, 4][rest.kind] ?? 0;
         const all = Array.from({ length: used }, (_, index) => ({ x: fxAt(points + 16 * index), y: fxAt(points + 16 * index + 8) }));
         return { ...rest, type: ["circle", "segment", "polygon", "capsule", "link"][rest.kind], body: idAt(at), points: all };
+    }
+
+    /** A box around a shape with some margin, in the world. */
+    shapeBox(shape) {
+        const at = scratch(sizeOf("aabb"));
+        call("ls2d_shape_box", this.handle, id(shape, "a shape"), at);
+        return read("aabb", at);
+    }
+
+    /** Distance between two shapes, or undefined if one of them is not in the world. */
+    shapeDistance(a, b) {
+        const at = scratch(8);
+        return call("ls2d_shape_distance", this.handle, id(a, "a shape"), id(b, "a shape"), at) ? fxAt(at) : undefined;
+    }
+
+    /** Type, bodies, frames and parts of a joint, as options of `addJoint`. */
+    joint(joint) {
+        const at = scratch(sizeOf("joint_def"));
+        call("ls2d_joint_get", this.handle, id(joint, "a joint"), at);
+        return readJoint(at);
     }
 
     jointAnchors(joint) {

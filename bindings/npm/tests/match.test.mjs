@@ -87,6 +87,9 @@ test("two peers and one who joins late have equal states", () => {
     net.run(3000);
     assert.deepEqual([host.match.status, guest.match.status], ["playing", "playing"]);
     assert.ok(host.driver.tick > 100, `${host.driver.tick} ticks`);
+    const { ping, loss, delay } = host.match.link(2);
+    assert.ok(ping > 40 && ping < 160 && loss >= 0 && loss < 0.4 && Number.isInteger(delay), `${ping} ms, ${loss}, ${delay}`);
+    assert.equal(host.match.link(77), undefined);
     const late = net.add({ offer, ownSeats: 1, contact: address(1) });
     net.run(3000);
     assert.equal(late.match.status, "playing");
@@ -108,6 +111,7 @@ test("a peer with another offer is refused", () => {
     net.run(2000);
     assert.ok(other.events.some(({ kind, reason }) => kind === "refused" && reason === "offer"));
     assert.equal(other.match.status, "connecting");
+    assert.throws(() => other.match.link(1), { code: "NOT_IN_MATCH" });
 });
 
 test("a state that differs is noticed", () => {

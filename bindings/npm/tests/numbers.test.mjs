@@ -37,6 +37,12 @@ test("angles are those of the library", () => {
         assert.equal(L.degrees(value).bits, library().ls2d_angle_from_degrees(value.raw) >>> 0, `${value} degrees`);
         assert.equal(L.radians(value).bits, library().ls2d_angle_from_radians(value.raw) >>> 0, `${value} rad`);
     }
+    const angles = Array.from({ length: 500 }, () => new L.Angle(Number(number().raw & 0xffffffffn)));
+    for (const angle of [...angles, ...["0", "0.25", "0.5", "0.75"].map(L.turns), new L.Angle(0x7fffffff), new L.Angle(0x80000001)]) {
+        assert.equal(angle.toDegrees().raw, library().ls2d_angle_to_degrees(angle.bits), `${angle.bits} in degrees`);
+        assert.equal(angle.toRadians().raw, library().ls2d_angle_to_radians(angle.bits), `${angle.bits} in rad`);
+    }
+    assert.deepEqual([180, -90].map((value) => L.degrees(value).toDegrees()), [L.fx(180), L.fx(-90)]);
     assert.equal(L.sin(L.degrees(90)).toNumber(), 1);
     assert.deepEqual(L.rotate([2, 0], L.degrees(90)), { x: L.fx(0), y: L.fx(2) });
     assert.equal(L.sqrt("6.25").toString(), "2.5");

@@ -21,6 +21,7 @@ test("a recorded world verifies, and a changed file does not", () => {
         parts.push(recording.take());
     }
     assert.equal(recording.world().tick, 150);
+    const last = recording.world().hash();
     const replay = join(...parts, recording.finish());
     assert.deepEqual([L.verifyReplay(replay).verdict, L.verifyReplay(replay).ticks], ["match", 150]);
     assert.equal(L.verifyReplay(replay.slice(0, -20)).verdict, "incomplete");
@@ -41,6 +42,7 @@ test("a recorded world verifies, and a changed file does not", () => {
         world.dispose();
     } while (timeline.step());
     assert.equal(hashes.length, 151);
+    assert.equal(hashes[150], last);
     for (const tick of [70, 69, 149, 0, 150]) {
         timeline.seek(tick);
         assert.deepEqual([timeline.tick, timeline.world().hash()], [tick, hashes[tick]]);

@@ -84,6 +84,10 @@ test("all joints and shapes can be defined", () => {
     ];
     const joints = kinds.map((kind, index) => world.addJoint({ a: index % 2 ? ground : bodies[0], b: bodies[1 + (index % 4)], ...kind }));
     assert.deepEqual(world.joints(), joints);
+    // A joint that is read and set again is the same.
+    const before = world.hash();
+    joints.forEach((joint) => world.setJoint(joint, world.joint(joint)));
+    assert.equal(world.hash(), before);
     world.step(100);
     assert.deepEqual([world.counts().bodies, world.counts().joints, world.faults], [6, 10, 0]);
     world.dispose();
@@ -127,6 +131,87 @@ test("the mass of shapes is that of a body with them, and can be scaled", () => 
     const ratio = person.inertia.toNumber() / body.inertia.toNumber();
     assert.ok(Math.abs(ratio - 80 / mass.mass.toNumber()) < 1e-6, `${ratio}`);
     assert.throws(() => L.massOf([L.segment([0, 0], [1, 0])]), { name: "Lockstep2dError" });
+});
+
+test("a mass that is set stays until it follows from the shapes again", () => {
+    const world = new L.World();
+    const commands = new L.Commands();
+    const body = world.spawn({ shapes: [L.box("0.5", "0.5")] });
+    const mass = () => world.body(body).mass.toNumber();
+    world.setMass(body, { mass: 80, centre: [0, "-0.25"], gyration: "0.5" });
+    assert.deepEqual([mass(), world.body(body).centre.y.toNumber(), world.body(body).inertia.toNumber()], [80, -0.25, 20]);
+    world.addShape(body, L.circle(1));
+    assert.equal(mass(), 80);
+    commands.setMass(body);
+    assert.equal(world.execute(commands), 0);
+    assert.ok(Math.abs(mass() - 1 - Math.PI) < 1e-6, `${mass()}`);
+    assert.throws(() => world.setMass(body, { mass: 0, gyration: 1 }), { code: "MASS" });
+});
+
+test("settings that are not given have their defaults", () => {
+    const world = new L.World({ gravity: [0, 0] });
+    const body = world.spawn({ lockX: true, linearDamping: 3, velocity: [0, 1], shapes: [L.box("0.5", "0.5")] });
+    world.setBody(body, { lockRotation: true });
+    world.applyImpulse(body, [1, 0], [0, 1]);
+    world.step(10);
+    const { velocity, angularVelocity } = world.body(body);
+    assert.deepEqual([velocity.x.toNumber(), velocity.y.toNumber(), angularVelocity.toNumber()], [1, 1, 0]);
+});
+
+test("a body has a name and a velocity at each point, a shape has a box and distances", () => {
+    const world = new L.World();
+    const shapes = [L.circle("0.5")];
+    const [a, b] = [world.spawn({ name: "wheel", velocity: [1, 0], angularVelocity: 2, shapes }), world.spawn({ position: [3, 0], shapes })];
+    assert.deepEqual([world.bodyName(a), world.bodyName(b)], ["wheel", undefined]);
+    world.setName(a, "");
+    assert.equal(world.bodyName(a), undefined);
+    world.setName(a, "0123456789-_abcd");
+    assert.equal(world.bodyName(a), "0123456789-_abcd");
+    const { x, y } = world.velocityAt(a, [0, "0.5"]);
+    assert.ok(Math.abs(x.toNumber()) < 1e-5 && Math.abs(y.toNumber()) < 1e-5, `${x} ${y}`);
+    const [[one], [other]] = [world.shapesOf(a), world.shapesOf(b)];
+    const { lower, upper } = world.shapeBox(one);
+    [lower.x, lower.y].forEach((at) => assert.ok(at.lt("-0.499") && at.gt("-0.7"), `${at}`));
+    [upper.x, upper.y].forEach((at) => assert.ok(at.gt("0.499") && at.lt("0.7"), `${at}`));
+    assert.ok(Math.abs(world.shapeDistance(one, other).toNumber() - 2) < 1e-6);
+    world.setTransform(b, ["0.5", 0]);
+    assert.ok(world.shapeDistance(one, other).lt(0));
+    world.despawn(b);
+    assert.equal(world.shapeDistance(one, other), undefined);
+    assert.throws(() => world.bodyName(b), { code: "STALE_BODY" });
+    assert.throws(() => world.velocityAt(b, [0, 0]), { code: "STALE_BODY" });
+    assert.throws(() => world.shapeBox(other), { code: "STALE_SHAPE" });
+});
+
+test("a joint can be read", () => {
+    const world = new L.World();
+    const [a, b] = [world.spawn({ type: "fixed" }), world.spawn({ position: [2, 0], shapes: [L.circle("0.5")] })];
+    const joint = world.addJoint({ type: "revolute", a, b, anchor: [1, 0], limit: ["-0.5", 1], threshold: { force: 9, breaks: true } });
+    const { anchorA, anchorB, limit, ...rest } = world.joint(joint);
+    assert.deepEqual([rest.type, rest.a, rest.b, rest.enabled, rest.collide], ["revolute", a, b, true, false]);
+    assert.deepEqual([anchorA.x, anchorB.x, ...limit].map((number) => number.toString()), ["1", "-1", "-0.5", "1"]);
+    assert.deepEqual(rest.threshold, { force: L.fx(9), breaks: true });
+    assert.ok(!("motor" in rest) && !("length" in rest));
+    world.setJoint(joint, { ...world.joint(joint), motor: { speed: 1, max: 10 } });
+    assert.deepEqual(world.joint(joint).motor, { speed: L.fx(1), max: L.fx(10) });
+    const [springForce, softness] = [["-5", 5], { hertz: 30, dampingRatio: 1 }];
+    const spring = { hertz: 2, dampingRatio: "0.5", max: 7 };
+    const others = [
+        { type: "distance", rod: 2, spring: { hertz: 2, dampingRatio: 1, target: 2 }, springForce, softness, collide: true, userData: 7 },
+        { type: "motor", linearSpring: spring, angularSpring: { ...spring, hertz: 3 }, motor: { speed: 1, max: 2 }, enabled: false },
+        { type: "weld", linearSpring: { hertz: 5, dampingRatio: 1 }, angularSpring: { hertz: 6, dampingRatio: 2 }, angleA: L.degrees(9) },
+        { type: "pulley", wheels: [[0, 9], [3, 9]], length: 9, ratio: 2, threshold: { torque: 3 } },
+    ];
+    for (const other of others) {
+        world.setJoint(joint, { a, b, ...other });
+        const [read, hash] = [world.joint(joint), world.hash()];
+        world.setJoint(joint, { type: "filter", a, b });
+        world.setJoint(joint, read);
+        assert.equal(world.hash(), hash, other.type);
+        Object.keys(other).forEach((name) => assert.ok(name in read, `${other.type} has ${name}`));
+    }
+    world.removeJoint(joint);
+    assert.throws(() => world.joint(joint), { code: "STALE_JOINT" });
 });
 
 test("bodies and joints with one definition are added together, or none", () => {

@@ -1,12 +1,14 @@
-// Compiled with --strict only: the types of matches, relays and replays.
+// Compiled, and not run: the types of handles, matches, relays and replays.
 import {
-    Commands, type Lockstep2dError, Match, MatchDriver, type MatchGame, Recorder, Recording, Relay, Replay, ReplayDriver,
-    type Snapshot, World, decodeNativeState, degrees, encodeNativeState, fx, nativeOffer, verifyReplay,
+    type BodyId, Commands, type JointId, type Lockstep2dError, Match, MatchDriver, type MatchGame, type MoverState, Recorder,
+    Recording, Relay, Replay, ReplayDriver, type ShapeId, type Snapshot, World, box, decodeNativeState, degrees, encodeNativeState,
+    fx, moveCharacter, nativeOffer, verifyReplay,
 } from "lockstep2d";
 
-import { World as CoreWorld, type BodyOptions } from "lockstep2d/core";
+import { World as CoreWorld, massOf, type BodyOptions, type BodyPose } from "lockstep2d/core";
 
-const body: BodyOptions = { position: [0, "0.5"] };
+const body: BodyOptions = { position: [0, "0.5"], mass: { ...massOf([box(1, 1)]), mass: 80 } };
+export const pose: BodyPose = { position: [0, "0.5"] };
 export const core = (made: CoreWorld): number => made.spawn(body);
 let world = new World();
 const game: MatchGame<Snapshot> = {
@@ -23,11 +25,14 @@ const game: MatchGame<Snapshot> = {
 
 export async function play(url: string): Promise<number> {
     const relay = await Relay.connect(url, "ABCD");
-    const contact: Uint8Array | undefined = relay.others[0];
-    const match = new Match({ seats: 2, offer: nativeOffer({ rules: "types", seats: 2 }), ...(contact ? { contact } : {}) });
+    const match = new Match({ seats: 2, offer: nativeOffer({ rules: "types", seats: 2 }), contact: relay.others[0] });
     const driver = new MatchDriver(match, game, (to, packet) => relay.send(to, packet));
     relay.onPacket = (from, packet) => driver.receive(performance.now(), from, packet);
     const events = driver.update(performance.now(), (seats) => Uint8Array.from(seats, () => 0));
+    const ping: number | undefined = match.link(events[0]?.peer ?? 0)?.ping;
+    if (driver.ended || (ping ?? 0) > 1000) {
+        match.leave();
+    }
     return events.filter(({ kind }) => kind === "desync").length;
 }
 
@@ -43,10 +48,40 @@ export function record(): string {
     driver.seek(replay.ticks);
     const score: bigint | undefined = replay.claims.get("score");
     replay.claim("score", score ?? 0);
-    const bodies: number[] = world.spawnEach({ shapes: [] }, [{ position: [0, "0.5"], angle: degrees(30) }, { position: [1, 0] }]);
+    const bodies = world.spawnEach({ shapes: [] }, [{ position: [0, "0.5"], angle: degrees(30) }, { position: [1, 0] }]);
     world.addJointEach({ type: "revolute" }, [[bodies[0]!, bodies[1]!]]);
     const { verdict } = verifyReplay(recording.finish());
     return verdict + fx("0.5").mul(2).toString();
+}
+
+export function handles(): number {
+    const [crate, post] = [world.spawn({ shapes: [box(1, 1)] }), world.spawn({ type: "fixed" })];
+    const sizes = new Map([[crate, 2], [post, 1]]);
+    const poses = world.poses();
+    const [shape] = world.shapesOf(crate);
+    const joint: JointId = world.addJoint({ type: "revolute", a: post, b: crate, anchor: [0, 1] });
+    world.setJoint(joint, { ...world.joint(joint), motor: { speed: 1, max: 10 } });
+    const { linearDamping, continuous, lockX } = world.body(crate)!;
+    world.setBody(crate, { linearDamping, continuous, lockX, lockRotation: true });
+    world.setMass(crate, massOf([box(1, 1)]));
+    world.setMass(crate);
+    world.setConfig({ ...world.config(), tickRate: world.config().tickRate * 2, gravity: world.config().gravity });
+    let state: MoverState = { position: [0, 2] };
+    state = moveCharacter(world, { shape: box(1, 1) }, { ...state, velocity: [1, 0] }).state;
+    const known: ShapeId | undefined = shape;
+    // @ts-expect-error A shape is not a body.
+    world.wake(known);
+    // @ts-expect-error A number is not a handle.
+    world.wake(0);
+    // @ts-expect-error A body is not a joint.
+    world.enableJoint(crate);
+    // @ts-expect-error A world is not a snapshot.
+    world.restore(world);
+    // @ts-expect-error The position is not a setting.
+    world.setBody(crate, { position: [0, 0] });
+    // @ts-expect-error A list of commands has no poses.
+    new Commands().addJoint({ type: "weld", a: 0 as BodyId, b: 1 as BodyId, anchor: [0, 0] });
+    return (sizes.get(poses[0] as BodyId) ?? 0) + crate + world.shapeBox(shape!).lower.x.toNumber();
 }
 
 export const codeOf = (error: unknown): string => (error as Lockstep2dError).code;
