@@ -24,7 +24,7 @@ fn snapshots() {
     says([
         (SnapshotError::NotASnapshot, "not the bytes of a world"),
         (SnapshotError::Format { found: 1 }, "format version 1, this engine reads 4"),
-        (SnapshotError::Semantics { found: 2 }, "made with semantics 2, this engine has 16"),
+        (SnapshotError::Semantics { found: 2 }, "made with semantics 2, this engine has 17"),
         (SnapshotError::Length { announced: 500, found: 499 }, "499 bytes where 500 are announced"),
         (SnapshotError::Hash, "the hash does not match the bytes"),
         (
