@@ -96,7 +96,9 @@ pub struct BodySettings {
     /// Whether the body may fall asleep.
     pub may_sleep: bool,
     /// Speed in m/s below which the body becomes ready to sleep, 0 to 400. The same limit applies to twice the angular
-    /// velocity times the radius of gyration, which is about the speed of the body's outline.
+    /// velocity times the radius of gyration, which is about the speed of the body's outline. A body that is slower for
+    /// half a second falls asleep: with the default of 0.05 m/s, an acceleration below 0.1 m/s² does not move a body
+    /// from rest.
     pub sleep_speed: Fx,
 }
 

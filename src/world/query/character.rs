@@ -86,7 +86,9 @@ impl Mover {
         self
     }
 
-    /// Sets the largest height in metres of steps that the character climbs without a jump, clamped to 0 to 100.
+    /// Sets the largest height in metres of steps that the character climbs without a jump, clamped to 0 to 100. A step
+    /// needs room for the character above it. A character with upright sides rises above the step by up to its
+    /// displacement in a tick before it moves onto it.
     #[must_use]
     pub fn step_height(mut self, height: Fx) -> Self {
         self.step_height = height.clamp(Fx::ZERO, HEIGHT_MAX);
