@@ -205,7 +205,7 @@ function writeMass(at, options) {
 /** Writes a body and its shapes into memory. Returns their addresses, the number of shapes, and the address `rest` of
  * `room` bytes after them. */
 export function writeBodyAndShapes(options, room = 0) {
-    const shapes = expand(options.shapes ?? []);
+    const shapes = expand(onlyKnown(options, BODY_OPTIONS, "a body").shapes ?? []);
     const [body, each] = [sizeOf("body_def"), sizeOf("shape_def")];
     const at = scratch(8 + body + each * shapes.length + room);
     writeBody(at + 8, options);

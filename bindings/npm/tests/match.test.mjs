@@ -38,8 +38,9 @@ class Push {
         return this.world.toBytes();
     }
     decode(bytes) {
+        const world = L.World.fromBytes(bytes);
         this.world.dispose();
-        this.world = L.World.fromBytes(bytes);
+        this.world = world;
     }
 }
 
@@ -122,4 +123,47 @@ test("a state that differs is noticed", () => {
     guest.game.world.setGravity([0, -9]);
     net.run(2000);
     assert.ok([...host.events, ...guest.events].some(({ kind }) => kind === "desync"));
+});
+
+test("options of a match are checked", () => {
+    for (const wrong of [
+        undefined, { seats: "2" }, { seats: -1 }, { seats: 2, offer: "sumo" }, { seats: 2, contact: "host" }, { seats: 2, rollback: 8 },
+        { seats: 2, peer: -1 }, { seats: 2, patience: -5 }, { seats: 2, tickRate: 15.5 }, { seats: 2, secret: [1n] },
+    ]) {
+        assert.throws(() => new L.Match(wrong), { code: "VALUE" }, JSON.stringify(wrong, (_, value) => (typeof value === "bigint" ? `${value}` : value)));
+    }
+    const match = new L.Match({ seats: 2 });
+    for (const wrong of [-1, 0.5, NaN, "x"]) {
+        assert.throws(() => match.endAt(wrong), { code: "VALUE" });
+        assert.throws(() => match.setGuess(wrong), { code: "VALUE" });
+    }
+    for (const wrong of [-1, NaN, "x", undefined]) {
+        assert.throws(() => match.update(wrong), { code: "VALUE" });
+    }
+});
+
+test("an error of the game stops the driver", () => {
+    let isBroken = false;
+    const game = { step: () => { if (isBroken) throw new Error("the rules failed"); }, save: () => 0, load: () => {}, hash: () => "0".repeat(32) };
+    const driver = new L.MatchDriver(new L.Match({ seats: 1 }), game, () => {});
+    const inputs = () => Uint8Array.of(0);
+    for (let now = 0; now < 500; now += 10) driver.update(now, inputs);
+    assert.ok(driver.tick > 10);
+    isBroken = true;
+    assert.throws(() => { for (let now = 500; now < 600; now += 10) driver.update(now, inputs); }, /the rules failed/);
+    const { tick } = driver;
+    isBroken = false;
+    assert.throws(() => driver.update(700, inputs), /the rules failed/);
+    assert.equal(driver.tick, tick);
+});
+
+test("a match ends for the game when it has played all ticks", () => {
+    const game = { step: () => {}, save: () => 0, load: () => {}, hash: () => "0".repeat(32) };
+    const match = new L.Match({ seats: 1 });
+    const driver = new L.MatchDriver(match, game, () => {});
+    match.endAt(30);
+    assert.equal(driver.ended, false);
+    for (let now = 0; now < 5000 && !driver.ended; now += 10) driver.update(now, () => Uint8Array.of(0));
+    assert.ok(driver.ended);
+    assert.equal(driver.tick, 30);
 });

@@ -1,0 +1,77 @@
+// Wrong arguments are errors with a code that name the argument. WebAssembly would convert them to integers.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { L } from "./common.mjs";
+
+const world = () => new L.World({ gravity: [0, -10] });
+
+/** Values that are no integers of 32 bits without sign. */
+const NO_COUNTS = [-1, 0.5, 16.67, "2", "x", NaN, null, {}, 2 ** 32, true];
+
+test("a number of ticks and a bound are integers", () => {
+    const w = world();
+    for (const wrong of NO_COUNTS) {
+        assert.throws(() => w.step(wrong), { code: "VALUE", message: /number of ticks/ }, String(wrong));
+        assert.throws(() => w.random(wrong), { code: "VALUE", message: /bound/ }, String(wrong));
+        assert.throws(() => new L.Random(1).below(wrong), { code: "VALUE", message: /bound/ }, String(wrong));
+    }
+    assert.equal(w.tick, 0);
+    w.step(3);
+    assert.equal(w.tick, 3);
+});
+
+test("integers of options keep their range", () => {
+    assert.throws(() => new L.World({ bodyLimit: 2 ** 40 }), { code: "VALUE", message: /bodyLimit/ });
+    assert.throws(() => new L.World({ tickRate: -60 }), { code: "VALUE", message: /tickRate .* -60/ });
+    const spawn = (options) => world().spawn({ ...options, shapes: [L.circle(1)] });
+    assert.throws(() => spawn({ userData: 1n << 64n }), { code: "VALUE", message: /userData/ });
+    assert.throws(() => L.circle(1, 5), { code: "VALUE" });
+    for (const wrong of [{ category: 1n << 64n }, { group: 1e10 }]) {
+        assert.throws(() => world().spawn({ shapes: [L.circle(1, wrong)] }), { code: "VALUE", message: /category|group/ });
+    }
+    assert.throws(() => spawn({ name: "a very long name of a body" }), { code: "VALUE", message: /name/ });
+    assert.throws(() => spawn({ enabled: "no" }), { code: "VALUE", message: /enabled/ });
+    assert.throws(() => spawn({ mass: 5 }), { code: "VALUE", message: /`mass`/ });
+    assert.throws(() => spawn({ mass: { mass: 5 } }), { code: "VALUE", message: /gyration/ });
+});
+
+test("a missing argument is an error with a code", () => {
+    const w = world();
+    for (const call of [
+        () => w.spawn(), () => w.addJoint(), () => new L.World(null), () => new L.World("x"), () => L.box(1, 1, null), () => L.polygon(),
+        () => L.polygon("abc"), () => w.spawn({ shapes: L.box(1, 1) }), () => w.spawn({ shapes: [null] }), () => w.setConfig(),
+        () => w.castRay([0, 0], [1, 0], { except: 1 }), () => w.restore(), () => w.restore({}), () => w.saveInto(), () => w.execute(),
+        () => w.setBody(0), () => w.explode(), () => w.spawnEach({}, 1), () => new L.Random(), () => new L.Random(0.5),
+        () => L.Fx.fromRaw(0.5), () => new L.Angle(), () => new L.Angle(0.5), () => w.poses(new Float32Array(10)),
+        () => L.moveCharacter(w, undefined, { position: [0, 0] }), () => L.moveCharacter({}, {}, {}), () => L.fx(2 ** 31), () => L.fx(NaN),
+    ]) {
+        assert.throws(call, (error) => error instanceof L.Lockstep2dError && error.code !== undefined, String(call));
+    }
+    assert.equal(L.fx(-(2 ** 31)).toString(), "-2147483648");
+});
+
+test("a joint needs both of its bodies and knows its options", () => {
+    const w = world();
+    const [a, b] = [0, 2].map((x) => w.spawn({ position: [x, 5], shapes: [L.circle("0.5")] }));
+    for (const wrong of [{ b }, { a }, { a, b: undefined }, { a, b: null }, { a, b: NaN }]) {
+        assert.throws(() => w.addJoint({ type: "weld", ...wrong }), { code: "VALUE" }, JSON.stringify(wrong));
+    }
+    assert.throws(() => w.addJoint({ type: "revolute", a, b, motor: { speed: 1, maxTorque: 2 } }), /no option maxTorque/);
+    assert.throws(() => w.addJoint({ type: "revolute", a, b, threshold: { force: 1, break: true } }), /no option break/);
+    assert.throws(() => w.addJoint({ type: "revolute", a, b, limit: [0] }), /limit has 2 items/);
+    assert.equal(w.joints().length, 0);
+});
+
+test("settings of a body are read and set as a whole", () => {
+    const w = world();
+    const body = w.spawn({ gravityScale: "0.5", lockX: true, continuous: "bullet", shapes: [L.circle(1)] });
+    const { gravityScale, lockX, continuous, linearDamping, maySleep } = w.body(body);
+    assert.deepEqual([gravityScale.toString(), lockX, continuous, linearDamping.toString(), maySleep], ["0.5", true, "bullet", "0", true]);
+    w.setBody(body, { gravityScale, lockX, continuous, linearDamping: 1 });
+    assert.deepEqual([w.body(body).lockX, w.body(body).linearDamping.toString()], [true, "1"]);
+    w.setBody(body, {});
+    assert.deepEqual([w.body(body).lockX, w.body(body).linearDamping.toString()], [false, "0"]);
+    for (const ignored of [{ mass: L.massOf([L.circle(1)]) }, { type: "fixed" }, { name: "x" }, { position: [0, 0] }]) {
+        assert.throws(() => w.setBody(body, ignored), { code: "VALUE", message: /no option/ });
+    }
+});
