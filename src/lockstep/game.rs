@@ -204,13 +204,16 @@ pub trait Game: Sized {
         Self::Input::default()
     }
 
-    /// The physics world, if the game has one, for drawing and other readers.
+    /// The physics world, if the game has one, for drawing and other readers. A game that has a world implements both
+    /// this method and [`Game::world_mut`].
     fn world(&self) -> Option<&World> {
         None
     }
 
-    /// The physics world, if the game has one, for inspection tools. A tool modifies the world only in a game that it
-    /// created itself.
+    /// The physics world, if the game has one, for tools that count its work while it plays, compare the phases of its
+    /// step, or play it with other settings. A tool modifies the world only in a game that it created itself. Without
+    /// this method [`check`](crate::check) leaves out the variants that change such a setting, and a verifier bounds the
+    /// work of a tick by [`Game::work`] alone.
     fn world_mut(&mut self) -> Option<&mut World> {
         None
     }
@@ -223,4 +226,10 @@ pub trait Game: Sized {
     fn claims(&self) -> Vec<(String, i64)> {
         Vec::new()
     }
+}
+
+/// The physics world of a game that exposes it by either method, for reading.
+pub(crate) fn world_of<G: Game>(game: &mut G) -> Option<&World> {
+    // The second call is for games that implement `world_mut` alone.
+    if game.world().is_some() { game.world() } else { game.world_mut().map(|world| &*world) }
 }

@@ -36,7 +36,8 @@ pub(crate) struct Arguments {
     /// Number of single steps back from there
     #[arg(long, value_name = "K", default_value_t = 0)]
     back: u64,
-    /// The keyframe file of the replay; it is written if it does not exist
+    /// A file of saved states of the replay: used if it exists, and written, without --force, if this run has reached
+    /// new ones; none are reached before tick --interval
     #[arg(long, value_name = "FILE")]
     keyframes: Option<PathBuf>,
     /// Number of ticks between keyframes
