@@ -173,7 +173,9 @@ pub trait Game: Sized {
     /// Number of players; constant during a game, at most 64.
     fn players(&self) -> u32;
 
-    /// Ticks per second; constant during a game.
+    /// Ticks per second; constant during a game. A game that steps its world once in a tick returns the world's
+    /// [`Config::tick_rate`](crate::world::Config::tick_rate). With another rate everything moves too fast or too slow, in
+    /// all variants of [`check`](crate::check) and on all machines alike.
     fn tick_rate(&self) -> u32;
 
     /// Advances one tick. `inputs` has one entry for each player, in player order.

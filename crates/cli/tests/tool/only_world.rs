@@ -22,9 +22,9 @@ impl Game for Ball {
 
     fn new(_: &()) -> Result<Self, SetupError> {
         let mut world = World::default();
-        let ball = Geometry::circle(fx!(0.5))
-            .and_then(|ball| world.spawn(&BodyDef::dynamic(), &[ShapeDef::new(ball)]));
-        ball.map(|_| Ball(world)).map_err(|error| SetupError { why: error.to_string() })
+        let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
+        world.spawn(&BodyDef::dynamic(), &[ball]).unwrap();
+        Ok(Ball(world))
     }
 
     fn players(&self) -> u32 {
