@@ -174,8 +174,8 @@ pub trait Game: Sized {
     fn players(&self) -> u32;
 
     /// Ticks per second; constant during a game. A game that steps its world once in a tick returns the world's
-    /// [`Config::tick_rate`](crate::world::Config::tick_rate). With another rate everything moves too fast or too slow, in
-    /// all variants of [`check`](crate::check) and on all machines alike.
+    /// [`Config::tick_rate`](crate::world::Config::tick_rate). With another rate everything moves too fast or too slow,
+    /// in all variants of [`check`](crate::check) and on all machines alike.
     fn tick_rate(&self) -> u32;
 
     /// Advances one tick. `inputs` has one entry for each player, in player order.
@@ -214,8 +214,8 @@ pub trait Game: Sized {
 
     /// The physics world, if the game has one, for tools that count its work while it plays, compare the phases of its
     /// step, or play it with other settings. A tool modifies the world only in a game that it created itself. Without
-    /// this method [`check`](crate::check) leaves out the variants that change such a setting, and a verifier bounds the
-    /// work of a tick by [`Game::work`] alone.
+    /// this method, [`check`](crate::check) leaves out the variants that change such a setting, and a verifier bounds
+    /// the work of a tick by [`Game::work`] alone.
     fn world_mut(&mut self) -> Option<&mut World> {
         None
     }
