@@ -83,8 +83,8 @@ impl fmt::Display for PeerError {
             PeerError::InputLength { bytes, possible } => {
                 write!(
                     f,
-                    "an input has {bytes} bytes, {possible} are possible: set `PeerOptions::input_bytes` to the size of \
-                     the largest input"
+                    "an input has {bytes} bytes, {possible} are possible: set `PeerOptions::input_bytes` to the size \
+                     of the largest input"
                 )
             }
             PeerError::InputCount { seats, inputs } => write!(f, "{inputs} inputs for {seats} own seats"),

@@ -26,8 +26,8 @@ pub struct PeerOptions {
     /// Largest number of ticks that are played with guessed inputs: 0 to 32, and 0 is lockstep. Default: 0 in lockstep,
     /// 8 with rollback. Each peer chooses its own.
     pub guess: u16,
-    /// Smallest and largest delay of own inputs in ticks, at most 60. Within these bounds the delay follows the latency.
-    /// Default: (0, 20) in lockstep, (1, 20) with rollback. Each peer chooses its own.
+    /// Smallest and largest delay of own inputs in ticks, at most 60. Within these bounds the delay follows the
+    /// latency. Default: (0, 20) in lockstep, (1, 20) with rollback. Each peer chooses its own.
     pub delay: (u16, u16),
     /// Time for which all peers wait for a peer that sends nothing before they continue without it. `Duration::MAX`:
     /// without a limit. Any duration is possible. Default: 2 s.
