@@ -296,11 +296,6 @@ fn an_option_out_of_its_range_is_named_as_the_caller_knows_it() {
     ] {
         assert_eq!(refused(options), format!("the session cannot start: {expected}"));
     }
-    let network = Network::new(conditions(1, 0), 3);
-    let setup = Setup { tick_rate: 1001, ..Setup::default() };
-    let peer = Peer::<Pushers, _>::host(&setup, options, identity(0), network.port(0));
-    let text = peer.err().expect("too many ticks").to_string();
-    assert_eq!(text, "the session cannot start: `Game::tick_rate` is 1 to 1000, not 1001");
     assert_eq!(
         refused(PeerOptions { first_seat: Some(4), ..options }),
         "there is no seat 4: the match has seats 0 to 3"
@@ -315,7 +310,8 @@ fn a_peer_without_a_free_seat_follows_the_match_and_its_status_is_joining() {
     table.play(3000);
     let peer = table.peer(1);
     assert_eq!((peer.status(), peer.seats()), (Some(Status::Joining), vec![]));
-    assert_eq!(peer.session().map(|session| session.view().free_seats()), Some(0));
+    // One bit for each of 64 seats, of which the game has four.
+    assert_eq!(peer.session().map(|session| session.view().free_seats() & 0b1111), Some(0));
     assert!(peer.confirmed() > 60, "{}", peer.confirmed());
     // The list of inputs of a peer without seats is empty, and a loop over its seats makes it so.
     assert_eq!(peer.advance(&[]).map(|_| ()), Ok(()));
