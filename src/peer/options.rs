@@ -197,7 +197,7 @@ mod tests {
             ("input_bytes", InputSlot::Prefixed(600), "`input_bytes` is 0 to 510, not 600"),
             ("guess", InputSlot::Fixed(1), "`guess` is 1 to 2, not 16667"),
         ] {
-            let text = named(error(field), &game, slot).to_string();
+            let text = alloc::format!("{}", named(error(field), &game, slot));
             assert_eq!(text, alloc::format!("the session cannot start: {expected}"));
         }
     }

@@ -281,7 +281,7 @@ fn more_inputs_than_seats_are_an_error() {
 fn refused(options: PeerOptions) -> String {
     let network = Network::new(conditions(1, 0), 3);
     let peer = Peer::<Pushers, _>::host(&Setup::default(), options, identity(0), network.port(0));
-    peer.err().expect("an option that is out of its range").to_string()
+    peer.expect_err("an option that is out of its range").to_string()
 }
 
 #[test]
