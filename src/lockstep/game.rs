@@ -173,7 +173,9 @@ pub trait Game: Sized {
     /// Number of players; constant during a game, at most 64.
     fn players(&self) -> u32;
 
-    /// Ticks per second; constant during a game.
+    /// Ticks per second; constant during a game. A game that steps its world once in a tick returns the world's
+    /// [`Config::tick_rate`](crate::world::Config::tick_rate). With another rate everything moves too fast or too slow,
+    /// in all variants of [`check`](crate::check) and on all machines alike.
     fn tick_rate(&self) -> u32;
 
     /// Advances one tick. `inputs` has one entry for each player, in player order.
@@ -204,13 +206,16 @@ pub trait Game: Sized {
         Self::Input::default()
     }
 
-    /// The physics world, if the game has one, for drawing and other readers.
+    /// The physics world, if the game has one, for drawing and other readers. A game that has a world implements both
+    /// this method and [`Game::world_mut`].
     fn world(&self) -> Option<&World> {
         None
     }
 
-    /// The physics world, if the game has one, for inspection tools. A tool modifies the world only in a game that it
-    /// created itself.
+    /// The physics world, if the game has one, for tools that count its work while it plays, compare the phases of its
+    /// step, or play it with other settings. A tool modifies the world only in a game that it created itself. Without
+    /// this method, [`check`](crate::check) leaves out the variants that change such a setting, and a verifier bounds
+    /// the work of a tick by [`Game::work`] alone.
     fn world_mut(&mut self) -> Option<&mut World> {
         None
     }
@@ -223,4 +228,10 @@ pub trait Game: Sized {
     fn claims(&self) -> Vec<(String, i64)> {
         Vec::new()
     }
+}
+
+/// The physics world of a game that exposes it by either method, for reading.
+pub(crate) fn world_of<G: Game>(game: &mut G) -> Option<&World> {
+    // The second call is for games that implement `world_mut` alone.
+    if game.world().is_some() { game.world() } else { game.world_mut().map(|world| &*world) }
 }

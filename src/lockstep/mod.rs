@@ -6,6 +6,7 @@ mod history;
 mod input_log;
 mod sandbox;
 
+pub(crate) use game::world_of;
 pub use game::{Game, RulesId, SetupError, StartError};
 pub use history::{History, Past};
 pub(crate) use input_log::decode_inputs;

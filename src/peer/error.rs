@@ -18,7 +18,7 @@ use crate::session::ConfigError;
 /// let options = PeerOptions { delay: (9, 3), start_with: 1, ..PeerOptions::lockstep() };
 /// let me = PeerIdentity::new([1, 2, 3, 4]);
 /// match Peer::<Sandbox, _>::host(&SandboxSetup::default(), options, me, network.port(0)) {
-///     Err(PeerError::Config(error)) => assert_eq!(error.field, "delay_min"),
+///     Err(PeerError::Config(error)) => assert_eq!(error.field, "delay.0"),
 ///     other => panic!("{other:?}"),
 /// }
 /// ```
@@ -26,10 +26,11 @@ use crate::session::ConfigError;
 pub enum PeerError {
     /// The setup cannot start a game, or the replay cannot be written.
     Record(RecordError),
-    /// An option is out of its range.
+    /// An option, or a number of the game that the session depends on, is out of its range. The error names the field
+    /// of [`PeerOptions`](super::PeerOptions), such as `delay.0`, or the method, such as `Game::tick_rate`.
     Config(ConfigError),
-    /// An encoded input does not have the length that
-    /// [`PeerOptions::input_bytes`](super::PeerOptions::input_bytes) allows.
+    /// An encoded input is longer than [`PeerOptions::input_bytes`](super::PeerOptions::input_bytes), or, without that
+    /// option, has another length than the default input.
     InputLength {
         /// Bytes of the encoded input.
         bytes: usize,
@@ -80,7 +81,11 @@ impl fmt::Display for PeerError {
             PeerError::Record(error) => error.fmt(f),
             PeerError::Config(error) => error.fmt(f),
             PeerError::InputLength { bytes, possible } => {
-                write!(f, "an input of {bytes} bytes, {possible} are possible")
+                write!(
+                    f,
+                    "an input has {bytes} bytes, {possible} are possible: set `PeerOptions::input_bytes` to the size \
+                     of the largest input"
+                )
             }
             PeerError::InputCount { seats, inputs } => write!(f, "{inputs} inputs for {seats} own seats"),
             PeerError::Seat { seat, seats } => {

@@ -7,6 +7,9 @@ use serde::{Serialize, de::DeserializeOwned};
 use super::error::PeerError;
 use crate::codec;
 
+/// Number of bytes that state the length of an input.
+pub(super) const LENGTH_BYTES: u16 = 2;
+
 /// Encoding of an input in a fixed number of bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum InputSlot {
@@ -32,7 +35,7 @@ impl InputSlot {
         match self {
             // A session transmits at least one byte.
             InputSlot::Fixed(bytes) => bytes.max(1),
-            InputSlot::Prefixed(bytes) => bytes.saturating_add(2),
+            InputSlot::Prefixed(bytes) => bytes.saturating_add(LENGTH_BYTES),
         }
     }
 

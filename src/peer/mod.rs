@@ -17,7 +17,7 @@
 //! loop {
 //!     peer.update(start.elapsed())?;
 //!     while peer.is_due() {
-//!         peer.advance(&[read_pad::<MyGame>()])?;
+//!         peer.advance(&[read_pad::<MyGame>()])?; // one own seat; for more: one input for each of `peer.seats()`
 //!     }
 //!     draw(peer.game());
 //!     std::thread::sleep(std::time::Duration::from_millis(1));

@@ -4,12 +4,15 @@ use core::time::Duration;
 
 use crate::lockstep::Game;
 use crate::replay::CHECKPOINT_INTERVAL;
-use crate::session::{Config, Key, PeerId, Timing};
+use crate::session::{Config, ConfigError, INPUT_BYTES_MAX, Key, PeerId, Timing};
 
 use super::error::PeerError;
-use super::input_slot::InputSlot;
+use super::input_slot::{InputSlot, LENGTH_BYTES};
 
-/// Options of a peer. `patience` and `input_bytes` have to be the same for all peers of a match.
+/// Options of a peer. `patience`, `input_bytes` and `match_tag` have to be the same for all peers of a match.
+///
+/// The defaults are those of [`PeerOptions::lockstep`] and [`PeerOptions::rollback`]. A value out of its range is an
+/// error of [`Peer::host`](super::Peer::host), `join` and `watch` that names the option, its value and its range.
 ///
 /// ```
 /// use core::time::Duration;
@@ -20,25 +23,30 @@ use super::input_slot::InputSlot;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PeerOptions {
-    /// Largest number of ticks that are played with guessed inputs; 0 is lockstep. Each peer chooses its own.
+    /// Largest number of ticks that are played with guessed inputs: 0 to 32, and 0 is lockstep. Default: 0 in lockstep,
+    /// 8 with rollback. Each peer chooses its own.
     pub guess: u16,
-    /// Bounds of the delay of own inputs in ticks. Within these bounds the delay follows the latency.
+    /// Smallest and largest delay of own inputs in ticks, at most 60. Within these bounds the delay follows the
+    /// latency. Default: (0, 20) in lockstep, (1, 20) with rollback. Each peer chooses its own.
     pub delay: (u16, u16),
     /// Time for which all peers wait for a peer that sends nothing before they continue without it. `Duration::MAX`:
-    /// without a limit.
+    /// without a limit. Any duration is possible. Default: 2 s.
     pub patience: Duration,
-    /// Number of seats that have to be taken before the first tick.
+    /// Number of seats that have to be taken before the first tick: 0 to the number of players of the game. Default: 2.
     pub start_with: u8,
-    /// Number of own seats.
+    /// Number of own seats. 0 makes a host a dedicated server; a peer that joins requests at least 1. Default: 1.
     pub seats: u8,
-    /// First own seat, if this peer requests certain seats. `None`: any free seats.
+    /// First own seat, if this peer requests certain seats. `first_seat` + `seats` is at most the number of players of
+    /// the game. Default: `None`, any free seats.
     pub first_seat: Option<u8>,
-    /// Largest encoded input in bytes, for games whose inputs differ in length. `None`: every input is as long as the
-    /// default input.
+    /// Largest encoded input in bytes, 0 to 510, for games whose inputs differ in length: see [`codec`](crate::codec).
+    /// Default: `None`, every input is as long as the default input, which has at most 512 bytes.
     pub input_bytes: Option<u16>,
-    /// Identifies a match among other matches of the same game.
+    /// Identifies a match among other matches of the same game: any number. A peer with another tag gets no answer.
+    /// Default: 0.
     pub match_tag: u64,
-    /// Number of ticks per block of the replay.
+    /// Number of ticks per block of the replay: 1 to 3600. Default: 60
+    /// ([`CHECKPOINT_INTERVAL`](crate::replay::CHECKPOINT_INTERVAL)).
     pub checkpoint_interval: u32,
 }
 
@@ -92,8 +100,28 @@ impl PeerOptions {
         let longest = if self.guess > 0 { 1 } else { 8 };
         config.save_interval = (1..=longest).rev().find(divides).unwrap_or(1);
         config.check_interval = config.save_interval * (10 / config.save_interval).max(1);
-        config.validate()?;
+        config.validate().map_err(|error| named(error, game, slot))?;
         Ok(config)
+    }
+}
+
+/// Replaces the name of a parameter of the session by the name of the option, or of the method of the game, that sets
+/// it, with the range of that number.
+fn named<G: Game>(error: ConfigError, game: &G, slot: InputSlot) -> ConfigError {
+    match (error.field, slot) {
+        ("delay_min", _) => ConfigError { field: "delay.0", ..error },
+        ("delay_max", _) => ConfigError { field: "delay.1", ..error },
+        ("seats", _) => ConfigError { field: "Game::players", value: game.players().into(), ..error },
+        ("tick_micros", _) => {
+            let value = game.tick_rate().into();
+            ConfigError { field: "Game::tick_rate", value, min: 1, max: 1000, step: 1 }
+        }
+        ("input_bytes", InputSlot::Fixed(_)) => ConfigError { field: "bytes of the default input", ..error },
+        ("input_bytes", InputSlot::Prefixed(bytes)) => {
+            let max = u64::from(INPUT_BYTES_MAX - LENGTH_BYTES);
+            ConfigError { value: bytes.into(), min: 0, max, ..error }
+        }
+        _ => error,
     }
 }
 
@@ -148,5 +176,29 @@ impl PeerIdentity {
     #[must_use]
     pub fn with_key(self, key: Key) -> Self {
         PeerIdentity { key, ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lockstep::{Sandbox, SandboxSetup};
+
+    #[test]
+    fn an_error_names_what_sets_the_number() {
+        let game = Sandbox::new(&SandboxSetup::default()).unwrap();
+        let error = |field| ConfigError { field, value: 16_667, min: 1, max: 2, step: 1 };
+        for (field, slot, expected) in [
+            ("tick_micros", InputSlot::Fixed(1), "`Game::tick_rate` is 1 to 1000, not 60"),
+            ("seats", InputSlot::Fixed(1), "`Game::players` is 1 to 2, not 1"),
+            ("delay_min", InputSlot::Fixed(1), "`delay.0` is 1 to 2, not 16667"),
+            ("delay_max", InputSlot::Fixed(1), "`delay.1` is 1 to 2, not 16667"),
+            ("input_bytes", InputSlot::Fixed(600), "`bytes of the default input` is 1 to 2, not 16667"),
+            ("input_bytes", InputSlot::Prefixed(600), "`input_bytes` is 0 to 510, not 600"),
+            ("guess", InputSlot::Fixed(1), "`guess` is 1 to 2, not 16667"),
+        ] {
+            let text = alloc::format!("{}", named(error(field), &game, slot));
+            assert_eq!(text, alloc::format!("the session cannot start: {expected}"));
+        }
     }
 }

@@ -97,9 +97,10 @@ impl<'a> Header<'a> {
         let cut = || ReadError::Malformed { offset: file.len() as u64, flaw: Flaw::HeaderCut };
         let mut cursor = Cursor::new(file, 0);
 
-        if cursor.array().ok_or_else(cut)? != MAGIC {
+        if !file.starts_with(&MAGIC) && !MAGIC.starts_with(file) {
             return malformed(0, Flaw::Magic);
         }
+        let _: [u8; MAGIC.len()] = cursor.array().ok_or_else(cut)?;
         let version = cursor.u32().ok_or_else(cut)?;
         if version != FORMAT_VERSION {
             return Err(ReadError::OtherFormat { version });

@@ -32,7 +32,7 @@ pub struct Limits {
     /// Ticks in the whole game.
     pub ticks: u64,
     /// Bodies in the game's world, checked at the start and after every tick, if the game exposes a world
-    /// ([`Game::world_mut`](crate::lockstep::Game::world_mut)). Between two checks, `setup_bytes` and `tick_work` bound
+    /// ([`Game::world`](crate::lockstep::Game::world)). Between two checks, `setup_bytes` and `tick_work` bound
     /// their number.
     pub bodies: u64,
     /// Work units of one tick, as counted by [`Game::work`](crate::lockstep::Game::work).

@@ -8,7 +8,7 @@ use super::metered::play_within;
 use super::tick_inputs::TickInputs;
 use super::verdict::Verdict;
 use super::verified_replay::{Ending, Step, check_bodies, check_rules, decode_setup, scan, start};
-use crate::lockstep::{Game, decode_inputs};
+use crate::lockstep::{Game, decode_inputs, world_of};
 use crate::world::World;
 
 /// Simulates the inputs of a replay file without comparing checkpoints, unlike a
@@ -75,7 +75,7 @@ impl<'a, G: Game> RawReplay<'a, G> {
 
     /// The game's physics world at the current tick, if it has one, for inspection.
     pub fn world(&mut self) -> Option<&World> {
-        self.game.world_mut().map(|world| &*world)
+        world_of(&mut self.game)
     }
 
     /// Returns the game at the current tick.

@@ -9,7 +9,7 @@ use super::reader::{Part, ReadError, Reader};
 use super::trailer::Trailer;
 use super::verdict::{Mismatch, Verdict};
 use crate::codec;
-use crate::lockstep::{Game, StartError};
+use crate::lockstep::{Game, StartError, world_of};
 use crate::world::World;
 
 /// Simulates a replay and returns the verdict on it.
@@ -237,7 +237,7 @@ pub(super) fn check_rules<G: Game>(header: &Header<'_>) -> Result<(), Verdict> {
 
 /// Checks the number of bodies. A game that exposes no world counts as having none.
 pub(super) fn check_bodies<G: Game>(game: &mut G, limits: &Limits) -> Result<(), ReadError> {
-    let bodies = game.world_mut().map_or(0, |world| world.body_count());
+    let bodies = world_of(game).map_or(0, World::body_count);
     LimitKind::Bodies.check(u64::try_from(bodies).unwrap_or(u64::MAX), limits.bodies)
 }
 

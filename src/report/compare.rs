@@ -5,7 +5,6 @@ use core::fmt;
 
 use super::candidate;
 use super::comparison::{Comparison, InputDifference, Side, Trajectory};
-use super::desync::DesyncReport;
 use super::evidence::{Evidence, SideEvidence};
 use super::replayed::{self, Effort};
 use crate::codec;
@@ -129,7 +128,9 @@ fn known<'a, G: Game>(
     let known = match evidence {
         Evidence::World(_) => return Err(CompareError::Kinds),
         Evidence::Report(report) => {
-            check_rules::<G>(report).map_err(|why| CompareError::Unverifiable { side, why })?;
+            let (name, version) = report.rules();
+            check_rules::<G>(report.semantics, name, version)
+                .map_err(|why| CompareError::Unverifiable { side, why })?;
             SideEvidence::of_report(report, limits)
         }
         Evidence::Replay(bytes) => SideEvidence::of_replay(bytes, limits),
@@ -141,11 +142,11 @@ fn unreadable(side: Side, error: ReadError) -> CompareError {
     CompareError::Replay { side, verdict: error.into() }
 }
 
-fn check_rules<G: Game>(report: &DesyncReport) -> Result<(), Mismatch> {
-    if report.semantics != crate::SEMANTICS {
-        return Err(Mismatch::Semantics { file: report.semantics, here: crate::SEMANTICS });
+/// Checks that this program can play a file with these semantics and rules.
+fn check_rules<G: Game>(semantics: u32, name: &str, version: u32) -> Result<(), Mismatch> {
+    if semantics != crate::SEMANTICS {
+        return Err(Mismatch::Semantics { file: semantics, here: crate::SEMANTICS });
     }
-    let (name, version) = report.rules();
     if (name, version) != (G::RULES.name, G::RULES.version) {
         let here = (G::RULES.name.into(), G::RULES.version);
         return Err(Mismatch::Rules { file: (name.into(), version), here });
@@ -153,7 +154,7 @@ fn check_rules<G: Game>(report: &DesyncReport) -> Result<(), Mismatch> {
     Ok(())
 }
 
-/// The differences between the setups of two replays.
+/// The differences between the setups of two replays. Setups of another game are not compared: they are an error.
 fn setup_differences<G: Game>(
     known: &[SideEvidence<'_>; 2],
     limits: &Limits,
@@ -161,7 +162,10 @@ fn setup_differences<G: Game>(
     let mut setups = Vec::new();
     for (side, known) in Side::BOTH.into_iter().zip(known) {
         let reader = Reader::open(known.replay, limits).map_err(|error| unreadable(side, error))?;
-        setups.push(reader.header().setup);
+        let header = reader.header();
+        check_rules::<G>(header.semantics, header.rules_name, header.rules_version)
+            .map_err(|why| CompareError::Replay { side, verdict: Verdict::Unverifiable { why } })?;
+        setups.push(header.setup);
     }
     if setups[0] == setups[1] {
         return Ok(Vec::new());

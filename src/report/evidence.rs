@@ -34,9 +34,9 @@ pub enum Evidence {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EvidenceError {
-    /// A damaged report.
+    /// A report that is damaged or has another format.
     Report(ReportError),
-    /// A damaged snapshot.
+    /// A snapshot that is damaged, or has another format or other semantics.
     World(SnapshotError),
     /// Neither a report nor a replay nor a snapshot.
     Unknown,
@@ -45,7 +45,15 @@ pub enum EvidenceError {
 impl fmt::Display for EvidenceError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            EvidenceError::Report(error @ ReportError::Format { .. }) => {
+                write!(f, "a report of another version: {error}")
+            }
             EvidenceError::Report(error) => write!(f, "a damaged report: {error}"),
+            EvidenceError::World(
+                error @ (SnapshotError::Format { .. } | SnapshotError::Semantics { .. }),
+            ) => {
+                write!(f, "a snapshot of another version: {error}")
+            }
             EvidenceError::World(error) => write!(f, "a damaged snapshot: {error}"),
             EvidenceError::Unknown => write!(f, "neither a report nor a replay nor a snapshot"),
         }

@@ -88,6 +88,18 @@ fn comparisons() {
     says([
         (EvidenceError::Report(ReportError::Hash), "a damaged report: the hash does not match the bytes"),
         (EvidenceError::World(SnapshotError::Hash), "a damaged snapshot: the hash does not match the bytes"),
+        (
+            EvidenceError::Report(ReportError::Format { found: 1 }),
+            "a report of another version: format version 1, this engine reads 2",
+        ),
+        (
+            EvidenceError::World(SnapshotError::Semantics { found: 2 }),
+            "a snapshot of another version: made with semantics 2, this engine has 16",
+        ),
+        (
+            EvidenceError::World(SnapshotError::Format { found: 1 }),
+            "a snapshot of another version: format version 1, this engine reads 4",
+        ),
         (EvidenceError::Unknown, "neither a report nor a replay nor a snapshot"),
     ]);
     says([

@@ -24,7 +24,10 @@ fn peers() {
             PeerError::from(ConfigError { field: "check_interval", value: 12, min: 8, max: 65535, step: 8 }),
             "the session cannot start: `check_interval` is 8 to 65535 in steps of 8, not 12",
         ),
-        (PeerError::InputLength { bytes: 9, possible: 4 }, "an input of 9 bytes, 4 are possible"),
+        (
+            PeerError::InputLength { bytes: 9, possible: 4 },
+            "an input has 9 bytes, 4 are possible: set `PeerOptions::input_bytes` to the size of the largest input",
+        ),
         (PeerError::InputCount { seats: 1, inputs: 2 }, "2 inputs for 1 own seats"),
         (PeerError::Seat { seat: 4, seats: 4 }, "there is no seat 4: the match has seats 0 to 3"),
         (PeerError::SeatTaken { seat: 1 }, "seat 1 is taken"),

@@ -276,3 +276,60 @@ fn more_inputs_than_seats_are_an_error() {
     table.peer(0).update(now).expect("valid");
     assert!(matches!(table.peer(0).advance(&[1, 2]), Err(PeerError::InputCount { seats: 1, inputs: 2 })));
 }
+
+/// Plays nothing: a host alone with these options.
+fn refused(options: PeerOptions) -> String {
+    let network = Network::new(conditions(1, 0), 3);
+    let peer = Peer::<Pushers, _>::host(&Setup::default(), options, identity(0), network.port(0));
+    peer.expect_err("an option that is out of its range").to_string()
+}
+
+#[test]
+fn an_option_out_of_its_range_is_named_as_the_caller_knows_it() {
+    let options = PeerOptions::lockstep();
+    for (options, expected) in [
+        (PeerOptions { delay: (9, 3), ..options }, "`delay.0` is 0 to 3, not 9"),
+        (PeerOptions { delay: (0, 61), ..options }, "`delay.1` is 0 to 60, not 61"),
+        (PeerOptions { guess: 33, ..options }, "`guess` is 0 to 32, not 33"),
+        (PeerOptions { start_with: 5, ..options }, "`start_with` is 0 to 4, not 5"),
+        (PeerOptions { input_bytes: Some(511), ..options }, "`input_bytes` is 0 to 510, not 511"),
+    ] {
+        assert_eq!(refused(options), format!("the session cannot start: {expected}"));
+    }
+    assert_eq!(
+        refused(PeerOptions { first_seat: Some(4), ..options }),
+        "there is no seat 4: the match has seats 0 to 3"
+    );
+}
+
+#[test]
+fn a_peer_without_a_free_seat_follows_the_match_and_its_status_is_joining() {
+    let mut table = Table::new(10, 0);
+    table.host(PeerOptions { seats: 4, ..PeerOptions::lockstep() });
+    table.join(PeerOptions::lockstep(), 0);
+    table.play(3000);
+    let peer = table.peer(1);
+    assert_eq!((peer.status(), peer.seats()), (Some(Status::Joining), vec![]));
+    // One bit for each of 64 seats, of which the game has four.
+    assert_eq!(peer.session().map(|session| session.view().free_seats() & 0b1111), Some(0));
+    assert!(peer.confirmed() > 60, "{}", peer.confirmed());
+    // The list of inputs of a peer without seats is empty, and a loop over its seats makes it so.
+    assert_eq!(peer.advance(&[]).map(|_| ()), Ok(()));
+}
+
+#[test]
+fn a_contact_that_does_not_answer_is_no_status_and_no_event() {
+    let mut table = Table::new(10, 0);
+    table.host(PeerOptions::lockstep());
+    table.join(PeerOptions::lockstep(), 77);
+    table.join(PeerOptions { match_tag: 5, ..PeerOptions::lockstep() }, 0);
+    table.play(5000);
+    for at in [1, 2] {
+        assert_eq!((table.peer(at).status(), table.peer(at).tick()), (None, 0));
+        assert!(!table.peer(at).is_due());
+        assert!(table.events[at].is_empty(), "{:?}", table.events[at]);
+    }
+    table.peer(1).ask(Network::address(0));
+    table.play(2000);
+    assert_eq!(table.peer(1).status(), Some(Status::Playing));
+}

@@ -9,7 +9,8 @@ use lockstep2d::replay::{KeyframesError, RecordError, SeekError, Verdict};
 use lockstep2d::report::{CompareError, EvidenceError, TraceError};
 
 use crate::exit::Exit;
-use crate::files::{EXTENSION, Shown};
+use crate::files::{EXTENSION, OneLine, Shown};
+use crate::panics::{Panic, PanicText};
 use crate::signature::{LineError, RandomError};
 
 /// An error that stops a command.
@@ -37,6 +38,12 @@ pub(crate) enum CommandError {
     NoSuchTick { path: PathBuf, tick: u64, ticks: u64 },
     /// A replay cannot be played as far as requested.
     Replay { path: PathBuf, verdict: Verdict },
+    /// The game panics while a replay is played.
+    Panicked { path: PathBuf, panic: Panic, ticks: u64 },
+    /// A replay ends before the last tick to trace.
+    TraceEnds { path: PathBuf, tick: u64, ticks: u64 },
+    /// The first tick of a range is after the last.
+    Reversed { from: u64, to: u64 },
     /// A keyframe does not belong to the replay, or the game does not restore it exactly.
     Keyframe { path: PathBuf, error: SeekError },
     /// A keyframe file is damaged or belongs to another replay.
@@ -45,12 +52,18 @@ pub(crate) enum CommandError {
     Inputs { path: PathBuf, line: u64, why: String },
     /// A state cannot be decoded, or has no human-readable or JSON form.
     State { why: String },
-    /// The state has no such body, field or tick.
+    /// The state has no such body.
+    NoBody { id: String },
+    /// The state has no such field or tick.
     NothingThere { what: String },
     /// The game does not expose its world, so it cannot be drawn.
     NoPictures,
     /// Neither an option nor a file extension selects an output format.
     NoFormat,
+    /// The extension of the output file belongs to another format than the one that an option selects.
+    Extension { path: PathBuf, option: &'static str, other: &'static str },
+    /// The file is a report or a save, which cannot be exported.
+    NoReplay { path: PathBuf, kind: &'static str },
     /// A binary format needs an output file.
     NoOutput { format: &'static str },
     /// An option does not apply to the output format.
@@ -101,7 +114,10 @@ impl CommandError {
     /// The exit code of a command that stops with this error.
     pub(crate) fn exit(&self) -> Exit {
         match self {
-            CommandError::Replay { .. } | CommandError::Trace { .. } => Exit::NoMatch,
+            CommandError::Replay { .. }
+            | CommandError::Trace { .. }
+            | CommandError::TraceEnds { .. }
+            | CommandError::Panicked { .. } => Exit::NoMatch,
             _ => Exit::Trouble,
         }
     }
@@ -132,7 +148,12 @@ impl fmt::Display for CommandError {
                 write!(f, "there is no scene {name:?}; there are {}", known.join(", "))
             }
             CommandError::Record(error) => write!(f, "cannot record: {error}"),
-            CommandError::NoSuchTick { path, tick, ticks } => {
+            CommandError::Panicked { path, panic, ticks } => {
+                write!(f, "{}: {}", Shown(path), OneLine(&PanicText { panic, ticks: *ticks }.to_string()))
+            }
+            CommandError::Reversed { from, to } => write!(f, "--from {from} is after --to {to}"),
+            CommandError::NoSuchTick { path, tick, ticks }
+            | CommandError::TraceEnds { path, tick, ticks } => {
                 write!(f, "{} has {ticks} ticks, there is no tick {tick}", Shown(path))
             }
             CommandError::Replay { path, verdict } => write!(f, "{}: {verdict}", Shown(path)),
@@ -142,12 +163,27 @@ impl fmt::Display for CommandError {
             }
             CommandError::Inputs { path, line, why } => write!(f, "{}, line {line}: {why}", Shown(path)),
             CommandError::State { why } => write!(f, "cannot show the state: {why}"),
+            CommandError::NoBody { id } => write!(
+                f,
+                "there is no body {id:?} in this state: a body is given by its number, its handle or its name, such as \
+                 12, 12v1 or ball"
+            ),
             CommandError::NothingThere { what } => write!(f, "there is no {what} in this state"),
-            CommandError::NoPictures => write!(f, "this game shows no world, so it cannot be drawn"),
+            CommandError::NoPictures => {
+                write!(f, "this game exposes no world (`Game::world`), so it cannot be drawn")
+            }
             CommandError::NoFormat => write!(
                 f,
                 "no format given: use --svg, --png, --gif, --apng, --json or --plot, or -o with a name that ends in \
                  one"
+            ),
+            CommandError::Extension { path, option, other } => {
+                write!(f, "{option} does not write {}: use {other}, or another name", Shown(path))
+            }
+            CommandError::NoReplay { path, kind } => write!(
+                f,
+                "{}: {kind}; a replay or a snapshot of a world can be exported (`inspect` describes other files)",
+                Shown(path)
             ),
             CommandError::NoOutput { format } => write!(f, "{format} needs a file to write: -o FILE"),
             CommandError::Useless { option, format } => write!(f, "{option} makes no sense with {format}"),

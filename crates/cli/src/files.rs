@@ -5,6 +5,9 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
+use lockstep2d::codec;
+use lockstep2d::lockstep::Game;
+
 /// The extension of replay files in folders.
 pub(crate) const EXTENSION: &str = "replay";
 
@@ -26,6 +29,11 @@ pub(crate) fn read_from(stream: impl Read, expected: u64, bytes_max: u64) -> io:
     }
     stream.take(end).read_to_end(&mut bytes)?;
     Ok(bytes)
+}
+
+/// Whether bytes are a save of the game `G`, as `seek` writes it.
+pub(crate) fn is_save<G: Game>(bytes: &[u8]) -> bool {
+    codec::decode::<G::Save>(bytes).is_ok_and(|save| codec::encode(&save) == bytes)
 }
 
 /// Shows a path on one line: see [`OneLine`].

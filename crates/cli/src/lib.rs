@@ -41,6 +41,7 @@ mod figures;
 mod files;
 mod identity;
 mod output_file;
+mod panics;
 mod rewriting;
 mod sandbox;
 mod scenes;

@@ -72,7 +72,7 @@ impl<G: Game> Tool<G> {
         Tool { catalogue: Some(Box::new(catalogue)), ..self }
     }
 
-    /// Sets the default view of `export` on the game's world ([`Game::world_mut`]): window, layers, size and title.
+    /// Sets the default view of `export` on the game's world ([`Game::world`]): window, layers, size and title.
     /// Arguments of the command override it. Without it, [`View::default`] applies.
     #[must_use]
     pub fn with_view(self, view: fn(&G) -> View) -> Self {

@@ -140,8 +140,9 @@ impl Game for MyGame {
         2
     }
 
+    /// The rate of the world, which makes one step in a tick.
     fn tick_rate(&self) -> u32 {
-        60
+        self.world.config().tick_rate
     }
 
     fn step(&mut self, inputs: &[Input]) {

@@ -36,7 +36,7 @@ pub(super) struct Printed {
     /// Print all differences as one JSON document
     #[arg(long)]
     json: bool,
-    /// Maximum number of bodies, joints and other parts of the state to show
+    /// Maximum number of bodies, joints and other parts of the state to show, and of fields of a setup or an input
     #[arg(long, default_value_t = 10, value_name = "N")]
     subjects: usize,
 }

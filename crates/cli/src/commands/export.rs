@@ -7,13 +7,15 @@ use lockstep2d::draw::{Layers, View};
 use lockstep2d::lockstep::Game;
 use lockstep2d::math::Aabb;
 use lockstep2d::replay::{Limits, VerifiedReplay};
-use lockstep2d::report::Evidence;
+use lockstep2d::report::{Evidence, EvidenceError};
 use lockstep2d::world::World;
 
 use crate::console::Console;
 use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
+use crate::files::is_save;
 use crate::output_file::{self, Overwrite};
+use crate::panics;
 
 mod animation;
 mod format;
@@ -75,14 +77,27 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
+    panics::guard(&arguments.file, || export(arguments, context))
+}
+
+fn export<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let format = arguments.formats.chosen(arguments.output.as_deref())?;
     arguments.check(format)?;
     if let Some(path) = &arguments.output {
         output_file::check(path, arguments.overwrite)?;
     }
     let (bytes, limits) = (context.load(&arguments.file)?, context.limits());
-    if let Ok(Evidence::World(world)) = Evidence::read(bytes.clone(), limits) {
-        return export_world(&world, format, arguments, &mut context.console);
+    let path = || arguments.file.clone();
+    match Evidence::read(bytes.clone(), limits) {
+        Ok(Evidence::World(world)) => return export_world(&world, format, arguments, &mut context.console),
+        Ok(Evidence::Report(_)) => {
+            return Err(CommandError::NoReplay { path: path(), kind: "a report of a divergence" });
+        }
+        Err(EvidenceError::Unknown) if is_save::<G>(&bytes) => {
+            return Err(CommandError::NoReplay { path: path(), kind: "a save of this game" });
+        }
+        Ok(Evidence::Replay(_)) | Err(EvidenceError::Unknown) => {}
+        Err(error) => return Err(CommandError::Evidence { path: path(), error }),
     }
     let mut replay = Replay::<G>::open(&bytes, arguments, limits)?;
     match format {
@@ -180,7 +195,7 @@ impl<'a, G: Game> Replay<'a, G> {
         self.check(first)?;
         self.check(last)?;
         if first > last {
-            return Err(CommandError::NothingThere { what: format!("tick from {first} to {last}") });
+            return Err(CommandError::Reversed { from: first, to: last });
         }
         Ok((first, last))
     }
@@ -196,6 +211,7 @@ impl<'a, G: Game> Replay<'a, G> {
     fn play_to(&mut self, tick: u64) -> Result<(), CommandError> {
         while self.verified.tick() < tick {
             self.verified.step().map_err(CommandError::replay(self.path))?;
+            panics::played(self.verified.tick());
         }
         Ok(())
     }

@@ -12,6 +12,7 @@ use lockstep2d::report::{DesyncReport, Evidence, EvidenceError};
 use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 use crate::files;
+use crate::panics;
 
 mod replay;
 mod report;
@@ -36,7 +37,7 @@ pub(crate) struct Arguments {
     /// List all fields of the state after N ticks
     #[arg(long, value_name = "N")]
     tick: Option<u64>,
-    /// List only the fields of this body, such as 12v1 or 12
+    /// List only the fields of this body, given by its handle, number or name, such as 12v1, 12 or ball
     #[arg(long, value_name = "ID")]
     body: Option<String>,
     /// List only fields whose path starts with this, such as world.bodies
@@ -51,6 +52,10 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
+    panics::guard(&arguments.file, || inspect(arguments, context))
+}
+
+fn inspect<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let bytes = context.load(&arguments.file)?;
     let path = || arguments.file.clone();
     match Evidence::read(bytes.clone(), context.limits()) {
@@ -99,6 +104,7 @@ fn state_of_replay<G: Game>(
     }
     while replay.tick() < tick {
         replay.step().map_err(&refused)?;
+        panics::played(replay.tick());
     }
     let fields = fields(&replay.game().save())?;
     Ok(State { tick: Some(tick), hash: Some(replay.game().state_hash()), fields })

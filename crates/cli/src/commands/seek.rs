@@ -20,8 +20,8 @@ use crate::output_file::{self, OutputFile, Overwrite};
 /// Go to a tick of a replay and describe its state
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Tick t is the state after t ticks; 0 is the start.\n\nThe keyframe file is written on the first run; \
-                        later runs use it and add to it. Seeking then simulates at most the ticks between two \
+    after_help = "Tick t is the state after t ticks; 0 is the start.\n\nThe keyframe file is written by the first run \
+                        that reaches a keyframe; later runs use it and add to it. Seeking then simulates at most the ticks between two \
                         keyframes. Every keyframe must have the state hash that the replay states for its tick. This \
                         does not verify the replay: only `verify` checks that the inputs lead to these states.\n\nExit \
                         code: 0 when the tick was reached, 1 when the replay cannot be played up to the tick, 2 for \
@@ -36,7 +36,8 @@ pub(crate) struct Arguments {
     /// Number of single steps back from there
     #[arg(long, value_name = "K", default_value_t = 0)]
     back: u64,
-    /// The keyframe file of the replay; it is written if it does not exist
+    /// The file of keyframes (saved states) of the replay: used if it exists, and written, also without --force, when
+    /// this run reaches new keyframes; the first one is at tick --interval
     #[arg(long, value_name = "FILE")]
     keyframes: Option<PathBuf>,
     /// Number of ticks between keyframes

@@ -13,6 +13,7 @@ use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::figures;
 use crate::files::Shown;
+use crate::panics;
 
 /// Play a replay and print figures of its ticks: work, bodies, contacts and so on
 #[derive(Args, Debug)]
@@ -31,6 +32,10 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
+    panics::guard(&arguments.file, || stats(arguments, context))
+}
+
+fn stats<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let refused = CommandError::replay(&arguments.file);
     let bytes = context.load(&arguments.file)?;
     let mut replay = VerifiedReplay::<G>::open(&bytes, context.limits()).map_err(&refused)?;
@@ -38,7 +43,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     let failed = loop {
         let work_before = replay.work();
         match replay.step() {
-            Ok(Step::Ticked) => {}
+            Ok(Step::Ticked) => panics::played(replay.tick()),
             Ok(Step::Ended) => break None,
             Err(verdict) => break Some(verdict),
         }

@@ -56,6 +56,9 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let path = || arguments.file.clone();
+    if let Some(to) = arguments.to.filter(|to| arguments.from > *to) {
+        return Err(CommandError::Reversed { from: arguments.from, to });
+    }
     let (bytes, limits) = (context.load(&arguments.file)?, context.limits());
     let create = |path: &PathBuf| OutputFile::create(path, arguments.overwrite);
     let output = arguments.output.as_ref().map(create).transpose()?;

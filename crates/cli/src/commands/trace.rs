@@ -42,6 +42,9 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     let mut written = OutputFile::create(output, *overwrite)?;
     let traced = Trace::<G>::of_replay(&bytes, context.limits(), to.unwrap_or(u64::MAX), *ticks);
     let report = traced.map_err(|error| CommandError::Trace { path: file.clone(), error })?;
+    if let Some(tick) = to.filter(|tick| *tick > report.tick()) {
+        return Err(CommandError::TraceEnds { path: file.clone(), tick, ticks: report.tick() });
+    }
     written.append(&report.to_bytes())?;
     written.publish()?;
     let (known, left_out) = (report.history().len(), report.saves_left_out());

@@ -17,7 +17,6 @@ mod display;
 mod interrupt;
 mod judge;
 mod judge_api;
-mod panics;
 mod pool;
 mod progress;
 mod report;

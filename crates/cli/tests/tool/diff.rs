@@ -1,13 +1,13 @@
 //! `diff`: the first difference, the side that diverged, and the exit code.
 
-use lockstep2d::lockstep::{Game, History};
+use lockstep2d::lockstep::{Game, History, Sandbox};
 use lockstep2d::replay::Recorder;
 use lockstep2d::report::{Desync, DesyncReport};
 use lockstep2d_cli::Exit;
 use serde_json::{Value, json};
 
 use crate::counter::{Counter, inputs_at, setup};
-use crate::{Folder, replay, run};
+use crate::{Folder, golden, replay, run, run_sandbox};
 
 /// The report of the peer on `seat`. If `wrong` is given, the peer's sum is off by one from that tick on.
 fn report(seat: u32, wrong: Option<u64>) -> DesyncReport {
@@ -95,10 +95,14 @@ fn what_cannot_be_compared_is_trouble() {
     let bad = folder.write("bad", b"neither");
     let world = folder.write("world", &lockstep2d::world::World::default().to_bytes());
     let cut = folder.write("cut", &report(0, None).to_bytes()[..200]);
+    let mut damaged = replay(35);
+    damaged[140] ^= 0x10;
+    let damaged = folder.write("damaged", &damaged);
     for (other, why) in [
         (bad, "neither a report nor a replay nor a snapshot"),
         (world, "a snapshot can only be compared with another snapshot"),
         (cut, "a damaged report"),
+        (damaged, "the replay of B: malformed: at byte "),
         (folder.path("missing"), "cannot read"),
     ] {
         let outcome = run(&["diff", &good, &other]);
@@ -118,4 +122,35 @@ fn snapshots_are_compared_whatever_the_game() {
     assert!(outcome.out.ends_with("1 subject differs in tick\n  tick\n    tick: 0 | 1\n"), "{}", outcome.out);
     assert_eq!(outcome.exit, Exit::NoMatch);
     assert_eq!(run(&["diff", &a, &a]).exit, Exit::Success);
+}
+
+/// Setups of another game would decode to anything.
+#[test]
+fn replays_of_another_game_are_named_and_not_compared() {
+    let folder = Folder::new("diff-games");
+    let (counter, sandbox) = (folder.write("a", &replay(5)), golden("ragdoll"));
+    let why = format!(
+        "cannot compare: the replay of B: unverifiable: made with the rules \"sandbox\" version {}, this program has \
+         \"counter\" version 3",
+        Sandbox::RULES.version
+    );
+    for command in ["diff", "bisect"] {
+        let outcome = run(&[command, &counter, &sandbox]);
+        assert_eq!((outcome.exit, outcome.out.as_str()), (Exit::Trouble, ""), "{command}");
+        assert!(outcome.err.contains(&why), "{command}: {}", outcome.err);
+        let outcome = run(&[command, &sandbox, &counter]);
+        assert!(outcome.err.contains("cannot compare: the replay of A: unverifiable: "), "{}", outcome.err);
+    }
+}
+
+#[test]
+fn the_lines_about_setups_are_limited() {
+    let (a, b) = (golden("ragdoll"), golden("box_stack"));
+    let lines = |more: &[&str]| run_sandbox(&[&["diff", &a, &b], more].concat()).out;
+    let few = lines(&["--subjects", "3"]);
+    assert_eq!(few.lines().count(), 3 + 1 + 3 + 1, "{few}");
+    let last = few.lines().last().unwrap();
+    assert!(last.starts_with("    and ") && last.contains(" more (--subjects "), "{last}");
+    assert_eq!(lines(&[]).lines().count(), 3 + 1 + 10 + 1);
+    assert!(!lines(&["--subjects", "100000"]).contains("more (--subjects"));
 }

@@ -102,6 +102,33 @@ fn a_snapshot_has_a_picture_and_a_state() {
 }
 
 #[test]
+fn other_files_are_called_what_they_are() {
+    let folder = Folder::new("export-others");
+    let save = folder.path("a.save");
+    run_sandbox(&["seek", &golden("ragdoll"), "--tick", "9", "-o", &save]);
+    let trace = folder.path("a.trace");
+    run_sandbox(&["trace", &golden("ragdoll"), "--to", "9", "-o", &trace]);
+    let mut older = lockstep2d::world::World::default().to_bytes();
+    // After eight bytes of magic and the format: the semantics.
+    older[12] = 2;
+    let older = folder.write("older", &older);
+    for (file, why) in [
+        (save, "a save of this game; a replay or a snapshot of a world can be exported"),
+        (trace, "a report of a divergence; a replay"),
+        (older, "a snapshot of another version: made with semantics 2"),
+    ] {
+        let outcome = run_sandbox(&["export", &file, "--svg"]);
+        assert_eq!((outcome.exit, outcome.out.as_str()), (Exit::Trouble, ""), "{file}");
+        assert!(outcome.err.contains(why), "{}", outcome.err);
+    }
+    // An animated PNG may have the extension of a PNG.
+    let picture = folder.path("a.png");
+    let outcome =
+        run_sandbox(&["export", &golden("ragdoll"), "--apng", "--to", "3", "--width", "64", "-o", &picture]);
+    assert_eq!(outcome.exit, Exit::Success, "{}", outcome.err);
+}
+
+#[test]
 fn what_cannot_be_written_is_explained() {
     let folder = Folder::new("undrawable");
     let file = golden("free_fall");
@@ -131,17 +158,17 @@ fn what_cannot_be_written_is_explained() {
         (
             vec!["export", &file, "-o", &gif, "--from", "9", "--to", "7"],
             Exit::Trouble,
-            "there is no tick from 9",
+            "--from 9 is after --to 7",
         ),
         (
             vec!["export", &file, "--plot", "--from", "9", "--to", "7"],
             Exit::Trouble,
-            "there is no tick from 9",
+            "--from 9 is after --to 7",
         ),
         (
             vec!["export", &file, "--json", "--from", "9", "--to", "7"],
             Exit::Trouble,
-            "there is no tick from 9",
+            "--from 9 is after --to 7",
         ),
         (
             vec!["export", &file, "--svg", "--layers", "shadows"],
@@ -149,6 +176,9 @@ fn what_cannot_be_written_is_explained() {
             "there is no layer \"shadows\"",
         ),
         (vec!["export", &file, "--svg", "--window", "1,2"], Exit::Trouble, "a window is four numbers"),
+        (vec!["export", &file, "--svg", "--window", "1,2,1,2"], Exit::Trouble, "differ in both coordinates"),
+        (vec!["export", &file, "--svg", "-o", &gif], Exit::Trouble, "--svg does not write"),
+        (vec!["export", &file, "--plot", "-o", &gif], Exit::Trouble, "use --gif, or another name"),
         (vec!["export", &file, "--svg", "--width", "9"], Exit::Trouble, "64..=16384"),
         (vec!["export", &file, "--json", "--from", "1000"], Exit::Trouble, "there is no tick 1000"),
         (vec!["export", &file, "--json", "--to", "1000"], Exit::Trouble, "there is no tick 1000"),
@@ -161,7 +191,7 @@ fn what_cannot_be_written_is_explained() {
         let all: Vec<&str> = ["export", &counter].into_iter().chain(arguments).collect();
         let outcome = run(&all);
         assert_eq!(outcome.exit, Exit::Trouble);
-        assert!(outcome.err.contains("shows no world"), "{}", outcome.err);
+        assert!(outcome.err.contains("exposes no world (`Game::world`)"), "{}", outcome.err);
     }
     let left: Vec<_> =
         fs::read_dir(folder.path("")).unwrap().map(|entry| entry.unwrap().file_name()).collect();

@@ -80,7 +80,7 @@ fn bodies_are_counted_at_the_start_and_after_every_tick() {
     }
     let text = run_tool_of(&tool, &["verify", "--max-bodies", "4", &file]).out;
     assert!(text.contains("limit exceeded: 5 bodies, at most 4 are allowed"), "{text}");
-    // Without `Game::world_mut`, a game counts as having no bodies.
+    // Without `Game::world`, a game counts as having no bodies.
     let other = folder.write("counter.replay", &replay(3));
     assert_eq!(run(&["verify", "--max-bodies", "0", &other]).exit, Exit::Success);
 }
@@ -108,6 +108,27 @@ fn a_panic_is_said_and_hides_no_other() {
     assert_eq!(outcome.out.lines().count(), 2, "the message is escaped to stay on one line: {}", outcome.out);
     assert!(outcome.out.contains("panicked: the game, after 12 ticks, at "), "{}", outcome.out);
     assert!(outcome.out.contains("somebody\\nadded 13"), "{}", outcome.out);
+}
+
+#[test]
+fn a_panic_is_the_error_of_other_commands_too() {
+    let folder = Folder::new("panic-others");
+    let file = folder.write("a.replay", &fuse(12));
+    let picture = folder.path("a.jsonl");
+    for arguments in [
+        vec!["stats", &file],
+        vec!["inspect", &file, "--tick", "13"],
+        vec!["export", &file, "--json"],
+        vec!["export", &file, "-o", &picture],
+    ] {
+        let outcome = run_bomb(&arguments);
+        assert_eq!(outcome.exit, Exit::NoMatch, "{arguments:?}");
+        for part in ["a.replay: panicked: the game, after 12 ticks, at ", "batch.rs:", "somebody\\nadded 13"]
+        {
+            assert!(outcome.err.contains(part), "{arguments:?}: {}", outcome.err);
+        }
+    }
+    assert!(!std::path::Path::new(&picture).exists());
 }
 
 #[test]

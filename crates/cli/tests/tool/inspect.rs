@@ -123,7 +123,11 @@ fn fields_of_a_state_are_listed() {
     for (arguments, exit, message) in [
         (vec!["--tick", "36"], Exit::Trouble, "there is no tick 36"),
         (vec!["--tick", "3", "--path", "nothing"], Exit::Trouble, "there is no field whose path"),
-        (vec!["--tick", "3", "--body", "7"], Exit::Trouble, "there is no body \"7\""),
+        (
+            vec!["--tick", "3", "--body", "7"],
+            Exit::Trouble,
+            "there is no body \"7\" in this state: a body is given by",
+        ),
         (vec!["--body", "7", "--path", "sum"], Exit::Trouble, "cannot be used with"),
     ] {
         let outcome = run(&[vec!["inspect", &file], arguments].concat());
@@ -163,9 +167,12 @@ fn snapshots_and_saves_are_told_apart() {
     let outcome = run(&["inspect", &save]);
     assert!(outcome.out.starts_with("state that was saved\nsum: "), "{}", outcome.out);
 
+    let mut older = world.to_bytes();
+    older[12] = 2;
     for (bytes, message) in [
         (&b"neither"[..], "neither a report nor a replay nor a snapshot"),
         (&world.to_bytes()[..40], "a damaged snapshot"),
+        (&older, "a snapshot of another version: made with semantics 2"),
     ] {
         let outcome = run(&["inspect", &folder.write("bad", bytes)]);
         assert_eq!((outcome.exit, outcome.out.as_str()), (Exit::Trouble, ""));

@@ -20,6 +20,7 @@ mod inspect;
 mod long;
 #[cfg(target_os = "linux")]
 mod memory;
+mod only_world;
 mod outputs;
 mod record;
 mod seek;

@@ -144,7 +144,9 @@ fn what_cannot_be_played_is_refused() {
     assert_eq!(done.exit, Exit::Trouble);
     assert!(done.err.contains("has 20 ticks, there is no tick 21"), "{}", done.err);
     assert_eq!(run(&["stress-saves", &path, "--to", "21"]).exit, Exit::Trouble);
-    assert_eq!(run(&["stress-saves", "nowhere.replay"]).exit, Exit::Trouble);
+    let done = run(&["stress-saves", &path, "--from", "20", "--to", "10"]);
+    assert!(done.err.contains("--from 20 is after --to 10"), "{}", done.err);
+    assert_eq!((done.exit, run(&["stress-saves", "nowhere.replay"]).exit), (Exit::Trouble, Exit::Trouble));
     // A replay of another game, and a file that is no replay.
     assert_eq!(stress_saves(&folder, &super::replay(20), &[]).exit, Exit::NoMatch);
     assert_eq!(stress_saves(&folder, b"no replay", &[]).exit, Exit::NoMatch);

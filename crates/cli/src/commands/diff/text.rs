@@ -97,13 +97,24 @@ impl Text<'_> {
     fn inputs(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.found.setup.is_empty() {
             write!(f, "\nsetup")?;
-            self.found.setup.iter().try_for_each(|difference| write!(f, "\n    {}", Line(difference)))?;
+            self.lines(&self.found.setup, f)?;
         }
         let Some(input) = &self.found.input else {
             return Ok(());
         };
         write!(f, "\n{BAD}other inputs{BAD:#}: after tick {}, of seat {}", input.tick, input.seat)?;
-        input.differences.iter().try_for_each(|difference| write!(f, "\n    {}", Line(difference)))
+        self.lines(&input.differences, f)
+    }
+
+    /// At most `subjects` differing fields, and the number of the others.
+    fn lines(&self, differences: &[Difference], f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut shown = differences.iter().take(self.subjects);
+        shown.try_for_each(|difference| write!(f, "\n    {}", Line(difference)))?;
+        let count = differences.len();
+        match count.saturating_sub(self.subjects) {
+            0 => Ok(()),
+            more => write!(f, "\n    and {more} more (--subjects {count})"),
+        }
     }
 
     fn what(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -54,7 +54,7 @@ impl Formats {
             (plot, Format::Plot),
         ];
         let format = match asked.into_iter().find(|(asked, _)| *asked) {
-            Some((_, format)) => format,
+            Some((_, format)) => format.checked(output)?,
             None => by_extension(output).ok_or(CommandError::NoFormat)?,
         };
         let is_text = matches!(format, Format::Svg | Format::Json | Format::Plot);
@@ -77,6 +77,19 @@ fn by_extension(output: Option<&Path>) -> Option<Format> {
 }
 
 impl Format {
+    /// Returns the format, unless the extension of the output file belongs to another one.
+    fn checked(self, output: Option<&Path>) -> Result<Self, CommandError> {
+        let (Some(other), Some(path)) = (by_extension(output), output) else { return Ok(self) };
+        let fits = match self {
+            Format::Plot => other == Format::Svg,
+            Format::Apng => matches!(other, Format::Apng | Format::Png),
+            _ => other == self,
+        };
+        let (option, other) = (self.option(), other.option());
+        let error = || CommandError::Extension { path: path.to_path_buf(), option, other };
+        if fits { Ok(self) } else { Err(error()) }
+    }
+
     /// The option that selects the format.
     pub(super) fn option(self) -> &'static str {
         match self {

@@ -33,6 +33,9 @@ pub(super) fn window(text: &str) -> Result<Aabb, String> {
     let &[x0, y0, x1, y1] = &numbers[..] else {
         return Err("a window is four numbers with commas between them".into());
     };
+    if x0 == x1 || y0 == y1 {
+        return Err("a window has two corners that differ in both coordinates".into());
+    }
     let (a, b) = (Vec2::new(x0, y0), Vec2::new(x1, y1));
     Ok(Aabb::new(a.min(b), a.max(b)))
 }
@@ -57,7 +60,16 @@ mod tests {
         for text in ["-1.5,0,2,3.25", "2,3.25,-1.5,0", "-1.5, 3.25, 2, 0"] {
             assert_eq!(window(text), Ok(expected), "{text}");
         }
-        for text in ["", "1,2,3", "1,2,3,4,5", "1,2,3,x", "1,2,3,1e99", "1,2,3,99999999999999999999"] {
+        for text in [
+            "",
+            "1,2,3",
+            "1,2,3,4,5",
+            "1,2,3,x",
+            "1,2,3,1e99",
+            "1,2,3,99999999999999999999",
+            "1,2,1,2",
+            "1,2,1,5",
+        ] {
             assert!(window(text).is_err(), "{text}");
         }
     }

@@ -22,7 +22,7 @@ impl State {
         let State { tick, hash, fields } = self;
         let fields: Vec<&Field> = fields.iter().filter(|field| is_wanted(field, arguments)).collect();
         if fields.is_empty() {
-            return Err(CommandError::NothingThere { what: what(arguments) });
+            return Err(nothing(arguments));
         }
         let hash = hash.map(|hash| hash.to_string());
         if arguments.json {
@@ -55,12 +55,13 @@ fn is_wanted(field: &Field, arguments: &Arguments) -> bool {
     arguments.body.as_deref().is_none_or(is_body) && field.path().starts_with(path)
 }
 
-fn what(arguments: &Arguments) -> String {
-    match (&arguments.body, &arguments.path) {
-        (Some(id), _) => format!("body {id:?}"),
+fn nothing(arguments: &Arguments) -> CommandError {
+    let what = match (&arguments.body, &arguments.path) {
+        (Some(id), _) => return CommandError::NoBody { id: id.clone() },
         (None, Some(path)) => format!("field whose path begins with {path:?}"),
         (None, None) => "field".into(),
-    }
+    };
+    CommandError::NothingThere { what }
 }
 
 /// A field on one line, escaped, since names and texts may come from an untrusted file.

@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::{FORMAT_VERSION, Limits, Mismatch, Reader, Step, Verdict, VerifiedReplay};
 
-use super::panics;
 use super::report::{Needs, Report};
 use super::watch::{Watch, Work};
+use crate::panics;
 
 /// State that all threads share.
 #[derive(Debug, Default)]

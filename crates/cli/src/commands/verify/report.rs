@@ -7,10 +7,10 @@ use lockstep2d::replay::{ClaimDifference, Limits, Verdict};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
-use super::panics::Panic;
 use super::signers::Signed;
 use crate::console::json_text;
 use crate::identity::GameDigest;
+use crate::panics::{PANICKED, Panic, PanicText};
 
 /// The verdict on a file's bytes with its details. It depends on nothing but the bytes, the limits and the program.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -55,9 +55,6 @@ pub(super) struct Needs {
     pub(super) rules_version: Option<u32>,
 }
 
-/// The verdict on a file that made the game panic. The library has no such verdict: there, a panic reaches the caller.
-const PANICKED: &str = "panicked";
-
 impl Report {
     /// `claims` are the claims of the trailer. `needs` are the versions that an unverifiable file requires.
     pub(super) fn new(bytes: u64, verdict: &Verdict, claims: &[(String, i64)], needs: Option<Needs>) -> Self {
@@ -78,8 +75,7 @@ impl Report {
 
     pub(super) fn of_panic(bytes: u64, ticks: u64, panic: &Panic) -> Self {
         let Panic { message, location } = panic;
-        let place = location.as_ref().map(|location| format!(", at {location}")).unwrap_or_default();
-        let text = format!("{PANICKED}: the game, after {ticks} ticks{place}: {message}");
+        let text = PanicText { panic, ticks }.to_string();
         let details = object(json!({ "why": message, "location": location }));
         Report { text, verdict: PANICKED.into(), ticks, hash: None, bytes, details }
     }

@@ -1,19 +1,45 @@
-//! [`catch`]: catches a panic of the game, so that the other files are still verified.
+//! [`catch`]: catches a panic of the game, so that other files are still verified and all commands report it alike.
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};
+use std::fmt;
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
+use std::path::Path;
 use std::sync::Once;
+
+use crate::context::CommandResult;
+use crate::error::CommandError;
 
 /// Maximum number of characters kept from a panic message, which may quote the file.
 const MESSAGE_CHARS_MAX: usize = 400;
 
 /// A panic that was caught.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Panic {
-    pub(super) message: String,
+pub(crate) struct Panic {
+    pub(crate) message: String,
     /// File, line and column in the source, if the panic started on this thread.
-    pub(super) location: Option<String>,
+    pub(crate) location: Option<String>,
+}
+
+/// The verdict on a file that made the game panic. The library has no such verdict: there, a panic reaches the caller.
+pub(crate) const PANICKED: &str = "panicked";
+
+/// Text of a panic of the game.
+pub(crate) struct PanicText<'a> {
+    pub(crate) panic: &'a Panic,
+    /// Number of ticks that were played.
+    pub(crate) ticks: u64,
+}
+
+impl fmt::Display for PanicText<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let PanicText { panic: Panic { message, location }, ticks } = self;
+        write!(f, "{PANICKED}: the game, after {ticks} ticks")?;
+        if let Some(location) = location {
+            write!(f, ", at {location}")?;
+        }
+        write!(f, ": {message}")
+    }
 }
 
 thread_local! {
@@ -21,10 +47,17 @@ thread_local! {
     static IS_CAUGHT: Cell<bool> = const { Cell::new(false) };
     /// Location of the last panic on this thread.
     static LOCATION: RefCell<Option<String>> = const { RefCell::new(None) };
+    /// Number of ticks that the command on this thread has played.
+    static TICKS: Cell<u64> = const { Cell::new(0) };
+}
+
+/// Notes the number of ticks that the command on this thread has played, for [`guard`].
+pub(crate) fn played(ticks: u64) {
+    TICKS.set(ticks);
 }
 
 /// Runs `work`. A panic is returned instead of printed. Data that `work` was changing must not be used afterwards.
-pub(super) fn catch<T>(work: impl FnOnce() -> T) -> Result<T, Panic> {
+pub(crate) fn catch<T>(work: impl FnOnce() -> T) -> Result<T, Panic> {
     listen();
     IS_CAUGHT.set(true);
     let result = panic::catch_unwind(AssertUnwindSafe(work));
@@ -45,6 +78,14 @@ fn listen() {
             }
         }));
     });
+}
+
+/// Runs a command that plays the replay at `path`. A panic of the game stops the command with an error.
+pub(crate) fn guard(path: &Path, command: impl FnOnce() -> CommandResult) -> CommandResult {
+    played(0);
+    catch(command).unwrap_or_else(|panic| {
+        Err(CommandError::Panicked { path: path.to_path_buf(), panic, ticks: TICKS.get() })
+    })
 }
 
 fn message(payload: &(dyn Any + Send)) -> String {
