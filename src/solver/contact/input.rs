@@ -71,7 +71,7 @@ impl Prospect {
     }
 
     /// Whether a contact of the body is an impact.
-    pub(super) fn is_struck(self) -> bool {
+    pub(super) fn has_impact(self) -> bool {
         self.0 & Self::IMPACT != 0
     }
 
@@ -103,7 +103,7 @@ pub(super) struct Input {
     /// Whether one of the bodies is wedged; see [`Prospect::is_wedged`].
     pub(super) wedged: bool,
     /// Whether one of the bodies has an impact, in this contact or in another one.
-    pub(super) struck: bool,
+    pub(super) impact: bool,
     pub(super) count: u8,
     /// Whether the contact needs more than rows along the normal and the tangent.
     pub(super) extras: bool,
@@ -132,7 +132,7 @@ impl Input {
         shapes: (0, 0),
         features: [0; 2],
         wedged: false,
-        struck: false,
+        impact: false,
         count: 0,
         extras: false,
         shares: Quad([0; 4]),
@@ -220,7 +220,7 @@ impl ContactSource<'_> {
             shapes: pair.shapes,
             features: [first.feature.0, second.feature.0],
             wedged: changed.iter().any(|&body| prospects[body as usize].is_wedged()),
-            struck: changed.iter().any(|&body| prospects[body as usize].is_struck()),
+            impact: changed.iter().any(|&body| prospects[body as usize].has_impact()),
             count: manifold.count(),
             extras: pair.extras,
             shares: Quad([n.x.to_bits(), n.y.to_bits(), fractions.a.to_bits(), fractions.b.to_bits()]),

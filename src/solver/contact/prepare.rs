@@ -144,7 +144,7 @@ impl<const N: usize> Batches<Contacts, N> {
             records.take(lane, input);
         }
         rows::fill::<L, N>(&inputs, batch, &mut records.denominators);
-        for (lane, _) in inputs.iter().enumerate().filter(|(_, input)| input.struck) {
+        for (lane, _) in inputs.iter().enumerate().filter(|(_, input)| input.impact) {
             batch.immovable.0[lane] *= 2;
         }
         let mut extra = None;
@@ -184,9 +184,9 @@ fn keep<L: Lanes<N>, const N: usize>(
         }
         let bodies = source.bodies_of(pair);
         let changed = source.changed(bodies);
-        let is_struck = changed.iter().any(|&body| prospects[body as usize].is_struck());
+        let has_impact = changed.iter().any(|&body| prospects[body as usize].has_impact());
         let has = |of: &[[u32; N]; 2], bodies: [u32; 2]| [of[0][lane], of[1][lane]] == bodies;
-        if is_struck
+        if has_impact
             || batch.immovable.0[lane] < -1
             || !has(&batch.bodies, bodies)
             || !has(&batch.changed, changed)

@@ -219,7 +219,7 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
     fn new(batch: &Batch<N>, pass: Pass, constants: &Constants, n: [L::Int; 2]) -> Self {
         let &Constants { rate, separation_max, slop, push_speed, soft, stiff, .. } = constants;
         let immovable = L::load(&batch.immovable);
-        let struck = L::greater(L::splat(-1), immovable);
+        let impact = L::greater(L::splat(-1), immovable);
         let immovable = L::negative(immovable);
         let (soft_impulse, stiff_impulse) = (soft.impulse_scale.to_bits(), stiff.impulse_scale.to_bits());
         Normals {
@@ -232,7 +232,7 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
             bias_rate: chosen::<L, N>(immovable, soft.bias_rate.to_bits(), stiff.bias_rate.to_bits()),
             mass_scale: chosen::<L, N>(immovable, soft.mass_scale.to_bits(), stiff.mass_scale.to_bits()),
             impulse_scale: chosen::<L, N>(immovable, soft_impulse, stiff_impulse),
-            impact_speed: chosen::<L, N>(struck, i32::MIN, IMPACT_SPEED.to_bits()),
+            impact_speed: chosen::<L, N>(impact, i32::MIN, IMPACT_SPEED.to_bits()),
         }
     }
 
