@@ -105,6 +105,9 @@ function ls.fx(value)
     if type(value) ~= "number" or value % 1 ~= 0 then
         error("a number with a fraction enters the state as text: fx(\"0.25\"), not fx(0.25)", 2)
     end
+    if value < -2147483648 or value >= 2147483648 then
+        error("a number is from -2^31 to below 2^31, and not " .. value, 2)
+    end
     return ffi.new("int64_t", value) * 4294967296LL
 end
 

@@ -17,16 +17,26 @@ Driver.__index = Driver
 local ADDRESS_MAX, PACKET_MAX = 32, 2048
 
 --- Opens a match, or joins one if there is a `contact`: the address of a participant, as a string. `settings`
---- are fields of `ls2d_match_config`. All peers need the same `offer`, a string with rules and version.
+--- are fields of `ls2d_match_config`. All peers need the same `offer`, a string with rules and version. `random` has 28
+--- random bytes, which systems without /dev/urandom need.
 function Driver.new(options)
     local config = ls.make("match_config", options.seats)
     for field, value in pairs(options.settings or {}) do
         config[field] = value
     end
     -- Random numbers of the system, for `peer`, `key` and `secret`: nobody else may guess them.
-    local file = assert(io.open("/dev/urandom", "rb"))
-    local random = file:read(28)
-    file:close()
+    local random = options.random
+    if not random then
+        local file = io.open("/dev/urandom", "rb")
+        if not file then
+            error("this system has no /dev/urandom: pass 28 random bytes as the option `random`", 2)
+        end
+        random = file:read(28)
+        file:close()
+    end
+    if #random ~= 28 then
+        error("`random` has 28 bytes, and not " .. #random, 2)
+    end
     ffi.copy(ffi.cast("uint8_t *", config) + ffi.offsetof(config, "peer"), random:sub(1, 4), 4)
     ffi.copy(ffi.cast("uint8_t *", config) + ffi.offsetof(config, "key"), random:sub(5), 24)
     local handle, offer, contact = ls.out("handle"), options.offer, options.contact

@@ -14,7 +14,7 @@ use crate::border::{In, Out};
 use crate::describe::api;
 use crate::numbers::RawHash;
 use crate::records::{RawLimits, RawVerdict};
-use crate::status::{Failure, Outcome, Status, note, value};
+use crate::status::{Failure, Outcome, Status, note};
 use crate::table::{self, Bytes, with};
 
 /// Largest number of states that seeking asks the game to save, unless the caller sets the interval.
@@ -159,8 +159,13 @@ impl HostReplay {
         if let Some(failed) = &self.failed {
             return Ok(failed.clone());
         }
-        if self.tick < self.ticks || self.equal < self.checkpoints.len() {
-            return Err(value("the number of ticks played before the verdict", self.tick));
+        if self.tick < self.ticks {
+            let text = format!("{} of {} ticks were played before the verdict", self.tick, self.ticks);
+            return Err(Failure::new(Status::Value, text));
+        }
+        if self.equal < self.checkpoints.len() {
+            let text = "the hash was not checked at every checkpoint: check it after every tick";
+            return Err(Failure::new(Status::Value, text));
         }
         let ticks = self.ticks;
         Ok(match &self.trailer {
