@@ -12,6 +12,7 @@ import { Commands, Edits } from "./edits.js";
 
 const raws = (vector, what) => vectorOf(vector, what);
 const KINDS = ["fixed", "kinematic", "dynamic"];
+const OPTIONS = Object.entries(BODY_FLAGS);
 const SWEEPS = ["off", "fixed", "bullet", "kinematic"];
 
 /** A saved state in memory. */
@@ -172,9 +173,13 @@ export class World extends Edits {
             }
             throw error;
         }
-        const { kind, flags, continuous, reserved: _, ...rest } = read("body_info", at);
-        const options = Object.entries(BODY_FLAGS).map(([name, bit]) => [name, (flags & bit) !== 0]);
-        return { ...rest, type: KINDS[kind], continuous: SWEEPS[continuous], ...Object.fromEntries(options) };
+        const { kind, flags, continuous, reserved: _, ...found } = read("body_info", at);
+        found.type = KINDS[kind];
+        found.continuous = SWEEPS[continuous];
+        for (const [name, bit] of OPTIONS) {
+            found[name] = (flags & bit) !== 0;
+        }
+        return found;
     }
 
     /** Name of a body, or undefined if it has none. */
