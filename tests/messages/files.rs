@@ -94,7 +94,7 @@ fn comparisons() {
         ),
         (
             EvidenceError::World(SnapshotError::Semantics { found: 2 }),
-            "a snapshot of another version: made with semantics 2, this engine has 16",
+            "a snapshot of another version: made with semantics 2, this engine has 17",
         ),
         (
             EvidenceError::World(SnapshotError::Format { found: 1 }),
