@@ -99,6 +99,8 @@ static void definitions(ls2d_handle world) {
     joint.flags |= LS2D_JOINT_LIMIT;
     EXPECT(ls2d_add_joint(world, &joint, NULL), LS2D_VALUE);
     joint.flags = 0;
+    EXPECT(ls2d_add_joint(world, &joint, NULL), LS2D_STALE_BODY);
+    joint.body_a = joint.body_b = 0;
     EXPECT(ls2d_add_joint(world, &joint, NULL), LS2D_JOINT_TO_ITSELF);
     joint.body_b = LS2D_NO_ID;
     EXPECT(ls2d_add_joint(world, &joint, NULL), LS2D_STALE_BODY);
