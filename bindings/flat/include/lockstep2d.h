@@ -1498,9 +1498,8 @@ ls2d_status ls2d_replay_set_interval(uint32_t replay, uint32_t ticks);
 
 /* ---- Matches ---- */
 
-/* Sets the defaults of a match with a number of seats: lockstep at 60 ticks per second, inputs of one byte, and
- * a start as soon as two seats are taken, or the only one. The caller sets `peer`, `key` and `secret` to random
- * numbers. */
+/* Sets the defaults of a match with a number of seats: lockstep at 60 ticks per second, inputs of one byte, a start
+ * with two taken seats, or with the only one. The caller sets `peer`, `key` and `secret` to random numbers. */
 ls2d_status ls2d_match_config_init(uint32_t seats, ls2d_match_config *config);
 
 /* Opens a match. All peers have to pass the same `offer`: versions, rules, setup, at most 512 bytes. */
