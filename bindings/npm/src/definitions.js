@@ -121,7 +121,7 @@ function shapeOf(value) {
 export function writeShape(at, value) {
     const { kind, geometry, options } = shapeOf(value);
     if (kind === undefined) {
-        fail("a chain consists of several shapes; here is one shape possible");
+        fail("a chain consists of several shapes, and only one shape is possible here");
     }
     call("ls2d_shape_def_init", kind, at);
     const { rounding, frictionMixing, restitutionMixing, area, ...plain } = options;

@@ -194,27 +194,27 @@ const FIELDS = Object.fromEntries(
 /** Names of the fields of a struct as options, without some fields that are not options. */
 export const optionsOf = (name, without) => Object.keys(STRUCTS[name].fields).filter((field) => !without.includes(field)).map(camel);
 
-/** Writes the given fields of a struct. `what` precedes the name of a field in errors. */
-export function write(name, at, values, what = "") {
+/** Writes the given fields of a struct. */
+export function write(name, at, values) {
     for (const [field, offset, kind, count] of FIELDS[name]) {
         const value = values[field];
         if (value === undefined) {
             continue;
         }
         if (kind === "uint8_t") {
-            const data = ENCODER.encode(string(value, what + field));
+            const data = ENCODER.encode(string(value, field));
             if (data.length > count) {
-                fail(`${what}${field} has ${data.length} bytes, at most ${count} are possible`);
+                fail(`${field} has ${data.length} bytes, at most ${count} are possible`);
             }
             memory().fill(0, at + offset, at + offset + count);
             memory().set(data, at + offset);
         } else if (count === undefined) {
-            WRITE[kind](at + offset, value, what + field);
+            WRITE[kind](at + offset, value, field);
         } else {
             if (value.length > count) {
-                fail(`${what}${field} has ${value.length} items, at most ${count} are possible`);
+                fail(`${field} has ${value.length} items, at most ${count} are possible`);
             }
-            value.forEach((item, index) => WRITE[kind](at + offset + index * STRIDE[kind], item, what + field));
+            value.forEach((item, index) => WRITE[kind](at + offset + index * STRIDE[kind], item, field));
         }
     }
 }
