@@ -89,12 +89,12 @@ fn verify_takes_no_more_memory_than_is_documented() {
     let rows: [Row; 8] = [
         ("200 squares on one spot", || pile(200), 10, "110000", 25_000),
         ("50 000 separate bodies", || field(50_000), 10, DEFAULT, 130_000),
-        ("400 squares on one spot", || pile(400), 10, "500000", 65_000),
-        ("800 squares on one spot", || pile(800), 10, "2000000", 160_000),
+        ("400 squares on one spot", || pile(400), 10, "500000", 75_000),
+        ("800 squares on one spot", || pile(800), 10, "2000000", 190_000),
         ("800 000 separate bodies", || field(800_000), 1, DEFAULT, 1_700_000),
         ("a million motors", || joints(1_000_000, motor()), 1, DEFAULT, 1_300_000),
         ("a million welds", || joints(1_000_000, Weld::rigid()), 1, DEFAULT, 1_200_000),
-        ("2800 squares on one spot", || pile(2800), 2, DEFAULT, 160_000),
+        ("2800 squares on one spot", || pile(2800), 2, DEFAULT, 190_000),
     ];
     let folder = Folder::new("memory-rows");
     let file = folder.path("file.replay");
