@@ -30,7 +30,7 @@ const FLOATS: &[&str] = &["f32", "f64"];
 /// Paths that may use floating point: drawing is not simulation, and a serializer must implement methods for it.
 const ALLOWED_FLOATS: &[&str] = &["src/draw/", "src/inspect/serializer.rs"];
 
-/// The file that may use a clock: the threads of a team share the ticks that they make shorter.
+/// The only file that may use a clock: it measures whether ticks take less time on one thread or on all.
 const ALLOWED_CLOCK: &str = "src/threads/team.rs";
 
 /// Files that may use `unsafe`: SIMD instructions, prefetches, and bodies shared between threads.

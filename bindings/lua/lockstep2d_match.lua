@@ -125,8 +125,8 @@ function Driver:status()
     return self.flag[0]
 end
 
---- Returns three numbers of ticks: those that were played, also with guessed inputs; those whose inputs are final; and
---- those that were played with final inputs. All are 0 before the peer has joined.
+--- Returns three numbers of ticks: all ticks played, including those with guessed inputs; the ticks whose inputs are
+--- final; and the ticks played with final inputs. All are 0 before the peer has joined.
 function Driver:ticks()
     if self:status() == ls.MATCH_CONNECTING then
         return 0, 0, 0

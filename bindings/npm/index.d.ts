@@ -1321,9 +1321,9 @@ export class Match extends Handle {
     offerState(tick: number, state: Uint8Array): void;
     /** Status of this peer. */
     readonly status: MatchStatus;
-    /** Numbers of ticks: `played`, also with guessed inputs; `final`, whose inputs are final; `confirmed`, played with
-     * final inputs. While the status is `connecting`, this, `finalInputs`, `link`, `advance` and all functions from
-     * `leave` on throw `NOT_IN_MATCH`. */
+    /** Numbers of ticks: `played` counts all ticks played, including those with guessed inputs; `final` counts the
+     * ticks whose inputs are final; `confirmed` counts the ticks played with final inputs. While the status is
+     * `connecting`, this, `finalInputs`, `link`, `advance` and all functions from `leave` on throw `NOT_IN_MATCH`. */
     ticks(): { played: number; final: number; confirmed: number };
     /** The final inputs of all seats for a tick, or undefined if they are not kept. */
     finalInputs(tick: number): TickInputs | undefined;

@@ -252,7 +252,8 @@ pub enum ContactProximity {
     /// Further apart than [`ContactProximity::Touching`]: a speculative contact, which prevents fast shapes from
     /// tunnelling.
     Speculative,
-    /// At most a quarter of the speculative distance apart, the threshold that contact events use.
+    /// At most [`Config::touching_distance`](crate::world::Config::touching_distance) apart, the distance at which
+    /// contact events report that shapes begin to touch.
     Touching,
 }
 

@@ -14,7 +14,7 @@ pub const DELAY_MAX: u16 = 60;
 /// Largest size of an input in bytes.
 pub const INPUT_BYTES_MAX: u16 = 512;
 
-/// Periods of a session, in microseconds. `patience` has to be the same for all peers of a match.
+/// Time limits of a session, in microseconds. `patience` has to be the same for all peers of a match.
 ///
 /// ```
 /// use lockstep2d::session::{Config, Timing};
@@ -46,7 +46,7 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// Periods for matches over the internet: a patience of 2 s.
+    /// Time limits for matches over the internet: a patience of 2 s.
     pub const DEFAULT: Timing = Timing {
         patience: 2000 * MS,
         heard: 300 * MS,
@@ -105,7 +105,7 @@ pub struct Config {
     pub save_interval: u16,
     /// Interval in ticks at which states are compared: a multiple of `save_interval`.
     pub check_interval: u16,
-    /// Periods.
+    /// Time limits.
     pub timing: Timing,
     /// Deliberate mistakes, for tests that have to notice them.
     #[cfg(feature = "__faults")]

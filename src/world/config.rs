@@ -29,9 +29,10 @@ use crate::solver::{ContactTuning, RATE_MAX, SUB_STEPS_MAX, SolverSettings, chec
 /// The table depends on gravity divided by size: boxes of 10 cm under 1 m/s² need the same settings as boxes of 1 m
 /// under 10 m/s². A unit of length other than the metre changes nothing, because gravity changes with it. The smallest
 /// body has a radius of gyration of 2 mm, such as a square of 5 mm or a ball with a radius of 3 mm, and a mass of
-/// 10 mg. Speeds in settings are not adapted and may have to be lowered as well: a box of 1 cm hardly falls faster than
-/// the 0.05 m/s below which bodies [sleep](crate::body::BodySettings::sleep_speed), or the 1 m/s below which they [do
-/// not bounce](SolverSettings::restitution_threshold).
+/// 10 mg. Speeds in settings are not adapted and may have to be lowered as well: a box of 1 cm that falls by its own
+/// height lands with 0.45 m/s, less than the 1 m/s below which bodies [do not
+/// bounce](SolverSettings::restitution_threshold), and the 0.05 m/s below which they
+/// [sleep](crate::body::BodySettings::sleep_speed) are five of its widths per second.
 ///
 /// ```
 /// use lockstep2d::{fx, math::Vec2, world::{Config, World}};

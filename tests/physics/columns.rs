@@ -142,7 +142,7 @@ fn spawn_arch(world: &mut World, stones: u32, thickness: Fx) {
 }
 
 /// A semicircular arch stands if its thickness is more than 0.1075 of its mean radius and its stones do not slide
-/// (J. Heyman, "The safety of masonry arches", 1969).
+/// (M. Milankovitch, "Theorie der Druckkurven", 1907).
 #[test]
 fn an_arch_stands_if_it_is_thick_enough() {
     let thick = [7u32, 9, 15].map(|stones| [fx!(0.13), fx!(0.2), fx!(0.3)].map(|part| (stones, part)));

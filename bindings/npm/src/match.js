@@ -160,8 +160,8 @@ export class Match extends Handle {
         return STATUS[u32(at)];
     }
 
-    /** Numbers of ticks: `played`, also with guessed inputs; `final`, whose inputs are final; `confirmed`, played with
-     * final inputs. */
+    /** Numbers of ticks: `played` counts all ticks played, including those with guessed inputs; `final` counts the
+     * ticks whose inputs are final; `confirmed` counts the ticks played with final inputs. */
     ticks() {
         const at = scratch(16);
         call("ls2d_match_ticks", this.handle, at, at + 4, at + 8);

@@ -79,8 +79,8 @@ impl Trees {
         self.fixed.refill(those(true));
     }
 
-    /// Calls `found` with every pair of overlapping boxes once, except for pairs of fixed bodies and for most pairs
-    /// within one collision class.
+    /// Calls `found` once with every pair of overlapping boxes. Leaves out all pairs of fixed bodies and, because
+    /// subtrees of one collision class are not searched, most pairs within one class.
     pub(super) fn each_pair(&mut self, found: impl FnMut(Pair)) {
         self.meet(|_| true, found);
     }

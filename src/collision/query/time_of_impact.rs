@@ -342,7 +342,8 @@ fn free_part(a: &Tracks, b: &Tracks, offset: Fx, left: Fx) -> Fx {
     free
 }
 
-/// Largest fraction up to `end` such that `gap + speed h - curvature h^2` is not negative from 0 to it, rounded down.
+/// Largest fraction `t` up to `end` such that `gap + speed h - curvature h^2` is not negative for `0 <= h <= t`,
+/// rounded down.
 fn positive_part(gap: Fx, speed: Fx, curvature: Fx, end: Fx) -> Fx {
     if gap <= 0 {
         return Fx::ZERO;

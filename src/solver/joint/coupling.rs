@@ -169,16 +169,16 @@ fn teeth_apart(gear: &Gear, [a, b]: [Angle; 2], gap: Vec2<Fx>) -> Angle {
     Angle::from_bits(teeth(gear.teeth_a, a).wrapping_add(teeth(gear.teeth_b, b)))
 }
 
-/// Length of the pitch line for each tooth and radian in metres, if the wheels have a pitch point.
+/// Metres along the pitch line per unit of `NA a + NB b` (see `gear.rs`), if the wheels have a pitch point.
 fn pitch_per_tooth(gear: &Gear, gap: Vec2<Fx>) -> Option<Fx> {
     let teeth = i64::from(gear.teeth_a + gear.teeth_b);
     let distance = gap.length();
     (teeth != 0 && distance >= DISTANCE_MIN).then(|| distance / teeth.abs())
 }
 
-/// Measures a gear. `s` is the length of the row for each tooth and radian, so that the direction of the row has the
-/// length `(NA + NB) s / distance` along the tangent. `s` is the length on the pitch line or the length of a row on the
-/// angle, whichever is shorter: with a longer `s` the row would hardly move the wheels.
+/// Measures a gear. The position of the row is `s` metres per unit of `NA a + NB b` (see `gear.rs`), so that the
+/// direction of the row has the length `(NA + NB) s / distance` along the tangent. `s` is the smaller of two scales:
+/// that of the pitch line, and that of a row on an angle. With a larger `s` the row would hardly move the wheels.
 fn gear_measure(gear: &Gear, angles: [Angle; 2], inverse: [Reciprocal; 2], pose: &JointPose) -> Measure {
     let Gear { teeth_a, teeth_b } = *gear;
     let turning = widen(angular_scale(inverse, pose.fractions));

@@ -344,9 +344,9 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Horizontal velocity relative to ground on which a character lands. The ground carries it along: a character without
-/// horizontal velocity in the air stands still on a belt, and one that jumped straight up on a train lands without
-/// speed.
+/// Horizontal velocity of a character that lands, relative to the ground: the difference of both velocities, limited to
+/// between 0 and the character's own. A character that drops straight down on a conveyor belt is carried along by it at
+/// once; one that jumped straight up in a moving train stands still in the train.
 fn taken_along(velocity: Fx, ground: Fx) -> Fx {
     velocity.saturating_sub(ground).clamp(velocity.min(Fx::ZERO), velocity.max(Fx::ZERO))
 }

@@ -93,12 +93,12 @@ impl<G: Game> Seated<G> {
         }
     }
 
-    /// Whether a person presses a key.
+    /// Whether the seat is played with keys, and one of them is pressed.
     pub(super) fn presses(&self) -> bool {
         matches!(self, Seated::Keys(controls) if controls.is_pressed())
     }
 
-    /// The keys of a person.
+    /// The keys of the seat's player; none for a bot or an empty seat.
     pub(super) fn keys(&self) -> impl Iterator<Item = Key> {
         let controls = match self {
             Seated::Keys(controls) => Some(controls),

@@ -22,7 +22,7 @@ impl Buckets {
             eprintln!("skipped: LOCKSTEP2D_S3 does not name a server");
             return None;
         };
-        // Names of buckets have three letters or more.
+        // A bucket name needs at least three characters, so the folder `in` is served under another name.
         std::os::unix::fs::symlink("in", folder.0.join("uploads")).unwrap();
         let port = free_port();
         let mut command = Command::new(program);

@@ -54,8 +54,8 @@ pub(in crate::collision::broad_phase) struct Meetings {
 }
 
 impl Meetings {
-    /// Calls `found` with every pair of overlapping boxes of a tree once, except for most pairs within one collision
-    /// class. Skips a pair of nodes if `wanted` holds for neither of them.
+    /// Calls `found` once with every pair of overlapping boxes of a tree. Subtrees of one collision class are not
+    /// searched, which leaves out most pairs within one class. Skips a pair of nodes if `wanted` holds for neither.
     pub(in crate::collision::broad_phase) fn within(
         &mut self,
         tree: &Tree,

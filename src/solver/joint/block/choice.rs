@@ -119,11 +119,12 @@ impl Crowd {
 /// Largest number of rows of a joint: a slider with a spring, two limits and a motor.
 const JOINT_ROWS_MAX: usize = 6;
 
-/// The joints of a crowded body, by their number of rows, as ranges of `Choice::of_body`.
+/// The joints of a crowded body as ranges of `Choice::of_body`, one range for each number of rows.
 #[derive(Clone, Copy, Debug, Default)]
 struct JointsOfBody {
-    /// The first joint of each number of rows that is in no block yet.
+    /// For each range, the index of the first joint that is not in a block yet.
     next: [u32; JOINT_ROWS_MAX],
+    /// For each range, its end.
     ends: [u32; JOINT_ROWS_MAX],
     /// The last walk that has visited the body.
     walk: u32,

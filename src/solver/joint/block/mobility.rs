@@ -5,14 +5,14 @@ use super::scaling::product;
 use crate::math::Ratio;
 use crate::solver::row::{MassFractions, turning};
 
-/// Mass fractions of two bodies, and their shares of rotation.
+/// Mass fractions of two bodies, and the factors by which geometric stiffness scales their inverse inertia.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mobility {
     pub(super) fractions: MassFractions,
     /// The square roots of the fractions, with 30 fraction bits.
     pub(super) roots: [i64; 2],
-    /// For each body, the share of its rotation that geometric stiffness leaves, `I / (I + h^2 F r)`, with 30 fraction
-    /// bits.
+    /// For each body, the factor by which geometric stiffness scales its inverse inertia, `I / (I + h^2 F r)`, with 30
+    /// fraction bits.
     spins: [i64; 2],
     /// The square roots of `spins`.
     pub(super) spin_roots: [i64; 2],
@@ -24,7 +24,7 @@ impl Mobility {
         Mobility { fractions, roots, spins: [ONE; 2], spin_roots: [ONE; 2] }
     }
 
-    /// Sets the shares of rotation. Returns whether they have changed.
+    /// Sets the factors of the inverse inertia. Returns whether they have changed.
     pub(super) fn set_spins(&mut self, spins: [i64; 2]) -> bool {
         let changed = self.spins != spins;
         if changed {

@@ -98,7 +98,7 @@ struct Block {
     bodies: Vec<(u32, [i64; 3])>,
     /// For each unit, the places of its bodies in `bodies`.
     places: Vec<[u32; 2]>,
-    /// For each body, the share of its rotation that geometric stiffness leaves it.
+    /// For each body, the factor by which geometric stiffness scales its inverse inertia.
     spins: Vec<i64>,
     /// The changes of the impulses that each row by itself would make.
     wanted: Vec<i64>,

@@ -265,7 +265,8 @@ impl Unit {
         [x, y, self.angle_scaling.multiply([angle, 0])[0]]
     }
 
-    /// Sets the shares of rotation that geometric stiffness leaves the bodies. Returns whether they have changed.
+    /// Sets the factors by which geometric stiffness scales the inverse inertia of the bodies. Returns whether they
+    /// have changed.
     pub(super) fn set_spins(&mut self, spins: [i64; 2]) -> bool {
         self.mobility.set_spins(spins)
     }
@@ -275,7 +276,7 @@ impl Unit {
         self.mobility.is_stiffened()
     }
 
-    /// The square root of the share of its rotation that geometric stiffness leaves a body.
+    /// The square root of the factor by which geometric stiffness scales the inverse inertia of a body.
     pub(super) fn spin_root(&self, side: usize) -> i64 {
         self.mobility.spin_roots[side]
     }
