@@ -110,7 +110,7 @@ impl Inventory {
     }
 }
 
-/// The operations from which a scene is built in another engine.
+/// The operations that build a scene in an engine other than lockstep2d.
 pub trait Builder {
     /// The engine's name.
     const NAME: &str;

@@ -313,7 +313,7 @@ fn a_peer_without_a_free_seat_follows_the_match_and_its_status_is_joining() {
     // One bit for each of 64 seats, of which the game has four.
     assert_eq!(peer.session().map(|session| session.view().free_seats() & 0b1111), Some(0));
     assert!(peer.confirmed() > 60, "{}", peer.confirmed());
-    // The list of inputs of a peer without seats is empty, and a loop over its seats makes it so.
+    // A peer without seats passes an empty list of inputs, as a loop over its seats builds it.
     assert_eq!(peer.advance(&[]).map(|_| ()), Ok(()));
 }
 

@@ -4,7 +4,7 @@
 //! floating    submerged area * fluid density = area * density
 //! terminal    v = u + a / c
 //! bobbing     omega^2 = g / (depth at rest) for a body with straight sides
-//! orbit       v^2 = g R^2 / r;  energy v^2 / 2 - g R^2 / r and angular momentum are kept
+//! orbit       v^2 = g R^2 / r;  energy v^2 / 2 - g R^2 / r and angular momentum are conserved
 //! ```
 
 use lockstep2d::body::{Area, BodyDef, BodyId, Falloff, Geometry, MassSource, Polygon, ShapeDef, WorldError};
@@ -204,7 +204,7 @@ fn bobbing_keeps_its_energy() {
     }
 }
 
-/// Balls on a circle and on two ellipses around a planet: energy and angular momentum are kept for a minute.
+/// Balls on a circle and on two ellipses around a planet: energy and angular momentum are conserved for a minute.
 #[test]
 fn orbits_close() {
     let mut world = world(fx!(0));

@@ -31,8 +31,8 @@ fn kinetic(world: &World) -> Fx {
     dynamic.fold(Fx::ZERO, |sum, (_, body)| sum + body.kinetic_energy())
 }
 
-/// A disc that lands with spin `w`, and does not slide afterwards, rolls at `r w / 3`. It keeps its angular momentum
-/// about the point of contact: `m k^2 w = m (k^2 + r^2) w'` with `k^2 = r^2 / 2`.
+/// A disc that lands with spin `w`, and does not slide afterwards, rolls at `r w / 3`. It conserves its angular
+/// momentum about the point of contact: `m k^2 w = m (k^2 + r^2) w'` with `k^2 = r^2 / 2`.
 #[test]
 fn a_spinning_ball_rolls_at_a_third_of_its_surface_speed() {
     let speeds = [5, 10, 20, 40, 100, 200].into_iter();

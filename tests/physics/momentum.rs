@@ -1,5 +1,5 @@
-//! A joint between two free bodies keeps their momentum and angular momentum: its impulses act on both bodies at one
-//! point, however far its anchors are apart.
+//! A joint between two free bodies conserves their momentum and angular momentum: its impulses act on both bodies at
+//! one point, however far its anchors are apart.
 //!
 //! Momentum is compared with the sum of its absolute parts, `sum m |v|`, and angular momentum about the common centre
 //! of mass with `sum m |r x v| + m k^2 |w|`.

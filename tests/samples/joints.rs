@@ -352,8 +352,8 @@ fn a_constraint_of_ones_own_holds_a_box() {
         let length = rope(&stage, corner);
         let lean = sqrt(fx_mul(length, length) - fx!(0.25)).expect("longer than half a metre");
         let tension = fx_div(fx_mul(fx!(200), length), lean).expect("positive");
-        // A part of the tension is damping: when the impulses are computed, between two ticks, the box moves at 1.5
-        // sub-steps of gravity below its mean speed of 0.
+        // A part of the tension is damping: between two ticks, when the impulses are computed, the box falls at
+        // `1.5 g h`, where `h` is a sub-step, although its mean speed over a tick is 0.
         let damped = fx_div(fx_mul(damping, lean), length * 16).expect("positive");
         near(length, fx!(1) + fx_div(tension - damped, stiffness).expect("positive"), fx!(0.001));
     }

@@ -1,7 +1,8 @@
 //! Gears: a pair of toothed wheels, and a wheel on a rack.
 //!
 //! The impulse acts on both bodies at the pitch point, where the wheels roll on each other, along the common tangent.
-//! Momentum and angular momentum are kept, and axles may move: a planet gear on a turning arm is two hinges and a gear.
+//! Momentum and angular momentum are conserved, and axles may move: a planet gear on a turning arm is two hinges and a
+//! gear.
 //!
 //! With `NA` and `NB` teeth, the angles `a` and `b` of the frames and the angle `p` of the line from A's anchor to B's,
 //!

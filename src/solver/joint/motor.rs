@@ -15,9 +15,9 @@ use crate::math::{Fx, Vec2};
 /// frames onto each other: if A is a kinematic or fixed body that follows a pointer, B is dragged by the pointer.
 ///
 /// Forces act on both bodies at one point, B's anchor, as if A extended to it: a sideways force on B also turns A.
-/// Momentum and angular momentum of the two bodies are kept. A's arm is limited to 88 times its radius of gyration. If
-/// the arm is shortened to this limit, forces act on both bodies at its end. If B's arm to that point would be too long
-/// as well, forces act only along the line between the two centres.
+/// Momentum and angular momentum of the two bodies are conserved. A's arm is limited to 88 times its radius of
+/// gyration. If the arm is shortened to this limit, forces act on both bodies at its end. If B's arm to that point
+/// would be too long as well, forces act only along the line between the two centres.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};

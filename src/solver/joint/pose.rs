@@ -201,9 +201,9 @@ impl JointPose {
         }
     }
 
-    /// The levers of A and B to one point. An impulse that is not along the gap keeps angular momentum only if it acts
-    /// on both bodies at one point. The point is B's anchor if that is within reach of A. Otherwise it is the end of
-    /// A's arm, which is shortened to the reach of A. `None` if that end is not within reach of B.
+    /// The levers of A and B to one point. An impulse that is not along the gap conserves angular momentum only if it
+    /// acts on both bodies at one point. The point is B's anchor if that is within reach of A. Otherwise it is the end
+    /// of A's arm, which is shortened to the reach of A. `None` if that end is not within reach of B.
     fn levers_at_one_point(&self) -> Option<[Lever; 2]> {
         let a = self.reach_of_a();
         let longest = longest_ratio(a);

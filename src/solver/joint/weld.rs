@@ -35,7 +35,7 @@ use crate::math::Fx;
 #[doc(alias = "WeldJoint")]
 pub struct Weld {
     /// Softness of the anchors; `None` is rigid. The frequency is that of the bodies as point masses, and the stiffness
-    /// is the same in all directions ([`Soft`]). Forces act on both bodies at B's anchor, so that a soft weld keeps
+    /// is the same in all directions ([`Soft`]). Forces act on both bodies at B's anchor, so that a soft weld conserves
     /// angular momentum however far it is stretched.
     pub linear: Option<Soft>,
     /// Softness of the angle; `None` is rigid.

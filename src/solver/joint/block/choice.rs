@@ -1,7 +1,7 @@
 //! The choice of joints that are solved in blocks, and their order.
 //!
-//! One iteration solves a body with one joint exactly, and a chain of like bodies well. It fails at bodies whose joints
-//! disturb each other, where it may even add energy. A body is *crowded* if two or more joints hold it and
+//! One iteration solves a body with one joint exactly, and a chain of similar bodies well. It fails at bodies whose
+//! joints disturb each other, where it may even add energy. A body is *crowded* if two or more joints hold it and
 //!
 //! - one of them holds more than a point: a weld, a slider, a spring, or
 //! - it is so light, or its arms are so long, that its share in the mobility of the points of two hinges is large, or

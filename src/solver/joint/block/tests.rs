@@ -65,8 +65,8 @@ fn roots_and_inverses_are_those_of_theory() {
 }
 
 /// Joints store the impulses of a block scaled by other denominators. Dividing and multiplying again is exact to 2^-18:
-/// the 30 fraction bits of a root, times the largest condition number of the matrix, 2^9, and a few roundings. A body
-/// that keeps less of its rotation takes less of an impulse across its arm.
+/// the 30 fraction bits of a root, times the largest condition number of the matrix, 2^9, and a few roundings.
+/// Geometric stiffness scales down the inverse inertia of a body, which then yields less to an impulse across its arm.
 #[test]
 fn impulses_are_the_same_whatever_the_denominator() {
     let mut rng = Rng::new(23);
@@ -114,7 +114,7 @@ fn chosen(candidates: &[Candidate]) -> Vec<u32> {
 #[test]
 fn joints_of_crowded_bodies_are_chosen_and_others_are_not() {
     let half = Unit::lit("0.5");
-    // A single weld, a chain of like hinges, and a body in cloth.
+    // A single weld, a chain of equal hinges, and a body in cloth.
     assert_eq!(chosen(&[weld([1, 2])]), Vec::<u32>::new());
     assert_eq!(chosen(&[hinge([1, 2], half), hinge([2, 3], half), hinge([3, 4], half)]), Vec::<u32>::new());
     assert_eq!(chosen(&[2, 3, 4, 5].map(|limb| hinge([1, limb], half))), Vec::<u32>::new());

@@ -2,7 +2,7 @@
 //!
 //! Lever ratios are rotated from their body's frame, `e = R e0`, instead of being computed again from the arms, because
 //! their length does not change. Both levers then reach to the middle of the gap, `eA + perp(gap) / (2 kA)` and
-//! `eB - perp(gap) / (2 kB)`: an impulse that acts on both bodies at one point keeps angular momentum.
+//! `eB - perp(gap) / (2 kB)`: an impulse that acts on both bodies at one point conserves angular momentum.
 //!
 //! The products of `K` are computed exactly, in two parts of 32 bits, and then rounded:
 //!
@@ -144,7 +144,7 @@ pub(super) fn gap_factors(inverse_gyrations: [Reciprocal; 2], fractions: MassFra
 }
 
 /// Lever ratios that reach into the gap, `e + factor (-gap_y, gap_x)`. Lever ratios that would be too long for the
-/// products of `K` stay as they are: beyond 87 radii of gyration angular momentum is not kept.
+/// products of `K` stay as they are: beyond 87 radii of gyration angular momentum is not conserved.
 #[inline(always)]
 fn reaching<L: Lanes<N>, const N: usize>(
     e: [L::Int; 2],
