@@ -186,7 +186,7 @@ api! {
         let (pairs, []) = ends.slice(end_count)?.as_chunks() else {
             return Err(value("the number of ends of joints", end_count));
         };
-        // The bodies of the definition have no effect. They may be those of `ls2d_joint_def_init`, which do not exist.
+        // The bodies of the definition have no effect, and may still be `LS2D_NO_ID`, which `ls2d_joint_def_init` sets.
         let [body_a, body_b] = pairs.first().copied().unwrap_or([RawBody(0); 2]);
         let joint = RawJointDef { body_a, body_b, ..joint.get()? }.def()?;
         let pair = |&[a, b]: &[RawBody; 2]| Ok((a.id()?, b.id()?));

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 /// Longest time that a test waits for something.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(300);
 
-/// Names of the program, the second for a shell whose search path lacks the folder of Debian's package.
+/// Names of the server program. The second is its path in Debian, whose folder many search paths do not contain.
 const PROGRAMS: [&str; 2] = ["nats-server", "/usr/sbin/nats-server"];
 
 /// A process that is killed when the value is dropped.
