@@ -109,7 +109,7 @@ fn other_files_are_called_what_they_are() {
     let trace = folder.path("a.trace");
     run_sandbox(&["trace", &golden("ragdoll"), "--to", "9", "-o", &trace]);
     let mut older = lockstep2d::world::World::default().to_bytes();
-    // After eight bytes of magic and the format: the semantics.
+    // The semantics id follows the magic number of eight bytes and the format version.
     older[12] = 2;
     let older = folder.write("older", &older);
     for (file, why) in [

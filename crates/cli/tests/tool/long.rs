@@ -81,7 +81,7 @@ fn a_file_without_time_has_no_verdict_and_is_not_cached() {
     }
     let text = run_slow(&["verify", "--max-seconds", "1", &long]);
     assert!(text.out.contains("b.replay: out of time: no verdict after 1 s and "), "{}", text.out);
-    // The same file with enough time is verified, and only then cached.
+    // With enough time the file is verified, and only then cached.
     let enough = ["verify", "--json", "--cache", &cache, "--max-seconds", "600", &long];
     for known in [false, true] {
         let line = lines(&run_slow(&enough)).remove(0);

@@ -1,4 +1,5 @@
-// The same world on the page and in a worker. Bundlers remove the types without checking them; tsc checks them.
+// Steps one world on the page and an equal one in a worker. Bundlers remove the types without checking them; tsc checks
+// them.
 import { play } from "./play.js";
 
 declare global {
