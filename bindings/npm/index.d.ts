@@ -326,8 +326,8 @@ export interface Spring {
     /** Rest position of the spring, in rad or m: 0 by default. */
     target?: Num;
 }
-/** A joint. It has a frame on each body: an anchor and an angle. An option that its type does not have throws `VALUE`
- * or is ignored; a value out of range throws `JOINT`. */
+/** A joint. It has a frame on each body: an anchor and an angle. An option that its type does not have throws `VALUE`;
+ * a value out of range throws `JOINT`. */
 export interface JointOptions {
     /** - `revolute`: a hinge.
      * - `prismatic`: B slides along the x axis of A's frame and does not turn.
@@ -345,7 +345,8 @@ export interface JointOptions {
     /** Body B, another one than A. A joint has no effect while neither body is dynamic. */
     b: BodyId;
     /** Place of both anchors in the world, in metres, at the current poses: sets `anchorA`, `anchorB`, `angleA` and
-     * `angleB`, so that the angle of the joint is 0 now. Only `World.addJoint` accepts it. */
+     * `angleB`, which must not be given as well, so that the angle of the joint is 0 now. Only `World.addJoint` accepts
+     * it. */
     anchor?: Vec;
     /** With `anchor`: direction in the world of the axis of a prismatic joint, wheel or rack. The x axis by default. */
     axis?: Vec;

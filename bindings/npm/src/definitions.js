@@ -1,5 +1,5 @@
 // Definitions of shapes, bodies, joints and worlds as objects, and their structs.
-import { array, fail, flag, onlyKnown, shown } from "./check.js";
+import { array, fail, flag, object, onlyKnown, shown } from "./check.js";
 import { Fx, rawOf, vectorOf } from "./fx.js";
 import { C } from "./layout.js";
 import { call, copy as copyOf, fieldAt, fxAt, list, optionsOf, putBytes, putRaw, scratch, sizeOf, statusOf, u32, write } from "./library.js";
@@ -14,17 +14,18 @@ const MIXING = {
     maximum: C.MIX_MAXIMUM,
 };
 const FALLOFFS = { constant: C.FALLOFF_CONSTANT, inverse: C.FALLOFF_INVERSE, inverseSquare: C.FALLOFF_INVERSE_SQUARE };
-const JOINT_KINDS = {
-    revolute: C.REVOLUTE,
-    prismatic: C.PRISMATIC,
-    distance: C.DISTANCE,
-    weld: C.WELD,
-    wheel: C.WHEEL,
-    motor: C.MOTOR,
-    filter: C.FILTER,
-    gear: C.GEAR,
-    rack: C.RACK,
-    pulley: C.PULLEY,
+// Each type of joint with the options that only some types have.
+const JOINTS = {
+    revolute: [C.REVOLUTE, "limit", "motor", "spring"],
+    prismatic: [C.PRISMATIC, "limit", "motor", "spring"],
+    distance: [C.DISTANCE, "limit", "motor", "spring", "springForce", "rod"],
+    weld: [C.WELD, "linearSpring", "angularSpring"],
+    wheel: [C.WHEEL, "limit", "motor", "spring"],
+    motor: [C.MOTOR, "motor", "linearMotor", "linearSpring", "angularSpring"],
+    filter: [C.FILTER],
+    gear: [C.GEAR, "teeth"],
+    rack: [C.RACK, "radius"],
+    pulley: [C.PULLEY, "wheels", "length", "ratio"],
 };
 
 function lookup(table, name, what) {
@@ -231,9 +232,7 @@ export function massOf(shapes) {
 export const bodyKind = (name) => lookup(BODY_KINDS, name, "the type of a body");
 
 const JOINT_OPTIONS = [
-    "type", "a", "b", "anchor", "axis", "anchorA", "anchorB", "angleA", "angleB", "limit", "motor", "spring", "springForce",
-    "rod", "softness", "collide", "enabled", "threshold", "linearMotor", "linearSpring", "angularSpring", "teeth", "radius",
-    "wheels", "length", "ratio", "userData",
+    "type", "a", "b", "anchorA", "anchorB", "angleA", "angleB", "softness", "collide", "enabled", "threshold", "userData",
 ];
 
 // Options of the parts of joints.
@@ -243,8 +242,8 @@ const JOINT_PARTS = {
     angularSpring: ["hertz", "dampingRatio", "max"],
 };
 
-function checkJoint(options) {
-    onlyKnown(options, JOINT_OPTIONS, "a joint");
+function checkJoint(options, known) {
+    onlyKnown(options, [...known, ...JOINT_OPTIONS], `a joint of type ${options.type}`);
     for (const [part, known] of Object.entries(JOINT_PARTS)) {
         if (options[part] !== undefined) {
             onlyKnown(options[part], known, `\`${part}\` of a joint`);
@@ -259,8 +258,9 @@ function checkJoint(options) {
 
 /** Writes a joint definition. */
 export function writeJoint(at, options) {
-    checkJoint(options);
-    call("ls2d_joint_def_init", lookup(JOINT_KINDS, options.type, "the type of a joint"), at);
+    const [kind, ...known] = lookup(JOINTS, object(options, "a joint").type, "the type of a joint");
+    checkJoint(options, known);
+    call("ls2d_joint_def_init", kind, at);
     const { a, b, anchorA, anchorB, angleA, angleB, limit, motor, spring, springForce, rod, softness } = options;
     const { threshold, linearMotor, linearSpring, angularSpring, teeth, radius, wheels, length, ratio, userData } = options;
     write("joint_def", at, {

@@ -75,14 +75,21 @@ export class Edits extends Handle {
 
     /** Adds a joint, and returns its handle. `anchor` and `axis` are in world coordinates, and need a world. */
     addJoint(options) {
+        const { anchor, axis, ...definition } = object(options, "a joint");
         const size = sizeOf("joint_def");
         const at = scratch(48 + size);
-        writeJoint(at + 48, options);
+        writeJoint(at + 48, definition);
         if (options.a === undefined || options.b === undefined) {
             fail("a joint connects two bodies, `a` and `b`");
         }
-        if (options.anchor !== undefined) {
-            this.place(at, options);
+        if (anchor !== undefined) {
+            const frame = ["anchorA", "anchorB", "angleA", "angleB"].find((name) => options[name] !== undefined);
+            if (frame !== undefined) {
+                fail(`a joint has either \`anchor\` or \`${frame}\`, because \`anchor\` sets \`${frame}\``);
+            }
+            this.place(at, anchor, axis);
+        } else if (axis !== undefined) {
+            fail("`axis` of a joint needs `anchor`");
         }
         putRaw(at, -1n);
         call("ls2d_add_joint", this.handle, at + 48, at);
@@ -97,9 +104,6 @@ export class Edits extends Handle {
         const at = scratch(size + 24 * pairs.length);
         const ids = at + size + 16 * pairs.length;
         writeJoint(at, options);
-        if (options.anchor !== undefined) {
-            fail("joints of `addJointEach` have `anchorA` and `anchorB`, and no `anchor`");
-        }
         pairs.forEach((pair, index) => {
             if (array(pair, `pair ${index}`).length !== 2) {
                 fail(`pair ${index} has 2 bodies, and not ${pair.length}`);
@@ -111,7 +115,7 @@ export class Edits extends Handle {
         return this.#allAdded(ids, pairs.length);
     }
 
-    place(at, { anchor, axis = [0, 0] }) {
+    place(at, anchor, axis = [0, 0]) {
         const numbers = [...raws(anchor, "anchor"), ...raws(axis, "axis")];
         numbers.forEach((raw, index) => putRaw(at + 8 + 8 * index, raw));
         call("ls2d_joint_at", this.handle, at + 48, at + 8, at + 24, at + 48);

@@ -207,7 +207,7 @@ export class Angle {
 
     /** Radians above -pi and up to pi, for drawing. */
     toNumber() {
-        return ((this.bits | 0) / 4294967296) * 2 * Math.PI;
+        return (Number(signed(this.bits)) / 4294967296) * 2 * Math.PI;
     }
 
     toJSON() {

@@ -59,7 +59,13 @@ test("a joint needs both of its bodies and knows its options", () => {
     assert.throws(() => w.addJoint({ type: "revolute", a, b, motor: { speed: 1, maxTorque: 2 } }), /no option maxTorque/);
     assert.throws(() => w.addJoint({ type: "revolute", a, b, threshold: { force: 1, break: true } }), /no option break/);
     assert.throws(() => w.addJoint({ type: "revolute", a, b, limit: [0] }), /limit has 2 items/);
+    assert.throws(() => w.addJoint({ type: "revolute", a, b, teeth: [1, 2] }), /type revolute has no option teeth/);
+    assert.throws(() => w.addJoint({ type: "weld", a, b, anchor: [1, 5], anchorA: [1, 0] }), /either `anchor` or `anchorA`/);
+    assert.throws(() => w.addJoint({ type: "wheel", a, b, axis: [0, 1] }), /`axis` of a joint needs `anchor`/);
     assert.equal(w.joints().length, 0);
+    const joint = w.addJoint({ type: "revolute", a, b, anchor: [1, 5] });
+    assert.throws(() => w.setJoint(joint, { ...w.joint(joint), anchor: [2, 5] }), /no option anchor/);
+    w.setJoint(joint, { ...w.joint(joint), limit: [0, 1] });
 });
 
 test("settings of a body are read and set as a whole", () => {

@@ -44,6 +44,7 @@ test("angles are those of the library", () => {
     }
     assert.deepEqual([180, -90].map((value) => L.degrees(value).toDegrees()), [L.fx(180), L.fx(-90)]);
     assert.equal(L.sin(L.degrees(90)).toNumber(), 1);
+    assert.deepEqual([180, -90].map((degrees) => L.degrees(degrees).toNumber()), [Math.PI, -Math.PI / 2]);
     assert.deepEqual(L.rotate([2, 0], L.degrees(90)), { x: L.fx(0), y: L.fx(2) });
     assert.equal(L.sqrt("6.25").toString(), "2.5");
 });
