@@ -77,7 +77,7 @@ pub fn encode_into<T: Serialize + ?Sized>(value: &T, bytes: &mut Vec<u8>) {
 /// Returns the canonical encoding of `value`.
 #[must_use]
 pub fn encode<T: Serialize + ?Sized>(value: &T) -> Vec<u8> {
-    // Most values are short: one allocation instead of several that grow.
+    // Most values are short: this capacity saves them the reallocations of a growing vector.
     let mut bytes = Vec::with_capacity(256);
     encode_into(value, &mut bytes);
     bytes
@@ -104,7 +104,8 @@ pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, DecodeError> {
     let unused = DECODE_BYTES_MAX.checked_sub(bytes.len());
     let unused = unused.ok_or(DecodeError::TooLong { count: bytes.len() as u64 })?;
     // bincode allocates the announced length of a string before it checks that the bytes are present, unless the length
-    // exceeds a limit. The limit is a compile-time constant, so the part that these bytes do not need is claimed first.
+    // exceeds a limit. The limit is a compile-time constant. Claiming the part of it that these bytes do not need
+    // lowers it to their number.
     let layout = LAYOUT.with_limit::<{ DECODE_BYTES_MAX + SLACK }>();
     let mut decoder = DecoderImpl::new(Rest(bytes), layout, ());
     let decoded = decoder.claim_bytes_read(unused).and_then(|()| Compat::<T>::decode(&mut decoder));

@@ -89,7 +89,8 @@ mod tests {
     fn digests_of_all_lengths_are_those_of_the_reference() {
         let byte = |i: u32| u8::try_from((i * i + 7 * i + 13 * (i >> 8)) & 0xff).expect("masked");
         let bytes: Vec<u8> = (0..4096).map(byte).collect();
-        // Lengths around each limit at which the algorithm changes, and at many positions within a stripe and a block.
+        // The lengths are around each limit at which the algorithm changes, and end at many positions within a stripe
+        // and a block.
         let lengths = (0..600).chain((600..4096).step_by(61));
         let all = StateHash::of_digests(lengths.map(|length| StateHash::of_bytes(&bytes[..length])));
         assert_eq!(all, StateHash(0x895a_7f64_9a6f_6e88_c604_0708_9b0a_5435));

@@ -1,7 +1,7 @@
 //! lockstep2d: a deterministic fixed-point 2D physics and lockstep engine.
 //!
 //! The same setup and the same inputs give the same state hash after every tick, on every machine, because no
-//! floating-point number takes part. Saved replays verify it.
+//! floating-point number takes part. A saved replay contains the hashes, so that any machine can check this.
 //!
 //! - [`world`]: start here. [`world::World`] owns bodies, shapes and joints and steps them.
 //! - [`body`]: definitions of bodies and shapes. [`solver`]: joints and settings. [`collision`]: contact manifolds.
@@ -10,7 +10,8 @@
 //! - [`peer`]: a participant of a match, for any game. It is built on [`session`], the protocol without I/O by which
 //!   the peers of a match agree on one history.
 //! - [`replay`]: writes, reads and verifies replay files.
-//! - [`report`]: the report that a peer writes when states differ, and its analysis: who diverged, when and where.
+//! - [`report`]: the report that a peer writes when states differ, and its analysis: which peer diverged, when and
+//!   where.
 //! - [`check`]: runs a game in many ways that must give the same result, for tests and fuzzers.
 //! - [`inspect`]: converts any value to named fields, and compares two values.
 //! - [`draw`]: renders a world.

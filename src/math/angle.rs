@@ -247,7 +247,7 @@ mod tests {
         let units = |degrees: i64| Angle::from_degrees(Fx::from_bits(degrees)).to_bits();
         assert_eq!([179, 180, -179, -180].map(units), [0, 1, 0, u32::MAX]);
 
-        // 341782637.62906085... turns.
+        // 2147483647 rad are 341782637.62906085... turns.
         let far = Angle::from_radians(fx!(2_147_483_647));
         assert_eq!(far, Angle::from_turns(fx!(0.62906085179925)));
     }

@@ -15,12 +15,12 @@ pub type Fx = FixedI64<U32>;
 /// A vertex relative to its shape's centre, or a lever arm, in metres: ±512, resolution 0.24 µm.
 pub type Length = FixedI32<U22>;
 /// A speed in m/s: ±1024, resolution 4.8e-7. Used for linear velocity, for angular velocity times the radius of
-/// gyration, `u = k w`, and for the impulse of a row as a speed.
+/// gyration, `u = k w`, and for the impulse of a row divided by its effective mass.
 pub type Speed = FixedI32<U21>;
 /// Displacement within one step, or separation of a contact, in metres: ±16, resolution 7.5 nm.
 pub type Step = FixedI32<U27>;
 /// Displacement of a body within a tick, in metres: ±32, resolution 15 nm. Values are kept within ±16, so that the
-/// difference of two fits.
+/// difference of two displacements fits.
 pub type Shift = FixedI32<U26>;
 /// Component of a unit vector, sine, cosine, mass fraction or gain: ±2, resolution 9.3e-10.
 pub type Unit = FixedI32<U30>;

@@ -154,7 +154,8 @@ mod tests {
             let v: Vec2<Unit> = Vec2::new(entry(), entry());
             let wide =
                 Mat2::new(Fx::from_num(m.a11), Fx::from_num(m.a12), Fx::from_num(m.a21), Fx::from_num(m.a22));
-            // The wide result keeps two more bits, so its own rounding can move a tie.
+            // In units of `Fx`, the narrow result is within 2 of the exact value, and the wide result within 0.5. Their
+            // difference is an integer, so it is at most 2.
             let apart = m.apply::<_, U30>(v).widen() - wide.apply(v.widen());
             assert!(apart.x.abs().to_bits() <= 2 && apart.y.abs().to_bits() <= 2, "{apart:?}");
             let determinant: Unit = m.determinant();

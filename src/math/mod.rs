@@ -1,7 +1,7 @@
 //! Fixed-point mathematics: number formats, vectors, angles, roots, planar geometry and random numbers.
 //!
-//! Everything here is exact integer arithmetic with documented rounding, so a game can use it for its own rules and
-//! stay bit-identical on every machine.
+//! Everything here is integer arithmetic with documented rounding, so a game can use it for its own rules and stay
+//! bit-identical on every machine.
 
 mod aabb;
 mod angle;

@@ -1,8 +1,9 @@
 //! Square roots, lengths and unit vectors.
 //!
 //! A length is the integer square root of an exact sum of squares, rounded to nearest, so its error is at most half a
-//! unit. A unit vector is `v y` with `y = 1 / |v|` from Newton's iteration `y <- y (3 - n y^2) / 2`, which needs no
-//! division. Each component is within 0.76 units of 2^-30 for any length of `v`, and vectors along an axis are exact.
+//! unit. A unit vector is `v y` with `y = 1 / |v|` from Newton's iteration `y <- y (3 - n y^2) / 2` with `n = |v|^2`,
+//! which needs no division. Each component is within 0.76 units of 2^-30 for any length of `v`, and vectors along an
+//! axis are exact.
 
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
@@ -155,7 +156,7 @@ const fn polar(x: i32, y: i32) -> Option<(Vec2<Unit>, i32)> {
     ))
 }
 
-/// `sqrt(n)`, rounded to nearest, from `2^63 / sqrt(n 2^shift)` with an error of at most 0.51.
+/// `sqrt(n)`, rounded to nearest. `inverse` is `2^63 / sqrt(n 2^shift)` with an error of at most 0.51.
 #[inline]
 const fn root_from_inverse(n: u64, shift: u32, inverse: u64) -> u64 {
     // Computes m / sqrt(m) for m = n 2^shift. The error of the inverse contributes at most 0.51, rounding another half,

@@ -173,7 +173,7 @@ mod tests {
     /// Error of `arc_tangent` in thousandths of 2^-32 turn.
     fn arc_tangent_error(x: i64, y: i64) -> i128 {
         let (sin, cos) = slow_sin_cos(arc_tangent(x, y));
-        // Scaled up, so that the integer root below is accurate to 50 bits.
+        // The vector is scaled up, so that the integer root below is accurate to 50 bits.
         let shift = (x.unsigned_abs() | y.unsigned_abs()).leading_zeros().saturating_sub(1);
         let (x, y) = (i128::from(x) << shift, i128::from(y) << shift);
         let length = (x.unsigned_abs().pow(2) + y.unsigned_abs().pow(2)).isqrt();

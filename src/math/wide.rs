@@ -1,9 +1,9 @@
 //! Exact wide integers for geometric predicates.
 //!
 //! The difference of two coordinates has 65 bits, a cross product of differences 130, and a point along a segment needs
-//! the product of both. This module has only the operations on such numbers that the predicates need, so no predicate
-//! has to round. Sign and magnitude are separate, so that a difference fits a `u64` and a product of two differences a
-//! `u128`.
+//! the product of a difference and a cross product. This module computes with such numbers exactly, so that no
+//! predicate has to round. It has only the operations that the predicates need. Sign and magnitude are separate, so
+//! that a difference fits a `u64` and a product of two differences a `u128`.
 
 use core::cmp::Ordering;
 

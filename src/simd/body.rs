@@ -4,8 +4,9 @@ use core::cell::Cell;
 
 use crate::math::{Shift, Speed, Vec2};
 
-/// Index of the ground. This one body represents all bodies that are not among the bodies of a tick. Where constraints
-/// write velocities, it also represents each body that no impulse changes, because the kernels never write the ground.
+/// Index of the ground, the body that stands for all bodies that are not among the bodies of a tick. In the list of
+/// bodies to which a constraint writes, this index also replaces each body that no impulse changes, because the kernels
+/// never write to the ground.
 pub(crate) const GROUND: u32 = 0;
 
 /// A body in the solver. A body that no impulse moves has mass fraction 0 in every row, so kernels process it like any
@@ -43,7 +44,7 @@ impl SolverBody {
         self.turn = Shift::from_bits(turn);
     }
 
-    /// Bodies as cells, which several lanes and several threads read and write.
+    /// Returns the bodies as cells, because several lanes and several threads read and write them.
     pub(crate) fn cells(bodies: &mut [Self]) -> &[Cell<Self>] {
         Cell::from_mut(bodies).as_slice_of_cells()
     }

@@ -120,8 +120,8 @@ pub(crate) trait Lanes<const N: usize>: Copy {
     /// `a / 2^SHIFT` of non-negative numbers, rounded down. `SHIFT` is 1 to 63.
     fn shift_down<const SHIFT: i32>(a: Self::Wide) -> Self::Wide;
 
-    /// `1 / d`, both with 30 fraction bits, rounded down. `d` is below 2^16, which is 2^46 as an integer, and is
-    /// clamped to at least 1.
+    /// `1 / d`, rounded down, where `d` and the result have 30 fraction bits. `d` is below 2^16, which is 2^46 as an
+    /// integer, and is clamped to at least 1.
     #[inline(always)]
     fn reciprocal(d: Self::Wide) -> Self::Int {
         let mut quotients = Ints::ZERO;
@@ -132,8 +132,8 @@ pub(crate) trait Lanes<const N: usize>: Copy {
         Self::load(&quotients)
     }
 
-    /// Entries `g11, g12, g22` of `G = K^-1` with 30 fraction bits, from the entries of `K - I` with 46. `K` is the
-    /// matrix of a point constraint, whose determinant is 1 to 2^27.
+    /// Entries `g11, g12, g22` of `G = K^-1` with 30 fraction bits, from the entries of `K - I` with 46 fraction bits.
+    /// `K` is the matrix of a point constraint, whose determinant is 1 to 2^27.
     #[inline(always)]
     fn inverse(entries: [Self::Wide; 3]) -> [Self::Int; 3] {
         let [xx, xy, yy] =

@@ -79,7 +79,7 @@ impl Lanes<WIDTH> for Simd128 {
     #[inline(always)]
     fn add_saturating(a: Ints32, b: Ints32) -> Ints32 {
         map(a, b, |a, b| {
-            // The sum overflows where its sign differs from both signs.
+            // The sum overflows where its sign differs from the signs of `a` and `b`.
             let sum = i32x4_add(a, b);
             limited(sum, v128_and(v128_xor(a, sum), v128_xor(b, sum)), a)
         })
@@ -88,7 +88,7 @@ impl Lanes<WIDTH> for Simd128 {
     #[inline(always)]
     fn sub_saturating(a: Ints32, b: Ints32) -> Ints32 {
         map(a, b, |a, b| {
-            // The difference overflows where the signs differ and its own sign is not that of `a`.
+            // The difference overflows where `a` and `b` have different signs and its sign is not that of `a`.
             let difference = i32x4_sub(a, b);
             limited(difference, v128_and(v128_xor(a, b), v128_xor(a, difference)), a)
         })

@@ -1,5 +1,5 @@
-//! Threads that share a tick. The number of threads changes the speed, never the result, because the threads work on
-//! parts that do not read each other's results.
+//! Threads that share a tick. The number of threads changes the speed, never the result, because between two barriers
+//! no thread reads anything that another thread writes.
 //!
 //! A team runs the parallel stages of a tick: the calling thread and the threads of a pool, each on its own part. The
 //! members of a team wait for each other at barriers; the sub-steps of a tick need a hundred of them. A barrier costs

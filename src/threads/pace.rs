@@ -69,7 +69,7 @@ impl Pace {
         self.until_trial = self.interval;
     }
 
-    /// Whether the other mode takes at least an eighth less time.
+    /// Whether the other mode takes less than seven eighths of the time of the current mode.
     fn other_is_faster(&self) -> bool {
         let [this, other] = [self.faster, self.faster.other()].map(|mode| self.costs[mode as usize]);
         this.zip(other).is_some_and(|(this, other)| other < this - this / 8)
@@ -89,7 +89,8 @@ impl Mode {
 mod tests {
     use super::*;
 
-    /// Runs ticks of the given times in milliseconds, and returns the number of ticks with all threads.
+    /// Runs ticks that take `alone` or `team` milliseconds, depending on their mode. Returns the number of ticks with
+    /// all threads.
     fn run(pace: &mut Pace, ticks: u32, alone: u64, team: u64) -> u32 {
         let mut shared = 0;
         for _ in 0..ticks {

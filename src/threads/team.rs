@@ -12,8 +12,8 @@ use super::{Member, Sharing};
 /// Number of polls after which a thread without work yields to other threads of the machine.
 const LOOKS: u32 = 1000;
 
-/// Number of spins after a stage, in which the other threads return from its last barrier. Without these spins, the
-/// calling thread would go to sleep, and waking it takes 50 microseconds.
+/// Number of spins after a stage, during which the other threads return from the last barrier of the stage. Without
+/// these spins, the calling thread would go to sleep, and waking it takes 50 microseconds.
 const RETURN_SPINS: u32 = 100;
 
 /// Threads that work on a tick together with the calling thread.

@@ -7,7 +7,7 @@ use crate::fx;
 use crate::math::Rng;
 use alloc::vec::Vec;
 
-/// A grid point: coordinates of at most 6.
+/// A grid point: coordinates from -6 to 6.
 type Grid = (i128, i128);
 
 /// Placements of a figure: `grid * scale + offset`, in units of 2^-32 m.
@@ -20,7 +20,7 @@ fn place((x, y): Grid, (scale, offset): (i128, i128)) -> Vec2<Fx> {
     Vec2::new(bits(x), bits(y))
 }
 
-/// Point at `numerator / denominator` between two grid points, rounded to nearest, ties up.
+/// Point at the fraction `n / d` of the way between two grid points, rounded to nearest, ties up.
 fn point_between(from: Grid, to: Grid, n: i128, d: i128, placed: (i128, i128)) -> Vec2<Fx> {
     let (n, d) = (n * d.signum(), d.abs());
     let part = |from: i128, to: i128| {
@@ -53,7 +53,7 @@ fn orientation_is_the_sign_of_the_exact_area() {
         let at = PLACES[round % PLACES.len()];
         assert_eq!(orientation(place(a, at), place(b, at), place(c, at)), expected, "{a:?} {b:?} {c:?}");
     }
-    // Points one unit off a line across the whole world.
+    // A point one unit above a line across the whole world, and a point on the line.
     let (low, high) = (Vec2::new(Fx::MIN, Fx::MIN), Vec2::new(Fx::MAX, Fx::MAX));
     let above = Vec2::new(Fx::ZERO, Fx::DELTA);
     assert_eq!(orientation(low, high, above), Orientation::CounterClockwise);

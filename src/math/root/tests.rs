@@ -126,7 +126,8 @@ fn the_inverse_root_is_within_its_bound() {
         // 2^63 / sqrt(n) = sqrt(2^126 / n); both sides are multiplied by 100 and squared.
         let y = u128::from(inverse_root(n)) * 100;
         let squared = |y: u128| (y * y) >> 6;
-        // (100 y)^2 n is 10^4 2^126 = 2^139: dropping 22 bits of each side (6 of the square and 16 of n) makes it fit.
+        // (100 y)^2 n is 10^4 2^126, about 2^139: dropping 22 bits of each side (6 of the square and 16 of n) makes it
+        // fit.
         let target = 10_000_u128 << 104;
         let n = u128::from(n >> 16);
         assert!(squared(y - 51) * n < target && target < squared(y + 51) * n, "{n}");

@@ -68,7 +68,7 @@ impl Lanes<WIDTH> for Avx2 {
 
     #[inline(always)]
     fn add_saturating(a: __m256i, b: __m256i) -> __m256i {
-        // SAFETY: see `Avx2`. The sum overflows where its sign differs from both signs.
+        // SAFETY: see `Avx2`. The sum overflows where its sign differs from the signs of `a` and `b`.
         unsafe {
             let sum = _mm256_add_epi32(a, b);
             let overflows = _mm256_and_si256(_mm256_xor_si256(a, sum), _mm256_xor_si256(b, sum));
@@ -78,7 +78,8 @@ impl Lanes<WIDTH> for Avx2 {
 
     #[inline(always)]
     fn sub_saturating(a: __m256i, b: __m256i) -> __m256i {
-        // SAFETY: see `Avx2`. The difference overflows where the signs differ and its own sign is not that of `a`.
+        // SAFETY: see `Avx2`. The difference overflows where `a` and `b` have different signs and its sign is not that
+        // of `a`.
         unsafe {
             let difference = _mm256_sub_epi32(a, b);
             let overflows = _mm256_and_si256(_mm256_xor_si256(a, b), _mm256_xor_si256(a, difference));

@@ -58,7 +58,7 @@ impl Lanes<WIDTH> for Avx512 {
 
     #[inline(always)]
     fn add_saturating(a: __m512i, b: __m512i) -> __m512i {
-        // SAFETY: see `Avx512`. The sum overflows where its sign differs from both signs.
+        // SAFETY: see `Avx512`. The sum overflows where its sign differs from the signs of `a` and `b`.
         unsafe {
             let sum = _mm512_add_epi32(a, b);
             let overflows = _mm512_and_si512(_mm512_xor_si512(a, sum), _mm512_xor_si512(b, sum));
@@ -68,7 +68,8 @@ impl Lanes<WIDTH> for Avx512 {
 
     #[inline(always)]
     fn sub_saturating(a: __m512i, b: __m512i) -> __m512i {
-        // SAFETY: see `Avx512`. The difference overflows where the signs differ and its own sign is not that of `a`.
+        // SAFETY: see `Avx512`. The difference overflows where `a` and `b` have different signs and its sign is not
+        // that of `a`.
         unsafe {
             let difference = _mm512_sub_epi32(a, b);
             let overflows = _mm512_and_si512(_mm512_xor_si512(a, b), _mm512_xor_si512(a, difference));

@@ -1,8 +1,9 @@
-//! Quotients of eight numbers at a time, in integers:
+//! Quotients `2^BITS / d` of eight numbers at a time, in integers. Without the powers of two that scale the numbers:
 //!
 //! ```text
-//! x  = 2^62 / m           for the highest 32 bits m of a divisor, on a chord of the curve: 10 correct bits
+//! x  = 1 / m              for the highest 32 bits m of d, on a chord of the curve: 10 correct bits
 //! x' = x (2 - x m)        Newton step: 20 correct bits
+//! q  = x'                 first approximation of the quotient 1 / d
 //! q' = q + (1 - q d) x'   40 correct bits; a quotient has at most 34, so its error is at most 1
 //! ```
 #![expect(unsafe_code, reason = "vendor intrinsics")]
@@ -41,7 +42,7 @@ pub(super) fn reciprocal(d: __m512i) -> __m512i {
     quotient::<60>(unsafe { _mm512_max_epi64(d, _mm512_set1_epi64(1 << 30)) })
 }
 
-/// `G = K^-1`, like [`super::super::super::division::inverse`].
+/// `G = K^-1`, like [`super::super::super::division::inverse`]. Each entry `k` of `K` is split into two parts:
 ///
 /// ```text
 /// k = H 2^32 + l,    det = (H11 H22 - H12^2) 2^64 + (H11 l22 + H22 l11 - 2 H12 l12) 2^32 + l11 l22 - l12^2
