@@ -40,8 +40,8 @@ const TURN_MAX: i32 = 1 << 26;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct KeptSide {
     pub(crate) pose: Pose,
-    /// Radius in metres of a circle about the middle of the shape that contains the shape. It is 0 for a circle about
-    /// the body's centre of mass, which rotation does not change.
+    /// Radius in metres of a circle about the middle of the shape that contains the shape. It is 0 for a disc about the
+    /// body's centre of mass, because rotation does not change such a disc.
     pub(crate) reach: Length,
 }
 

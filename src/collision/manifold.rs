@@ -63,7 +63,7 @@ pub struct ManifoldPoint {
 /// let upper = lower.at(Vec2::new(fx!(0.25), fx!(0.999)));
 /// let manifold: Manifold = lower.manifold(&upper, fx!(0.01));
 /// assert_eq!(manifold.normal, Vec2::Y);
-/// // Two points, at the ends of the edge that they share.
+/// // Two points, at the ends of the edge along which the crates touch.
 /// let of_point = |point: &ManifoldPoint| (manifold.origin + point.anchor.widen()).x;
 /// let mut ends: Vec<_> = manifold.points().iter().map(of_point).collect();
 /// ends.sort();

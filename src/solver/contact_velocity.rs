@@ -43,7 +43,7 @@ struct Group<const N: usize> {
     at: [u32; N],
     /// Whether something other than contacts changes the velocity of one of these bodies between the warm start and the
     /// end of a sub-step. The velocities of the other bodies of a shared group stay exact: `free - v + v` does not
-    /// round or saturate, because both are below 512 m/s.
+    /// round or saturate, because `free` and `v` are below 512 m/s.
     shared: bool,
     free: VelocityW<Ints<N>>,
     change: VelocityW<Ints<N>>,

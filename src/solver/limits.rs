@@ -1,4 +1,5 @@
-//! Limits of velocities and impulses, chosen so that no sum of two clamped values overflows its 32-bit format.
+//! Limits of velocities and impulses, chosen so that a velocity within its limit plus a change of up to [`STEP_MAX`]
+//! does not overflow the 32-bit format.
 
 pub(crate) use crate::body::SPEED_MAX;
 use crate::math::Speed;

@@ -30,8 +30,8 @@
 //! gyration long). Two scalar rows instead of the block would gain energy in a swinging chain.
 //!
 //! **The bias pass measures along the chord.** Displacements are straight while arms turn, which opens the joint by
-//! about half the square of the rotation. To keep the joint closed, the velocity is measured with the arm averaged over
-//! the predicted rotation `t = h u / k`, to third order:
+//! about half the length of an arm times the square of its rotation. To keep the joint closed, the velocity is measured
+//! with the arm averaged over the predicted rotation `t = h u / k`, to third order:
 //!
 //! ```text
 //! eM = e + M (t/2 (-e_y, e_x) - t^2/6 e),   M = 1 + 0.6 impulseScale / massScale

@@ -11,13 +11,14 @@
 //! g  = a / D,  f = g e                                 gains, at most 1 and 1/2
 //!
 //! vn = n.(vB - vA) + eB uB - eA uA
-//! d  = clamp(-massScale (vn + bias) - impulseScale L, -512, 512)
+//! d  = -massScale (vn + bias) - impulseScale L
 //! L' = clamp(L + d, lo, hi),  d = L' - L
 //! vA -= gA d n,  uA -= fA d,  vB += gB d n,  uB += fB d
 //! ```
 //!
-//! `L` is the accumulated impulse divided by the effective mass: a speed. No sum of two clamped values overflows; each
-//! clamp that changes a value is counted as a fault.
+//! `L` is the accumulated impulse divided by the effective mass: a speed. Velocities and `L` also have fixed limits
+//! (`limits.rs`), and an impulse of more than 512 m/s is applied in steps, so that no sum overflows. Each number that a
+//! fixed limit changes counts as a fault; a clamp to `lo` or `hi` does not.
 
 mod angular;
 mod coupled;
@@ -101,7 +102,7 @@ impl Lever {
 pub(crate) struct Row {
     /// Direction on A.
     n: Vec2<Unit>,
-    /// Direction on B: the same, except for coupled rows.
+    /// Direction on B: the same as on A, except for coupled rows.
     n_b: Vec2<Unit>,
     e_a: Ratio,
     e_b: Ratio,

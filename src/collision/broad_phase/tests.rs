@@ -318,7 +318,7 @@ fn the_closest_hit_is_found_while_the_way_shrinks() {
         for _ in 0..200 {
             let area = Aabb::from_points([random_vector(&mut rng, world)]).expect("a point");
             let translation = random_vector(&mut rng, world);
-            // Rounded up to the next unit, so that no hit is cut off.
+            // The fraction is rounded up to the next unit, so that no hit is cut off.
             let fraction_of = |fat: Aabb| {
                 let (n, d) = first_touch(area, translation, fat)?;
                 let bits = (n << Unit::FRAC_NBITS).div_euclid(d) + 1;
@@ -355,7 +355,8 @@ fn what_is_near_is_found_while_the_radius_shrinks() {
         let nearest = point.max(fat.lower).min(fat.upper);
         let axis = |a: Fx, b: Fx| u128::from(a.to_bits().abs_diff(b.to_bits()) >> 1);
         let (x, y) = (axis(point.x, nearest.x), axis(point.y, nearest.y));
-        // In units of 2^-31 m, rounded up. In these units the square of every distance in the world fits 128 bits.
+        // The distance is computed in units of 2^-31 m and rounded up. In these units the square of every distance in
+        // the world fits 128 bits.
         let root = (x * x + y * y).isqrt() + 1;
         Fx::from_bits(i64::try_from(root.saturating_mul(2)).unwrap_or(i64::MAX))
     };

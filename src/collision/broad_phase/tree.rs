@@ -46,8 +46,8 @@ pub(crate) struct Tree {
     /// Leaf of each slot, or [`NONE`].
     leaves: Vec<u32>,
     len: u32,
-    /// Number of leaves relinked or removed since the last rebuild. While it is 0, every node is in use and stored
-    /// before its children.
+    /// Number of leaves inserted or removed since the last rebuild, where a leaf that is relinked counts twice. While
+    /// it is 0, every node is in use and stored before its children.
     relinked: u32,
     /// Number of leaves that have left their neighbourhood (see [`Self::stays_near`]) since the last refit or rebuild
     /// without being relinked.

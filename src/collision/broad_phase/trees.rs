@@ -68,7 +68,7 @@ impl Trees {
         self.fixed.remove(slot);
     }
 
-    /// Replaces all boxes; each slot has one.
+    /// Replaces all boxes. No slot occurs twice.
     pub(super) fn refill(&mut self, boxes: impl Iterator<Item = (u32, Aabb, bool)> + Clone) {
         let those = |wanted: bool| {
             let those = boxes.clone().filter(move |&(_, _, fixed)| fixed == wanted);

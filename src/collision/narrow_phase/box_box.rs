@@ -18,8 +18,9 @@ use crate::math::{Fx, Length, Rot, Step, Unit, Vec2};
 use crate::simd::{Ints, Machine, Quad, WIDTH, prefetch};
 use crate::threads::split_at_ends;
 
-/// Largest distance in metres between the two centres along either axis for the SIMD path. No corner of one box is then
-/// more than `5 sqrt(2) + 2 * 3 < 14` m from a corner of the other, which fits a `Step` (16 m).
+/// Largest distance in metres between the two centres along either axis for the SIMD path. A corner is at most 3 m from
+/// the centre of its box, so that no corner of one box is more than `5 sqrt(2) + 2 * 3 < 14` m from a corner of the
+/// other. This fits a `Step` (16 m).
 const DISTANCE_MAX: Fx = fx!(5);
 
 /// Largest speculative margin in metres of a pair for the SIMD path.
@@ -29,7 +30,7 @@ const MARGIN_MAX: Length = Length::lit("2");
 /// where a [`PosedShape`] takes four lines.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SmallBoxes {
-    /// Faces in world axes, by slot; zeros for a shape that is not a small box.
+    /// Faces in world axes, by slot. The entry of a shape that is not a small box is not used.
     turned: Vec<Turned>,
     /// Faces in the frame of the body, by slot, for boxes whose centre is their body's centre of mass.
     centred: Vec<Option<Faces>>,
@@ -82,7 +83,8 @@ impl SmallBoxes {
         self.centred.resize(slot_count, None);
     }
 
-    /// Stores a shape that is posed for the first time or was redefined. `centred` is [`PosedShape::as_centred_box`].
+    /// Stores a shape that is posed for the first time or was redefined. `centred` is the result of
+    /// [`PosedShape::as_centred_box`].
     pub(crate) fn place(&mut self, slot: u32, shape: &PosedShape, centred: Option<Faces>) {
         self.centred[slot as usize] = centred;
         if let Some(faces) = shape.as_small_box() {

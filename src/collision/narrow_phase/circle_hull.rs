@@ -11,7 +11,7 @@ use crate::math::{Length, Step, Unit, Vec2, convert, round_shift, saturate};
 /// Contact of a hull A and a circle B whose centre is at `centre` relative to the hull's centre.
 pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin: Length) -> Manifold {
     let radii = step_bits(radius) + step_bits(hull.radius);
-    // Not saturated: for a large shape only the difference of distance and radii fits the type.
+    // These numbers are not saturated: for a large shape only the difference of the distance and the radii fits `Step`.
     let Face { edge, separation } = hull_hull::face_before(hull, centre);
     let face_distance = round_shift(separation, FACE_BITS - Step::FRAC_NBITS);
     if face_distance - radii > step_bits(margin) {

@@ -138,8 +138,8 @@ impl Facing {
         start.max(end)
     }
 
-    /// Contact with a circle about the origin, if its centre is beside the link or in the region of the vertex at which
-    /// the link starts.
+    /// Contact with a circle about the origin, if its centre is beside the link, in the region of the vertex at which
+    /// the link starts, or beyond a free end.
     pub(crate) fn collide_circle(&self, radius: Length, margin: Length) -> Manifold {
         let (a, b) = (self.hull.vertices()[0], self.hull.vertices()[1]);
         let past = |vertex: Vec2<Length>, direction: Vec2<Unit>| -> Length { (-vertex).dot(direction) };

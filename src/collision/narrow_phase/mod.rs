@@ -118,7 +118,7 @@ pub(crate) fn collide_near(
             let Some(facing) = link_facing(b, a, hull_a.middle()) else { return Manifold::NONE };
             facing.collide_hull(hull_a, margin).swapped()
         }
-        // Two lines have no inside, so nothing determines on which side one should be.
+        // Two lines have no inside, so nothing determines on which side of the other a line should be.
         (Segment { .. } | Link(_), Segment { .. } | Link(_)) => Manifold::NONE,
     };
     manifold.origin = origin;
@@ -233,7 +233,7 @@ mod tests {
         }
     }
 
-    /// Smallest distance of the vertices of one outline from the edges of the other.
+    /// Smallest distance between a vertex of either outline and an edge of the other.
     fn distance(a: &[Vec2<Fx>], b: &[Vec2<Fx>]) -> Fx {
         let from = |points: &[Vec2<Fx>], outline: &[Vec2<Fx>]| {
             let edges = outline.iter().zip(outline.iter().cycle().skip(1));

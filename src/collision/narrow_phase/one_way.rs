@@ -44,7 +44,8 @@ impl OneWay<'_> {
         upright < Unit::lit("0.5")
     }
 
-    /// Separation of the other shape from this one along the pass direction; negative until the other is fully through.
+    /// Separation of the other shape from the platform along the pass direction; negative until the other shape is
+    /// fully through.
     fn separation_from(&self, other: &PosedShape) -> Fx {
         let direction = self.direction.widen();
         let between = (other.centre - self.shape.centre).dot(direction);

@@ -13,7 +13,7 @@ use crate::body::{Geometry, ShapeDef};
 use crate::fx;
 use crate::math::{Angle, Fx, Rot, Unit, Vec2, div_round, fx_div, fx_mul, saturate_wide};
 
-/// Number of corners of a disc.
+/// Number of corners of the ring of a disc.
 const CORNERS: u32 = 32;
 /// Radius of a regular polygon of [`CORNERS`] corners with the area of a disc of radius 1: `sqrt(t / sin t)` for an
 /// angle `t` between corners.

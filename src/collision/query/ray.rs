@@ -33,7 +33,7 @@ pub(crate) fn cast_ray(shape: &SupportShape, origin: Vec2<Fx>, translation: Vec2
         let (fraction, order) = (Fx::ZERO, Fraction::ZERO);
         return Some(RayHit { fraction, order, point: origin, normal: Vec2::ZERO });
     }
-    // Both ends are rounded to the grid, so that the end of one ray is the start of the next.
+    // Both ends are rounded to the grid, so that a ray from the end of another ray starts exactly there.
     let end = to_grid(origin + translation);
     let origin = to_grid(origin);
     let translation = end - origin;

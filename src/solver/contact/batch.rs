@@ -109,7 +109,7 @@ impl<const N: usize> Batch<N> {
         ([x, y], [L::sub(L::splat(0), y), x])
     }
 
-    /// Sets the separations of the points at the start of the tick, in the format of a step.
+    /// Sets the separations of the points at the start of the tick, given in the format of a step.
     #[inline(always)]
     pub(super) fn separate<L: Lanes<N>>(&mut self, [first, second]: [L::Int; 2]) {
         const STEP_TO_SHIFT: i32 = shift(Step::FRAC_NBITS - Shift::FRAC_NBITS);
@@ -121,7 +121,7 @@ impl<const N: usize> Batch<N> {
         }
     }
 
-    /// Sets the normal impulse of a point.
+    /// Sets the normal impulse of a point, and records the lanes in which it pushes.
     #[inline(always)]
     pub(super) fn push<L: Lanes<N>>(&mut self, place: usize, lambda: L::Int) {
         L::store(lambda, &mut self.points[place].normal_lambda);

@@ -1,4 +1,5 @@
-//! Impacts of points with restitution: when a point hits within a sub-step, and how far it has rebounded by its end.
+//! Impacts of points with restitution: when a point hits within a sub-step, and how far it has rebounded at the end of
+//! the sub-step.
 //!
 //! Semi-implicit Euler is a leapfrog scheme: the velocity that moves a body in a sub-step is the velocity at the middle
 //! of the sub-step. With the relative normal velocity `v` of the point, its change `a` by forces in the sub-step, and

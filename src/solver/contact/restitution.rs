@@ -1,5 +1,5 @@
-//! Restitution: a point that approached faster than the threshold of its surface and is pushed separates at `e` times
-//! the approach speed.
+//! Restitution: a point that is pushed, and that approached faster than the threshold of its surface, separates at `e`
+//! times the approach speed.
 //!
 //! ```text
 //! L' = max(L - (vn + e va + drift), 0)          in the sub-step in which it is pushed, after both passes
@@ -119,7 +119,8 @@ impl Operation<Contacts> for ApplyRestitution {
     }
 }
 
-/// The full rebound of a point: its impulse with restitution, and its relative normal velocities before and after.
+/// The full rebound of a point: its impulses without and with restitution (`old` and `new`), and its relative normal
+/// velocities before and after the rebound.
 #[derive(Clone, Copy)]
 struct Rebound<const N: usize> {
     old: Ints<N>,
@@ -177,8 +178,8 @@ fn share_without_gain<const N: usize>(
     }
 }
 
-/// Mask of the lanes in which a point approached fast enough, and either it or the other point, if both bounce
-/// together, is pushed.
+/// Mask of the lanes in which a point bounces: it approached fast enough, and is either pushed itself or bounces
+/// together with the other point, which is pushed.
 #[inline(always)]
 fn bounces<L: Lanes<N>, const N: usize>(batch: &Batch<N>, extras: &ContactExtras<N>, i: usize) -> L::Mask {
     if i >= batch.count {

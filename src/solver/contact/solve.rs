@@ -4,7 +4,8 @@
 //! ```text
 //! bias pass    w = massScale (vn + bias(s)) + impulseScale L        bias(s) = s / h            for a gap
 //!                                                                   max(rate (s + slop), -push) for an overlap
-//!              a gap is rigid: massScale = 1, impulseScale = 0; s - s' for a point that bounces (`impact.rs`)
+//!              a gap is rigid: massScale = 1, impulseScale = 0
+//!              s - s' takes the place of s for a point that bounces (`impact.rs`)
 //! relax pass   w = vn + s / h for a gap with an impulse, vn for an overlap
 //! normal       L' = max(L - w, 0)
 //! friction     |L'| <= sum of (mu Dt / Dn) Ln over the points,   w = vt + surface speed

@@ -136,8 +136,8 @@ impl MovingBody {
     fn integrate_displacement(&self, body: &mut SolverBody, sub_step: SubStep, faults: &mut Faults) {
         self.hold_locked_axes(body);
         let mut advance = |sum: &mut Shift, speed: Speed| {
-            // Both summands are within ±16 m, so the sum does not saturate. It is clamped only if impulses exceed the
-            // speed limit of the world at fewer than 32 ticks per second.
+            // Both summands are within ±16 m, so the sum does not saturate. It is clamped only at fewer than 32 ticks
+            // per second, if impulses have raised a speed above the speed limit of the world.
             let wanted = sum.saturating_add(sub_step.distance(speed));
             *sum = wanted.clamp(-SHIFT_MAX, SHIFT_MAX);
             *faults += u64::from(*sum != wanted);

@@ -97,9 +97,9 @@ impl Gear {
 /// A wheel on a rack: A is a wheel about its anchor, and rolls along the x axis of B's frame.
 ///
 /// The anchor of the wheel moves along that axis. The pitch line, on which the wheel rolls, is at the distance `radius`
-/// to the right of the axis: below the axis if it points to the right. The joint holds no distance: give the wheel a
-/// hinge and the rack a slider, or the wheel both. [`World::fit_joint`](crate::world::World::fit_joint) moves B's
-/// anchor so that the joint holds at the current poses.
+/// to the right of the axis: below an axis that points along +x. The joint holds no distance: give the wheel a hinge
+/// and the rack a slider, or the wheel both. [`World::fit_joint`](crate::world::World::fit_joint) moves B's anchor so
+/// that the joint holds at the current poses.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, world::World};

@@ -82,7 +82,7 @@ pub(super) struct BlockedPart {
     pub(super) fractions: MassFractions,
     pub(super) mass_scale: Unit,
     pub(super) task: BlockedTask,
-    /// Whether it is a spring of limited force.
+    /// Whether the part is a spring of limited force.
     pub(super) is_limited: bool,
 }
 

@@ -19,7 +19,7 @@ const RATIO_MAX: Fx = fx!(4);
 /// on B's side is at most `length`.
 ///
 /// A rope only pulls. The wheels are fixed points of the world, which take up the force of the rope. B's side is pulled
-/// with `ratio` times the force on A's side, as by a tackle with as many ropes.
+/// with `ratio` times the force on A's side, like a tackle in which `ratio` strands of the rope hold B.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
@@ -63,7 +63,8 @@ impl Pulley {
         self
     }
 
-    /// Length in metres of a taut rope with its anchors at two points of the world.
+    /// Length in metres of a taut rope with its anchors at two points of the world, where B's side counts `ratio`
+    /// times.
     pub(super) fn taut_length(&self, on_a: Vec2<Fx>, on_b: Vec2<Fx>) -> Fx {
         let beside = fx_mul(self.ratio, self.wheel_b.distance(on_b));
         self.wheel_a.distance(on_a).saturating_add(beside)

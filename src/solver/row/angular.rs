@@ -118,7 +118,7 @@ mod tests {
                 assert!(s == 0 && fractions.b == 0);
                 continue;
             }
-            // Up to 20 rad/s, with up to 20 m/s and up to 200 m/s along the row.
+            // At most 20 rad/s, at most 20 m/s as a scaled angular velocity, and at most 200 m/s along the row.
             let mut spin = |k: Fx, e: Ratio| {
                 let omega = rng.range(fx!(-20), fx!(20));
                 let most = fx_div(fx!(200), widen(e)).unwrap_or(fx!(20)).min(fx!(20));

@@ -64,8 +64,8 @@ mod tests {
     use crate::fx;
     use crate::math::{Fx, Rng, Rot, Speed, narrow};
 
-    /// One update removes the velocity of any row whose mobility is not too small, and changes velocities in the ratio
-    /// of the masses: `aB dvA nB = -aA dvB nA` along the directions.
+    /// One update removes the velocity of a row whose mobility is not too small, except rounding errors of up to 12
+    /// units of [`Speed`].
     #[test]
     fn an_update_removes_the_velocity_along_both_directions() {
         let mut rng = Rng::new(11);

@@ -65,8 +65,8 @@ impl Tree {
                 None => self.set(slot, fat),
             }
         }
-        // Rebuilds the tree if more than a quarter of its leaves have been relinked, or if its cost has grown by a
-        // quarter.
+        // Rebuilds the tree if the insertions and removals since the last rebuild outnumber a quarter of its leaves, or
+        // if its cost has grown by a quarter.
         if self.relinked > self.len / 4 || self.refit_all() / 5 > self.rebuilt.cost / 4 {
             self.rebuild();
         }

@@ -222,7 +222,8 @@ fn best_face<L: Lanes<WIDTH>>(
 ) -> (Choice<L::Mask>, L::Wide) {
     let (opposite_0, separation_0) = further_of_opposite::<L>(a.n[0], a.v[0], b, d);
     let (opposite_1, separation_1) = further_of_opposite::<L>(a.n[1], a.v[1], b, d);
-    // On a tie the second candidate wins only if its index is lower: it is face 1 and the first candidate is face 2.
+    // On a tie the second candidate wins only if its index is lower, that is, if it is face 1 and the first candidate
+    // is face 2.
     let ahead = L::greater(L::to_int(opposite_1), L::to_int(opposite_0));
     let advantage = L::mul(L::to_int(ahead), L::splat(-1));
     let second = L::greater_wide(L::add_wide(separation_1, advantage), separation_0);
@@ -230,7 +231,8 @@ fn best_face<L: Lanes<WIDTH>>(
     (Choice { second, opposite }, L::max_wide(separation_0, separation_1))
 }
 
-/// Whether `b` is on the side of the opposite face, and the separation of `b` from the face on its side.
+/// Whether `b` is on the side of the opposite face, and the separation of `b` from whichever of the two faces is on the
+/// side of `b`.
 #[inline(always)]
 fn further_of_opposite<L: Lanes<WIDTH>>(
     n: Vector<L::Int>,

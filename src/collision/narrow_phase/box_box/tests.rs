@@ -158,7 +158,7 @@ fn a_box_that_is_turned_is_posed_as_if_anew() {
             assert_eq!(format!("{:?}", boxes.turned), format!("{:?}", fresh.turned));
         }
     }
-    // A box that is not centred on its body's centre of mass is left to the scalar path.
+    // `turn` leaves out a box that is not centred on its body's centre of mass: `renew` updates such a box.
     let shape = ShapeDef::new(Polygon::square(fx!(1)).expect("valid")).offset((fx!(1), fx!(0)));
     let posed = PosedShape::of_geometry(&shape.geometry, Vec2::ZERO, Rot::IDENTITY);
     boxes.place(0, &posed, posed.as_centred_box(&shape, &body_at_rest()));

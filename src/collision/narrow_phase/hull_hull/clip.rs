@@ -20,7 +20,8 @@ pub(in crate::collision) const FINER: u32 = Step::FRAC_NBITS - Length::FRAC_NBIT
 /// bits.
 pub(in crate::collision) const CLIP_BITS: u32 = 26;
 
-/// End of an edge relative to the start of the reference edge, in units of `Length` and `Step`, not saturated.
+/// End of an edge relative to the start of the reference edge, not saturated: `along` in units of `Length`, and `above`
+/// in units of `Step`.
 #[derive(Clone, Copy)]
 struct ClipPoint {
     vertex: usize,

@@ -94,7 +94,7 @@ fn contact_is_left_or_deepened_but_not_passed() {
         let (a, b) = (samples::support(&mut rng), samples::support(&mut rng));
         let (sweep_a, sweep_b) = (random_sweep(&mut rng), random_sweep(&mut rng));
         let start = distance(&a, &b.moved(to_grid(sweep_b.start - sweep_a.start)));
-        // Moves the shape so that it starts near contact.
+        // Moves B so that the shapes start near contact.
         let shift = start.normal.widen().scale(rng.range(fx!(-0.02), fx!(0.005)) - start.distance);
         let sweep_b = Sweep { start: sweep_b.start + shift, end: sweep_b.end + shift, ..sweep_b };
         let first = separation(&a, &sweep_a, &b, &sweep_b, Fx::ZERO);

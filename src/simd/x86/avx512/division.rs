@@ -1,4 +1,4 @@
-//! Quotients `2^BITS / d` of eight numbers at a time, in integers. Without the powers of two that scale the numbers:
+//! Quotients `2^BITS / d` of eight numbers at a time, in integers. The powers of two that scale them are left out here:
 //!
 //! ```text
 //! x  = 1 / m              for the highest 32 bits m of d, on a chord of the curve: 10 correct bits

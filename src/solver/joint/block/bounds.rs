@@ -15,9 +15,9 @@ use super::{Block, ONE};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BoundedUnit {
     pub(super) unit: usize,
-    /// `Q` and `1 / Q`.
+    /// `Q` and `1 / Q` of the unit (see `mod.rs`).
     pub(super) mass: (i64, i64),
-    /// Whether its equations are solved in the current pass. Otherwise its impulse is `held`.
+    /// Whether the equations of the unit are solved in the current pass. Otherwise its impulse is `held`.
     pub(super) is_active: bool,
     /// The impulse at which the unit is held while it is not active.
     pub(super) held: [i64; 2],

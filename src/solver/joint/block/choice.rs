@@ -155,8 +155,8 @@ pub(super) struct Choice {
 const NOT_CROWDED: u32 = u32::MAX;
 
 impl Choice {
-    /// Chooses among the joints of a tick. `body_count` is the number of bodies. Takes time in proportion to the
-    /// joints, however many are at one body.
+    /// Chooses among the joints of a tick. `body_count` is the number of bodies. Takes time in proportion to the number
+    /// of joints, even if very many of them are at one body.
     pub(super) fn choose(&mut self, candidates: &[Candidate], body_count: usize) {
         self.order.clear();
         self.block_ends.clear();

@@ -39,7 +39,8 @@ pub(super) enum Leverage {
 }
 
 impl Leverage {
-    /// Returns the change of the torque of an impulse on the body of a side, per radian, over the radius of gyration.
+    /// Returns the change of the torque of an impulse on the body of a side, per radian, divided by the radius of
+    /// gyration.
     fn stiffness(&self, side: usize, impulse: [i64; 2]) -> i64 {
         let [x, y] = impulse.map(i128::from);
         let product = match self {
@@ -52,9 +53,9 @@ impl Leverage {
 }
 
 impl Blocks {
-    /// Computes the inertia of all bodies for the next sub-step from the impulses of the last. `rotation_of` converts
-    /// the scaled angular velocity of a body, with 32 fraction bits, to its rotation in a sub-step, with 30 fraction
-    /// bits.
+    /// Computes the inertia of all bodies for the next sub-step from the impulses of the last sub-step. `rotation_of`
+    /// converts the scaled angular velocity of a body, with 32 fraction bits, to its rotation in a sub-step, with 30
+    /// fraction bits.
     pub(super) fn update_inertia(
         &mut self,
         hinges: &HingeSet,

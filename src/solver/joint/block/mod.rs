@@ -49,8 +49,8 @@ use scales::{Scales, mass_share};
 use scaling::{ScaledRow, root_and_inverse};
 use unit::Unit;
 
-/// Added to the diagonal in the relax pass, with 30 fraction bits: 2^-14. A row that no other row disturbs keeps this
-/// share of its velocity.
+/// Number that is added to the diagonal in the relax pass, with 30 fraction bits: 2^-14. A row that no other row
+/// disturbs keeps this share of its velocity.
 const EXCESS: i64 = 1 << 16;
 
 /// All blocks of a tick.
@@ -70,7 +70,7 @@ struct Spring {
     /// Its index among the rows of all joints that are not hinges.
     at: usize,
     row: usize,
-    /// `Q` and `1 / Q`.
+    /// `Q` and `1 / Q` of the row.
     mass: (i64, i64),
 }
 

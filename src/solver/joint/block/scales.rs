@@ -9,7 +9,7 @@ use crate::math::{Fx, div_round, saturate_wide};
 /// Scales of each row, with 30 fraction bits. All are 0 for rows that the pass leaves out.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scales {
-    /// `S`.
+    /// `S` of the equations in `mod.rs`.
     pub(super) scales: Vec<i64>,
     /// `1 / (S Q)`, by which changes are multiplied before the equations are solved.
     pub(super) inwards: Vec<i64>,

@@ -1,4 +1,4 @@
-//! The parts of a block: a hinge with its row on the angle, or a row or point of another joint.
+//! Units of a block: a hinge with its row on the angle, a limit or motor of a hinge, or a part of another joint.
 
 use core::ops::Range;
 

@@ -1,5 +1,5 @@
 //! The rows on the angle of a batch of hinges: spring, motor and limits, in this order, with the equations of
-//! `joint/row.rs`.
+//! `joint/row.rs`. Only in blocks (`angle/blocked.rs`) is the speed of a motor clamped before a limit.
 //!
 //! ```text
 //! vn = eB uB - eA uA,   w = massScale vn + push + impulseScale L,   L' = clamp(L - w, lo, hi),   d = L' - L

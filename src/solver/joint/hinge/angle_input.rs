@@ -1,7 +1,7 @@
 //! Compact copies of the rows on the angle of hinges, from which batches are filled.
 //!
-//! The bias velocity for an angle error `x`, `2 pi s x` times a rate, takes one product with a coefficient that is
-//! constant within a tick.
+//! The bias velocity for an angle error of `x` turns, `2 pi s x` times a rate, takes one product with a coefficient
+//! that is constant within a tick.
 
 use alloc::vec::Vec;
 

@@ -181,7 +181,7 @@ impl Coloured<Hinges> {
 }
 
 impl<const N: usize> Batches<Hinges, N> {
-    /// Adds the indices of the bodies to a list. The hinges are anchored.
+    /// Adds the index of the body that each hinge holds to a list. All hinges must be anchored.
     fn add_anchored_bodies(&self, all: &mut Vec<u32>) {
         for (Batch { changed: [a, b], .. }, records) in self.batches.iter().zip(&self.records) {
             all.extend(a.iter().zip(b).take(records.len).map(|(&a, &b)| if a == GROUND { b } else { a }));

@@ -31,7 +31,7 @@ impl AngleRows<1> {
         if self.has_spring { self.wanted_of_spring(pass, pair, faults) } else { L::splat(0) }
     }
 
-    /// Whether the hinge has limits that impulses change.
+    /// Whether the hinge has limits and a body that impulses can rotate.
     pub(in super::super) fn has_blocked_limits(&self) -> bool {
         self.has_limit && self.limit_max.0[0] > 0
     }
