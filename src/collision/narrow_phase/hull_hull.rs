@@ -13,9 +13,10 @@ use crate::collision::manifold::Manifold;
 use crate::collision::shape::posed::{BoxFaces, Hull};
 use crate::math::{Length, Step, Unit, Vec2};
 
-/// Margin in metres by which B's best face must beat A's to become the reference face. 0.5 mm prevents the choice from
-/// flickering between two equal faces: accumulated impulses survive a flicker, since features do not depend on the
-/// choice, but anchors would jump. Polygons whose separation exceeds this margin count as disjoint.
+/// Margin in metres by which the separation from B's best face must exceed that from A's, so that B's face becomes the
+/// reference face. 0.5 mm prevents the choice from flickering between two equal faces: accumulated impulses survive a
+/// flicker, since features do not depend on the choice, but anchors would jump. Polygons whose separation exceeds this
+/// margin count as disjoint.
 pub(in crate::collision) const TOLERANCE: Step = Step::lit("0.0005");
 
 /// Fraction bits of the product of a length and a unit vector, such as the separation from a face.

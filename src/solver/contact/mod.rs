@@ -67,7 +67,7 @@ const RESTITUTION_PASSES: u32 = 12;
 /// All contacts of a tick.
 ///
 /// A contact is cold if neither of its bodies has an initial guess of its impulses: the body had no contact points in
-/// the last tick, or an impact may drive it between two walls. Cold contacts need more iterations.
+/// the last tick, or an impact may drive the body between two walls. Cold contacts need more iterations.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactSet {
     warm: BatchList<Contacts>,

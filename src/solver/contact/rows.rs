@@ -195,7 +195,7 @@ fn fill_row<L: Lanes<N>, const N: usize>(
     L::store(e_a, &mut row.e_a);
     L::store(e_b, &mut row.e_b);
     let fractions = [ends[0].fraction, ends[1].fraction];
-    // Ratios and their products with a fraction have 24 fraction bits, and their squares 48.
+    // Ratios and their products with a fraction have 24 fraction bits, and their squares have 48.
     let ae = L::narrow::<UNIT>(L::mul(fractions[0], e_a));
     let be = L::narrow::<UNIT>(L::mul(fractions[1], e_b));
     let squares = L::add_wide(L::mul(ae, e_a), L::mul(be, e_b));

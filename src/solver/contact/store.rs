@@ -83,8 +83,8 @@ impl<const N: usize> Records<N> {
     }
 
     /// Returns the impulses of each point along the normal and the tangent, for the warm start in the next tick. Also
-    /// writes them back to the batch, because the next tick may keep the batch. They are rounded in the same way as
-    /// when a batch is filled with them.
+    /// writes them back to the batch, because the next tick may keep the batch. The impulses in the batch are rounded
+    /// in the same way as when a batch is filled with them.
     #[inline(always)]
     fn impulses<L: Lanes<N>>(&self, batch: &mut Batch<N>) -> [[Ints<N>; 2]; 2] {
         let Denominators { normals, tangent } = &self.denominators;
@@ -138,7 +138,7 @@ pub(crate) struct ContactResults {
     /// Whether the shapes have pushed each other.
     pub(crate) pushed: Vec<bool>,
     /// For contacts with a hit event, the normal impulse of the tick, as the relative velocity that it would give to
-    /// the centres of mass. Empty if there are none.
+    /// the centres of mass. Empty if no contact has a hit event.
     pub(crate) hit_impulses: Vec<Speed>,
 }
 
@@ -235,8 +235,8 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
 }
 
 /// The part of a wedged body's impulse that carries a load: at most the impulse of the last tick. The rest comes from
-/// the impact. In a narrow wedge, friction would keep the impulse of the impact for ever, as a stress between the
-/// walls.
+/// the impact. In a narrow wedge, friction would otherwise keep the impulse of the impact for ever, as a stress between
+/// the walls.
 fn load_of(impulse: PointImpulse, old: &Contact) -> PointImpulse {
     let load = old.impulse_of(Feature(impulse.feature)).unwrap_or_default();
     let most = load.tangent.abs();

@@ -22,9 +22,9 @@ pub(super) struct CacheKey {
 /// The parts of the last arrangement that are still valid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Validity {
-    /// Everything.
+    /// The whole arrangement.
     All,
-    /// Everything but impulses and angles, which have been restored.
+    /// The arrangement except impulses and angles, which have been restored.
     Arrangement,
     Nothing,
 }

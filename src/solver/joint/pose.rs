@@ -85,7 +85,7 @@ impl Ends {
         let arm_a = WideArm::rotated(body_rotations[a].rotation, self.local_a);
         let arm_b = WideArm::rotated(body_rotations[b].rotation, self.local_b);
         let moved = (bodies[b].get().shift - bodies[a].get().shift).widen();
-        // The sum is exact before it is rounded once. Arms have 52 fraction bits, world coordinates 32.
+        // The sum is exact before it is rounded once. Arms have 52 fraction bits, and world coordinates have 32.
         let gap = |between: Fx, moved: Fx, arms: i64| {
             between.saturating_add(moved).saturating_add(Fx::from_bits(round_shift(arms, 20)))
         };

@@ -29,7 +29,7 @@ pub(super) struct Matrix {
     first: Vec<usize>,
     /// For each row, the index of its first entry.
     starts: Vec<usize>,
-    /// Row by row, with 30 fraction bits.
+    /// The entries row by row, with 30 fraction bits.
     entries: Vec<i32>,
 }
 
@@ -129,10 +129,10 @@ fn divided(value: i128, inverse: i64) -> i64 {
     saturate_wide(round_shift_wide(i128::from(value) * i128::from(inverse), 30))
 }
 
-/// `1 / sqrt(x)` with 30 fraction bits, where `x` has 60 and is between 2^-16 and 2.
+/// `1 / sqrt(x)` with 30 fraction bits, where `x` has 60 fraction bits and is between 2^-16 and 2.
 fn inverse_root(x: i64) -> i64 {
     let x = x.unsigned_abs();
-    // An even shift fills 62 or 63 bits, so that the root has 31 or 32.
+    // An even shift fills 62 or 63 bits, so that the root has 31 or 32 bits.
     let shift = (x.leading_zeros() - 1) & !1;
     let root = (x << shift).isqrt();
     // The root has `30 + shift / 2` fraction bits.

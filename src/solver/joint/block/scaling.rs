@@ -151,7 +151,7 @@ pub(super) fn length(v: [i64; 2]) -> i128 {
 /// `sqrt(x)` and `1 / sqrt(x)` of a number with 30 fraction bits, at least 2^-24, in the same format.
 pub(super) fn root_and_inverse(x: i64) -> (i64, i64) {
     let x = x.max(1 << 6).unsigned_abs();
-    // An even shift fills 63 or 64 bits, so that the root has 32.
+    // An even shift fills 63 or 64 bits, so that the root has 32 bits.
     let shift = x.leading_zeros() & !1;
     let root = (x << shift).isqrt();
     // The root has `15 + shift / 2` fraction bits.

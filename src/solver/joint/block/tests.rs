@@ -184,7 +184,7 @@ fn blocks_are_those_of_their_definition() {
             .map(|_| {
                 let a = rng.below(bodies);
                 let b = (a + 1 + rng.below(bodies - 1)) % bodies;
-                // Many joints at few bodies, and bodies in a row.
+                // Some joints connect body 1 with body 2 or 3, so that these bodies have many joints.
                 let ends = if rng.chance(1, 3) { [1, 1 + b % 3] } else { [a, b] };
                 let ends = if ends[0] == ends[1] { [a, b] } else { ends };
                 Candidate { rows: rng.below(7), holds: true, ..weld(ends) }

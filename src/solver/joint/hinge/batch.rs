@@ -38,8 +38,8 @@ pub(in crate::solver) struct Records<const N: usize> {
     pub(super) len: usize,
     /// The slots of the joints.
     pub(super) slots: [u32; N],
-    /// The angles of the joints in units of 2^-32 turn: at the start of the tick while it is solved, and at its end
-    /// afterwards.
+    /// The angles of the joints in units of 2^-32 turn: those at the start of the tick while the tick is solved, and
+    /// those at its end afterwards.
     pub(super) turns: [i64; N],
     /// The angles of the joints while no body is rotated.
     pub(super) rest: [Angle; N],

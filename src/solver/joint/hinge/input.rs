@@ -106,7 +106,7 @@ impl Turning {
         Unit::from_bits(saturate(product(spin.to_bits(), self.ahead)))
     }
 
-    /// The rotation in a sub-step in radians, with 30 fraction bits, for a spin in m/s with 32.
+    /// The rotation in a sub-step in radians, with 30 fraction bits, for a spin in m/s with 32 fraction bits.
     pub(in super::super) fn ahead_of_wide(&self, spin: i64) -> i64 {
         // 9 bits of `ahead` are the ratio of the formats of a speed and of the result.
         let wide = i128::from(spin) * i128::from(self.ahead.to_bits());
