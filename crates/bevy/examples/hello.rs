@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Input is data: an impulse for every body, in the next tick.
+/// Adds commands to the input of the next tick: an upward impulse for every dynamic body.
 fn throw(
     keys: Res<ButtonInput<KeyCode>>,
     lockstep: Res<Lockstep<Sandbox>>,

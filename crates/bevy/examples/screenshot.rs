@@ -1,4 +1,4 @@
-//! Screenshots for `crates/bevy/test window`.
+//! Takes the screenshots of `crates/bevy/test window`, and checks them.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -16,7 +16,7 @@ const FRAMES: &str = "LOCKSTEP2D_FRAMES";
 /// Environment variable with the minimum number of pixels of each style, as in `fixed=1400 dynamic=400`.
 const SHOWS: &str = "LOCKSTEP2D_SHOWS";
 
-/// Largest difference of a colour value, which is converted to a linear float and back.
+/// Largest accepted difference of a colour channel, which is converted to a linear float and back with rounding.
 const TOLERANCE: u8 = 2;
 
 #[derive(Resource)]
@@ -33,9 +33,9 @@ struct Expected {
     pixels: usize,
 }
 
-/// With the environment variable `LOCKSTEP2D_SCREENSHOT=FILE.png` the app plays 240 frames of a sixtieth of a second,
-/// or `LOCKSTEP2D_FRAMES`, saves a picture of its window, and ends. It panics if the picture lacks something of
-/// `LOCKSTEP2D_SHOWS`.
+/// With the environment variable `LOCKSTEP2D_SCREENSHOT=FILE.png` the app plays 240 frames (or `LOCKSTEP2D_FRAMES`) of
+/// a sixtieth of a second, saves a picture of its window, and ends. It panics if the picture has too few pixels of a
+/// style in `LOCKSTEP2D_SHOWS`.
 pub(crate) fn take_when_asked(app: &mut App) {
     let Some(file) = std::env::var_os(FILE) else { return };
     let frames = std::env::var(FRAMES).ok().and_then(|frames| frames.parse().ok()).unwrap_or(240);

@@ -33,7 +33,7 @@ pub enum LockstepError {
         /// Hash when the tick was played again.
         again: StateHash,
     },
-    /// The driver cannot do this: only replays can seek, for example.
+    /// The driver does not support the named operation: only replays can seek, for example.
     Unsupported(&'static str),
 }
 

@@ -44,8 +44,8 @@ impl WorldEvent {
         }
     }
 
-    /// Whether both events are of the same kind and of the same shapes, joint or body. Speed, place and fraction may
-    /// differ.
+    /// Whether both events are of the same kind and of the same shapes, joint or body. Their numbers, such as the speed
+    /// of a hit, may differ.
     fn is_alike(&self, other: &Self) -> bool {
         match (self, other) {
             (WorldEvent::ContactBegin(a), WorldEvent::ContactBegin(b))
@@ -66,7 +66,7 @@ pub(crate) struct LoggedEvent {
     /// Number of ticks played, including the tick of the event.
     pub(crate) tick: u64,
     pub(crate) event: WorldEvent,
-    /// Bodies of the shapes, as far as they exist after the tick.
+    /// Bodies of the shapes or of the joint, as far as they exist after the tick; or the body that fell asleep.
     pub(crate) bodies: [Option<BodyId>; 2],
 }
 

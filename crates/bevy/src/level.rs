@@ -110,7 +110,8 @@ impl core::error::Error for LevelError {}
 /// one peer builds the level and the others receive the commands: entities may differ between machines, commands do
 /// not.
 ///
-/// # Errors [`LevelError`]. All entities are then unchanged.
+/// # Errors
+/// [`LevelError`]. All entities are then unchanged.
 pub fn build_level(app: &mut BevyWorld, config: Config) -> Result<Vec<Command>, LevelError> {
     let refused = |entity: Entity| move |error| LevelError::Refused { entity: Some(entity), error };
     // The commands are executed in a scratch world to find the ids of the bodies. In the game they give the same ids.

@@ -233,7 +233,7 @@ impl<G: LockstepGame> Lockstep<G> {
     }
 
     /// Ends the game and returns the bytes of its replay that have not been taken yet; see [`Lockstep::take_replay`].
-    /// In a match, leave or end it first: [`Peer::finish`].
+    /// In a match, leave or end the match first; see [`Peer::finish`].
     ///
     /// # Errors
     /// [`LockstepError`] when the replay cannot be finished.
@@ -257,7 +257,7 @@ impl<G: LockstepGame> Lockstep<G> {
         }
     }
 
-    /// The participant of a match: its seats, links, status and session.
+    /// The local peer of a match, with its seats, links, status and session.
     #[must_use]
     pub fn peer(&self) -> Option<&AnyPeer<G>> {
         match &self.driver {
@@ -266,8 +266,8 @@ impl<G: LockstepGame> Lockstep<G> {
         }
     }
 
-    /// The participant of a match, to leave, end or kick. Do not call `update` and `advance`: the plugin calls them.
-    /// Use [`Lockstep::report`] to make a report.
+    /// The local peer of a match, through which a game leaves or ends the match, or kicks a player. Do not call
+    /// `update` and `advance`: the plugin calls them. Use [`Lockstep::report`] to make a report.
     pub fn peer_mut(&mut self) -> Option<&mut AnyPeer<G>> {
         match &mut self.driver {
             Driver::Match(network) => Some(network.peer_mut()),
@@ -278,8 +278,8 @@ impl<G: LockstepGame> Lockstep<G> {
     /// This peer's report of a desync, as bytes for a file; see [`Peer::report`].
     ///
     /// # Errors
-    /// [`LockstepError::Match`] when the states that it needs are not kept, [`LockstepError::Unsupported`] for other
-    /// drivers.
+    /// [`LockstepError::Match`] when the states that the report needs are not kept, [`LockstepError::Unsupported`] for
+    /// other drivers.
     pub fn report(&mut self, desync: &PeerDesync) -> Result<Vec<u8>, LockstepError> {
         match &mut self.driver {
             Driver::Match(network) => network.report(desync),

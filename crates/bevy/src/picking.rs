@@ -131,7 +131,7 @@ fn views_at<'a>(
 #[derive(Resource, Default)]
 struct HoldingPointer(Option<RayId>);
 
-/// A press on a view, or on one of its children.
+/// Starts to drag the body of a view when the view or one of its children is pressed.
 fn grab(
     press: On<Pointer<Press>>,
     views: Query<&BodyView>,

@@ -65,7 +65,7 @@ pub struct LockstepSettings {
 }
 
 impl Default for LockstepSettings {
-    /// 100 pixels per metre, interpolation, a half-life of 40 ms for up to 2 m.
+    /// 100 pixels per metre, interpolation, a half-life of 40 ms, and jumps for displacements above 2 m.
     fn default() -> Self {
         LockstepSettings {
             pixels_per_metre: 100.0,

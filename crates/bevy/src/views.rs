@@ -44,7 +44,7 @@ impl BodyView {
 /// The views by body.
 #[derive(Resource, Debug, Default)]
 pub struct BodyViews {
-    /// By the body's slot.
+    /// The views, indexed by the slots of their bodies.
     slots: Vec<Option<View>>,
     frame: u32,
 }

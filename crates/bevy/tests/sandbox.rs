@@ -54,7 +54,7 @@ fn a_fast_body_is_drawn_on_its_way() {
     let velocity = FixedVec2::new(fx!(0), fx!(300));
     let heights =
         heights(|view| Command::SetVelocity { body: view.body(), velocity, angular_velocity: fx!(0) });
-    // 5 m in a tick, 1.25 m in a frame.
+    // The body moves 5 m in a tick, which is 1.25 m in each of four frames.
     let steps = heights.windows(2).map(|pair| pair[1] - pair[0]);
     let largest = steps.fold(0.0_f32, f32::max);
     assert!((1.0..1.5).contains(&largest), "{largest}");

@@ -1,4 +1,4 @@
-//! [`Copy`]: a replay that is recorded again from the beginning of another one. Shared by `fork` and `trim`.
+//! [`Copy`]: a replay that is recorded again from the beginning of another replay. Shared by `fork` and `trim`.
 
 use std::path::Path;
 

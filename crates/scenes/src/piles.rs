@@ -55,8 +55,8 @@ fn pyramid(scene: &mut Builder, base: i32) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// Positions of unit boxes in rows, from the left end of the lowest row: `x = (i + 1) / 2 + (j - i)`,
-/// `y = (2 i + 1) / 2`.
+/// Positions of unit boxes: row `i` counts from the bottom and has the boxes `j` from `i` to `base - 1`. Relative to
+/// `left`, the left end of the lowest row, they are at `x = (i + 1) / 2 + (j - i)`, `y = (2 i + 1) / 2`.
 fn pyramid_places(left: Vec2<Fx>, base: i32) -> impl Iterator<Item = Vec2<Fx>> {
     let place = move |i: i32, j: i32| {
         left + Vec2::new(Fx::from_num(i + 1) / 2 + Fx::from_num(j - i), Fx::from_num(2 * i + 1) / 2)

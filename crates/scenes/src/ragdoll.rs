@@ -39,7 +39,7 @@ enum Extra {
     None,
     /// Linear damping.
     Damped,
-    /// A foot.
+    /// A foot: an additional shape with little friction, which collides only with the ground.
     Foot,
     /// Linear damping, and a rest angle of an eighth of a turn.
     Bent,

@@ -67,7 +67,7 @@ impl Engine for GgrsApp {
     }
 }
 
-/// Bits of floats.
+/// Returns the bits of floats, which can be compared exactly.
 pub fn bits<const N: usize>(values: [f32; N]) -> [u64; N] {
     values.map(|value| u64::from(value.to_bits()))
 }

@@ -18,7 +18,7 @@ use crate::game::LockstepGame;
 use crate::inputs::Inputs;
 use crate::observed::Observed;
 
-/// Times of a frame.
+/// Times that a driver needs to play a frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FrameTime {
     /// Game time since the last frame: it can be paused and scaled.

@@ -2,7 +2,7 @@
 //!
 //! A page without a room in its address creates a room and opens a match. Every other page that is opened with `#ROOM`
 //! joins the match. Natively: `bevy_lockstep2d_web [ROOM [SERVER]]`. Needs a signalling server of matchbox: `cargo run
-//! --example bot` has one, and a player.
+//! --example bot` starts one, and an opponent.
 
 #[cfg_attr(target_arch = "wasm32", path = "page.rs")]
 #[cfg_attr(not(target_arch = "wasm32"), path = "native.rs")]

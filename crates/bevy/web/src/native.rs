@@ -1,4 +1,4 @@
-//! A window: arguments of the command line, and the title.
+//! The native program: arguments come from the command line, and the window title shows the state of the match.
 
 use bevy::prelude::*;
 use lockstep2d::peer::PeerIdentity;

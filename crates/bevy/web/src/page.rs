@@ -24,7 +24,7 @@ pub fn arguments() -> Arguments {
     }
 }
 
-/// The random numbers of the browser.
+/// Random numbers from the browser.
 fn random_numbers() -> [u64; 4] {
     let mut bytes = [0; 32];
     let crypto = web_sys::window().and_then(|window| window.crypto().ok());
@@ -34,7 +34,8 @@ fn random_numbers() -> [u64; 4] {
     core::array::from_fn(|index| u64::from_le_bytes(numbers[index]))
 }
 
-/// The key of this tab, so that a page that is loaded again gets its seat back. A new tab gets the key `new`.
+/// Returns the stored key of this tab, so that a page that is loaded again gets its seat back. A new tab stores the key
+/// `new`.
 fn kept_key(new: u64) -> u64 {
     let Some(storage) = web_sys::window().and_then(|window| window.session_storage().ok().flatten()) else {
         return new;

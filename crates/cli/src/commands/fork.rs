@@ -1,4 +1,4 @@
-//! `fork`: writes a replay with the beginning of another one and a different end.
+//! `fork`: writes a replay with the beginning of another replay and a different end.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};

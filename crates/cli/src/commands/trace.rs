@@ -1,4 +1,4 @@
-//! `trace`: plays a replay and writes the states and phases of its last ticks, for `bisect`.
+//! `trace`: plays a replay and writes the states and phases of some of its ticks, for `bisect`.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! `trim`: makes a complete replay of the intact part of another one.
+//! `trim`: makes a complete replay of the intact part of another replay.
 
 use std::path::PathBuf;
 

@@ -124,7 +124,7 @@ fn snapshots_are_compared_whatever_the_game() {
     assert_eq!(run(&["diff", &a, &a]).exit, Exit::Success);
 }
 
-/// Setups of another game would decode to anything.
+/// The bytes of another game's setup could decode to a meaningless setup of this game.
 #[test]
 fn replays_of_another_game_are_named_and_not_compared() {
     let folder = Folder::new("diff-games");

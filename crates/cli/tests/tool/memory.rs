@@ -85,7 +85,8 @@ fn replay_of(commands: Vec<Edit>, ticks: u32) -> Vec<u8> {
 fn verify_takes_no_more_memory_than_is_documented() {
     type Row = (&'static str, fn() -> Vec<Edit>, u32, &'static str, u64);
     const DEFAULT: &str = "10000000";
-    // Number of ticks, limit of work units and KB. A tick of a million joints takes the recorder a minute.
+    // The last three columns are the number of ticks, the limit of work units, and the memory in KB. Recording a tick
+    // of a million joints takes a minute.
     let rows: [Row; 8] = [
         ("200 squares on one spot", || pile(200), 10, "110000", 25_000),
         ("50 000 separate bodies", || field(50_000), 10, DEFAULT, 130_000),
@@ -122,7 +123,7 @@ fn no_tool_takes_more_memory_than_is_documented() {
     fs::write(&dense, replay_of(pile(400), 10)).unwrap();
     fs::write(&wide, replay_of(field(50_000), 10)).unwrap();
     let (honest, mut wrong) = (golden("box_stack"), Vec::new());
-    // Some tools take seconds for the field.
+    // Some tools take seconds for the many bodies of `wide`.
     let files = sweep::sample([(&dense, 75_000), (&wide, 130_000), (&honest, 10_000)], 2);
     for (file, most) in files {
         for (times, arguments) in [

@@ -15,7 +15,7 @@ pub(crate) const TOOL: &str = env!("CARGO_BIN_EXE_lockstep2d");
 /// The contents of a file that exists already.
 pub(crate) const OLD: &[u8] = b"what was there before";
 
-/// Every command that writes the file `to`, which has more than 512 bytes.
+/// Every command that writes more than 512 bytes to the file `to`.
 fn writers(to: &str) -> Vec<Vec<String>> {
     let stack = golden("box_stack");
     [
@@ -115,7 +115,7 @@ fn a_full_disk_leaves_the_old_file() {
             assert!(names(&folder).is_empty(), "{writer:?} left {:?}", names(&folder));
         }
     }
-    // The whole replay of `trim x -o x` survives as well.
+    // The input file of `trim x -o x` stays unchanged as well.
     let bytes = fs::read(golden("box_stack")).unwrap();
     let same = folder.write("same.replay", &bytes);
     let script = "trap '' XFSZ; ulimit -f 1; exec \"$0\" trim \"$1\" -o \"$1\" --force";

@@ -65,7 +65,7 @@ fn with_interval(ticks: u64, interval: u32) -> Vec<u8> {
 #[test]
 fn a_file_of_keys_has_a_limit() {
     let folder = keys("keys-limit", &["alice"]);
-    // A sparse file.
+    // A sparse file that is larger than the limit.
     fs::File::create(folder.path("keys")).unwrap().set_len(1 << 25).unwrap();
     let file = folder.write("game.replay", &fs::read(golden("free_fall")).unwrap());
     let refused = run(&["verify", &file, "--keys", &folder.path("keys")]);
@@ -251,7 +251,7 @@ fn keys_that_anybody_could_sign_for_are_refused() {
     }
 }
 
-/// SplitMix64.
+/// The next number of a SplitMix64 generator.
 fn random(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let value = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -264,7 +264,8 @@ fn the_shortest_failing_replay_is_written_as_a_whole() {
             assert_eq!(told, "");
             return;
         }
-        // The second process has locked the file between the first one's creation of the file and its lock.
+        // The second process has locked the file after the first process created it and before the first process locked
+        // it.
         assert!(told.contains("another process is writing it"), "{told}");
     }
     panic!("the first process should usually lock the file first");

@@ -135,7 +135,7 @@ fn a_file_that_diverges_says_where() {
     assert!(outcome.out.contains("diverged: equal at tick 2, different at tick 4"), "{}", outcome.out);
 }
 
-/// A counter that claims a wrong sum and is the counter otherwise.
+/// A [`Counter`] whose only difference is that it claims a wrong sum.
 struct Liar(Counter);
 
 impl Game for Liar {

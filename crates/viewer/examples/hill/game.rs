@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 /// Input for a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Drive {
-    /// -1, 0 or 1.
+    /// Direction of the drive: -1, 0 or 1.
     pub(crate) gas: i8,
     pub(crate) fire: bool,
 }
@@ -36,7 +36,7 @@ pub(crate) struct Save {
 
 /// Number of planks of the bridge, each 1 m long.
 const PLANKS: i32 = 10;
-/// Ends of the bridge.
+/// x coordinates of the ends of the bridge, in metres.
 const BRIDGE: (i32, i32) = (12, 12 + PLANKS);
 /// Force at which a joint of the bridge breaks, in N. The bridge bears the car, but not every shell.
 const STRENGTH: Fx = fx!(200);
@@ -80,7 +80,7 @@ impl Hill {
         self.world.bodies().map(|(id, _)| id).filter(move |id| self.name_of(*id) == name)
     }
 
-    /// Planks that are held at both ends.
+    /// Number of planks that are still held at both ends.
     pub(crate) fn planks_left(&self) -> usize {
         self.named("plank").filter(|&plank| self.world.joints_of(plank).len() == 2).count()
     }

@@ -52,7 +52,7 @@ impl<I: Default> Default for Controls<I> {
 }
 
 impl<I: Default> Controls<I> {
-    /// No keys.
+    /// Creates controls without keys.
     #[must_use]
     pub const fn new() -> Self {
         Controls { bindings: Vec::new(), down: Vec::new(), tapped: Vec::new() }

@@ -11,8 +11,8 @@ use super::run::{app, directory, golden, play, play_without_window};
 const SCENE: &str = "bridge.replay";
 const SECONDS: usize = 2;
 
-/// Script that seeks to the tick, turns the initial layers off, and takes a screenshot without layers and one with each
-/// layer alone.
+/// Script that seeks to the tick after [`SECONDS`] seconds, turns the initial layers off, and takes a screenshot
+/// without layers and one with each layer alone.
 fn script() -> String {
     let forward = "key pagedown\n".repeat(SECONDS);
     let mut script =

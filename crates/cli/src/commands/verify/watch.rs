@@ -39,7 +39,7 @@ pub(super) struct Work {
     named_at: AtomicU64,
 }
 
-/// Guard of a file in the [`Watch`], which is removed from it when the guard is dropped.
+/// Guard of a file in the [`Watch`]. Dropping the guard removes the file from the watch.
 pub(super) struct AtWork<'a> {
     watch: &'a Watch,
     number: u64,
