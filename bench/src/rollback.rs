@@ -211,7 +211,7 @@ mod tests {
         assert_eq!(bytes.body, 52.0);
         // The average is above 88, because a save also has 8 bytes for each contact without points.
         assert!((88.0..90.0).contains(&bytes.contact), "{bytes:?}");
-        // A byte of flags, 4 bytes for the turns, and 4 for each impulse that is not 0.
+        // A joint takes a byte of flags, 4 bytes for its number of turns, and 4 bytes for each impulse that is not 0.
         assert!((5.0..=13.0).contains(&bytes.joint), "{bytes:?}");
     }
 }

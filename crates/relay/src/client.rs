@@ -14,7 +14,7 @@ use tungstenite::{Message, WebSocket, client::client_with_config};
 
 use crate::frame::{ADDRESS_BYTES, Members, SECRET_BYTES, frame, of_text, unframe};
 
-/// Time for connecting and for each step of the handshake.
+/// Maximum time for connecting and for each step of the handshake.
 const CONNECT_MAX: Duration = Duration::from_secs(5);
 /// First pause before connecting again. The pause doubles with each failure.
 const PAUSE_MIN: Duration = Duration::from_millis(250);

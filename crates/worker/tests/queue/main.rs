@@ -28,7 +28,7 @@ use server::{Folder, PATIENCE, Process, Program, Server, free_port, wait_until};
 /// Number of workers that are killed and started again.
 const WORKERS: usize = 4;
 
-/// SplitMix64.
+/// The next number of a SplitMix64 generator.
 fn random(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let value = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -228,7 +228,7 @@ fn files_of_the_object_store_and_metrics() {
     let expected = verified(&folder);
     let program = worker(&server, &folder);
     program.submit(&["--objects", "in"]);
-    // The workers have no files.
+    // The workers run in a folder without the files.
     let elsewhere = Folder::new("objects-elsewhere");
     let away = Program { folder: elsewhere.0.clone(), ..worker(&server, &folder) };
     let address = format!("127.0.0.1:{}", free_port());
