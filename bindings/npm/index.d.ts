@@ -111,14 +111,14 @@ export class Angle {
     toRadians(): Fx;
     /** Radians for drawing, as a float. */
     toNumber(): number;
-    /** The same as `bits`. */
+    /** Returns `bits`, for `JSON.stringify`. */
     toJSON(): number;
 }
 /** An angle of a number of degrees, rounded to nearest. */
 export function degrees(value: Num): Angle;
 /** An angle of a number of radians, rounded to nearest. */
 export function radians(value: Num): Angle;
-/** An angle of a number of whole turns: `turns("0.25")` is a right angle. */
+/** An angle of a number of full turns: `turns("0.25")` is a right angle. */
 export function turns(value: Num): Angle;
 
 /** The square root, rounded to nearest. A negative number throws `NUMBER`. */
@@ -209,12 +209,13 @@ export interface ShapeOptions {
     oneWay?: Rotation;
     /** Makes the shape a sensor, which detects overlaps and does not collide. False by default. */
     sensor?: boolean;
-    /** Makes the shape a sensor that acts on the bodies in it. Not for segments and chains. */
+    /** Makes the shape a sensor that acts on the bodies in it. Segments and chains cannot be areas. */
     area?: AreaOptions;
-    /** Whether the contacts of the shape are in `contactBegin` and `contactEnd`: true by default. One of the two shapes
-     * is enough. */
+    /** Whether the contacts of the shape are in `contactBegin` and `contactEnd`: true by default. It is enough if one
+     * of the two shapes has the option. */
     contactEvents?: boolean;
-    /** Whether the hits of the shape are in `hits`: false by default. One of the two shapes is enough. */
+    /** Whether the hits of the shape are in `hits`: false by default. It is enough if one of the two shapes has the
+     * option. */
     hitEvents?: boolean;
     /** Whether sensors detect the shape: true by default. */
     sensorEvents?: boolean;
@@ -472,13 +473,13 @@ export interface ConfigOptions {
     subSteps?: number;
     /** Iterations of a sub-step, 1 to 16: 1 by default. More sub-steps improve the result more than more iterations. */
     iterations?: number;
-    /** 0 soft, 1 Baumgarte: 0 by default. */
+    /** Kind of contact constraints: 0 for soft contacts, 1 for Baumgarte contacts; 0 by default. */
     contact?: number;
     /** Stiffness of soft contacts in Hz, 1 to 1000, effectively at most an eighth of the sub-steps per second: 30 by
-     * default. Or share of the overlap that Baumgarte contacts correct in each sub-step, 0 to 1. */
+     * default. For Baumgarte contacts: share of the overlap that they correct in each sub-step, 0 to 1. */
     contactStiffness?: Num;
-    /** Damping ratio of soft contacts, 0 to 100: 10 by default. Or overlap in metres that Baumgarte contacts leave
-     * uncorrected, 0 to 1. */
+    /** Damping ratio of soft contacts, 0 to 100: 10 by default. For Baumgarte contacts: overlap in metres that
+     * they leave uncorrected, 0 to 1. */
     contactDamping?: Num;
     /** Largest speed in m/s with which contacts push shapes apart, 0 to 400: 3 by default. */
     contactPushSpeed?: Num;
@@ -581,8 +582,8 @@ declare class Edits extends Handle {
     setMass(body: BodyId, mass?: MassOptions): void;
     /** Sets the number of 64 bits that the game stores with a body. */
     setUserData(body: BodyId, data: bigint | number): void;
-    /** Sets the name of a body: at most 16 letters, digits, `-` and `_`, otherwise this throws `NAME`. `""` removes it.
-     * */
+    /** Sets the name of a body: at most 16 letters, digits, `-` and `_`, otherwise this throws `NAME`. `""` removes the
+     * name. */
     setName(body: BodyId, name: string): void;
     /** Lets a body take part in the simulation again. */
     enable(body: BodyId): void;
@@ -683,7 +684,7 @@ export interface BodyInfo {
 }
 /** A shape of a world. A link is a line of a chain. */
 export interface ShapeInfo {
-    /** Boxes and hulls are polygons. */
+    /** Kind of geometry. Boxes and hulls are polygons. */
     type: "circle" | "segment" | "polygon" | "capsule" | "link";
     /** The body that has the shape. */
     body: BodyId;
@@ -1025,8 +1026,9 @@ export function verifyReplay(bytes: Uint8Array, limits?: Limits): Verdict;
 /** A world that is recorded while it runs, and changed by lists of commands alone. */
 export class Recording extends Handle {
     #private;
-    /** `setup` makes the contents of the world, and is an error if the world refuses a command. Its bodies have the
-     * handles 0, 1, 2 and so on, in order. There is a checkpoint every `interval` ticks, 1 to 3600: 60 by default. */
+    /** `setup` has the commands that build the world; the constructor throws an error if the world refuses one of them.
+     * The bodies of the setup have the handles 0, 1, 2 and so on, in order. There is a checkpoint every `interval` ticks,
+     * 1 to 3600: 60 by default. */
     constructor(options: { config?: ConfigOptions; setup: Commands; interval?: number });
     /** Executes the commands, advances the world by a tick, and empties the list. Commands that the world refuses are
      * skipped. */
@@ -1164,8 +1166,8 @@ export interface MatchOptions {
     inputBytes?: number;
     /** Ticks a second, 1 to 1000: 60 by default. */
     tickRate?: number;
-    /** Ticks that may be played with guessed inputs, 0 to 32; 0, the default, is lockstep. Each peer chooses its own.
-     * */
+    /** Ticks that may be played with guessed inputs, 0 to 32; 0, the default, is lockstep. Each peer chooses its own
+     * number. */
     guess?: number;
     /** Smallest delay of your own inputs in ticks: 0 by default. The delay follows the latency, between `delayMin` and
      * `delayMax`. */
@@ -1210,6 +1212,7 @@ export interface MatchOptions {
  * - `joining`: follows the match and requests a seat. A peer stays `joining`, without an event, while no seat is free.
  * - `watching`: follows the match and requests no seat.
  * - `waiting`: has a seat in a match that has not begun.
+ * - `playing`: has a seat in a match that has begun.
  * - `paused`: receives no packets from a majority, and only a majority can continue the match. A peer that has just
  *   downloaded the state may be `paused` for a moment before it is `joining` or `watching`.
  * - `dropped`: the other peers went on without this peer, which requests its seat again.
@@ -1254,16 +1257,16 @@ export interface MatchEvent {
     tick: number;
     /** Its meaning depends on the kind. */
     value: number;
-    /** Hash of this peer, of the kind `desync`; otherwise 32 zeros. */
+    /** Hash of this peer, for the kind `desync`; otherwise 32 zeros. */
     ours: string;
-    /** Hash of the other peer, of the kind `desync`; otherwise 32 zeros. */
+    /** Hash of the other peer, for the kind `desync`; otherwise 32 zeros. */
     theirs: string;
-    /** The new status, of the kind `status`. */
+    /** The new status, for the kind `status`. */
     status?: MatchStatus;
     /** `offer`: the versions, rules or setup differ; `full`: too many peers are joining through this contact; `taken`:
      * another peer has this number; `notReady`: the contact is not in a match yet, and the request is repeated. */
     reason?: "offer" | "full" | "taken" | "notReady";
-    /** The encoded state, of the kind `state`. */
+    /** The encoded state, for the kind `state`. */
     state?: Uint8Array;
 }
 /**
@@ -1280,7 +1283,7 @@ export interface MatchRequest {
     kind: "save" | "load" | "advance" | "checksum" | "forget";
     /** A tick, from 0. */
     tick: number;
-    /** The inputs of all seats, one after another, of the kind `advance`; otherwise empty. */
+    /** The inputs of all seats, one after another, for the kind `advance`; otherwise empty. */
     inputs: Uint8Array;
     /** Bit for each seat that nobody plays. The input of such a seat is zeros. */
     absent: bigint;

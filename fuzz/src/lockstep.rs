@@ -97,7 +97,7 @@ pub fn run(bytes: &[u8]) -> Seen {
 /// world flips.
 ///
 /// # Panics
-/// When the scene has a crowd, more than 12 touching contacts and eight or more bodies, while the eighth body can move.
+/// When the scene has a crowd: more than 12 touching contacts and at least eight bodies, the eighth of which can move.
 pub fn run_with_a_fault(bytes: &[u8]) {
     play(bytes, |variants| {
         let touching = variants.plain.contacts().filter(|contact| contact.touching).count();
@@ -290,7 +290,7 @@ struct Total {
     touching: u64,
     ticks: u64,
     ordinary: u64,
-    /// Runs with faults: wild ones, ordinary ones.
+    /// Numbers of runs with faults: first of wild scenes, then of ordinary scenes.
     faulty: [u64; 2],
 }
 

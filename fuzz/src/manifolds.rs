@@ -40,7 +40,8 @@ pub enum Seen {
 
 /// Puts two shapes into a world and checks their distance and contact.
 ///
-/// # Panics When distance or contact differ from the exact values by more than the documented error.
+/// # Panics
+/// When the distance or the contact differs from the exact value by more than the documented error.
 pub fn run(bytes: &[u8]) -> Seen {
     let mut source = Source::new(bytes);
     let config = Config { gravity: Vec2::ZERO, sleeping: false, ..Config::default() };

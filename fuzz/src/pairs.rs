@@ -15,8 +15,8 @@ use crate::{generator, shapes};
 /// second shape is only chosen if its separation is better by half a millimetre, and outlines within another half a
 /// millimetre count as touching.
 const ERROR: Fx = fx!(0.001001);
-/// Maximum difference in metres between the distances with the shapes exchanged, before the part that grows with size:
-/// twice 20 nm, rounded up.
+/// Maximum difference in metres between the distance of A from B and the distance of B from A, apart from a part that
+/// grows with the size of the shapes: twice 20 nm, rounded up.
 const DISTANCE_ERROR: Fx = fx!(0.00000005);
 /// Divisor of the size, for the part that is added to [`DISTANCE_ERROR`].
 const PARTS: i64 = 1_000_000_000;

@@ -68,12 +68,12 @@ impl<'a> Source<'a> {
         self.bytes.take_rest()
     }
 
-    /// A byte.
+    /// Draws a byte; 0 if no bytes are left.
     pub fn byte(&mut self) -> u8 {
         self.bytes.arbitrary().unwrap_or(0)
     }
 
-    /// A number of 64 bits.
+    /// Draws a number of 64 bits; 0 if no bytes are left.
     pub fn word(&mut self) -> u64 {
         self.bytes.arbitrary().unwrap_or(0)
     }

@@ -39,7 +39,7 @@ typedef uint32_t ls2d_handle;
 /* Version of this header, to be compared with ls2d_api_version(). */
 #define LS2D_API_VERSION 1
 
-/* Done. */
+/* The function has succeeded. */
 #define LS2D_OK 0
 /* There is nothing to return: no hit, no packet, no event, no further item. Not an error. */
 #define LS2D_NONE 1
@@ -360,7 +360,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_SHAPE_LINK_AFTER 1024
 /* Flag of a link: solid from the right side only, looking from `points[0]` to `points[1]`. */
 #define LS2D_SHAPE_LINK_ONE_SIDED 2048
-/* Rule of mixing: the mean of both values. If the rules of two shapes differ, the one with the larger number
+/* Rule of mixing: the mean of both values. If the rules of two shapes differ, the rule with the larger number
  * applies. */
 #define LS2D_MIX_AVERAGE 0
 /* Rule of mixing: the square root of the product. */
@@ -456,7 +456,7 @@ typedef struct ls2d_body_def {
     uint32_t kind;
     /* `LS2D_BODY_` flags. */
     uint32_t flags;
-    /* `LS2D_SWEEP_OFF` and so on: the bodies through which it cannot tunnel. */
+    /* `LS2D_SWEEP_OFF` and so on: the bodies through which this body cannot tunnel. */
     uint32_t continuous;
     /* Origin in the world, in metres. */
     ls2d_vec2 position;
@@ -522,7 +522,7 @@ typedef struct ls2d_body_info {
     ls2d_fx sleep_speed;
     /* An `LS2D_SWEEP_` number. */
     uint32_t continuous;
-    /* 0. */
+    /* Reserved: 0. */
     uint32_t reserved;
 } ls2d_body_info;
 
@@ -1201,7 +1201,7 @@ ls2d_status ls2d_set_mass(uint32_t target, ls2d_body body, const ls2d_body_def *
 /* Sets the number that the game stores with a body. */
 ls2d_status ls2d_set_user_data(uint32_t target, ls2d_body body, uint64_t user_data);
 
-/* Sets the name of a body, of at most 16 bytes. A length of 0 removes it. */
+/* Sets the name of a body, of at most 16 bytes. A length of 0 removes the name. */
 ls2d_status ls2d_set_name(uint32_t target, ls2d_body body, const uint8_t *text, size_t length);
 
 /* Lets a body take part in the simulation. */

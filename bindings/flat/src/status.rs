@@ -25,7 +25,7 @@ macro_rules! statuses {
 }
 
 statuses! {
-    /// Done.
+    /// The function has succeeded.
     Ok = 0, "LS2D_OK";
     /// There is nothing to return: no hit, no packet, no event, no further item. Not an error.
     None = 1, "LS2D_NONE";

@@ -7,7 +7,7 @@ export function fail(message) {
     throw new Lockstep2dError("VALUE", message);
 }
 
-/** A value in the text of an error. */
+/** Formats a value for the text of an error. */
 export function shown(value) {
     switch (typeof value) {
         case "string":
@@ -21,7 +21,7 @@ export function shown(value) {
     }
 }
 
-/** An integer, as a number or a bigint, from `min` to `max`. */
+/** Checks an integer from `min` to `max`, which is a number or a bigint, and returns it. */
 export function integer(value, what, min, max) {
     if ((typeof value !== "bigint" && !Number.isSafeInteger(value)) || value < min || value > max) {
         fail(`${what} is an integer from ${min} to ${max}, and not ${shown(value)}`);
@@ -29,10 +29,10 @@ export function integer(value, what, min, max) {
     return value;
 }
 
-/** An integer of 32 bits without sign, as a number. */
+/** Checks an integer of 32 bits without sign, and returns it as a number. */
 export const count = (value, what) => Number(integer(value, what, 0, U32_MAX));
 
-/** An integer of 64 bits without sign, as a bigint. */
+/** Checks an integer of 64 bits without sign, and returns it as a bigint. */
 export const long = (value, what) => BigInt(integer(value, what, 0, 0xffffffffffffffffn));
 
 export function object(value, what) {
@@ -54,17 +54,18 @@ export function string(value, what) {
     return typeof value === "string" ? value : fail(`${what} is a text, and not ${shown(value)}`);
 }
 
-/** A boolean or undefined. */
+/** Checks a value that is a boolean or undefined, and returns it. */
 export function flag(value, what) {
     return value === undefined || typeof value === "boolean" ? value : fail(`${what} is true or false, and not ${shown(value)}`);
 }
 
-/** An instance of a class. */
+/** Checks an instance of a class, and returns it. */
 export function instance(value, type, what) {
     return value instanceof type ? value : fail(`${what} is a ${type.name}, and not ${shown(value)}`);
 }
 
-/** Options. A misspelt option is an error, because it would otherwise be ignored. */
+/** Checks the names of options, and returns the options. A misspelt option is an error, because it would otherwise be
+ * ignored. */
 export function onlyKnown(options, known, what) {
     const unknown = Object.keys(object(options, what)).find((key) => !known.includes(key));
     if (unknown !== undefined) {

@@ -110,7 +110,7 @@ function writeArea(at, area) {
     }
 }
 
-/** A shape as `circle` and so on return it. */
+/** Checks a shape that `circle` and so on have made, and returns it. */
 function shapeOf(value) {
     if (value === null || typeof value !== "object" || !("options" in value)) {
         fail(`a shape is made by circle, box, polygon, hull, capsule, segment or chain, and is not ${shown(value)}`);

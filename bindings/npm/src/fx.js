@@ -232,7 +232,7 @@ export function radians(value) {
     return angleOf((rawOf(value, "an angle") * 11743562013128004906n + (1n << 65n)) >> 66n);
 }
 
-/** An angle of a number of whole turns: `turns("0.25")` is a right angle. */
+/** An angle of a number of full turns: `turns("0.25")` is a right angle. */
 export function turns(value) {
     return angleOf(rawOf(value, "an angle"));
 }

@@ -67,7 +67,7 @@ window.addEventListener("drop", (event) => {
 }, { capture: true });
 element("file").addEventListener("change", (event) => showFiles(Array.from(event.target.files)));
 
-// Opens the file or scene of the URL, once, after the viewer's first report. Before, the viewer accepts no files.
+// Opens the file or scene of the URL, once, after the viewer's first report. Before that, the viewer accepts no files.
 let started = false;
 function start() {
     if (started) {

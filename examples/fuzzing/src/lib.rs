@@ -15,7 +15,7 @@ type Fruit = std::collections::HashMap<(i16, i16), u32>;
 /// Input of one player for one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Action {
-    /// Nothing.
+    /// Does nothing.
     #[default]
     Rest,
     /// Walks by up to one step along each axis.

@@ -28,9 +28,9 @@ pub struct Setup {
 /// Input of a player for a tick: direction of the force, each component -1, 0 or 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Input {
-    /// To the right.
+    /// Horizontal component, positive to the right.
     pub x: i8,
-    /// Upwards.
+    /// Vertical component, positive upwards.
     pub y: i8,
 }
 
@@ -147,7 +147,7 @@ impl Game for MyGame {
 
     fn step(&mut self, inputs: &[Input]) {
         let pushed = if self.is_over() { Ok(()) } else { self.push(inputs) };
-        // Outside of the parts that can fail: the world advances in every tick.
+        // The step cannot fail, so the world advances in every tick, even if an input has been refused.
         self.world.step();
         let judged = self.judge();
         // An error is a defect of the rules, unless the state comes from an untrusted save. The tick then continues

@@ -24,7 +24,7 @@ use joints::Joint;
 const HEADER_BYTES: usize = 24;
 const HASH_BYTES: usize = 16;
 
-/// Slot and generation.
+/// A handle: slot and generation.
 type Handle = (u32, u32);
 
 /// The state of a world.

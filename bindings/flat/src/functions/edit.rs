@@ -282,7 +282,7 @@ api! {
         edit(target, Command::SetUserData { body: body.id()?, user_data }).map(|_| ())
     }
 
-    /// Sets the name of a body, of at most 16 bytes. A length of 0 removes it.
+    /// Sets the name of a body, of at most 16 bytes. A length of 0 removes the name.
     fn ls2d_set_name(target: u32, body: RawBody, text: In<'_, u8>, length: usize) {
         let name = name_of(text.text(length)?.as_bytes())?;
         edit(target, Command::SetName { body: body.id()?, name }).map(|_| ())

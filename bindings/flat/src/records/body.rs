@@ -60,7 +60,7 @@ records! {
         kind: u32,
         /// `LS2D_BODY_` flags.
         flags: u32,
-        /// `LS2D_SWEEP_OFF` and so on: the bodies through which it cannot tunnel.
+        /// `LS2D_SWEEP_OFF` and so on: the bodies through which this body cannot tunnel.
         continuous: u32,
         /// Origin in the world, in metres.
         position: RawVec2,
@@ -126,7 +126,7 @@ records! {
         sleep_speed: RawFx,
         /// An `LS2D_SWEEP_` number.
         continuous: u32,
-        /// 0.
+        /// Reserved: 0.
         reserved: u32,
     }
 

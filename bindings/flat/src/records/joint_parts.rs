@@ -11,7 +11,7 @@ use super::{check_flags, flag, has};
 use crate::numbers::{RawFx, RawVec2};
 use crate::status::{Outcome, value};
 
-/// Flags of all kinds.
+/// Flags that all kinds of joints allow.
 const COMMON: u32 = JOINT_COLLIDE
     | JOINT_ENABLED
     | JOINT_SOFTNESS
@@ -21,7 +21,7 @@ const COMMON: u32 = JOINT_COLLIDE
 /// Flags of revolute, prismatic, distance and wheel joints.
 const DRIVEN: u32 = JOINT_LIMIT | JOINT_MOTOR | JOINT_SPRING;
 
-/// Options that most kinds have.
+/// Options that most kinds of joints have.
 struct Options {
     limit: Option<JointLimit>,
     motor: Option<Drive>,

@@ -51,7 +51,7 @@ constants! {
     SHAPE_LINK_AFTER = 1024, "LS2D_SHAPE_LINK_AFTER";
     /// Flag of a link: solid from the right side only, looking from `points[0]` to `points[1]`.
     SHAPE_LINK_ONE_SIDED = 2048, "LS2D_SHAPE_LINK_ONE_SIDED";
-    /// Rule of mixing: the mean of both values. If the rules of two shapes differ, the one with the larger number
+    /// Rule of mixing: the mean of both values. If the rules of two shapes differ, the rule with the larger number
     /// applies.
     MIX_AVERAGE = 0, "LS2D_MIX_AVERAGE";
     /// Rule of mixing: the square root of the product.
