@@ -46,11 +46,11 @@ pub struct Cost {
 /// Memory of a save per object, in bytes.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Bytes {
-    /// Per dynamic body with one shape and without contacts.
+    /// Bytes per dynamic body with one shape and without contacts.
     pub body: f64,
-    /// Per pair of shapes with contact points.
+    /// Bytes per pair of shapes with contact points.
     pub contact: f64,
-    /// Per hinge.
+    /// Bytes per hinge.
     pub joint: f64,
 }
 

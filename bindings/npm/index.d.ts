@@ -1027,8 +1027,8 @@ export function verifyReplay(bytes: Uint8Array, limits?: Limits): Verdict;
 export class Recording extends Handle {
     #private;
     /** `setup` has the commands that build the world; the constructor throws an error if the world refuses one of them.
-     * The bodies of the setup have the handles 0, 1, 2 and so on, in order. There is a checkpoint every `interval` ticks,
-     * 1 to 3600: 60 by default. */
+     * The bodies of the setup have the handles 0, 1, 2 and so on, in order. There is a checkpoint every `interval`
+     * ticks, 1 to 3600: 60 by default. */
     constructor(options: { config?: ConfigOptions; setup: Commands; interval?: number });
     /** Executes the commands, advances the world by a tick, and empties the list. Commands that the world refuses are
      * skipped. */
@@ -1249,11 +1249,11 @@ export interface MatchEvent {
     kind:
         | "status" | "view" | "seated" | "unseated" | "waiting" | "resumed" | "pause" | "end" | "desync" | "conflict" | "tooFarBehind"
         | "refused" | "state" | "badState";
-    /** Number of a peer. */
+    /** Number of the peer that the event names. */
     peer: number;
-    /** A seat, from 0. */
+    /** The seat that the event names, from 0. */
     seat: number;
-    /** A tick. */
+    /** The tick that the event names. */
     tick: number;
     /** Its meaning depends on the kind. */
     value: number;
@@ -1281,7 +1281,7 @@ export interface MatchEvent {
 export interface MatchRequest {
     /** Kind of the request. */
     kind: "save" | "load" | "advance" | "checksum" | "forget";
-    /** A tick, from 0. */
+    /** The tick that the request is about, from 0. */
     tick: number;
     /** The inputs of all seats, one after another, for the kind `advance`; otherwise empty. */
     inputs: Uint8Array;

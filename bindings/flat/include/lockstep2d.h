@@ -416,7 +416,7 @@ typedef struct ls2d_config {
     uint32_t iterations;
     /* `LS2D_CONTACT_SOFT` or `LS2D_CONTACT_BAUMGARTE`. */
     uint32_t contact;
-    /* `LS2D_SLEEPING`, `LS2D_CONTINUOUS`. */
+    /* Flags: `LS2D_SLEEPING`, `LS2D_CONTINUOUS`. */
     uint32_t flags;
     /* Stiffness of soft contacts in Hz, or share of the overlap that Baumgarte contacts correct in each sub-step. */
     ls2d_fx contact_stiffness;
@@ -520,7 +520,7 @@ typedef struct ls2d_body_info {
     ls2d_fx gravity_scale;
     /* Speed in m/s below which the body may fall asleep. */
     ls2d_fx sleep_speed;
-    /* An `LS2D_SWEEP_` number. */
+    /* An `LS2D_SWEEP_` constant: the bodies through which this body cannot tunnel. */
     uint32_t continuous;
     /* Reserved: 0. */
     uint32_t reserved;
@@ -534,7 +534,7 @@ typedef struct ls2d_pose {
     ls2d_vec2 position;
     /* Rotation. */
     ls2d_angle angle;
-    /* `LS2D_BODY_ENABLED`, `LS2D_BODY_ASLEEP`. */
+    /* Flags: `LS2D_BODY_ENABLED`, `LS2D_BODY_ASLEEP`. */
     uint32_t flags;
 } ls2d_pose;
 
@@ -708,7 +708,7 @@ typedef struct ls2d_joint_def {
 typedef struct ls2d_query_filter {
     /* Size of this struct in bytes. */
     uint32_t size;
-    /* `LS2D_QUERY_SENSORS`. */
+    /* Flags: `LS2D_QUERY_SENSORS` or 0. */
     uint32_t flags;
     /* `LS2D_OVERLAP_RESIST` and so on, for shapes that a ray or a cast starts in. */
     uint32_t initial_overlap;
@@ -724,7 +724,7 @@ typedef struct ls2d_query_filter {
 
 /* Hit of a ray. */
 typedef struct ls2d_ray_hit {
-    /* The shape. */
+    /* The shape that the ray meets. */
     ls2d_shape shape;
     /* Its body. */
     ls2d_body body;
@@ -758,7 +758,7 @@ typedef struct ls2d_cast_hit {
 
 /* The shape nearest to a point. */
 typedef struct ls2d_closest_point {
-    /* The shape. */
+    /* The nearest shape. */
     ls2d_shape shape;
     /* Its body. */
     ls2d_body body;
@@ -806,7 +806,7 @@ typedef struct ls2d_mover {
 
 /* A surface that a character has met. */
 typedef struct ls2d_mover_plane {
-    /* The shape. */
+    /* The shape that the character has met. */
     ls2d_shape shape;
     /* Its body. */
     ls2d_body body;
@@ -892,23 +892,23 @@ typedef struct ls2d_limits {
     uint32_t size;
     /* Reserved: 0. */
     uint32_t reserved;
-    /* Bytes of the file. */
+    /* Largest number of bytes of the file. */
     uint64_t file_bytes;
-    /* Bytes of the setup. */
+    /* Largest number of bytes of the setup. */
     uint32_t setup_bytes;
-    /* Number of players. */
+    /* Largest number of players. */
     uint32_t players;
-    /* Bytes of a block. */
+    /* Largest number of bytes of a block. */
     uint32_t block_bytes;
-    /* Ticks between checkpoints. */
+    /* Largest number of ticks between checkpoints. */
     uint32_t block_ticks;
-    /* Ticks of the game. */
+    /* Largest number of ticks of the game. */
     uint64_t ticks;
-    /* Bodies of the world. */
+    /* Largest number of bodies of the world. */
     uint64_t bodies;
-    /* Work units of a tick. */
+    /* Largest number of work units of a tick. */
     uint64_t tick_work;
-    /* Work units of the game. */
+    /* Largest number of work units of the game. */
     uint64_t total_work;
 } ls2d_limits;
 
@@ -958,7 +958,7 @@ typedef struct ls2d_match_config {
     uint32_t seat_within;
     /* Number of this peer: random, new for each process. */
     uint32_t peer;
-    /* Distinguishes matches. */
+    /* Tag of the match: packets with another tag are ignored. */
     uint64_t match_tag;
     /* Time in microseconds for which play stalls because of a missing peer before the other peers go on without
      * it. */
@@ -973,7 +973,7 @@ typedef struct ls2d_match_config {
 typedef struct ls2d_request {
     /* `LS2D_REQUEST_SAVE` and so on. */
     uint32_t kind;
-    /* The tick. */
+    /* The tick that the request is about. */
     uint32_t tick;
     /* Bit for each seat that nobody plays, for `LS2D_REQUEST_ADVANCE`. */
     uint64_t absent;
@@ -985,11 +985,11 @@ typedef struct ls2d_request {
 typedef struct ls2d_match_event {
     /* `LS2D_EVENT_STATUS` and so on. */
     uint32_t kind;
-    /* A peer. */
+    /* Number of the peer that the event names. */
     uint32_t peer;
-    /* A seat. */
+    /* The seat that the event names. */
     uint32_t seat;
-    /* A tick. */
+    /* The tick that the event names. */
     uint32_t tick;
     /* Its meaning depends on the kind. */
     uint32_t value;

@@ -190,7 +190,7 @@ impl Caller<'_> {
     }
 }
 
-/// A type of arguments.
+/// A type of arguments that can be drawn from bytes.
 pub(crate) trait Drawn {
     /// Draws an argument for the parameter `name`.
     fn draw(caller: &mut Caller<'_>, name: &'static str) -> Self;
@@ -252,7 +252,7 @@ impl<T: Plain> Drawn for Out<'_, T> {
     }
 }
 
-/// A type of results.
+/// A type of results of API functions.
 pub(crate) trait Returned {
     /// The status code; `None` for a function that returns a value.
     fn code(self) -> Option<i32>;

@@ -132,7 +132,7 @@ impl Failure {
         Failure { status, text: error.to_string() }
     }
 
-    /// Nothing to return.
+    /// Returns the failure for `LS2D_NONE`: there is nothing to return.
     pub(crate) fn none() -> Self {
         Failure::new(Status::None, "there is nothing to return")
     }

@@ -18,13 +18,13 @@ use crate::observed::Observed;
 /// Kind of the driver that plays the ticks of a [`Lockstep`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DriverKind {
-    /// [`Lockstep::local`].
+    /// The driver of [`Lockstep::local`].
     Local,
-    /// [`Lockstep::sync_test`].
+    /// The driver of [`Lockstep::sync_test`].
     SyncTest,
-    /// [`Lockstep::replay`].
+    /// The driver of [`Lockstep::replay`].
     Replay,
-    /// [`Lockstep::host`], [`Lockstep::join`], [`Lockstep::watch`].
+    /// The driver of [`Lockstep::host`], [`Lockstep::join`] and [`Lockstep::watch`].
     Match,
 }
 

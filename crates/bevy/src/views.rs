@@ -41,7 +41,7 @@ impl BodyView {
     }
 }
 
-/// The views by body.
+/// The views of all bodies, each found by its body.
 #[derive(Resource, Debug, Default)]
 pub struct BodyViews {
     /// The views, indexed by the slots of their bodies.

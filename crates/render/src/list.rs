@@ -23,7 +23,7 @@ pub struct Points {
 /// Convex polygon or line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Item {
-    /// Corners.
+    /// Corners, as a range of the points in the list.
     pub points: Points,
     /// Colour of the inside; [`Colour::NONE`] for lines.
     pub fill: Colour,

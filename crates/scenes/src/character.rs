@@ -49,7 +49,8 @@ fn pill() -> Result<Geometry, WorldError> {
 const SPEEDS: [(u64, Fx); 6] =
     [(0, fx!(0)), (60, fx!(-8)), (120, fx!(3)), (300, fx!(6)), (600, fx!(-6)), (880, fx!(0))];
 
-/// Ticks of jumps: against the wall, on the slope, under the ceiling, at the steep slope, up the steps.
+/// Ticks in which the character jumps: against the wall, on the slope, under the ceiling, at the steep slope, up the
+/// steps.
 const JUMPS: [u64; 5] = [100, 330, 440, 520, 700];
 
 /// The script: the commands that move the character.

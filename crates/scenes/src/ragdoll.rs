@@ -37,7 +37,7 @@ pub(super) struct Bone {
 /// Additional properties of some bones.
 enum Extra {
     None,
-    /// Linear damping.
+    /// The bone has linear damping.
     Damped,
     /// A foot: an additional shape with little friction, which collides only with the ground.
     Foot,

@@ -84,7 +84,7 @@ const LIFT_OFF: Fx = fx!(2);
 const SPEEDS: [(u64, Fx); 6] =
     [(0, fx!(0)), (60, fx!(3)), (560, fx!(0)), (730, fx!(3)), (900, fx!(-4)), (1150, fx!(0))];
 
-/// Ticks of jumps.
+/// Ticks in which the character jumps.
 const JUMPS: [u64; 3] = [30, 420, 1000];
 
 /// The script: the force of the leg on the character, its reaction on the ground, and the lift.

@@ -73,7 +73,7 @@ fn fill_junkyard(scene: &mut Builder) -> Result<(), WorldError> {
 
 /// Five points on a circle, each a golden angle after the previous one: an irregular pentagon.
 fn golden_pentagon() -> Result<Polygon, WorldError> {
-    // pi (sqrt(5) - 1)
+    // A turn divided by the golden ratio: pi (sqrt(5) - 1).
     let step = Angle::from_radians(fx!(3.883222077451));
     let mut angle = Angle::ZERO;
     let mut points = Vec::new();

@@ -7,7 +7,7 @@ use game::{Drive, Hill};
 use lockstep2d::check::{CheckOptions, check};
 use lockstep2d::lockstep::Game;
 
-/// Drives to the right.
+/// Inputs that drive to the right for some ticks.
 fn inputs(ticks: usize, fire: bool) -> Vec<Vec<Drive>> {
     vec![vec![Drive { gas: 1, fire }]; ticks]
 }

@@ -8,7 +8,7 @@ use lockstep2d::lockstep::{Game, RulesId, SetupError};
 /// Input that ends the process.
 const FATAL: u8 = 13;
 
-/// Adds inputs up.
+/// A game that adds up its inputs.
 struct Fragile(u64);
 
 impl Game for Fragile {

@@ -78,7 +78,7 @@ impl MyGame {
         Ok(MyGame { world, players, ball, rules: Rules { goals: setup.handicap } })
     }
 
-    /// The physics.
+    /// The physics world.
     pub fn world(&self) -> &World {
         &self.world
     }

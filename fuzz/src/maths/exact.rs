@@ -15,7 +15,7 @@ pub(crate) fn integer(value: impl Into<BigInt>) -> Exact {
     Exact::from_integer(value.into())
 }
 
-/// `bits / 2^fraction_bits`.
+/// Returns `bits / 2^fraction_bits`.
 pub(crate) fn fixed(bits: impl Into<BigInt>, fraction_bits: u32) -> Exact {
     Exact::new(bits.into(), BigInt::one() << fraction_bits)
 }

@@ -43,7 +43,7 @@ pub(crate) struct Seat {
     pub(crate) recharge: u8,
     /// Score: one point for each player that fell while this player was standing.
     pub(crate) score: u32,
-    /// Rounds won.
+    /// Number of rounds that the player has won.
     pub(crate) won: u32,
 }
 

@@ -24,7 +24,7 @@ pub struct Player {
     pub recharge: u32,
     /// Score: one point for each player that fell while this player was standing.
     pub score: u32,
-    /// Rounds won.
+    /// Number of rounds that the player has won.
     pub won: u32,
 }
 

@@ -124,7 +124,7 @@ records! {
         gravity_scale: RawFx,
         /// Speed in m/s below which the body may fall asleep.
         sleep_speed: RawFx,
-        /// An `LS2D_SWEEP_` number.
+        /// An `LS2D_SWEEP_` constant: the bodies through which this body cannot tunnel.
         continuous: u32,
         /// Reserved: 0.
         reserved: u32,
@@ -138,7 +138,7 @@ records! {
         position: RawVec2,
         /// Rotation.
         angle: RawAngle,
-        /// `LS2D_BODY_ENABLED`, `LS2D_BODY_ASLEEP`.
+        /// Flags: `LS2D_BODY_ENABLED`, `LS2D_BODY_ASLEEP`.
         flags: u32,
     }
 

@@ -34,7 +34,7 @@ records! {
 
     /// A surface that a character has met.
     struct RawMoverPlane = "ls2d_mover_plane" {
-        /// The shape.
+        /// The shape that the character has met.
         shape: RawShape,
         /// Its body.
         body: RawBody,

@@ -34,7 +34,7 @@ records! {
         iterations: u32,
         /// `LS2D_CONTACT_SOFT` or `LS2D_CONTACT_BAUMGARTE`.
         contact: u32,
-        /// `LS2D_SLEEPING`, `LS2D_CONTINUOUS`.
+        /// Flags: `LS2D_SLEEPING`, `LS2D_CONTINUOUS`.
         flags: u32,
         /// Stiffness of soft contacts in Hz, or share of the overlap that Baumgarte contacts correct in each sub-step.
         contact_stiffness: RawFx,

@@ -103,23 +103,23 @@ records! {
         size: u32,
         /// Reserved: 0.
         reserved: u32,
-        /// Bytes of the file.
+        /// Largest number of bytes of the file.
         file_bytes: u64,
-        /// Bytes of the setup.
+        /// Largest number of bytes of the setup.
         setup_bytes: u32,
-        /// Number of players.
+        /// Largest number of players.
         players: u32,
-        /// Bytes of a block.
+        /// Largest number of bytes of a block.
         block_bytes: u32,
-        /// Ticks between checkpoints.
+        /// Largest number of ticks between checkpoints.
         block_ticks: u32,
-        /// Ticks of the game.
+        /// Largest number of ticks of the game.
         ticks: u64,
-        /// Bodies of the world.
+        /// Largest number of bodies of the world.
         bodies: u64,
-        /// Work units of a tick.
+        /// Largest number of work units of a tick.
         tick_work: u64,
-        /// Work units of the game.
+        /// Largest number of work units of the game.
         total_work: u64,
     }
 
@@ -169,7 +169,7 @@ records! {
         seat_within: u32,
         /// Number of this peer: random, new for each process.
         peer: u32,
-        /// Distinguishes matches.
+        /// Tag of the match: packets with another tag are ignored.
         match_tag: u64,
         /// Time in microseconds for which play stalls because of a missing peer before the other peers go on without
         /// it.
@@ -184,7 +184,7 @@ records! {
     struct RawRequest = "ls2d_request" {
         /// `LS2D_REQUEST_SAVE` and so on.
         kind: u32,
-        /// The tick.
+        /// The tick that the request is about.
         tick: u32,
         /// Bit for each seat that nobody plays, for `LS2D_REQUEST_ADVANCE`.
         absent: u64,
@@ -196,11 +196,11 @@ records! {
     struct RawMatchEvent = "ls2d_match_event" {
         /// `LS2D_EVENT_STATUS` and so on.
         kind: u32,
-        /// A peer.
+        /// Number of the peer that the event names.
         peer: u32,
-        /// A seat.
+        /// The seat that the event names.
         seat: u32,
-        /// A tick.
+        /// The tick that the event names.
         tick: u32,
         /// Its meaning depends on the kind.
         value: u32,

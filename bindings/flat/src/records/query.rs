@@ -27,7 +27,7 @@ records! {
     struct RawQueryFilter = "ls2d_query_filter" {
         /// Size of this struct in bytes.
         size: u32,
-        /// `LS2D_QUERY_SENSORS`.
+        /// Flags: `LS2D_QUERY_SENSORS` or 0.
         flags: u32,
         /// `LS2D_OVERLAP_RESIST` and so on, for shapes that a ray or a cast starts in.
         initial_overlap: u32,
@@ -43,7 +43,7 @@ records! {
 
     /// Hit of a ray.
     struct RawRayHit = "ls2d_ray_hit" {
-        /// The shape.
+        /// The shape that the ray meets.
         shape: RawShape,
         /// Its body.
         body: RawBody,
@@ -77,7 +77,7 @@ records! {
 
     /// The shape nearest to a point.
     struct RawClosest = "ls2d_closest_point" {
-        /// The shape.
+        /// The nearest shape.
         shape: RawShape,
         /// Its body.
         body: RawBody,

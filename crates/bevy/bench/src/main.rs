@@ -22,7 +22,7 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 /// Ticks in which the pile comes to rest.
 const SETTLING: usize = 300;
-/// Rollbacks that are measured.
+/// Number of rollbacks that are measured.
 const ROLLBACKS: usize = 100;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

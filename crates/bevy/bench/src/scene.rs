@@ -1,6 +1,6 @@
 //! The scene: a wall of boxes on a floor, with every second row shifted by half a box. Bodies do not sleep.
 
-/// Columns of the wall.
+/// Number of columns of the wall.
 const COLUMNS: usize = 20;
 
 /// Half the width and height of a box.

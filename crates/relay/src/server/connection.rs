@@ -89,7 +89,7 @@ fn refusal(status: StatusCode) -> ErrorResponse {
     response
 }
 
-/// The first binary frame.
+/// Waits for the first binary frame. Returns `None` if the connection ends before.
 async fn first_frame(socket: &mut Socket) -> Result<Option<Vec<u8>>, Error> {
     while let Some(message) = socket.next().await {
         if let Message::Binary(bytes) = message? {

@@ -22,7 +22,7 @@ pub(super) enum Pace {
 #[derive(Clone, Debug)]
 struct Bucket {
     per_second: u64,
-    /// Millionths of a unit.
+    /// Remaining units of the bucket, in millionths.
     tokens: u64,
 }
 

@@ -7,7 +7,7 @@ use super::{Atlas, Chunk, Mesh, Screen, Vertex};
 
 type Point = [f32; 2];
 
-/// Sample of full coverage.
+/// Value of [`Vertex::sample`](super::Vertex::sample) for full coverage: distance 0, reach 1.
 const WHOLE: [f32; 3] = [0.0, 1.0, 0.0];
 /// Maximum number of points of a line in one strip. Each point becomes at most four corners.
 const RUN: usize = Chunk::VERTICES / 4 - 2;

@@ -80,7 +80,7 @@ mod tests {
                 assert_eq!(takers.len(), 1, "{path} of {count}");
                 files[takers[0].index as usize - 1] += 1;
             }
-            // Within ten standard deviations.
+            // Each part has the fair number of files, within ten standard deviations.
             let (fair, spread) = (2000 / count, 10 * (2000 / count).isqrt().max(1));
             let parts = &files[..count as usize];
             assert!(parts.iter().all(|files| files.abs_diff(fair) <= spread), "{count}: {parts:?}");
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn the_rule_is_the_one_that_is_documented() {
-        // printf a/b.replay | b3sum
+        // The expected hash is the output of `printf a/b.replay | b3sum`.
         assert_eq!(part(Path::new("a/b.replay"), u32::MAX), part(Path::new("a//b.replay"), u32::MAX));
         let hash = blake3::hash(b"a/b.replay");
         let first = hash.to_hex().as_str()[..16].to_string();
