@@ -9,15 +9,15 @@ use crate::measure::{EndState, Keeping, Times, end_state, keeping, run};
 use crate::script::Script;
 use crate::stats::{geometric_mean, median, quartiles};
 
-/// Steps of each engine before the first round.
+/// Number of steps that each engine plays before the first round.
 const WARM_UP: u64 = 20;
 
 /// Parameters of a comparison.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
-    /// Runs of each engine.
+    /// Number of runs of each engine.
     pub rounds: usize,
-    /// Threads of each engine.
+    /// Number of threads of each engine.
     pub threads: usize,
     /// Largest number of steps; `None` for the full length of the scene.
     pub steps: Option<u64>,
@@ -49,9 +49,9 @@ pub struct SceneResult {
     pub scene: String,
     /// Number of simulated steps. The first one is not timed.
     pub steps: usize,
-    /// Runs of each engine.
+    /// Number of runs of each engine.
     pub rounds: usize,
-    /// Threads of each engine.
+    /// Number of threads of each engine.
     pub threads: usize,
     /// Time per step of lockstep2d in ms, median of the rounds: CPU time with one thread, wall-clock time with more.
     pub ms: f64,

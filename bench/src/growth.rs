@@ -41,7 +41,7 @@ pub struct Plan {
     pub steps: u64,
     /// Number of steps before the timed ones.
     pub untimed: u64,
-    /// Runs of each engine at each size.
+    /// Number of runs of each engine at each size.
     pub rounds: usize,
 }
 
@@ -54,7 +54,7 @@ pub struct Growth {
     pub engine: &'static str,
     /// Results in the order of the sizes.
     pub points: Vec<Point>,
-    /// Exponent of the best fit.
+    /// Exponent `p` of the fit `n^p`.
     pub p: f64,
 }
 

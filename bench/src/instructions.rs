@@ -18,7 +18,7 @@ pub struct Growth {
     pub world: &'static str,
     /// Results in the order of the sizes.
     pub points: Vec<Point>,
-    /// Exponent of the best fit.
+    /// Exponent `p` of the fit `n^p`.
     pub p: f64,
 }
 

@@ -985,7 +985,7 @@ export interface Verdict {
      * - `match`: the inputs reproduce every checkpoint, the last state and the results of the file.
      * - `claim_mismatch`: the last state or a result differs from what the file states.
      * - `diverged`: a checkpoint differs.
-     * - `incomplete`: the file has no end; what it has is valid.
+     * - `incomplete`: the file ends before its trailer; the part that it has is valid.
      * - `malformed`: the bytes are not a replay.
      * - `limit_exceeded`: the file exceeds one of the `Limits`.
      * - `unverifiable`: recorded by another version of the engine, or with other rules. */

@@ -12,7 +12,7 @@ use crate::growth::World;
 use crate::measure::timed;
 use crate::stats::median;
 
-/// Rollback frames in a round.
+/// Number of rollback frames in a round.
 const FRAMES: usize = 20;
 
 /// Cost of a rollback frame of a world.

@@ -35,9 +35,9 @@ pub const SINGLE: [(World, u32); 2] = [
 ];
 /// Approximate numbers of bodies.
 pub const SIZES: [u32; 4] = [6, 24, 96, 384];
-/// Steps before the timed ones.
+/// Number of steps before the timed ones.
 const UNTIMED: usize = 120;
-/// Timed steps.
+/// Number of timed steps.
 const TIMED: usize = 480;
 
 /// Settings of all small worlds: the default ones, without sleeping.

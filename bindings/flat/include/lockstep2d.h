@@ -650,7 +650,7 @@ typedef struct ls2d_joint_def {
     ls2d_vec2 anchor_b;
     /* Lower end of the range, in rad or m. */
     ls2d_fx limit_lower;
-    /* Upper end of the range. */
+    /* Upper end of the range, in rad or m. */
     ls2d_fx limit_upper;
     /* Target speed in rad/s or m/s. */
     ls2d_fx motor_speed;

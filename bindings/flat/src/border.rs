@@ -18,15 +18,15 @@ pub unsafe trait Plain: Copy + 'static {}
 
 // SAFETY: integers have neither padding nor invalid bytes.
 unsafe impl Plain for u8 {}
-// SAFETY: as above.
+// SAFETY: integers have neither padding nor invalid bytes.
 unsafe impl Plain for u32 {}
-// SAFETY: as above.
+// SAFETY: integers have neither padding nor invalid bytes.
 unsafe impl Plain for i32 {}
-// SAFETY: as above.
+// SAFETY: integers have neither padding nor invalid bytes.
 unsafe impl Plain for u64 {}
-// SAFETY: as above.
+// SAFETY: integers have neither padding nor invalid bytes.
 unsafe impl Plain for i64 {}
-// SAFETY: as above.
+// SAFETY: integers have neither padding nor invalid bytes.
 unsafe impl Plain for usize {}
 // SAFETY: an array of plain items has no padding between them.
 unsafe impl<T: Plain, const N: usize> Plain for [T; N] {}

@@ -45,7 +45,7 @@ fn throw(
     }
 }
 
-/// Events of the world are Bevy messages.
+/// Prints the speeds of hits. Events of the world arrive as Bevy messages.
 fn name_hits(mut events: MessageReader<ConfirmedEvent>) {
     for event in events.read() {
         if let WorldEvent::Hit(hit) = event.event {

@@ -24,7 +24,7 @@ impl<G> Default for LockstepDiagnosticsPlugin<G> {
 impl<G> LockstepDiagnosticsPlugin<G> {
     /// Time in milliseconds that the ticks of a frame take.
     pub const STEP: DiagnosticPath = DiagnosticPath::const_new("lockstep/step");
-    /// Ticks that a frame rolled back.
+    /// Number of ticks that a frame rolled back.
     pub const ROLLBACK: DiagnosticPath = DiagnosticPath::const_new("lockstep/rollback");
     /// Number of played ticks that are not confirmed.
     pub const PREDICTED: DiagnosticPath = DiagnosticPath::const_new("lockstep/predicted");

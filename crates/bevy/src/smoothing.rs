@@ -72,7 +72,7 @@ impl Offset {
         Offset { position: metres(to.position - from.position), angle: radians(to.angle - from.angle) }
     }
 
-    /// Adds a displacement. Beyond `limit` metres the view jumps instead.
+    /// Adds a displacement. If the sum is longer than `limit` metres, the offset is dropped, so that the view jumps.
     pub(crate) fn add(&mut self, other: Self, limit: f32) {
         self.position += other.position;
         self.angle += other.angle;

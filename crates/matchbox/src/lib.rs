@@ -9,7 +9,7 @@ pub use matchbox_socket;
 use matchbox_socket::{ChannelConfig, MessageLoopFuture, PeerId, WebRtcSocket, WebRtcSocketBuilder};
 use uuid::Uuid;
 
-/// The channel of the packets.
+/// Index of the data channel that carries the packets.
 const CHANNEL: usize = 0;
 
 /// A member of a room of a matchbox signalling server, with a WebRTC data channel to each other member.

@@ -205,7 +205,7 @@ fn the_hand_is_empty_when_what_it_held_is_gone() {
     live.act(Act::Delete(Aim::at(MIDDLE)));
     play(&mut live, 2);
     assert_eq!((live.held(), live.world().body_count(), live.world().joint_count()), (None, 0, 0));
-    // Grab and delete in the same tick.
+    // The body is grabbed and deleted in the same tick.
     let (mut live, _) = one_disc();
     live.act(Act::Grab(Aim::at(MIDDLE)));
     live.act(Act::Delete(Aim::at(MIDDLE)));

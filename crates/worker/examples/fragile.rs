@@ -53,7 +53,7 @@ impl Game for Fragile {
     }
 }
 
-/// With `record INPUT`, prints a replay of one tick instead.
+/// With `record INPUT`, prints a replay of one tick instead of running the worker.
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().collect();
     let Some([_, input]) = arguments.get(1..3).filter(|words| words[0] == "record") else {

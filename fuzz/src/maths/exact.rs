@@ -86,7 +86,7 @@ pub(crate) fn sin_cos(bits: u32) -> (BigInt, BigInt) {
     }
 }
 
-/// `x^n/n! - x^(n+2)/(n+2)! + ...`
+/// Returns `x^n/n! - x^(n+2)/(n+2)! + ...`, where `n` is `first`.
 fn series(x: &BigInt, first: i64) -> BigInt {
     let mut term = if first == 0 { BigInt::one() << PRECISION } else { x.clone() };
     let (mut sum, mut n) = (BigInt::zero(), first);

@@ -64,7 +64,7 @@ fn assert_near(found: Vec2<Fx>, at: &Point, what: &dyn Fn() -> String) {
     }
 }
 
-/// `a + (b - a) t`
+/// Returns `a + (b - a) t`.
 fn along(a: &Point, b: &Point, t: &Exact) -> Point {
     [&a[0] + (&b[0] - &a[0]) * t, &a[1] + (&b[1] - &a[1]) * t]
 }

@@ -53,7 +53,7 @@ impl Bot {
     }
 
     fn decide(&mut self, game: &Shove, me: &Player) -> Pad {
-        // Predicted position in 0.3 s.
+        // Position that is predicted for 0.3 s from now.
         let soon = me.position + me.velocity.scale(fx!(0.3));
         let margin = game.radius().saturating_sub(soon.length());
         if margin < self.caution {

@@ -17,7 +17,7 @@ use crate::setup::Setup;
 const ACCELERATION: Fx = fx!(9);
 /// Velocity change of a dash, in m/s.
 const DASH: Fx = fx!(8);
-/// Ticks until the next dash.
+/// Number of ticks from a dash until the next one is possible.
 const RECHARGE: u8 = 75;
 /// Velocity change by a bumper, in m/s.
 const KICK: Fx = fx!(5);

@@ -39,7 +39,7 @@ pub(crate) struct Seat {
     pub(crate) present: bool,
     /// Body of the player, until it falls.
     pub(crate) body: Option<BodyId>,
-    /// Ticks until the next dash.
+    /// Number of ticks until the player can dash again.
     pub(crate) recharge: u8,
     /// Score: one point for each player that fell while this player was standing.
     pub(crate) score: u32,

@@ -20,7 +20,7 @@ pub struct Player {
     pub position: Vec2<Fx>,
     /// Velocity in m/s; zero without a body.
     pub velocity: Vec2<Fx>,
-    /// Ticks until the next dash.
+    /// Number of ticks until the player can dash again.
     pub recharge: u32,
     /// Score: one point for each player that fell while this player was standing.
     pub score: u32,

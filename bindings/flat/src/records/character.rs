@@ -75,7 +75,7 @@ impl RawMover {
         let shape = ShapeDef::new(Geometry::Circle { radius: Fx::ZERO });
         RawMover {
             size: size::<Self>(),
-            // 45 degrees, and 0.1 m.
+            // The defaults: slopes up to 45 degrees, no steps, and ground that descends by up to 0.1 m.
             slope_max: RawAngle(1 << 29),
             step_height: RawFx(0),
             snap_distance: RawFx::of(lockstep2d::fx!(0.1)),

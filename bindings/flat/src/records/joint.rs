@@ -90,7 +90,7 @@ records! {
         anchor_b: RawVec2,
         /// Lower end of the range, in rad or m.
         limit_lower: RawFx,
-        /// Upper end of the range.
+        /// Upper end of the range, in rad or m.
         limit_upper: RawFx,
         /// Target speed in rad/s or m/s.
         motor_speed: RawFx,

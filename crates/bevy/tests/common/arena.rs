@@ -14,7 +14,7 @@ pub const RIGHT: u8 = 2;
 pub const JUMP: u8 = 4;
 pub const SHOOT: u8 = 8;
 
-/// Ticks that a shot exists.
+/// Number of ticks for which a shot exists.
 const SHOT_TICKS: u64 = 45;
 
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]

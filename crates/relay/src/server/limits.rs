@@ -5,21 +5,21 @@ use core::time::Duration;
 /// Limits of a relay. The memory is at most `connections` times (`queue_bytes` + a few `datagram_bytes`).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Connections at the same time.
+    /// Largest number of connections at the same time.
     pub connections: usize,
-    /// Rooms at the same time.
+    /// Largest number of rooms at the same time.
     pub rooms: usize,
-    /// Members of a room.
+    /// Largest number of members of a room.
     pub members: usize,
     /// Largest datagram in bytes. A larger one closes the connection.
     pub datagram_bytes: usize,
-    /// Bytes that wait for one member. When there are more, the oldest datagrams are dropped.
+    /// Largest number of bytes that wait for one member. When there are more, the oldest datagrams are dropped.
     pub queue_bytes: usize,
-    /// Bytes per second from one member, with a burst of a second. Datagrams above this rate are dropped; a member that
-    /// sends eight times as much is disconnected.
+    /// Largest number of bytes per second from one member, with bursts of one second. Datagrams above this rate are
+    /// dropped; a member that sends eight times as much is disconnected.
     pub bytes_per_second: u32,
-    /// Datagrams per second from one member, with a burst of a second. Datagrams above this rate are dropped; a member
-    /// that sends eight times as many is disconnected.
+    /// Largest number of datagrams per second from one member, with bursts of one second. Datagrams above this rate are
+    /// dropped; a member that sends eight times as many is disconnected.
     pub datagrams_per_second: u32,
     /// Time without any frame after which a member is disconnected. The member is pinged three times within this time.
     pub idle: Duration,

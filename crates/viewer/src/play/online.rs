@@ -66,7 +66,7 @@ pub struct Online<G: Game, T: Transport> {
 }
 
 impl<G: Game + 'static, T: Transport> Online<G, T> {
-    /// Shows the match of a new peer, which was made from this setup. All of its own seats are controlled by the same
+    /// Shows the match of a new peer, which was made from this setup. All seats of this peer are controlled by the same
     /// keys.
     #[must_use]
     pub fn new(

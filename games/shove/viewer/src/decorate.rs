@@ -67,7 +67,7 @@ fn draw_player(world: &World, seat: usize, player: &Player, list: &mut DrawList,
     let radius = camera.length(radius_of(world, body));
     let disc = arc(camera, player.position, radius, 1.0);
     list.polygon(disc.skip(1), colour, Colour::hex(0x00_0000).with_opacity(160), 1.5);
-    // Full circle when the dash is ready.
+    // The arc is a full circle when the dash is ready.
     let charge = 1.0 - (player.recharge as f32 / RECHARGE).min(1.0);
     if charge > 0.0 {
         let width = if player.recharge == 0 { 3.0 } else { 1.5 };
