@@ -64,7 +64,7 @@ fn hashes(text: &str) -> Hashes<'_> {
     hashes
 }
 
-/// Plays a scene and compares it with every hash, one line of output each.
+/// Plays a scene and compares its states with the expected hashes. Prints a line for each comparison.
 fn play(name: &str, backend: Backend, hashes: &BTreeSet<(u64, &str)>) -> bool {
     let scene = Scene::find(name).expect("a scene of this crate");
     let mut game = Sandbox::new(&scene.setup(SEED)).expect("the scenes of this crate are valid");

@@ -385,11 +385,11 @@ export interface JointOptions {
     /** Target velocity of B's anchor relative to A in m/s, along the axes of the world, and largest force in N (motor).
      * */
     linearMotor?: { velocity: Vec; max: Num };
-    /** Spring between the anchors: frequency in Hz, damping ratio (weld, motor), and largest force in N (motor, which
-     * needs it: the default is 0). Without it the anchors of a weld are rigid. */
+    /** Spring between the anchors: frequency in Hz, damping ratio (weld, motor), and largest force in N (motor, for
+     * which it is needed: the default is 0). Without it the anchors of a weld are rigid. */
     linearSpring?: { hertz: Num; dampingRatio: Num; max?: Num };
-    /** Spring on the angle: frequency in Hz, damping ratio (weld, motor), and largest torque in N m (motor, which needs
-     * it: the default is 0). Without it the angle of a weld is rigid. */
+    /** Spring on the angle: frequency in Hz, damping ratio (weld, motor), and largest torque in N m (motor, for which
+     * it is needed: the default is 0). Without it the angle of a weld is rigid. */
     angularSpring?: { hertz: Num; dampingRatio: Num; max?: Num };
     /** Teeth of A's wheel and of B's wheel, 1 to 1000, or -1 to -1000 for a ring around the other wheel (gear). [1, 1]
      * by default. */
@@ -397,7 +397,7 @@ export interface JointOptions {
     /** Radius of the wheel in metres, 0.001 to 128; negative for a rack on the other side of the wheel (rack, which
      * needs it). */
     radius?: Num;
-    /** Wheels on A's side and on B's side, in world coordinates in metres (pulley). */
+    /** Positions of the wheels on A's side and on B's side, in the world, in metres (pulley). */
     wheels?: readonly [Vec, Vec];
     /** Length of the rope in metres, 0 to 2^20, without the part between the wheels (pulley). With `anchor` it follows
      * from the current poses. */
@@ -455,7 +455,7 @@ export interface JointInfo {
     teeth?: [number, number];
     /** Radius of the wheel of a rack in metres. */
     radius?: Fx;
-    /** Wheels of a pulley in the world, in metres. */
+    /** Positions of the wheels of a pulley in the world, in metres. */
     wheels?: [Vec2, Vec2];
     /** Length of the rope of a pulley in metres. */
     length?: Fx;

@@ -694,9 +694,9 @@ typedef struct ls2d_joint_def {
     ls2d_fx angular_max;
     /* Radius of the wheel of a rack in metres. */
     ls2d_fx radius;
-    /* Wheel of a pulley on A's side, in the world. */
+    /* Position of a pulley's wheel on A's side, in the world, in metres. */
     ls2d_vec2 wheel_a;
-    /* Wheel of a pulley on B's side, in the world. */
+    /* Position of a pulley's wheel on B's side, in the world, in metres. */
     ls2d_vec2 wheel_b;
     /* Ratio of a pulley: the length on A's side plus `ratio` times the length on B's side is at most `length`. */
     ls2d_fx ratio;

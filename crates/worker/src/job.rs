@@ -17,11 +17,11 @@ pub(crate) struct Job {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Source {
-    /// In the folder of the worker.
+    /// The file is in the folder of the worker.
     Folder,
-    /// In the object store of the queue, under its BLAKE3.
+    /// The file is in the object store of the queue, under its BLAKE3.
     Object,
-    /// In the bucket of the worker.
+    /// The file is in the bucket of the worker.
     Bucket,
 }
 

@@ -134,9 +134,9 @@ records! {
         angular_max: RawFx,
         /// Radius of the wheel of a rack in metres.
         radius: RawFx,
-        /// Wheel of a pulley on A's side, in the world.
+        /// Position of a pulley's wheel on A's side, in the world, in metres.
         wheel_a: RawVec2,
-        /// Wheel of a pulley on B's side, in the world.
+        /// Position of a pulley's wheel on B's side, in the world, in metres.
         wheel_b: RawVec2,
         /// Ratio of a pulley: the length on A's side plus `ratio` times the length on B's side is at most `length`.
         ratio: RawFx,

@@ -31,7 +31,7 @@ impl Buckets {
         Some(Buckets { port, _process: serve(&mut command, port) })
     }
 
-    /// The program with this key for the buckets.
+    /// Returns the program with environment variables that give it this key for the buckets.
     fn with_key(&self, program: Program, key: &'static str) -> Program {
         let endpoint = format!("http://127.0.0.1:{}", self.port);
         let variables = [

@@ -174,7 +174,7 @@ fn two_workers_do_almost_twice_as_much_as_one() {
     assert!(best >= 180, "two workers have only {best} % of the throughput of one");
 }
 
-/// Compares with docs/VERIFYING.md: 75 MB for 400 squares on one spot, and 30 MB for the worker itself.
+/// Compares the memory with docs/VERIFYING.md: 75 MB for 400 squares on one spot, plus 30 MB for the worker itself.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_worker_takes_little_more_memory_than_verify() {
