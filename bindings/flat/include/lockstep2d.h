@@ -1282,7 +1282,7 @@ ls2d_status ls2d_joint_at(uint32_t world, const ls2d_joint_def *from, const ls2d
 /* ---- Drawing ---- */
 
 /* Poses of all enabled bodies in slot order, for drawing: for each body five numbers, its handle, x, y, the angle
- * in rad, and 1 if it is awake or 0. `capacity` and `count` are numbers of `double`s. */
+ * in rad, and 1 if it is awake, otherwise 0. `capacity` and `count` are numbers of `double`s. */
 ls2d_status ls2d_draw_poses(uint32_t world, double *rows, size_t capacity, size_t *count);
 
 /* ---- Events of the last tick ---- */
@@ -1618,7 +1618,7 @@ ls2d_fx ls2d_vec2_dot(ls2d_fx ax, ls2d_fx ay, ls2d_fx bx, ls2d_fx by);
 /* `a.x b.y - a.y b.x`, rounded once. */
 ls2d_fx ls2d_vec2_cross(ls2d_fx ax, ls2d_fx ay, ls2d_fx bx, ls2d_fx by);
 
-/* The direction of a vector as a unit vector. `LS2D_NUMBER` for zero. */
+/* The direction of a vector as a unit vector. `LS2D_NUMBER` for the zero vector. */
 ls2d_status ls2d_vec2_normalize(ls2d_fx x, ls2d_fx y, ls2d_vec2 *unit);
 
 /* A vector turned by an angle. */

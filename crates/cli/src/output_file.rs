@@ -18,7 +18,7 @@ use same_file::Handle;
 
 use crate::error::CommandError;
 
-/// Appended to the name of the target while it is written.
+/// End of the name of the temporary file that is written before it replaces the target.
 const SUFFIX: &str = ".unfinished";
 
 /// Permissions of a private file.

@@ -84,7 +84,7 @@ impl<G: Game> Copy<G> {
 }
 
 impl CopyError {
-    /// Converts to the error of a command that copies the replay at `path`.
+    /// Converts this error to the error of a command that copies the replay at `path`.
     pub(crate) fn of_file(self, path: &Path) -> CommandError {
         match self {
             CopyError::Replay { verdict, .. } => CommandError::Replay { path: path.to_path_buf(), verdict },

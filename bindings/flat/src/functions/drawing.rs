@@ -45,7 +45,7 @@ fn row(id: RawBody, body: &Body) -> [f64; 5] {
 
 api! {
     /// Poses of all enabled bodies in slot order, for drawing: for each body five numbers, its handle, x, y, the angle
-    /// in rad, and 1 if it is awake or 0. `capacity` and `count` are numbers of `double`s.
+    /// in rad, and 1 if it is awake, otherwise 0. `capacity` and `count` are numbers of `double`s.
     fn ls2d_draw_poses(world: u32, rows: Out<'_, f64>, capacity: usize, count: Out<'_, usize>) {
         let (mut rows, mut count) = (rows, count);
         with(world, |world: &mut World| {

@@ -83,7 +83,7 @@ api! {
         RawFx::of(Vec2::new(ax.fx(), ay.fx()).cross(Vec2::new(bx.fx(), by.fx())))
     }
 
-    /// The direction of a vector as a unit vector. `LS2D_NUMBER` for zero.
+    /// The direction of a vector as a unit vector. `LS2D_NUMBER` for the zero vector.
     fn ls2d_vec2_normalize(x: RawFx, y: RawFx, unit: Out<'_, RawVec2>) {
         let mut unit = unit;
         let found = Vec2::new(x.fx(), y.fx()).normalized().ok_or_else(|| undefined("direction of zero"))?;

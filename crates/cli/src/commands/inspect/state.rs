@@ -46,7 +46,7 @@ fn is_wanted(field: &Field, arguments: &Arguments) -> bool {
     let is_body = |id: &str| {
         let name = field.subject().and_then(|subject| subject.rsplit('.').next());
         let found = name.and_then(|name| name.strip_prefix("body "));
-        // The handle, and the name if the body has one.
+        // The text of a body is its handle, followed by its name if it has one.
         let mut words = found.into_iter().flat_map(|found| found.split(' '));
         words.next().is_some_and(|handle| handle == id || handle.split('v').next() == Some(id))
             || words.next() == Some(id)
