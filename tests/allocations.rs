@@ -1,4 +1,4 @@
-//! A step allocates nothing once its buffers have grown to the size of the scene.
+//! A step allocates nothing once the buffers of the world have grown to the size of the scene.
 
 use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
 use lockstep2d::fx;

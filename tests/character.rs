@@ -133,7 +133,7 @@ fn slopes_up_to_the_limit_are_ground_and_steeper_ones_are_walls() {
                 state.velocity.y -= fx!(1 / 6);
                 state = world.move_character(&mover, &state, QueryFilter::default()).state;
             }
-            // y'' = g sin²
+            // The vertical acceleration is y'' = g sin².
             let sin = Fx::from_num(angle.sin());
             let expected = fx_mul(fx!(5), fx_mul(sin, sin));
             let fallen = middle.y - state.position.y;
@@ -215,7 +215,7 @@ fn one_way_shapes_are_jumped_through_and_stood_upon() {
     let slab = ShapeDef::new(Polygon::rectangle(fx!(2), fx!(0.25)).expect("valid")).one_way(Angle::QUARTER);
     world.spawn(&BodyDef::fixed().position((fx!(0), fx!(1.5))), &[slab]).expect("valid");
     let mut state = MoverState::at(at(fx!(0), fx!(0.7001)));
-    // A jump of 3 m/s is too slow: the character turns round inside the slab and falls back.
+    // A jump of 3 m/s is too slow: the character stops rising inside the slab, and falls back to the floor.
     for (speed, end) in [(fx!(3), fx!(0.7001)), (fx!(8), fx!(2.4501))] {
         state.velocity.y = speed;
         for _ in 0..150 {

@@ -27,7 +27,7 @@ const WITHOUT: &[(&str, &str, &str)] = &[
 /// Macro of `src/body/arena.rs` that declares a public type, whose name is on a line of its own.
 const TYPE_MACRO: &str = "define_handle! {";
 
-/// The types and the code of a top-level module.
+/// The public types of a top-level module, and the code of the examples in its documentation.
 #[derive(Default)]
 struct Module {
     types: Vec<String>,

@@ -43,7 +43,7 @@ fn begins_and_ends_are_balanced_and_sorted() {
     }
 }
 
-/// Balls that hit off centre and separate before the next tick.
+/// A ball hits another one off centre and separates from it before the next tick.
 #[test]
 fn a_touch_between_two_ticks_is_told() {
     let mut rng = Rng::new(1);

@@ -205,8 +205,8 @@ fn the_broad_phase_has_boxes_around_all_of_what_they_hold() {
     assert_eq!(world.broad_phase_boxes(), []);
 }
 
-/// Two squares on a slab, one above the other and welded to it, and a distant square with a filter joint to the upper
-/// one.
+/// The scene has two squares on a slab, of which the upper one is welded to the lower one, and a distant square with a
+/// filter joint to the upper one.
 #[test]
 fn the_contacts_and_joints_of_a_body_are_those_of_the_world_that_name_it() {
     let mut world = empty();

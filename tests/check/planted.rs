@@ -8,7 +8,7 @@ use lockstep2d::replay::Verdict;
 
 use super::toy::{Mistake, Toy};
 
-/// Returns the failure of a toy, whose replay must reproduce it.
+/// Returns the failure of a toy with a planted fault. The replay of the failure must fail in the same way.
 fn failure(mistake: Mistake) -> Failure {
     let inputs = random_inputs::<Toy>(2, 300, &mut Rng::new(1));
     let failure = match check::<Toy>(&mistake, &inputs, &CheckOptions::default()) {

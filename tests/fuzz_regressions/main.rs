@@ -321,9 +321,9 @@ fn a_body_that_a_joint_drags_out_of_range_is_not_slow() {
 
 #[test]
 fn a_shape_in_the_slot_of_one_that_slept_has_its_own_surface() {
-    // The contacts of a body that falls asleep leave the list that is searched for removed shapes. The combined
-    // material of two shapes is cached under their slots. It must not be used for a new shape that reuses one of these
-    // slots before the next tick.
+    // When a shape is removed, only the list of active contacts is searched for its contacts, and the contacts of a
+    // body that falls asleep leave this list. The combined material of two shapes is cached under their slots. It must
+    // not be used for a new shape that reuses one of these slots before the next tick.
     let mut world = World::default();
     let ground = ShapeDef::new(Polygon::rectangle(fx!(20), fx!(1)).unwrap());
     world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[ground]).unwrap();

@@ -35,7 +35,7 @@ fn geometry() {
     ]);
 }
 
-/// The size is named, with the value that the caller gave.
+/// Each message names the size that is out of range, and the value that the caller gave.
 #[test]
 fn sizes_out_of_range() {
     let origin = (fx!(0), fx!(0));
@@ -145,7 +145,7 @@ fn values_out_of_range() {
     ]);
 }
 
-/// The forms of a range.
+/// A message gives a range in a form that depends on its ends.
 #[test]
 fn ranges() {
     let joint = |min, max| WorldError::JointOutOfRange { what: "motor speed", value: fx!(-7.5), min, max };

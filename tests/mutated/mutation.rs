@@ -65,7 +65,7 @@ pub(crate) fn mutate(rng: &mut Rng, file: &mut Vec<u8>, others: &[Vec<u8>]) -> M
             let other = &others[below(rng, others.len())];
             let (at, from) = (below(rng, length), below(rng, other.len()));
             if rng.below(2) == 0 {
-                // The beginning of one file and the end of another.
+                // Joins the beginning of one file and the end of another.
                 file.truncate(at);
                 file.extend_from_slice(&other[from..]);
             } else {

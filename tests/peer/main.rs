@@ -73,7 +73,7 @@ impl Table {
         self.sit(peer.expect("valid"));
     }
 
-    /// Plays for some milliseconds. Peers that are closed end their replays.
+    /// Plays for some milliseconds. Removes each peer that has closed, and ends its replay.
     fn play(&mut self, milliseconds: u64) {
         for _ in 0..milliseconds {
             let now = self.network.time() + Duration::from_millis(1);
@@ -277,7 +277,7 @@ fn more_inputs_than_seats_are_an_error() {
     assert!(matches!(table.peer(0).advance(&[1, 2]), Err(PeerError::InputCount { seats: 1, inputs: 2 })));
 }
 
-/// Plays nothing: a host alone with these options.
+/// Returns the message of the error with which `Peer::host` refuses the options.
 fn refused(options: PeerOptions) -> String {
     let network = Network::new(conditions(1, 0), 3);
     let peer = Peer::<Pushers, _>::host(&Setup::default(), options, identity(0), network.port(0));

@@ -85,7 +85,7 @@ fn round_shapes_float_as_deep_as_their_density_says() {
         run(&mut world, 900);
         close(at(&world, body).y, fx!(0), fx!(0.002));
     }
-    // The share under water of a disc that emerges by half its radius: r^2 (pi - acos(1/2) + sqrt(3) / 4) of pi r^2.
+    // Submerged part of a disc that emerges by half its radius: r^2 (pi - acos(1/2) + sqrt(3) / 4) of pi r^2.
     let share = fx_div(PI - PI / 3 + fx!(0.433012701892), PI).expect("valid");
     let mut world = world(fx!(-10));
     pool(&mut world, fx!(0), fx!(20), water);
@@ -211,7 +211,7 @@ fn orbits_close() {
     let planet = Area::new().attraction(fx!(10), fx!(2), Falloff::InverseSquare);
     let planet = ShapeDef::new(Geometry::circle(fx!(50)).expect("valid")).area(planet);
     world.spawn(&BodyDef::fixed(), &[planet]).expect("valid");
-    // g R^2 = 40
+    // The planet has g R^2 = 40 m^3/s^2.
     let circular = sqrt(fx!(40) / 10).expect("valid");
     let ball = ShapeDef::new(Geometry::circle(fx!(0.25)).expect("valid"));
     for speed in [circular, circular * 5 / 4, circular * 3 / 4] {

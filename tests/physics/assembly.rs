@@ -1,6 +1,6 @@
 //! Random assemblies: bodies without shapes, joined in a star, a tree, a chain, a loop, a mesh or a grid.
 //!
-//! All joints are satisfied at the start, so that the start has no energy in the joints themselves. Masses are within a
+//! All joints are satisfied at the start, so that no energy is stored in the joints themselves. Masses are within a
 //! factor of 100 of each other, and arms within 16 radii of gyration.
 #![expect(clippy::disallowed_types, reason = "energies are compared with floating point, not simulated")]
 #![expect(clippy::float_arithmetic, reason = "the oracle computes energy in floating point")]

@@ -106,7 +106,7 @@ fn torques_are_in_the_ratio_of_the_teeth() {
         world.apply_torque(a, fx!(6)).expect("valid");
         world.step();
     }
-    // The brake acts on B against 12 N m. The force at the pitch point is 6 N m / 1 m.
+    // The torque of 6 N m on A is 12 N m on B, which the brake holds. The force at the pitch point is 6 N m / 1 m.
     let (_, torque) = world.joint_part_force(brake, JointPart::Motor).expect("valid");
     close(torque, fx!(12), fx!(0.02));
     let (force, torque) = world.joint_force(gear).expect("valid");
@@ -127,7 +127,7 @@ fn a_wheel_accelerates_with_the_inertia_of_both() {
         world.apply_torque(a, fx!(5)).expect("valid");
         world.step();
     }
-    // I = pi r^4 / 2
+    // A disc with a density of 1 has the inertia I = pi r^4 / 2.
     let inertia = |r: Fx| fx_mul(PI, fx_mul(fx_mul(r, r), fx_mul(r, r))) / 2;
     let both = inertia(fx!(0.5)) + inertia(fx!(1.5)) / 9;
     let expected = fx_div(fx!(5), both).expect("valid");

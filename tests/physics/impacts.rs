@@ -72,7 +72,7 @@ fn colliding_balls_keep_their_angular_momentum() {
             world.spawn(&spins, &[ball]).expect("valid");
             let def = BodyDef::dynamic().position((x, offset)).velocity((-speed, fx!(0)));
             world.spawn(&def, &[ball]).expect("valid");
-            // The sum, and the sum of absolute values.
+            // The angular momentum, and the sum of the absolute values of its parts.
             let momentum = |world: &World| {
                 world.bodies().fold((Fx::ZERO, Fx::ZERO), |(sum, all), (_, body)| {
                     let orbital = fx_mul(body.mass(), body.centre_of_mass().cross(body.velocity()));
@@ -297,7 +297,7 @@ fn a_ball_in_a_wedge_rests_between_the_walls() {
             world.step();
         }
         let Vec2 { x, y } = world.body(ball).expect("there").position();
-        // The distances from the walls x = 0 and y = -2 x.
+        // The walls are the lines x = 0 and y = -2 x.
         let from_left = fx_mul(x * 2 + y, fx!(0.4472135955));
         let overlap = fx!(0.3) - (-x).min(from_left);
         assert!(overlap < fx!(0.0105), "{speed} m/s, {phase}: {overlap} m in a wall, at ({x}, {y})");

@@ -12,7 +12,7 @@ pub(crate) struct Bench {
     pub(crate) b: BodyId,
 }
 
-/// Body at the other end of a joint.
+/// Body A of a bench, to which a joint connects body B.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Ground {
     Fixed,
@@ -74,7 +74,7 @@ pub(crate) fn reduced(a: Fx, b: Fx) -> Fx {
     lockstep2d::math::fx_div(lockstep2d::math::fx_mul(a, b), a + b).expect("positive")
 }
 
-/// Returns grounds for B, each with the effective mass and inertia for B's 2 kg and 0.5 kg m².
+/// Returns choices of body A, each with the effective mass and inertia of A and B together. B has 2 kg and 0.5 kg m².
 pub(crate) fn grounds() -> [(Ground, Fx, Fx); 3] {
     // A has a radius of gyration of 0.4 m.
     let free = |mass: Fx| (Ground::Free(mass), reduced(fx!(2), mass), reduced(fx!(0.5), mass * 4 / 25));

@@ -84,7 +84,7 @@ fn assemblies_with_suspensions_gain_no_energy() {
 }
 
 /// Hinges and welds push both bodies at one point. If each body were pushed at its own anchor, angular momentum would
-/// grow where the anchors are apart, and with it energy: in 9 % of these assemblies by up to 50 times.
+/// grow where the anchors are apart, and the energy of 9 % of these assemblies would grow too, by up to 50 times.
 #[test]
 fn assemblies_of_welds_that_turn_or_hang_gain_no_energy() {
     never_gain(Mix::Weld, Start::Spin);

@@ -169,7 +169,8 @@ fn joints_work_at_any_size_and_place() {
     };
     let origin = Vec2::new(fx!(1000000000), fx!(-1000000000));
     for size in [fx!(0.01), fx!(0.1), fx!(1), fx!(50)] {
-        // A mass ratio of 100 makes a joint sag by some centimetres, whatever its size.
+        // A mass ratio of 100 makes a joint of any size sag by some centimetres, so the smallest joints have a ratio of
+        // 1.
         let under = if size < fx!(0.1) { (1, 1) } else { (1, 100) };
         for (kind, masses) in kinds(size).into_iter().flat_map(|kind| [(kind, under), (kind, (100, 1))]) {
             let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0), fx!(100)), fx!(0));

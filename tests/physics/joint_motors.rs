@@ -83,7 +83,7 @@ fn a_motor_stalls_under_a_larger_load() {
     }
 }
 
-/// A box of 4 kg on a floor with friction 0.5 is held by 20 N.
+/// Friction 0.5 holds a box of 4 kg on a floor against forces of up to 20 N.
 #[test]
 fn dragging_with_less_than_friction_does_not_move_a_box() {
     for (force, moves) in [(fx!(18), false), (fx!(24), true)] {
@@ -127,6 +127,7 @@ fn a_stiff_joint_comes_to_rest() {
     let angle = bench.world.joint_angle(joint).expect("there");
     bench.run(60, |_, _| {});
     close(bench.world.joint_angle(joint).expect("there"), angle, fx!(0.001), "at rest");
-    // The spring's torque is I omega^2 (0.1 - angle) = 78.96 (0.1 - angle), the weight's 6 cos angle, friction 0.5.
+    // The spring's torque is I omega^2 (0.1 - angle) = 78.96 (0.1 - angle), the weight's torque is 6 cos angle, and the
+    // torque of friction is at most 0.5.
     assert!(fx!(0.01) < angle + fx!(0.05) && angle < fx!(0.05), "{angle} rad");
 }

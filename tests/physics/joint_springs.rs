@@ -21,7 +21,7 @@ struct Oscillator {
     v: Fx,
     hertz: Fx,
     damping_ratio: Fx,
-    /// `K`.
+    /// `K` in the recurrence.
     mobility: Fx,
 }
 
@@ -129,7 +129,7 @@ fn a_point_on_an_arm_swings_faster() {
             (fx!(1.5), fx!(5), fx!(0.5)),
             (fx!(8), fx!(0.5), fx!(0)),
         ] {
-            // So small that B's rotation does not shorten the arm.
+            // The stretch is so small that B's rotation does not shorten the arm.
             let x = arm / 100;
             let mut bench = Bench::new(ground, fx!(0), Vec2::new(arm, x), fx!(0));
             let kind = Motor::new().linear_spring(hertz, ratio, Fx::MAX);
@@ -156,7 +156,7 @@ fn a_spring_along_a_line_swings_faster_on_an_arm() {
             (fx!(1.5), fx!(1), fx!(0.1)),
             (fx!(1.5), fx!(5), fx!(0.5)),
         ] {
-            // So small that B's rotation does not change the arm.
+            // The stretch is so small that B's rotation does not change the arm.
             let x = arm / 1000;
             let long = fx!(2);
             let mobility = fx!(1) + fx_mul(reduced, fx_mul(arm, arm) * 4);

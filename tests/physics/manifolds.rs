@@ -54,7 +54,7 @@ fn contact_points_lie_on_outlines_that_hardly_bend() {
     let count = sweep::size(100_000, 10_000);
     for case in 0..count {
         let length = rng.range(fx!(20), fx!(117));
-        // 2 um to 2 cm.
+        // A thickness from 2 um to 2 cm.
         let thin = |rng: &mut Rng| {
             let most = [fx!(0.00001), fx!(0.0005), fx!(0.02)][rng.below(3) as usize];
             rng.range(fx!(0.000002), most)

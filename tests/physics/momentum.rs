@@ -56,7 +56,7 @@ impl Choice {
         self.0.range(-most, most)
     }
 
-    /// Returns a largest force or torque: in a quarter of all cases no limit.
+    /// Returns a random largest force or torque, which is unlimited in a quarter of all cases.
     fn force(&mut self) -> Fx {
         if self.one_in(4) { Fx::MAX } else { self.0.range(fx!(0.1), fx!(300)) }
     }
@@ -69,7 +69,7 @@ impl Choice {
         if self.one_in(4) { Fx::ZERO } else { self.0.range(fx!(0), fx!(2)) }
     }
 
-    /// A target speed: in half of all cases 0, which makes a motor act as friction.
+    /// Returns a random target speed. In half of all cases it is 0, which makes a motor act as friction.
     fn speed(&mut self) -> Fx {
         if self.one_in(2) { Fx::ZERO } else { self.within(fx!(2)) }
     }
@@ -232,7 +232,7 @@ fn friction_between_two_balls_holds_neither_of_them_up() {
             let mut world = World::default();
             let floor = ShapeDef::new(Polygon::rectangle(fx!(50), fx!(1)).expect("valid"));
             world.spawn(&BodyDef::fixed().position((fx!(0), fx!(-1))), &[floor]).expect("valid");
-            // 1 kg.
+            // The density gives each ball a mass of 1 kg.
             let ball = ShapeDef::new(Geometry::circle(fx!(0.5)).expect("valid")).density(fx!(1.2732));
             let low = BodyDef::dynamic().position((fx!(0), fx!(0.5) + fall));
             let high = BodyDef::dynamic().position((apart, fx!(3)));
@@ -264,7 +264,7 @@ fn friction_holds_a_falling_body_only_if_it_suffices() {
         for _ in 0..120 {
             world.step();
         }
-        // 0.5 m/s² for 2 s.
+        // The body falls by 1 m: 0.5 m/s² for 2 s.
         let expected = if falls { fx!(-1) } else { fx!(0) };
         let y = world.body(body).expect("there").position().y;
         assert!((y - expected).abs() < fx!(0.01), "{force} N: at {y} m");

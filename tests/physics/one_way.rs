@@ -122,7 +122,7 @@ fn flush_platforms_carry_over_their_seams() {
     }
 }
 
-/// The direction rotates with the body: a door that opens to the left.
+/// The direction rotates with the body: a platform on its side is a door that lets bodies pass to the left.
 #[test]
 fn the_direction_belongs_to_the_body() {
     let platform = platforms()[0];
@@ -141,7 +141,7 @@ fn the_direction_belongs_to_the_body() {
     }
 }
 
-/// A restored world keeps the pairs that are passing through.
+/// A restored world still has the pairs of which one shape is passing through a platform.
 #[test]
 fn passing_survives_a_snapshot() {
     let mut world = World::default();

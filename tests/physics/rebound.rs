@@ -159,8 +159,8 @@ fn the_threshold_of_the_world_is_the_default_of_a_material() {
     }
 }
 
-/// At or above the threshold a ball bounces, below it does not. If a ball and a floor have different thresholds, the
-/// smaller one applies.
+/// A ball bounces if its speed is at or above the threshold, and does not bounce at a lower speed. If a ball and a
+/// floor have different thresholds, the smaller one applies.
 #[test]
 fn the_smaller_threshold_of_two_shapes_decides_whether_they_bounce() {
     let speed = fx!(0.5);

@@ -108,7 +108,7 @@ fn stacks_of_any_size_sink_by_at_most_a_fortieth_of_a_box() {
         let sunk = sink(Config::default().for_smallest(size), size);
         assert!(sunk < fx!(0.025), "{size} m: sinks by {sunk} of a box");
     }
-    // Boxes of 0.9 m and more need no other settings.
+    // Boxes of 0.9 m and more need no settings other than the defaults.
     for size in [fx!(10), fx!(1), fx!(0.9)] {
         let sunk = sink(Config::default(), size);
         assert!(sunk < fx!(0.025), "{size} m: sinks by {sunk} of a box at defaults");

@@ -39,7 +39,7 @@ fn ground(world: &mut World, ground: Ground) {
     }
 }
 
-/// Returns the largest vertical speed and the distance of a shape that starts to slide at a height.
+/// Returns the largest vertical speed of a shape that starts to slide at a height, and the distance that it travels.
 fn slide(kind: Ground, shape: ShapeDef, height: Fx, speed: Fx) -> (Fx, Fx) {
     let mut world = World::default();
     ground(&mut world, kind);

@@ -67,7 +67,7 @@ fn a_press_does_not_shake_what_it_squeezes() {
             }
             let last = position(&world, ball);
             world.step();
-            // The ball moves at most half as fast as the press, for one side of it is at the floor.
+            // The centre of the ball moves at most half as fast as the press, because the ball rests on the floor.
             let moved = position(&world, ball).distance(last);
             assert!(moved < speed / 60 + fx!(0.005), "{speed} m/s, tick {tick}: {moved} m");
         }

@@ -119,7 +119,7 @@ fn resistance_between_two_wheels_is_equal_and_opposite() {
     assert!((after[0].1 - after[1].1).abs() < (before[0].1 - before[1].1).abs(), "{before:?} {after:?}");
 }
 
-/// `v = mu g t` until the box moves with the belt, and no faster.
+/// The speed of the box is `v = mu g t` until it reaches the speed of the belt, which it never exceeds.
 #[test]
 fn a_box_on_a_belt_reaches_its_speed() {
     for ground in [line(), block()] {
@@ -162,7 +162,8 @@ fn a_ball_on_a_belt_takes_a_third_of_its_speed() {
     assert!((spin - fx!(4)).abs() < fx!(0.02), "{spin} rad/s");
 }
 
-/// A belt above a body: the lower side of a shape runs the opposite way.
+/// The surface of a belt runs the opposite way on its lower side, which here carries a body that is pressed against it
+/// from below.
 #[test]
 fn the_lower_side_of_a_belt_runs_back() {
     let mut world =

@@ -102,8 +102,8 @@ fn casts_between_a_floor_and_a_ceiling_pass_the_seams_of_both() {
     }
 }
 
-/// A shape that overlaps a floor and a ceiling meets a ramp just before the end of its cast. A cast that first pushed
-/// the shape out of the floor or the ceiling would see it up to 1 cm further away from the ramp.
+/// A shape that overlaps a floor and a ceiling meets a ramp just before the end of its cast. If a cast first pushed the
+/// shape out of the floor or the ceiling, the shape would start up to 1 cm further away from the ramp.
 #[test]
 fn casts_between_a_floor_and_a_ceiling_stop_at_ramps_at_their_ends() {
     for upside_down in [false, true] {
@@ -233,7 +233,7 @@ pub(crate) fn random_geometry(rng: &mut Rng) -> Geometry {
     }
 }
 
-/// Casts that turn, against small steps: nothing is touched before the hit, and the hit is within the skin.
+/// Compares casts that turn with many small steps: nothing is touched before the hit, and the hit is within the skin.
 #[test]
 fn a_turning_cast_stops_at_the_first_touch_of_small_steps() {
     let mut rng = Rng::new(5);

@@ -78,7 +78,7 @@ fn what_a_kind_of_body_cannot_do_is_refused() {
     for body in [floor, lift] {
         stage.refuses(Command::Sleep { body }, wrong_kind);
     }
-    // 1 km in one tick, and a target outside the world.
+    // The first target is 1 km away, too far for one tick. The second one is outside the world.
     let position = Vec2::new(fx!(1000), fx!(0));
     stage.refuses(Command::MoveTo { body: lift, position, angle }, fast);
     stage.refuses(Command::MoveTo { body: lift, position: Vec2::new(Fx::MIN, Fx::MAX), angle }, far);

@@ -82,7 +82,7 @@ impl Game for Counter {
     }
 }
 
-/// Methods of a game that has a counter in the field `$counter` and differs from it in its other methods.
+/// Methods of a game that delegates them to the counter in its field `$counter` and implements the others itself.
 macro_rules! like_its_counter {
     ($counter:tt) => {
         fn players(&self) -> u32 {
@@ -120,7 +120,7 @@ pub(crate) fn add(first: i8, second: i8) -> [Input; 2] {
     [Input { add: first, ..Input::default() }, Input { add: second, ..Input::default() }]
 }
 
-/// Returns inputs that change every few ticks and hold in between.
+/// Returns inputs that change every few ticks and stay the same in between.
 pub(crate) fn inputs_at(tick: u64) -> [Input; 2] {
     let step = i8::try_from(tick / 5 % 7).unwrap() - 3;
     let mut inputs = add(step, 1);

@@ -100,7 +100,7 @@ fn a_replay_can_be_stopped_at_any_tick() {
     assert_eq!(replay.conclude(), Verdict::Incomplete { ticks: 34, hash: hash_after(34) });
 }
 
-/// The worked example of `docs/FORMAT.md`: four ticks of the counter, a checkpoint every three.
+/// The worked example of `docs/FORMAT.md` has four ticks of the counter, and a checkpoint every three ticks.
 #[test]
 fn the_bytes_are_those_of_the_document() {
     let mut recording = Recording::<Counter>::start(&setup(), 3).unwrap();

@@ -10,7 +10,7 @@ use crate::counter::{Counter, inputs_at};
 use crate::forge::{CHAIN, Forged, INPUTS, KEYFRAME, TRAILER, forge};
 use crate::{record, verdict};
 
-/// A replay of three full blocks of ten ticks, one of five, and the trailer.
+/// A replay of three full blocks of ten ticks, a block of five ticks, and the trailer.
 fn original() -> Vec<u8> {
     record(35, 10, inputs_at)
 }
@@ -62,7 +62,7 @@ fn no_flipped_bit_matches_even_with_checksums_repaired() {
 
 #[test]
 fn an_input_that_the_game_ignores_is_bound_all_the_same() {
-    // The wink of the first player in the first run. Layout: ticks, length, add, wink, add, wink.
+    // Flips the wink of the first player in the first run. Layout: ticks, length, add, wink, add, wink.
     let verdict = forged(|forged| forged.payload(0)[3] ^= 1);
     assert_eq!(verdict, Verdict::Diverged { last_equal: Some(0), first_different: 10 });
 }
@@ -115,7 +115,7 @@ fn ticks_cannot_be_added_removed_or_moved() {
     }
     let swapped = forged(|forged| forged.blocks.swap(0, 1));
     assert_eq!(swapped, Verdict::Diverged { last_equal: Some(0), first_different: 10 });
-    // The last block has one run of five ticks, which becomes four.
+    // The last block has one run of five ticks, which is shortened to four ticks.
     let shorter = forged(|forged| {
         assert_eq!(forged.payload(3)[0], 5);
         forged.payload(3)[0] = 4;

@@ -27,7 +27,7 @@ fn assert_exact(file: &[u8], limit: LimitKind, needed: u64, set: impl Fn(&mut Li
 #[test]
 fn each_limit_is_exact() {
     let narrow = |value: u64| u32::try_from(value).unwrap();
-    // 35 ticks of |-3| + |1| + 1 units.
+    // Each of the 35 ticks costs |-3| + |1| + 1 units of work.
     let file = record(35, 10, |_| add(-3, 1));
     let length = file.len() as u64;
     assert_exact(&file, LimitKind::FileBytes, length, |limits, max| limits.file_bytes = max);

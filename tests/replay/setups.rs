@@ -11,7 +11,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::forge::forge;
 
-/// A game without players and without changes, from any setup.
+/// A game without players that accepts any setup, and whose state never changes.
 struct Still<S>(PhantomData<S>);
 
 impl<S: Serialize + DeserializeOwned> Game for Still<S> {

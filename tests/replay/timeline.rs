@@ -51,7 +51,8 @@ fn any_tick_of_a_hundred_thousand_is_two_intervals_away() {
     const TICKS: u64 = 100_000;
     let file = record(TICKS, 60, inputs_at);
     let hashes = hashes::<Counter>(&file);
-    // Room for all keyframes, room for a hundred, and two intervals that are not multiples of the block length.
+    // Cases: room for all keyframes, room for a hundred keyframes, and two intervals that are not multiples of the
+    // block length.
     for (interval, bytes) in [(300, 64 << 20), (60, 50_000), (37, 64 << 20), (1000, 64 << 20)] {
         let mut timeline = open::<Counter>(&file, interval, bytes);
         assert_eq!((timeline.simulated(), timeline.ticks()), (0, TICKS), "expected no simulation on opening");
@@ -124,7 +125,7 @@ fn worlds_come_back_at_every_tick() {
 #[test]
 fn steps_backwards_are_cheap_in_little_memory_too() {
     let file = record(20_000, 60, inputs_at);
-    // Room for about 100 keyframes, and 30 saves behind the cursor.
+    // The memory has room for about 100 keyframes, and for 30 saves for stepping backwards.
     let mut timeline = open::<Counter>(&file, 60, 40_000);
     timeline.seek(20_000).unwrap();
     let interval = timeline.interval();
@@ -191,7 +192,8 @@ fn limits_hold_on_the_way_and_repeated_ticks_count_once() {
     let exceeded = Verdict::LimitExceeded { limit: LimitKind::TickWork, value: 102, max: 50 };
     assert_eq!(timeline.seek(100), Err(SeekError::Replay(exceeded)));
     timeline.seek(69).unwrap();
-    // Three units a tick.
+    // A tick costs three units of work, and one tick costs 102. If repeated ticks counted again, the limit would be
+    // exceeded.
     let limits = Limits { total_work: 700, ..Limits::default() };
     let mut timeline = Timeline::<Counter>::open(&file, &TimelineOptions::default(), &limits).unwrap();
     for _ in 0..50 {

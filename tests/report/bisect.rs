@@ -160,7 +160,7 @@ fn a_flipped_bit_is_found_in_its_trace_for_less_than_three_verifications() {
         assert_eq!(found.stage, Some(stage), "{what}");
         assert_eq!(culprit(&found), (path.clone(), flip.field.name().into()), "{what}");
     });
-    // Every field, before and after the step.
+    // The flips were in every field, and both before and after the step.
     let drawn = drawn.into_inner().unwrap();
     assert_eq!(drawn.len(), BodyField::ALL.len() + 2, "only {drawn:?}");
     let worst = worst.into_inner();

@@ -38,7 +38,8 @@ fn a_character_does_not_climb_what_hangs_over_its_floor() {
 fn a_character_does_not_climb_a_step_without_headroom() {
     for ((name, shape), tick_rate) in shapes().into_iter().flat_map(|shape| RATES.map(|rate| (shape, rate))) {
         for (height, room) in [(fx!(0.1), false), (fx!(0.25), false), (fx!(0.1), true), (fx!(0.25), true)] {
-            // The ball has no room on its way up, as its widest part meets the ceiling before its lowest one the step.
+            // The ball never climbs the step: its widest part meets the ceiling before its lowest point reaches the
+            // step.
             if name == "ball" {
                 continue;
             }

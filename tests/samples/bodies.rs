@@ -82,7 +82,7 @@ fn sleepers_wait_to_be_woken() {
         stage.spawn(BodyDef::dynamic().position(at!(0, 3)).asleep().never_sleeps(), &[ball(fx!(1))]);
     let lower = stage.spawn(BodyDef::dynamic().position(at!(5, 1)).asleep(), &[square(fx!(1))]);
     let upper = stage.add(at!(5, 5), square(fx!(0.5)));
-    // Passes above the solid part of the sleeper, through its sensor.
+    // The visitor passes above the solid part of the sleeper, through the sleeper's sensor.
     let def = BodyDef::dynamic().position(at!(-4, 3.8)).gravity_scale(fx!(0)).velocity((fx!(6), fx!(0)));
     let visitor = stage.spawn(def, &[ball(fx!(0.1))]);
     let (mut begins, mut ends, mut woken) = (0, 0, false);

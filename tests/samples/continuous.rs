@@ -302,7 +302,8 @@ fn a_ball_rests_in_a_wedge() {
             ball(fx!(0.3)).friction(fx!(0.2)),
         );
         stage.run(1200);
-        // The walls include atan(0.5): the centre is 0.3 m from the upright one and 0.3 / tan(13.28 degrees) high.
+        // The walls enclose an angle of atan(0.5), 26.57 degrees. The centre of the ball is 0.3 m from the upright
+        // wall, at a height of 0.3 / tan(13.28 degrees).
         near(stage.place(body).x, fx!(-0.3), fx!(0.005));
         near(stage.place(body).y, fx!(1.271), fx!(0.02));
         assert!(stage.velocity(body).length() < fx!(0.01));

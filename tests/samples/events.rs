@@ -59,7 +59,7 @@ fn a_funnel_empties_into_its_sensor() {
         }
     }
     assert_eq!((dropped, caught), (20, 20));
-    // The funnel and its paddles.
+    // The funnel and its three paddles are left.
     assert_eq!(stage.world.body_count(), 4);
 }
 

@@ -15,7 +15,7 @@ fn diagonal() -> Vec2<Fx> {
     at!(0.70710678, 0.70710678)
 }
 
-/// `g / (2 pi f)^2`: how far a spring of a frequency yields to an acceleration.
+/// Returns how far a spring of frequency `f` yields under an acceleration `g`: `g / (2 pi f)^2`.
 fn sag(gravity: Fx, hertz: Fx) -> Fx {
     let omega = fx_mul(lockstep2d::math::PI * 2, hertz);
     fx_div(gravity, fx_mul(omega, omega)).expect("positive")
@@ -118,7 +118,7 @@ fn a_motor_joint_is_friction_seen_from_above() {
     let body = stage.spawn(def, &[square(fx!(0.5))]);
     let motor = Motor::new().linear(Vec2::ZERO, fx!(10)).angular(fx!(0), fx!(1));
     stage.join(JointDef::new(ground, body, motor).colliding());
-    // 1 N m stops 6 rad/s of 1 kg m² / 6 after a second.
+    // A torque of 1 N m stops a rotation of 6 rad/s after a second, because the inertia is 1/6 kg m².
     stage.run(30);
     near(stage.velocity(body).length(), fx!(0), fx!(0.01));
     near(stage.body(body).angular_velocity(), fx!(3), fx!(0.01));
@@ -274,7 +274,8 @@ fn locks_and_joints_agree() {
 }
 
 /// Sample "Breakable", and sample "Joint" of the group "Events". A box weighs 40 N. A box that swings on a hinge loads
-/// it with `m g (1 + 2 r^2 / (r^2 + k^2)) = 88 N` at the lowest point: 100 N hold all, 30 N none.
+/// it with `m g (1 + 2 r^2 / (r^2 + k^2)) = 88 N` at the lowest point. With a threshold of 100 N all joints hold, and
+/// with 30 N none.
 #[test]
 fn joints_break_above_their_threshold() {
     for action in [ThresholdAction::Break, ThresholdAction::Event] {
@@ -311,7 +312,7 @@ fn joints_close_after_a_blow() {
     let joints: Vec<_> = stage.world.joints().map(|(id, _)| id).collect();
     stage.run(600);
     for id in joints {
-        // A motor joint has nothing rigid.
+        // A motor joint has no rigid part, and therefore no error.
         let is_motor = matches!(stage.world.joint(id).expect("there").def().kind, JointKind::Motor(_));
         let error = stage.world.joint_error(id);
         assert!(error.map_or(is_motor, |error| error < fx!(0.005)), "{error:?} m");

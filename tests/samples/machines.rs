@@ -33,7 +33,7 @@ fn a_bridge_carries() {
     }
 }
 
-/// Sample "Ball & Chain". Thirty links of 6 kg hold a ball of 1 t, and it swings no higher than it began.
+/// Sample "Ball & Chain". Thirty links of 6 kg hold a ball of 1 t, and the ball swings no higher than its start.
 #[test]
 fn a_chain_holds_a_heavy_ball() {
     let mut stage = Stage::new();
@@ -57,7 +57,7 @@ fn a_chain_holds_a_heavy_ball() {
     });
 }
 
-/// A row of links of 6 kg and 1 m, welded to each other and to the ground. Returns its tip.
+/// Adds a row of links of 6 kg and 1 m, welded to each other and to the ground. Returns the last link.
 fn cantilever(stage: &mut Stage, links: i32, weld: Weld) -> BodyId {
     let mut before = stage.spawn(BodyDef::fixed(), &[]);
     for i in 0..links {
@@ -312,7 +312,7 @@ fn toothed_wheels_lift_a_door() {
     };
     let (turned, door, start, gap) = lift(Vec2::ZERO);
     near(turned[0], fx!(-1.2), fx!(0.02));
-    // 16 teeth on 16 teeth, less the play of a tooth's width.
+    // Both wheels have 16 teeth, so they turn by equal angles, except for the play of a tooth's width.
     near(turned[1], fx!(1.2), fx!(0.2));
     assert!(door.y > start.y + fx!(0.8), "the door went from {start:?} to {door:?}");
     assert!(gap < fx!(0.02), "{gap} m");

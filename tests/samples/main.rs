@@ -207,7 +207,7 @@ fn degrees(angle: i32) -> Angle {
     Angle::from_degrees(Fx::from_num(angle))
 }
 
-/// The whole number as a fixed-point number.
+/// Converts a whole number to a fixed-point number.
 fn num(value: i32) -> Fx {
     Fx::from_num(value)
 }

@@ -31,10 +31,11 @@ fn distances_of_loose_shapes() {
     let found = probe(triangle, at!(0, 2)).distance(&block);
     near(found.distance, fx!(1.5), fx!(0.000001));
     near(found.point_a.y - found.point_b.y, fx!(1.5), fx!(0.000001));
-    // Corner to corner: (1, 1) from (0.5, 0.5) with a radius of 0.2.
+    // The distance from the corner (0.5, 0.5) of the block to the corner (1.5, 1.5) of the core, less the radius of
+    // 0.2.
     let rounded = Polygon::square(fx!(0.5)).and_then(|core| core.rounded(fx!(0.2))).expect("valid");
     near(probe(rounded, at!(2, 2)).distance(&block).distance, fx!(1.21421356), fx!(0.000001));
-    // Turned by 45 degrees, its corner points down: 2 - 0.70711 - 0.5.
+    // A square turned by 45 degrees points down with a corner: 2 - 0.70711 - 0.5.
     let square = Polygon::square(fx!(0.5)).expect("valid");
     near(
         probe(square, at!(0, 2)).turned(degrees(45)).distance(&block).distance,
@@ -300,8 +301,9 @@ fn a_body_on_a_spring_leg_keeps_its_height() {
     assert!(stage.place(body).x > fx!(5));
 }
 
-/// Sample "Dynamic Mover" with its pogo. A spring between the body and the ground under it, which pushes with at most
-/// three times the weight and pulls with half of it. As in the sample, the spring is created again in every tick.
+/// Sample "Dynamic Mover" with its pogo. The pogo is a spring between the body and the ground under it. It pushes with
+/// at most three times the weight of the body, and pulls with at most half of the weight. As in the sample, the spring
+/// is created again in every tick.
 #[test]
 fn a_pogo_is_a_spring_to_the_ground() {
     let mut stage = Stage::with_floor();

@@ -108,7 +108,8 @@ fn damping_is_exponential() {
         let body =
             stage.spawn(def.linear_damping(num(i + 1)).angular_damping(num(10 - i)), &[square(fx!(0.2))]);
         stage.run(30);
-        // Each sub-step divides by 1 + c / 240. This decays more slowly, by a share of up to c^2 t / 480.
+        // Each sub-step divides the velocity by 1 + c / 240. After a time t, the velocity is therefore larger than that
+        // of the exponential decay, by a share of about c^2 t / 480.
         near(stage.velocity(body).length(), slow * 10, fx!(0.04));
         near(stage.body(body).angular_velocity(), spin * 100, fx!(0.4));
     }
@@ -286,7 +287,7 @@ fn platforms_carry_boxes() {
             .collect();
         stage.run(30);
         for tick in 0..600 {
-            // At most 5 m/s² sideways, half of what friction carries.
+            // At most 3 m/s² sideways, a third of the acceleration that friction 1 can give.
             let time = Angle::from_radians(num(tick) / 60);
             let velocity = Vec2::new(widen(time.sin()) * 3, widen((time + time).sin()) / 2);
             if moved {

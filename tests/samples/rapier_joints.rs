@@ -19,7 +19,7 @@ fn arms_stop_at_limits_beyond_half_a_turn() {
             let arm = stage.spawn(BodyDef::dynamic().position(place).angle(start), &[rect(fx!(1), fx!(0.1))]);
             let radians = |angle: i32| fx_mul(num(angle), PI) / 180;
             let middle = radians((lower + upper) / 2);
-            // The angle counts from the pose in which the joint is made.
+            // The angle of a joint is relative to the pose in which the joint is created.
             let hinge = Revolute::new().limit(radians(lower) - middle, radians(upper) - middle);
             let hinge = hinge.motor(fx!(5) * direction, fx!(20));
             let joint = stage.join_at(ground, arm, hinge, Vec2::ZERO);
@@ -92,7 +92,8 @@ fn nets_hang() {
     assert!(nodes.iter().all(|&id| stage.place(id).y > fx!(-12)));
 }
 
-/// Example `locked_rotations2`. A bar that only turns is turned by a capsule that only moves.
+/// Example `locked_rotations2`. A capsule whose rotation is locked falls on a bar whose position is locked, and turns
+/// it.
 #[test]
 fn locks_of_rotation_and_of_translation() {
     let mut stage = Stage::with_floor();

@@ -31,7 +31,8 @@ fn things_come_down_a_chain() {
     }
 }
 
-/// Sample "Chain Segment". Single links with neighbours of their own, one of which is changed while a body is on it.
+/// Sample "Chain Segment". Single links with neighbours of their own, three of which are changed while a body is on
+/// them.
 #[test]
 fn links_of_ones_own_are_smooth_and_can_change() {
     let mut stage = Stage::new();
@@ -107,7 +108,7 @@ fn filters_change_at_run_time() {
     heights(&stage, [fx!(1), fx!(3), fx!(5)]);
     stage.world.set_filter(stage.shape(pile[0]), team(2, !4)).expect("valid");
     stage.run(240);
-    // The second one goes through the first, the third one stays on top of both.
+    // The second player falls through the first one, and the third player stays on top of both.
     heights(&stage, [fx!(1), fx!(1), fx!(3)]);
 }
 
@@ -189,7 +190,7 @@ fn a_heap_of_rounded_polygons_rests() {
     rests_in_the_trough(&mut stage);
 }
 
-/// Sample "Ellipse". An ellipse is a thin diamond with a large radius; a heap of them comes to rest.
+/// Sample "Ellipse". An ellipse is a thin hexagon with a large radius; a heap of ellipses comes to rest.
 #[test]
 fn a_heap_of_ellipses_rests() {
     let mut stage = trough();

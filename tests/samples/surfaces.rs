@@ -44,7 +44,7 @@ fn friction_decides_who_stays_on_the_slope() {
         let def = BodyDef::dynamic().angle(angle).position(Vec2::new(down, cos).scale(fx!(0.5)));
         let body = stage.spawn(def, &[square(fx!(0.5)).density(fx!(25)).friction(friction)]);
         stage.run(120);
-        // The geometric mean of both surfaces.
+        // The geometric mean of the friction of both surfaces, sqrt(0.2 friction).
         let mixed = lockstep2d::math::sqrt(friction / 5).expect("not negative");
         let pull = (down - fx_mul(mixed, cos)) * 10;
         let expected = if pull > 0 { pull * 2 } else { Fx::ZERO };
@@ -95,7 +95,7 @@ fn each_link_of_a_chain_has_its_own_speed() {
     stage.spawn(BodyDef::fixed(), &chain);
     let boxes: Vec<_> =
         (0..5).map(|i| stage.add(Vec2::new(num(10 * i + 5), fx!(0.5)), square(fx!(0.5)))).collect();
-    // The fastest one gets 5 m/s from friction 0.6 after 0.83 s, and is then 2.1 m from the middle of its link.
+    // Friction 0.6 accelerates the fastest box to 5 m/s in 0.83 s. The box is then 2.1 m from the middle of its link.
     stage.run(60);
     for (&id, speed) in boxes.iter().zip(speeds) {
         near(stage.velocity(id).x, speed, fx!(0.02));
@@ -133,7 +133,7 @@ fn an_explosion_pushes_a_ring_evenly_and_welds_pull_it_back() {
         }
         stage.run(1);
     }
-    // A sixth of a turn per second.
+    // The welds turn at a sixth of a turn per second.
     let turn = lockstep2d::math::PI / 3;
     for &(body, _, place) in &ring {
         near(stage.place(body).distance(place), fx!(0), fx!(0.01));

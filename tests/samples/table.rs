@@ -7,7 +7,7 @@ fn named(page: &str) -> BTreeSet<String> {
     page.split('`').filter(|word| word.contains("::") && is_test_name(word)).map(str::to_owned).collect()
 }
 
-/// Types and their methods begin with a capital letter.
+/// Whether a name is that of a test. Names of types, and of methods with their types, begin with a capital letter.
 fn is_test_name(word: &str) -> bool {
     word.chars().all(|c| c.is_ascii_lowercase() || c == '_' || c == ':')
 }

@@ -36,7 +36,8 @@ fn tiles_carry() {
     assert!(stage.fastest() < fx!(0.1), "still {} m/s", stage.fastest());
 }
 
-/// A pyramid and a row of hinged links at a place, after a while: relative positions and angles.
+/// Simulates a pyramid and a row of hinged links at a place. Returns their final positions relative to that place, and
+/// their angles.
 fn heap(origin: Vec2<Fx>) -> Vec<(Vec2<Fx>, Angle)> {
     let mut stage = Stage::new();
     let walls =

@@ -8,7 +8,7 @@ use lockstep2d::session::{Address, Config, Endpoint, Identity, JoinEvent, Reques
 use super::game::{START, mix_inputs};
 use super::sim::{MS, Rng, S, Us, id, key};
 
-/// An endpoint with a game whose state is a hash, followed by bytes without a meaning.
+/// An endpoint with a game whose state is a hash, followed by bytes that only make the state larger.
 pub(super) struct Node {
     pub(super) endpoint: Endpoint,
     pub(super) address: u8,

@@ -121,7 +121,7 @@ fn all_finish_at_the_same_tick_also_whoever_asked_for_another_one() {
     assert_eq!(sim.failure, None);
 }
 
-/// A spectator that knows only one peer follows the match, and keeps no player out.
+/// A spectator that knows only one peer follows the match, and takes no seat from a player.
 #[test]
 fn spectators_watch_through_one_another() {
     let count = 6;
@@ -218,7 +218,7 @@ fn somebody_who_leaves_costs_no_waiting() {
     assert_eq!(sim.failure, None);
 }
 
-/// 64 peers, all of them players.
+/// A match of 64 peers that are all players advances at nearly full speed.
 #[test]
 fn sixty_four_peers_play() {
     let mut sim = players(64, link(40 * MS), |config| config.tick_micros = 33_333);

@@ -101,7 +101,7 @@ pub(super) const HEAL: Us = 20 * S;
 pub(super) const SEATED: Us = 12 * S;
 /// Time within which all seated peers should advance.
 const MOVED: Us = 3 * S;
-/// Events that are planned for this time happen after the match has been checked for healing.
+/// Events that are planned for this time or later happen after the match has been checked for healing.
 const LATE: Us = 100 * S;
 
 pub(super) struct Match {

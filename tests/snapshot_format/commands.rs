@@ -96,7 +96,7 @@ fn shape_id() -> Written {
     w().u32(0).u32(1)
 }
 
-/// A rounded triangle in which no setting has its default.
+/// A rounded triangle in which no setting has its default value.
 fn polygon() -> (ShapeDef, Written) {
     polygon_with(None, w().u8(1))
 }
@@ -115,7 +115,7 @@ fn area() -> (Area, Written) {
     (area, bytes)
 }
 
-/// The triangle with the flags of a sensor, and its area.
+/// The triangle as a sensor, with an area if one is given. `sensor` contains the bytes of its flags and of the area.
 fn polygon_with(area: Option<Area>, sensor: Written) -> (ShapeDef, Written) {
     let material = Material {
         friction: fx!(0.5),

@@ -46,7 +46,7 @@ fn collect(folder: &Path, extensions: &[&str], paths: &mut Vec<PathBuf>) {
     }
 }
 
-/// Splits Rust code into words, `::` and single punctuation marks. A literal becomes one token, its quote.
+/// Splits Rust code into words, `::` and single punctuation marks. A quoted literal becomes one token: its first quote.
 pub(crate) fn tokens(code: &str) -> Vec<Token> {
     let mut found = Vec::new();
     let (mut rest, mut line) = (code, 1);

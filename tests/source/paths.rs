@@ -160,8 +160,8 @@ fn is_name(text: &str) -> bool {
     text.starts_with(|c: char| c.is_alphabetic() || c == '_')
 }
 
-/// Reads a path or a tree of paths. Adds the names of each path, and the name that it brings into scope. Returns the
-/// index of the token behind it.
+/// Reads a path or a tree of paths. Adds the names of each path, and the name that the path brings into scope. Returns
+/// the index of the token after the path or the tree.
 fn read_tree(
     tokens: &[Token],
     start: usize,

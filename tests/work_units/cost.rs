@@ -121,7 +121,8 @@ pub(super) fn too_expensive_commands(name: &str, setup: &SandboxSetup, once: &[C
         let file = record(setup, 1, &(Box::new(script) as Script<'_>));
         (costs(&file), file)
     };
-    // A tick without commands takes no longer than a tick with the commands once.
+    // The commands have to take at least as long as the rest of the tick, which takes no longer than a tick with the
+    // commands once.
     let least = 2 * tick_of(1).0[1].time + JUDGED;
     for repeats in [10, 100, 1000, 10_000, 100_000, COMMANDS_MAX] {
         let (parts, file) = tick_of(repeats);

@@ -181,7 +181,8 @@ fn every_command_of_a_body_asleep() {
     every_command_of_a_body(true);
 }
 
-/// Every command that names one body or shape, many times in a tick, on a body with many shapes, joints and neighbours.
+/// Measures every command that names one body or shape, executed many times in a tick, on a body with many shapes,
+/// joints and neighbours.
 fn every_command_of_a_body(settled: bool) {
     let many = body(0);
     let commands = || {

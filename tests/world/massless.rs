@@ -55,7 +55,7 @@ fn damping_slows_a_body_without_mass_until_it_sleeps() {
     let def = BodyDef::dynamic().velocity((fx!(1), fx!(0))).linear_damping(fx!(2));
     let body = world.spawn(&def, &[]).expect("valid");
     run(&mut world, 60);
-    // 1 / (1 + 2 / 240)^240
+    // Damping of 2 for one second leaves 1 / (1 + 2 / 240)^240 of the velocity.
     let speed = world.body(body).expect("there").velocity().x;
     assert!((speed - fx!(0.136465)).abs() < fx!(0.0002), "{speed}");
     run(&mut world, 120);

@@ -26,7 +26,7 @@ fn settings_take_effect() {
     let settings = BodySettings { gravity_scale: fx!(0), linear_damping: fx!(1), ..settings };
     world.set_body(id, &settings).expect("valid");
     run(&mut world, 60);
-    // e^-1 of 5 m/s; the implicit damping decays slightly more slowly.
+    // Damping of 1 for one second leaves e^-1 of 5 m/s, and slightly more because it is implicit.
     let left = world.body(id).expect("there").velocity().y;
     assert!((left - fx!(1.843)).abs() < fx!(0.01), "{left}");
     world.set_user_data(id, 7).expect("there");

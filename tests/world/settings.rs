@@ -48,8 +48,8 @@ fn a_stack_stays_at_rest_when_the_length_of_sub_steps_changes() {
             // from 4 to 16 sub-steps.
             assert!(fastest < fx!(0.015), "from {from} to {to} at {tick_rate}: {fastest} m/s");
             for (now, then) in heights(&world).iter().zip(&before) {
-                // Boxes hardly move: contacts have 30 Hz before and after, or an eighth of the sub-step rate where that
-                // is less.
+                // Boxes hardly move, because contacts have the same frequency before and after the change, as long as
+                // 30 Hz are at most an eighth of the sub-step rate.
                 let moved = (*now - *then).abs();
                 assert!(moved < fx!(0.005), "from {from} to {to} at {tick_rate}: moved by {moved}");
             }

@@ -185,7 +185,7 @@ fn sleeper_on_platform() -> (World, BodyId, BodyId) {
 fn a_platform_that_begins_to_move_wakes_its_rider_and_keeps_it_awake() {
     for by_target in [false, true] {
         let (mut world, platform, rider) = sleeper_on_platform();
-        // Below the default sleep speed of 0.05 m/s.
+        // This speed is below the default sleep speed of 0.05 m/s.
         let creep = fx!(0.03);
         for tick in 1..=120 {
             if by_target {
@@ -323,8 +323,8 @@ fn a_row_of_sleepers_wakes_in_one_tick() {
 }
 
 /// Removes the support of a box that has been at rest for long, while another body keeps their island awake. At 240 Hz
-/// the box is slower than the limit of sleep for three ticks. With its old count of ticks at rest it would fall asleep
-/// in the air.
+/// the box is still slower than its sleep speed after the first tick of its fall. If its count of ticks at rest were
+/// not reset, the box would fall asleep in the air.
 #[test]
 fn a_body_that_loses_its_support_does_not_fall_asleep_in_the_air() {
     type Edit = fn(&mut World, BodyId) -> Result<(), WorldError>;
@@ -361,7 +361,7 @@ fn a_body_that_loses_its_support_does_not_fall_asleep_in_the_air() {
 }
 
 /// The player keeps the seesaw down, and is in motion in every tick. When the player jumps off, the seesaw begins to
-/// turn more slowly than the limit of sleep.
+/// turn more slowly than its sleep speed.
 #[test]
 fn a_seesaw_turns_back_when_the_player_leaves() {
     let mut world = World::default();
