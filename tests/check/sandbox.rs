@@ -1,4 +1,4 @@
-//! The sandbox passes the check.
+//! The sandbox passes `lockstep2d::check`.
 
 use lockstep2d::check::{CheckError, CheckOptions, Phases, Variant, check, check_replay, random_inputs};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};

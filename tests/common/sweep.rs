@@ -24,7 +24,8 @@ pub fn sample<T>(cases: impl IntoIterator<Item = T>, stride: usize) -> Vec<T> {
     cases.into_iter().enumerate().filter(chosen).map(|(_, case)| case).collect()
 }
 
-/// Checks each case, as many at a time as there are processors. For checks whose time is spent on computation.
+/// Checks each case, as many at a time as there are processors. This is for checks that spend their time on
+/// computation.
 ///
 /// # Panics
 ///
@@ -45,7 +46,7 @@ pub fn for_each<T: Send>(cases: Vec<T>, check: impl Fn(T) + Sync) {
     });
 }
 
-/// Checks all cases at the same time. For checks that mostly wait for a clock.
+/// Checks all cases at the same time. This is for checks that mostly wait for a clock.
 ///
 /// # Panics
 ///

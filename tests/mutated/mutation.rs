@@ -9,7 +9,7 @@ const CHECKSUM: usize = 8;
 const HASH: usize = 16;
 /// Size of the header of a snapshot, in bytes: magic, format, semantics and length.
 const SNAPSHOT_HEADER: usize = 24;
-/// Kind of the last part of a replay.
+/// Kind byte of the trailer, the last block of a replay.
 const TRAILER: u8 = 3;
 /// Range of the chain hash in the trailer's payload.
 const CHAIN: std::ops::Range<usize> = 24..40;

@@ -59,7 +59,7 @@ fn a_box_of_half_the_density_floats_half_submerged() {
     for (density, height) in [(fx!(0.5), fx!(0)), (fx!(0.25), fx!(0.1)), (fx!(0.9), fx!(-0.16))] {
         let mut world = world(fx!(-10));
         pool(&mut world, fx!(0), fx!(20), water);
-        // Flat enough to be stable: 2 m by 0.4 m.
+        // The raft of 2 m by 0.4 m is flat enough to be stable.
         let raft = ShapeDef::new(Polygon::rectangle(fx!(1), fx!(0.2)).expect("valid")).density(density);
         let raft = spawn_awake(&mut world, raft, (fx!(3), fx!(1)));
         run(&mut world, 900);
@@ -182,7 +182,7 @@ fn bobbing_keeps_its_energy() {
         let config = Config { gravity: Vec2::new(fx!(0), fx!(-10)), solver, ..Config::default() };
         let mut world = World::new(config).expect("valid");
         pool(&mut world, fx!(0), fx!(20), Area::fluid(fx!(1)));
-        // Immersed by half of 1 m at rest: omega^2 = g / 0.5 m.
+        // At rest, 0.5 m of the buoy's height of 1 m are immersed: omega^2 = g / 0.5 m.
         let buoy = square(fx!(0.5)).density(fx!(0.5));
         let buoy = world
             .spawn(&BodyDef::dynamic().position((fx!(0), fx!(0.2))).lock_rotation(), &[buoy])

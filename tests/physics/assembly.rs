@@ -41,7 +41,7 @@ pub(crate) enum Mix {
     Wheel,
     Rod,
     Friction,
-    /// For each joint, a random mix of [`MIXES`].
+    /// Each joint is of a random kind among [`MIXES`].
     Every,
     /// Springs between two points and between two angles.
     MotorSpring,

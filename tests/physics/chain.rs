@@ -50,7 +50,7 @@ fn launch(world: &mut World, shape: ShapeDef, place: Vec2<Fx>, velocity: Vec2<Fx
     world.spawn(&def, &[shape]).expect("valid")
 }
 
-/// 100 cases; at the sampled size 16, in which every side, mover, friction and speed occurs.
+/// The sweep has 100 cases. Its sample has 16 of them, in which every side, mover, friction and speed occurs.
 #[test]
 fn everything_slides_over_a_flat_chain_of_1000_links() {
     let points = flat();

@@ -53,7 +53,7 @@ fn angular_momentum_stays_within_impulse_times_motion_in_a_tick() {
     assert!(error <= bound, "angular momentum off by {error}, more than {bound}");
 }
 
-/// Elastic, masses 1 and 3, 4 m/s against -2 m/s: `v1' = v1 - 2 m2 / (m1 + m2) (v1 - v2) = -5`, `v2' = 1`.
+/// An elastic collision of 1 kg at 4 m/s with 3 kg at -2 m/s: `v1' = v1 - 2 m2 / (m1 + m2) (v1 - v2) = -5`, `v2' = 1`.
 #[test]
 fn an_elastic_collision_exchanges_velocities_as_the_textbook_says() {
     let mut game = open("head_on");

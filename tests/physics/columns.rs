@@ -18,8 +18,8 @@ fn rectangle(half_width: Fx, half_height: Fx) -> ShapeDef {
     ShapeDef::new(Polygon::rectangle(half_width, half_height).expect("valid"))
 }
 
-/// Simulates a minute, or until all bodies sleep. Expects that they sleep in the end, and that no body has left its
-/// place by more than `sideways`, nor sunk by more than `sink`.
+/// Simulates until all bodies sleep, for at most a minute. Expects that they sleep in the end, and that no body has
+/// left its place by more than `sideways` or has sunk by more than `sink`.
 fn expect_stands(name: &str, mut world: World, sideways: Fx, sink: Fx) {
     let places: Vec<_> = world.bodies().map(|(id, body)| (id, body.position())).collect();
     for _ in 0..world.config().tick_rate * 60 {
@@ -98,7 +98,7 @@ fn plates_on_discs_stand() {
     }
 }
 
-/// E. Catto's house of cards: cards of 40 cm and 2 mm, leaning at 25 degrees.
+/// E. Catto's house of cards. The cards are 40 cm long and 2 mm thick, and lean at 25 degrees.
 #[test]
 fn a_house_of_cards_stands() {
     for rate in [60, 120] {

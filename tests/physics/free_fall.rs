@@ -18,7 +18,7 @@ fn ten_seconds_equal_the_recurrence_exactly() {
     let mut game = open("free_fall");
     let body = only_body(game.world());
     let step_of = |v: Speed| {
-        // v / 240 with 5 more fraction bits than a speed.
+        // The displacement is v / 240. `Shift` has 5 more fraction bits than `Speed`.
         let bits = div_round(i128::from(v.to_bits()) << 5, 240);
         Shift::from_bits(bits.try_into().expect("a small step"))
     };

@@ -55,7 +55,7 @@ fn run(world: &mut World, ticks: u32) {
     assert_eq!(world.faults(), 0);
 }
 
-/// Pairs of wheels, side by side or one inside the other, driven against a brake for a minute.
+/// Drives pairs of wheels, side by side or one inside the other, against a brake for a minute.
 #[test]
 fn the_ratio_is_kept_under_load() {
     for (teeth, x, radii) in [
@@ -135,7 +135,7 @@ fn a_wheel_accelerates_with_the_inertia_of_both() {
     close(omega(&world, b), -expected / 3, expected / 500);
 }
 
-/// Wheels in gear that nothing drives keep their energy for a minute.
+/// Wheels in gear that nothing drives conserve their energy for a minute.
 #[test]
 fn a_free_train_keeps_its_energy() {
     let mut world = world(fx!(0));

@@ -146,7 +146,7 @@ fn a_spinning_rod_gains_no_energy() {
     }
 }
 
-/// Adds the walls of a square room of `2 half` metres. `material` sets their material.
+/// Adds the walls of a square room with sides of `2 half` metres. `material` sets the material of the walls.
 fn add_room(world: &mut World, half: i32, material: impl Fn(ShapeDef) -> ShapeDef) {
     let (place, length) = (half + 1, half + 2);
     for (x, y) in [(0, -place), (0, place), (-place, 0), (place, 0)] {

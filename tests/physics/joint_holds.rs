@@ -99,8 +99,8 @@ fn a_cantilever_of_rigid_welds_hardly_bends() {
 }
 
 /// At rest a soft joint yields to a load `m g` on a mass `m` by `g / omega^2`, as a spring does. With two rods, the
-/// upper hinge has 60 Hz and bears both. With one rod, the hinge connects a body without other joints to a fixed body.
-/// Such an anchored hinge has 120 Hz, and under an equal load yields a quarter as much.
+/// upper hinge has 60 Hz and bears both rods. With one rod, the hinge connects a body without other joints to a fixed
+/// body. Such an anchored hinge has 120 Hz, and under an equal load yields a quarter as much.
 #[test]
 fn a_hinge_sags_as_its_stiffness_says_and_an_anchored_hinge_is_twice_as_stiff() {
     let sag = |rods: i64| {
@@ -169,8 +169,7 @@ fn joints_work_at_any_size_and_place() {
     };
     let origin = Vec2::new(fx!(1000000000), fx!(-1000000000));
     for size in [fx!(0.01), fx!(0.1), fx!(1), fx!(50)] {
-        // A mass ratio of 100 makes a joint of any size sag by some centimetres, so the smallest joints have a ratio of
-        // 1.
+        // A mass ratio of 100 makes a joint of any size sag by some centimetres, so small joints have a ratio of 1.
         let under = if size < fx!(0.1) { (1, 1) } else { (1, 100) };
         for (kind, masses) in kinds(size).into_iter().flat_map(|kind| [(kind, under), (kind, (100, 1))]) {
             let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::new(fx!(0), fx!(100)), fx!(0));

@@ -69,7 +69,7 @@ fn a_motor_stalls_under_a_larger_load() {
         let angle = bench.world.joint_angle(joint).expect("there");
         assert_eq!(angle > fx!(0), rises, "{torque} N m: {angle} rad");
     }
-    // A slider whose motor has to lift a weight of 20 N.
+    // The motor of a slider has to lift a weight of 20 N.
     for (force, rises) in [(fx!(18), false), (fx!(22), true)] {
         let mut bench = Bench::new(Ground::Fixed, fx!(-10), Vec2::ZERO, fx!(0));
         let kind = Prismatic::new().motor(fx!(1), force);
@@ -77,7 +77,7 @@ fn a_motor_stalls_under_a_larger_load() {
         let joint = bench.join(def);
         bench.run(30, |_, _| {});
         let height = bench.world.joint_translation(joint).expect("there").x;
-        // A net force of 2 N on 2 kg: 1 m/s² for half a second.
+        // A net force of 2 N accelerates 2 kg at 1 m/s² for half a second.
         close(height.abs(), fx!(0.125), fx!(0.005), "m");
         assert_eq!(height > fx!(0), rises);
     }
@@ -104,7 +104,7 @@ fn dragging_with_less_than_friction_does_not_move_a_box() {
         });
         let x = bench.world.body(body).expect("there").position().x;
         if moves {
-            // About 4 N on 4 kg: 1 m/s² for 2 s.
+            // A net force of about 4 N accelerates 4 kg at 1 m/s² for 2 s.
             assert!(x > fx!(1) && x < fx!(4), "{force} N: {x} m");
         } else {
             assert!(x.abs() < fx!(0.01), "{force} N: {x} m");

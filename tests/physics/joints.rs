@@ -5,7 +5,7 @@ use lockstep2d::math::{Fx, PI, fx_mul, sqrt};
 
 use crate::{energy, joint_gap, open, run, speed_max, sweep};
 
-/// A rod of 1 m and 1 kg about its end has `1/2 (1/3) 20^2 = 66.7 J` at 20 rad/s.
+/// A rod of 1 m and 1 kg that turns about its end at 20 rad/s has a kinetic energy of `1/2 (1/3) 20^2 = 66.7 J`.
 #[test]
 fn a_spinning_rod_keeps_its_hinge_and_much_of_its_energy() {
     let mut game = open("spinning_rod");
@@ -81,7 +81,8 @@ fn a_chain_carries_a_hundredfold_weight() {
     });
 }
 
-/// A thin rod about its end: `T = 2 pi sqrt(2 L / (3 g))`, times `1 + a^2 / 16` at an amplitude `a`.
+/// A thin rod swings about its end with the period `T = 2 pi sqrt(2 L / (3 g))`, times `1 + a^2 / 16` at an amplitude
+/// `a`.
 #[test]
 fn a_pendulum_swings_with_the_period_of_theory() {
     let mut game = open("pendulum");

@@ -66,7 +66,7 @@ fn movers() -> [(&'static str, ShapeDef); 4] {
     ]
 }
 
-/// 240 cases; at the sampled size 36, in which every ground, mover, friction, speed and depth occurs.
+/// The sweep has 240 cases. Its sample has 36 of them, in which every ground, mover, friction, speed and depth occurs.
 #[test]
 fn everything_slides_over_flush_blocks() {
     let mut cases = Vec::new();

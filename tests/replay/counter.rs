@@ -72,7 +72,7 @@ impl Game for Counter {
         *self = save.clone();
     }
 
-    /// One unit, plus the magnitudes of the numbers that the players add.
+    /// Returns one unit, plus the magnitudes of the numbers that the players add.
     fn work(&self, inputs: &[Input]) -> u64 {
         1 + inputs.iter().map(|input| u64::from(input.add.unsigned_abs())).sum::<u64>()
     }

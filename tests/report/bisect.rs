@@ -128,7 +128,7 @@ fn evidence(bytes: Vec<u8>) -> Evidence {
     Evidence::read(bytes, &Limits::default()).unwrap()
 }
 
-/// Returns path and name of the blamed field.
+/// Returns the path of the blamed subject, and the name of its blamed field.
 fn culprit(found: &Comparison) -> (String, String) {
     if let Some(told) = &found.explanation {
         return (told.path.clone(), told.differences[0].field().name().into());

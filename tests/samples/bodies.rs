@@ -64,7 +64,7 @@ fn a_weeble_rights_itself() {
     stage.run_and(900, |stage| tilt = tilt.max(stage.angle(weeble).abs()));
     assert!(tilt > fx!(0.1), "expected the explosion to tilt it, by {tilt} rad");
     near(stage.angle(weeble), fx!(0), fx!(0.05));
-    // The velocity of a point of a rigid body: v + w x r.
+    // The velocity of a point of a rigid body is v + w x r.
     stage.world.set_velocity(weeble, at!(1, 2), fx!(3)).expect("valid");
     let body = stage.body(weeble);
     let point = body.centre_of_mass() + at!(0.5, 2);
@@ -143,7 +143,7 @@ fn a_bar_starts_to_turn_about_its_lower_end() {
     assert!(body.velocity_at(Vec2::ZERO).length() < fx!(0.00001), "{:?}", body.velocity_at(Vec2::ZERO));
     for tick in 1..=30 {
         stage.world.step();
-        // A free body: x = v t - l sin(w t), y = l - l cos(w t).
+        // The lower end of a free body is at x = v t - l sin(w t), y = l - l cos(w t).
         let turn = Angle::from_radians(fx_mul(spin, num(tick) / 60));
         let x = num(tick) / 12 + widen(turn.sin()) * 3;
         let expected = Vec2::new(x, fx!(3) - widen(turn.cos()) * 3);

@@ -204,7 +204,7 @@ fn a_slider_stays_on_its_axis() {
         stage.world.joint_translation(joint).expect("there").x
     };
     let limited = Prismatic::new().limit(fx!(-10), fx!(10));
-    // g sin(45) t^2 / 2
+    // The box slides by g sin(45 degrees) t^2 / 2.
     near(slide(limited, 60), fx!(-3.5355), fx!(0.07));
     near(slide(limited, 600), fx!(-10), fx!(0.01));
     // The weight of 4 kg pulls with 28.28 N along the axis. A motor of 25 N leaves 0.8211 m/s².

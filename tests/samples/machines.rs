@@ -52,7 +52,7 @@ fn a_chain_holds_a_heavy_ball() {
     let start = stage.energy();
     stage.run_and(1200, |stage| {
         assert!(stage.world.widest_joint_gap() < fx!(0.2), "{} m", stage.world.widest_joint_gap());
-        // A tolerance of 100 J; the load can lose 300 kJ of potential energy.
+        // The tolerance is 100 J. The ball can lose 300 kJ of potential energy.
         assert!(stage.energy() < start + fx!(100), "{} J of {start}", stage.energy());
     });
 }

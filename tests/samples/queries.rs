@@ -22,7 +22,7 @@ fn disc(radius: Fx, place: Vec2<Fx>) -> Probe {
     probe(Geometry::circle(radius).expect("valid"), place)
 }
 
-/// Sample "Shape Distance" and its benchmark. Two shapes outside of a world, with poses and radii.
+/// Sample "Shape Distance" and its benchmark. Distances of two shapes outside of a world, with poses and radii.
 #[test]
 fn distances_of_loose_shapes() {
     let triangle = Polygon::new(&[at!(-0.5, 0), at!(0.5, 0), at!(0, 1)]).expect("valid");
@@ -31,8 +31,7 @@ fn distances_of_loose_shapes() {
     let found = probe(triangle, at!(0, 2)).distance(&block);
     near(found.distance, fx!(1.5), fx!(0.000001));
     near(found.point_a.y - found.point_b.y, fx!(1.5), fx!(0.000001));
-    // The distance from the corner (0.5, 0.5) of the block to the corner (1.5, 1.5) of the core, less the radius of
-    // 0.2.
+    // The distance of the corners (0.5, 0.5) of the block and (1.5, 1.5) of the core, less the radius of 0.2.
     let rounded = Polygon::square(fx!(0.5)).and_then(|core| core.rounded(fx!(0.2))).expect("valid");
     near(probe(rounded, at!(2, 2)).distance(&block).distance, fx!(1.21421356), fx!(0.000001));
     // A square turned by 45 degrees points down with a corner: 2 - 0.70711 - 0.5.
@@ -80,8 +79,8 @@ fn row(count: i32) -> (Stage, Vec<ShapeId>) {
     (stage, shapes)
 }
 
-/// Sample "Cast World", and the benchmark "Cast". The closest, any, all and the first few hits, by ray, ball, capsule
-/// and box; one body is left out.
+/// Sample "Cast World", and the benchmark "Cast". Finds the closest, any, all and the first few hits of rays, balls,
+/// capsules and boxes. One query leaves out a body.
 #[test]
 fn casts_through_a_world() {
     let (stage, shapes) = row(10);
@@ -92,7 +91,7 @@ fn casts_through_a_world() {
     assert!(!stage.world.cast_ray_any(at!(-3, 1), way, all));
     let hits = stage.world.cast_ray_all(from, way, all);
     assert_eq!(hits.iter().map(|hit| hit.shape).collect::<Vec<_>>(), shapes);
-    // The sample "multiple" takes the first three.
+    // The mode "multiple" of the sample takes the first three hits.
     assert!(hits.iter().take(3).zip(0..).all(|(hit, i)| hit.point.x == num(2 * i) - fx!(0.5)));
     let first = stage.world.shape(shapes[0]).expect("there").body();
     let others = QueryFilter::default().except(first);
@@ -125,7 +124,7 @@ fn overlaps_of_a_world() {
     assert_eq!(stage.world.overlap_shape(&plank, skipped), shapes[4..5]);
 }
 
-/// Sample "Manifold". The number of points and the normal of each pair of shapes.
+/// Sample "Manifold". Each pair of shapes has the expected number of points and the expected normal.
 #[test]
 fn manifolds_of_loose_shapes() {
     let pill = |place| {
@@ -179,7 +178,7 @@ fn links_have_no_sideways_normals() {
     }
 }
 
-/// Samples "Shape Cast" and "Time of Impact". Two shapes outside of a world.
+/// Samples "Shape Cast" and "Time of Impact". Casts and times of impact of two shapes outside of a world.
 #[test]
 fn casts_and_times_of_impact_of_loose_shapes() {
     let target = block(fx!(0.5), at!(5, 0));
@@ -282,7 +281,7 @@ fn a_body_on_a_spring_leg_keeps_its_height() {
     };
     for tick in 0..360 {
         let (place, velocity, mass) = (stage.place(body), stage.velocity(body), stage.body(body).mass());
-        // A pogo spring of 5 Hz, critically damped, and a drive of 1 m/s.
+        // The forces are those of a pogo spring of 5 Hz, critically damped, and of a drive of 1 m/s.
         if let Some(height) = height(&stage.world, place) {
             let lift = (rest - height) * 987 - velocity.y.saturating_mul(fx!(62.8)) + fx!(10);
             let drive = (fx!(1) - velocity.x) * 20;

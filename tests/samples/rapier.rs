@@ -240,7 +240,7 @@ fn an_inverted_pyramid_stands() {
 }
 
 /// Example `one_way_platforms2`. A belt that is solid from above and one, upside down, that is solid from below: a body
-/// rides the first, falls through the second, and is pulled up to its lower side by reversed gravity.
+/// rides the first, falls through the second, and is pulled up to the lower side of the second by reversed gravity.
 #[test]
 fn one_way_belts_pass_bodies_on() {
     let mut stage = Stage::new();

@@ -8,7 +8,8 @@ use lockstep2d::world::Config;
 
 use super::{Stage, ball, capsule, hull, line, near, num, rect, square};
 
-/// A pyramid of boxes with half extent `half`, `rows` high, whose top has another density. Returns the top.
+/// Adds a pyramid of boxes with half extent `half`, `rows` high. The topmost box has the density `top`. Returns this
+/// box.
 fn pyramid(stage: &mut Stage, half: Fx, rows: i32, top: Fx) -> lockstep2d::body::BodyId {
     let mut last = None;
     for row in 0..rows {
@@ -140,7 +141,7 @@ fn a_sliver_far_from_its_origin_has_a_mass() {
     stage.fixed(Vec2::ZERO, line(at!(-100, 0), at!(100, 0)));
     let sliver = hull(&[at!(48.76, -60.57), at!(48.74, -60.54), at!(48.68, -60.56)]);
     let body = stage.add(at!(-48, 62), sliver);
-    // Half the cross product of two sides: (-0.02 * 0.01 + 0.08 * 0.03) / 2.
+    // The area is half the cross product of two sides: (-0.02 * 0.01 + 0.08 * 0.03) / 2.
     near(stage.body(body).mass(), fx!(0.0011), fx!(0.00001));
     assert!(stage.body(body).radius_of_gyration() < fx!(0.05));
     stage.run(300);

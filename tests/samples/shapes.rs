@@ -63,8 +63,8 @@ fn links_of_ones_own_are_smooth_and_can_change() {
     assert!(stage.place(body).y < fx!(0.3), "{:?}", stage.place(body));
 }
 
-/// Sample "Compound Shapes". Tables stand on their legs; the mass of a body is that of its parts; a body that is
-/// spawned inside another does not blow up.
+/// Sample "Compound Shapes". A table stands on its legs; the mass of a body is that of its parts; a body that is
+/// spawned inside another one does not fly away.
 #[test]
 fn compounds_stand_and_bear_an_intruder() {
     let mut stage = Stage::with_floor();
@@ -73,10 +73,10 @@ fn compounds_stand_and_bear_an_intruder() {
     let table = stage.spawn(BodyDef::dynamic().position(at!(-5, 1)), &parts);
     let wing = |side: Fx| hull(&[Vec2::new(side * 2, fx!(0)), at!(0, 1.33333333333), at!(0, 4)]);
     let ship = stage.spawn(BodyDef::dynamic().position(at!(5, 1)), &[wing(fx!(-1)), wing(fx!(1))]);
-    // The centroid of each triangle is at (0 + 4 / 3 + 4) / 3.
+    // The centroid of each triangle is at a height of (0 + 4 / 3 + 4) / 3.
     near(stage.body(ship).local_centre_of_mass().y, fx!(16 / 9), fx!(0.00001));
     near(stage.body(ship).local_centre_of_mass().x, fx!(0), fx!(0.00001));
-    // 6 + 3 + 3 m², and (6 * 3.5 + 6 * 1.5) / 12.
+    // The area of the table is 6 + 3 + 3 m², and its centre is at a height of (6 * 3.5 + 6 * 1.5) / 12.
     near(stage.body(table).mass(), fx!(12), fx!(0.00001));
     near(stage.body(table).local_centre_of_mass().y, fx!(2.5), fx!(0.00001));
     stage.run(180);
@@ -112,7 +112,7 @@ fn filters_change_at_run_time() {
     heights(&stage, [fx!(1), fx!(1), fx!(3)]);
 }
 
-/// Sample "Custom Filter". The rule "odd and even pass each other" as two categories.
+/// Sample "Custom Filter". Two categories express the rule that odd and even bodies pass each other.
 #[test]
 fn odd_and_even_pass_each_other() {
     let mut stage = Stage::with_floor();
@@ -227,7 +227,7 @@ fn rests_in_the_trough(stage: &mut Stage) {
     }
 }
 
-/// Sample "Offset". Shapes far from the origins of their bodies.
+/// Sample "Offset". Shapes far from the origins of their bodies lie on each other.
 #[test]
 fn shapes_far_from_their_origins_stack() {
     let mut stage = Stage::new();

@@ -118,7 +118,7 @@ fn an_edge_does_not_kick() {
                 assert!(stage.velocity(body).x.abs() < speed + fx!(0.02), "{:?}", stage.velocity(body));
             }
         });
-        // Each capsule starts a metre before its edge and has left it.
+        // Each capsule starts a metre before the edge that it falls off.
         assert!([0, 3, 6].iter().all(|&i| stage.place(bodies[i].0).y < bodies[i].1 - fx!(0.5)));
     }
 }

@@ -1,5 +1,5 @@
-//! Box2D's groups "World", "Determinism" and "Benchmark". The large benchmarks are scenes of this crate with replays
-//! of their own.
+//! Box2D's groups "World", "Determinism" and "Benchmark". The large benchmarks are scenes of `crates/scenes`, with
+//! replays of their own.
 
 use lockstep2d::body::{BodyDef, BodyId, ShapeDef};
 use lockstep2d::fx;
@@ -65,8 +65,8 @@ fn heap(origin: Vec2<Fx>) -> Vec<(Vec2<Fx>, Angle)> {
 }
 
 /// Samples "Far Pyramid" and "Far Ragdolls". Up to a million kilometres from the origin no precision is lost: results
-/// agree within 10 µm everywhere. Those near the origin or far to the left and below are equal to the last bit, and so
-/// are those far to the right and above.
+/// agree within 10 µm everywhere. Results near the origin and far to the left and below are equal to the last bit, and
+/// so are all results far to the right and above.
 #[test]
 fn the_world_is_the_same_everywhere() {
     let (here, there) = (heap(Vec2::ZERO), heap(at!(1000, 1000)));

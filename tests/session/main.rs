@@ -1,4 +1,4 @@
-//! Whole matches of session cores in simulated time, over links that delay, drop, duplicate and reorder packets, and
+//! Whole matches of sessions in simulated time, over links that delay, drop, duplicate and reorder packets, and
 //! that fail for a while.
 
 #![expect(

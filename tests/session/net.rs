@@ -28,7 +28,7 @@ pub(super) struct Node {
 /// A packet on its way: when it arrives, its number, sender, receiver and bytes.
 pub(super) type Datagram = (Us, u64, u8, u8, Vec<u8>);
 
-/// Endpoints that reach each other.
+/// Endpoints, and the network between them.
 pub(super) struct Net {
     pub(super) now: Us,
     pub(super) rng: Rng,

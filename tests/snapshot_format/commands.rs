@@ -34,7 +34,7 @@ impl Written {
         self
     }
 
-    /// World quantities, in units of one half.
+    /// Appends world quantities, which are given in units of one half.
     fn fx(mut self, halves: &[i64]) -> Self {
         for half in halves {
             self.0.extend((half << 31).to_le_bytes());
@@ -49,7 +49,7 @@ impl Written {
         self
     }
 
-    /// An `Option` of world quantities, in units of one half.
+    /// Appends an `Option` of world quantities, which are given in units of one half.
     fn some(self, halves: &[i64]) -> Self {
         self.u8(1).fx(halves)
     }
@@ -101,7 +101,7 @@ fn polygon() -> (ShapeDef, Written) {
     polygon_with(None, w().u8(1))
 }
 
-/// The same triangle as an area in which every effect is present.
+/// The triangle of [`polygon`] as an area in which every effect is present.
 fn pool() -> (ShapeDef, Written) {
     let (area, bytes) = area();
     polygon_with(Some(area), w().u8(3).then(bytes))
