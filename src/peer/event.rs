@@ -64,9 +64,9 @@ pub struct PeerDesync {
     pub peer: PeerId,
     /// Number of ticks after which the two states differ.
     pub tick: u64,
-    /// Hash of this peer.
+    /// Hash of this peer's state.
     pub ours: StateHash,
-    /// Hash of the other peer.
+    /// Hash of the other peer's state.
     pub theirs: StateHash,
 }
 

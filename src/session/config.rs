@@ -228,7 +228,7 @@ pub enum Fault {
     HalfIsEnough,
     /// Complete ticks are not computed again when a view is installed.
     KeepComplete,
-    /// No rows and inputs of others are passed on.
+    /// Rows and inputs of other peers are not relayed.
     NoRelay,
     /// The match ends at the tick that this peer wants, not at the decided one.
     LocalEnd,
