@@ -74,7 +74,7 @@ define_handle! {
     /// # use lockstep2d::{body::{BodyDef, BodyId}, world::World};
     /// # let mut world = World::default();
     /// let first: BodyId = world.spawn(&BodyDef::dynamic(), &[])?;
-    /// // A table of the game's own, by slot.
+    /// // A side table of the game, indexed by slot.
     /// let mut scores = vec![0; world.body_count()];
     /// scores[first.index() as usize] += 5;
     /// world.despawn(first)?;

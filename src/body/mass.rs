@@ -1,8 +1,8 @@
 //! Mass, centre of mass and radius of gyration from shapes and densities.
 //!
-//! The radius of gyration `k = sqrt(I / m)` replaces the moment of inertia everywhere. With `u = k w`, linear and
-//! angular velocity are both speeds of the same mass (`docs/DESIGN.md`, rows). The parts of a body are summed by the
-//! parallel axis theorem:
+//! The radius of gyration `k = sqrt(I / m)` replaces the moment of inertia everywhere. With `u = k w`, both linear and
+//! angular velocity are speeds in m/s of the same mass `m`. The parts of a body are summed by the parallel axis
+//! theorem:
 //!
 //! ```text
 //! m     = sum m_i

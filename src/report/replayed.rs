@@ -15,7 +15,7 @@ use crate::inspect::{differences, fields};
 use crate::lockstep::Game;
 use crate::replay::{Limits, RawReplay, Step};
 
-/// Amount of simulation.
+/// Extent of the simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Effort {
     /// Plays all ticks for which either side has data. Searches for an explanation of a difference up to a fixed limit.
@@ -49,7 +49,7 @@ fn play<G: Game>(
     effort: Effort,
     found: &mut Comparison,
 ) -> Result<(), CompareError> {
-    // After a different input the states differ, too.
+    // After the first different input the states may differ for a good reason, so that later ticks are not compared.
     let horizon = found.input.as_ref().map_or(u64::MAX, |input| input.tick);
     compare_directly(known, horizon, found);
     let side = if known[0].ticks < known[1].ticks { Side::B } else { Side::A };

@@ -274,7 +274,7 @@ pub enum SensorChange {
 
 impl Events {
     /// Returns the sensor events of the tick in the order in which they happened: ends by changes between ticks, then
-    /// beginnings and ends by their fraction of the tick, beginnings first.
+    /// beginnings and ends by their fraction of the tick, with beginnings first at equal fractions.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, world::{SensorChange, World}};

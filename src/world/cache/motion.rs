@@ -139,8 +139,8 @@ impl ShapeMotion {
         (self.bounds, self.slack) = (bounds, slack_of(bounds));
     }
 
-    /// Sets the predicted motion: the translation of its body, and how far the body's rotation moves any of its points,
-    /// in metres.
+    /// Sets the predicted motion: the translation of the shape's body, and the largest distance `turn`, in metres, by
+    /// which the body's rotation moves any point of the shape.
     #[inline]
     pub(crate) fn set_motion(&mut self, motion: &PredictedMotion, turn: Fx) {
         (self.shift, self.turn) = (motion.shift, narrow(turn));
@@ -217,7 +217,7 @@ fn slack_of(bounds: Aabb) -> Step {
     narrow(half.x.max(half.y) / 16)
 }
 
-/// Speculative and touching distance of a world.
+/// Speculative distance, touching distance and related limits of a world.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Margins {
     pub(crate) speculative: Length,
@@ -299,8 +299,8 @@ pub(crate) struct MotionCache {
 }
 
 impl MotionCache {
-    /// Starts a tick: nothing moves, and there are `body_slots` slots for bodies. `last_moving` lists the shapes whose
-    /// motion was predicted for the last tick.
+    /// Starts a tick: resets all predicted motion to rest, and makes room for `body_slots` bodies. `last_moving` lists
+    /// the shapes whose motion was predicted for the last tick.
     pub(super) fn begin(&mut self, body_slots: usize, last_moving: impl Iterator<Item = u32>) {
         for slot in self.moving_bodies.drain(..) {
             self.bodies[slot as usize] = PredictedMotion::default();

@@ -87,8 +87,8 @@ impl Mover {
     }
 
     /// Sets the largest height in metres of steps that the character climbs without a jump, clamped to 0 to 100. A step
-    /// needs room for the character above it. A character with upright sides rises above the step by up to its
-    /// displacement in a tick before it moves onto it.
+    /// needs room for the character above it. A character with upright sides first rises above the step, by up to the
+    /// character's displacement in a tick, and then moves onto the step.
     #[must_use]
     pub fn step_height(mut self, height: Fx) -> Self {
         self.step_height = height.clamp(Fx::ZERO, HEIGHT_MAX);
@@ -136,7 +136,7 @@ impl Mover {
 /// # let mover = Mover::new(Geometry::capsule((fx!(0), fx!(0.3)), (fx!(0), fx!(1.5)), fx!(0.3))?)?;
 /// let start = MoverState { velocity: Vec2::new(fx!(0), fx!(-1)), ..MoverState::at(Vec2::ZERO) };
 /// let mut player = world.move_character(&mover, &start, Default::default()).state;
-/// // It jumps only from ground.
+/// // The player jumps only from ground.
 /// if player.is_on_ground() {
 ///     player.velocity.y = fx!(5);
 /// }

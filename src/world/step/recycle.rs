@@ -52,7 +52,7 @@ impl<'a> Recycling<'a> {
         Recycling { bodies, shapes, extents, rolls, arm_tolerance, movement_max: closing.rest_of(most) }
     }
 
-    /// The changes of a contact's manifold, or `None` if the shapes have to be collided.
+    /// The current origin and separations of a contact's kept manifold, or `None` if the shapes have to be collided.
     #[inline]
     pub(super) fn recycle(&self, contact: &Contact) -> Option<Recycled> {
         let [a, b] = self.shapes;
