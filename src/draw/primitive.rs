@@ -193,7 +193,7 @@ pub enum Style {
     CentreOfMass,
     /// An anchor of a joint.
     JointAnchor,
-    /// The part of the distance between the two anchors of a joint that violates it:
+    /// The part of the distance between the two anchors of a joint that violates the joint:
     /// [`World::joint_error`](crate::world::World::joint_error).
     JointGap,
     /// The size of the joint error, as text.

@@ -148,7 +148,7 @@ struct Beside<'a, 'k, G: Game> {
     wrong: Option<WrongTick<G>>,
     /// The states at the first different tick at which both are available.
     states: Option<States<G::Save>>,
-    /// The states at the first different tick at which one of them is only presumed.
+    /// The states at the first different tick at which the state of one side is only presumed.
     presumed: Option<States<G::Save>>,
     /// Reason why the states of an earlier tick could not be used.
     obstacle: Option<String>,

@@ -191,7 +191,7 @@ impl Endpoint {
     /// Opens a match. `seats` are your own seats, one bit for each; none for a dedicated server.
     ///
     /// # Errors
-    /// A parameter that is out of its range.
+    /// [`ConfigError`] if a parameter is out of its range.
     pub fn host(config: Config, identity: Identity, seats: u64) -> Result<Self, ConfigError> {
         let begun = u32::from(config.start_with) <= seats.count_ones();
         let view = View::opened_by(identity.id, identity.key, seats & config.seat_set(), begun);
@@ -207,7 +207,7 @@ impl Endpoint {
     /// Joins a match through a contact, which is a peer that already takes part in it.
     ///
     /// # Errors
-    /// A parameter that is out of its range.
+    /// [`ConfigError`] if a parameter is out of its range.
     pub fn join(
         config: Config,
         identity: Identity,

@@ -152,7 +152,7 @@ impl Session {
     /// from the first tick on. `me` has to be a random number, different for each process; `seed` may be any number.
     ///
     /// # Errors
-    /// A parameter that is out of its range.
+    /// [`ConfigError`] if a parameter is out of its range.
     pub fn new(
         config: Config,
         me: PeerId,

@@ -99,14 +99,14 @@ pub(crate) struct ShapeMotion {
     pub(crate) body: u32,
     /// Distance of the surface from the vertices.
     pub(crate) radius: Length,
-    /// Whether it is a circle about its body's centre of mass, which rotation does not change.
+    /// Whether the shape is a circle about its body's centre of mass, which rotation does not change.
     pub(crate) disc: bool,
-    /// Whether it is solid and one of [`SmallBoxes`](crate::collision::SmallBoxes).
+    /// Whether the shape is solid and one of [`SmallBoxes`](crate::collision::SmallBoxes).
     pub(crate) small_box: bool,
     pub(crate) sensor: bool,
     pub(crate) one_way: bool,
     pub(crate) hit_events: bool,
-    /// Whether it is a sensor or has contact events.
+    /// Whether the shape is a sensor or has contact events.
     pub(crate) is_reported: bool,
 }
 

@@ -148,12 +148,12 @@ impl Mover {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MoverState {
-    /// Position of its geometry's centre in the world, in metres.
+    /// Position of the centre of the character's geometry in the world, in metres.
     pub position: Vec2<Fx>,
-    /// Velocity in m/s: relative to the ground while it stands on ground, otherwise in the world. A character that
-    /// leaves the ground, by a jump or at an edge, takes the velocity of the ground with it.
+    /// Velocity in m/s: relative to the ground while the character stands on ground, otherwise in the world. A
+    /// character that leaves the ground, by a jump or at an edge, takes the velocity of the ground with it.
     pub velocity: Vec2<Fx>,
-    /// The ground that it stands on, if any, with its body and the velocity of its surface.
+    /// The ground that the character stands on, if any, with the body and the surface velocity of that ground.
     pub ground: Option<MoverPlane>,
 }
 
@@ -164,7 +164,7 @@ impl MoverState {
         MoverState { position, velocity: Vec2::new(Fx::ZERO, Fx::ZERO), ground: None }
     }
 
-    /// Whether it stands on ground.
+    /// Whether the character stands on ground.
     #[must_use]
     pub const fn is_on_ground(&self) -> bool {
         self.ground.is_some()

@@ -22,7 +22,7 @@ const CONTACTS_MIN: usize = 512;
 /// The number is large enough that few SIMD lanes stay empty, and small enough that a block's data stays in the cache.
 const BLOCK: usize = 64;
 
-/// Prefetch distance in contacts: shape B is a random access.
+/// Prefetch distance in contacts. Prefetching helps because the data of shape B is accessed in random order.
 const CONTACTS_AHEAD: usize = 8;
 
 /// Finds the manifolds of all contacts, and lists the pairs that the solver has to solve. Each thread has a part of the

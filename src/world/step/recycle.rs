@@ -16,7 +16,7 @@ pub(super) struct Recycling<'a> {
     /// Largest change of a lever arm, in metres, at which the contact keeps the arm.
     arm_tolerance: Length,
     /// Largest relative movement of the shapes since their manifold was computed, in metres, at which the contact keeps
-    /// it for another tick. Negative if they move too fast.
+    /// the manifold for another tick. Negative if the shapes move too fast.
     movement_max: Length,
 }
 
