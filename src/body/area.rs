@@ -52,7 +52,7 @@ const RADIUS: (Fx, Fx) = (fx!(0.01), fx!(1048576));
 /// for _ in 0..600 {
 ///     world.step();
 /// }
-/// // A quarter of it is under water.
+/// // A quarter of the cork is under water.
 /// let height = world.body(cork).expect("still there").position().y;
 /// assert!((height - fx!(0.25)).abs() < fx!(0.01));
 /// # Ok::<(), lockstep2d::body::WorldError>(())

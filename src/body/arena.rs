@@ -74,7 +74,7 @@ define_handle! {
     /// # use lockstep2d::{body::{BodyDef, BodyId}, world::World};
     /// # let mut world = World::default();
     /// let first: BodyId = world.spawn(&BodyDef::dynamic(), &[])?;
-    /// // A table of the game's own, by slot.
+    /// // A side table of the game, indexed by slot.
     /// let mut scores = vec![0; world.body_count()];
     /// scores[first.index() as usize] += 5;
     /// world.despawn(first)?;
@@ -94,7 +94,7 @@ define_handle! {
     /// # let mut world = World::default();
     /// let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
     /// let robot = world.spawn(&BodyDef::dynamic(), &[square])?;
-    /// // An arm that comes off again.
+    /// // An arm is attached to a robot and removed again.
     /// let arm: ShapeId = world.add_shape(robot, &square.offset((fx!(1), fx!(0))))?;
     /// assert_eq!(world.shapes_of(robot).len(), 2);
     /// world.remove_shape(arm)?;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Collision filter. Two shapes in the same non-zero group collide if the group is positive and never if it is
+/// Collision filter. Two shapes in the same non-zero group always collide if the group is positive, and never if it is
 /// negative. Otherwise they collide if each shape's mask includes at least one of the other shape's categories.
 ///
 /// The broad phase does not search for pairs within a negative group from -1 to -32 768. It also does not search for

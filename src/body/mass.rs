@@ -1,8 +1,8 @@
 //! Mass, centre of mass and radius of gyration from shapes and densities.
 //!
-//! The radius of gyration `k = sqrt(I / m)` replaces the moment of inertia everywhere. With `u = k w`, linear and
-//! angular velocity are both speeds of the same mass (`docs/DESIGN.md`, rows). The parts of a body are summed by the
-//! parallel axis theorem:
+//! The radius of gyration `k = sqrt(I / m)` replaces the moment of inertia everywhere. With `u = k w`, both linear and
+//! angular velocity are speeds in m/s of the same mass `m`. The parts of a body are summed by the parallel axis
+//! theorem:
 //!
 //! ```text
 //! m     = sum m_i
@@ -68,7 +68,7 @@ pub enum MassSource {
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, world::World};
 /// # let mut world = World::default();
 /// use lockstep2d::body::MassProperties;
-/// // A person of 80 kg, with the centre and the proportions of its shapes.
+/// // A person of 80 kg, whose centre of mass and radius of gyration follow from the shapes.
 /// let shapes = [ShapeDef::new(Polygon::rectangle(fx!(0.25), fx!(0.9))?)];
 /// let person = MassProperties::of_shapes(&shapes)?.with_mass(fx!(80));
 /// let id = world.spawn(&BodyDef::dynamic().mass(person.into()), &shapes)?;

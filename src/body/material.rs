@@ -19,13 +19,13 @@ use crate::math::{Fx, fx_mul};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Mixing {
-    /// `(a + b) / 2`.
+    /// The mean, `(a + b) / 2`.
     Average,
-    /// `sqrt(a b)`.
+    /// The geometric mean, `sqrt(a b)`.
     GeometricMean,
     /// The smaller value.
     Minimum,
-    /// `a b`.
+    /// The product, `a b`.
     Product,
     /// The larger value.
     Maximum,

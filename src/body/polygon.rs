@@ -312,7 +312,7 @@ mod tests {
         assert!(matches!(new(&[(0, 0), (121, 0), (0, 1)]), Err(GeometryError::SizeOutOfRange { .. })));
         assert!(Polygon::rectangle(fx!(0), fx!(1)).is_err());
         assert!(Polygon::rectangle(fx!(-1), fx!(1)).is_err());
-        // The bounds that the errors state.
+        // The bounds that the errors state are themselves valid.
         let bounds = [fx!(0.00025), SHAPE_EXTENT_MAX];
         assert!(bounds.map(Polygon::square).iter().all(Result::is_ok));
         assert!(

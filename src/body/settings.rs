@@ -74,7 +74,7 @@ pub enum Continuous {
 /// # let mut world = World::default();
 /// # let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
 /// let bird = world.spawn(&BodyDef::dynamic(), &[square])?;
-/// // It learns to fly: one setting of a copy changes, the others stay.
+/// // The bird learns to fly: one setting of a copy changes, the others stay.
 /// let flying = BodySettings { gravity_scale: fx!(0), ..*world.body(bird).expect("just created").settings() };
 /// world.set_body(bird, &flying)?;
 /// (0..60).for_each(|_| world.step());

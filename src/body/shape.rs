@@ -246,7 +246,7 @@ fn check_reach(geometry: &Geometry, offset: Vec2<Fx>, reach_max: Fx) -> Result<(
 /// let square = ShapeDef::new(Polygon::square(fx!(0.5))?);
 /// let parts = [square, square.offset((fx!(0), fx!(1))).user_data(HEAD)];
 /// let robot = world.spawn(&BodyDef::dynamic(), &parts)?;
-/// // Who was hit, and where?
+/// // Finds the body that a ray hits, and the part of the body.
 /// let (origin, translation) = (Vec2::new(fx!(-5), fx!(1)), Vec2::new(fx!(10), fx!(0)));
 /// let hit = world.cast_ray(origin, translation, Default::default()).expect("the head is in the way");
 /// let shape: &Shape = world.shape(hit.shape).expect("just hit");
@@ -258,7 +258,7 @@ fn check_reach(geometry: &Geometry, offset: Vec2<Fx>, reach_max: Fx) -> Result<(
 #[doc(alias = "Fixture")]
 pub struct Shape {
     pub(crate) body: BodyId,
-    /// Boxed, so that the fields that steps change lie close together: the cost of saving them is memory traffic.
+    /// Boxed, so that the fields that steps change lie close together. Saving them then reads less memory.
     pub(crate) def: Box<ShapeDef>,
     /// Fat AABB used by the broad phase: the swept AABB of the shape over the tick, plus a margin so that it seldom
     /// changes. It decides which pairs exist, so it is part of the state.

@@ -13,7 +13,7 @@ use crate::replay::{RecordError, Verdict};
 /// ```
 /// # use lockstep2d::{hash::StateHash, lockstep::{Game, RulesId, SetupError}};
 /// use lockstep2d::check::{CheckOptions, Failure, Fault, Variant, check, check_replay};
-/// /// Every press in a row counts one more than the last.
+/// /// A game in which every press in a row scores one point more than the press before.
 /// #[derive(Default)]
 /// struct Combo { score: u32, row: u32 }
 /// impl Game for Combo {
@@ -40,13 +40,13 @@ use crate::replay::{RecordError, Verdict};
 /// let error = check::<Combo>(&(), &inputs, &options).expect_err("a part of the state is not saved");
 /// let failure: &Failure = error.failure().expect("a fault of the game");
 /// assert_eq!((&failure.finding.variant, &failure.finding.fault), (&Variant::Reloaded, &Fault::Hash));
-/// // Two presses in a row are enough, and the replay shows it again.
+/// // Two presses in a row are enough, and the replay reproduces the fault.
 /// assert_eq!(failure.ticks, 2);
 /// assert!(check_replay::<Combo>(&failure.replay, &options).is_err());
 /// ```
 #[derive(Clone, PartialEq, Eq)]
 pub struct Failure {
-    /// The finding in the log as it was given.
+    /// The finding in the original log.
     pub finding: Finding,
     /// The finding in the minimised replay.
     pub minimised: Finding,

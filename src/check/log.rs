@@ -73,7 +73,7 @@ pub(super) struct Logged<G: Game> {
 
 /// Reads the first `to` ticks of a replay.
 pub(super) fn read<G: Game>(file: &[u8], limits: &Limits, to: u64) -> Result<Logged<G>, CheckError> {
-    // Opening the replay scans the file and starts the game, so that errors of the following calls are exceptional.
+    // Opening the replay scans the file and starts the game, so that the following calls usually return no errors.
     let players = RawReplay::<G>::open(file, limits)?.game().players();
     let refused = |error: ReadError| CheckError::Replay(error.into());
     let mut ticks = TickInputs::open(file, limits).map_err(refused)?;

@@ -118,7 +118,7 @@ struct Search<'s, G: Game> {
     options: CheckOptions,
     /// Number of ticks simulated.
     spent: u64,
-    /// Number of failing runs that a candidate needs.
+    /// Number of runs of a candidate that have to fail for the candidate to be accepted.
     need: u32,
 }
 

@@ -24,7 +24,8 @@ use crate::world::Backend;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Variant {
-    /// Again from the start, in the same process: detects random iteration orders, global state, addresses and clocks.
+    /// The inputs are played again from the start, in the same process. This detects random iteration orders, global
+    /// state, addresses and clocks.
     Again,
     /// Hash, work, claims and save are polled twice after every tick: polling must not change the state.
     HashPolled,
@@ -106,7 +107,7 @@ impl fmt::Display for Variant {
 /// ```
 /// use lockstep2d::check::{check, CheckOptions, Depths, Phases, Variant};
 /// use lockstep2d::lockstep::{Sandbox, SandboxSetup};
-/// // A short log, thoroughly: every rollback depth at every tick, and every phase of a tick compared.
+/// // A thorough check of a short log: every rollback depth at every tick, and a comparison of every phase of a tick.
 /// let options = CheckOptions { depths: Depths::Each, phases: Phases::Compared, ..CheckOptions::default() };
 /// let options = options.only(&[Variant::RolledBack]);
 /// let checked = check::<Sandbox>(&SandboxSetup::default(), &vec![vec![vec![]]; 4], &options)?;

@@ -9,7 +9,8 @@ use crate::math::{Aabb, Fx, Vec2};
 use crate::world::World;
 
 /// Smallest reach of a scene in metres. The reach is the distance from the median position to the farthest body of the
-/// scene, and bodies within four times the reach belong to the scene. All bodies within 64 m therefore do.
+/// scene, and bodies within four times the reach belong to the scene. Therefore all bodies within 64 m of the median
+/// position belong to it.
 const SCENE_REACH_MIN: Fx = fx!(16);
 /// Maximum distance, in scene sizes, at which ground is included.
 const GROUND_SIZES: i64 = 12;

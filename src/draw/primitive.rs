@@ -193,7 +193,7 @@ pub enum Style {
     CentreOfMass,
     /// An anchor of a joint.
     JointAnchor,
-    /// The part of the distance between the two anchors of a joint that violates it:
+    /// The part of the distance between the two anchors of a joint that violates the joint:
     /// [`World::joint_error`](crate::world::World::joint_error).
     JointGap,
     /// The size of the joint error, as text.
@@ -203,7 +203,8 @@ pub enum Style {
     /// A contact point.
     ContactPoint(ContactProximity),
     /// The normal force at a contact point on shape B. The length is 0.2 m times the square root of the resulting
-    /// acceleration in units of 10 m/s²: 0.2 m below a box at rest, but only 2 m instead of 20 m below a hundred boxes.
+    /// acceleration in units of 10 m/s²: 0.2 m below a box at rest, and 2 m below a hundred boxes. The root keeps large
+    /// forces in the picture.
     ContactForce,
     /// The friction force at a contact point, to the same scale.
     ContactFriction,

@@ -43,7 +43,7 @@ pub fn each_primitive(world: &World, layers: Layers, found: Sink<'_>) {
         add_islands(world, found);
     }
     if layers.contact_points || layers.contact_normals || layers.contact_forces || layers.solver_colours {
-        // The threshold at which a contact event begins.
+        // The distance at which events report that a contact begins.
         let touching_distance = world.config().touching_distance();
         for contact in world.contacts() {
             add_contact(&contact, touching_distance, layers, found);

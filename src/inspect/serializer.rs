@@ -17,7 +17,7 @@ use crate::math::Angle;
 ///
 /// ```
 /// use lockstep2d::inspect::{InspectError, fields};
-/// /// Refuses to be shown.
+/// /// A value that must not be displayed.
 /// struct Secret;
 /// impl serde::Serialize for Secret {
 ///     fn serialize<S: serde::Serializer>(&self, _: S) -> Result<S::Ok, S::Error> {

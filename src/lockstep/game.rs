@@ -68,7 +68,7 @@ impl core::error::Error for StartError {}
 ///
 /// ```
 /// use lockstep2d::lockstep::SetupError;
-/// /// The start of a game for two to four players: a setup may come from a stranger's file.
+/// /// Checks the number of players in a setup, which may come from a stranger's file: two to four can play.
 /// fn checked(players: u32) -> Result<u32, SetupError> {
 ///     let is_valid = (2..=4).contains(&players);
 ///     is_valid.then_some(players).ok_or_else(|| SetupError { why: format!("{players} players") })
@@ -193,7 +193,8 @@ pub trait Game: Sized {
     fn load(&mut self, save: &Self::Save);
 
     /// Upper bound of the cost of the next tick in work units, with which a verifier limits the computing time of an
-    /// untrusted file. The sandbox counts bodies, contacts and joints, times sub-steps.
+    /// untrusted file. The bound of the sandbox is roughly the number of bodies, contacts and joints, multiplied by the
+    /// number of sub-steps.
     fn work(&self, inputs: &[Self::Input]) -> u64;
 
     /// Input of a seat without a player, in every tick before a player has joined and after the player has left. The
@@ -212,10 +213,10 @@ pub trait Game: Sized {
         None
     }
 
-    /// The physics world, if the game has one, for tools that count its work while it plays, compare the phases of its
-    /// step, or play it with other settings. A tool modifies the world only in a game that it created itself. Without
-    /// this method, [`check`](crate::check) leaves out the variants that change such a setting, and a verifier bounds
-    /// the work of a tick by [`Game::work`] alone.
+    /// The physics world, if the game has one, for tools that count the work of a step, compare the phases of a step,
+    /// or change settings that must not affect the result. A tool modifies the world only in a game that the tool
+    /// created. If this method returns `None`, [`check`](crate::check) leaves out the variants that change such a
+    /// setting, and a verifier bounds the work of a tick by [`Game::work`] alone.
     fn world_mut(&mut self) -> Option<&mut World> {
         None
     }
@@ -230,7 +231,7 @@ pub trait Game: Sized {
     }
 }
 
-/// The physics world of a game that exposes it by either method, for reading.
+/// The physics world of a game that implements [`Game::world`] or [`Game::world_mut`], for reading.
 pub(crate) fn world_of<G: Game>(game: &mut G) -> Option<&World> {
     // The second call is for games that implement `world_mut` alone.
     if game.world().is_some() { game.world() } else { game.world_mut().map(|world| &*world) }

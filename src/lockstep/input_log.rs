@@ -12,7 +12,7 @@ use crate::codec;
 /// ```
 /// use lockstep2d::lockstep::{InputError, InputLog};
 /// let mut log = InputLog::<u8>::new(2);
-/// // Two players, and one input.
+/// // The game has two players, but only one input is passed.
 /// assert_eq!(log.push(&[5]), Err(InputError::Count { players: 2, inputs: 1 }));
 /// assert_eq!(log.ticks(), 0);
 /// ```
@@ -305,7 +305,7 @@ mod tests {
         for bad in [&[5, 1, 6][..], &[5, 1, 6, 0, 0], &[5, 1, 6, 2], &[]] {
             assert_eq!(decode_inputs::<(u8, bool)>(bad, 2), Err(InputError::NotCanonical), "{bad:?}");
         }
-        // A set out of order decodes, but it is not the canonical encoding.
+        // A set whose elements are encoded out of order decodes, but the canonical encoding is in ascending order.
         type Set = alloc::collections::BTreeSet<u8>;
         let sorted = [2, 0, 0, 0, 0, 0, 0, 0, 3, 4];
         assert_eq!(decode_inputs::<Set>(&sorted, 1), Ok(alloc::vec![Set::from([3, 4])]));

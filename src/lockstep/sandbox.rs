@@ -33,7 +33,8 @@ pub struct Sandbox {
 /// Work units of a setup without commands: the allocations of a world.
 const START_WORK: u64 = 100;
 
-/// Maximum work units of a setup's commands: a few seconds. A million bodies of one shape take 12 million.
+/// Maximum work units of a setup's commands, which take a few seconds. A million bodies with one shape each take 12
+/// million units.
 const SETUP_WORK_MAX: u64 = 100_000_000;
 
 /// Initial state of a sandbox.
@@ -180,10 +181,10 @@ impl Game for Sandbox {
         Some(&mut self.world)
     }
 
-    /// Counts bodies, shapes, pairs and joints, times the solver's sub-steps and iterations. Shapes that were just
-    /// placed on top of each other create new pairs in the tick. The bound assumes the worst case: as many pairs as the
-    /// world allows, found by comparing every shape with every other. The world itself counts work that is known only
-    /// during the tick.
+    /// The sum of bodies, shapes, pairs and joints, multiplied by the solver's sub-steps and iterations, plus the work
+    /// of the commands. Shapes that were just placed on top of each other create new pairs in the tick. The bound
+    /// assumes the worst case: as many new pairs as the world allows, found by comparing every shape with every other.
+    /// The world itself counts work that is known only during the tick.
     fn work(&self, inputs: &[Vec<Command>]) -> u64 {
         let mut costs = Costs::of(&self.world);
         inputs.iter().flatten().for_each(|command| costs.add(command));

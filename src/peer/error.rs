@@ -58,7 +58,7 @@ pub enum PeerError {
     },
     /// The parameters of the contact differ from those of this peer.
     Parameters(Vec<ParameterDifference>),
-    /// The contact refuses.
+    /// The contact refuses the request to join.
     Refused {
         /// Reason.
         why: &'static str,

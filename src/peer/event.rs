@@ -64,9 +64,9 @@ pub struct PeerDesync {
     pub peer: PeerId,
     /// Number of ticks after which the two states differ.
     pub tick: u64,
-    /// Hash of this peer.
+    /// Hash of this peer's state.
     pub ours: StateHash,
-    /// Hash of the other peer.
+    /// Hash of the other peer's state.
     pub theirs: StateHash,
 }
 
@@ -102,6 +102,7 @@ pub struct PeerEnd<G> {
     pub ticks: u64,
     /// The game after the last final tick.
     pub game: G,
-    /// Last bytes of the replay. Empty for a peer that joined after the first tick.
+    /// The bytes of the replay that [`Peer::take_replay`](super::Peer::take_replay) has not returned yet. Empty for a
+    /// peer that joined after the first tick.
     pub replay: Vec<u8>,
 }

@@ -105,8 +105,8 @@ impl PeerOptions {
     }
 }
 
-/// Replaces the name of a parameter of the session by the name of the option, or of the method of the game, that sets
-/// it, with the range of that number.
+/// Replaces the name, value and range of a session parameter by those of the option, or of the method of the game, that
+/// sets the parameter.
 fn named<G: Game>(error: ConfigError, game: &G, slot: InputSlot) -> ConfigError {
     match (error.field, slot) {
         ("delay_min", _) => ConfigError { field: "delay.0", ..error },

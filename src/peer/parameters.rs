@@ -45,7 +45,7 @@ pub struct PeerParameters {
     pub players: u32,
     /// Bytes of an input.
     pub input_bytes: u16,
-    /// Patience in microseconds.
+    /// [`PeerOptions::patience`](super::PeerOptions::patience) in microseconds.
     pub patience: u64,
 }
 

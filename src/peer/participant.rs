@@ -218,7 +218,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         }
     }
 
-    /// Whether it is time for the next tick.
+    /// Whether to call [`advance`](Peer::advance): the next tick is due, and can be played or needs this peer's inputs.
     #[must_use]
     pub fn is_due(&self) -> bool {
         self.endpoint.session().is_some_and(|session| session.is_due(self.now))
@@ -267,7 +267,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         self.simulation.tick
     }
 
-    /// Number of final ticks that are in the replay.
+    /// Number of ticks played with final inputs. If this peer records a replay, the replay has these ticks.
     #[must_use]
     pub const fn confirmed(&self) -> u64 {
         self.simulation.committed
@@ -327,8 +327,8 @@ impl<G: Game, T: Transport> Peer<G, T> {
         self.endpoint.ask(contact);
     }
 
-    /// Leaves the match; the others continue at once. Call [`update`](Peer::update) until the status is
-    /// [`Status::Closed`]. Before the initial state has arrived, the peer can be dropped at once.
+    /// Leaves the match; the others continue without waiting for this peer. Call [`update`](Peer::update) until the
+    /// status is [`Status::Closed`]. Before the initial state has arrived, the [`Peer`] can be dropped at once.
     pub fn leave(&mut self) {
         if let Some(session) = self.endpoint.session_mut() {
             session.leave();

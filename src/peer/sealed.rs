@@ -148,7 +148,7 @@ impl<T> Sealed<T> {
 
     fn seal(&mut self, packet: &[u8]) -> Option<Vec<u8>> {
         let counter = self.sent;
-        // After 2^64 packets, far more than any match sends, no further packet is sent.
+        // After 2^64 - 1 packets, far more than any match sends, no further packet is sent.
         self.sent = counter.checked_add(1)?;
         let mut bytes = Vec::with_capacity(packet.len() + SEALED_OVERHEAD);
         bytes.extend_from_slice(&self.sender.to_le_bytes());

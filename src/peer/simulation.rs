@@ -209,7 +209,8 @@ impl<G: Game> Simulation<G> {
         Ok(())
     }
 
-    /// Creates the report of a desync. `hashes` are the hashes of the other seats.
+    /// Creates the report of a desync. `hashes` has an entry for each seat, which is the hash of the other peer's state
+    /// if that peer plays the seat.
     pub(super) fn report(
         &mut self,
         tick: u64,

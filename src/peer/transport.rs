@@ -103,7 +103,7 @@ mod udp {
         /// Opens a socket; port 0 lets the system choose one.
         ///
         /// # Errors
-        /// Errors of the operating system.
+        /// The error that the operating system reports.
         pub fn bind(address: impl ToSocketAddrs) -> io::Result<Self> {
             let socket = UdpSocket::bind(address)?;
             socket.set_nonblocking(true)?;
@@ -114,7 +114,7 @@ mod udp {
         /// The local address of the socket.
         ///
         /// # Errors
-        /// Errors of the operating system.
+        /// The error that the operating system reports.
         pub fn local_address(&self) -> io::Result<SocketAddr> {
             self.socket.local_addr()
         }

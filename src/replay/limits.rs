@@ -53,7 +53,8 @@ impl Default for Limits {
             ticks: 24 * 60 * 60 * 60,
             // Maximum number of bodies in a world.
             bodies: 1 << 20,
-            // A work unit of the sandbox takes 5 to 130 ns in honest games, at most a microsecond (docs/VERIFYING.md).
+            // A work unit of the sandbox takes 5 to 130 ns in ordinary games, and at most a microsecond in a file that
+            // was made to be slow (docs/VERIFYING.md).
             tick_work: 10_000_000,
             total_work: 20_000_000_000,
         }

@@ -20,7 +20,7 @@ use crate::world::World;
 /// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
 /// # (0..90).for_each(|_| recording.step(&[vec![]]).expect("one input"));
 /// # let file = recording.finish().expect("no claims");
-/// // Plays an old replay with the current rules. Checkpoints are not compared, so it plays to the end.
+/// // Plays a replay that may diverge on this machine. Checkpoints are not compared, so it plays to the end.
 /// let mut replay = RawReplay::<Sandbox>::open(&file, &Limits::default())?;
 /// while replay.step()? == Step::Ticked {}
 /// assert_eq!((replay.tick(), replay.game().world().tick()), (90, 90));

@@ -30,7 +30,7 @@ const VARINT_BYTES_MAX: usize = 5;
 /// use lockstep2d::replay::{RecordError, Recording};
 /// let setup = SandboxSetup::default();
 /// assert_eq!(Recording::<Sandbox>::start(&setup, 0).err(), Some(RecordError::CheckpointInterval { ticks: 0 }));
-/// // A tick with inputs of two players, in a game of one, is not recorded.
+/// // A tick with inputs of two players is not recorded, because the game has one player.
 /// let mut recording = Recording::<Sandbox>::start(&setup, 60)?;
 /// let wrong = InputError::Count { players: 1, inputs: 2 };
 /// assert_eq!(recording.step(&[vec![], vec![]]), Err(RecordError::Inputs(wrong)));

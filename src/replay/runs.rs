@@ -58,8 +58,8 @@ impl<'a> Runs<'a> {
     /// The next run, or `None` at the end of the block.
     ///
     /// # Errors
-    /// [`ReadError::Malformed`] for bytes that no recorder writes. A block from a [`Reader`](super::Reader) contains
-    /// none.
+    /// [`ReadError::Malformed`] for bytes that no recorder writes. A [`Reader`](super::Reader) has already refused
+    /// blocks with such bytes.
     pub fn next_run(&mut self) -> Result<Option<Run<'a>>, ReadError> {
         if self.cursor.is_empty() {
             return Ok(None);

@@ -114,7 +114,7 @@ pub enum ClaimDifference {
 ///
 /// ```
 /// use lockstep2d::replay::{Mismatch, Verdict};
-/// /// The program of a server that can verify a file which this one cannot.
+/// /// The name of a server's program for files that need other engine semantics than this program has.
 /// fn other_verifier(verdict: &Verdict) -> Option<String> {
 ///     match verdict {
 ///         Verdict::Unverifiable { why: Mismatch::Semantics { file, .. } } => Some(format!("verify-{file}")),

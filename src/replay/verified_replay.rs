@@ -56,7 +56,7 @@ pub enum Step {
 /// # let mut recording = Recording::<Sandbox>::start(&SandboxSetup::default(), 60).expect("a setup");
 /// # (0..90).for_each(|_| recording.step(&[vec![]]).expect("one input"));
 /// # let file = recording.finish().expect("no claims");
-/// // Collects the frames of a film while it verifies the replay.
+/// // Collects the frames of a film while the replay is verified.
 /// let mut replay = VerifiedReplay::<Sandbox>::open(&file, &Limits::default())?;
 /// let mut frames = vec![];
 /// while replay.step()? == Step::Ticked {

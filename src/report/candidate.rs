@@ -145,8 +145,8 @@ struct Candidate {
     distance: u32,
 }
 
-/// All bits of the bodies that differ. Unless the flip causes a strong collision, most of the difference stays in the
-/// number whose bit flipped.
+/// All bits of the bodies that differ. Bits whose value is close to the observed difference come first: unless the flip
+/// causes a strong collision, most of the difference stays in the number whose bit flipped.
 fn candidates(subjects: &[Subject]) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for subject in subjects.iter().filter(|subject| handle(&subject.path).is_some()) {

@@ -32,7 +32,7 @@ pub enum CompareError {
     Unverifiable {
         /// The file.
         side: Side,
-        /// The difference to this program.
+        /// The version or name in which the file and this program differ.
         why: Mismatch,
     },
     /// A replay, or the replay in a report, cannot be read or played.

@@ -87,7 +87,7 @@ pub struct Trajectory {
     pub seats: Vec<u32>,
     /// The last tick, before a divergence of this side, at which its state is known to equal that of the rerun.
     pub equal_until: Option<u64>,
-    /// The first tick at which its state is known to differ from the rerun.
+    /// The first tick at which this side's state is known to differ from that of the rerun.
     pub diverges: Option<u64>,
 }
 

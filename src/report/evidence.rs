@@ -27,7 +27,7 @@ pub enum Evidence {
 ///
 /// ```
 /// use lockstep2d::{replay::Limits, report::{Evidence, EvidenceError}, world::World};
-/// // A tool opens what it is given: reports, replays and snapshots.
+/// // A tool opens files of all three kinds: reports, replays and snapshots.
 /// let limits = Limits::default();
 /// assert!(matches!(Evidence::read(World::default().to_bytes(), &limits), Ok(Evidence::World(_))));
 /// assert_eq!(Evidence::read(b"GIF89a".to_vec(), &limits).err(), Some(EvidenceError::Unknown));
@@ -38,7 +38,7 @@ pub enum EvidenceError {
     Report(ReportError),
     /// A snapshot that is damaged, or has another format or other semantics.
     World(SnapshotError),
-    /// Neither a report nor a replay nor a snapshot.
+    /// The bytes are neither a report nor a replay nor a snapshot.
     Unknown,
 }
 
@@ -111,7 +111,7 @@ pub(super) struct SideEvidence<'a> {
     pub(super) phases: BTreeMap<u64, &'a TickPhases>,
     /// Whether this side is the running engine, whose states are those of the rerun.
     is_rerun: bool,
-    /// Empty for a report without a replay.
+    /// Bytes of the replay; empty for a report without a replay.
     pub(super) replay: &'a [u8],
     /// Number of ticks in the replay.
     pub(super) ticks: u64,
@@ -154,7 +154,7 @@ impl<'a> SideEvidence<'a> {
         Ok(known)
     }
 
-    /// Whether this side had that state after `tick` ticks; `None` if it states no hash.
+    /// Whether this side had the state with the hash `state` after `tick` ticks; `None` if it states no hash for it.
     pub(super) fn had(&self, tick: u64, state: StateHash) -> Option<bool> {
         if self.is_rerun {
             return Some(true);
@@ -169,7 +169,7 @@ impl<'a> SideEvidence<'a> {
         state.or_else(|| self.checkpoints.get(&tick).copied())
     }
 
-    /// Whether both sides had the same state after `tick` ticks; `None` if one of them states no hash.
+    /// Whether both sides had the same state after `tick` ticks; `None` if a hash is missing or they are incomparable.
     pub(super) fn same(&self, other: &Self, tick: u64) -> Option<bool> {
         if let Some((a, b)) = self.states.get(&tick).zip(other.states.get(&tick)) {
             return Some(a == b);

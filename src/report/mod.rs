@@ -1,9 +1,9 @@
 //! Desync reports, and their comparison, which determines the side that diverged, the tick and the part of the state.
 //!
 //! A peer keeps a [`History`](crate::lockstep::History) of the last seconds. When it receives a hash that differs from
-//! its own, it writes a [`DesyncReport`]: hashes and saves of these ticks, and the replay so far. [`compare`] takes two
-//! reports, replays or snapshots and simulates the confirmed inputs again. A side whose states differ from this rerun
-//! has diverged from the rules. This works with two peers, too.
+//! its own, it writes a [`DesyncReport`]: the hashes and saves of its history, and the replay so far. [`compare`] takes
+//! two reports, replays or snapshots and simulates the confirmed inputs again. A side whose states differ from this
+//! rerun has diverged from the rules. This works with two peers, too.
 //!
 //! [`bisect`] also examines a single file and finds the tick at which its trajectory diverges from the running
 //! engine's. A [`Trace`] contains more data for this than a replay.

@@ -15,7 +15,7 @@ use crate::inspect::{differences, fields};
 use crate::lockstep::Game;
 use crate::replay::{Limits, RawReplay, Step};
 
-/// Amount of simulation.
+/// Extent of the simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Effort {
     /// Plays all ticks for which either side has data. Searches for an explanation of a difference up to a fixed limit.
@@ -49,7 +49,7 @@ fn play<G: Game>(
     effort: Effort,
     found: &mut Comparison,
 ) -> Result<(), CompareError> {
-    // After a different input the states differ, too.
+    // After the first different input the states may differ for a good reason, so that later ticks are not compared.
     let horizon = found.input.as_ref().map_or(u64::MAX, |input| input.tick);
     compare_directly(known, horizon, found);
     let side = if known[0].ticks < known[1].ticks { Side::B } else { Side::A };
@@ -148,7 +148,7 @@ struct Beside<'a, 'k, G: Game> {
     wrong: Option<WrongTick<G>>,
     /// The states at the first different tick at which both are available.
     states: Option<States<G::Save>>,
-    /// The states at the first different tick at which one of them is only presumed.
+    /// The states at the first different tick at which the state of one side is only presumed.
     presumed: Option<States<G::Save>>,
     /// Reason why the states of an earlier tick could not be used.
     obstacle: Option<String>,

@@ -1,5 +1,5 @@
-//! Changes of the view: one instance of single-decree Paxos for each view number. All of its state is in rows, the
-//! status records that peers send to each other (`row.rs`).
+//! Changes of the view: one instance of single-decree Paxos for each view number. The promises and acceptances of an
+//! instance are in rows, the status records that peers send to each other (`row.rs`).
 //!
 //! A voter that sees a higher ballot promises it and freezes its acknowledgement. Once a quorum has promised a ballot,
 //! its proposer chooses the change: the change that the promisers accepted in the highest ballot or, if they accepted
@@ -51,7 +51,7 @@ impl Session {
         }
     }
 
-    /// Takes the steps that time makes possible.
+    /// Begins a ballot if it is time for one, and takes all steps of the agreement that are possible.
     pub(super) fn agree_in_time(&mut self) {
         if self.view.voter(self.me).is_some() && self.agreement.proposal.is_none() {
             self.begin_ballot();
@@ -147,7 +147,7 @@ impl Session {
         self.refresh_row();
     }
 
-    /// Applies changes that have been decided, which lead from this view to a newer one. Returns whether they fit.
+    /// Applies decided changes. Returns whether they lead from this view to a newer one; otherwise nothing changes.
     pub(super) fn install(&mut self, changes: &[Change]) -> bool {
         let mut next = self.view.clone();
         for change in changes {

@@ -96,7 +96,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Writes fields.
+/// Appends the fields of packets.
 pub(super) trait Write {
     fn put_u16(&mut self, value: u16);
     fn put_u32(&mut self, value: u32);

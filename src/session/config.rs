@@ -118,7 +118,7 @@ pub struct Config {
 pub struct ConfigError {
     /// Name of the field.
     pub field: &'static str,
-    /// Its value.
+    /// Value of the parameter.
     pub value: u64,
     /// Smallest value allowed.
     pub min: u64,
@@ -170,7 +170,7 @@ impl Config {
     /// Checks all ranges.
     ///
     /// # Errors
-    /// The first field that is out of its range.
+    /// [`ConfigError`] for the first field that is out of its range.
     pub fn validate(&self) -> Result<(), ConfigError> {
         let check = |field: &'static str, value: u64, (min, max): (u64, u64), step: u64| {
             let is_valid = (min..=max).contains(&value) && value.is_multiple_of(step);
@@ -228,7 +228,7 @@ pub enum Fault {
     HalfIsEnough,
     /// Complete ticks are not computed again when a view is installed.
     KeepComplete,
-    /// No rows and inputs of others are passed on.
+    /// Rows and inputs of other peers are not relayed.
     NoRelay,
     /// The match ends at the tick that this peer wants, not at the decided one.
     LocalEnd,

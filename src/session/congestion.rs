@@ -20,7 +20,8 @@ const QUEUE: u64 = 60_000;
 const PERIOD_MIN: u64 = 40_000;
 /// Maximum length of a period in microseconds.
 const PERIOD_MAX: u64 = 500_000;
-/// Largest burst, as the time in microseconds that it takes at the current rate. A game may update only once a frame.
+/// Largest burst, as the time in microseconds that it takes at the current rate. It covers a frame at 60 Hz, because a
+/// game may update its session only once per frame.
 pub(super) const BURST: u64 = 25_000;
 /// Minimum number of chunks for an estimate of the loss.
 const CHUNKS_MIN: u32 = 8;
@@ -81,7 +82,7 @@ impl Congestion {
         self.budget > 0
     }
 
-    /// Notes that a chunk is sent. `again` if it was sent before and is assumed lost.
+    /// Notes that a chunk is sent. `again` is whether the chunk was sent before and is assumed lost.
     pub(super) fn note_sent(&mut self, bytes: u64, again: bool) {
         self.budget = self.budget.saturating_sub(bytes);
         self.sent += 1;

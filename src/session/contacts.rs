@@ -29,7 +29,7 @@ pub(super) struct PendingContact {
     until: u64,
 }
 
-/// Addresses of the peers that take part, and the one that is asked.
+/// Addresses of the peers that take part, and the peer that is currently asked to serve this peer.
 #[derive(Debug, Default)]
 pub(super) struct Contacts {
     list: Vec<(PeerId, Address)>,
@@ -39,7 +39,7 @@ pub(super) struct Contacts {
 }
 
 impl Contacts {
-    /// Notes the address of a peer. A newer one replaces an older one.
+    /// Notes the address of a peer. It replaces an older address of that peer.
     pub(super) fn note(&mut self, id: PeerId, address: Address) {
         match self.list.iter_mut().find(|(known, _)| *known == id) {
             Some(known) => known.1 = address,

@@ -26,7 +26,7 @@ pub const STATE_BYTES_MAX: u64 = 256 << 20;
 const HELLO_INTERVAL: u64 = 200_000;
 /// Time without a new chunk after which a download starts again, in microseconds.
 const DOWNLOAD_PATIENCE: u64 = 3_000_000;
-/// Time between lists of addresses in microseconds.
+/// Time between two packets with the addresses of peers, in microseconds.
 const ADDRESS_LIST_INTERVAL: u64 = 500_000;
 /// Maximum number of packets waiting to be sent.
 const PACKETS_MAX: usize = 8192;
@@ -53,7 +53,7 @@ pub enum JoinEvent {
     Refused {
         /// The reason.
         reason: RefusalReason,
-        /// The contact's own offer, with which the request has to agree.
+        /// The contact's own offer, which the offer in the request has to equal.
         offer: Vec<u8>,
     },
     /// The initial state has arrived: the game has to restore it, and then fulfil the requests of the session.
@@ -74,9 +74,9 @@ pub(super) enum Phase {
     Asking { nonce: u64, cookie: u64, next_at: u64 },
     /// Downloads the state.
     Downloading { nonce: u64, download: Download },
-    /// Takes part.
+    /// Takes part in the match.
     InMatch(Box<Session>),
-    /// Was refused.
+    /// The request was refused. Nothing happens until [`Endpoint::ask`] is called.
     Refused,
 }
 
@@ -191,7 +191,7 @@ impl Endpoint {
     /// Opens a match. `seats` are your own seats, one bit for each; none for a dedicated server.
     ///
     /// # Errors
-    /// A parameter that is out of its range.
+    /// [`ConfigError`] if a parameter is out of its range.
     pub fn host(config: Config, identity: Identity, seats: u64) -> Result<Self, ConfigError> {
         let begun = u32::from(config.start_with) <= seats.count_ones();
         let view = View::opened_by(identity.id, identity.key, seats & config.seat_set(), begun);
@@ -207,7 +207,7 @@ impl Endpoint {
     /// Joins a match through a contact, which is a peer that already takes part in it.
     ///
     /// # Errors
-    /// A parameter that is out of its range.
+    /// [`ConfigError`] if a parameter is out of its range.
     pub fn join(
         config: Config,
         identity: Identity,
@@ -260,7 +260,7 @@ impl Endpoint {
         }
     }
 
-    /// The address of a peer, once the peer has answered a probe from that address.
+    /// The address of a peer, once a probe or the handshake has shown that the peer receives packets there.
     #[must_use]
     pub fn address(&self, peer: PeerId) -> Option<Address> {
         self.routes.address(peer)
@@ -287,8 +287,8 @@ impl Endpoint {
         self.guests.anybody_waits()
     }
 
-    /// Offers the state after `tick` ticks, all of which must be final. While play continues, it is sent to all peers
-    /// that wait for a state.
+    /// Offers the state after `tick` ticks, all of which must be final. The state is sent to all peers that wait for
+    /// one, while play continues.
     pub fn offer_state(&mut self, tick: Tick, state: Vec<u8>) {
         let Phase::InMatch(session) = &self.phase else { return };
         if tick > session.final_tick() {

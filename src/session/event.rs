@@ -32,7 +32,7 @@ pub enum Status {
     /// Receives no packets from a majority, and only a majority can continue the match. A peer without a seat may ask
     /// another contact.
     Paused,
-    /// The others continued without this peer, which requests its seat again.
+    /// The others continued without this peer, which requests a seat again.
     Dropped,
     /// The others removed this peer for good.
     Kicked,
@@ -78,7 +78,7 @@ impl Status {
 pub enum Event {
     /// The status of the session has changed.
     Status(Status),
-    /// The membership has changed: a new view is in force.
+    /// A new view is in force: voters, seats, the start or the end of the match have changed.
     View {
         /// Number of the view.
         number: u32,
@@ -105,7 +105,8 @@ pub enum Event {
     Waiting {
         /// Incarnation of the peer.
         peer: PeerId,
-        /// Whether rows of the peer arrive, directly or through other peers. If so, the peer's game does not advance.
+        /// Whether rows of the peer arrive, directly or through other peers. If so, the peer is connected, but its game
+        /// does not advance.
         heard: bool,
     },
     /// Play continues after [`Event::Waiting`].
@@ -128,9 +129,9 @@ pub enum Event {
         peer: PeerId,
         /// Number of ticks after which the states differ.
         tick: Tick,
-        /// Hash of this peer.
+        /// Hash of this peer's state.
         ours: u128,
-        /// Hash of the other peer.
+        /// Hash of the other peer's state.
         theirs: u128,
     },
     /// A peer has issued two different inputs for one tick. Its inputs are no longer accepted.

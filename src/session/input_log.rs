@@ -50,7 +50,7 @@ impl InputLog {
         self.spans.extend(new.iter().map(empty));
     }
 
-    /// Forgets everything before a tick at which a state is loaded.
+    /// Discards all inputs. The log then starts at a tick whose state is loaded.
     pub(super) fn start_at(&mut self, spans: &[Span], tick: Tick) {
         self.spans.clear();
         let empty = |span: &Span| {

@@ -7,7 +7,7 @@ use super::row::{Removal, SeatWant};
 use super::state::{Role, Session};
 use super::view::{View, has_bit};
 
-/// The status, and the data besides the view that it depends on.
+/// The status, and the data on which it depends in addition to the view.
 #[derive(Clone, Debug)]
 pub(super) struct Lifecycle {
     pub(super) status: Status,

@@ -16,11 +16,11 @@ pub(super) struct Remote {
     pub(super) id: PeerId,
     pub(super) key: Option<Key>,
     pub(super) row: Option<Row>,
-    /// Time at which a newer row of the peer arrived, directly or through another peer.
+    /// Time at which the newest row of the peer arrived, directly or through another peer.
     pub(super) fresh: Option<u64>,
-    /// Time at which a packet arrived from the peer itself.
+    /// Time at which the last packet arrived from the peer itself.
     pub(super) heard: Option<u64>,
-    /// Time at which a row arrived in which the peer was connected to a quorum.
+    /// Time at which the newest row arrived that states a connection of the peer to a quorum.
     pub(super) contact: u64,
     /// Whether the peer is served although it has no vote.
     pub(super) attached: bool,

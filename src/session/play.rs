@@ -22,7 +22,7 @@ pub(super) struct Play {
     used: VecDeque<TickInputs>,
     /// First tick of `used`.
     used_from: Tick,
-    /// Ticks before which states are kept.
+    /// Ticks for which the game keeps a copy of the state before the tick, ascending.
     saves: VecDeque<Tick>,
     /// First tick whose inputs may differ from the ones it was played with.
     dirty: Tick,
@@ -143,7 +143,7 @@ impl Session {
         limit.min(self.stop())
     }
 
-    /// Whether the next tick is due and can be played, or an own input for it can be issued.
+    /// Whether the next tick is due, and can be played or needs inputs of this peer's seats.
     #[must_use]
     pub fn is_due(&self, now: u64) -> bool {
         let open = !self.status().is_closed();

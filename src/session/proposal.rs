@@ -16,7 +16,7 @@ use super::view::{Change, JOINS_MAX, Join, SEATS_MAX, SPANS_MAX, bit, bits, has_
 pub(super) struct Proposal {
     pub(super) ballot: Ballot,
     started_at: u64,
-    /// Time at which this peer knew that a quorum had promised the ballot.
+    /// Time at which this peer first knew that a quorum had promised the ballot.
     quorum_at: Option<u64>,
     /// The change that is proposed, once it is chosen.
     change: Option<Arc<Change>>,
@@ -172,8 +172,8 @@ impl Session {
         self.is_quorum(set)
     }
 
-    /// Free seats for a joining peer: first those that its key had, then those that no peer has had, then others. If it
-    /// asks for certain seats, only those are considered.
+    /// Free seats for a joining peer: first those that its key had, then those that no peer has had, then others. If
+    /// the peer asks for certain seats, only those are considered.
     fn seats_for(&self, want: SeatWant, free: u64) -> Option<u64> {
         let SeatWant { seats: count, key, which } = want;
         let free = if which == 0 { free } else { free & which };

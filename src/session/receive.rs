@@ -97,7 +97,7 @@ impl Session {
     fn take_inputs(&mut self, index: usize, start: u32, inputs: &[u8]) {
         let Some(span) = self.view.spans.get(index) else { return };
         let owner = span.owner;
-        // A peer that is behind gets the inputs of a few hundred ticks at a time.
+        // The bound does not slow down a peer that catches up: a packet has at most 64 ticks of a span.
         let far = self.progress.complete.saturating_add(INPUTS_AHEAD_MAX);
         if owner == self.me || self.log.next(index) > far.max(span.from) {
             return;

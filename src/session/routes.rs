@@ -1,6 +1,7 @@
 //! [`Routes`]: the addresses of peers. A packet is attributed to the peer whose incarnation it states, whatever address
-//! it comes from, but packets are sent to an address only after it has answered a probe. Therefore a peer whose address
-//! changes is found again, and no peer can direct traffic to an address that is not its own.
+//! it comes from. But packets of the match are sent to an address only after a probe or the handshake has shown that
+//! the peer receives packets there. Therefore a peer whose address changes is found again, and no peer can direct
+//! traffic to an address that is not its own.
 
 use alloc::vec::Vec;
 
@@ -32,7 +33,7 @@ struct Candidate {
 #[derive(Clone, Debug)]
 struct Route {
     id: PeerId,
-    /// The address that has answered a probe.
+    /// The address at which the peer has been shown to receive packets.
     address: Option<Address>,
     heard_at: u64,
     candidates: Vec<Candidate>,
@@ -60,7 +61,7 @@ impl Routes {
         self.find(id)
     }
 
-    /// The address of a peer, if it has answered a probe.
+    /// The address of a peer, once a probe or the handshake has shown that the peer receives packets there.
     pub(super) fn address(&self, id: PeerId) -> Option<Address> {
         self.list.iter().find(|route| route.id == id).and_then(|route| route.address)
     }
@@ -124,7 +125,7 @@ impl Routes {
     }
 }
 
-/// The token that a peer has to return from an address.
+/// The token that a peer has to return from an address to show that it receives packets there.
 pub(super) fn token(secret: Secret, id: PeerId, address: &Address) -> u64 {
     let mut bytes = Vec::with_capacity(64);
     bytes.put_u32(id.0);

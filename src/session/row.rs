@@ -20,7 +20,7 @@ pub(super) struct Wants {
     /// The seats requested by a peer that has caught up and wants to play.
     pub(super) seats: Option<SeatWant>,
     pub(super) leave: bool,
-    /// First tick after the end of the match.
+    /// First tick after the end that the peer requests for the match.
     pub(super) end: Option<Tick>,
     /// Peers that should no longer play. At most [`REMOVALS_MAX`].
     pub(super) removals: Vec<Removal>,

@@ -93,7 +93,7 @@ fn read_span(reader: &mut Reader) -> Decoded<Span> {
     if sound { Ok(span) } else { Err(Malformed) }
 }
 
-/// Whether a received view is consistent: a view that a sequence of changes can produce.
+/// Whether a received view has the properties that every sequence of changes preserves.
 fn is_sound(view: &View) -> bool {
     let distinct = view.voters.iter().enumerate().all(|(at, voter)| view.voter(voter.id) == Some(at));
     let mut taken = 0;

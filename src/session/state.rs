@@ -152,7 +152,7 @@ impl Session {
     /// from the first tick on. `me` has to be a random number, different for each process; `seed` may be any number.
     ///
     /// # Errors
-    /// A parameter that is out of its range.
+    /// [`ConfigError`] if a parameter is out of its range.
     pub fn new(
         config: Config,
         me: PeerId,
@@ -270,7 +270,7 @@ impl Session {
 
     fn remove(&mut self, removal: Removal) {
         if !self.wants.removals.contains(&removal) {
-            // Drops the oldest request: if its peer has gone, the request only prevents the peer's return.
+            // The oldest vote is dropped. If its peer has already been removed, the peer can then only return.
             if self.wants.removals.len() == REMOVALS_MAX {
                 self.wants.removals.remove(0);
             }
@@ -369,7 +369,7 @@ impl Session {
         self.peers.find(peer).map(|remote| remote.link)
     }
 
-    /// The peer whose inputs are missing for the next incomplete tick.
+    /// The peer whose input for the first incomplete tick is missing.
     #[must_use]
     pub fn waiting_for(&self) -> Option<PeerId> {
         let tick = self.progress.complete;

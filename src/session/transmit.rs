@@ -16,7 +16,7 @@ use super::view::has_bit;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Outbox {
     pub(super) packets: VecDeque<(PeerId, Vec<u8>)>,
-    /// Latest time of the next transmission.
+    /// Time at which the next transmission is due.
     next_at: u64,
     /// Whether this peer has issued new inputs.
     pub(super) urgent: bool,
@@ -170,7 +170,8 @@ impl Session {
         self.outbox.packets.push_back((id, bytes));
     }
 
-    /// Whether the row of `receiver` states that it hears another peer. The bits of voters are valid only in this view.
+    /// Whether the row of `receiver` states that it hears another peer. The row's bits of voters count only if the row
+    /// is in this view.
     fn hears(&self, receiver: &Remote, other: PeerId) -> bool {
         let Some(row) = receiver.row.as_ref() else { return false };
         let as_voter = self.view.voter(other).filter(|_| row.view == self.view.number);
@@ -207,7 +208,7 @@ impl Session {
         Some((u16::try_from(index).ok()?, start, inputs))
     }
 
-    /// Rows of other peers that the receiver does not hear. Each call starts at another peer.
+    /// Rows of other peers that the receiver does not hear. With each version of the own row, another peer is first.
     fn foreign_rows(&self, receiver: &Remote) -> Vec<&Remote> {
         if self.config.has(Fault::NoRelay) {
             return Vec::new();

@@ -102,7 +102,7 @@ pub struct View {
     pub number: u32,
     /// Whether enough seats were taken to begin.
     pub begun: bool,
-    /// Tick of the last change. Ticks before it are final.
+    /// Cut of the last change: the ticks before it are final.
     pub cut: Tick,
     /// First tick that is not played, once the end of the match is decided.
     pub end: Option<Tick>,
@@ -182,7 +182,7 @@ impl View {
         !taken.fold(0, |set, span| set | bit(usize::from(span.seat)))
     }
 
-    /// Bit for each seat of a peer that it plays or is going to play.
+    /// Bit for each seat that a peer plays or is going to play.
     #[must_use]
     pub fn seats_of(&self, id: PeerId) -> u64 {
         let own = self.spans.iter().filter(|span| span.is_open() && span.owner == id);
@@ -234,7 +234,7 @@ pub(super) const fn bit(index: usize) -> u64 {
     if index < 64 { 1 << index } else { 0 }
 }
 
-/// Whether a set has a member.
+/// Whether a set contains `index`.
 pub(super) const fn has_bit(set: u64, index: usize) -> bool {
     set & bit(index) != 0
 }

@@ -118,9 +118,9 @@ impl Config {
     /// Returns these settings with enough sub-steps and contact stiffness for a stack of 8 boxes of `size` metres to
     /// sink by less than 2.5 % of a box; see [`Config`] for a table. Call it after gravity and the tick rate are set.
     /// Also reduces the speculative distance to a fiftieth of `size`, but not below 1 mm. Settings that are sufficient
-    /// stay as they are. It sets at most 64 sub-steps per tick and 4000 per second: with 60 ticks per second and
-    /// 10 m/s², that is sufficient for the smallest boxes that the engine accepts, 5 mm. At 30 ticks per second it is
-    /// sufficient down to 14 mm; the needed number of sub-steps per second is `sqrt(4800 g / size)`.
+    /// stay as they are. The method sets at most 64 sub-steps per tick and 4000 per second. With 60 ticks per second
+    /// and 10 m/s², that is sufficient for the smallest boxes that the engine accepts, 5 mm. At 30 ticks per second it
+    /// is sufficient down to 14 mm; the needed number of sub-steps per second is `sqrt(4800 g / size)`.
     ///
     /// ```
     /// use lockstep2d::{fx, world::{Config, World}};

@@ -152,7 +152,7 @@ pub struct SensorEvent {
 pub struct MoveEvent {
     /// The body.
     pub body: BodyId,
-    /// Position of its origin after the tick, in metres.
+    /// Position of the body's origin after the tick, in metres.
     pub position: Vec2<Fx>,
     /// Rotation after the tick.
     pub angle: Angle,
@@ -229,15 +229,15 @@ pub struct Events {
     /// Pairs that came within [`super::Config::touching_distance`] or pushed each other in the tick. Sorted by shape A,
     /// then by shape B, like all lists of pairs.
     pub contact_begin: Vec<ContactEvent>,
-    /// Pairs that moved further apart than [`super::Config::speculative_distance`], and pairs with a shape that was
-    /// removed or disabled.
+    /// Pairs that moved further apart than [`super::Config::speculative_distance`], and pairs that an edit has ended,
+    /// for example by removing or disabling one of the shapes.
     pub contact_end: Vec<ContactEvent>,
     /// Pairs that pushed each other after an approach at [`super::Config::hit_speed`] or faster.
     pub hits: Vec<HitEvent>,
     /// Shapes that began to overlap a sensor within the tick. Sorted by fraction, then by sensor, then by visitor.
     pub sensor_begin: Vec<SensorEvent>,
-    /// Shapes that ceased to overlap a sensor, and pairs whose sensor or shape was removed or disabled. Sorted by
-    /// fraction, then by sensor, then by visitor.
+    /// Shapes that ceased to overlap a sensor, and pairs that an edit has ended, for example by removing or disabling
+    /// the sensor or the shape. Sorted by fraction, then by sensor, then by visitor.
     pub sensor_end: Vec<SensorEvent>,
     /// Joints above their threshold, in slot order.
     pub joints: Vec<JointEvent>,
@@ -274,7 +274,7 @@ pub enum SensorChange {
 
 impl Events {
     /// Returns the sensor events of the tick in the order in which they happened: ends by changes between ticks, then
-    /// beginnings and ends by their fraction of the tick, beginnings first.
+    /// beginnings and ends by their fraction of the tick, with beginnings first at equal fractions.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, world::{SensorChange, World}};

@@ -36,14 +36,14 @@ pub(crate) enum Side {
     Both,
 }
 
-/// Everything that influences the future. Its encoding is derived, so that a new field is part of the hash, of
-/// snapshots and of files without further code.
+/// Everything that influences the future. Its encoding in files is derived. Snapshots and hashes take the state apart
+/// field by field, so that a new field does not compile until they contain it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
     pub(crate) config: Config,
     /// Number of ticks since the world was created.
     pub(crate) tick: u64,
-    /// Number of results that a clamp has changed; see [`super::World::faults`].
+    /// Number of faults since the world was created: see [`super::World::faults`].
     pub(crate) faults: u64,
     pub(crate) bodies: Arena<Body, BodyId>,
     pub(crate) shapes: Arena<Shape, ShapeId>,
@@ -79,7 +79,7 @@ impl State {
         }
     }
 
-    /// Allocates the pages that snapshots share. Called once for a new or decoded state.
+    /// Sizes the caches of the pages that snapshots share. Called once for a new or decoded state.
     pub(crate) fn keep_pages(&mut self) {
         self.bodies.keep_pages();
         self.shapes.keep_pages();

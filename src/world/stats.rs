@@ -82,6 +82,6 @@ pub struct StepStats {
     pub axis_searches: u32,
     /// Number of fast bodies that continuous collision has stopped; see [`crate::body::Continuous`].
     pub impacts: u32,
-    /// Number of results that a clamp has changed.
+    /// Number of results that a clamp has changed, plus 1 if [`super::Config::pair_limit`] left pairs out.
     pub faults: u64,
 }

@@ -142,7 +142,7 @@ impl<T, H> Arena<T, H> {
         self.kept.revision
     }
 
-    /// Number of restores of the fields that every step changes.
+    /// Number of restores from shared copies. After each one the caller restores the fields that every step changes.
     pub(crate) fn returns(&self) -> u64 {
         self.kept.returns
     }

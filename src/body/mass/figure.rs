@@ -11,7 +11,8 @@
 //!
 //! A rounding radius `r` adds a rectangle of width `r` to every edge and a circular sector to every vertex. Let `v_i`
 //! be relative to the core's centre, `l_i` the length of the edge from `v_i` to the next vertex, `a_i = r theta_i` the
-//! arc about `v_i`, `l = sum l_i` and `a = sum a_i`:
+//! arc about `v_i`, `l = sum l_i` and `a = sum a_i`. The rounded polygon has the area `A'`, the centre `c'`, the radius
+//! of gyration `k'`, and the first and second moments `m` and `J` about the core's centre `c`:
 //!
 //! ```text
 //! 2 A' = 2 A + r (2 l + a)

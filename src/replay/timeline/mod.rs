@@ -60,7 +60,7 @@ pub struct TimelineOptions {
 }
 
 impl Default for TimelineOptions {
-    /// Five seconds at 60 Hz, and 64 MiB.
+    /// An interval of five seconds at 60 Hz, and 64 MiB of keyframes.
     fn default() -> Self {
         TimelineOptions { interval: 300, bytes: 64 << 20 }
     }
@@ -82,7 +82,7 @@ impl Default for TimelineOptions {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SeekError {
-    /// The replay is shorter.
+    /// The replay ends before this tick.
     NoSuchTick {
         /// The tick to seek to.
         tick: u64,
@@ -100,8 +100,8 @@ pub enum SeekError {
         /// Reason.
         why: String,
     },
-    /// After seeking backwards, the game computed a state different from the first time: saving and loading the game
-    /// loses state.
+    /// After seeking backwards, the game computed another state than when the tick was first played: saving and loading
+    /// the game loses state.
     Forgetful {
         /// Tick of the first checkpoint that no longer matches.
         tick: u64,
@@ -233,7 +233,7 @@ impl<'a, G: Game> Timeline<'a, G> {
             return Err(SeekError::NoSuchTick { tick, ticks: self.ticks() });
         }
         self.check_reachable(tick)?;
-        // A short seek backwards is usually followed by others.
+        // A short seek backwards is usually followed by others, so it leaves a trail.
         let goes_back = self.tick().checked_sub(tick).is_some_and(|by| (1..self.interval()).contains(&by));
         self.go_to_latest_before(tick)?;
         while self.tick() < tick {

@@ -1,4 +1,4 @@
-//! [`Trail`]: saves of the ticks behind the current one while stepping backwards.
+//! [`Trail`]: saves of ticks before the current one, kept while stepping backwards.
 
 use alloc::collections::BTreeMap;
 

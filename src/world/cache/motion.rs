@@ -99,14 +99,14 @@ pub(crate) struct ShapeMotion {
     pub(crate) body: u32,
     /// Distance of the surface from the vertices.
     pub(crate) radius: Length,
-    /// Whether it is a circle about its body's centre of mass, which rotation does not change.
+    /// Whether the shape is a circle about its body's centre of mass, which rotation does not change.
     pub(crate) disc: bool,
-    /// Whether it is solid and one of [`SmallBoxes`](crate::collision::SmallBoxes).
+    /// Whether the shape is solid and one of [`SmallBoxes`](crate::collision::SmallBoxes).
     pub(crate) small_box: bool,
     pub(crate) sensor: bool,
     pub(crate) one_way: bool,
     pub(crate) hit_events: bool,
-    /// Whether it is a sensor or has contact events.
+    /// Whether the shape is a sensor or has contact events.
     pub(crate) is_reported: bool,
 }
 
@@ -139,8 +139,8 @@ impl ShapeMotion {
         (self.bounds, self.slack) = (bounds, slack_of(bounds));
     }
 
-    /// Sets the predicted motion: the translation of its body, and how far the body's rotation moves any of its points,
-    /// in metres.
+    /// Sets the predicted motion: the translation of the shape's body, and the largest distance `turn`, in metres, by
+    /// which the body's rotation moves any point of the shape.
     #[inline]
     pub(crate) fn set_motion(&mut self, motion: &PredictedMotion, turn: Fx) {
         (self.shift, self.turn) = (motion.shift, narrow(turn));
@@ -217,7 +217,7 @@ fn slack_of(bounds: Aabb) -> Step {
     narrow(half.x.max(half.y) / 16)
 }
 
-/// Speculative and touching distance of a world.
+/// Speculative distance, touching distance and related limits of a world.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Margins {
     pub(crate) speculative: Length,
@@ -299,8 +299,8 @@ pub(crate) struct MotionCache {
 }
 
 impl MotionCache {
-    /// Starts a tick: nothing moves, and there are `body_slots` slots for bodies. `last_moving` lists the shapes whose
-    /// motion was predicted for the last tick.
+    /// Starts a tick: resets all predicted motion to rest, and makes room for `body_slots` bodies. `last_moving` lists
+    /// the shapes whose motion was predicted for the last tick.
     pub(super) fn begin(&mut self, body_slots: usize, last_moving: impl Iterator<Item = u32>) {
         for slot in self.moving_bodies.drain(..) {
             self.bodies[slot as usize] = PredictedMotion::default();

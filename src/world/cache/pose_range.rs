@@ -45,7 +45,7 @@ impl PoseRange<'_> {
         is_rotated || by != Vec2::ZERO
     }
 
-    /// Poses the shapes of a body again after it was translated but not rotated, like most falling and resting bodies.
+    /// Poses the shapes of a body again after it was translated but not rotated, as most bodies are that fall or rest.
     pub(super) fn shift_body(&mut self, body: &Body, by: Vec2<Fx>) {
         for &id in body.shapes() {
             let index = self.index(id.slot());

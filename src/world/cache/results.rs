@@ -107,8 +107,8 @@ pub(crate) struct Sweeps {
 pub(crate) struct SweptBody {
     pub(crate) slot: u32,
     pub(crate) sweep: Sweep,
-    /// The pose to which the solver has moved it.
+    /// The pose to which the solver has moved the body.
     pub(crate) end: Pose,
-    /// Whether its own displacement makes it fast. If not, it may still be fast relative to a kinematic body.
+    /// Whether the body's displacement makes it fast. If not, the body may still be fast relative to a kinematic body.
     pub(crate) is_fast: bool,
 }

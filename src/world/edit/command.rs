@@ -29,7 +29,7 @@ pub enum Command {
     Spawn {
         /// Definition of the body.
         body: BodyDef,
-        /// Definitions of its shapes.
+        /// Definitions of the body's shapes.
         shapes: Vec<ShapeDef>,
     },
     /// Calls [`World::spawn_each`].
@@ -111,7 +111,7 @@ pub enum Command {
     SetVelocity {
         /// The body.
         body: BodyId,
-        /// Velocity of its centre of mass in m/s.
+        /// Velocity of the body's centre of mass in m/s.
         velocity: Vec2<Fx>,
         /// Angular velocity in rad/s.
         angular_velocity: Fx,
@@ -120,9 +120,9 @@ pub enum Command {
     SetTransform {
         /// The body.
         body: BodyId,
-        /// Position of its origin in metres.
+        /// Position of the body's origin in metres.
         position: Vec2<Fx>,
-        /// Its rotation.
+        /// Rotation of the body.
         angle: Angle,
     },
     /// Calls [`World::set_gravity`].
@@ -134,37 +134,37 @@ pub enum Command {
     MoveTo {
         /// The kinematic body.
         body: BodyId,
-        /// Position of its origin in metres.
+        /// Position of the body's origin in metres.
         position: Vec2<Fx>,
-        /// Its rotation.
+        /// Rotation of the body.
         angle: Angle,
     },
     /// Calls [`World::set_body`].
     SetBody {
         /// The body.
         body: BodyId,
-        /// Its new settings.
+        /// New settings of the body.
         settings: BodySettings,
     },
     /// Calls [`World::set_kind`].
     SetKind {
         /// The body.
         body: BodyId,
-        /// Its new kind.
+        /// New kind of the body.
         kind: BodyKind,
     },
     /// Calls [`World::set_mass`].
     SetMass {
         /// The body.
         body: BodyId,
-        /// The new source of its mass.
+        /// New source of the body's mass.
         mass: MassSource,
     },
     /// Calls [`World::set_user_data`].
     SetUserData {
         /// The body.
         body: BodyId,
-        /// The number that the game stores with it.
+        /// Number that the game stores with the body.
         user_data: u64,
     },
     /// Calls [`World::enable`].
@@ -191,14 +191,14 @@ pub enum Command {
     SetShape {
         /// The shape to change.
         shape: ShapeId,
-        /// Its new definition.
+        /// New definition of the shape.
         def: ShapeDef,
     },
     /// Calls [`World::set_joint`].
     SetJoint {
         /// The joint to change.
         joint: JointId,
-        /// Its new definition.
+        /// New definition of the joint.
         def: JointDef,
     },
     /// Calls [`World::explode`].
@@ -225,14 +225,14 @@ pub enum Command {
     SetName {
         /// The body.
         body: BodyId,
-        /// Its new name.
+        /// New name of the body, or `None` to remove its name.
         name: Option<Name>,
     },
     /// Calls [`World::set_area`].
     SetArea {
         /// The sensor.
         shape: ShapeId,
-        /// Its new effect.
+        /// New effect of the sensor on the bodies in it, or `None` for a sensor that only detects.
         area: Option<Area>,
     },
 }

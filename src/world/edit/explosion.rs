@@ -96,7 +96,7 @@ pub struct Explosion {
     pub falloff: Fx,
     /// Impulse in N s per metre of a shape's width, ±2^20. A negative impulse pulls.
     pub impulse_per_length: Fx,
-    /// Categories of the shapes that it acts on.
+    /// Categories of the shapes that the explosion acts on.
     pub mask: u64,
 }
 

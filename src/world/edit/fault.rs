@@ -22,17 +22,17 @@ use crate::world::movement::move_body;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BodyField {
-    /// The horizontal velocity of its centre of mass.
+    /// The horizontal velocity of the body's centre of mass.
     VelocityX,
-    /// The vertical velocity of its centre of mass.
+    /// The vertical velocity of the body's centre of mass.
     VelocityY,
     /// The spin: radius of gyration times angular velocity.
     Spin,
-    /// The x coordinate of its centre of mass.
+    /// The x coordinate of the body's centre of mass.
     CentreX,
-    /// The y coordinate of its centre of mass.
+    /// The y coordinate of the body's centre of mass.
     CentreY,
-    /// Its rotation.
+    /// The rotation of the body.
     Angle,
 }
 

@@ -193,7 +193,7 @@ impl World {
     /// the joint, unless the range is the same.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, the kind of joint has no limit, or the range is out of range.
+    /// [`WorldError`] if the handle is stale, the kind of joint has no limit, or the limit is not valid.
     pub fn set_joint_limit(&mut self, id: JointId, limit: Option<JointLimit>) -> Result<(), WorldError> {
         self.change_joint(id, |def| {
             let own = def.kind.limit_mut().ok_or(WorldError::JointWithout { joint: id, what: "limit" })?;

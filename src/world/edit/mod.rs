@@ -43,7 +43,7 @@ impl World {
         self.check_velocity(Vec2::ZERO, body.angular_velocity(), mass.gyration)
     }
 
-    /// Gives the shapes of a body that an edit has moved or redefined new fat boxes, and updates the caches.
+    /// Gives new fat boxes to the shapes of a body that an edit has moved or redefined, and updates the caches.
     fn refit_body(&mut self, slot: u32) {
         let State { bodies, shapes, config, .. } = &mut *self.state;
         let body = bodies.at(slot);

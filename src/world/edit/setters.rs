@@ -197,7 +197,8 @@ impl World {
 
     /// Replaces the definition of a shape: read [`crate::body::Shape::def`], change a copy, and pass it here. Unless
     /// the body's mass was given, it is recomputed from its shapes. If the change makes the shape a sensor or a solid
-    /// shape, or switches its contact events, its contacts end; otherwise they last as long as the shapes touch.
+    /// shape, or switches its contact events or the sensor events of a sensor, its contacts end. Otherwise a contact
+    /// lasts as long as its shapes touch and may collide.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, or a value, including the mass of a dynamic body, is out of range.

@@ -87,8 +87,8 @@ impl Mover {
     }
 
     /// Sets the largest height in metres of steps that the character climbs without a jump, clamped to 0 to 100. A step
-    /// needs room for the character above it. A character with upright sides rises above the step by up to its
-    /// displacement in a tick before it moves onto it.
+    /// needs room for the character above it. A character with upright sides first rises above the step, by up to the
+    /// character's displacement in a tick, and then moves onto the step.
     #[must_use]
     pub fn step_height(mut self, height: Fx) -> Self {
         self.step_height = height.clamp(Fx::ZERO, HEIGHT_MAX);
@@ -136,7 +136,7 @@ impl Mover {
 /// # let mover = Mover::new(Geometry::capsule((fx!(0), fx!(0.3)), (fx!(0), fx!(1.5)), fx!(0.3))?)?;
 /// let start = MoverState { velocity: Vec2::new(fx!(0), fx!(-1)), ..MoverState::at(Vec2::ZERO) };
 /// let mut player = world.move_character(&mover, &start, Default::default()).state;
-/// // It jumps only from ground.
+/// // The player jumps only from ground.
 /// if player.is_on_ground() {
 ///     player.velocity.y = fx!(5);
 /// }
@@ -148,12 +148,12 @@ impl Mover {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MoverState {
-    /// Position of its geometry's centre in the world, in metres.
+    /// Position of the centre of the character's geometry in the world, in metres.
     pub position: Vec2<Fx>,
-    /// Velocity in m/s: relative to the ground while it stands on ground, otherwise in the world. A character that
-    /// leaves the ground, by a jump or at an edge, takes the velocity of the ground with it.
+    /// Velocity in m/s: relative to the ground while the character stands on ground, otherwise in the world. A
+    /// character that leaves the ground, by a jump or at an edge, takes the velocity of the ground with it.
     pub velocity: Vec2<Fx>,
-    /// The ground that it stands on, if any, with its body and the velocity of its surface.
+    /// The ground that the character stands on, if any, with the body and the surface velocity of that ground.
     pub ground: Option<MoverPlane>,
 }
 
@@ -164,7 +164,7 @@ impl MoverState {
         MoverState { position, velocity: Vec2::new(Fx::ZERO, Fx::ZERO), ground: None }
     }
 
-    /// Whether it stands on ground.
+    /// Whether the character stands on ground.
     #[must_use]
     pub const fn is_on_ground(&self) -> bool {
         self.ground.is_some()

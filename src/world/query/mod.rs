@@ -28,7 +28,8 @@ use crate::body::{BodyId, Handle, ShapeId};
 use crate::fx;
 use crate::math::Fx;
 
-/// Largest distance in metres from its AABB at which a query may find a shape, because queries round to a grid.
+/// Largest distance in metres from the AABB of a shape at which a query may still find the shape. Not 0, because
+/// queries round to a grid.
 const SLACK: Fx = fx!(0.000001);
 
 /// Selects the shapes that a query sees. The collision filters of the shape and of the query must accept each other.
@@ -63,7 +64,7 @@ pub struct QueryFilter {
 /// # let mut world = World::default();
 /// let room = ShapeDef::new(Polygon::square(fx!(2))?);
 /// world.spawn(&BodyDef::fixed(), &[room])?;
-/// // A ray from within.
+/// // A ray that starts inside a shape.
 /// let outside = Vec2::new(fx!(5), fx!(0));
 /// let solid = world.cast_ray(Vec2::ZERO, outside, QueryFilter::default());
 /// assert!(solid.is_some_and(|hit| hit.starts_inside && hit.fraction == 0));

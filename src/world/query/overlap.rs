@@ -158,7 +158,7 @@ impl World {
     }
 }
 
-/// The nearest points in the world of two shapes in coordinates relative to an origin.
+/// The nearest points, in world coordinates, of two shapes that are given relative to an origin.
 pub(super) fn proximity(a: &SupportShape, b: &SupportShape, origin: Vec2<Fx>) -> ClosestPoints {
     let found = distance(a, b);
     ClosestPoints {

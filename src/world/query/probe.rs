@@ -56,7 +56,7 @@ impl Probe {
         self
     }
 
-    /// The position of its centre in the world, in metres.
+    /// The position of the probe's centre in the world, in metres.
     #[must_use]
     pub const fn position(&self) -> Vec2<Fx> {
         self.position

@@ -38,11 +38,12 @@ impl Rest {
     pub(super) const CAST: Rest =
         Rest { touching: Self::SKIN_MAX, gap: fx!(0.000105), approach_max: fx!(0.001) };
 
-    /// For casts that turn, whose gap is up to 0.15 mm.
+    /// Tolerances of casts that turn, whose gap is up to 0.15 mm.
     pub(super) const TURNING: Rest =
         Rest { touching: fx!(0.000155), gap: fx!(0.000155), approach_max: fx!(0.001) };
 
-    /// For characters: no approach, because each move would bring them closer to the surface.
+    /// Tolerances of characters. No approach is allowed, because each move would bring a character closer to the
+    /// surface.
     pub(super) const CHARACTER: Rest =
         Rest { touching: Self::SKIN_MAX, gap: fx!(0.000105), approach_max: Fx::ZERO };
 

@@ -35,7 +35,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Whether there is ground just behind a surface, above the feet by at most the step height, and room to stand on it.
+    /// Whether there is ground just behind a surface, at most the step height above the feet, with room to stand on it.
     fn is_step(&self, plane: &MoverPlane) -> bool {
         let Vec2 { x, y } = plane.normal;
         // A ceiling is no step, but the normal of a wall may be rounded downwards.
@@ -62,7 +62,7 @@ impl Walk<'_> {
         })
     }
 
-    /// Whether the character can rise by a height and then move on, along ground at most.
+    /// Whether the character can rise by a height and then move onwards without meeting anything but ground.
     fn has_room(&self, height: Fx, onwards: Fx) -> bool {
         let up = Vec2::new(Fx::ZERO, height.saturating_add(SKIN + SKIN).max(Fx::ZERO));
         if self.cast_from(&self.probe, up).is_some() {

@@ -29,7 +29,8 @@ enum Overlaps {
     /// They stop a cast that goes deeper.
     Stop,
     /// Only shapes of fixed bodies stop a cast that goes deeper. All others have moved over the character in this tick,
-    /// such as the other platforms of a train, and do not stop it. It is pushed out of them after it has been carried.
+    /// such as the other platforms of a train, and do not stop the cast. After the character has been carried, it is
+    /// pushed out of them.
     Pass,
 }
 
@@ -53,7 +54,7 @@ pub(super) struct Walk<'a> {
     along: Option<Vec2<Unit>>,
     /// Height in metres that the character has gained by walking along ground.
     climbed: Fx,
-    /// Upward speed in m/s at which ground has pushed it.
+    /// Upward speed in m/s at which ground has pushed the character.
     lifted: Fx,
     surfaces: Vec<(Surface, MoverPlane)>,
 }

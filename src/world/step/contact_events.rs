@@ -79,7 +79,7 @@ fn reported(state: &State, motion: &MotionCache, contact: &Contact) -> Option<Re
 }
 
 fn begin(pair: Option<Reported>, events: &mut Events) {
-    // Only solid shapes begin to touch here.
+    // Called for solid shapes only: `sensor_events.rs` reports the beginnings of overlaps with sensors.
     events.contact_begin.extend(pair.map(|pair| pair.shapes));
 }
 

@@ -23,7 +23,7 @@ use crate::world::state::State;
 /// Displacement in a tick, in metres, below which a body is not swept, however thin it is.
 const SWEPT_MIN: Fx = fx!(0.0005);
 
-/// Work units of a time of impact: it takes some 2 µs, and up to 10 µs for long thin shapes that rotate.
+/// Work units of computing a time of impact, which takes some 2 µs, and up to 10 µs for long thin shapes that rotate.
 const IMPACT_WORK: u64 = 16;
 
 /// Number of shapes near a sweep that cost one work unit.
@@ -107,8 +107,8 @@ struct Impact {
     obstacle: u32,
 }
 
-/// The pose of a body after an impact. It is the pose at the impact, moved along with a kinematic obstacle, which
-/// continues its own movement. A dynamic obstacle has already been moved by the impact.
+/// The pose of a body after an impact. It is the pose at the impact. A kinematic obstacle continues its own movement,
+/// and the body moves along with it for the rest of the tick. The body does not move along with a dynamic obstacle.
 fn pose_after(state: &State, scratch: &Scratch, swept: &SweptBody, impact: Impact) -> Pose {
     let Sweep { start, end, turn } = swept.sweep;
     let body = state.bodies.at(swept.slot);

@@ -117,7 +117,7 @@ fn soonest([a, b]: [&PredictedMotion; 2], manifold: &Manifold) -> Option<Closing
         .points()
         .iter()
         .map(|point| ClosingPoint { separation: point.separation, distance: closing_at(point) });
-    // s1 / d1 < s2 / d2 for positive d.
+    // Compares the times s1 / d1 and s2 / d2 of two points by cross-multiplication, which needs positive distances d.
     points.filter(|point| point.distance > 0).reduce(|first, point| {
         let time = |point: &ClosingPoint, other: &ClosingPoint| {
             i128::from(point.separation.to_bits()) * i128::from(other.distance)

@@ -19,10 +19,10 @@ use crate::world::state::State;
 const CONTACTS_MIN: usize = 512;
 
 /// Number of contacts in a block. Their bounds are tested before the pairs of small boxes among them are collided.
-/// Enough that few SIMD lanes stay empty, and few enough that the data of a block stays in the cache.
+/// The number is large enough that few SIMD lanes stay empty, and small enough that a block's data stays in the cache.
 const BLOCK: usize = 64;
 
-/// Prefetch distance in contacts: shape B is a random access.
+/// Prefetch distance in contacts. Prefetching helps because the data of shape B is accessed in random order.
 const CONTACTS_AHEAD: usize = 8;
 
 /// Finds the manifolds of all contacts, and lists the pairs that the solver has to solve. Each thread has a part of the
@@ -76,12 +76,12 @@ struct NearContacts {
     kept: u64,
 }
 
-/// Where the manifold of a near contact comes from.
+/// Source of the manifold of a near contact.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum ManifoldSource {
     /// The contact keeps its manifold.
     Kept,
-    /// The block of box pairs.
+    /// The pair was collided together with the other box pairs of its block.
     BoxPair,
     /// The shapes have to be collided.
     Shapes,

@@ -82,7 +82,7 @@ fn find_new(state: &State, scratch: &mut Scratch) -> bool {
 /// Action of the pair update on an active contact.
 enum PairChange {
     Stays,
-    /// Its fat boxes no longer overlap, or its shapes may not collide any more.
+    /// The fat boxes of its shapes no longer overlap, or the shapes may not collide any more.
     Ends,
     /// Neither of its bodies is active any more.
     Rests,

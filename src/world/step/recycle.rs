@@ -16,7 +16,7 @@ pub(super) struct Recycling<'a> {
     /// Largest change of a lever arm, in metres, at which the contact keeps the arm.
     arm_tolerance: Length,
     /// Largest relative movement of the shapes since their manifold was computed, in metres, at which the contact keeps
-    /// it for another tick. Negative if they move too fast.
+    /// the manifold for another tick. Negative if the shapes move too fast.
     movement_max: Length,
 }
 
@@ -52,7 +52,7 @@ impl<'a> Recycling<'a> {
         Recycling { bodies, shapes, extents, rolls, arm_tolerance, movement_max: closing.rest_of(most) }
     }
 
-    /// The changes of a contact's manifold, or `None` if the shapes have to be collided.
+    /// The current origin and separations of a contact's kept manifold, or `None` if the shapes have to be collided.
     #[inline]
     pub(super) fn recycle(&self, contact: &Contact) -> Option<Recycled> {
         let [a, b] = self.shapes;

@@ -1,4 +1,5 @@
-//! Sensor events: which shapes overlap a sensor at the end of the tick, and which have crossed one within it.
+//! Sensor events: the shapes that overlap a sensor at the end of the tick, and those that crossed a sensor during the
+//! tick.
 //!
 //! Every pair with a sensor is followed from the poses at the start of the tick to the poses at its end. The pairs are
 //! those of overlapping fat boxes, which cover the motion that the velocities at the start of the tick predict. A shape
@@ -76,7 +77,7 @@ struct Visit {
 impl Visit {
     /// Follows a pair through the tick. `was_inside` is whether its shapes overlapped at the end of the last tick.
     fn of(state: &State, scratch: &Scratch, pair: Pair, was_inside: bool) -> Self {
-        // The search clips the first shape. Only fixed bodies can have the long segments that need it.
+        // The search clips the first shape. Only fixed bodies can have segments so long that they need clipping.
         let (a, b) = match state.body_of(pair.1).kind() {
             BodyKind::Fixed => (pair.1, pair.0),
             BodyKind::Kinematic | BodyKind::Dynamic => pair,

@@ -129,7 +129,7 @@ fn symmetric_shapes_keep_their_centre() {
         assert_eq!(moved.doubled_area, figure(&square).doubled_area);
         assert_eq!(moved.gyration_squared, figure(&square).gyration_squared);
     }
-    // Symmetric about the diagonal.
+    // A triangle that is symmetric about the diagonal.
     let points = [vertex(fx!(0), fx!(0)), vertex(fx!(2), fx!(0)), vertex(fx!(0), fx!(2))];
     let (x, y) = figure(&Polygon::new(&points).unwrap().rounded(fx!(0.3)).unwrap()).centre;
     assert!((x - y).abs() <= 1, "the coordinates of the centre should be equal: {x} {y}");
