@@ -3,6 +3,7 @@
 use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::{Colouring, Node, Size};
 use super::super::row::MassFractions;
+use super::prospect::Prospect;
 use super::restitution::ELASTIC;
 use super::{Features, Surface, WarmStarts};
 use alloc::vec::Vec;
@@ -32,52 +33,6 @@ pub(crate) struct ActiveContact {
     pub(crate) extras: bool,
     /// Whether the rows are those of the last tick: the contact has kept its manifold and its surface.
     pub(crate) keeps_rows: bool,
-}
-
-/// Properties of a body that follow from all of its contacts: flags that each contact sets, and in the bits above them
-/// the number of contacts with bodies that impulses do not move.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Prospect(u32);
-
-impl Prospect {
-    /// A contact had points in the last tick.
-    const WARM: u32 = 1;
-    /// A contact is an impact.
-    const IMPACT: u32 = 2;
-    /// A contact has restitution.
-    const BOUNCES: u32 = 4;
-    /// The body has a contact.
-    const CONTACT: u32 = 8;
-    const FLAGS: u32 = 16;
-
-    fn add(&mut self, flags: u32, walls: u32) {
-        self.0 = (self.0 | flags | Self::CONTACT) + walls * Self::FLAGS;
-    }
-
-    /// Whether the body has contacts, but no initial guess of their impulses.
-    fn is_cold(self) -> bool {
-        self.0 & Self::CONTACT != 0 && !self.has_guess()
-    }
-
-    /// Whether the impulses of the last tick are an initial guess for those of this tick: a contact of the body had
-    /// points, and the body is not wedged.
-    fn has_guess(self) -> bool {
-        self.0 & Self::WARM != 0 && !self.is_wedged()
-    }
-
-    /// Whether an impact may drive the body between two walls, which are bodies that impulses do not move.
-    pub(super) fn is_wedged(self) -> bool {
-        self.0 & Self::IMPACT != 0 && self.0 >= 2 * Self::FLAGS
-    }
-
-    /// Whether a contact of the body is an impact.
-    pub(super) fn has_impact(self) -> bool {
-        self.0 & Self::IMPACT != 0
-    }
-
-    pub(super) fn bounces(self) -> bool {
-        self.0 & Self::BOUNCES != 0
-    }
 }
 
 /// The contacts of a tick, from which batches are filled.
@@ -153,7 +108,8 @@ impl ContactSource<'_> {
         prospects.resize(self.list.len(), Prospect::default());
         for pair in self.pairs {
             let (a, b) = pair.shapes;
-            let is_small = self.manifolds[pair.manifold as usize].count() == 1;
+            let manifold = &self.manifolds[pair.manifold as usize];
+            let is_small = manifold.count() == 1;
             let bodies = self.changed(self.bodies_of(pair));
             let size = if is_small { Size::Small } else { Size::Large };
             colouring.add(Node::new(u64::from(a) << 32 | u64::from(b), bodies, size));
@@ -165,8 +121,12 @@ impl ContactSource<'_> {
                 features.elastic |= pair.surface.restitution > ELASTIC;
                 features.hits |= pair.is_hit;
             }
-            let walls = u32::from(bodies.contains(&GROUND));
-            bodies.into_iter().for_each(|body| prospects[body as usize].add(flags, walls));
+            bodies.into_iter().for_each(|body| prospects[body as usize].add(flags));
+            match bodies {
+                [GROUND, body] => prospects[body as usize].add_wall(manifold.normal),
+                [body, GROUND] => prospects[body as usize].add_wall(-manifold.normal),
+                _ => {}
+            }
         }
         prospects[GROUND as usize] = Prospect::default();
         // In a world at rest no contact is cold.

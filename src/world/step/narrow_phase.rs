@@ -5,12 +5,14 @@ use core::ops::Range;
 
 use super::recycle::Recycling;
 use super::speculative::{Side, SpeculativePair, approach};
+use crate::body::Handle;
 use crate::collision::{CachedAxis, Contact, Manifold, Pair, SatCounters, collide_near};
 use crate::math::{Fx, Step, saturate, widen};
 use crate::simd::Machine;
 use crate::solver::{ActiveContact, Surface, SurfaceSide};
 use crate::world::cache::{
-    ClosingBound, Margins, MotionCache, NarrowPhaseBuffers, NarrowPhaseOutput, PendingHit, Poses, Scratch,
+    ClosingBound, JointLinks, Margins, MotionCache, NarrowPhaseBuffers, NarrowPhaseOutput, PendingHit, Poses,
+    Scratch,
 };
 use crate::world::events::{ContactEvent, HitEvent};
 use crate::world::state::State;
@@ -28,13 +30,13 @@ const CONTACTS_AHEAD: usize = 8;
 /// Finds the manifolds of all contacts, and lists the pairs that the solver has to solve. Each thread has a part of the
 /// contacts. Their outputs are joined in order, so that the result does not depend on the number of threads.
 pub(super) fn find_manifolds(state: &mut State, scratch: &mut Scratch) {
-    let Scratch { shapes, contacts: cache, solver, .. } = scratch;
+    let Scratch { shapes, contacts: cache, joint_links, solver, .. } = scratch;
     let mut contacts = core::mem::take(&mut state.contacts);
     let share = contacts.len().div_ceil(solver.parts).max(CONTACTS_MIN);
     let part_count = contacts.len().div_ceil(share).max(1);
     let NarrowPhaseBuffers { axes, parts, touched } = cache.begin(contacts.len(), part_count);
     let (margins, machine) = (Margins::of(&state.config), solver.machine);
-    let narrow_phase = NarrowPhase { state, poses: shapes.poses(), touched, margins, machine };
+    let narrow_phase = NarrowPhase { state, poses: shapes.poses(), joint_links, touched, margins, machine };
     let chunks = contacts.chunks_mut(share).zip(axes.chunks_mut(share));
     let jobs = (0u32..).step_by(share).zip(chunks).zip(parts.iter_mut());
     solver.threads.run_team(jobs, |((first, (contacts, axes)), output), _| {
@@ -49,6 +51,7 @@ pub(super) fn find_manifolds(state: &mut State, scratch: &mut Scratch) {
 struct NarrowPhase<'a> {
     state: &'a State,
     poses: &'a Poses,
+    joint_links: &'a JointLinks,
     /// The touching pairs of the last tick, sorted by pair.
     touched: &'a [ActiveContact],
     margins: Margins,
@@ -116,6 +119,11 @@ impl NearContacts {
 }
 
 impl NarrowPhase<'_> {
+    /// Whether joints change the motion of a body in the tick, so that the place of its impact is not known in advance.
+    fn is_held(&self, side: &Side<'_>) -> bool {
+        side.body.is_dynamic() && self.joint_links.hold(self.state, side.shape.body().slot())
+    }
+
     fn run(&self, mut job: Job<'_>, output: &mut NarrowPhaseOutput) {
         let Some(pair) = job.contacts.first().map(|contact| contact.shapes) else { return };
         let mut touched = &self.touched[self.touched.partition_point(|touched| touched.shapes < pair)..];
@@ -219,7 +227,9 @@ impl NarrowPhase<'_> {
                 recycling.keep(contact, manifold);
                 if pair.may_impact(manifold) {
                     let sides = [contact.shapes.0, contact.shapes.1].map(|slot| Side::of(state, poses, slot));
-                    if let Some(moved) = pair.move_to_impact(sides, motion, manifold, sat) {
+                    if !sides.iter().any(|side| self.is_held(side))
+                        && let Some(moved) = pair.move_to_impact(sides, motion, manifold, sat)
+                    {
                         recycling.keep_impact(contact, manifold, moved);
                     }
                 }
