@@ -18,6 +18,8 @@ pub(crate) struct AwakeSet {
     joints: Vec<u32>,
     /// Slots of the joints in `joints` that have a force or torque threshold.
     with_threshold: Vec<u32>,
+    /// For each body slot, whether a joint in `joints` holds the body.
+    held: Vec<bool>,
     is_current: bool,
     /// Whether the world may have kinematic bodies. Never false while there is one.
     may_have_kinematic: bool,
@@ -74,6 +76,13 @@ impl AwakeSet {
         self.with_threshold.clear();
         let has_threshold = |&&slot: &&u32| state.joints.at(slot).def().threshold.is_set();
         self.with_threshold.extend(self.joints.iter().filter(has_threshold));
+        self.held.clear();
+        self.held.resize(state.bodies.slot_count(), false);
+        for &joint in &self.joints {
+            let (a, b) = state.joints.at(joint).def().bodies();
+            self.held[a.slot() as usize] = true;
+            self.held[b.slot() as usize] = true;
+        }
     }
 
     /// Slots of the bodies.
@@ -104,6 +113,11 @@ impl AwakeSet {
     /// Slots of the joints that have a force or torque threshold.
     pub(crate) fn joints_with_threshold(&self) -> &[u32] {
         &self.with_threshold
+    }
+
+    /// Whether one of the joints holds the body in a slot.
+    pub(crate) fn is_held(&self, body: u32) -> bool {
+        self.held[body as usize]
     }
 
     /// Whether the world may have kinematic bodies.

@@ -76,21 +76,11 @@ impl JointLinks {
 
     /// Returns the joints of a body in slot order.
     pub(crate) fn of(&self, state: &State, body: BodyId) -> Vec<JointId> {
-        let mut joints: Vec<u32> = self.slots_of(body.slot()).collect();
+        let first = self.first.get(body.slot() as usize).copied().filter(|&joint| joint != NONE);
+        let next = |&joint: &u32| Some(self.after(joint, body.slot())).filter(|&joint| joint != NONE);
+        let mut joints: Vec<u32> = core::iter::successors(first, next).collect();
         joints.sort_unstable();
         joints.into_iter().map(|slot| state.joints.handle_at(slot)).collect()
-    }
-
-    /// Whether a joint acts on the body in a slot.
-    pub(crate) fn hold(&self, state: &State, body: u32) -> bool {
-        self.slots_of(body).any(|joint| state.joints.at(joint).is_solved())
-    }
-
-    /// The slots of the joints of a body, in any order.
-    fn slots_of(&self, body: u32) -> impl Iterator<Item = u32> {
-        let first = self.first.get(body as usize).copied().filter(|&joint| joint != NONE);
-        let next = move |&joint: &u32| Some(self.after(joint, body)).filter(|&joint| joint != NONE);
-        core::iter::successors(first, next)
     }
 
     /// The slot of the joint that follows `joint` in the list of a body.

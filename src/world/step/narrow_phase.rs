@@ -11,7 +11,7 @@ use crate::math::{Fx, Step, saturate, widen};
 use crate::simd::Machine;
 use crate::solver::{ActiveContact, Surface, SurfaceSide};
 use crate::world::cache::{
-    ClosingBound, JointLinks, Margins, MotionCache, NarrowPhaseBuffers, NarrowPhaseOutput, PendingHit, Poses,
+    AwakeSet, ClosingBound, Margins, MotionCache, NarrowPhaseBuffers, NarrowPhaseOutput, PendingHit, Poses,
     Scratch,
 };
 use crate::world::events::{ContactEvent, HitEvent};
@@ -30,13 +30,13 @@ const CONTACTS_AHEAD: usize = 8;
 /// Finds the manifolds of all contacts, and lists the pairs that the solver has to solve. Each thread has a part of the
 /// contacts. Their outputs are joined in order, so that the result does not depend on the number of threads.
 pub(super) fn find_manifolds(state: &mut State, scratch: &mut Scratch) {
-    let Scratch { shapes, contacts: cache, joint_links, solver, .. } = scratch;
+    let Scratch { shapes, contacts: cache, awake, solver, .. } = scratch;
     let mut contacts = core::mem::take(&mut state.contacts);
     let share = contacts.len().div_ceil(solver.parts).max(CONTACTS_MIN);
     let part_count = contacts.len().div_ceil(share).max(1);
     let NarrowPhaseBuffers { axes, parts, touched } = cache.begin(contacts.len(), part_count);
     let (margins, machine) = (Margins::of(&state.config), solver.machine);
-    let narrow_phase = NarrowPhase { state, poses: shapes.poses(), joint_links, touched, margins, machine };
+    let narrow_phase = NarrowPhase { state, poses: shapes.poses(), awake, touched, margins, machine };
     let chunks = contacts.chunks_mut(share).zip(axes.chunks_mut(share));
     let jobs = (0u32..).step_by(share).zip(chunks).zip(parts.iter_mut());
     solver.threads.run_team(jobs, |((first, (contacts, axes)), output), _| {
@@ -51,7 +51,7 @@ pub(super) fn find_manifolds(state: &mut State, scratch: &mut Scratch) {
 struct NarrowPhase<'a> {
     state: &'a State,
     poses: &'a Poses,
-    joint_links: &'a JointLinks,
+    awake: &'a AwakeSet,
     /// The touching pairs of the last tick, sorted by pair.
     touched: &'a [ActiveContact],
     margins: Margins,
@@ -121,7 +121,7 @@ impl NearContacts {
 impl NarrowPhase<'_> {
     /// Whether joints change the motion of a body in the tick, so that the place of its impact is not known in advance.
     fn is_held(&self, side: &Side<'_>) -> bool {
-        side.body.is_dynamic() && self.joint_links.hold(self.state, side.shape.body().slot())
+        side.body.is_dynamic() && self.awake.is_held(side.shape.body().slot())
     }
 
     fn run(&self, mut job: Job<'_>, output: &mut NarrowPhaseOutput) {
