@@ -13,7 +13,7 @@ use lockstep2d::world::World;
 /// Number of ticks that a rollback simulates again.
 const TICKS: u32 = 8;
 const ROUNDS: u32 = 41;
-/// Number of bodies without an argument.
+/// Default number of bodies.
 const BODIES: i32 = 1000;
 
 /// Creates balls and boxes that fall into a trough in 40 columns.

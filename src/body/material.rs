@@ -67,7 +67,7 @@ pub struct Material {
     /// bumpers of a pinball machine; the combined value of a pair is clamped to 2, whatever its mixing rule. A bounce
     /// that would change a velocity by more than 511 m/s is clamped, and counts as a fault. Shapes that approach more
     /// slowly than [`Material::restitution_threshold`] do not bounce; the default is the threshold of the world, 1 m/s.
-    /// A ball that falls from a height of `H` metres rebounds to `e^2 H` within 0.1 %.
+    /// A ball that falls from a height of `H` metres rebounds to `restitution^2 H`, within 0.1 %.
     pub restitution: Fx,
     /// Rule that combines the restitution of two shapes.
     pub restitution_mixing: Mixing,

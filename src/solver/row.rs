@@ -282,7 +282,7 @@ pub(crate) fn lambda_of(p: Speed, denominator: Denominator) -> Speed {
     Speed::from_bits(saturate(saturate_wide(bits))).clamp(-IMPULSE_MAX, IMPULSE_MAX)
 }
 
-/// `p = L / D`: the impulse times `mA + mB`. It does not depend on the lever arms.
+/// `p = L / D`: the impulse times `mA + mB`, the inverse masses. It does not depend on the lever arms.
 pub(crate) fn impulse_of(lambda: Speed, denominator: Denominator) -> Speed {
     let bits = div_round(i128::from(lambda.to_bits()) << 30, denominator.max(1).into());
     Speed::from_bits(saturate(saturate_wide(bits)))

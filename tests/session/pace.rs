@@ -41,7 +41,7 @@ pub(crate) fn pace(sim: &mut Sim, seconds: u64) -> u64 {
     (played(sim) - before) * 100 / seconds
 }
 
-/// Returns the documented delay in ticks: the latency and a tick. The interval of the calls adds a millisecond.
+/// Returns the documented delay in ticks: the latency plus one tick. The interval of the calls adds a millisecond.
 fn documented_delay(latency: Us) -> u16 {
     ((latency + MS) * 60).div_ceil(S) as u16 + 1
 }

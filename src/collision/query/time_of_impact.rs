@@ -328,8 +328,8 @@ struct Tracks {
     curvature: Fx,
 }
 
-/// Fraction of the tick, at most `left`, in which no vertex of B comes nearer than `offset` to a vertex of A. The axis
-/// points to B. The tracks of A are negated, so that distances are sums.
+/// Largest fraction of the tick, at most `left`, until which no vertex of B comes nearer than `offset` to a vertex of A
+/// along the axis of the tracks. The axis points to B. The tracks of A are negated, so that distances are sums.
 fn free_part(a: &Tracks, b: &Tracks, offset: Fx, left: Fx) -> Fx {
     let curvature = a.curvature.saturating_add(b.curvature);
     let mut free = left;

@@ -44,9 +44,9 @@ pub struct Motor {
     pub linear: Option<LinearDrive>,
     /// Drives B to an angular velocity relative to A in rad/s, with limited torque in N m.
     pub angular: Option<Drive>,
-    /// Pulls the anchors onto each other, with limited force in N. The frequency is that of the bodies as point masses,
-    /// and the stiffness is the same in all directions ([`Soft`]). Its damping acts on the velocity of B's anchor
-    /// relative to A's frame, along the spring and across it.
+    /// Pulls the anchors onto each other, with limited force in N. The bodies swing at its frequency if they are point
+    /// masses, and the stiffness is the same in all directions ([`Soft`]). The damping acts on the velocity of B's
+    /// anchor relative to A's frame, along the spring and across it.
     pub linear_spring: Option<Pull>,
     /// Turns the frames parallel, with limited torque in N m.
     pub angular_spring: Option<Pull>,
@@ -124,8 +124,8 @@ impl Motor {
     option_builders! {
         /// Sets a target angular velocity in rad/s, and the largest torque in N m.
         angular(speed, max_torque) => Drive { speed, max: max_torque };
-        /// Sets a spring between the anchors, with a frequency in Hz and a largest force in N. The frequency is that of
-        /// the bodies as point masses.
+        /// Sets a spring between the anchors, with a frequency in Hz and a largest force in N. The bodies swing at this
+        /// frequency if they are point masses.
         linear_spring(hertz, damping_ratio, max_force) =>
             Pull { soft: Soft { hertz, damping_ratio }, max: max_force };
         /// Sets a spring between the angles, with a frequency in Hz and a largest torque in N m.

@@ -68,9 +68,9 @@ pub struct Drive {
 /// A damped spring with a target.
 ///
 /// On an angle, the frequency is that of two free bodies; a body on a hinge away from its centre of mass swings more
-/// slowly. Along a line (sliders, wheels, distance joints), it is that of the two bodies as point masses: the stiffness
-/// is `(2 pi hertz)^2 m` N/m at every pose, with `m` as for [`Soft`]. Where the line does not pass through a centre of
-/// mass, the spring also turns the body, which swings faster.
+/// slowly. Along a line (sliders, wheels, distance joints), it is that of two point masses with the masses of the
+/// bodies: the stiffness is `(2 pi hertz)^2 m` N/m at every pose, with `m` as for [`Soft`]. Where the line does not
+/// pass through a centre of mass, the spring also turns the body, which swings faster.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};

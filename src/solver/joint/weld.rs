@@ -34,9 +34,9 @@ use crate::math::Fx;
 #[doc(alias = "FixedJoint")]
 #[doc(alias = "WeldJoint")]
 pub struct Weld {
-    /// Softness of the anchors; `None` is rigid. The frequency is that of the bodies as point masses, and the stiffness
-    /// is the same in all directions ([`Soft`]). Forces act on both bodies at B's anchor, so that a soft weld conserves
-    /// angular momentum however far it is stretched.
+    /// Softness of the anchors; `None` is rigid. The bodies swing at its frequency if they are point masses, and the
+    /// stiffness is the same in all directions ([`Soft`]). Forces act on both bodies at B's anchor, so that a soft weld
+    /// conserves angular momentum however far it is stretched.
     pub linear: Option<Soft>,
     /// Softness of the angle; `None` is rigid.
     pub angular: Option<Soft>,
@@ -50,7 +50,7 @@ impl Weld {
     }
 
     option_builders! {
-        /// Makes the anchors soft, with a frequency in Hz: that of the bodies as point masses.
+        /// Makes the anchors soft, with the frequency in Hz that the bodies would have if they were point masses.
         linear(hertz, damping_ratio) => Soft { hertz, damping_ratio };
         /// Makes the angle soft, with a frequency in Hz.
         angular(hertz, damping_ratio) => Soft { hertz, damping_ratio };

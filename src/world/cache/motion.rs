@@ -52,7 +52,7 @@ impl PredictedMotion {
         PredictedMotion { centre: self.centre + self.shift_until(fraction), ..*self }
     }
 
-    /// Displacement of the material point of the body that is at a world point at the start of the tick.
+    /// Displacement by the end of the tick of the body's point that is at `point` at the start.
     pub(crate) fn shift_at(&self, point: Vec2<Fx>) -> Vec2<Travel> {
         if self.turn == 0 {
             return self.shift;
@@ -61,7 +61,7 @@ impl PredictedMotion {
         self.shift + arm.perp().scale(self.turn)
     }
 
-    /// Absolute rotation in radians.
+    /// Size of the rotation in radians.
     pub(crate) fn turned(&self) -> Fx {
         widen(self.turn).saturating_abs()
     }

@@ -153,8 +153,8 @@ impl<const N: usize> AngleRows<N> {
             .map(|lambda| Speed::from_bits(lambda.0[lane]))
     }
 
-    /// Computes positions at the current pose. `turns` are the angles of the joints at the start of the tick, one for
-    /// each lane with a hinge.
+    /// Computes the pushes of springs and limits from the joint angles at the current pose. `turns` are the angles at
+    /// the start of the tick, one for each lane with a hinge.
     pub(super) fn refresh(&mut self, turns: &[i64], [a, b]: &[[u32; N]; 2], body_rotations: &[BodyRotation]) {
         for (lane, turn) in turns.iter().enumerate() {
             let (a, b) = (&body_rotations[a[lane] as usize], &body_rotations[b[lane] as usize]);
