@@ -1,10 +1,10 @@
 //! Limits hold within a hundredth of their range, whatever drives a joint against them.
 
-use lockstep2d::body::JointId;
+use lockstep2d::body::{BodyDef, JointId, Polygon, ShapeDef};
 use lockstep2d::fx;
 use lockstep2d::math::{Angle, Fx, TAU, Vec2};
 use lockstep2d::solver::{Distance, JointDef, JointKind, Prismatic, Revolute, Wheel};
-use lockstep2d::world::World;
+use lockstep2d::world::{Config, World};
 
 use crate::joint_bench::{Bench, Ground, close, grounds};
 
@@ -99,6 +99,38 @@ fn a_rope_is_slack_and_then_taut() {
     assert!(longest < fx!(3.03), "{longest} m");
     close(bench.world.joint_length(joint).expect("there"), fx!(3), fx!(0.005), "m of rope");
     close(bench.world.joint_force(joint).expect("there").0.y, fx!(20), fx!(0.2), "N");
+}
+
+/// A flipper: a motor of up to 10^9 N m between two boxes that a hinge joins at their edges. It hits the limit once and
+/// then rests there. If the motor acted against the limit, both impulses would grow until the hinge turned through the
+/// limit, by up to 266 rad.
+#[test]
+fn a_motor_of_any_force_does_not_turn_a_hinge_through_its_limit() {
+    let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));
+    for base in [BodyDef::dynamic(), BodyDef::fixed()] {
+        for max in [10, 1000, 100_000, 1_000_000_000].map(Fx::from_num) {
+            for speed in [fx!(1), fx!(10), fx!(30), fx!(-30)] {
+                let mut world =
+                    World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).expect("valid");
+                let a = world.spawn(&base, &[square.clone()]).expect("valid");
+                let b = BodyDef::dynamic().position((fx!(2), fx!(0)));
+                let b = world.spawn(&b, &[square.clone()]).expect("valid");
+                let kind = Revolute::new().limit(fx!(-0.5), fx!(0.5)).motor(speed, max);
+                let def = JointDef::new(a, b, kind).anchor_a((fx!(1), fx!(0))).anchor_b((fx!(-1), fx!(0)));
+                let joint = world.add_joint(&def).expect("valid");
+                let what = format!("{:?}, {max} N m, {speed} rad/s", base.kind);
+                for tick in 0..300 {
+                    world.step();
+                    let angle = world.joint_angle(joint).expect("there").abs();
+                    assert!(angle < fx!(0.71), "{what}, tick {tick}: {angle} rad");
+                }
+                let angle = world.joint_angle(joint).expect("there");
+                close(angle, fx!(0.5) * speed.signum(), fx!(0.001), &what);
+                let speeds = world.bodies().map(|(_, body)| body.angular_velocity().abs());
+                assert!(speeds.max().expect("bodies") < fx!(0.001) && world.faults() == 0, "{what}");
+            }
+        }
+    }
 }
 
 #[test]

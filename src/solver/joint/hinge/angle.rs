@@ -212,13 +212,30 @@ impl<const N: usize> AngleRows<N> {
     #[inline(always)]
     pub(super) fn solve_drive<L: Lanes<N>>(&mut self, pair: &mut BodyPairW<L, N>, faults: &mut Faults) {
         if self.has_drive {
-            let DriveRow { lambda, max, bias } = &mut self.drive;
+            let target = self.drive_target::<L>();
+            let DriveRow { lambda, max, .. } = &mut self.drive;
             let (old, max) = (L::load(lambda), L::load(max));
-            let w = L::add_saturating(velocity::<L, N>(&self.e, max, pair, faults), L::load(bias));
+            let w = L::sub_saturating(velocity::<L, N>(&self.e, max, pair, faults), target);
             let new = clamp::<L, N>(L::sub_saturating(old, w), max);
             L::store(new, lambda);
             pair.turn(&self.f, L::sub(new, old), faults);
         }
+    }
+
+    /// The target speed of the motors: at most the speed at which the limits may be approached. A motor of unlimited
+    /// force and a limit that act against each other would add to their impulses in every sub-step.
+    #[inline(always)]
+    fn drive_target<L: Lanes<N>>(&self) -> L::Int {
+        let zero = L::splat(0);
+        let speed = L::sub(zero, L::load(&self.drive.bias));
+        if !self.has_limit {
+            return speed;
+        }
+        // A saturated push may be the smallest number, whose negative does not fit.
+        let push = |limit: &LimitRow<N>| L::max(L::load(&limit.push), L::splat(-i32::MAX));
+        let [behind, ahead] = self.limits.each_ref().map(push);
+        let within = L::max(L::min(speed, ahead), L::sub(zero, behind));
+        L::select(L::greater(L::load(&self.limit_max), zero), within, speed)
     }
 
     /// Solves the limits.
