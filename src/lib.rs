@@ -57,7 +57,7 @@ pub mod world;
 
 /// Version of the engine's arithmetic. It changes whenever the same inputs give a different state. Replays and
 /// snapshots store it; a file with another version is rejected, not misread.
-pub const SEMANTICS: u32 = 18;
+pub const SEMANTICS: u32 = 19;
 
 /// Version of this crate.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
