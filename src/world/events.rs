@@ -227,7 +227,7 @@ pub struct Events {
     /// listed.
     pub moved: Vec<MoveEvent>,
     /// Pairs that came within [`super::Config::touching_distance`] or pushed each other in the tick. Sorted by shape A,
-    /// then by shape B, like all lists of pairs.
+    /// then by shape B, like `contact_end` and `hits`.
     pub contact_begin: Vec<ContactEvent>,
     /// Pairs that moved further apart than [`super::Config::speculative_distance`], and pairs that an edit has ended,
     /// for example by removing or disabling one of the shapes.

@@ -130,8 +130,8 @@ impl World {
         self.state.get().tick
     }
 
-    /// Number of results of the solver that the range of a number has clamped since the world was created, plus one for
-    /// every tick in which [`Config::pair_limit`] left pairs out. Never decreases. A body that reaches
+    /// Number of results of the solver that were clamped to their range since the world was created, plus one for every
+    /// tick in which [`Config::pair_limit`] left pairs out. Never decreases. A body that reaches
     /// [`speed_max`](crate::solver::SolverSettings::speed_max) is not a fault.
     #[must_use]
     pub const fn faults(&self) -> u64 {
@@ -204,8 +204,8 @@ impl World {
         self.state.bodies.iter().filter(|(_, body)| is_simulated(body)).count()
     }
 
-    /// Number of pairs of shapes with overlapping fat boxes, at least one of them on an active body. Together with the
-    /// numbers of bodies and joints it determines the cost of the next tick.
+    /// Number of pairs of shapes that may collide and have overlapping fat boxes, at least one shape of each on an active
+    /// body. Together with the numbers of bodies and joints it determines the cost of the next tick.
     #[must_use]
     pub fn pair_count(&self) -> usize {
         self.state.contacts.len()
@@ -230,7 +230,7 @@ impl World {
 
     /// Returns the inner boxes of the broad phase, each with its depth in the tree, for tools. The tree is a cache that
     /// depends on the history, so that a copy of this world may have other boxes. Only [`BroadPhaseKind::Tree`] has
-    /// any.
+    /// inner boxes.
     #[must_use]
     pub fn broad_phase_boxes(&self) -> Vec<(Aabb, u32)> {
         self.scratch.shapes.broad_phase().inner_boxes()

@@ -56,7 +56,8 @@ pub(crate) struct State {
     pub(crate) sleeping_contacts: SleepingContacts,
     /// Whether there were more pairs than [`Config::pair_limit`] at the last pair update.
     pub(crate) pairs_left_out: bool,
-    /// Contacts that ended since the last tick because a shape was removed or changed, for the events of the next tick.
+    /// Contacts that ended since the last tick because a shape was removed, changed or disabled, for the events of the
+    /// next tick.
     pub(crate) removed_contacts: Vec<Reported>,
     pub(crate) rng: Rng,
 }

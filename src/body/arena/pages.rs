@@ -136,8 +136,8 @@ impl<T> SharedArena<T> {
 }
 
 impl<T, H> Arena<T, H> {
-    /// Revision number, which changes when a value is inserted, removed or redefined. Fields that every step changes do
-    /// not count. A cache built at the same revision is still valid.
+    /// Revision number, which changes when a value is inserted, removed or redefined, or when a restore changes a page.
+    /// Fields that every step changes do not count. A cache built at the same revision is still valid.
     pub(crate) fn revision(&self) -> u64 {
         self.kept.revision
     }

@@ -128,7 +128,7 @@ impl Figure {
 /// to one turn.
 fn turn_between(before: Vec2<Length>, after: Vec2<Length>) -> Angle {
     let product = |a: Length, b: Length| i64::from(a.to_bits()) * i64::from(b.to_bits());
-    // Exact: edges are shorter than 220 m on each axis, so a sum of two products has at most 61 bits.
+    // Exact: edges are at most 220 m long on each axis, so a sum of two products has at most 61 bits.
     let dot = product(before.x, after.x) + product(before.y, after.y);
     let cross = product(before.x, after.y) - product(before.y, after.x);
     Angle::of(Vec2::new(Fx::from_bits(dot), Fx::from_bits(cross)))

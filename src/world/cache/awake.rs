@@ -14,7 +14,8 @@ use crate::world::state::State;
 pub(crate) struct AwakeSet {
     /// Enabled bodies that are kinematic, or dynamic and awake.
     bodies: Vec<u32>,
-    /// Joints with at least one awake dynamic body that has mass.
+    /// Enabled joints, other than filter joints, between enabled bodies, at least one of which is dynamic and awake and
+    /// has mass.
     joints: Vec<u32>,
     /// Slots of the joints in `joints` that have a force or torque threshold.
     with_threshold: Vec<u32>,
@@ -41,7 +42,7 @@ impl AwakeSet {
         set
     }
 
-    /// Marks the set as outdated: a body or joint was added, removed, woken or put to sleep.
+    /// Marks the set as outdated: a body or joint was added, removed, changed, woken or put to sleep.
     pub(crate) fn invalidate(&mut self) {
         self.is_current = false;
     }

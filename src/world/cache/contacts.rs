@@ -66,7 +66,7 @@ pub(crate) struct Recycled {
 /// A contact whose shapes approach fast enough for a hit event.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PendingHit {
-    /// Index in the state.
+    /// Index of the contact in the state.
     pub(crate) contact: u32,
     pub(crate) event: HitEvent,
 }

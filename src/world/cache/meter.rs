@@ -4,14 +4,16 @@
 /// bodies do not overlap deeply has up to six pairs per body.
 const PAIRS_PER_BODY: u64 = 32;
 
-/// Cost of a pair beyond [`PAIRS_PER_BODY`], in ordinary pairs: measured on a thousand squares at the same position.
+/// Additional cost of a pair beyond [`PAIRS_PER_BODY`], in ordinary pairs: measured on a thousand squares at the same
+/// position.
 const CROWDED_WORK: u64 = 64;
 
 /// Cost of comparing the shapes of a pair in a tick, independent of the solver settings: measured on shapes of extreme
 /// sizes.
 pub(crate) const NARROW_PHASE_WORK: u64 = 4;
 
-/// Cost of a new pair, whose separating axis is not cached yet: measured on a hundred octagons at the same position.
+/// Additional cost of a new pair, whose separating axis is not cached yet: measured on a hundred octagons at the same
+/// position.
 pub(crate) const NEW_PAIR_WORK: u64 = 8;
 
 /// Counts work units against a budget. Work beyond the budget is skipped. The meter is not part of the state. The state

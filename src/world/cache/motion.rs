@@ -67,7 +67,7 @@ impl PredictedMotion {
     }
 
     /// Upper bound of the distance by which the body's rotation by `turn` radians moves any point of a shape: lever arm
-    /// times angle, and at most the diameter.
+    /// times angle, and at most twice the lever arm.
     pub(crate) fn turn_reach(&self, turn: Fx, shape: &ShapeMotion) -> Fx {
         if turn < Fx::DELTA * 64 || shape.disc {
             return Fx::ZERO;

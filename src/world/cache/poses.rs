@@ -24,15 +24,15 @@ pub(crate) struct Poses {
     extents: Vec<Extents>,
 }
 
-/// Size of the shapes of a body about its centre of mass, in metres. Rotation does not change it.
+/// Bounds of the shapes of a body about its centre of mass, in metres, which hold at every rotation of the body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extents {
-    /// Radius of a disc inside the thinnest solid shape of the body; [`Fx::MAX`] if it has no solid shape.
+    /// Radius of a disc inside the thinnest solid shape of the body; [`Fx::MAX`] if the body has no solid shape.
     pub(crate) core: Fx,
-    /// Largest distance of a point that moves when the body rotates. For a disc only its centre counts, because
-    /// rotation does not change the area that the disc covers.
+    /// Upper bound of the distance of the points that move when the body rotates. For a disc only its centre counts,
+    /// because the disc covers the same area when it rotates about its centre.
     pub(crate) reach: Fx,
-    /// Largest distance of any point.
+    /// Upper bound of the distance of all points.
     pub(crate) radius: Fx,
 }
 

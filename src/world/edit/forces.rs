@@ -125,8 +125,8 @@ impl World {
     /// target unless it is given another one. It rotates in the direction of the smaller angle.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, the body is not kinematic, the position is out of range, or it cannot be
-    /// reached within a tick below [`crate::solver::SolverSettings::speed_max`].
+    /// [`WorldError`] if the handle is stale, the body is not kinematic, the position is out of range, or a speed above
+    /// [`crate::solver::SolverSettings::speed_max`] would be needed to reach the pose within a tick.
     #[doc(alias = "set_target_transform")]
     #[doc(alias = "move_kinematic")]
     pub fn move_to(

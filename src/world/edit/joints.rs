@@ -74,8 +74,8 @@ impl World {
     }
 
     /// Replaces the definition of a joint except for its bodies: read [`crate::solver::Joint::def`], change a copy, and
-    /// pass it here. The joint keeps its impulses if its kind stays the same. Wakes its bodies, unless the definition
-    /// is the same.
+    /// pass it here. The joint keeps its impulses if its kind stays the same and the new definition is enabled. Wakes
+    /// its bodies, unless the definition is the same.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the bodies are different ones, or a value is out of range.

@@ -3,9 +3,12 @@
 //! A body is sleepy once it has been slower than its `sleep_speed` for half a second. An island is a set of dynamic
 //! bodies that contacts and joints connect. It falls asleep when all its bodies are sleepy. It wakes as a whole:
 //! - when an active body comes into contact with one of its bodies,
-//! - when a force, impulse, velocity, pose or property of one of its bodies is changed by an edit,
-//! - when a joint is added to or removed from one of its bodies,
-//! - when a body or shape whose fat box overlaps that of one of its bodies is moved, changed or removed by an edit,
+//! - when an edit applies a force or impulse to one of its bodies, or changes the velocity, pose or a property of one,
+//!   except for its user data and its name,
+//! - when a joint of one of its bodies is added, changed or removed,
+//! - when an edit adds, moves, changes or removes a shape whose fat box overlaps that of one of its bodies, except when
+//!   it spawns a dynamic body,
+//! - when an edit moves, enables or disables a body that is joined to one of its bodies, or changes its kind,
 //! - when gravity or another setting that affects the balance of forces changes,
 //! - when a fixed or kinematic body that it touches or is joined to is woken by an edit.
 //!

@@ -5,9 +5,9 @@
 //! ```
 //!
 //! In two dimensions this takes few divisions. A plane with a limited push is soft: the mover may enter it. If there
-//! are soft planes, the planes push along their normals in turn until nothing moves any more. A later push of a plane
-//! may reduce its accumulated push, but not below 0 (C. Hildreth, "A Quadratic Programming Procedure", 1957), as in
-//! Box2D v3's `b2SolvePlanes`.
+//! are soft planes, or no point is outside of all planes, the planes push along their normals in turn until nothing
+//! moves any more. A later push of a plane may reduce its accumulated push, but not below 0 (C. Hildreth, "A Quadratic
+//! Programming Procedure", 1957), as in Box2D v3's `b2SolvePlanes`.
 
 use alloc::vec::Vec;
 
@@ -150,8 +150,8 @@ pub(super) fn along_surface(normal: Vec2<Unit>, length: Fx) -> Vec2<Fx> {
 ///
 /// If all planes are rigid and some point is outside of all of them, the result is exact except for rounding. Otherwise
 /// the planes push in turn. A round multiplies the error of two planes with normals `n` and `m` by `(n . m)²`, so that
-/// 64 rounds are enough if their normals are 25 degrees or more apart. In a sharper corner, or between two walls, the
-/// result may lie inside a plane: follow it with a cast, as [`World::move_character`] does.
+/// 64 rounds are enough if the angle between their normals is 25 to 155 degrees. In a flatter or sharper corner, or
+/// between two walls, the result may lie inside a plane: follow it with a cast, as [`World::move_character`] does.
 #[must_use]
 pub fn solve_planes(wanted: Vec2<Fx>, planes: &mut [MoverPlane]) -> Vec2<Fx> {
     match nearest_outside(wanted, planes) {

@@ -76,8 +76,8 @@ pub(super) struct Resting {
 }
 
 impl Resting {
-    /// Confirms a hit on a shape; `None` if the hit is a seam. Takes the normal from the first of the second casts,
-    /// because the first cast may have met a corner below the surface.
+    /// Confirms a hit on a shape; `None` if the hit is a seam. Takes the normal and the point from the first of the
+    /// second casts, because the first cast may have met a corner below the surface.
     pub(super) fn confirm(&self, other: &SupportShape, hit: ShapeHit) -> Option<ShapeHit> {
         let mut confirmed = None;
         for &lift in &self.lifts {
@@ -89,8 +89,8 @@ impl Resting {
 }
 
 impl World {
-    /// The cast of a probe along a translation, from the position where it rests on the shapes that it touches. `None`
-    /// if it touches nothing.
+    /// The second casts of a probe along a translation, from the positions where it rests on the shapes that it touches.
+    /// `None` if it touches nothing.
     pub(super) fn resting(
         &self,
         probe: &Probe,

@@ -33,7 +33,8 @@ pub enum Section {
     Shapes,
     /// Joints, their impulses and their free list.
     Joints,
-    /// Active and sleeping contacts and their impulses.
+    /// Active and sleeping contacts and their impulses, the contacts that edits have ended since the last tick, and
+    /// whether pairs were left out at the limit.
     Contacts,
     /// Sleeping islands.
     Islands,

@@ -83,7 +83,7 @@ struct Sum<'a> {
     /// Centre of mass of the body in the world.
     centre: Vec2<Fx>,
     ahead: Fx,
-    /// Area of all shapes in m², or the length of all lines if they have no area.
+    /// Area of all solid shapes of the body in m², or the length of its lines in m if the body has no area.
     size: Fx,
     has_area: bool,
     /// Mass in kg of the medium that the body displaces.

@@ -128,7 +128,7 @@ fn pose_after(state: &State, scratch: &Scratch, swept: &SweptBody, impact: Impac
     Pose { centre: centre.max(-edge).min(edge), angle }
 }
 
-/// The first obstacle that stops a body on its sweep. `None` if the meter is exhausted.
+/// The first obstacle that stops a body on its sweep, if there is one. An exhausted meter ends the search early.
 fn first_impact(
     state: &State,
     scratch: &Scratch,
@@ -235,7 +235,7 @@ pub(super) fn sees_kinematic(body: &Body) -> bool {
     body.settings.continuous == Continuous::Kinematic
 }
 
-/// Whether a body is swept against moving bodies as well.
+/// Whether a body is a bullet, which is swept against all bodies that are not bullets.
 pub(super) fn is_bullet(body: &Body) -> bool {
     body.settings.continuous == Continuous::Bullet
 }

@@ -184,8 +184,8 @@ impl MovedShape {
     }
 }
 
-/// Reports the crossings between shapes that have left their fat box in this tick and shapes with which they do not
-/// form a pair yet. If two such shapes overlap at the end of the tick, the pair becomes a contact at once.
+/// Reports the crossings between shapes that have left their fat box in this tick and shapes with which they have no
+/// contact yet. A pair that overlaps at the end of the tick becomes a contact at once.
 fn report_unforeseen(state: &mut State, scratch: &mut Scratch) {
     if scratch.sweeps.left_boxes.is_empty() {
         return;

@@ -7,7 +7,7 @@ use crate::world::state::State;
 /// several rounds if it has limits or motors.
 const BLOCKED_JOINT_WORK: u64 = 96;
 
-/// Number of pairs of shapes.
+/// Number of active and sleeping contacts.
 pub(super) fn pairs(state: &State) -> u64 {
     count(state.contacts.len() + state.sleeping_contacts.len())
 }

@@ -87,8 +87,8 @@ impl SpeculativePair<'_> {
         self.margins.touching.min(self.a.slack).min(self.b.slack)
     }
 
-    /// Removes the points that the bodies do not reach within the tick at their current velocities. Otherwise shapes
-    /// that pass by each other at high speed would collide with speculative contacts.
+    /// Removes the points that the bodies do not reach within the tick at their current velocities. Otherwise
+    /// speculative contacts would deflect shapes that pass by each other at high speed.
     #[inline(always)]
     pub(super) fn keep_reachable<'p>(
         &self,
