@@ -2,8 +2,8 @@
 //!
 //! An area fills its shape with a medium. The effects on a body depend on two numbers: `A`, the area in m² of the parts
 //! of the body's shapes that are inside, and `s`, the ratio of `A` to the area of the whole body. For a body that
-//! consists of lines, lengths in m replace the areas. `c` is the centre of area of the parts inside, and `M` is the
-//! body's mass:
+//! consists of lines, `A` is 0 and `s` is the ratio of the lengths. `c` is the centre of area of the parts inside, and
+//! `M` is the body's mass:
 //!
 //! ```text
 //! dv/dt = s acceleration + s attraction + A force / M - s linear_drag (v - u) - A density field / M
@@ -11,9 +11,9 @@
 //! ```
 //!
 //! `x` is the body's centre of mass, and `k` its radius of gyration. `field` is the acceleration that acts on the
-//! medium as well as on the body: gravity and the accelerations and attractions of all areas at the body. `u` is the
-//! velocity of the medium, the sum of `flow` and the velocity of the area's body, and `w_medium` is the angular
-//! velocity of the area's body. The effects of several areas add up.
+//! medium as well as on the body: gravity and the accelerations and attractions of all areas at the body, each times
+//! the `s` of its area. `u` is the velocity of the medium, the sum of `flow` and the velocity of the area's body, and
+//! `w_medium` is the angular velocity of the area's body. The effects of several areas add up.
 
 use serde::{Deserialize, Serialize};
 

@@ -193,13 +193,13 @@ impl Body {
         self.mass.mass > 0
     }
 
-    /// Moment of inertia about the centre of mass in kg m²; 0 unless the body is dynamic.
+    /// Moment of inertia about the centre of mass in kg m²; 0 if the mass is 0.
     #[must_use]
     pub fn inertia(&self) -> Fx {
         self.mass.inertia()
     }
 
-    /// Radius of gyration in metres, `sqrt(inertia / mass)`.
+    /// Radius of gyration in metres, `sqrt(inertia / mass)`; 4 m if the mass is 0.
     #[must_use]
     pub const fn radius_of_gyration(&self) -> Fx {
         self.mass.gyration

@@ -109,7 +109,7 @@ impl BodyDef {
     }
 
     /// Creates a definition of a dynamic body, which forces, contacts and joints move. Its mass is that of its shapes,
-    /// unless [`BodyDef::mass`] sets it. If the mass is 0, only damping changes its velocity: see [`MassSource::Shapes`].
+    /// unless [`BodyDef::mass`] sets it. Without mass, only damping changes its velocity: see [`MassSource::Shapes`].
     #[must_use]
     pub const fn dynamic() -> Self {
         Self::new(BodyKind::Dynamic)

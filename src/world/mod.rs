@@ -204,8 +204,8 @@ impl World {
         self.state.bodies.iter().filter(|(_, body)| is_simulated(body)).count()
     }
 
-    /// Number of pairs of shapes that may collide and have overlapping fat boxes, at least one shape of each on an active
-    /// body. Together with the numbers of bodies and joints it determines the cost of the next tick.
+    /// Number of pairs of shapes that may collide and have overlapping fat boxes, at least one shape of each on an
+    /// active body. Together with the numbers of bodies and joints it determines the cost of the next tick.
     #[must_use]
     pub fn pair_count(&self) -> usize {
         self.state.contacts.len()

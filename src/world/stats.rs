@@ -64,8 +64,8 @@ pub struct StepStats {
     pub bodies: u32,
     /// Number of solved joints.
     pub joints: u32,
-    /// Number of pairs of shapes that may collide and have overlapping fat boxes, at least one shape of each on an active
-    /// body.
+    /// Number of pairs of shapes that may collide and have overlapping fat boxes, at least one shape of each on an
+    /// active body.
     pub pairs: u32,
     /// Number of pairs with contact points. Sensors do not count.
     pub contacts: u32,

@@ -13,7 +13,8 @@ pub(crate) struct Changes {
     everything: bool,
     /// A sleeping contact may have an active body again, or may have ended.
     sleeping_contacts: bool,
-    /// Filters, sensors, kinds or joints have changed: pairs may not be allowed to collide any more.
+    /// Filters, sensors, kinds, masses or joints have changed: all pairs have to be checked again for permission to
+    /// collide.
     rules: bool,
     /// Slots of shapes that may have new pairs: their fat box is new, their body has become active or inactive, or the
     /// joints of their body have changed. A slot may be listed twice.
@@ -65,7 +66,7 @@ impl Changes {
         self.sleeping_contacts = true;
     }
 
-    /// Records that filters, sensors, kinds or joints have changed.
+    /// Records that filters, sensors, kinds, masses or joints have changed.
     pub(crate) fn rules_changed(&mut self) {
         self.rules = true;
     }

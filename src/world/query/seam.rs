@@ -89,8 +89,8 @@ impl Resting {
 }
 
 impl World {
-    /// The second casts of a probe along a translation, from the positions where it rests on the shapes that it touches.
-    /// `None` if it touches nothing.
+    /// The second casts of a probe along a translation, from the positions where the probe rests on the shapes that it
+    /// touches. `None` if it touches nothing.
     pub(super) fn resting(
         &self,
         probe: &Probe,

@@ -28,8 +28,8 @@ pub(super) fn update_pairs(state: &mut State, scratch: &mut Scratch) {
 }
 
 /// Moves the sleeping contacts with a body that has become active to the fresh contacts. Ends sleeping contacts whose
-/// boxes no longer overlap or which may not collide any more, for example after an edit has moved a kinematic body with
-/// a sensor.
+/// boxes no longer overlap or whose shapes are no longer allowed to collide, for example after an edit has moved a
+/// kinematic body with a sensor.
 fn activate_sleeping_contacts(state: &mut State, scratch: &mut Scratch) {
     let pairs = &mut scratch.pairs;
     pairs.buffers.fresh.clear();
@@ -82,7 +82,7 @@ fn find_new(state: &State, scratch: &mut Scratch) -> bool {
 /// Action of the pair update on an active contact.
 enum PairChange {
     Stays,
-    /// The fat boxes of its shapes no longer overlap, or the shapes may not collide any more.
+    /// The fat boxes of its shapes no longer overlap, or the shapes are no longer allowed to collide.
     Ends,
     /// Neither of its bodies is active any more.
     Rests,

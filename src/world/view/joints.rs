@@ -56,9 +56,9 @@ impl World {
     /// Returns the distance in metres by which the anchors violate the joint: the distance of the anchors of a revolute
     /// joint or of a weld with rigid anchors, the offset across the axis of a prismatic or wheel joint, the deviation
     /// from the rod or the limits of a distance joint, the distance of the teeth of a gear or rack along the pitch
-    /// line, the length by which the rope of a pulley is too long. The error of a gear without a pitch point is an angle
-    /// in radians, in which one tooth is a full turn. Springs, motors and the limits of other kinds do not count. `None`
-    /// for motor and filter joints.
+    /// line, the length by which the rope of a pulley is too long. The error of a gear without a pitch point is an
+    /// angle in radians, in which one tooth is a full turn. Springs, motors and the limits of other kinds do not count.
+    /// `None` for motor and filter joints.
     #[doc(alias = "separation")]
     #[must_use]
     pub fn joint_error(&self, id: JointId) -> Option<Fx> {

@@ -20,7 +20,7 @@ impl World {
     /// `bodies` and `shapes` are the largest numbers of bodies and shapes that are added before it.
     /// [`Game::work`](crate::lockstep::Game::work) can be based on the result. The bound is the number of bodies,
     /// shapes, pairs and joints, times the solver's sub-steps and iterations, plus 4 for each pair and 8 for the tick.
-    /// Each pair beyond 32 for each body counts as 65 pairs. Because shapes may be added on top of each other, the bound
+    /// Each solved pair beyond 32 per body counts as 65. Because shapes may be added on top of each other, the bound
     /// also assumes that as many pairs begin as the world allows, and that every shape is compared with every other to
     /// find them. The work of solving these pairs is known only in the tick, and verification counts it there.
     ///
