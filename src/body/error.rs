@@ -149,8 +149,8 @@ pub enum WorldError {
         /// The coordinate in metres.
         value: Fx,
     },
-    /// A shape or anchor is more than 128 m from its body's origin on some axis, or more than 2^30 m if the body is
-    /// fixed.
+    /// A shape, an anchor or a given centre of mass is more than 128 m from its body's origin on some axis. For shapes
+    /// and anchors of fixed bodies the limit is 2^30 m.
     OffsetOutOfRange {
         /// The coordinate in metres.
         value: Fx,
@@ -290,15 +290,15 @@ pub enum WorldError {
     },
     /// A name is not 1 to 16 ASCII letters, digits, `-` and `_`.
     NameInvalid,
-    /// The world already holds the largest number of bodies, shapes or joints.
+    /// The change would exceed the largest number of bodies, shapes or joints of the world, or of shapes of a body.
     Full {
-        /// Kind of object whose limit is reached.
+        /// Kind of object whose limit would be exceeded.
         what: &'static str,
         /// Largest number of such objects.
         limit: u32,
     },
-    /// The kind of the body does not allow the change: only dynamic bodies take forces and impulses, and fixed bodies
-    /// do not move.
+    /// The kind or the state of the body does not allow the change: only enabled dynamic bodies take forces and
+    /// impulses, and fixed bodies do not move.
     WrongKind(BodyId),
 }
 

@@ -102,8 +102,8 @@ impl ShapeDef {
         self
     }
 
-    /// Sets the density in kg/m², 0 to 2^20. If the mass of a dynamic body is computed from shapes that all have density
-    /// 0, the body has no mass: neither gravity nor forces change its velocity.
+    /// Sets the density in kg/m², 0 to 2^20. A dynamic body whose mass is computed from shapes that all have density 0
+    /// has no mass: neither gravity nor forces change its velocity.
     #[must_use]
     pub fn density(mut self, density: Fx) -> Self {
         self.density = density;

@@ -17,11 +17,11 @@ pub enum Phase {
     BroadPhase,
     /// Finds manifolds.
     NarrowPhase,
-    /// Prepares constraints.
+    /// Prepares constraints, and applies areas.
     Prepare,
     /// Runs the sub-steps and restitution.
     Solve,
-    /// Reports contacts, moves bodies, sweeps fast bodies, checks joint thresholds.
+    /// Reports contacts, moves bodies, sweeps fast bodies, reports sensors, checks joint thresholds.
     Finalise,
     /// Puts islands to sleep.
     Sleep,

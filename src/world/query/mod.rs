@@ -1,5 +1,6 @@
 //! Queries: find shapes of a world between ticks. A query changes nothing, sees every enabled body at its current pose,
-//! and allocates nothing except its list of results, unless a cast starts in contact with more than 8 shapes.
+//! and allocates nothing except its list of results. Casts that start in contact with more than 3 shapes, and moves of
+//! characters, may allocate temporary lists as well.
 //!
 //! The order of results is part of the contract. Along a ray or a cast, results are ordered by their exact fraction
 //! before rounding, so that the nearer of two hits comes first on a ray of any length, and then by slot. All other
