@@ -81,9 +81,9 @@ pub fn point_in_polygon(corners: &[Vec2<Fx>], point: Vec2<Fx>) -> bool {
     inside
 }
 
-/// Intersection of two segments, ends included: `None` exactly if they share no point. The point is rounded to nearest,
-/// and does not depend on the order of the segments or of their ends. If the segments overlap along a line, the result
-/// is the shared point nearest to `a0`.
+/// Intersection of two segments, ends included: `None` exactly if they share no point. The point is rounded to nearest.
+/// If the segments overlap along a line, the result is the shared point nearest to `a0`. Otherwise the result does not
+/// depend on the order of the segments or of their ends.
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Vec2, segment_intersection}};

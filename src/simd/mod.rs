@@ -240,7 +240,8 @@ impl Machine {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Backend {
-    /// Plain integers, on every machine.
+    /// Plain integers, on every machine. A WebAssembly module with simd128 and the feature `sole_backend` does not
+    /// contain this backend.
     Scalar,
     /// 256-bit vectors, on most x86-64 processors since 2013.
     Avx2,

@@ -158,7 +158,8 @@ impl<K: BatchKind> BatchShare<'_, K> {
         }
     }
 
-    /// Runs an operation over the overflow, one constraint after the other.
+    /// Runs an operation over the overflow, one constraint after the other, if this thread solves the overflow. Then
+    /// waits for the other threads, unless there is no overflow.
     pub(super) fn run_overflow(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
         match &mut self.overflow {
             None => return,

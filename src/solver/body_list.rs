@@ -42,8 +42,8 @@ impl BodyFacts {
 }
 
 /// Lever ratio `e = c / k` of an arm, where `c` is the cross product of the arm and a direction. Clamped to
-/// [`RATIO_MAX`]. `mantissa / 2^shift` is `1 / k`, including the conversion from the format of a length to that of a
-/// lever ratio.
+/// [`RATIO_MAX`]. The direction has the fraction bits of a lever ratio. `mantissa / 2^shift` is `1 / k`, including the
+/// conversion from the format of a length to that of a lever ratio.
 pub(super) fn lever_ratio([x, y]: [i32; 2], [n_x, n_y]: [i32; 2], mantissa: i32, shift: i32) -> Ratio {
     let wide = |a: i32| i64::from(a);
     // `c` is below 2^31.5, so its product with a mantissa is below 2^63.

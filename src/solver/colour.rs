@@ -350,7 +350,7 @@ mod tests {
     fn no_colour_holds_a_body_twice_and_nothing_is_lost() {
         let mut rng = Rng::new(11);
         for (bodies, parts) in [(2u32, 1), (10, 1), (300, 1), (2, 3), (10, 2), (300, 5)] {
-            // Body 0 is a hub, so that the overflow list is used too.
+            // Body 1 is a hub, so that some constraints are in the overflow.
             let nodes: Vec<Node> = (0..400)
                 .map(|key| {
                     let a = if key % 3 == 0 { 0 } else { rng.below(bodies) };

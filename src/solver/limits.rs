@@ -7,13 +7,15 @@ use crate::math::Speed;
 /// Number of results that a clamp has changed. It is part of the hashed state, and 0 in any physically sensible world.
 pub(crate) type Faults = u64;
 
-/// Largest change of an impulse in one update, and largest impulse of a warm start, in m/s.
+/// Largest impulse that is applied to the velocities at once, in m/s. A larger impulse of a row is applied in steps; a
+/// larger impulse of a point is clamped.
 pub(crate) const STEP_MAX: Speed = Speed::lit("512");
 /// Largest accumulated impulse, in m/s.
 pub(crate) const IMPULSE_MAX: Speed = Speed::lit("1023");
 
-/// Clamps an accumulated impulse to [`STEP_MAX`] for the warm start, which applies it at once to a velocity of up to
-/// [`SPEED_MAX`]. The impulse may be larger, because it has accumulated in several updates of up to [`STEP_MAX`].
+/// Clamps an impulse of a point to [`STEP_MAX`], before it is applied at once to a velocity of up to [`SPEED_MAX`]: the
+/// accumulated impulse in the warm start, or its change in an iteration. An accumulated impulse may be larger than
+/// [`STEP_MAX`], because it is the sum of several changes.
 #[inline]
 pub(crate) fn clamp_warm_start(lambda: &mut Speed, faults: &mut Faults) {
     let within = (*lambda).clamp(-STEP_MAX, STEP_MAX);

@@ -137,7 +137,8 @@ impl Solver {
     }
 
     /// Prepares the joints in blocks, and computes the arms of all joints. Blocks take more time and memory than the
-    /// rest of the preparation, so that the caller checks [`Self::blocked_joint_count`] first.
+    /// rest of the preparation, so that the caller first checks that the work budget of the tick covers
+    /// [`Self::blocked_joint_count`] joints.
     pub(crate) fn prepare_blocks(&mut self, tuning: &Tuning) {
         let Solver { list, joints: set, machine, faults, .. } = self;
         set.prepare_blocks();
@@ -185,8 +186,8 @@ impl Solver {
         self.colouring.colour_of(pair)
     }
 
-    /// Performs `count` sub-steps, and stores the impulses for the next tick. `first` is the number of sub-steps since
-    /// the world was created.
+    /// Performs `count` sub-steps, and stores the impulses of contacts for the next tick. `first` is the number of
+    /// sub-steps between the creation of the world and this tick.
     pub(crate) fn sub_steps(&mut self, first: u64, count: u32, tuning: &Tuning, contacts: &mut [Contact]) {
         let Solver { list, moving, joints, contacts: set, contact_velocities, machine, threads, .. } = self;
         let (machine, parts) = (*machine, contact_velocities.len());

@@ -29,18 +29,20 @@
 //! Carrying over the impulse `p = G L` instead would multiply that part by up to `e^2` (1100 m/s on a rod 40 radii of
 //! gyration long). Two scalar rows instead of the block would gain energy in a swinging chain.
 //!
-//! **The bias pass measures along the chord.** Displacements are straight while arms turn, which opens the joint by
-//! about half the length of an arm times the square of its rotation. To keep the joint closed, the velocity is measured
-//! with the arm averaged over the predicted rotation `t = h u / k`, to third order:
+//! **The bias pass of a hinge measures along the chord.** Displacements are straight while arms turn, which opens the
+//! joint by about half the length of an arm times the square of its rotation. To keep the joint closed, the velocity is
+//! measured with the arm averaged over the predicted rotation `t = h u / k`, to third order:
 //!
 //! ```text
 //! eM = e + M (t/2 (-e_y, e_x) - t^2/6 e),   M = 1 + 0.6 impulseScale / massScale
 //! vr = vB - vA + eMB uB - eMA uA
 //! ```
 //!
-//! The impulse still acts along the arm at the start, so that it dissipates no energy (the position constraint of
-//! RATTLE, H. Andersen 1983). `M` compensates for the softness, which would yield to the centrifugal force. The relax
-//! pass measures with the arm at the start. Hinges use the same equations in batches (`joint/hinge`).
+//! The impulse still acts along the arm at the start of the sub-step, so that it dissipates no energy (the position
+//! constraint of RATTLE, H. Andersen 1983). `M` compensates for the softness, which would yield to the centrifugal
+//! force. The relax pass, after the displacement, measures with the arm at the new pose. Hinges solve these equations
+//! in batches (`joint/hinge`). Springs and motors between points (`joint/point`) always measure with the arm at the
+//! current pose.
 
 #[cfg(test)]
 mod tests;

@@ -90,7 +90,7 @@ pub(crate) struct Lever {
 }
 
 impl Lever {
-    /// The length of the arm over the radius of gyration.
+    /// The length of the arm over the radius of gyration, at most [`RATIO_MAX`].
     pub(crate) fn ratio(self) -> Ratio {
         let ratio: Ratio = self.inverse_gyration.times(self.arm.length());
         ratio.min(RATIO_MAX)
@@ -226,7 +226,7 @@ impl Row {
         self.accumulate(softness.wanted(vn, bias, *lambda), bounds, lambda, bodies)
     }
 
-    /// Adds an impulse in units of [`Speed`] to the accumulated one, within the bounds. Returns the change.
+    /// Adds an impulse in units of [`Speed`] to `lambda`, within the bounds. Applies and returns the change.
     #[inline]
     pub(crate) fn accumulate(
         &self,

@@ -77,7 +77,7 @@ impl Softness {
         narrow(fx_mul(fx_mul(stretch, self.bias_rate.into()), self.mass_scale.into()))
     }
 
-    /// `-massScale (v + bias) - impulseScale L` in units of [`Speed`]. May be up to four times the largest [`Speed`].
+    /// `-massScale (v + bias) - impulseScale L` in units of [`Speed`]. Its magnitude is at most twice that of [`Speed::MIN`].
     #[inline]
     pub(crate) fn wanted(&self, v: Speed, bias: Speed, lambda: Speed) -> i64 {
         let error = i64::from(v.to_bits()) + i64::from(bias.to_bits());
@@ -86,7 +86,7 @@ impl Softness {
         round_shift(-wide, 30)
     }
 
-    /// [`Self::wanted`], clamped to the largest change of an impulse in one update.
+    /// [`Self::wanted`], clamped to [`STEP_MAX`].
     #[inline]
     pub(crate) fn impulse(&self, v: Speed, bias: Speed, lambda: Speed, faults: &mut Faults) -> Speed {
         let wanted = self.wanted(v, bias, lambda);

@@ -22,8 +22,8 @@ pub(super) struct Team {
     /// All threads but the calling one.
     pool: rayon::ThreadPool,
     /// Held during a tick: worlds that are clones of each other share a team. If two worlds used it at once, the
-    /// barrier of each could wait for a thread that waits at the barrier of the other. `None` if the threads share
-    /// every tick.
+    /// barrier of each could wait for a thread that waits at the barrier of the other. The lock contains `None` if
+    /// the threads share every tick.
     turn: Mutex<Option<Pace>>,
 }
 

@@ -46,8 +46,8 @@ pub(super) struct Impacts<const N: usize> {
     pub(super) rebound: [Ints<N>; 2],
     /// For each point, -1 where it has pushed in the bias pass.
     touches: [Ints<N>; 2],
-    /// For each point of an elastic contact, -1 where the shapes do not approach before contacts act: they are apart,
-    /// or separate faster than the restitution threshold.
+    /// For each point of an elastic contact, -1 where the shapes do not approach before contacts act. If the shapes
+    /// touch or overlap, -1 only where they separate at the restitution threshold or faster.
     late: [Ints<N>; 2],
     /// The tangential velocity before contacts act.
     pub(super) slide: Ints<N>,
@@ -92,8 +92,8 @@ impl<const N: usize> Impacts<N> {
 pub(super) struct PointImpact<L: Lanes<N>, const N: usize> {
     /// `s' / h`. 0 for a point that does not hit.
     pub(super) rebound: L::Int,
-    /// Whether the point is elastic and does not approach before contacts act. If the impulse of another point drives
-    /// it to the surface, the relax pass removes its own impulse. In the next sub-step the point approaches and may
+    /// Whether [`Impacts::late`] is set for the point. If the impulse of another point drives this point to the
+    /// surface, the relax pass removes the impulse of this point. In the next sub-step this point approaches and may
     /// bounce.
     pub(super) late: L::Mask,
 }

@@ -229,7 +229,8 @@ pub(super) fn columns<L: Lanes<N>, const N: usize>(
     L::transposed(rows)
 }
 
-/// The impulses with which the two points are warm-started: 0 if the feature of a point is new in this tick.
+/// The impulses with which the two points are warm-started: 0 if the feature of a point is new in this tick. Also
+/// updates the statistics `warm`.
 #[inline]
 fn carried_over(manifold: &Manifold, memory: &Contact, warm: &mut WarmStarts) -> [PointImpulse; 2] {
     let points = manifold.points();

@@ -12,7 +12,7 @@ const WEDGE_DOT_MAX: Unit = Unit::lit("0.5");
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Prospect {
     flags: u32,
-    /// The normal of the first contact with a wall, which is a body that impulses do not move; towards this body.
+    /// Normal of the first contact with a wall, directed towards this body. A wall is a body that impulses do not move.
     wall: Vec2<Unit>,
 }
 

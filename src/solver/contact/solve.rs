@@ -3,13 +3,13 @@
 //!
 //! ```text
 //! bias pass    w = massScale (vn + bias(s)) + impulseScale L        bias(s) = s / h            for a gap
-//!                                                                   max(rate (s + slop), -push) for an overlap
+//!                                                                   max(rate min(s + slop, 0), -push) for an overlap
 //!              a gap is rigid: massScale = 1, impulseScale = 0
 //!              s - s' takes the place of s for a point that bounces (`impact.rs`)
-//! relax pass   w = vn + s / h for a gap with an impulse, vn for an overlap
+//! relax pass   w = vn + s / h for a gap with an impulse, vn for an overlap or a point that bounces
 //! normal       L' = max(L - w, 0)
 //! friction     |L'| <= sum of (mu Dt / Dn) Ln over the points,   w = vt + surface speed
-//! rolling      the same with the friction ratios of `rolling`
+//! rolling      the same limit with the friction ratios of `rolling`,   w = vn
 //! ```
 
 use core::cell::Cell;
@@ -237,8 +237,9 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
         }
     }
 
-    /// Solves two points against each other, until the second no longer affects the first. `present` contains the mask
-    /// of the lanes that have the point, for each of the two. Returns their impulses.
+    /// Solves two points against each other, until the impulse of the second hardly changes ([`SETTLED`]), in up to
+    /// [`NORMAL_ROUNDS_MAX`] rounds. For each of the two points, `present` contains the mask of the lanes that have the
+    /// point. Returns the impulses of both points.
     #[inline(always)]
     fn solve_both<C: OverflowPolicy<L, N>>(
         &self,
@@ -346,7 +347,7 @@ fn every<L: Lanes<N>, const N: usize>() -> L::Mask {
     L::greater(L::splat(1), L::splat(0))
 }
 
-/// Selects the first number in lanes where impulses move both bodies, and the second one in all other lanes.
+/// Selects `stiff` in the lanes of a mask, and `soft` in all other lanes.
 #[inline(always)]
 fn chosen<L: Lanes<N>, const N: usize>(immovable: L::Mask, soft: i32, stiff: i32) -> L::Int {
     L::select(immovable, L::splat(stiff), L::splat(soft))

@@ -27,7 +27,7 @@ pub(super) enum Coupling {
         gear: Gear,
         /// The angles of the frames in their bodies.
         frames: [Angle; 2],
-        /// `N / k` of each wheel: its number of teeth over its radius of gyration.
+        /// `|N| / k` of each wheel: the magnitude of its number of teeth over its radius of gyration.
         inverse: [Reciprocal; 2],
     },
     Rack {

@@ -69,10 +69,10 @@ pub struct JointDef {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct JointFrame {
-    /// Its origin in the body's frame, in metres: within ±128 on each axis, or anywhere in the world (±2^30) on a fixed
+    /// Origin of the joint's frame in the body's frame, in metres: within ±128 on each axis, or within ±2^30 on a fixed
     /// body.
     pub anchor: Vec2<Fx>,
-    /// Its rotation in the body's frame. Sliding joints slide along the x axis of A's frame.
+    /// Rotation of the joint's frame in the body's frame. Sliding joints slide along the x axis of A's frame.
     pub angle: Angle,
 }
 

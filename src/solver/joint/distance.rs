@@ -62,7 +62,7 @@ impl Distance {
         Distance { rod: Some(length), ..Self::new() }
     }
 
-    /// Limits the length in metres.
+    /// Limits the length to at most `length` metres.
     #[must_use]
     pub const fn rope(length: Fx) -> Self {
         Self::new().limit(Fx::ZERO, length)

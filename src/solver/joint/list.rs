@@ -86,7 +86,7 @@ pub(super) struct BlockedPart {
     pub(super) is_limited: bool,
 }
 
-/// The function of a row in a block.
+/// The function of a row or point in a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BlockedTask {
     Hold,

@@ -15,9 +15,10 @@ use crate::math::{Fx, Vec2};
 /// frames onto each other: if A is a kinematic or fixed body that follows a pointer, B is dragged by the pointer.
 ///
 /// Forces act on both bodies at one point, B's anchor, as if A extended to it: a sideways force on B also turns A.
-/// Momentum and angular momentum of the two bodies are conserved. A's arm is limited to 88 times its radius of
-/// gyration. If the arm is shortened to this limit, forces act on both bodies at its end. If B's arm to that point
-/// would be too long as well, forces act only along the line between the two centres.
+/// Momentum and angular momentum of the two bodies are conserved. If both bodies are dynamic, each component of A's arm
+/// is limited to 88 times A's radius of gyration. If the arm is shortened to this limit, forces act on both bodies at
+/// the end of the shortened arm. If B's arm to that point would be too long as well, forces act only along the line
+/// between the two centres.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
@@ -44,8 +45,8 @@ pub struct Motor {
     pub linear: Option<LinearDrive>,
     /// Drives B to an angular velocity relative to A in rad/s, with limited torque in N m.
     pub angular: Option<Drive>,
-    /// Pulls the anchors onto each other, with limited force in N. The bodies swing at its frequency if they are point
-    /// masses, and the stiffness is the same in all directions ([`Soft`]). The damping acts on the velocity of B's
+    /// Pulls the anchors onto each other, with limited force in N. Two point masses would swing at the frequency of the
+    /// spring, and the stiffness is the same in all directions ([`Soft`]). The damping acts on the velocity of B's
     /// anchor relative to A's frame, along the spring and across it.
     pub linear_spring: Option<Pull>,
     /// Turns the frames parallel, with limited torque in N m.
@@ -124,8 +125,8 @@ impl Motor {
     option_builders! {
         /// Sets a target angular velocity in rad/s, and the largest torque in N m.
         angular(speed, max_torque) => Drive { speed, max: max_torque };
-        /// Sets a spring between the anchors, with a frequency in Hz and a largest force in N. The bodies swing at this
-        /// frequency if they are point masses.
+        /// Sets a spring between the anchors, with the frequency in Hz that the bodies would have if they were point
+        /// masses, and with a largest force in N.
         linear_spring(hertz, damping_ratio, max_force) =>
             Pull { soft: Soft { hertz, damping_ratio }, max: max_force };
         /// Sets a spring between the angles, with a frequency in Hz and a largest torque in N m.

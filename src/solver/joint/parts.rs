@@ -29,7 +29,7 @@ pub(super) enum Direction {
     /// The position of B's anchor along the y axis of A's frame.
     Across,
     /// Like `Across`, but at the point where an impulse does not rotate the bodies relative to each other. Used by
-    /// joints that also hold the angle.
+    /// prismatic joints, which also hold the angle.
     AcrossBalanced,
     /// The distance between the anchors.
     Apart,

@@ -105,7 +105,7 @@ impl JointShare<'_, '_> {
         }
     }
 
-    /// One iteration over all joints.
+    /// One iteration over the joints of the thread.
     pub(in crate::solver) fn solve(&mut self, pass: impl SolverPass, context: &StepContext<'_>) {
         if self.is_empty {
             return;

@@ -34,8 +34,8 @@ use crate::math::Fx;
 #[doc(alias = "FixedJoint")]
 #[doc(alias = "WeldJoint")]
 pub struct Weld {
-    /// Softness of the anchors; `None` is rigid. The bodies swing at its frequency if they are point masses, and the
-    /// stiffness is the same in all directions ([`Soft`]). Forces act on both bodies at B's anchor, so that a soft weld
+    /// Softness of the anchors; `None` is rigid. Two point masses would swing at its frequency, and the stiffness is
+    /// the same in all directions ([`Soft`]). Forces act on both bodies at B's anchor, so that a soft weld
     /// conserves angular momentum however far it is stretched.
     pub linear: Option<Soft>,
     /// Softness of the angle; `None` is rigid.
@@ -43,7 +43,7 @@ pub struct Weld {
 }
 
 impl Weld {
-    /// A rigid weld, with the stiffness of all joints.
+    /// A weld that holds the anchors and the angle rigidly.
     #[must_use]
     pub const fn rigid() -> Self {
         Weld { linear: None, angular: None }

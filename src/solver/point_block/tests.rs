@@ -74,8 +74,9 @@ fn an_impulse_of_limited_length_is_no_longer() {
     assert_eq!(faults, 0);
 }
 
-/// A soft block pulls in all directions with the stiffness and the damping of its bodies as point masses, at the end of
-/// the sub-step: `impulseScale p = -massScale v - push`, however long the arms are.
+/// After the solve, a soft block satisfies `impulseScale p = -massScale v - push` along both axes, however long the
+/// arms are: its stiffness and damping are the same in all directions, and are those of a spring between two point
+/// masses.
 #[test]
 fn a_soft_block_is_an_isotropic_spring() {
     let mut rng = Rng::new(10);

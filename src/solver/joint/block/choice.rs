@@ -116,7 +116,7 @@ impl Crowd {
     }
 }
 
-/// Largest number of rows of a joint: a slider with a spring, two limits and a motor.
+/// Largest number of rows of a joint, such as a slider with a spring, two limits and a motor.
 const JOINT_ROWS_MAX: usize = 6;
 
 /// The joints of a crowded body as ranges of `Choice::of_body`, one range for each number of rows.

@@ -312,7 +312,8 @@ impl Block {
     }
 
     /// Returns the impulses to the joints, for the next tick. Impulses that exceed the format of the joint are clamped.
-    /// This is not a fault, because the next tick uses them only as initial values.
+    /// This is not a fault: the next tick uses them only for geometric stiffness, or as initial guesses if the joint is
+    /// no longer in a block.
     fn return_impulses(&mut self, hinges: &mut HingeSet, list: &mut JointList) {
         self.restore_inertia(hinges, list);
         for unit in &self.units {

@@ -34,7 +34,7 @@ pub(super) struct RowSoftness {
     pub(super) task: BlockedTask,
 }
 
-/// One or two rows that are scaled together, and the row on the angle of a hinge.
+/// One or two rows that are scaled together. The unit of a hinge also contains the row on the angle, if there is one.
 #[derive(Clone, Debug)]
 pub(super) struct Unit {
     source: Source,
@@ -378,7 +378,7 @@ impl Unit {
         }
     }
 
-    /// The magnitude of an impulse divided by the largest impulse of the motor.
+    /// The magnitude of an impulse divided by the largest impulse of the motor, rounded down.
     pub(super) fn excess(&self, impulse: i64, hinges: &HingeSet, list: &JointList) -> u64 {
         let [_, max] = self.bounds(hinges, list);
         impulse.unsigned_abs() / max.unsigned_abs().max(1)

@@ -90,8 +90,8 @@ impl HingeSet {
         }
     }
 
-    /// The changes of the impulses in one iteration over each part alone. The impulses before it are 0, as they are
-    /// after [`Self::take_impulses`].
+    /// The changes of the impulses in one iteration over each part alone. Before the iteration the impulses are 0,
+    /// because [`Self::take_impulses`] has moved them to the block.
     pub(in super::super) fn blocked_wanted(
         &self,
         number: usize,
@@ -125,7 +125,7 @@ impl HingeSet {
         self.blocked_extras[number].map(|extra| &mut self.blocked.extras[extra])
     }
 
-    /// Lever ratios of a limit of a hinge in a block: 0 is the lower one.
+    /// Lever ratios of a limit of a hinge in a block. Side 0 is the lower limit.
     pub(in super::super) fn blocked_limit(&self, number: usize, side: usize) -> [Ratio; 2] {
         self.blocked_rows(number).map_or([Ratio::ZERO; 2], |rows| rows.limit_ratios(side))
     }

@@ -127,7 +127,7 @@ impl HingeShare {
         self.anchored.run_coloured(WarmStart { refresh: refresh_anchored }, context);
     }
 
-    /// One iteration over all hinges.
+    /// One iteration over the coloured hinges of the thread.
     pub(super) fn solve(&mut self, pass: impl SolverPass, poses: Poses<'_>, context: &StepContext<'_>) {
         let [refresh, refresh_anchored] = refreshes(&mut self.is_stale, poses, context);
         self.ordinary.run_coloured(Solve { pass, refresh }, context);

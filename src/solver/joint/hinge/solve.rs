@@ -31,7 +31,8 @@ impl<P: SolverPass> Operation<Hinges> for Solve<'_, P> {
         let (pass, refresh) = (self.pass.kind(), &self.refresh);
         let BatchParts { batch, record, extra: mut angle, bodies, faults } = parts;
         refresh.refresh::<L, N>(batch, record, angle.as_deref_mut(), bodies);
-        // Both are copied, so that the compiler sees that writing to the batch does not change them.
+        // The softness and the quads are copied, so that the compiler sees that writing to the batch does not change
+        // them.
         let (stiffness, quads) = (refresh.stiffness_of(batch, record), refresh.poses.quads);
         let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
         if let Some(rows) = angle {
