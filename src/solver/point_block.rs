@@ -10,7 +10,7 @@
 //!
 //! p   = G L
 //! vr  = vB - vA + eB uB - eA uA
-//! d   = clamp(-massScale (vr + bias) - impulseScale p, -512, 512)
+//! d   = clamp(-massScale (vr + bias) - impulseScale p, -512, 512) - push
 //! L'  = clamp(L + d, -1023, 1023),  d = L' - L
 //! vA -= GA d,  uA -= fA.d,  vB += GB d,  uB += fB.d
 //! ```
@@ -88,11 +88,12 @@ impl Symmetric<Unit> {
     }
 }
 
-/// The negated target velocity of [`PointBlock::solve_within`].
+/// `bias` and `push` in the equations of a point block.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PointGoal {
+    /// The negated target velocity.
     pub(crate) bias: Vec2<Speed>,
-    /// The part that the softness does not scale.
+    /// Impulse that the softness does not scale: [`Softness::push`] of a spring.
     pub(crate) push: Vec2<Speed>,
 }
 

@@ -25,12 +25,13 @@ use crate::math::{Fx, Rate, Speed, Step, Vec2, narrow};
 pub enum ContactTuning {
     /// Stiff damped springs, with a relax pass that removes the push-out velocity.
     Soft {
-        /// Stiffness in Hz, at most an eighth of the sub-step rate; doubled against bodies that are not dynamic. A
-        /// stack sinks in proportion to `g / hertz^2`: see [`Config`](crate::world::Config) for small bodies.
+        /// Stiffness in Hz, 1 to 1000. A value above an eighth of the sub-step rate acts like an eighth of that rate.
+        /// The stiffness is doubled against bodies that are not dynamic. A stack sinks in proportion to `g / hertz^2`:
+        /// see [`Config`](crate::world::Config) for small bodies.
         hertz: Fx,
         /// Damping ratio, 0 to 100.
         damping_ratio: Fx,
-        /// Largest speed at which overlap is pushed out, in m/s.
+        /// Largest speed at which overlap is pushed out, in m/s, 0 to 400.
         push_speed: Fx,
     },
     /// Baumgarte stabilisation: every sub-step removes a share of the overlap beyond a slop (J. Baumgarte, 1972).
@@ -38,9 +39,9 @@ pub enum ContactTuning {
     Baumgarte {
         /// Share of the overlap removed in a sub-step, 0 to 1.
         share: Fx,
-        /// Overlap that is not removed, in metres, so that contacts persist from tick to tick.
+        /// Overlap that is not removed, in metres, 0 to 1. It lets contacts persist from tick to tick.
         slop: Fx,
-        /// Largest speed at which overlap is pushed out, in m/s.
+        /// Largest speed at which overlap is pushed out, in m/s, 0 to 400.
         push_speed: Fx,
     },
 }
@@ -74,17 +75,18 @@ pub struct SolverSettings {
     pub iterations: u32,
     /// Method by which contacts remove overlap.
     pub contact: ContactTuning,
-    /// Stiffness in Hz of joints that have no [softness of their own](crate::solver::JointDef::softness), at most a
-    /// quarter of the sub-step rate. It is doubled for the anchors of an anchored hinge or rigid weld. Such a joint
-    /// connects a body without any other joint to a body that is not dynamic, so that its stiffness disturbs no other
-    /// joint.
+    /// Stiffness in Hz, 1 to 1000, of joints that have no
+    /// [softness of their own](crate::solver::JointDef::softness). A value above a quarter of the sub-step rate acts
+    /// like a quarter of that rate. The stiffness is doubled for the anchors of an anchored hinge or rigid weld. Such a
+    /// joint connects a body without any other joint to a body that is not dynamic, so that its stiffness disturbs no
+    /// other joint.
     pub joint_hertz: Fx,
     /// Damping ratio of joints, 0 to 100.
     pub joint_damping_ratio: Fx,
     /// Approach speed in m/s below which restitution is not applied, 0 to 400, for shapes without a threshold of their
     /// own ([`Material::restitution_threshold`](crate::body::Material::restitution_threshold)).
     pub restitution_threshold: Fx,
-    /// Speed limit in m/s, at most 400. It also limits the radius of gyration times the angular velocity. At fewer than
+    /// Speed limit in m/s, 1 to 400. It also limits the radius of gyration times the angular velocity. At fewer than
     /// 27 ticks per second, the limit is also at most [`DISTANCE_MAX`] in a tick.
     pub speed_max: Fx,
 }

@@ -77,7 +77,7 @@ impl Softness {
         narrow(fx_mul(fx_mul(stretch, self.bias_rate.into()), self.mass_scale.into()))
     }
 
-    /// `-massScale (v + bias) - impulseScale L` in units of [`Speed`]. Its magnitude is at most twice that of [`Speed::MIN`].
+    /// `-massScale (v + bias) - impulseScale L` in units of [`Speed`]: at most twice as large as a [`Speed`] can be.
     #[inline]
     pub(crate) fn wanted(&self, v: Speed, bias: Speed, lambda: Speed) -> i64 {
         let error = i64::from(v.to_bits()) + i64::from(bias.to_bits());

@@ -35,7 +35,7 @@ pub(crate) struct Threads {
 #[cfg(feature = "parallel")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sharing {
-    /// The threads share a tick only if this makes the tick shorter.
+    /// Ticks run on one thread or on all, whichever took less time in earlier ticks, except for a few trials.
     Adaptive,
     /// The threads share every tick.
     Always,

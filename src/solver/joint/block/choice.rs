@@ -4,8 +4,8 @@
 //! joints disturb each other, where it may even add energy. A body is *crowded* if two or more joints hold it and
 //!
 //! - one of them holds more than a point: a weld, a slider, a spring, or
-//! - it is so light, or its arms are so long, that its share in the mobility of the points of two hinges is large, or
-//!   that the sum of its shares over all hinges, without the largest share, is large.
+//! - it is so light, or its arms are so long, that its share in the mobility of the point of each of two hinges is
+//!   large, or that the sum of its shares over all hinges, without the largest share, is large.
 //!
 //! All joints of a crowded body are solved in a block. Two crowded bodies with a common joint share a block, as long as
 //! it does not grow beyond [`ROWS_MAX`]. The choice depends on the joints of a body alone, so that joints elsewhere do
