@@ -186,8 +186,8 @@ impl Solver {
         self.colouring.colour_of(pair)
     }
 
-    /// Performs `count` sub-steps, and stores the impulses of contacts for the next tick. `first` is the number of
-    /// sub-steps between the creation of the world and this tick.
+    /// Performs `count` sub-steps, and stores the impulses of contacts for the next tick. `first` is the number of the
+    /// first sub-step: the number of the tick times the number of sub-steps in a tick.
     pub(crate) fn sub_steps(&mut self, first: u64, count: u32, tuning: &Tuning, contacts: &mut [Contact]) {
         let Solver { list, moving, joints, contacts: set, contact_velocities, machine, threads, .. } = self;
         let (machine, parts) = (*machine, contact_velocities.len());

@@ -20,8 +20,8 @@ pub(super) struct SolverShare<'a, 'set> {
 }
 
 impl SolverShare<'_, '_> {
-    /// Performs one sub-step. `index` is the number of sub-steps since the world was created. `is_first` is whether it
-    /// is the first sub-step of the tick.
+    /// Performs one sub-step. `index` is its number: the number of the tick times the number of sub-steps in a tick,
+    /// plus the number of earlier sub-steps in the tick. `is_first` is whether it is the first sub-step of the tick.
     pub(super) fn sub_step(&mut self, index: u64, is_first: bool, context: &StepContext<'_>) {
         let SolverShare { moving, contacts, velocities, joints } = self;
         let tuning = context.tuning;

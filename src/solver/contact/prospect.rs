@@ -4,8 +4,8 @@
 use crate::math::{Unit, Vec2};
 
 /// Largest dot product of the normals of two walls between which an impact may wedge a body: the normals are at least
-/// 60 degrees apart. Friction holds a body between walls that open wider only if its coefficient is above 1.7. Two tiles
-/// of a floor are no wedge.
+/// 60 degrees apart. Friction holds a body between walls that open wider only if its coefficient is above 1.7. Two
+/// tiles of a floor are no wedge.
 const WEDGE_DOT_MAX: Unit = Unit::lit("0.5");
 
 /// Properties of a body that follow from all of its contacts.

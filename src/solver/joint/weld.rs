@@ -34,8 +34,8 @@ use crate::math::Fx;
 #[doc(alias = "FixedJoint")]
 #[doc(alias = "WeldJoint")]
 pub struct Weld {
-    /// Softness of the anchors; `None` is rigid. Two point masses would swing at its frequency, and the stiffness is
-    /// the same in all directions ([`Soft`]). Forces act on both bodies at B's anchor, so that a soft weld
+    /// Softness of the anchors; `None` is rigid. The frequency is that of two point masses with the masses of the
+    /// bodies, and the stiffness is the same in all directions ([`Soft`]). Forces act on both bodies at B's anchor, so that a soft weld
     /// conserves angular momentum however far it is stretched.
     pub linear: Option<Soft>,
     /// Softness of the angle; `None` is rigid.
