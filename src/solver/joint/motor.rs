@@ -46,8 +46,8 @@ pub struct Motor {
     /// Drives B to an angular velocity relative to A in rad/s, with limited torque in N m.
     pub angular: Option<Drive>,
     /// Pulls the anchors onto each other, with limited force in N. The frequency is that of two point masses with
-    /// the masses of the bodies, and the stiffness is the same in all directions ([`Soft`]). The damping acts on the velocity of B's
-    /// anchor relative to A's frame, along the spring and across it.
+    /// the masses of the bodies, and the stiffness is the same in all directions ([`Soft`]). The damping acts on the
+    /// velocity of B's anchor relative to A's frame, along the spring and across it.
     pub linear_spring: Option<Pull>,
     /// Turns the frames parallel, with limited torque in N m.
     pub angular_spring: Option<Pull>,

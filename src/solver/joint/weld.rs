@@ -35,8 +35,8 @@ use crate::math::Fx;
 #[doc(alias = "WeldJoint")]
 pub struct Weld {
     /// Softness of the anchors; `None` is rigid. The frequency is that of two point masses with the masses of the
-    /// bodies, and the stiffness is the same in all directions ([`Soft`]). Forces act on both bodies at B's anchor, so that a soft weld
-    /// conserves angular momentum however far it is stretched.
+    /// bodies, and the stiffness is the same in all directions ([`Soft`]). Forces act on both bodies at B's anchor, so
+    /// that a soft weld conserves angular momentum however far it is stretched.
     pub linear: Option<Soft>,
     /// Softness of the angle; `None` is rigid.
     pub angular: Option<Soft>,

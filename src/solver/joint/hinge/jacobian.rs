@@ -28,8 +28,8 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
         self.keep_in_range(faults);
     }
 
-    /// Applies impulses above [`PLAIN_MAX`]. Impulses of 512 m/s along both axes may change a velocity by up to 724 m/s,
-    /// so that the sums saturate.
+    /// Applies impulses above [`PLAIN_MAX`]. Impulses of 512 m/s along both axes may change a velocity by up to
+    /// 724 m/s, so that the sums saturate.
     #[cold]
     fn apply_saturating(&mut self, a: VelocityW<L::Int>, b: VelocityW<L::Int>) {
         let VelocityW { x, y, turn } = self.a;
