@@ -32,7 +32,7 @@ pub struct Checked {
     pub hash: StateHash,
     /// The variants in which the ticks were played, in addition to the reference run.
     pub variants: Vec<Variant>,
-    /// Number of ticks simulated, in all variants together.
+    /// Number of ticks simulated by the reference run and in all variants except [`Variant::Recorded`].
     pub simulated: u64,
 }
 
@@ -102,7 +102,7 @@ impl<'s, G: Game> Checker<'s, G> {
         self.tick
     }
 
-    /// Number of ticks simulated, in all variants together.
+    /// Number of ticks simulated so far by the reference run and in all variants together.
     #[must_use]
     pub fn simulated(&self) -> u64 {
         self.tick + self.replicas.iter().map(|replica| replica.steps).sum::<u64>()

@@ -65,7 +65,7 @@ impl Contact {
         }
     }
 
-    /// Clears the accumulated impulses.
+    /// Clears the accumulated impulses and the kept manifold.
     #[inline]
     pub(crate) fn clear_points(&mut self) {
         self.count = 0;

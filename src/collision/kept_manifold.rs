@@ -17,8 +17,8 @@ use crate::math::{Angle, Fx, Length, Step, TAU, Unit, Vec2, round_shift, saturat
 /// from the contact. Such a body is fixed, and its arms do not matter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct KeptManifold {
-    /// Contact normal; zero if the manifold cannot be kept, because it is the manifold of a time of impact or because a
-    /// shape has changed.
+    /// Contact normal; zero if there is no manifold, or if the manifold cannot be kept because it belongs to a time of
+    /// impact or because a shape has changed.
     pub(crate) normal: Vec2<Unit>,
     /// Vector from A's centre of mass to the first point.
     pub(crate) arm_a: Vec2<Length>,
@@ -149,7 +149,8 @@ impl KeptManifold {
     }
 
     /// The separations of the first `count` points when the bodies are at other poses, or `None` if the shapes have
-    /// moved relative to each other by more than `limit` metres. To first order in the rotations:
+    /// moved relative to each other by more than `limit` metres or a body has rotated by more than [`TURN_MAX`]. To
+    /// first order in the rotations:
     ///
     /// ```text
     /// d = change of between + thetaB x rB - thetaA x rA,   s' = s + n . d
@@ -189,7 +190,8 @@ impl KeptManifold {
 }
 
 impl KeptSide {
-    /// The rotation since an angle, in radians with 30 fraction bits, or `None` if it exceeds [`TURN_MAX`].
+    /// The rotation since an angle, in radians with 30 fraction bits, or `None` if it exceeds [`TURN_MAX`]. It counts
+    /// as 0 for a disc about the centre of mass.
     #[inline]
     fn rotation_since(&self, angle: Angle) -> Option<i64> {
         if self.reach == Length::ZERO {

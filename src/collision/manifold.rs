@@ -74,7 +74,8 @@ pub struct ManifoldPoint {
 pub struct Manifold {
     /// Unit vector from A to B.
     pub normal: Vec2<Unit>,
-    /// World position that anchors are relative to: the centre of one of the shapes.
+    /// World position that anchors are relative to: the centre of one of the shapes or, if the contact keeps the
+    /// manifold of an earlier tick, its first contact point.
     pub origin: Vec2<Fx>,
     points: [ManifoldPoint; 2],
     count: u8,

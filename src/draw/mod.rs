@@ -8,8 +8,8 @@
 //! body lag behind its outline by the motion of one tick. Directly after [`World::restore`] or [`World::from_bytes`]
 //! there are no contacts until the next tick.
 //!
-//! Drawing uses no floating-point numbers: the same world gives the same text on every machine, so that two pictures
-//! can be compared with `diff`.
+//! Primitives and SVG use no floating-point numbers: the same world gives the same text on every machine, so that two
+//! pictures can be compared with `diff`.
 //!
 //! ```
 //! use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, world::World};

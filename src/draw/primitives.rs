@@ -130,8 +130,8 @@ fn add_outlines(world: &World, (id, body): (BodyId, &Body), style: Style, found:
     }
 }
 
-/// Adds the outlines of each island, in a colour chosen by the first body, so that an island keeps its colour while it
-/// grows.
+/// Adds the outlines of each island, in a colour that depends on its first body, so that an island keeps its colour
+/// while it grows.
 fn add_islands(world: &World, found: Sink<'_>) {
     for island in world.islands() {
         let Some(first) = island.first() else { continue };

@@ -192,9 +192,9 @@ pub trait Game: Sized {
     /// Restores a saved state.
     fn load(&mut self, save: &Self::Save);
 
-    /// Upper bound of the cost of the next tick in work units, with which a verifier limits the computing time of an
-    /// untrusted file. The bound of the sandbox is roughly the number of bodies, contacts and joints, multiplied by the
-    /// number of sub-steps.
+    /// Work units of the next tick: an upper bound of its cost, except for the work that the world itself counts during
+    /// a step. A verifier uses the bound to limit the computing time of an untrusted file. The bound of the sandbox is
+    /// roughly the number of bodies, contacts and joints, multiplied by the number of sub-steps.
     fn work(&self, inputs: &[Self::Input]) -> u64;
 
     /// Input of a seat without a player, in every tick before a player has joined and after the player has left. The

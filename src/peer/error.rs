@@ -70,7 +70,7 @@ pub enum PeerError {
     },
     /// A state is needed that is no longer kept.
     NoState {
-        /// Number of ticks played.
+        /// Number of ticks played before that state.
         tick: u64,
     },
 }

@@ -142,7 +142,7 @@ pub struct PeerIdentity {
     pub id: PeerId,
     /// The identity that outlives processes. A peer that returns with the same key gets its seat back, if it is free.
     pub key: Key,
-    /// Random numbers that no other peer knows: the key of the handshake cookies.
+    /// Random numbers that no other peer knows: the key of the handshake cookies and of the tokens of probes.
     pub secret: [u64; 2],
 }
 

@@ -22,7 +22,7 @@ pub(super) struct Simulation<G: Game> {
     /// Inputs of the ticks from `first_input` on.
     inputs: VecDeque<EncodedInputs<G::Input>>,
     first_input: u64,
-    /// Number of ticks whose inputs are final.
+    /// Number of ticks that were played with final inputs and, if there is a replay, recorded.
     pub(super) committed: u64,
     recorder: Option<Recorder<G>>,
     checkpoint_interval: u64,

@@ -3,7 +3,7 @@
 //! ```text
 //! link(d, bytes)  = XXH3-128(d | XXH3-128(bytes))
 //!
-//! chain           starts as XXH3-128(header), then link(chain, block)           covers all bytes of the file
+//! chain           starts as XXH3-128(header), then link(chain, block)           covers the file except its checksums
 //! inputs digest   starts as XXH3-128(header up to `start`), then link(.., runs) covers the setup and all inputs
 //! checkpoint      XXH3-128(state hash | inputs digest)                          covers the inputs and the state
 //! ```

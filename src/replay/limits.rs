@@ -35,7 +35,8 @@ pub struct Limits {
     /// ([`Game::world`](crate::lockstep::Game::world)). Between two checks, `setup_bytes` and `tick_work` bound
     /// their number.
     pub bodies: u64,
-    /// Work units of one tick, as counted by [`Game::work`](crate::lockstep::Game::work).
+    /// Work units of one tick, as counted by [`Game::work`](crate::lockstep::Game::work) and by the world while it
+    /// plays the tick.
     pub tick_work: u64,
     /// Work units of the whole game.
     pub total_work: u64,

@@ -112,7 +112,7 @@ impl<'a, G: Game> RawReplay<'a, G> {
     /// Plays one tick.
     ///
     /// # Errors
-    /// The [`Verdict`] when the inputs are not valid for this game or exceed a work limit.
+    /// The [`Verdict`] when the inputs are not valid for this game or exceed a limit on work or bodies.
     pub fn step(&mut self) -> Result<Step, Verdict> {
         if self.read_inputs()? == Step::Ended {
             return Ok(Step::Ended);

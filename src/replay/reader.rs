@@ -233,7 +233,7 @@ impl<'a> Reader<'a> {
         Ok(Some(part))
     }
 
-    /// Reads the next block and checks its checksum. Returns `None` when the file ends inside the block.
+    /// Reads the next block and checks its checksum. Returns `None` when the file ends before the end of the block.
     fn frame(&self) -> Result<Option<Block<'a>>, ReadError> {
         let start = self.offset as u64;
         let rest = &self.file[self.offset..];

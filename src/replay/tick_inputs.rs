@@ -37,7 +37,7 @@ impl<'a> TickInputs<'a> {
     /// Opens a replay at its first tick.
     ///
     /// # Errors
-    /// [`ReadError`] when the header is malformed.
+    /// [`ReadError`] when the header is malformed or exceeds a limit.
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, ReadError> {
         let reader = Reader::open(file, limits)?;
         Ok(TickInputs { reader, block: None, block_left: 0, runs: Runs::new(&[], 0), run: None })
@@ -47,7 +47,7 @@ impl<'a> TickInputs<'a> {
     /// this one. Returns `None` at the end of the complete blocks.
     ///
     /// # Errors
-    /// [`ReadError`] when the next block is malformed.
+    /// [`ReadError`] when the next block is malformed or exceeds a limit.
     pub fn next_tick(&mut self) -> Result<Option<Run<'a>>, ReadError> {
         loop {
             if let Some(run) = self.run.as_mut().filter(|run| run.ticks > 0) {

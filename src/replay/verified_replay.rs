@@ -144,8 +144,8 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
     /// Plays one tick and, at the end of a block, compares the checkpoint.
     ///
     /// # Errors
-    /// The [`Verdict`] when the inputs are not valid for this game, exceed a work limit, or lead to another state. The
-    /// verdict is final.
+    /// The [`Verdict`] when the inputs are not valid for this game, exceed a limit on work or bodies, or lead
+    /// to another state. The verdict is final.
     pub fn step(&mut self) -> Result<Step, Verdict> {
         if let Some(verdict) = &self.failed {
             return Err(verdict.clone());
@@ -200,7 +200,7 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
         self.raw.position()
     }
 
-    /// Restores an earlier state and position.
+    /// Restores a saved state and its position.
     pub(super) fn go(&mut self, save: &G::Save, position: ReplayPosition<'a>) {
         self.raw.go(save, position);
         self.failed = None;

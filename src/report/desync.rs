@@ -91,8 +91,8 @@ impl DesyncReport {
     /// Creates the report of a peer. `replay` contains the inputs of the known ticks, for example from
     /// [`Recorder::so_far`](crate::replay::Recorder::so_far).
     ///
-    /// The report contains the hash of every tick, and as many saves as fit into [`SAVES_BYTES_MAX`]: first the saves
-    /// up to the tick that differs, newest first, then the later ones.
+    /// The report contains the hash of every known tick in the history, and as many saves as fit into
+    /// [`SAVES_BYTES_MAX`]: first the saves up to the tick that differs, newest first, then the later ones.
     #[must_use]
     pub fn new<G: Game>(found: &Desync, history: &History<G>, replay: Vec<u8>) -> Self {
         Self::within(SAVES_BYTES_MAX, found, history, replay)

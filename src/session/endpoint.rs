@@ -161,7 +161,7 @@ pub struct Identity {
     /// Handshake data that has to be equal for all peers of a match: versions, rules, setup. Only the first
     /// [`OFFER_BYTES_MAX`] bytes count.
     pub offer: Vec<u8>,
-    /// 16 random bytes that no other peer knows: the key of the handshake cookies.
+    /// 16 random bytes that no other peer knows: the key of the handshake cookies and of the tokens of probes.
     pub secret: [u64; 2],
 }
 

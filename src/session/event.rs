@@ -25,9 +25,9 @@ pub enum Status {
     Joining,
     /// Follows the match and asks for no seat.
     Watching,
-    /// Has a seat. The match has not begun, because too few seats are taken.
+    /// Has a seat, or is a dedicated server. The match has not begun, because too few seats are taken.
     Waiting,
-    /// Plays.
+    /// Takes part in a match that has begun, with a seat or as a dedicated server.
     Playing,
     /// Receives no packets from a majority, and only a majority can continue the match. A peer without a seat may ask
     /// another contact.
@@ -78,7 +78,7 @@ impl Status {
 pub enum Event {
     /// The status of the session has changed.
     Status(Status),
-    /// A new view is in force: voters, seats, the start or the end of the match have changed.
+    /// A new view is in force: the voters, the seats, or the start or end of the match have changed.
     View {
         /// Number of the view.
         number: u32,
@@ -134,7 +134,8 @@ pub enum Event {
         /// Hash of the other peer's state.
         theirs: u128,
     },
-    /// A peer has issued two different inputs for one tick. Its inputs are no longer accepted.
+    /// A peer has issued two different inputs for one tick. The input that arrived first counts. This peer no longer
+    /// proposes that the other one gets a seat.
     Conflict {
         /// The peer.
         peer: PeerId,

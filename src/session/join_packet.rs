@@ -23,7 +23,7 @@ pub enum RefusalReason {
     Offer,
     /// Too many peers are joining through this contact.
     Full,
-    /// The requested incarnation belongs to another peer.
+    /// The incarnation already belongs to a voter of the match.
     Taken,
     /// The contact is not in a match yet.
     NotReady,

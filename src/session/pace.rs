@@ -1,8 +1,9 @@
 //! [`Pace`]: the time at which the next tick is due, and the number of ticks by which this peer's inputs are delayed.
 //!
-//! The current tick of another peer is estimated from its newest row plus half a round trip. Each peer steers towards
-//! the median of these estimates: it lengthens its ticks by up to 1/8 when it is ahead, and shortens them by up to 1/16
-//! when it is behind. Therefore no peer stops abruptly, and clocks that run at different rates do no harm.
+//! The current tick of another peer is estimated from its newest row, the age of that row and half a round trip. Each
+//! peer steers towards the median of these estimates: it lengthens its ticks by up to 1/8 when it is ahead, and
+//! shortens them by up to 1/16 when it is behind. Therefore the speed of play changes gradually, and clocks that run at
+//! different rates do no harm.
 
 use alloc::vec::Vec;
 
@@ -41,7 +42,7 @@ const CATCH_UP: Tick = 12;
 const DELAY_INTERVAL: u64 = 500_000;
 /// Number of ticks by which a peer without a seat stays behind the final ticks.
 const FOLLOW: i64 = 2;
-/// Units per tick in which lateness is measured.
+/// Units per tick in which leads over other peers are measured.
 const PART: i64 = 256;
 
 impl Pace {
@@ -92,7 +93,7 @@ impl Session {
         let tick = self.pace.tick_micros;
         let median = ahead.get(ahead.len() / 2).copied().unwrap_or(0);
         let ahead = if own { median } else { (FOLLOW - i64::from(self.pace.behind)) * PART };
-        // A difference of a tick is made up within 32 ticks.
+        // Each tick makes up a 32nd of the difference.
         let adjust = ahead * i64::try_from(tick).unwrap_or(0) / (PART * 32);
         let most = i64::try_from(tick / 8).unwrap_or(0);
         let adjust = adjust.clamp(-most / 2, most);

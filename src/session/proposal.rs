@@ -81,7 +81,7 @@ impl Session {
         })
     }
 
-    /// Whether a fresh row requests a change that is possible.
+    /// Whether the rows request a change that is possible, or the match can begin.
     fn change_is_wanted(&self) -> bool {
         let (number, ends) = (self.view.number, self.view.end.is_some());
         let voters = self.fresh_rows().any(|(_, row)| row.wants.leave || row.wants.end.is_some() && !ends);
@@ -225,8 +225,8 @@ impl Session {
         rows.filter(|(_, _, row)| row.promised == Some(ballot)).fold(0, |set, (index, _, _)| set | bit(index))
     }
 
-    /// The change to propose in a ballot that a quorum promised: the one that promisers have accepted in an earlier
-    /// ballot, or a new one.
+    /// The change to propose in a ballot that a quorum promised: the one that a promiser has accepted in the highest
+    /// ballot or, if no promiser has accepted one, a new one.
     fn choose_change(&self, ballot: Ballot) -> Arc<Change> {
         let promisers = self.promisers(ballot);
         let rows = || self.peers.rows(self.view.number).filter(|(index, _, _)| has_bit(promisers, *index));

@@ -270,7 +270,8 @@ impl Session {
 
     fn remove(&mut self, removal: Removal) {
         if !self.wants.removals.contains(&removal) {
-            // The oldest vote is dropped. If its peer has already been removed, the peer can then only return.
+            // The oldest vote is dropped. If its peer has already been removed, the only effect is that this peer may
+            // return.
             if self.wants.removals.len() == REMOVALS_MAX {
                 self.wants.removals.remove(0);
             }

@@ -68,7 +68,7 @@ pub(super) struct Join {
 /// A decided step from one view to the next.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Change {
-    /// First tick that is not final at the change: ticks before it keep their inputs.
+    /// First tick that the change may affect: all ticks before it are final.
     pub(super) cut: Tick,
     /// First tick that is not played, once the end of the match is decided.
     pub(super) end: Option<Tick>,

@@ -164,8 +164,8 @@ impl BroadPhase {
         }
     }
 
-    /// Replaces all boxes, without collision classes; cheaper than a [`Self::put`] for each box. An item is a slot, its
-    /// box, and whether its body is fixed. If a slot repeats, its last box is kept.
+    /// Replaces all boxes. The new boxes have no collision classes. Cheaper than a [`Self::put`] for each box. An item
+    /// is a slot, its box, and whether its body is fixed. If a slot repeats, its last box is kept.
     pub(crate) fn refill(&mut self, boxes: impl IntoIterator<Item = (u32, Aabb, bool)>) {
         *self = BroadPhase::new(self.kind());
         let boxes = boxes.into_iter();
@@ -315,7 +315,8 @@ struct SmallestPairs<'a> {
 impl SmallestPairs<'_> {
     fn push(&mut self, pair: Pair) {
         self.pairs.push(pair);
-        // Trims at twice the limit, so that the cost of a sort is amortised over many pushes.
+        // Trims at twice the limit, or at 64 pairs if that is more, so that the cost of a sort is amortised over many
+        // pushes.
         if self.pairs.len() >= self.limit.saturating_mul(2).max(64) {
             self.trim();
         }

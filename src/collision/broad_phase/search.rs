@@ -136,8 +136,8 @@ impl<F: FnMut(u32) -> Fx> Search for Near<F> {
         let Ok(radius) = u64::try_from(self.radius.to_bits()) else { return false };
         let square = |x: u64| u128::from(x) * u128::from(x);
         let (x, y) = self.distances(aabb);
-        // `Fx::MAX` reaches every box, because distances saturate at that value. With a smaller radius, each distance
-        // is below 2^63 when the squares are added, so that the sum fits.
+        // `Fx::MAX` reaches every box, because the distances that `visit` returns are of type `Fx` and saturate at that
+        // value. With a smaller radius, each distance is below 2^63 when the squares are added, so that the sum fits.
         self.radius == Fx::MAX || (x <= radius && y <= radius && square(x) + square(y) <= square(radius))
     }
 

@@ -20,13 +20,13 @@ enum Axis {
 pub(crate) struct SweepAndPrune {
     axis: Axis,
     boxes: BoxList,
-    /// Slots in the order of their boxes' lower ends, followed by slots added since the last sweep.
+    /// Slots in the order that their boxes' lower ends had in the last sweep, followed by slots added since then.
     order: Vec<u32>,
     /// For each slot, whether it is in `order`. A removed slot stays there until the next sweep.
     ordered: Vec<bool>,
     /// Number of slots added since the last sweep.
     newcomers: usize,
-    /// Boxes in order, for the sweep.
+    /// The boxes in sorted order during a sweep.
     sorted: Vec<Interval>,
 }
 

@@ -1,5 +1,5 @@
 //! Compares all broad phase kinds with each other while boxes are inserted, removed and moved, and compares their
-//! queries with exact arithmetic on every box, in a small world and in one that fills the number range.
+//! queries with exact arithmetic on every box, in worlds of three sizes, the largest of which fills the number range.
 
 use super::*;
 use crate::body::Filter;
@@ -31,7 +31,8 @@ fn random_box(rng: &mut Rng, world: i64) -> Aabb {
     Aabb::new(corner, corner).union(Aabb::new(corner, corner).translated(random_vector(rng, size)))
 }
 
-/// Half the world size in units of the last place: 8 m, 2^30 m, and the whole number range.
+/// Half the size of each world in units of the last place: 8 m, 2^30 m, and 2^31 m, so that the last world fills the
+/// number range.
 const WORLDS: [i64; 3] = [8 << 32, 1 << 62, i64::MAX];
 
 fn random_class(rng: &mut Rng, count: u32) -> CollisionClass {
@@ -247,7 +248,7 @@ fn overlaps_are_those_of_every_box() {
 }
 
 /// Time at which the moving area first touches the box, as a fraction `n / d` with `d > 0`. On each axis the times of
-/// contact form an interval. All values are in units of 2^-16 m, so that products of two fit.
+/// contact form an interval. All values are in units of 2^-16 m, so that the product of two values fits 128 bits.
 fn first_touch(area: Aabb, translation: Vec2<Fx>, fat: Aabb) -> Option<(i128, i128)> {
     let bits = |x: Fx| i128::from(x.to_bits() >> 16);
     let mut start = (0, 1);

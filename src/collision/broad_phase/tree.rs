@@ -49,8 +49,8 @@ pub(crate) struct Tree {
     /// Number of leaves inserted or removed since the last rebuild, where a leaf that is relinked counts twice. While
     /// it is 0, every node is in use and stored before its children.
     relinked: u32,
-    /// Number of leaves that have left their neighbourhood (see [`Self::stays_near`]) since the last refit or rebuild
-    /// without being relinked.
+    /// Number of moves since the last refit or rebuild that took a leaf out of its neighbourhood (see
+    /// [`Self::stays_near`]) and did not relink it.
     strays: u32,
     rebuilt: Rebuilt,
 }
@@ -95,7 +95,7 @@ impl Tree {
             Some(leaf) if self.at(leaf).aabb == fat => {}
             Some(leaf) if self.stays_near(leaf, fat) => self.enlarge(leaf, fat),
             // A few leaves may stay misplaced until the next rebuild: relinking them would take the nodes out of the
-            // order that a refit needs.
+            // storage order that makes a refit fast.
             Some(leaf) if self.strays < self.len / 8 => {
                 self.strays += 1;
                 self.enlarge(leaf, fat);

@@ -96,7 +96,8 @@ fn hull_about<'a>(shape: &'a PosedShape, other: &PosedShape, room: &'a mut Optio
     room.as_ref()
 }
 
-/// Whether a face of `a` separates the hulls. `d` is the vector from the centre of A to the centre of B.
+/// Whether a face of `a` separates the hulls. `d` is the vector from the origin of A's coordinates to the origin of
+/// B's.
 fn some_face_parts(a: &Hull, b: &Hull, d: Vec2<Length>, filter: &GhostFilter) -> bool {
     let radii = step_bits(a.radius) + step_bits(b.radius);
     // The test that rejects most faces comes first.

@@ -21,8 +21,8 @@ use crate::collision::shape::link::Link;
 use crate::collision::shape::posed::Hull;
 use crate::math::{Fx, Length, Step, Unit, Vec2, convert, saturate};
 
-/// Smallest difference of two normals, as the sine of the angle between them. Vertices that turn by less than this (0.6
-/// degrees) count as flat.
+/// Smallest difference of two normals, as the sine of the angle between them. Convex vertices that turn by less than
+/// this (0.6 degrees) count as flat.
 const ANGLE_TOLERANCE: Unit = Unit::lit("0.01");
 
 /// Sine of the largest angle at which a face normal counts as the link's own. With a larger value a rounded box that

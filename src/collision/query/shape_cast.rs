@@ -134,7 +134,8 @@ mod tests {
     use crate::collision::shape::support::samples;
     use crate::math::{Rng, fx_div, fx_mul};
 
-    /// Distance that B moves in steps of its distance from A, within a micrometre of the skin. `Err` if undecided.
+    /// Distance that B travels until it reaches the skin of A, within a micrometre, found by repeated advances by the
+    /// remaining gap. `None` if B does not reach the skin, `Err` if undecided.
     fn stepped(a: &SupportShape, b: &SupportShape, translation: Vec2<Fx>) -> Result<Option<Fx>, ()> {
         let length = translation.length();
         samples::march(length, |way| {

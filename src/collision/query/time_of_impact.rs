@@ -83,7 +83,7 @@ pub(crate) enum StartPolicy {
     /// Continuous collision: the shapes may come closer and overlap more deeply, but not pass through each other. See
     /// [`time_of_impact`].
     Protect,
-    /// The shapes may slide, roll and separate, but come closer by at most [`TOLERANCE`].
+    /// The shapes may slide, roll and separate, but come closer by at most twice [`TOLERANCE`].
     Resist,
     /// The result is a hit at fraction 0, or that the shapes overlap.
     Report,
@@ -96,8 +96,8 @@ pub(crate) enum StartPolicy {
 /// quarter of B's inner radius lets the body pass, and leaves the rest to the solver.
 ///
 /// Shapes that start within the target, in contact, may slide, roll, separate, or sink deeper, but not pass through.
-/// Their target is half-way from the initial separation to a depth of three quarters of the inner radius of B (of A if
-/// B has none), so that the centre of B does not pass the surface of A. A deeper start gives
+/// Their target is half-way from the initial separation (0 if it is positive) to a depth of three quarters of the inner
+/// radius of B (of A if B has none), so that the centre of B does not pass the surface of A. A deeper start gives
 /// [`TimeOfImpact::Overlapped`].
 pub(crate) fn time_of_impact(
     a: &SupportShape,

@@ -89,8 +89,8 @@ pub enum SeekError {
         /// Number of ticks in the replay.
         ticks: u64,
     },
-    /// The replay cannot be played up to that tick: its inputs are not valid for this game, exceed a work limit, or
-    /// lead to another state.
+    /// The replay cannot be played up to that tick: its inputs are not valid for this game, exceed a limit on work or
+    /// bodies, or lead to another state.
     Replay(Verdict),
     /// The state of a keyframe does not belong to this replay. The keyframe comes from a wrong file of keyframes, or
     /// saving and loading this game loses state.

@@ -1,6 +1,7 @@
-//! Refit and rebuild of whole trees, when many boxes have moved. First the boxes of the nodes are refitted from the
-//! leaves up. If this makes the tree too costly, it is rebuilt from the top: the boxes are split repeatedly at the
-//! median of their centres, so that the height is the logarithm of their number. Nodes are stored in depth-first order.
+//! Refit and rebuild of whole trees, when many boxes have moved. A refit recomputes the boxes of the nodes from the
+//! leaves up. If the tree is then too costly, or if many leaves have been inserted or removed, the tree is rebuilt from
+//! the top: the boxes are split repeatedly at the median of their centres, so that the height is the logarithm of their
+//! number. Nodes are stored in depth-first order.
 
 use alloc::vec::Vec;
 
@@ -123,7 +124,7 @@ impl Tree {
         self.rebuilt = rebuilt;
     }
 
-    /// Stores the nodes; inner nodes have no boxes and heights yet.
+    /// Stores the nodes. The boxes and heights of inner nodes are placeholders, which the next refit replaces.
     fn build(&mut self, Rebuilt { nodes, loose, waiting, .. }: &mut Rebuilt) {
         waiting.clear();
         waiting.push(Part { start: 0, end: loose.len(), parent: NONE });

@@ -26,7 +26,8 @@ fn random_box(rng: &mut Rng) -> (Polygon, Vec2<Fx>) {
     (polygon.rounded(radius).expect("valid"), Vec2::new(width + radius, height + radius))
 }
 
-/// Two boxes that touch or nearly touch. As in piles, most are rotated by nearly zero or by right angles.
+/// Two boxes that touch or nearly touch. As in piles, most are rotated relative to each other by nearly zero or by
+/// right angles.
 fn random_pair(rng: &mut Rng) -> (PosedShape, PosedShape) {
     let ((a, reach_a), (b, reach_b)) = (random_box(rng), random_box(rng));
     let turned = match rng.below(4) {

@@ -89,8 +89,8 @@ fn random_line(rng: &mut Rng) -> Vec<Vec2<Fx>> {
     points
 }
 
-/// If a shape is near a chain and does not cross it, some link has a contact that is no further than the chain. If a
-/// circle overlaps the chain, its deepest contact has the depth of the overlap.
+/// If a shape is near a chain and does not cross it, some link has a contact whose separation does not exceed the
+/// distance of the chain. If a circle overlaps the chain, its deepest contact has the depth of the overlap.
 #[test]
 fn a_chain_has_no_holes() {
     let mut rng = Rng::new(1);
