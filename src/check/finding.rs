@@ -94,7 +94,7 @@ impl Guess {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// The variant.
+    /// The variant in which the fault was found.
     pub variant: Variant,
     /// The fault.
     pub fault: Fault,

@@ -98,7 +98,7 @@ pub struct InputDifference {
     pub tick: u64,
     /// Seat of the input.
     pub seat: u32,
-    /// The differences.
+    /// The fields in which the inputs differ.
     pub differences: Vec<Difference>,
 }
 
@@ -127,7 +127,7 @@ pub struct Subject {
     pub path: String,
     /// Section that contains the subject, such as `world.bodies`.
     pub section: String,
-    /// The differences.
+    /// The fields that differ.
     pub differences: Vec<Difference>,
 }
 

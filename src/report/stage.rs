@@ -4,7 +4,7 @@ use core::fmt;
 
 use crate::world::Phase;
 
-/// The first stage of a tick after which two states differ that were equal before it.
+/// The first stage of a tick after which two states differ that were equal before this stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stage {

@@ -40,7 +40,7 @@ impl Address {
         Address { length: 0, bytes: [0; ADDRESS_BYTES_MAX] }
     }
 
-    /// The bytes.
+    /// The bytes of the address.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         self.bytes.get(..usize::from(self.length)).unwrap_or_default()

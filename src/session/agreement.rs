@@ -34,7 +34,7 @@ pub(super) struct Agreement {
     pub(super) round: u32,
     /// `round` at the start of the view.
     pub(super) base_round: u32,
-    /// Time since which a peer has wanted a change.
+    /// Time since which a change has been wanted without interruption.
     pub(super) wanted_since: Option<u64>,
 }
 

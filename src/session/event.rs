@@ -89,7 +89,7 @@ pub enum Event {
         peer: PeerId,
         /// Number of the player.
         seat: u8,
-        /// First tick.
+        /// First tick in which the peer occupies the seat.
         from: Tick,
     },
     /// A peer no longer occupies a seat from a tick on.
@@ -98,7 +98,7 @@ pub enum Event {
         peer: PeerId,
         /// Number of the player.
         seat: u8,
-        /// First tick without it.
+        /// First tick in which the peer does not occupy the seat.
         from: Tick,
     },
     /// Play stalls because inputs of a peer are missing. Reported once for each stall and peer.
@@ -139,7 +139,7 @@ pub enum Event {
     Conflict {
         /// The peer.
         peer: PeerId,
-        /// The tick.
+        /// The tick for which the peer issued two inputs.
         tick: Tick,
     },
     /// The other peers no longer keep the inputs that this peer lacks. It has to join again and download a state.

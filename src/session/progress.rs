@@ -24,7 +24,7 @@ pub(super) struct Progress {
     /// Indices of the spans that do not end before `live_from`. Earlier ticks are not played again.
     pub(super) live: Vec<usize>,
     pub(super) live_from: Tick,
-    /// Tick of the last clean-up.
+    /// Number of final ticks when old inputs were last forgotten.
     cleaned: Tick,
 }
 

@@ -102,7 +102,7 @@ impl Upload {
         }
     }
 
-    /// The next chunk to send, if a chunk in the window is missing and not in flight.
+    /// The next chunk to send, if a chunk in the window is missing and not in flight, and the rate allows another one.
     pub(super) fn next_chunk(&mut self, now: u64) -> Option<JoinPacket> {
         let again = self.round_trip + self.round_trip / 4 + 2 * WANT_INTERVAL;
         let end = self.next.saturating_add(self.window);
@@ -135,7 +135,8 @@ impl Upload {
 pub(super) struct Download {
     pub(super) hash: u64,
     length: u64,
-    /// The bytes up to the last chunk that has arrived. They are not allocated in advance for the announced length.
+    /// The bytes up to the end of the highest-numbered chunk that has arrived. They are not allocated in advance for
+    /// the announced length.
     bytes: Vec<u8>,
     have: Vec<bool>,
     next: u32,
@@ -168,14 +169,14 @@ impl Download {
         })
     }
 
-    /// Stores a chunk. Chunks of a wrong length or beyond the window are ignored.
+    /// Stores a chunk. Chunks of a wrong length, or beyond the largest possible window, are ignored.
     pub(super) fn take(&mut self, now: u64, index: u32, bytes: &[u8]) {
         let Ok(place) = usize::try_from(index) else { return };
         let Some(have) = self.have.get_mut(place).filter(|have| !**have) else { return };
         let Ok(length) = usize::try_from(self.length) else { return };
         let start = place * CHUNK_BYTES;
         let end = (start + CHUNK_BYTES).min(length);
-        // This peer has not asked for chunks beyond the window.
+        // This peer never asks for chunks beyond the largest window.
         let is_wanted = index < self.next.saturating_add(WINDOW_MAX);
         if !is_wanted || end - start != bytes.len() {
             return;

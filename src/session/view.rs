@@ -17,9 +17,9 @@ pub(super) const JOINS_MAX: usize = 8;
 /// A peer with a vote on changes of the view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Voter {
-    /// Incarnation.
+    /// Incarnation of the peer.
     pub id: PeerId,
-    /// Identity.
+    /// Identity of the peer.
     pub key: Key,
     /// Weight of the vote; 1 for players. A dedicated server that outweighs all others decides alone.
     pub weight: u8,
@@ -36,7 +36,7 @@ pub struct Span {
     pub key: Key,
     /// Number of the view that began the span.
     pub since: u32,
-    /// First tick.
+    /// First tick of the span.
     pub from: Tick,
     /// First tick after the span; [`NEVER`] while its owner plays.
     pub until: Tick,

@@ -18,8 +18,8 @@ use super::segment;
 use crate::collision::shape::posed::{Hull, Outline, PosedShape};
 use crate::math::{Fx, Length, Step, Unit, Vec2, round_shift};
 
-/// Cosine between a face normal and the contact normal above which the contact is on that face; allows for rounding
-/// only.
+/// Cosine between a face normal and the contact normal above which the contact is on that face. Its difference from 1
+/// only allows for rounding.
 const SAME: Unit = Unit::lit("0.999999");
 /// For a contact on a face: cosine between a face normal and the contact normal above which the face counts as the
 /// contact's own, 26 degrees.

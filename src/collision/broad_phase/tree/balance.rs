@@ -3,7 +3,8 @@
 use super::{IMBALANCE_MAX, Tree, perimeter};
 
 impl Tree {
-    /// Restores the balance of a node: if one child is too high, its higher child is exchanged with the other child.
+    /// Restores the balance of a node: if one child is too high, the higher of its children is exchanged with the other
+    /// child of the node.
     pub(super) fn balance(&mut self, at: u32) {
         let [a, b] = self.at(at).children;
         let (low, high) = if self.at(a).height < self.at(b).height { (a, b) } else { (b, a) };
@@ -47,7 +48,7 @@ impl Tree {
             && height.abs_diff(height_before) <= 1
     }
 
-    /// Exchanges a child of a node with a child of its sibling.
+    /// Exchanges `child`, a child of the node `at`, with `up`, a child of `sibling`.
     fn swap_if_balanced(&mut self, at: u32, child: u32, sibling: u32, up: u32) {
         self.replace_child(at, child, up);
         self.replace_child(sibling, up, child);
