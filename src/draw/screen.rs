@@ -1,4 +1,5 @@
-//! Transformation from the world to the picture: `p = (x - centre) pixels / metres`, with y flipped.
+//! Transformation from the world to the picture: `p = (x - centre) pixels / metres`, relative to the middle of the
+//! picture and with y flipped.
 //!
 //! Coordinates are integers in hundredths of a pixel: no screen shows finer detail, and integers are printed alike
 //! everywhere. The scale is a fraction of two integers, because a single fixed-point number would have no digits left

@@ -38,7 +38,7 @@ pub(super) struct Agreement {
     pub(super) wanted_since: Option<u64>,
 }
 
-/// Maximum number of steps in one call of [`Session::agree`]. A change of the view takes a few.
+/// Maximum number of steps in one call of [`Session::agree`]. A change of the view takes a few steps.
 const STEPS_MAX: usize = 64;
 
 impl Session {
