@@ -38,12 +38,12 @@ pub enum Fault {
     SavedAgain,
     /// The bytes of a save cannot be decoded.
     Unreadable {
-        /// Reason.
+        /// Reason why the bytes cannot be decoded.
         why: String,
     },
     /// The setup started a game the first time, but was refused later.
     Refused {
-        /// Reason.
+        /// Reason why the setup was refused.
         why: String,
     },
     /// Two consecutive calls of `state_hash`, `work`, `claims` or `save` return different results, or `claims` differs

@@ -34,7 +34,7 @@ pub(super) fn add(world: &World, id: JointId, layers: Layers, found: Sink<'_>) {
         add(Style::JointAnchor, Form::Point(anchor));
     }
     match &joint.def().kind {
-        // A rope leads over its wheels.
+        // The rope of a pulley leads over its two wheels.
         JointKind::Pulley(Pulley { wheel_a, wheel_b, .. }) => {
             for (from, to) in [(anchor_a, *wheel_a), (*wheel_a, *wheel_b), (*wheel_b, anchor_b)] {
                 add(Style::JointArm, Form::Line { from, to });

@@ -280,9 +280,9 @@ pub enum Form {
     Point(Vec2<Fx>),
     /// A straight line.
     Line {
-        /// One end.
+        /// One end of the line.
         from: Vec2<Fx>,
-        /// The other end.
+        /// The other end of the line.
         to: Vec2<Fx>,
     },
     /// A line whose length the renderer chooses, so that it is visible at any scale.
@@ -296,16 +296,16 @@ pub enum Form {
     Label {
         /// Position that the text belongs to.
         at: Vec2<Fx>,
-        /// The text.
+        /// The text to show.
         text: String,
     },
     /// An axis-aligned box.
     Box(Aabb),
     /// A circle.
     Circle {
-        /// Centre.
+        /// Centre of the circle.
         centre: Vec2<Fx>,
-        /// Radius.
+        /// Radius of the circle.
         radius: Fx,
     },
     /// A convex polygon, or a line with a radius if there are two vertices.

@@ -60,7 +60,7 @@ impl Screen {
         let (pixels_x, pixels_y) = (i128::from(size.0), i128::from(size.1));
         let wide = width * pixels_y >= height * pixels_x;
         let (pixels, units) = if wide { (pixels_x, width) } else { (pixels_y, height) };
-        // Half of the area, and 16 pixels for strokes.
+        // Half of the picture, plus 16 pixels for the width of strokes.
         let reach = |size: i128| Fx::from_bits(saturate_wide((size / 2 + 16) * units / pixels + 1));
         let reach = Vec2::new(reach(pixels_x), reach(pixels_y));
         let centre = window.centre();

@@ -46,7 +46,7 @@ pub enum StartError {
     TooMuchWork {
         /// Work units of the setup, or a lower bound of them.
         work: u64,
-        /// The budget.
+        /// The budget in work units.
         max: u64,
     },
 }

@@ -46,26 +46,26 @@ pub enum PeerError {
     },
     /// The match does not have the requested seat.
     Seat {
-        /// The seat.
+        /// The requested seat.
         seat: u8,
         /// Number of seats of the match.
         seats: u8,
     },
     /// The requested seat belongs to another peer.
     SeatTaken {
-        /// The seat.
+        /// The requested seat.
         seat: u8,
     },
     /// The parameters of the contact differ from those of this peer.
     Parameters(Vec<ParameterDifference>),
     /// The contact refuses the request to join.
     Refused {
-        /// Reason.
+        /// Reason why the contact refuses the request.
         why: &'static str,
     },
     /// The received state is not a state of this game.
     State {
-        /// Reason.
+        /// Reason why the state cannot be used.
         why: String,
     },
     /// A state is needed that is no longer kept.

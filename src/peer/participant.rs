@@ -84,7 +84,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
     /// has caught up and seats are free.
     ///
     /// # Errors
-    /// As [`Peer::host`].
+    /// Same as [`Peer::host`].
     pub fn join(
         setup: &G::Setup,
         options: PeerOptions,
@@ -99,7 +99,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
     /// Joins a match as a spectator through a contact, which is any participant of the match, including a spectator.
     ///
     /// # Errors
-    /// As [`Peer::host`].
+    /// Same as [`Peer::host`].
     pub fn watch(
         setup: &G::Setup,
         options: PeerOptions,
@@ -273,7 +273,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         self.simulation.committed
     }
 
-    /// The recent states.
+    /// The states after recent ticks, kept for rollback and for reports.
     #[must_use]
     pub const fn history(&self) -> &History<G> {
         &self.simulation.history
@@ -347,7 +347,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         (0..64).filter(|seat| seats >> seat & 1 == 1).collect()
     }
 
-    /// The transport.
+    /// The transport of this peer.
     pub fn transport_mut(&mut self) -> &mut T {
         &mut self.transport
     }

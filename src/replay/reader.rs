@@ -34,7 +34,7 @@ pub enum ReadError {
     },
     /// The file exceeds one of the reader's limits.
     LimitExceeded {
-        /// The limit.
+        /// The limit that is exceeded.
         limit: LimitKind,
         /// Value in the file.
         value: u64,

@@ -59,7 +59,7 @@ pub enum Verdict {
     },
     /// The file exceeds one of the verifier's limits on size and computing.
     LimitExceeded {
-        /// The limit.
+        /// The limit that is exceeded.
         limit: LimitKind,
         /// Value in the file, or a lower bound of it.
         value: u64,
@@ -68,7 +68,7 @@ pub enum Verdict {
     },
     /// The file may be valid, but this program cannot verify it.
     Unverifiable {
-        /// The reason.
+        /// Reason why this program cannot verify the file.
         why: Mismatch,
     },
 }

@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::bytes::{Decoded, Malformed, Reader};
 
-/// Largest address in bytes.
+/// Largest length of an address in bytes.
 pub const ADDRESS_BYTES_MAX: usize = 32;
 
 /// An address of a transport, such as an IP address with a port. Addresses are compared as bytes, so the transport must

@@ -40,7 +40,7 @@ pub(super) struct Congestion {
     round_trip_min: u64,
     /// Last round trip in microseconds.
     round_trip: u64,
-    /// Start of the period.
+    /// Start of the current period.
     since: u64,
     /// Number of chunks sent in the period.
     sent: u32,

@@ -51,7 +51,7 @@ const PACKETS_MAX: usize = 8192;
 pub enum JoinEvent {
     /// The contact refuses the request to join.
     Refused {
-        /// The reason.
+        /// Reason of the refusal.
         reason: RefusalReason,
         /// The contact's own offer, which the offer in the request has to equal.
         offer: Vec<u8>,
@@ -70,7 +70,7 @@ pub enum JoinEvent {
 /// Progress of joining a match.
 #[derive(Debug)]
 pub(super) enum Phase {
-    /// Asks the contact.
+    /// Asks the contact for permission to join.
     Asking { nonce: u64, cookie: u64, next_at: u64 },
     /// Downloads the state.
     Downloading { nonce: u64, download: Download },

@@ -50,7 +50,7 @@ pub enum Status {
 }
 
 impl Status {
-    /// Whether nothing is left to do.
+    /// Whether the session has ended and sends nothing more.
     #[must_use]
     pub const fn is_closed(self) -> bool {
         matches!(self, Status::Closed)
@@ -83,7 +83,7 @@ pub enum Event {
         /// Number of the view.
         number: u32,
     },
-    /// A peer occupies a seat from a tick on.
+    /// From a tick on, a peer occupies a seat.
     Seated {
         /// Incarnation of the peer.
         peer: PeerId,
@@ -92,7 +92,7 @@ pub enum Event {
         /// First tick in which the peer occupies the seat.
         from: Tick,
     },
-    /// A peer no longer occupies a seat from a tick on.
+    /// From a tick on, a peer no longer occupies a seat.
     Unseated {
         /// Incarnation of the peer.
         peer: PeerId,
@@ -137,7 +137,7 @@ pub enum Event {
     /// A peer has issued two different inputs for one tick. The input that arrived first counts. This peer no longer
     /// proposes that the other one gets a seat.
     Conflict {
-        /// The peer.
+        /// The peer that issued two inputs.
         peer: PeerId,
         /// The tick for which the peer issued two inputs.
         tick: Tick,

@@ -44,7 +44,7 @@ pub(crate) struct GhostFilter {
 }
 
 impl GhostFilter {
-    /// Creates the filter input for a contact with a normal.
+    /// Creates the filter for a contact with this normal.
     pub(crate) fn new(
         shift: Vec2<Length>,
         turn: Length,

@@ -91,7 +91,7 @@ fn enter_face(
     }
     let fraction = Fraction::ratio(way, inwards);
     let on_face = if radius == 0 {
-        // Exact, so that no ray slips through a corner.
+        // This test is exact, so that no ray slips through a corner.
         (0..=inwards).contains(&cross(o - p, d))
     } else {
         // Near its ends the face and the circle about the end agree.

@@ -97,7 +97,7 @@ pub enum SeekError {
     Keyframe {
         /// Tick of the keyframe.
         tick: u64,
-        /// Reason.
+        /// Reason why the keyframe cannot be used.
         why: String,
     },
     /// After seeking backwards, the game computed another state than when the tick was first played: saving and loading
