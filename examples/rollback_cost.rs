@@ -16,7 +16,7 @@ const ROUNDS: u32 = 41;
 /// Default number of bodies.
 const BODIES: i32 = 1000;
 
-/// Creates balls and boxes that fall into a trough in 40 columns.
+/// Creates a trough, and balls and boxes in 40 columns that fall into it.
 fn pile(bodies: i32) -> Result<World, WorldError> {
     let mut world = World::default();
     for (x, y, half_x, half_y) in [(0, -1, 30, 1), (-12, 20, 1, 20), (12, 20, 1, 20)] {

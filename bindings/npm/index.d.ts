@@ -172,7 +172,8 @@ export interface AreaOptions {
     /** Density of the medium in kg/m², for buoyancy, 0 to 2^20. */
     density?: Num;
     /** Acceleration in m/s² towards the centre of the area (±10 000, a negative one repels), at the distance `radius`
-     * in metres (0.01 to 2^20). `falloff` applies beyond `radius`: `constant` by default. */
+     * in metres (0.01 to 2^20). `falloff` applies beyond `radius`: `constant` by default. Nearer to the centre the
+     * acceleration decreases linearly to 0. */
     attraction?: { acceleration: Num; radius: Num; falloff?: "constant" | "inverse" | "inverseSquare" };
 }
 /** Properties of a shape. */
@@ -992,10 +993,10 @@ export interface Verdict {
     verdict: "match" | "claim_mismatch" | "diverged" | "incomplete" | "malformed" | "limit_exceeded" | "unverifiable";
     /** Number of ticks that were played; for `diverged`, the tick of the first checkpoint that differs. */
     ticks: number;
-    /** Hash of the last state, or 32 zeros if a state before it differed. For a `Replay` this is the hash that was
-     * passed to `verdict`. For a `Recording` it covers the world and the number of refused commands, so that it differs
-     * from `World.hash()`: compare it with verdicts only. To compare worlds, take `Recording.world().hash()` before
-     * `finish`, and `Timeline.world().hash()` at the last tick. */
+    /** Hash of the last state for `match`, `claim_mismatch` and `incomplete`; otherwise 32 zeros. For a `Replay` this
+     * is the hash that was passed to `verdict`. For a `Recording` it covers the world and the number of refused
+     * commands, so that it differs from `World.hash()`: compare it with verdicts only. To compare worlds, take
+     * `Recording.world().hash()` before `finish`, and `Timeline.world().hash()` at the last tick. */
     hash: string;
     /** The verdict in words. */
     text: string;

@@ -1,4 +1,5 @@
-//! The game used by the examples: two players push one ball. Its claim is the ball's distance from the start.
+//! The game used by the examples: two players push one ball. Its claim is the x coordinate of the ball, rounded
+//! down to metres.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, ShapeDef, WorldError};
 use lockstep2d::fx;

@@ -371,11 +371,11 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MIX_PRODUCT 3
 /* Rule of mixing: the larger value. */
 #define LS2D_MIX_MAXIMUM 4
-/* Attraction that is the same at all distances. */
+/* Attraction that is the same at all distances beyond `attraction_radius`. */
 #define LS2D_FALLOFF_CONSTANT 0
-/* Attraction that is inversely proportional to the distance. */
+/* Attraction that is inversely proportional to the distance beyond `attraction_radius`. */
 #define LS2D_FALLOFF_INVERSE 1
-/* Attraction that is inversely proportional to the square of the distance. */
+/* Attraction that is inversely proportional to the square of the distance beyond `attraction_radius`. */
 #define LS2D_FALLOFF_INVERSE_SQUARE 2
 
 /* A point or a vector. */
@@ -611,7 +611,8 @@ typedef struct ls2d_shape_def {
     ls2d_fx area_density;
     /* Acceleration in m/s² towards the centre of the area, at the distance `attraction_radius`. */
     ls2d_fx attraction_acceleration;
-    /* Distance in metres at which bodies have the acceleration `attraction_acceleration`. */
+    /* Distance in metres at which bodies have the acceleration `attraction_acceleration`. Nearer to the centre it
+     * decreases linearly to 0. */
     ls2d_fx attraction_radius;
     /* `LS2D_FALLOFF_CONSTANT` and so on. */
     uint32_t attraction_falloff;
@@ -920,7 +921,7 @@ typedef struct ls2d_verdict {
     uint32_t reserved;
     /* Number of ticks that were played; for `LS2D_DIVERGED`, the tick of the first checkpoint that differs. */
     uint64_t ticks;
-    /* Hash of the last state, if all states up to it agreed with the recording; otherwise 0. */
+    /* Hash of the last state for `LS2D_MATCH`, `LS2D_CLAIM_MISMATCH` and `LS2D_INCOMPLETE`; otherwise 0. */
     ls2d_hash hash;
 } ls2d_verdict;
 
@@ -1577,7 +1578,7 @@ ls2d_status ls2d_match_pause(uint32_t handle, uint32_t paused);
 /* Votes for going on without a peer that is missing. */
 ls2d_status ls2d_match_go_on_without(uint32_t handle, uint32_t peer);
 
-/* Votes for removing a peer permanently. */
+/* Votes for removing the player with this key permanently. */
 ls2d_status ls2d_match_kick(uint32_t handle, uint64_t key);
 
 /* Sets how many ticks may be played with guessed inputs; 0 is lockstep. */

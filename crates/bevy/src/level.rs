@@ -106,9 +106,9 @@ impl core::error::Error for LevelError {}
 /// [`SandboxSetup::commands`](lockstep2d::lockstep::SandboxSetup), or a field of your own.
 ///
 /// The components are removed, and the entities of bodies get their [`BodyView`]. Bodies and joints are created in the
-/// order in which their entities were spawned, so that the same program builds the same level everywhere. In a match
-/// one peer builds the level and the others receive the commands: entities may differ between machines, commands do
-/// not.
+/// order of the indices of their entities (the order of spawning, unless the indices of despawned entities are reused),
+/// so that the same program builds the same level everywhere. In a match one peer builds the level and the others
+/// receive the commands: entities may differ between machines, commands do not.
 ///
 /// # Errors
 /// [`LevelError`]. All entities are then unchanged.

@@ -11,8 +11,8 @@ use lockstep2d::world::World;
 use crate::events::{LoggedEvent, each_event};
 use crate::poses::Poses;
 
-/// A tick, as a number of ticks since the start of an epoch. An epoch begins with a state that another peer has sent or
-/// that was read from bytes. The driver sets the tick of such a state.
+/// A tick, as a number of ticks since the start of an epoch. A new epoch begins with a seek, and with a state that
+/// another peer has sent or that was read from bytes. The driver sets the tick at which the epoch begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Stamp {
     epoch: u32,

@@ -2,7 +2,7 @@
 
 use lockstep2d::math::{Aabb, Fx, Vec2};
 
-/// Smallest scale, in pixels per metre: a world of a billion metres on a small screen.
+/// Smallest scale, in pixels per metre: a billion metres on ten pixels.
 const SCALE_MIN: f64 = 1e-8;
 /// Largest scale, in pixels per metre: a micrometre per pixel.
 const SCALE_MAX: f64 = 1e6;
@@ -98,7 +98,8 @@ impl Camera {
         beside(x, self.middle[0], self.half[0]) && beside(y, self.middle[1], self.half[1])
     }
 
-    /// Returns whether the bounding box of some screen positions is visible.
+    /// Returns whether the bounding box of some screen positions is visible, or at most 16 pixels outside the visible
+    /// area.
     #[must_use]
     pub fn sees_any(&self, points: &[[f32; 2]]) -> bool {
         let beyond = |axis: usize| {
@@ -111,8 +112,9 @@ impl Camera {
         !(points.is_empty() || beyond(0) || beyond(1))
     }
 
-    /// Clips a line to the visible area (Liang and Barsky, "A New Concept and Method for Line Clipping", 1984), because
-    /// the coordinates of a line across the whole world are too large for a rasteriser.
+    /// Clips a line to the visible area and 16 pixels around it (Liang and Barsky, "A New Concept and Method for Line
+    /// Clipping", 1984), because the coordinates of a line across the whole world are too large for a rasteriser.
+    /// Returns `None` if the line lies outside.
     #[must_use]
     pub fn clipped(&self, [from, to]: [[f32; 2]; 2]) -> Option<[[f32; 2]; 2]> {
         if self.sees(from, MARGIN as f32) && self.sees(to, MARGIN as f32) {

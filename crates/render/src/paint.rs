@@ -10,14 +10,14 @@ use crate::camera::Camera;
 use crate::colour::Colour;
 use crate::list::DrawList;
 
-/// Length of a direction, in pixels.
+/// Length of the line that shows a direction, in pixels, if marks have their full size.
 const DIRECTION_LENGTH: f32 = 18.0;
-/// Body size, in pixels, above which marks have their full size. Marks on smaller bodies shrink, so that a mark stays
-/// smaller than the body.
+/// Mean half size of the shapes, in pixels, above which marks have their full size. If the shapes are smaller, marks
+/// shrink, so that a mark stays smaller than a typical body.
 const LARGE: f32 = 24.0;
 /// Smallest scale factor of marks.
 const SCALE_MIN: f32 = 1.0 / 6.0;
-/// Body size, in pixels, below which labels are left out, because they would overlap.
+/// Mean half size of the shapes, in pixels, below which labels are left out, because they would overlap.
 const TEXT_SIZE_MIN: f32 = 7.0;
 
 /// Corners of a point mark. At this size an octagon is not distinguishable from a disc.
@@ -72,7 +72,7 @@ impl Default for Brush {
 }
 
 impl Brush {
-    /// Returns a brush whose marks fit the mean size of the dynamic bodies on the screen.
+    /// Returns a brush whose marks fit the mean size, in pixels, of the shapes of all dynamic bodies.
     #[must_use]
     pub fn suiting(world: &World, camera: &Camera) -> Self {
         let moving = world.bodies().filter(|(_, body)| body.is_dynamic());
@@ -213,7 +213,8 @@ fn disc([x, y]: [f32; 2], radius: f32, sides: u32) -> impl Iterator<Item = [f32;
     })
 }
 
-/// Number of sides with which a circle looks round: the chords are at most a quarter of a pixel off the circle.
+/// Number of sides with which a circle looks round: up to a radius of 1000 pixels, the chords are at most a third of a
+/// pixel off the circle.
 fn sides_of(radius: f32) -> u32 {
     (radius.max(0.0).sqrt() * 4.5).clamp(8.0, 128.0) as u32
 }

@@ -72,8 +72,8 @@ pub(super) const SPAWNING: Scene = Scene {
     script: spawn_kick_despawn,
 };
 
-/// Every 6th tick a body is spawned. Once there are 40, one is despawned every 6th tick. Every 50th tick the first is
-/// kicked.
+/// Every 6th tick a body is spawned. If there are at least 40 dynamic bodies, one of them is despawned every 6th tick.
+/// Every 50th tick the first dynamic body is kicked.
 fn spawn_kick_despawn(tick: u64, game: &Sandbox) -> Vec<Command> {
     let mut rng = Rng::new(tick);
     let dynamic: Vec<_> = game.world().bodies().filter(|(_, body)| body.is_dynamic()).collect();

@@ -90,7 +90,7 @@ fn pin(a: BodyId, b: BodyId) -> JointDef {
     JointDef::new(a, b, Revolute::new())
 }
 
-/// Adds a row of pieces of 1 m, the first pinned to the origin of a body at `x`. Returns the last piece.
+/// Adds a row of pieces of 1 m from `x` on, the first pinned to the origin of the body `start`. Returns the last piece.
 fn row(scene: &mut Builder, start: BodyId, piece: ShapeDef, x: Fx, count: i32) -> Result<BodyId, WorldError> {
     let places = (0..count).map(|i| Vec2::new(x + Fx::from_num(i) + fx!(0.5), fx!(0)));
     let pieces = scene.spawn_each(BodyDef::dynamic(), &[piece], places)?;

@@ -93,8 +93,8 @@ pub(super) const WASHER: Scene =
     })
     .golden(20);
 
-/// A ring of 36 plates between 16 and 18 m, each overlapping its neighbours by a degree at both ends, and 4 paddles
-/// inside.
+/// A ring of 36 plates between 16 and 18 m, and 4 paddles inside. Each plate spans 12 degrees and overlaps each of its
+/// neighbours by two degrees.
 fn washer_shapes() -> Result<Vec<ShapeDef>, WorldError> {
     let mut shapes = Vec::new();
     for i in 0..36 {

@@ -103,7 +103,8 @@ pub(super) const HUNDRED_POLYGONS: Scene =
     })
     .golden(400);
 
-/// The convex hull of 3 to 8 points between 0.3 and 0.9 m from the origin, rounded in one of three cases.
+/// The convex hull of 3 to 8 points between 0.3 and 0.9 m from the origin, rounded with a probability of one
+/// third.
 pub(super) fn random_polygon(rng: &mut Rng) -> Polygon {
     loop {
         let corners = rng.below(6) + 3;

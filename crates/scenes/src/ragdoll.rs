@@ -41,7 +41,7 @@ enum Extra {
     Damped,
     /// A foot: an additional shape with little friction, which collides only with the ground.
     Foot,
-    /// Linear damping, and a rest angle of an eighth of a turn.
+    /// The bone has linear damping, and its hinge measures angles from a bend of an eighth of a turn.
     Bent,
 }
 

@@ -71,7 +71,7 @@ fn fill_junkyard(scene: &mut Builder) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// Five points on a circle, each a golden angle after the previous one: an irregular pentagon.
+/// Five points on a circle, each a turn divided by the golden ratio after the previous one: an irregular pentagon.
 fn golden_pentagon() -> Result<Polygon, WorldError> {
     // A turn divided by the golden ratio: pi (sqrt(5) - 1).
     let step = Angle::from_radians(fx!(3.883222077451));
@@ -84,7 +84,7 @@ fn golden_pentagon() -> Result<Polygon, WorldError> {
     Ok(Polygon::hull(&points)?)
 }
 
-/// The script: moves the pusher to `x = 60 sin(t / 5)` metres.
+/// The script: moves the pusher to `x = 60 sin(t / 5)` metres at the time `t` in seconds.
 fn push_junk(tick: u64, game: &Sandbox) -> Vec<Command> {
     let pusher = game.world().bodies().find(|(_, body)| body.kind() == BodyKind::Kinematic);
     let Some((body, _)) = pusher else { return vec![] };

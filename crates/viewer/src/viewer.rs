@@ -174,8 +174,9 @@ impl<G: Game + 'static> Viewer<G> {
         Viewer { limits, ..self }
     }
 
-    /// Adds network matches over UDP, with the arguments `--host`, `--join` and `--watch`. They play the first scene
-    /// that has a setup. `options` are the defaults, which `--lockstep`, `--rollback` and `--players` override.
+    /// Adds network matches over UDP, with the arguments `--host`, `--join` and `--watch`. They play the scene that
+    /// `--scene` names, or else the first scene that has a setup. `options` are the defaults, which `--lockstep`,
+    /// `--rollback` and `--players` override.
     #[cfg(not(target_arch = "wasm32"))]
     #[must_use]
     pub fn online(self, options: PeerOptions) -> Self {

@@ -25,7 +25,8 @@ use crate::metrics::Metrics;
 use crate::queue::{Added, Queue, json};
 use crate::shutdown::{Phase, Shutdown};
 
-/// Longest time for which the server holds a request for a job. An idle worker takes at most this long to end.
+/// Longest time for which the server holds a request for a job. If the server answers, an
+/// idle worker takes at most this long to end.
 const EXPIRES: Duration = Duration::from_secs(2);
 
 /// Time after [`EXPIRES`] at which a request counts as lost, because the server has gone.

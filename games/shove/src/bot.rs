@@ -16,7 +16,7 @@ use crate::view::Player;
 pub struct Bot {
     seat: usize,
     rng: Rng,
-    /// Distance from the edge at which the bot turns back, in metres.
+    /// The bot turns back if its predicted distance from the edge is less than this, in metres.
     caution: Fx,
     pad: Pad,
     /// Ticks for which the bot keeps the current pad, so that it does not decide anew in every tick.

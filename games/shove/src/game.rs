@@ -169,9 +169,9 @@ impl Game for Shove {
         Some(&mut self.world)
     }
 
-    /// Upper bound of the work, computed as for the sandbox: bodies and existing constraints times the iterations of
-    /// the solver, plus the square of the number of shapes for new pairs, because a new round may add all players and
-    /// crates.
+    /// Estimated work of a tick: the limits of bodies and shapes plus the numbers of pairs and joints, all times the
+    /// iterations of the solver in a tick, plus the square of the limit of shapes for new pairs. The limits replace the
+    /// current numbers, because a new round may add all players and crates.
     fn work(&self, _: &[Pad]) -> u64 {
         let count = |n: usize| u64::try_from(n).unwrap_or(u64::MAX);
         let limits = self.world.config();

@@ -12,11 +12,11 @@ use crate::arena;
 const READY: u16 = 60;
 /// Maximum number of ticks of a round.
 const FIGHT: u16 = 1200;
-/// Number of ticks after a round.
+/// Number of ticks of the pause after a round.
 const PAUSE: u16 = 75;
 /// Number of ticks from the start of a round until the first ring of the platform crumbles.
 const FIRST_RING: u16 = 180;
-/// Ticks between two rings.
+/// Number of ticks from the crumbling of one ring to that of the next.
 const RING: u16 = 60;
 
 /// Phase of a match.
@@ -32,7 +32,7 @@ pub enum Phase {
     Over,
 }
 
-/// Seat of the match, taken or empty. Seats above the number of players stay empty.
+/// Seat of the match, taken or empty. Seats beyond the number of seats of the match stay empty.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Seat {
     /// Whether the seat is taken.

@@ -382,7 +382,7 @@ api! {
         })
     }
 
-    /// Votes for removing a peer permanently.
+    /// Votes for removing the player with this key permanently.
     fn ls2d_match_kick(handle: u32, key: u64) {
         with(handle, |game: &mut Match| {
             game.session()?.kick(Key(key));

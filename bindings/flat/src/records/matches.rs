@@ -131,7 +131,7 @@ records! {
         reserved: u32,
         /// Number of ticks that were played; for `LS2D_DIVERGED`, the tick of the first checkpoint that differs.
         ticks: u64,
-        /// Hash of the last state, if all states up to it agreed with the recording; otherwise 0.
+        /// Hash of the last state for `LS2D_MATCH`, `LS2D_CLAIM_MISMATCH` and `LS2D_INCOMPLETE`; otherwise 0.
         hash: RawHash,
     }
 

@@ -62,11 +62,11 @@ constants! {
     MIX_PRODUCT = 3, "LS2D_MIX_PRODUCT";
     /// Rule of mixing: the larger value.
     MIX_MAXIMUM = 4, "LS2D_MIX_MAXIMUM";
-    /// Attraction that is the same at all distances.
+    /// Attraction that is the same at all distances beyond `attraction_radius`.
     FALLOFF_CONSTANT = 0, "LS2D_FALLOFF_CONSTANT";
-    /// Attraction that is inversely proportional to the distance.
+    /// Attraction that is inversely proportional to the distance beyond `attraction_radius`.
     FALLOFF_INVERSE = 1, "LS2D_FALLOFF_INVERSE";
-    /// Attraction that is inversely proportional to the square of the distance.
+    /// Attraction that is inversely proportional to the square of the distance beyond `attraction_radius`.
     FALLOFF_INVERSE_SQUARE = 2, "LS2D_FALLOFF_INVERSE_SQUARE";
 }
 
@@ -130,7 +130,8 @@ records! {
         area_density: RawFx,
         /// Acceleration in m/s² towards the centre of the area, at the distance `attraction_radius`.
         attraction_acceleration: RawFx,
-        /// Distance in metres at which bodies have the acceleration `attraction_acceleration`.
+        /// Distance in metres at which bodies have the acceleration `attraction_acceleration`. Nearer to the centre it
+        /// decreases linearly to 0.
         attraction_radius: RawFx,
         /// `LS2D_FALLOFF_CONSTANT` and so on.
         attraction_falloff: u32,

@@ -19,7 +19,7 @@ use super::queue::{Next, Queue};
 use super::rooms::Full;
 use crate::frame::{ADDRESS_BYTES, Member, SECRET_BYTES, frame, unframe};
 
-/// Maximum time for the handshake and for the first frame.
+/// Maximum time for the handshake, and for the wait for the first frame after it.
 const HANDSHAKE_MAX: Duration = Duration::from_secs(5);
 /// Largest number of characters of a room code.
 const CODE_MAX: usize = 32;

@@ -23,7 +23,7 @@ pub(super) struct First {
     pub(super) tick: u64,
     /// The first body that differs, in slot order; `None` if no body differs but other state does.
     pub(super) body: Option<BodyId>,
-    /// The first differing field of that body, with both values.
+    /// The first differing field of that body, with both values. If no body differs: that of the game's own state.
     pub(super) field: String,
 }
 

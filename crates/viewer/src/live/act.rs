@@ -110,7 +110,8 @@ pub enum Act {
 }
 
 impl Act {
-    /// Explosion at a point with a range of 8 m: it throws a 1 m block of 1 kg at 10 m/s.
+    /// Explosion at a point with a range of 8 m. Up to 4 m away it throws a 1 m block of 1 kg at 10 m/s, beyond that
+    /// more slowly.
     #[must_use]
     pub const fn explode(at: Vec2<Fx>) -> Self {
         Act::Explode(Explosion { radius: fx!(4), falloff: fx!(4), ..Explosion::new(at, fx!(10)) })

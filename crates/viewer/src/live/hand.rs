@@ -5,7 +5,7 @@
 //! return the handle of the body that it creates. The anchor is therefore found by its user data one tick later, and
 //! the joint is added then.
 //!
-//! A seek to another tick clears the list of anchors. Anchors left in the world are then removed in the next live tick.
+//! A seek to an earlier tick forgets the held body. Anchors left in the world are then removed in the next live tick.
 
 use lockstep2d::body::{Body, BodyDef, BodyId, BodyKind};
 use lockstep2d::fx;

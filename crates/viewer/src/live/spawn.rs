@@ -11,7 +11,7 @@ use super::act::Form;
 const SIZE: Fx = fx!(0.5);
 /// Drags shorter than this, in metres, count as clicks.
 const CLICK: Fx = fx!(0.05);
-/// Smallest half side, in metres.
+/// Smallest half side of a box, and smallest radius and half length of a capsule, in metres.
 const HALF_MIN: Fx = fx!(0.02);
 /// Largest size, in metres.
 const SIZE_MAX: Fx = fx!(50);
@@ -41,7 +41,7 @@ fn rectangle(corner: Option<Vec2<Fx>>) -> Result<Geometry, GeometryError> {
     Polygon::rectangle(width, height).map(Geometry::from)
 }
 
-/// Random convex polygon with three to eight corners, at 0.6 to 1 times the radius from the centre.
+/// Convex hull of three to eight random points at 0.6 to 1 times the radius from the centre.
 fn polygon(radius: Fx, rng: &mut Rng) -> Result<Polygon, GeometryError> {
     let corners = 3 + rng.below(6);
     let points: Vec<_> = (0..corners)
@@ -52,11 +52,11 @@ fn polygon(radius: Fx, rng: &mut Rng) -> Result<Polygon, GeometryError> {
             Rot::from_angle(Angle::from_turns(part)).apply_wide(Vec2::new(distance, Fx::ZERO))
         })
         .collect();
-    // If two corners are too close for a hull, a regular polygon replaces it.
+    // If two points are too close for a hull, a regular polygon replaces it.
     Polygon::hull(&points).or_else(|_| Polygon::regular(corners, radius))
 }
 
-/// Capsule along the drag, with a radius of a fifth of its length.
+/// Capsule along the drag, with a radius of a fifth of the length of the drag.
 fn capsule(at: Vec2<Fx>, way: Option<Vec2<Fx>>, length: Fx) -> (BodyDef, Result<Geometry, GeometryError>) {
     let half = (length / 2).max(HALF_MIN);
     let radius = (length / 5).max(HALF_MIN);

@@ -9,7 +9,7 @@ type Point = [f32; 2];
 
 /// Value of [`Vertex::sample`](super::Vertex::sample) for full coverage: distance 0, reach 1.
 const WHOLE: [f32; 3] = [0.0, 1.0, 0.0];
-/// Maximum number of points of a line in one strip. Each point becomes at most four corners.
+/// Maximum number of points of a line in one strip. Each point becomes at most four vertices.
 const RUN: usize = Chunk::VERTICES / 4 - 2;
 
 impl Mesh {
@@ -145,7 +145,7 @@ impl Mesh {
         self.strip.corners = corners;
     }
 
-    /// Adds, in pieces, a line with more corners than fit in a chunk.
+    /// Adds, in pieces, a line with more points than fit in a chunk.
     fn long_stroke(&mut self, points: &[Point], item: &Item, pixel: f32) {
         let mut from = 0;
         while from + 1 < points.len() {

@@ -18,9 +18,9 @@ const FRAME_RATE_MAX: u32 = 30;
 const WIDTH: u32 = 640;
 /// Highest frame rate at which most programs show a GIF: their shortest frame time is 2/100 s.
 const GIF_RATE_MAX: u32 = 50;
-/// Number of ticks that are sampled to find a window in which all of them fit.
+/// Number of ticks that are sampled to find a window that fits the world at all of them.
 const SAMPLES: u64 = 100;
-/// Number of samples per sample picture. The palette is computed from the sample pictures.
+/// Number of sampled ticks for each sample picture. The palette is computed from the sample pictures.
 const SAMPLES_OF_A_PICTURE: usize = 10;
 
 /// Writes a range of ticks as an animation.

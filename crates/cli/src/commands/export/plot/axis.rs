@@ -12,7 +12,8 @@ pub(super) enum Unit {
 }
 
 impl Unit {
-    /// The largest unit that is not larger than the value: its size and its name.
+    /// Size and name of the largest unit that is not larger than the absolute value. A value below the smallest unit
+    /// gets the smallest unit, and an energy of 0 gets the joule.
     pub(super) fn fitting(self, value: f64) -> (f64, &'static str) {
         let units: &[(f64, &str)] = match self {
             Unit::Energy => &[(0.001, "mJ"), (1.0, "J"), (1e3, "kJ"), (1e6, "MJ"), (1e9, "GJ")],
@@ -38,7 +39,8 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// An axis around a range, with 1 to `steps_max` steps. A range of one point is extended to 0.
+    /// An axis around a range, with 1 to `steps_max` steps. A range of a single value is extended to
+    /// include 0, and the range of 0 alone to 0 to 1.
     pub(super) fn around(low: f64, high: f64, steps_max: i64) -> Self {
         Self::with_power(-15, low, high, steps_max)
     }
