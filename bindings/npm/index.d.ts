@@ -790,7 +790,7 @@ export interface Events {
 export class World extends Edits {
     #private;
     /** `smallest` is the size in metres of the smallest boxes whose stacks have to be stable. Small sizes add
-     * sub-steps. */
+     * sub-steps, stiffen contacts and reduce `speculativeDistance`. */
     constructor(options?: ConfigOptions & { smallest?: Num });
     /** Makes a world from bytes, which may come from any source. Bytes that are not a world throw `SNAPSHOT`. */
     static fromBytes(bytes: Uint8Array): World;

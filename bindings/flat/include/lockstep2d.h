@@ -1040,7 +1040,7 @@ size_t ls2d_scratch(size_t size);
 ls2d_status ls2d_config_init(ls2d_config *config);
 
 /* Raises the number of sub-steps and the stiffness of contacts so that stacks of bodies of `size` metres are
- * stable. */
+ * stable, and reduces the speculative distance if it is more than a fiftieth of `size`. */
 ls2d_status ls2d_config_for_smallest(ls2d_config *config, const ls2d_config *from, ls2d_fx size);
 
 /* Makes an empty world. A null `config` stands for the default settings. */
@@ -1338,7 +1338,8 @@ ls2d_status ls2d_overlap_point(uint32_t world, ls2d_fx x, ls2d_fx y, const ls2d_
 /* The shape nearest to a point, within a distance in metres. `LS2D_NONE` without one. */
 ls2d_status ls2d_closest(uint32_t world, ls2d_fx x, ls2d_fx y, ls2d_fx within, const ls2d_query_filter *filter, ls2d_closest_point *closest);
 
-/* Distance between two shapes in metres, negative if they overlap. `LS2D_NONE` if one is not in the world. */
+/* Distance between two shapes in metres, negative if they overlap. `LS2D_NONE` if one is not in the world, or its
+ * body is disabled. */
 ls2d_status ls2d_shape_distance(uint32_t world, ls2d_shape a, ls2d_shape b, ls2d_fx *distance);
 
 /* ---- Characters ---- */

@@ -240,7 +240,7 @@ export class World extends Edits {
         return read("aabb", at);
     }
 
-    /** Distance between two shapes, or undefined if one of them is not in the world. */
+    /** Distance between two shapes, or undefined if one of them is not in the world, or its body is disabled. */
     shapeDistance(a, b) {
         const at = scratch(8);
         return call("ls2d_shape_distance", this.handle, id(a, "a shape"), id(b, "a shape"), at) ? fxAt(at) : undefined;

@@ -206,7 +206,7 @@ impl StepLog {
         self.missing.clear();
     }
 
-    /// Takes the events that were not announced yet.
+    /// Returns the events that were not announced yet, and marks them as announced.
     pub(crate) fn announce(&mut self) -> Vec<LoggedEvent> {
         let base = self.base();
         let fresh = self.pending.iter_mut().filter(|entry| !entry.announced);

@@ -156,7 +156,8 @@ api! {
         })
     }
 
-    /// Distance between two shapes in metres, negative if they overlap. `LS2D_NONE` if one is not in the world.
+    /// Distance between two shapes in metres, negative if they overlap. `LS2D_NONE` if one is not in the world, or its
+    /// body is disabled.
     fn ls2d_shape_distance(world: u32, a: RawShape, b: RawShape, distance: Out<'_, RawFx>) {
         let mut distance = distance;
         let (a, b) = (a.id()?, b.id()?);

@@ -18,7 +18,7 @@ api! {
     }
 
     /// Raises the number of sub-steps and the stiffness of contacts so that stacks of bodies of `size` metres are
-    /// stable.
+    /// stable, and reduces the speculative distance if it is more than a fiftieth of `size`.
     fn ls2d_config_for_smallest(config: Out<'_, RawConfig>, from: In<'_, RawConfig>, size: RawFx) {
         let mut config = config;
         let adapted = from.get()?.config()?.for_smallest(size.fx());

@@ -32,7 +32,7 @@ impl Area {
             })
     }
 
-    /// Returns whether some of the points lie outside the margin.
+    /// Returns whether some of the points lie outside the area, which includes the margin.
     pub(super) fn is_exceeded(&self, points: &[[f32; 2]]) -> bool {
         points.iter().any(|&point| self.sides().iter().any(|side| !side.has(point)))
     }

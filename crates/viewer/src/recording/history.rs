@@ -69,7 +69,7 @@ impl<S> History<S> {
     }
 
     /// Returns the save to drop, never the first or the last: the one whose removal leaves the smallest gap relative
-    /// to its distance from tick `here`.
+    /// to its distance from tick `here` plus [`NEAR`].
     fn least_useful(&self, here: u64) -> Option<u64> {
         let (before, at, after) =
             (self.frames.keys(), self.frames.keys().skip(1), self.frames.keys().skip(2));
