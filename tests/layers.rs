@@ -305,7 +305,7 @@ fn upward_uses(place: &[String], code: &str) -> Vec<String> {
 }
 
 /// Returns every name that follows a path to the crate root: `crate::`, or as many `super::` as lead to the root.
-/// `depth` is the number of modules between the file and the root.
+/// `depth` is the number of `super::` that lead from the file to the root.
 fn used_from_root(tokens: &[Token], depth: usize) -> Vec<Token> {
     let text = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
     let mut used = Vec::new();

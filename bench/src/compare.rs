@@ -9,7 +9,7 @@ use crate::measure::{EndState, Keeping, Times, end_state, keeping, run};
 use crate::script::Script;
 use crate::stats::{geometric_mean, median, quartiles};
 
-/// Number of steps that each engine plays before the first round.
+/// Largest number of steps of the run with which each engine is warmed up before the first round.
 const WARM_UP: u64 = 20;
 
 /// Parameters of a comparison.

@@ -68,7 +68,7 @@ pub fn repair(file: &mut Vec<u8>) {
     }
 }
 
-/// Changes, inserts, removes or copies a few bytes.
+/// Changes, inserts, removes or copies a few bytes, or cuts off the end.
 pub fn mutate(source: &mut Source<'_>, bytes: &mut Vec<u8>) {
     let at = source.below(bytes.len());
     match source.below(7) {

@@ -83,7 +83,7 @@ fn wild_config(source: &mut Source<'_>) -> Config {
     config
 }
 
-/// New settings of a world, mostly with the same limits.
+/// New settings for a world, mostly with the limits of its present settings.
 fn changed_config(source: &mut Source<'_>, world: &World) -> Config {
     let Config { body_limit, shape_limit, joint_limit, pair_limit, .. } = *world.config();
     let config = wild_config(source);

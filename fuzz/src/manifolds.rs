@@ -15,7 +15,8 @@ type Point = [BigInt; 2];
 /// Maximum error of a manifold's separation in micrometres. The face of shape B is only chosen if its separation is
 /// better by half a millimetre, and outlines within another half a millimetre count as touching.
 const CONTACT_ERROR: i64 = 1_001;
-/// Maximum error of a distance in micrometres: 20 nm, plus one unit of `Length` by which a rotated vertex is rounded.
+/// Maximum error of a distance in micrometres: 20 nm, plus one unit of `Length` (240 nm) by which a rotated vertex is
+/// rounded, rounded up to whole micrometres.
 const DISTANCE_ERROR: i64 = 1;
 
 /// A shape in world coordinates: all points within `radius` of the convex hull of `points`, which are

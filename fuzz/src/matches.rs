@@ -63,7 +63,7 @@ pub struct Seen {
     pub stopped: bool,
     /// Whether a peer has detected a desync, which forged packets can cause, too.
     pub diverged: bool,
-    /// Whether a third peer has joined the running match.
+    /// Whether a third peer has joined the running match, or has watched it.
     pub late: bool,
 }
 

@@ -90,7 +90,7 @@ fn ground(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec<Command>
     });
 }
 
-/// A floor with a conveyor surface, a one-way platform that lets bodies pass from below, and a sensor around both.
+/// A floor with a conveyor surface, a one-way platform that lets bodies pass from below, and a sensor in the middle.
 fn belt(source: &mut Source<'_>) -> [ShapeDef; 3] {
     let floor = rectangle((fx!(8), fx!(0.5)), fx!(0), fx!(-0.5));
     let platform = rectangle((fx!(1.5), fx!(0.1)), source.thousandths(-2000, 2000), fx!(1.5));
@@ -101,7 +101,7 @@ fn belt(source: &mut Source<'_>) -> [ShapeDef; 3] {
     ]
 }
 
-/// A sensor, half of the time with water or wind in it.
+/// A sensor, half of the time with an area: a fluid with a current and a force.
 fn pool(source: &mut Source<'_>, shape: ShapeDef) -> ShapeDef {
     if source.one_in(2) {
         return shape.sensor();

@@ -1,4 +1,4 @@
-//! Compares the reports of two peers of a game, one of which diverged and may have forged its report.
+//! Compares the reports of two peers of a game, one of which may have diverged or may have forged its report.
 
 use lockstep2d::codec;
 use lockstep2d::hash::StateHash;

@@ -288,7 +288,7 @@ fn stored_polygon(source: &mut Source<'_>) -> Option<Polygon> {
     codec::decode(&codec::encode(&(vertices, radius))).ok()
 }
 
-/// A shape with one property changed, or all.
+/// A definition for a shape of the world: its present one with one property changed, or a new one.
 pub(crate) fn altered(source: &mut Source<'_>, world: &World, id: ShapeId) -> ShapeDef {
     let fresh = shape(source);
     let Some(mut def) = world.shape(id).map(|shape| *shape.def()) else { return fresh };

@@ -16,7 +16,7 @@ const HASH_BYTES: usize = 16;
 const COST_MAX: u64 = 30_000;
 
 /// Reads the snapshot that the bytes describe: the bytes themselves, or the snapshot of a small scene with single
-/// fields or bytes changed and the hash repaired. Returns whether it is accepted.
+/// fields or bytes changed and, in most cases, the hash repaired. Returns whether it is accepted.
 ///
 /// # Panics
 /// When an accepted world breaks an invariant or depends on its caches within ten ticks.

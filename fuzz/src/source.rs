@@ -133,7 +133,7 @@ impl<'a> Source<'a> {
         Vec2::new(self.mostly(low, high), self.mostly(low, high))
     }
 
-    /// An angle: a multiple of a quarter turn, a multiple of 1/256 turn, or any.
+    /// An angle: a multiple of a quarter turn, a multiple of 1/256 turn, or any angle.
     pub fn angle(&mut self) -> Angle {
         match self.below(3) {
             0 => Angle::from_bits((self.byte() as u32 & 3) << 30),

@@ -29,7 +29,7 @@ pub fn sample<T>(cases: impl IntoIterator<Item = T>, stride: usize) -> Vec<T> {
 ///
 /// # Panics
 ///
-/// If a check panics, after all other cases have been checked.
+/// If a check panics. The threads on which no check panics check the remaining cases first.
 pub fn for_each<T: Send>(cases: Vec<T>, check: impl Fn(T) + Sync) {
     let processors = thread::available_parallelism().map_or(1, usize::from);
     let workers = processors.min(cases.len());

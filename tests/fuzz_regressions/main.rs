@@ -30,8 +30,8 @@ fn caches_decide_nothing(world: &mut World, ticks: u64) {
 
 #[test]
 fn an_outline_that_goes_back_on_itself_is_refused() {
-    // Every vertex is an endpoint of every edge, so no vertex is on the wrong side of an edge. If such an outline were
-    // accepted, the computation of its mass would divide by an area of zero.
+    // Every vertex coincides with an end of every edge, so no vertex is on the wrong side of an edge. If such an
+    // outline were accepted, the computation of its mass would divide by an area of zero.
     let there_and_back = [(0, 0), (1, 0), (0, 0), (1, 0)].map(|(x, y)| Vec2::new(Fx::from(x), Fx::from(y)));
     assert!(Polygon::new(&there_and_back).is_err());
 }

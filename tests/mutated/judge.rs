@@ -1,4 +1,4 @@
-//! Mutates files derived from a few valid ones, and counts the answers of their readers.
+//! Mutates copies of a few valid files, and counts the answers of their readers.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -46,7 +46,8 @@ pub(crate) struct Figures {
     slowest: Duration,
     /// Largest peak memory use in bytes.
     memory: usize,
-    /// Largest peak memory use as a multiple of the file's size.
+    /// Largest peak memory use as a multiple of the file's size, where files of less than 1000 bytes count as 1000
+    /// bytes.
     multiple: usize,
 }
 
@@ -82,7 +83,8 @@ impl Figures {
     }
 }
 
-/// Returns the CPU time of this thread, which does not depend on the load of the machine.
+/// Returns the CPU time of this thread, which does not depend on the load of the machine. Where the system does not
+/// report it, returns the elapsed time.
 fn time_used() -> Duration {
     let figures = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     match figures.split(' ').next().and_then(|nanoseconds| nanoseconds.parse().ok()) {

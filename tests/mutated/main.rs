@@ -19,7 +19,7 @@ use judge::{Figures, check_replays, files_wanted, mutated};
 
 /// Default number of files per test.
 const FILES: u64 = 2000;
-/// Largest size of a mutated file, in bytes: larger files only take longer.
+/// Largest size of a file that is mutated, in bytes: larger files only take longer.
 const LARGEST: usize = 60_000;
 /// Number of ticks that an accepted world must survive.
 const TICKS: u32 = 3;
@@ -39,7 +39,7 @@ fn a_mutated_replay_is_never_another_match() {
     check_replays::<Sandbox>(&originals, FILES);
 }
 
-/// Returns the bytes of each scene's world after 40 ticks.
+/// Returns the bytes of an empty world, and of each scene's world after 40 ticks unless they are more than [`LARGEST`].
 fn snapshots() -> Vec<Vec<u8>> {
     let mut snapshots = vec![World::default().to_bytes()];
     for scene in lockstep2d_scenes::ALL {

@@ -90,7 +90,7 @@ fn colliding_balls_keep_their_angular_momentum() {
 }
 
 /// A bar that falls flat onto a ledge below one half of it starts to turn. The impulse that turns it points upwards,
-/// so the bar hardly moves sideways: at most as far as in Box2D.
+/// so the bar hardly moves sideways: at most as fast as in Box2D.
 #[test]
 fn a_bar_on_a_ledge_is_not_kicked_sideways() {
     let cases = [60u32, 240].into_iter().flat_map(|rate| {

@@ -1,6 +1,6 @@
-//! Joints without motors feed no energy into an assembly: kinetic, potential and spring energy together stay within a
-//! hundredth of the start. The assemblies are stars, trees, chains, loops, meshes and grids of 3 to 12 bodies, with
-//! mass ratios up to 100 and arms up to 16 radii of gyration.
+//! Joints without motors feed no energy into an assembly: the sum of kinetic, potential and spring energy grows by at
+//! most a hundredth. The assemblies are stars, trees, chains, loops, meshes and grids of 3 to 12 bodies, with mass
+//! ratios up to 100 and arms up to 16 radii of gyration.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -173,7 +173,8 @@ fn assemblies_on_springs_of_motors_or_of_limited_force_gain_no_energy() {
     }
 }
 
-/// A hub with limbs around it, each turned by its own angle and joined to the hub half a metre from its centre.
+/// A hub with limbs around it. Each limb is turned by its own angle, and joined to the hub half a metre from the hub's
+/// centre.
 struct Star {
     joint: JointKind,
     hub: ShapeDef,

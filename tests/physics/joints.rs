@@ -63,8 +63,8 @@ fn a_grid_of_19_800_hinges_stays_calm() {
     let start = energy(game.world());
     run(&mut game, sweep::size(500, 200), |tick, world| {
         assert!(energy(world) <= start, "tick {tick}: energy {} J above the start", energy(world) - start);
-        // For three ticks a corner of the cloth cracks like a whip, at 21 m/s. A fall from its height would give 44
-        // m/s.
+        // For three ticks a corner of the cloth moves at 21 m/s, like the end of a whip. A fall from its height would
+        // give 44 m/s.
         assert!(speed_max(world) <= fx!(25), "tick {tick}: {} m/s", speed_max(world));
         assert!(joint_gap(world) <= fx!(0.7), "tick {tick}: gap {} m", joint_gap(world));
     });

@@ -219,7 +219,7 @@ fn a_slow_ball_with_a_threshold_of_zero_keeps_its_speed() {
     }
 }
 
-/// A ball of restitution 1 that falls at 0.05 to 20 m/s rebounds to the height from which it fell, for 100 s.
+/// A ball of restitution 1 that hits the floor at 0.05 to 20 m/s rebounds to the height from which it fell, for 100 s.
 #[test]
 fn elastic_falls_rebound_to_the_same_height() {
     for speed in [fx!(0.05), fx!(0.1), fx!(0.3), fx!(0.5), fx!(0.9), fx!(1.1), fx!(2), fx!(10), fx!(20)] {

@@ -1,7 +1,7 @@
 //! Stacks of boxes of any size are as firm as stacks of boxes of 1 m, with the settings of `Config::for_smallest`.
 //!
-//! A contact yields by `g / omega^2` for each body that it carries, whatever the size is. The table in the
-//! documentation of `Config` lists the settings for each size; the first test compares its rows.
+//! A contact yields in proportion to `g / omega^2` for each body that it carries, whatever the size is. The table in
+//! the documentation of `Config` lists the settings for each size; the first test compares its rows.
 
 use lockstep2d::body::{BodyDef, BodyId, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -49,8 +49,8 @@ impl Floor {
     }
 }
 
-/// Returns by how much the top of a stack of 8 boxes sinks in 10 s, in units of a box. The boxes start with gaps of 1 %
-/// of their size.
+/// Returns how far the top box of a stack of 8 is below its place in a rigid stack after 10 s, in units of a box. The
+/// boxes start with gaps of 1 % of their size.
 fn sink(config: Config, size: Fx) -> Fx {
     let mut floor = Floor::new(config, size);
     let boxes: Vec<BodyId> = (0..8).map(|i| floor.add(fx!(0), fx!(0.5) + fx!(1.01) * i)).collect();

@@ -12,7 +12,7 @@ fn rectangle(half_width: Fx, half_height: Fx) -> ShapeDef {
     ShapeDef::new(Polygon::rectangle(half_width, half_height).expect("valid"))
 }
 
-/// Displacement in metres of a body along the x axis of another body, both at the origin.
+/// Distance in metres of a body from the y axis of another body that is at the origin.
 fn drift(world: &World, ground: BodyId, body: BodyId) -> Fx {
     let [ground, body] = [ground, body].map(|id| world.body(id).expect("there"));
     ground.angle().direction().widen().dot(body.position()).abs()

@@ -8,14 +8,14 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct Setup {
     /// The sum at the start, at most 1000.
     pub(crate) start: i32,
-    /// Ignored by the rules.
+    /// A text that the rules ignore.
     pub(crate) label: String,
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Input {
     pub(crate) add: i8,
-    /// Ignored by the rules.
+    /// A flag that the rules ignore.
     pub(crate) wink: bool,
     /// Not encoded: 0 in every decoded input.
     #[serde(skip)]

@@ -126,7 +126,7 @@ pub(crate) struct Flip {
 }
 
 impl Flip {
-    /// Flips the bit and returns the body's path, or `None` if the resulting speed would be out of range.
+    /// Flips the bit and returns the body's path, or `None` if the world refuses the flip.
     pub(crate) fn apply(&self, game: &mut Yard) -> Option<String> {
         let body = game.world.bodies().filter(|(_, body)| body.is_dynamic()).nth(self.body)?.0;
         game.world.flip_bit(body, self.field, self.bit).ok()?;

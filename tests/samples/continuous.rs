@@ -42,7 +42,7 @@ fn a_bullet_bounces_in_a_room() {
     }
 }
 
-/// Sample "Bounce Humans". Ragdolls stay in a room whose walls have a restitution above 1, under turning gravity.
+/// Sample "Bounce Humans". A ragdoll stays in a room whose walls have a restitution above 1, under turning gravity.
 #[test]
 fn ragdolls_stay_in_a_room_of_bumpers() {
     let mut stage = Stage::of_scene("ragdoll");

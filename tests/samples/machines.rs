@@ -87,7 +87,7 @@ fn a_stiffer_cantilever_bends_less() {
     stage.run_and(1800, |stage| assert!(stage.energy() <= fx!(1), "{} J of 0", stage.energy()));
 }
 
-/// A car of two driven wheels on springs.
+/// A car with two driven wheels on springs.
 fn car(stage: &mut Stage, place: Vec2<Fx>, torque: Fx) -> (BodyId, [JointId; 2]) {
     let outline = [at!(-1.3, -0.4), at!(1.3, -0.4), at!(1.3, 0), at!(0, 0.8), at!(-1, 0.8), at!(-1.3, 0.2)];
     let chassis = stage.add(place + at!(0, 1), hull(&outline).friction(fx!(0.2)));
@@ -136,7 +136,7 @@ fn a_car_drives_over_hills_and_a_teeter() {
     assert!(crossed < 1800, "it got to {:?}", stage.place(chassis));
 }
 
-/// Sample "Ragdoll". Figures fall in a heap; their joints hold, and they come to rest.
+/// Sample "Ragdoll". A ragdoll falls down steps; its joints hold, and it comes to rest.
 #[test]
 fn ragdolls_hold_together() {
     let mut stage = Stage::of_scene("ragdoll");
@@ -177,7 +177,8 @@ fn a_soft_ring_keeps_its_shape() {
     assert!(stage.world.widest_joint_gap() < fx!(0.02), "{} m", stage.world.widest_joint_gap());
 }
 
-/// Sample "Doohickey". Two wheels whose bars slide in each other fall in a heap; the sliders keep to their limits.
+/// Sample "Doohickey". Four pairs of wheels fall in a heap. Bars that slide along each other connect the wheels of a
+/// pair, and the sliders keep to their limits.
 #[test]
 fn doohickeys_hold_together() {
     let mut stage = Stage::with_floor();

@@ -30,7 +30,8 @@ fn a_pyramid_carries_a_heavy_top() {
         let mut stage = Stage::with_floor();
         let top = pyramid(&mut stage, fx!(1), 10, num(density));
         stage.run(900);
-        // A contact yields by its load over m (2 pi 30 Hz)^2: under 6 kN on 4 kg, 4 cm, and less in each row below.
+        // A contact yields by about its load over m (2 pi 30 Hz)^2: under 6 kN on 4 kg, 4 cm, and less in each row
+        // below.
         near(stage.place(top).y, fx!(19), fx!(0.25));
         near(stage.place(top).x, fx!(0), fx!(0.05));
         assert_eq!(stage.world.awake_body_count(), 0);

@@ -380,7 +380,7 @@ impl Match {
     }
 }
 
-/// Replaces the complete set of links by a random connected one.
+/// Removes random links, so that the links that are left still connect all peers.
 fn sparse(sim: &mut Sim, total: usize, rng: &mut Rng) {
     let mut set = |a: usize, b: usize, exists: bool| {
         sim.links[a][b].exists = exists;

@@ -10,7 +10,7 @@ pub(crate) struct Source {
     pub(crate) text: String,
 }
 
-/// A word or a punctuation mark of a Rust file. Comments and the contents of literals produce no tokens.
+/// A word or a punctuation mark of a Rust file. Comments produce no tokens, and a quoted literal produces only one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
     pub(crate) text: String,
@@ -47,6 +47,7 @@ fn collect(folder: &Path, extensions: &[&str], paths: &mut Vec<PathBuf>) {
 }
 
 /// Splits Rust code into words, `::` and single punctuation marks. A quoted literal becomes one token: its first quote.
+/// A raw string becomes one token that contains its text.
 pub(crate) fn tokens(code: &str) -> Vec<Token> {
     let mut found = Vec::new();
     let (mut rest, mut line) = (code, 1);

@@ -66,7 +66,7 @@ fn limits(total_work: u64) -> Limits {
     }
 }
 
-/// Returns the costs of the setup and of the most expensive tick.
+/// Returns the costs of the setup and of the tick with the highest cost per unit, each from the best of three runs.
 fn costs(file: &[u8]) -> [Cost; 2] {
     let mut best: Option<[Cost; 2]> = None;
     for _ in 0..3 {

@@ -25,7 +25,7 @@ impl Churn {
         Churn { rng: Rng::new(seed) }
     }
 
-    /// Creates a world with random settings: a floor, two walls, a sensor, a lift and 15 random bodies.
+    /// Creates a world with random settings: a floor, two walls, a sensor, a lift and up to 15 random bodies.
     pub(crate) fn world(&mut self) -> World {
         let rng = &mut self.rng;
         let config = Config {

@@ -99,7 +99,7 @@ fn pit(bodies: u32, shape: impl Fn(u32) -> Result<Geometry, WorldError>) -> Setu
     Ok(scene.finish())
 }
 
-/// Ragdolls of six capsules that fall on a floor between two walls: hinges with limits.
+/// Ragdolls of six capsules, joined by hinges with limits, that fall on a floor between two walls.
 pub fn ragdolls(bodies: u32) -> Setup {
     let mut scene = Builder::new(config());
     let count = (bodies / 6).max(1);

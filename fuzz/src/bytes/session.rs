@@ -1,7 +1,8 @@
 //! Sends changed packets to three peers: two that play, and one that joins them.
 //!
-//! A short match is played first, in which a third peer joins. An input is a list of attacks. Each attack selects one
-//! of the packets sent so far, a change, a receiver, and whether the checksum is repaired.
+//! Two peers play for 20 to 39 ticks first; the third peer begins to join after 20 ticks. An input is a list of
+//! attacks. Each attack selects one of the packets sent so far, a change, a receiver, and whether the checksum is
+//! repaired.
 
 use lockstep2d::session::{Address, Config, Endpoint, Identity, Key, PeerId, Request, Role};
 

@@ -109,7 +109,7 @@ impl State {
         self.weigh(index)
     }
 
-    /// Computes a body's mass from its shapes as a new world does, and for a fixed body the boxes of its shapes.
+    /// Computes a body's mass as a new world does, and for a fixed body also the boxes of its shapes.
     pub(super) fn weigh(&mut self, index: usize) -> Option<()> {
         let body = self.bodies.get(index)?.clone();
         let shapes: Vec<_> =
