@@ -1,5 +1,5 @@
-//! Joints stay closed, resting bodies fall asleep, and bodies stay in their boxes: errors are within 1.2 times those of
-//! Box2D 3.2 in the same scenes.
+//! Joints stay closed, resting bodies fall asleep, and bodies stay in their boxes: errors are mostly within 1.2 times
+//! those of Box2D 3.2 in the same scenes.
 
 use lockstep2d::body::Body;
 use lockstep2d::fx;

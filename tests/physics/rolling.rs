@@ -1,4 +1,5 @@
-//! Balls that roll on level ground keep their speed, at any speed and tick rate.
+//! Balls that roll on a plane or on a level chain keep their speed at any tick rate. Balls that roll over flush blocks
+//! lose a little of it, and do not stop.
 
 use lockstep2d::body::{BodyDef, Chain, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
