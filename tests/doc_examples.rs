@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use source::{Source, files, tokens};
 
-/// The library, and the crates whose types occur in the code of games.
+/// Folders whose public types need an example: the library, the command, the renderer and the viewer.
 const FOLDERS: &[&str] = &["src", "crates/cli/src", "crates/render/src", "crates/viewer/src"];
 
 /// Public types without an example, and why.

@@ -88,8 +88,8 @@ impl Window {
     /// Whether a packet has not arrived yet. A packet older than the window counts as arrived.
     fn is_new(&self, counter: u64) -> bool {
         if counter >= self.next {
-            // `next` is one more than the last counter, which would overflow after the largest `u64`. That counter is
-            // refused; `Sealed` never sends it.
+            // `next` is one more than the last counter. After the largest `u64` it would overflow, so that this counter
+            // is refused; `Sealed` never sends it.
             return counter < u64::MAX;
         }
         let (word, bit) = Window::bit(counter);

@@ -12,10 +12,11 @@ use crate::solver::{ContactTuning, RATE_MAX, SUB_STEPS_MAX, SolverSettings, chec
 ///
 /// # Small bodies
 ///
-/// Contacts are springs that yield by about `g / omega^2` for each body that they carry, independent of its size. With
-/// the default 30 Hz a stack of 8 boxes on the ground sinks by 19.6 mm: 2 % of a box of 1 m, but 20 % of one of 10 cm,
-/// and a stack of boxes of 1 cm collapses. A contact cannot be stiffer than an eighth of the sub-step rate, so smaller
-/// bodies need more sub-steps. [`Config::for_smallest`] sets both. With 60 ticks per second and 10 m/s² it gives:
+/// Contacts are springs that yield in proportion to `g / omega^2` for each body that they carry, independent of its
+/// size. With the default 30 Hz a stack of 8 boxes on the ground sinks by 19.6 mm: 2 % of a box of 1 m, but 20 % of one
+/// of 10 cm, and a stack of boxes of 1 cm collapses. A contact cannot be stiffer than an eighth of the sub-step rate, so
+/// smaller bodies need more sub-steps. [`Config::for_smallest`] sets both. With 60 ticks per second and 10 m/s² it
+/// gives:
 ///
 /// | smallest box | sub-steps | contact stiffness | speculative distance | 8 boxes sink by |
 /// |---|---|---|---|---|

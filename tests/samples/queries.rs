@@ -266,8 +266,8 @@ fn a_mover_of_planes_walks_to_a_wall() {
     assert!(state.is_on_ground());
 }
 
-/// Sample "Dynamic Mover". A body that floats on a spring under a ray keeps its height over level ground and over
-/// steps.
+/// Sample "Dynamic Mover". A ray measures the height of a body above the ground, and a spring force carries the body.
+/// It keeps its height over level ground and over steps.
 #[test]
 fn a_body_on_a_spring_leg_keeps_its_height() {
     let mut stage = Stage::with_floor();

@@ -201,7 +201,7 @@ impl JointFrame {
         }
     }
 
-    /// The pose of a fixed body about a far anchor. The anchor is clamped to the range of positions.
+    /// The pose of a fixed body with a far anchor as its centre. The anchor is clamped to the range of positions.
     pub(super) fn far_pose(&self, body: &Body) -> Pose {
         let place = body.transform().apply(self.anchor);
         let within = |x: Fx| x.clamp(-WORLD_EXTENT_MAX, WORLD_EXTENT_MAX);
@@ -309,7 +309,7 @@ impl JointDef {
         self.frame_b.angle - self.frame_a.angle
     }
 
-    /// Checks the definition for bodies of two kinds.
+    /// Checks the definition for bodies of the given kinds.
     pub(crate) fn validate(&self, kinds: [BodyKind; 2]) -> Result<(), WorldError> {
         if self.body_a == self.body_b {
             return Err(WorldError::JointToItself(self.body_a));

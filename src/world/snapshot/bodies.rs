@@ -258,7 +258,7 @@ fn about(fat: Aabb, centre: Vec2<Fx>) -> Option<[i32; 4]> {
     let above = |bits: i64, lowest: i64| bits.wrapping_sub(lowest);
     let above = [above(left, x), above(bottom, y), above(right, x), above(top, y)];
     let [a, b, c, d] = above;
-    // The lowest value of the first coordinate is the marker `NOT_NEAR`, so that it cannot be packed.
+    // The lowest value of the first coordinate is the marker `NOT_NEAR`, and therefore cannot be packed.
     let bits = a | a.wrapping_sub(GRID) | b | c | d;
     (bits & !NEAR == 0).then(|| above.map(|above| low_half(above >> FAT_GRID_SHIFT) ^ i32::MIN))
 }

@@ -21,7 +21,7 @@ const COMMON: u32 = JOINT_COLLIDE
 /// Flags of revolute, prismatic, distance and wheel joints.
 const DRIVEN: u32 = JOINT_LIMIT | JOINT_MOTOR | JOINT_SPRING;
 
-/// Options that most kinds of joints have.
+/// Options of revolute, prismatic, wheel and distance joints. A motor joint has only the motor.
 struct Options {
     limit: Option<JointLimit>,
     motor: Option<Drive>,

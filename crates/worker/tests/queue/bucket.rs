@@ -15,8 +15,8 @@ struct Buckets {
 }
 
 impl Buckets {
-    /// Serves the files in `in` of this folder as the bucket `uploads`. `None` if the environment variable
-    /// `LOCKSTEP2D_S3` does not name the program.
+    /// Serves the files in the folder's subfolder `in` as the bucket `uploads`. `None` if the environment variable
+    /// `LOCKSTEP2D_S3`, the path of the server program `s3s-fs`, is not set.
     fn start(folder: &Folder) -> Option<Self> {
         let Ok(program) = std::env::var("LOCKSTEP2D_S3") else {
             eprintln!("skipped: LOCKSTEP2D_S3 does not name a server");

@@ -78,7 +78,7 @@ impl Candidate {
         };
         let (rows, holds) = (holding + u32::from(motor.is_some()), holding > 0);
         let shares = if is_hinge { shares(joint, [a, b]) } else { [Unit::ZERO; 2] };
-        // The fraction of the lighter body has more significant bits.
+        // Both bodies give the same reduced mass. The fraction of the lighter body has more significant bits.
         let fractions = MassFractions::of_masses(a.mass, b.mass);
         let (mass, fraction) =
             if fractions.a > fractions.b { (a.mass, fractions.a) } else { (b.mass, fractions.b) };

@@ -50,7 +50,7 @@ pub(in super::super) struct BlockedAngle {
 }
 
 impl HingeSet {
-    /// Adds a hinge to the hinges in blocks, by the index of its input. Returns its number.
+    /// Adds the hinge whose input has an index to the hinges in blocks. Returns its index among them.
     pub(in super::super) fn push_blocked(&mut self, index: u32) -> usize {
         let HingeSet { inputs, angles, blocked, blocked_extras, .. } = self;
         blocked.push(inputs, angles, core::iter::once(index));

@@ -35,7 +35,8 @@ pub(in super::super) struct Turning {
     pub(in super::super) index: u32,
     /// Angle at the start of the tick.
     pub(in super::super) angle: Angle,
-    /// Rotation in units of 2^-32 turn per unit of the format of `k dtheta`, 2^-26 m.
+    /// Factor from `SolverBody::turn` (rotation in radians times radius of gyration, in units of 2^-26 m) to units of
+    /// 2^-32 turn.
     turns: Fx,
     /// Rotation in radians in a sub-step per m/s of the spin, times 2^9, which is the ratio of the formats.
     ahead: Fx,
