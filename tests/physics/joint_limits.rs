@@ -112,9 +112,9 @@ fn a_motor_of_any_force_does_not_turn_a_hinge_through_its_limit() {
             for speed in [fx!(1), fx!(10), fx!(30), fx!(-30)] {
                 let mut world =
                     World::new(Config { gravity: Vec2::ZERO, ..Config::default() }).expect("valid");
-                let a = world.spawn(&base, &[square.clone()]).expect("valid");
+                let a = world.spawn(&base, &[square]).expect("valid");
                 let b = BodyDef::dynamic().position((fx!(2), fx!(0)));
-                let b = world.spawn(&b, &[square.clone()]).expect("valid");
+                let b = world.spawn(&b, &[square]).expect("valid");
                 let kind = Revolute::new().limit(fx!(-0.5), fx!(0.5)).motor(speed, max);
                 let def = JointDef::new(a, b, kind).anchor_a((fx!(1), fx!(0))).anchor_b((fx!(-1), fx!(0)));
                 let joint = world.add_joint(&def).expect("valid");
