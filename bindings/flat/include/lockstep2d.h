@@ -1551,9 +1551,8 @@ ls2d_status ls2d_match_offer_state(uint32_t handle, uint32_t tick, const uint8_t
 /* Status of the match: one of the `LS2D_MATCH_` constants. */
 ls2d_status ls2d_match_status(uint32_t handle, uint32_t *status);
 
-/* Writes three numbers of ticks: `played` counts all ticks played, including those with guessed inputs; `last`
- * counts the ticks whose inputs are final; `confirmed` counts the ticks played with final inputs. Null pointers
- * are not written. */
+/* Writes three numbers of ticks: `played` counts all ticks played, `last` the ticks whose inputs are final, and
+ * `confirmed` the ticks played with final inputs. Null pointers are not written. */
 ls2d_status ls2d_match_ticks(uint32_t handle, uint32_t *played, uint32_t *last, uint32_t *confirmed);
 
 /* Writes the bit mask of this peer's own seats. */

@@ -294,9 +294,8 @@ api! {
         })
     }
 
-    /// Writes three numbers of ticks: `played` counts all ticks played, including those with guessed inputs; `last`
-    /// counts the ticks whose inputs are final; `confirmed` counts the ticks played with final inputs. Null pointers
-    /// are not written.
+    /// Writes three numbers of ticks: `played` counts all ticks played, `last` the ticks whose inputs are final, and
+    /// `confirmed` the ticks played with final inputs. Null pointers are not written.
     fn ls2d_match_ticks(handle: u32, played: Out<'_, u32>, last: Out<'_, u32>, confirmed: Out<'_, u32>) {
         let (mut played, mut last, mut confirmed) = (played, last, confirmed);
         with(handle, |game: &mut Match| {
