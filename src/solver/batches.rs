@@ -19,7 +19,7 @@ use crate::simd::{GROUND, Kernel, Lanes, Layout, Scalar, WIDTH, prefetch, with_d
 
 /// A kind of constraint. `N` constraints of the kind are solved at a time.
 pub(super) trait BatchKind: Clone + Debug + 'static {
-    /// The part that every operation reads and writes.
+    /// The part that the iterations of the solver read and write.
     type Batch<const N: usize>: Clone + Debug + Send;
     /// The part that only some operations read. It is stored separately, because passes over large piles are
     /// memory-bound.

@@ -1,4 +1,5 @@
-//! The bodies of a tick: the active bodies, and the ground, which represents all other bodies.
+//! The bodies of a tick: the active bodies, other bodies that joints need, and the ground, which represents all the
+//! rest.
 
 use alloc::vec::Vec;
 

@@ -1,4 +1,4 @@
-//! The two bodies of a joint while it is solved.
+//! The two bodies of a joint that is not a hinge (`joint/list`), while the joint is solved.
 //!
 //! A change of velocity is rounded to the resolution of [`Speed`]. Over the thousands of updates of a joint that acts
 //! in every sub-step, the roundings would add up to a force: a spring and a motor that balance each other would turn
@@ -49,7 +49,7 @@ impl Remainders {
     }
 }
 
-/// The bodies of a joint.
+/// The bodies of a joint, and what its changes of their velocities write.
 pub(crate) struct BodyPair<'a> {
     pub(crate) a: &'a mut SolverBody,
     pub(crate) b: &'a mut SolverBody,

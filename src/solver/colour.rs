@@ -197,8 +197,8 @@ impl Colouring {
         &self.order[self.start(place, 0)..self.end(place, 0)]
     }
 
-    /// The coloured constraints of one of the threads, colour by colour. Empty colours are left out: in a small world
-    /// most are empty, and every operation iterates over the colours.
+    /// The coloured constraints of one of the threads, colour by colour. Colours that are empty for all threads are
+    /// left out, because every operation iterates over the colours.
     pub(super) fn colours(&self, cold: bool, part: usize) -> impl Iterator<Item = Group<'_>> {
         let first = if cold { PLACES } else { 0 };
         let places = (0..self.colour_count).map(move |colour| first + place_of(colour.into(), Size::Large));

@@ -8,8 +8,9 @@
 //! ```
 //!
 //! where `v_free` is the velocity that the body would have without contacts. The warm start takes one sum for each body
-//! instead of a pass over the rows of all contacts. Joints, whose rows turn with their bodies, and locked axes also
-//! change velocities within a sub-step: their changes are added to `v_free`.
+//! instead of a pass over the rows of all contacts. Joints, whose rows turn with their bodies, locked axes and
+//! restitution also change velocities within a sub-step. Their changes are not applied again: they are added to
+//! `v_free`.
 
 #[cfg(test)]
 mod tests;
@@ -41,9 +42,9 @@ type Groups<const N: usize> = Vec<Group<N>>;
 struct Group<const N: usize> {
     /// The indices of the bodies. Lanes without a body have the ground.
     at: [u32; N],
-    /// Whether something other than contacts changes the velocity of one of these bodies between the warm start and the
-    /// end of a sub-step. The velocities of the other bodies of a shared group stay exact: `free - v + v` does not
-    /// round or saturate, because `free` and `v` are below 512 m/s.
+    /// Whether joints, locked axes or restitution may change the velocity of one of these bodies between the warm start
+    /// and the end of a sub-step. The velocities of the other bodies of a shared group stay exact: `free - v + v` does
+    /// not round or saturate, because `free` and `v` are below 512 m/s.
     shared: bool,
     free: VelocityW<Ints<N>>,
     change: VelocityW<Ints<N>>,
@@ -56,9 +57,9 @@ enum Task {
     Measure,
     /// Records `v_free` and adds `change` to the velocities.
     Apply,
-    /// Subtracts the velocity from `v_free`.
+    /// Subtracts the velocity from `v_free`, in shared groups.
     Suspend,
-    /// Adds the velocity to `v_free`.
+    /// Adds the velocity to `v_free`, in shared groups.
     Resume,
 }
 
@@ -66,7 +67,7 @@ enum Task {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PushedBody {
     pub(super) index: u32,
-    /// Whether something other than contacts changes its velocity while contacts are solved.
+    /// Whether joints, locked axes or restitution may change its velocity within a sub-step.
     pub(super) shared: bool,
 }
 

@@ -4,7 +4,7 @@
 pub(crate) use crate::body::SPEED_MAX;
 use crate::math::Speed;
 
-/// Number of results that a clamp has changed. It is part of the hashed state, and 0 in any physically sensible world.
+/// Number of results that a clamp has changed. The state of the world contains the sum over all ticks.
 pub(crate) type Faults = u64;
 
 /// Largest impulse that is applied to the velocities at once, in m/s. A larger impulse of a row is applied in steps; a

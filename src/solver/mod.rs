@@ -1,12 +1,12 @@
 //! The solver: sequential impulses in sub-steps, in a fixed order.
 //!
-//! `sub_step` lists the stages of a sub-step, those of E. Catto's soft step (Solver2D, `solve_soft_step.c`).
-//! Each stage has a file of its own: `integrate` for bodies; `contact_velocity`, `contact/warm_start`, `contact/solve`
-//! and `contact/restitution` for contacts; `joint/hinge` for hinges; `joint/list` for all other joints.
+//! `sub_step` lists the stages of a sub-step, which follow E. Catto's soft step (Solver2D, `solve_soft_step.c`).
+//! `integrate` moves bodies. `contact_velocity` and `contact` solve contacts, `joint/hinge` hinges, `joint/list` all
+//! other joints, and `joint/block` the joints for which iterations do not converge.
 //!
 //! A row removes velocity along one direction (`row`). A point block pins two points together (`point_block`). Contacts
 //! and hinges are solved in batches of eight (`batches`), by code that is written once for any number of lanes
-//! (`simd`). The rows and points of all other joints are solved one by one.
+//! (`simd`). The rows and points of all other joints are solved one by one. The joints of a block are solved together.
 
 mod batches;
 mod body;
@@ -136,16 +136,16 @@ impl Solver {
         self.joints.blocked_count()
     }
 
-    /// Prepares the joints in blocks, and computes the arms of all joints. Blocks take more time and memory than the
-    /// rest of the preparation, so that the caller first checks that the work budget of the tick covers
-    /// [`Self::blocked_joint_count`] joints.
+    /// Prepares the joints in blocks, and computes the arms of all joints except hinges, whose arms are computed when
+    /// they are warm-started. Blocks take more time and memory than the rest of the preparation, so that the caller
+    /// first checks that the work budget of the tick covers [`Self::blocked_joint_count`] joints.
     pub(crate) fn prepare_blocks(&mut self, tuning: &Tuning) {
         let Solver { list, joints: set, machine, faults, .. } = self;
         set.prepare_blocks();
         set.refresh(&StepContext::new(*machine, tuning, &mut list.bodies, faults));
     }
 
-    /// [`Joint::reaction`] without allocations, after the joints of the tick have been solved.
+    /// [`Joint::reaction`] with working memory that is kept from call to call.
     pub(crate) fn reaction(
         &mut self,
         joint: &Joint,

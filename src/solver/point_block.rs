@@ -31,10 +31,10 @@
 //!
 //! **The bias pass of a hinge measures along the chord.** Displacements are straight while arms turn, which opens the
 //! joint by about half the length of an arm times the square of its rotation. To keep the joint closed, the velocity is
-//! measured with the arm averaged over the predicted rotation `t = h u / k`, to third order:
+//! measured with the arm averaged over the predicted rotation `t = h u / k`, to second order in `t`:
 //!
 //! ```text
-//! eM = e + M (t/2 (-e_y, e_x) - t^2/6 e),   M = 1 + 0.6 impulseScale / massScale
+//! eM = e + M (t/2 (-e_y, e_x) - t^2/6 e),   M = 1 + 0.6 impulseScale / massScale, at most 1.9
 //! vr = vB - vA + eMB uB - eMA uA
 //! ```
 //!
@@ -219,7 +219,7 @@ impl PointBlock {
         self.apply(d, bodies);
     }
 
-    /// The change of `L` in one iteration, before it is limited.
+    /// The change of `L` in one iteration, before `L` is limited.
     #[inline]
     pub(crate) fn wanted(
         &self,
@@ -301,7 +301,8 @@ fn accumulate(lambda: Speed, d: Speed, faults: &mut Faults) -> Speed {
 
 /// `[K22 -K12; -K12 K11] / det` with one division. All numbers have 30 fraction bits.
 fn inverse(k: &Symmetric<i64>, det: i64) -> Symmetric<Unit> {
-    // With the determinant normalised to 32 bits, its reciprocal has 31 bits and products fit 64.
+    // The determinant is reduced to at most 32 bits. No entry of `K` is larger than the determinant, so that products
+    // with its reciprocal, `2^62 / det`, fit 64 bits.
     let excess = (64 - det.leading_zeros()).saturating_sub(32);
     let reciprocal = (1i64 << 62) / (det >> excess);
     let entry = |value: i64| Unit::from_bits(saturate(round_shift((value >> excess) * reciprocal, 32)));

@@ -18,7 +18,7 @@
 //!
 //! `L` is the accumulated impulse divided by the effective mass: a speed. Velocities and `L` also have fixed limits
 //! (`limits.rs`), and an impulse of more than 512 m/s is applied in steps, so that no sum overflows. Each number that a
-//! fixed limit changes counts as a fault; a clamp to `lo` or `hi` does not.
+//! fixed limit changes counts as a fault, except an initial guess ([`lambda_of`]). A clamp to `lo` or `hi` is no fault.
 
 mod angular;
 mod coupled;
@@ -73,7 +73,8 @@ impl MassFractions {
     }
 }
 
-/// `a e e'` with 30 fraction bits, at most 2^14. Rounding `a e` first would cost 7 of the 24 bits of `e`.
+/// `a e e'` with 30 fraction bits, at most 2^14. `a e` is not rounded first, because the error would be multiplied by
+/// `e'`, which may be as large as 2^7.
 #[inline]
 pub(super) fn turning(fraction: Unit, e: Ratio, other: Ratio) -> i64 {
     let square = i64::from(e.to_bits()) * i64::from(other.to_bits());
@@ -112,11 +113,11 @@ pub(crate) struct Row {
     f_b: Unit,
 }
 
-/// Largest lever ratio. The products of two such ratios with the largest spins leave room for a linear part of 2^57 in
-/// the 64 bits of [`Row::along`].
+/// Largest lever ratio. The products of two such ratios with spins of up to 1024 m/s leave room for a linear part of
+/// 2^57 in the 64 bits of [`Row::along`].
 pub(super) const RATIO_MAX: Ratio = Ratio::lit("126");
 
-/// `D` of a row, 1 to 15 877, with 30 fraction bits.
+/// `D` of a row, with 30 fraction bits: for [`Row::prepare`] 1 to 15 877, or 0 if impulses move neither body.
 pub(crate) type Denominator = i64;
 
 impl Row {
@@ -179,9 +180,9 @@ impl Row {
         Speed::from_bits(vn)
     }
 
-    /// `nB.vB - nA.vA + eB tB - eA tA` in the format of speeds. The linear part has 30 bits more; it is shifted by 6
-    /// bits to the scale of the angular part, and the sum is rounded once. Speeds are below 2^30 units, so that their
-    /// products with vectors of up to 2 stay below 2^62.
+    /// `nB.vB - nA.vA + eB tB - eA tA` in the format of speeds, with the spins `t`. The linear part has 30 bits more.
+    /// It is rounded to the scale of the angular part, which has 24 bits more, and then the sum is rounded. Speeds are
+    /// below 2^30 units, so that the linear part of directions of up to 2 stays below 2^62.
     #[inline]
     fn along(&self, linear: i64, turn_a: i32, turn_b: i32) -> i64 {
         let angular = i64::from(self.e_b.to_bits()) * i64::from(turn_b)
@@ -344,7 +345,7 @@ mod tests {
         assert!(worst <= 5, "{worst} units left");
     }
 
-    /// Momentum is exchanged in the ratio of the masses: `mA dvA = -mB dvB`, so `aB dvA = -aA dvB`.
+    /// Momentum is conserved: `MA dvA = -MB dvB` for masses `M`, so `aB dvA = -aA dvB`.
     #[test]
     fn an_update_keeps_momentum() {
         let mut rng = Rng::new(5);

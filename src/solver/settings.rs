@@ -77,9 +77,8 @@ pub struct SolverSettings {
     pub contact: ContactTuning,
     /// Stiffness in Hz, 1 to 1000, of joints that have no
     /// [softness of their own](crate::solver::JointDef::softness). A value above a quarter of the sub-step rate acts
-    /// like a quarter of that rate. The stiffness is doubled for the anchors of an anchored hinge or rigid weld. Such a
-    /// joint connects a body without any other joint to a body that is not dynamic, so that its stiffness disturbs no
-    /// other joint.
+    /// like a quarter of that rate. The stiffness of the anchors is doubled for a hinge, or a weld with rigid anchors,
+    /// that connects a body without any other joint to a body that is not dynamic: it disturbs no other joint.
     pub joint_hertz: Fx,
     /// Damping ratio of joints, 0 to 100.
     pub joint_damping_ratio: Fx,
@@ -169,7 +168,7 @@ pub(crate) struct Tuning {
     pub(crate) contact_immovable: Softness,
     pub(crate) slop: Step,
     pub(crate) push_speed: Speed,
-    /// Softness of joints.
+    /// Softness of joints without a softness of their own.
     pub(crate) joint: Softness,
     /// Softness of the anchors of anchored hinges, which hold a body without any other joint to a body that is not
     /// dynamic.

@@ -44,8 +44,9 @@ impl Softness {
     }
 
     /// The softness of the same spring in a row that also turns bodies. An impulse then changes the velocity along the
-    /// row `D` times as much. `D` has 30 fraction bits. `a2` becomes `a2 D`, and `massScale' = massScale D /
-    /// (impulseScale + massScale D)`. Stiffness and damping in N/m and N s/m stay the same.
+    /// row by `D` times as much as without rotation, where `D` is `denominator`, with 30 fraction bits. `a2` becomes
+    /// `a2 D`, and `massScale' = massScale D / (impulseScale + massScale D)`. Stiffness and damping in N/m and N s/m
+    /// stay the same.
     pub(crate) fn at_mobility(&self, denominator: i64) -> Self {
         let [mass, impulse] = [self.mass_scale, self.impulse_scale].map(|scale| i128::from(scale.to_bits()));
         let mass = mass * i128::from(denominator);

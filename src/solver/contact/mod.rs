@@ -67,8 +67,8 @@ const RESTITUTION_PASSES: u32 = 12;
 
 /// All contacts of a tick.
 ///
-/// A contact is cold if neither of its bodies has an initial guess of its impulses: the body had no contact points in
-/// the last tick, or an impact may drive the body between two walls. Cold contacts need more iterations.
+/// A contact is cold if neither of its bodies has an initial guess of its impulses: no contact of the body had points
+/// in the last tick, or an impact may drive the body between two walls. Cold contacts need more iterations.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactSet {
     warm: BatchList<Contacts>,
@@ -79,7 +79,7 @@ pub(super) struct ContactSet {
     features: Features,
 }
 
-/// The operations that the contacts of a tick need.
+/// Properties of the contacts of a tick that decide which operations they need.
 #[derive(Clone, Copy, Debug, Default)]
 struct Features {
     /// Whether any contact is elastic.

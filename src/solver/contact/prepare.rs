@@ -52,7 +52,7 @@ impl ContactSet {
         }
         let shares = warm.coloured.iter_mut().zip(&mut cold.coloured).zip(&mut *warm_starts).enumerate();
         threads.run_team(shares, |(part, ((warm, cold), warm_starts)), _| {
-            // Counted in a local variable, because the counts of all threads are in one cache line.
+            // Counted in a local variable, because the counts of several threads share a cache line.
             let mut own = WarmStarts::default();
             for (coloured, is_cold) in [(warm, false), (cold, true)] {
                 let (colours, warm_starts) = (colouring.colours(is_cold, part), &mut own);

@@ -1,5 +1,5 @@
-//! Properties of a body that follow from all of its contacts. They decide how many iterations its contacts get, and
-//! whether their impulses are an initial guess for the next tick.
+//! Properties of a body that follow from all of its contacts, and on which the solution of these contacts depends: for
+//! example, how many iterations they get.
 
 use crate::math::{Unit, Vec2};
 

@@ -1,5 +1,5 @@
-//! Restitution: a point that is pushed, and that approached faster than the threshold of its surface, separates at `e`
-//! times the approach speed.
+//! Restitution: a point that is pushed, and whose approach speed was not below the threshold of its surface, separates
+//! at `e` times the approach speed.
 //!
 //! ```text
 //! L' = max(L - (vn + e va + drift), 0)          in the sub-step in which it is pushed, after both passes
@@ -83,7 +83,7 @@ impl Operation<Contacts> for ApplyRestitution {
             for (i, &mask) in masks.iter().enumerate().take(batch.count) {
                 let point = &batch.points[i];
                 let bounce = L::mul(restitution, L::load(&extras.impacts.approach[i]));
-                // A restitution above 1 may exceed the format of speeds.
+                // With a restitution above 1, the product may not fit the format of speeds.
                 let (bounce, _) = L::narrow_saturating::<UNIT>(bounce);
                 let bounce =
                     L::min(L::add_saturating(bounce, L::load(&extras.impacts.drift[i])), L::splat(0));
@@ -139,8 +139,8 @@ impl<const N: usize> Rebound<N> {
 /// W = sum P (v+ + drift + va) / 2 <= 0          P = L / D
 /// ```
 ///
-/// over its normal rows and its friction row, where `v+` is the velocity after the rebound. A moving surface counts as
-/// at rest. A restitution above 1 is meant to do work, and is not limited.
+/// over its normal rows and its friction row, where `v+` is the velocity after the rebound. Tangential velocities are
+/// relative to a moving surface. A restitution above 1 is meant to do work, and is not limited.
 ///
 /// Newton's restitution gains energy where the rebounds of two points add up, and in a corner, where the rebound from
 /// one wall reverses the sliding along the other. `W` is convex in the share, so that it is at most the line from its

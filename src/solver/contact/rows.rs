@@ -241,7 +241,7 @@ fn product<L: Lanes<N>, const N: usize>(x: L::Int, long: &Long<L, N>) -> L::Int 
     L::add_saturating(whole, L::narrow::<30>(L::mul(x, part)))
 }
 
-/// `Dt / Dn`, rounded to nearest.
+/// `Dt / Dn`, computed from the rounded reciprocal of `Dn`.
 #[inline(always)]
 fn ratio<L: Lanes<N>, const N: usize>(tangent: &Long<L, N>, normal_inverse: L::Int) -> Long<L, N> {
     let part = L::narrow::<30>(L::mul(normal_inverse, tangent.part));

@@ -52,7 +52,7 @@ impl<const N: usize> Records<N> {
         self.wedged = [false; N];
     }
 
-    /// Puts a contact into the next lane.
+    /// Puts a contact into a lane, the next one that is free.
     #[inline(always)]
     pub(super) fn take(&mut self, lane: usize, input: &Input) {
         self.len += 1;

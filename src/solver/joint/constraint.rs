@@ -32,7 +32,7 @@ pub(in crate::solver) struct JointSet {
     /// The rotation coefficients of `bodies`. They are kept from tick to tick, and are stored separately from `bodies`
     /// because every sub-step reads them.
     turning: Vec<Turning>,
-    /// The rotation of each body of the tick.
+    /// The rotations of bodies with joints, by the index of the body.
     body_rotations: Vec<BodyRotation>,
     quads: Vec<Quad>,
     /// For each joint in the order of the state, its input as a hinge, or its slot.
@@ -48,7 +48,7 @@ pub(in crate::solver) struct JointSet {
     list: JointList,
     /// For each joint in the order of the state, the properties on which the choice of blocks depends.
     candidates: Vec<Candidate>,
-    /// For each joint in the order of the state, whether it is solved in a block.
+    /// For each joint in the order of the state, whether it is solved in a block. Empty if there are no blocks.
     is_blocked: Vec<bool>,
     blocks: Blocks,
     /// The rows and points in blocks of joints that are not hinges, by slot.
@@ -326,7 +326,8 @@ impl JointSet {
         self.places.get(index as usize).is_some_and(|&place| place != 0)
     }
 
-    /// Computes arms, gains and gaps at the current poses, with one thread.
+    /// Computes arms, gains and gaps at the current poses, with one thread. Hinges are refreshed by the next operation
+    /// on them.
     pub(in crate::solver) fn refresh(&mut self, context: &StepContext<'_>) {
         self.split().shares().for_each(|mut share| share.refresh(context));
     }

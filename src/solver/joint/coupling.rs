@@ -32,7 +32,7 @@ pub(super) enum Coupling {
     },
     Rack {
         rack: Rack,
-        /// The x axis of B's frame, in the frame of B.
+        /// The x axis of the joint's frame on B, in the frame of B.
         axis: Vec2<Unit>,
     },
     Pulley {

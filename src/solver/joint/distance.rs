@@ -41,8 +41,8 @@ pub struct Distance {
     pub motor: Option<Drive>,
     /// Spring with a length in metres, 0 or more.
     pub spring: Option<Spring>,
-    /// Smallest and largest force of the spring in N. A positive force pushes the anchors apart: with `lower` 0 the
-    /// spring only pushes, with `upper` 0 it only pulls.
+    /// Smallest force of the spring in N, 0 or less, and largest force, 0 or more. A positive force pushes the anchors
+    /// apart: with `lower` 0 the spring only pushes, with `upper` 0 it only pulls.
     pub spring_force: Option<JointLimit>,
 }
 

@@ -1,5 +1,5 @@
 //! Joints that are solved one by one, with their rows and points: all joints except hinges. They are solved before the
-//! hinges.
+//! hinges. Rows and points in a block (`block`) are left to the block.
 
 use alloc::vec::Vec;
 
@@ -74,7 +74,7 @@ pub(super) enum ListPart {
     Point(usize),
 }
 
-/// Bodies, mass fractions and softness of a row or point in a block.
+/// Bodies, mass fractions, softness and function of a row or point in a block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BlockedPart {
     pub(super) part: ListPart,

@@ -54,7 +54,7 @@ impl JointPoint {
         max
     }
 
-    /// The change of the impulse of a spring in the bias pass, before it is limited.
+    /// The change of the impulse of a spring in the bias pass, before [`Self::impulse_max`] limits the impulse.
     pub(super) fn wanted(
         &self,
         softness: &Softness,

@@ -85,7 +85,7 @@ impl Ends {
         let arm_a = WideArm::rotated(body_rotations[a].rotation, self.local_a);
         let arm_b = WideArm::rotated(body_rotations[b].rotation, self.local_b);
         let moved = (bodies[b].get().shift - bodies[a].get().shift).widen();
-        // The sum is exact before it is rounded once. Arms have 52 fraction bits, and world coordinates have 32.
+        // Only the difference of the arms is rounded. It has 52 fraction bits, and world coordinates have 32.
         let gap = |between: Fx, moved: Fx, arms: i64| {
             between.saturating_add(moved).saturating_add(Fx::from_bits(round_shift(arms, 20)))
         };
@@ -189,8 +189,8 @@ impl JointPose {
     }
 
     /// The block of a pulled or driven point. `mass_scale` is that of the spring, 1 for a motor. Its impulses act on
-    /// both bodies at one point. If no point is within reach of both bodies, impulses act only along the line between
-    /// their centres: across the line, the effective mass is less than a ten thousandth of the effective mass along it.
+    /// both bodies at one point. If there is no such point ([`Self::levers_at_one_point`]), impulses act only along the
+    /// line between the centres.
     pub(super) fn block(&self, mass_scale: Unit) -> PointBlock {
         match self.levers_at_one_point() {
             Some([a, b]) => PointBlock::new(a, b, self.fractions, mass_scale),
@@ -202,8 +202,9 @@ impl JointPose {
     }
 
     /// The levers of A and B to one point. An impulse that is not along the gap conserves angular momentum only if it
-    /// acts on both bodies at one point. The point is B's anchor if that is within reach of A. Otherwise it is the end
-    /// of A's arm, which is shortened to the reach of A. `None` if that end is not within reach of B.
+    /// acts on both bodies at one point. The point is B's anchor if that is within reach of A, or if impulses do not
+    /// move one of the bodies. Otherwise it is the end of A's arm, which is shortened to the reach of A. `None` if that
+    /// end is not within reach of B.
     fn levers_at_one_point(&self) -> Option<[Lever; 2]> {
         let a = self.reach_of_a();
         let longest = longest_ratio(a);

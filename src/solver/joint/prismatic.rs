@@ -15,8 +15,8 @@ use crate::math::Fx;
 
 /// A slider: B's anchor stays on the x axis of A's frame, and B's frame stays parallel to A's.
 ///
-/// The translation of the joint is the position of B's anchor along that axis, in metres. It should stay within a
-/// hundred radii of gyration of either body, because longer lever arms are clamped.
+/// The translation of the joint is the position of B's anchor along that axis, in metres. If A can turn, B's anchor
+/// should stay within 88 radii of gyration of A from A's centre of mass, because longer lever arms are clamped.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};

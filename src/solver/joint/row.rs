@@ -6,7 +6,7 @@
 //! ```text
 //! spring   d = -massScale (vn + biasRate (x - target)) - impulseScale L      bias pass only
 //! motor    d = -(vn - speed),  |L| <= F h (mA + mB) D                        (divided by s for a torque)
-//!          speed is clamped: before a limit of the joint to C / h, beyond it to biasRate C (back to the limit)
+//!          towards a limit of the joint, speed is at most C / h before the limit, and 0 beyond it
 //! limit    d = -massScale (vn + biasRate C) - impulseScale L,  L >= 0        C = x - lower or upper - x
 //!          d = -(vn + C / h)                                                 while C > 0
 //! hold     as a limit that is reached, with L of either sign

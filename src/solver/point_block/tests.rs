@@ -5,7 +5,7 @@ use crate::fx;
 use crate::math::{Fx, Reciprocal, Rng, Rot, narrow};
 
 /// One update leaves no relative velocity of the anchors except rounding errors of up to 6e-5 m/s. With arms of up
-/// to 16 radii of gyration on both sides the anchors start at up to 330 m/s.
+/// to 16 radii of gyration on both sides the anchors start at less than 350 m/s.
 #[test]
 fn an_update_brings_the_anchors_to_rest() {
     let mut rng = Rng::new(8);

@@ -7,8 +7,9 @@
 //! s^2 = 1 / (aA / kA^2 + aB / kB^2),  so that  f = a e / D <= sqrt(a) <= 1  and  e <= 1 / sqrt(a)
 //! ```
 //!
-//! `e` is limited to 100. It would be larger only if one body were 10 000 times as heavy as the other and still turned
-//! more easily. An angular impulse `P` corresponds to `L = P (mA + mB) D / s`, with inverse masses.
+//! `e` is limited to 100. It would be larger only for a body that is more than 10 000 times as heavy as the other, and
+//! only if the other does not turn or has at least about 100 times its radius of gyration. An angular impulse `P`
+//! corresponds to `L = P (mA + mB) D / s`, with inverse masses.
 
 use super::{Denominator, MassFractions, RATIO_MAX, Row, turning};
 use crate::math::{Length, Ratio, Reciprocal, Speed, Unit, div_round, mul, saturate, saturate_wide};
@@ -29,14 +30,15 @@ impl Row {
         let gain = |fraction: Unit, e: Ratio| {
             // The product has 54 fraction bits, the denominator 30.
             let product = i64::from(fraction.to_bits()) * i64::from(e.to_bits());
-            // A velocity change must not be larger than `L`. Only physically impossible bodies reach this limit.
+            // A velocity change must not be larger than `L`.
             Unit::from_bits(saturate(quotient(product, denominator.max(1)))).min(Unit::ONE)
         };
         let (f_a, f_b) = (gain(fractions.a, e_a), gain(fractions.b, e_b));
         (Row { e_a, e_b, f_a, f_b, ..Row::NONE }, denominator, s)
     }
 
-    /// The shares of A and B in a change of the relative angular velocity. They add up to 1, unless neither body turns.
+    /// The shares of A and B in a change of the relative angular velocity. They add up to about 1, unless neither
+    /// body turns.
     pub(crate) fn shares(&self) -> (Unit, Unit) {
         (mul(self.f_a, self.e_a), mul(self.f_b, self.e_b))
     }
@@ -52,8 +54,8 @@ fn quotient(n: i64, d: i64) -> i64 {
     }
 }
 
-/// `1 / sqrt(aA / kA^2 + aB / kB^2)`, at most a hundred times the radius of gyration of a body that turns. It only sets
-/// the units of a row, so that it need not be exact.
+/// `1 / sqrt(aA / kA^2 + aB / kB^2)`, at most a hundred times the radius of gyration of each body that turns. It only
+/// sets the units of a row, so that it need not be exact.
 pub(in crate::solver) fn angular_scale([a, b]: [Reciprocal; 2], fractions: MassFractions) -> Length {
     // 1 / k has 21 fraction bits, so that the sum has 72.
     let inverse = |inverse_gyration: Reciprocal, fraction: Unit| -> Speed {
@@ -91,8 +93,8 @@ mod tests {
     use crate::solver::limits::IMPULSE_MAX;
     use crate::solver::softness::Softness;
 
-    /// One update leaves no relative angular velocity, and `mA kA duA = -mB kB duB`. The mass ratios are 1:1 to
-    /// 1:10 000 either way, the radii of gyration 1 cm to 50 m, and some bodies do not turn.
+    /// One update leaves no relative angular velocity, and `MA kA duA = -MB kB duB` for masses `M`. Most mass ratios are
+    /// 1:1 to 1:10 000 either way, the radii of gyration 1 cm to 50 m, and some bodies do not turn.
     #[test]
     fn an_update_removes_the_relative_angular_velocity_and_keeps_momentum() {
         let mut rng = Rng::new(7);

@@ -3,7 +3,7 @@
 //! One iteration solves a body with one joint exactly, and a chain of similar bodies well. It fails at bodies whose
 //! joints disturb each other, where it may even add energy. A body is *crowded* if two or more joints hold it and
 //!
-//! - one of them holds more than a point: a weld, a slider, a spring, or
+//! - one of them is not a revolute joint: a weld, a slider or a spring, for example, or
 //! - it is so light, or its arms are so long, that its share in the mobility of the point of each of two hinges is
 //!   large, or that the sum of its shares over all hinges, without the largest share, is large.
 //!
@@ -42,7 +42,7 @@ pub(in super::super) struct Candidate {
     pub(in super::super) rows: u32,
     /// Whether it has rows besides that of a motor. A motor alone makes no body crowded.
     pub(in super::super) holds: bool,
-    /// Whether it is a revolute joint, which holds nothing but a point.
+    /// Whether it is a revolute joint.
     pub(in super::super) is_hinge: bool,
     /// `1 / (1 / M + 1 / M')` of the masses of its bodies, in kg.
     pub(in super::super) reduced_mass: Fx,

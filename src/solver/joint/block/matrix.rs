@@ -63,7 +63,7 @@ impl Matrix {
 pub(super) struct Factor {
     /// The entries below the diagonal, in the envelope of the matrix.
     entries: Vec<i32>,
-    /// The reciprocals of the diagonal entries, with 30 fraction bits: 1 to 256.
+    /// The reciprocals of the diagonal entries, with 30 fraction bits: at most 256.
     inverses: Vec<i64>,
 }
 

@@ -64,7 +64,7 @@ pub(super) struct Blocks {
     is_first_sub_step: bool,
 }
 
-/// A spring along a line.
+/// A row of a spring in a joint that is not a hinge.
 #[derive(Clone, Copy, Debug)]
 struct Spring {
     /// Its index among the rows of all joints that are not hinges.
@@ -78,7 +78,8 @@ struct Spring {
 #[derive(Clone, Debug, Default)]
 struct Block {
     units: Vec<Unit>,
-    /// Pairs of units with a common body, the later one first. Each unit is also paired with itself.
+    /// Pairs of units with a common body, the later one first. Each unit is also paired with itself, except a spring
+    /// between two points.
     pairs: Vec<(u32, u32)>,
     rows: Vec<ScaledRow>,
     bias: Scales,
@@ -88,7 +89,7 @@ struct Block {
     /// The pass for which `factor` was computed.
     factored: Option<Pass>,
     bounded: Vec<BoundedUnit>,
-    /// Springs whose softness depends on the pose.
+    /// Springs whose softness may depend on the pose.
     springs: Vec<Spring>,
     /// The scales of the current pass, if the block has rows with bounds.
     current: Scales,

@@ -1,5 +1,6 @@
 //! The rows on the angle of a batch of hinges: spring, motor and limits, in this order, with the equations of
-//! `joint/row.rs`. Only in blocks (`angle/blocked.rs`) is the speed of a motor clamped before a limit.
+//! `joint/row.rs`. Beyond a limit, the speed of a motor is clamped to the speed at which the limit pushes the joint
+//! back.
 //!
 //! ```text
 //! vn = eB uB - eA uA,   w = massScale vn + push + impulseScale L,   L' = clamp(L - w, lo, hi),   d = L' - L

@@ -1,5 +1,5 @@
-//! Hinges that belong to a block (`joint/block`): they are refreshed and warm-started like all others, but the block
-//! computes their impulses.
+//! Hinges that belong to a block (`joint/block`): they are refreshed like all others, but the block computes their
+//! impulses.
 
 use super::super::super::batches::{BatchParts, Operation};
 use super::super::super::context::{Pass, StepContext};

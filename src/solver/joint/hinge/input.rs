@@ -195,8 +195,8 @@ impl Input {
     }
 }
 
-/// Clamped vector from the centre of mass to an anchor. Both are within 128 m of the body's origin, so that the clamp
-/// never acts, but the sums that compute the gap rely on its bound.
+/// Clamped vector from the centre of mass to an anchor. Both are within 128 m of the body's origin on each axis, so
+/// that the clamp never acts, but the sums that compute the gap rely on its bound.
 fn arm(arm: Vec2<Fx>) -> Vec2<Length> {
     const ARM_MAX: Fx = crate::fx!(300);
     Vec2::new(arm.x.clamp(-ARM_MAX, ARM_MAX), arm.y.clamp(-ARM_MAX, ARM_MAX)).narrow()

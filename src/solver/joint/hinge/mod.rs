@@ -1,9 +1,9 @@
 //! Hinges: joints that pin two points together, with or without rows on the angle, eight at a time.
 //!
-//! Revolute joints and rigid welds are hinges. Each operation on a batch has a file of its own: `refresh` computes
-//! lever ratios, gains and gaps at the current pose, `warm_start` and `solve` change velocities by the point block of
-//! `point_block.rs`, and `angle` does all of this for the rows on the angle. `prepare` fills each batch with hinges of
-//! one colour, and returns their impulses to the state.
+//! Revolute joints and welds with rigid anchors are hinges. Each operation on a batch has a file of its own: `refresh`
+//! computes lever ratios, gains and gaps at the current pose, `warm_start` and `solve` change velocities by the point
+//! block of `point_block.rs`, and `angle` does all of this for the rows on the angle. `prepare` fills each batch with
+//! hinges of one colour, and returns their impulses to the state.
 
 mod angle;
 mod angle_input;

@@ -10,8 +10,9 @@
 //! a e = hi 2^32 + lo,    a e e' = hi e' + round(lo e' / 2^32)       (46 fraction bits)
 //! ```
 //!
-//! Rounding `a e` to the format of `e` first would cost 7 of its 24 bits. With 46 fraction bits the determinant can be
-//! computed as the difference `K11 K22 - K12^2`, because the parts that cancel are exact.
+//! If `a e` were rounded to the 24 fraction bits of `e` first, its error would be multiplied by `e'`, which may be as
+//! large as 2^7. With 46 fraction bits the determinant can be computed as the difference `K11 K22 - K12^2`, because the
+//! parts that cancel are exact.
 
 use core::cell::Cell;
 
@@ -133,7 +134,7 @@ pub(super) const FACTOR: u32 = 14;
 
 /// `1 / (2 kA)` and `-1 / (2 kB)` in 1/m, by which a gap becomes a change of lever ratios. 0 if one of the bodies is
 /// not moved by impulses: angular momentum is then not conserved in any case, and impulses act at the anchors.
-/// Saturates for radii of gyration of less than a hundredth of a millimetre.
+/// Saturates for radii of gyration below 2^-18 m.
 pub(super) fn gap_factors(inverse_gyrations: [Reciprocal; 2], fractions: MassFractions) -> [i32; 2] {
     if fractions.a == 0 || fractions.b == 0 {
         return [0; 2];
@@ -179,7 +180,7 @@ fn closing<L: Lanes<N>, const N: usize>(gap: L::Int, softness: &Softness) -> L::
     L::narrow_saturating::<RATE>(L::mul(gap, L::splat(softness.bias_rate.to_bits()))).0
 }
 
-/// A component `e` of a lever ratio, and `a e` in two parts: all bits above the lowest 32, and the lowest 32 bits.
+/// A component `e` of a lever ratio, and `a e = high 2^32 + low`.
 struct Parts<L: Lanes<N>, const N: usize> {
     e: L::Int,
     high: L::Int,

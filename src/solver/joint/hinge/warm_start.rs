@@ -1,5 +1,4 @@
-//! Warm start: applies the accumulated impulses of hinges. Each impulse is clamped to the largest impulse of a warm
-//! start.
+//! Warm start: applies the accumulated impulses of hinges. The impulses of points are clamped to [`STEP_MAX`].
 
 use super::super::super::batches::{BatchParts, Operation};
 use super::super::super::limits::STEP_MAX;
