@@ -93,8 +93,8 @@ mod tests {
     use crate::solver::limits::IMPULSE_MAX;
     use crate::solver::softness::Softness;
 
-    /// One update leaves no relative angular velocity, and `MA kA duA = -MB kB duB` for masses `M`. Most mass ratios are
-    /// 1:1 to 1:10 000 either way, the radii of gyration 1 cm to 50 m, and some bodies do not turn.
+    /// One update leaves no relative angular velocity, and `MA kA duA = -MB kB duB` for masses `M`. Most mass ratios
+    /// are 1:1 to 1:10 000 either way, the radii of gyration 1 cm to 50 m, and some bodies do not turn.
     #[test]
     fn an_update_removes_the_relative_angular_velocity_and_keeps_momentum() {
         let mut rng = Rng::new(7);
