@@ -49,7 +49,7 @@ impl Remainders {
     }
 }
 
-/// The bodies of a joint, and what its changes of their velocities write.
+/// The bodies of a joint, its remainders, and the count of faults.
 pub(crate) struct BodyPair<'a> {
     pub(crate) a: &'a mut SolverBody,
     pub(crate) b: &'a mut SolverBody,

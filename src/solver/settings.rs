@@ -78,7 +78,8 @@ pub struct SolverSettings {
     /// Stiffness in Hz, 1 to 1000, of joints that have no
     /// [softness of their own](crate::solver::JointDef::softness). A value above a quarter of the sub-step rate acts
     /// like a quarter of that rate. The stiffness of the anchors is doubled for a hinge, or a weld with rigid anchors,
-    /// that connects a body without any other joint to a body that is not dynamic: it disturbs no other joint.
+    /// that connects a body without any other joint to a body that is not dynamic. Such a joint disturbs no
+    /// other joint.
     pub joint_hertz: Fx,
     /// Damping ratio of joints, 0 to 100.
     pub joint_damping_ratio: Fx,

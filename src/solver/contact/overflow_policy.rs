@@ -1,6 +1,6 @@
 //! Overflow policies: how numbers are kept within their formats.
 //!
-//! [`Saturating`] saturates every sum, and counts a fault for each velocity or normal impulse that does not fit.
+//! [`Saturating`] saturates every sum, and counts a fault for each velocity or normal impulse that it clamps.
 //! [`Unchecked`] does neither: it records whether all numbers were within bounds in which no sum can overflow and no
 //! clamp can act. Nearly all contacts are within these bounds: they are neither fast nor deep, and their impulses are
 //! small. Most batches are solved with `Unchecked` first, and again with `Saturating` if a number was out of bounds.
@@ -79,7 +79,7 @@ pub(super) trait OverflowPolicy<L: Lanes<N>, const N: usize> {
     fn apply_again(&mut self, pair: &mut BodyPairW<L, N>, row: &Row<N>, lambda: L::Int);
 }
 
-/// Saturates every sum. Counts each velocity and each normal impulse that did not fit as a fault.
+/// Saturates every sum. Counts each velocity and each normal impulse that it clamps as a fault.
 pub(super) struct Saturating<'a, L: Lanes<N>, const N: usize> {
     faults: &'a mut Faults,
     /// The lanes whose faults are counted.

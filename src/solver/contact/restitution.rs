@@ -139,8 +139,8 @@ impl<const N: usize> Rebound<N> {
 /// W = sum P (v+ + drift + va) / 2 <= 0          P = L / D
 /// ```
 ///
-/// over its normal rows and its friction row, where `v+` is the velocity after the rebound. Tangential velocities are
-/// relative to a moving surface. A restitution above 1 is meant to do work, and is not limited.
+/// over its normal rows and its friction row, where `v+` is the velocity after the rebound. If a surface moves,
+/// tangential velocities are relative to it. A restitution above 1 is meant to do work, and is not limited.
 ///
 /// Newton's restitution gains energy where the rebounds of two points add up, and in a corner, where the rebound from
 /// one wall reverses the sliding along the other. `W` is convex in the share, so that it is at most the line from its

@@ -52,7 +52,7 @@ impl<const N: usize> Records<N> {
         self.wedged = [false; N];
     }
 
-    /// Puts a contact into a lane, the next one that is free.
+    /// Puts a contact into a lane. Lanes are filled in order.
     #[inline(always)]
     pub(super) fn take(&mut self, lane: usize, input: &Input) {
         self.len += 1;

@@ -1,6 +1,6 @@
 //! The rows on the angle of a batch of hinges: spring, motor and limits, in this order, with the equations of
 //! `joint/row.rs`. Beyond a limit, the speed of a motor is clamped to the speed at which the limit pushes the joint
-//! back.
+//! back, instead of 0.
 //!
 //! ```text
 //! vn = eB uB - eA uA,   w = massScale vn + push + impulseScale L,   L' = clamp(L - w, lo, hi),   d = L' - L

@@ -265,7 +265,7 @@ fn every_machine_solves_as_one_hinge_at_a_time() {
 /// Rotated lever ratios differ by a unit of 2^-24 from lever ratios that are computed again. With arms of up to 16
 /// radii of gyration on both sides the anchors start at less than 350 m/s. One iteration may leave 128 units of
 /// [`Speed`], 6.1e-5 m/s.
-/// 6.1e-5 m/s.
+#[test]
 fn a_point_is_solved_as_by_the_scalar_block() {
     let mut rng = Rng::new(2);
     let (mut worst, mut left) = (0, 0);
