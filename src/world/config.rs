@@ -12,15 +12,15 @@ use crate::solver::{ContactTuning, RATE_MAX, SUB_STEPS_MAX, SolverSettings, chec
 ///
 /// # Small bodies
 ///
-/// Contacts are springs that yield in proportion to `g / omega^2` for each body that they carry, independent of its
+/// Contacts are springs that yield in proportion to `g / hertz^2` for each body that they carry, independent of its
 /// size. With the default 30 Hz a stack of 8 boxes on the ground sinks by 19.6 mm: 2 % of a box of 1 m, but 20 % of one
-/// of 10 cm, and a stack of boxes of 1 cm collapses. A contact cannot be stiffer than an eighth of the sub-step rate, so
-/// smaller bodies need more sub-steps. [`Config::for_smallest`] sets both. With 60 ticks per second and 10 m/s² it
+/// of 10 cm, and a stack of boxes of 1 cm collapses. The stiffness in Hz is at most an eighth of the sub-step rate, so
+/// that smaller bodies need more sub-steps. [`Config::for_smallest`] sets both. With 60 ticks per second and 10 m/s² it
 /// gives:
 ///
 /// | smallest box | sub-steps | contact stiffness | speculative distance | 8 boxes sink by |
 /// |---|---|---|---|---|
-/// | 0.9 m and more | 4 (default) | 30 Hz (default) | 2 cm (default) | at most 2.5 % |
+/// | 0.9 m and more | 4 (default) | 30 Hz (default) | 1.8 to 2 cm (default) | at most 2.5 % |
 /// | 0.3 m | 7 | 52.5 Hz | 6 mm | 2.2 % |
 /// | 0.1 m | 12 | 90 Hz | 2 mm | 2.3 % |
 /// | 3 cm | 22 | 165 Hz | 1 mm | 2.3 % |
@@ -43,7 +43,7 @@ use crate::solver::{ContactTuning, RATE_MAX, SUB_STEPS_MAX, SolverSettings, chec
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Config {
-    /// Ticks per second, 10 to 1000. An integer, so that no time step is rounded.
+    /// Ticks per second, 10 to 1000.
     pub tick_rate: u32,
     /// Gravity in m/s², within ±100 000 on each axis.
     pub gravity: Vec2<Fx>,
@@ -151,8 +151,7 @@ impl Config {
         self
     }
 
-    /// The name of the first limit that differs in other settings. Limits bound memory, and are the same for the life
-    /// of a world.
+    /// The name of the first limit that differs in other settings. Limits bound memory.
     pub(crate) fn first_changed_limit(&self, other: &Config) -> Option<&'static str> {
         let limits = [
             (self.body_limit, other.body_limit, "body_limit"),

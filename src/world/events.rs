@@ -30,9 +30,9 @@ use crate::math::{Angle, Fx, Unit, Vec2};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct ContactEvent {
-    /// The shape in the smaller slot. Its handle is stale if the contact ended because the shape was removed.
+    /// The shape in the smaller slot. Its handle is stale if the contact ended because this shape was removed.
     pub shape_a: ShapeId,
-    /// The shape in the larger slot. Its handle is stale if the contact ended because the shape was removed.
+    /// The shape in the larger slot. Its handle is stale if the contact ended because this shape was removed.
     pub shape_b: ShapeId,
 }
 
@@ -99,8 +99,8 @@ impl HitEvent {
 /// events in that tick, each with its fraction, at any speed and with any [`Continuous`](crate::body::Continuous)
 /// setting. Within a tick a body is taken to move on a straight line from its old pose to its new one and to rotate
 /// evenly. Therefore a ball that hits a wall and returns within the tick has no events with the sensors that it met
-/// only on the way to the wall, and a shape that leaves a sensor and returns within the tick has no events. Overlaps of
-/// less than 0.05 mm may be missed between two ticks.
+/// only on the way to the wall, and a shape that leaves a sensor and returns within the tick has no events. An overlap
+/// of less than 0.05 mm that begins and ends within a tick may be missed.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::World};

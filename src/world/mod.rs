@@ -57,8 +57,8 @@ use state::State;
 
 /// A physics world.
 ///
-/// Its state is everything that influences the future, and is covered by [`World::state_hash`], [`World::save`] and
-/// [`World::to_bytes`]. The same edits in the same order give the same hash after every tick on every machine.
+/// Its state contains everything that influences the future, and is covered by [`World::state_hash`], [`World::save`]
+/// and [`World::to_bytes`]. The same edits in the same order give the same hash after every tick on every machine.
 ///
 /// ```
 /// use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, world::{Config, World}};
@@ -131,7 +131,7 @@ impl World {
     }
 
     /// Number of results of the solver that were clamped to their range since the world was created, plus one for every
-    /// tick in which [`Config::pair_limit`] left pairs out. Never decreases. A body that reaches
+    /// tick in which [`Config::pair_limit`] left pairs out. A body that reaches
     /// [`speed_max`](crate::solver::SolverSettings::speed_max) is not a fault.
     #[must_use]
     pub const fn faults(&self) -> u64 {
@@ -205,7 +205,8 @@ impl World {
     }
 
     /// Number of pairs of shapes that may collide and have overlapping fat boxes, at least one shape of each on an
-    /// active body. Together with the numbers of bodies and joints it determines the cost of the next tick.
+    /// active body: a dynamic body that is awake, or a kinematic body that has not been at rest for a whole tick.
+    /// [`World::work`] returns a bound on the cost of the next tick.
     #[must_use]
     pub fn pair_count(&self) -> usize {
         self.state.contacts.len()
@@ -236,12 +237,13 @@ impl World {
         self.scratch.shapes.broad_phase().inner_boxes()
     }
 
-    /// Drops and rebuilds every cache. Does not change any hash; the next tick only takes longer.
+    /// Drops and rebuilds every cache. Does not change any hash, but the next tick takes longer, and until then
+    /// [`World::events`], [`World::contacts`] and [`World::stats`] are empty.
     pub fn clear_scratch(&mut self) {
         self.set_broad_phase(self.scratch.shapes.broad_phase().kind());
     }
 
-    /// Sets the algorithm that finds overlapping fat boxes. Does not change any hash.
+    /// Sets the algorithm that finds overlapping fat boxes, and rebuilds every cache: see [`World::clear_scratch`].
     pub fn set_broad_phase(&mut self, kind: BroadPhaseKind) {
         self.scratch.rebuild(kind, &self.state);
     }
@@ -252,15 +254,15 @@ impl World {
         self.scratch.solver.threads.count()
     }
 
-    /// Sets the largest number of threads that share a tick, at least 1. Does not change any hash. Returns whether the
-    /// threads could be created; if not, nothing changes.
+    /// Sets the largest number of threads that share a tick; 0 counts as 1. Does not change any hash. Returns whether
+    /// the threads could be created; if not, nothing changes.
     ///
     /// The threads share a tick only if they make it shorter, which takes thousands of bodies and idle processors. The
-    /// world compares the times of ticks with all threads and with the calling thread alone, and uses the faster way.
-    /// It starts with all threads. A tick with fewer than 256 awake bodies always uses the calling thread alone.
-    /// Threads keep their processors busy until the tick is over, even while only one of them has work. Clones of the
-    /// world share its threads: a tick that runs during a tick of another clone uses its calling thread alone. Needs
-    /// the feature `parallel`.
+    /// world compares the times of ticks with all threads and with the calling thread alone, and uses the faster way,
+    /// except in a few trial ticks. It starts with all threads. A tick with fewer than 256 awake bodies always uses the
+    /// calling thread alone. Threads keep their processors busy until the tick is over, even while only one of them has
+    /// work. Clones of the world share its threads: a tick that runs during a tick of another clone uses its calling
+    /// thread alone. Needs the feature `parallel`.
     #[cfg(feature = "parallel")]
     pub fn set_threads(&mut self, count: usize) -> bool {
         self.start_threads(count, Sharing::Adaptive)

@@ -1,4 +1,4 @@
-//! The state of a world: everything that influences the future, and nothing else.
+//! The state of a world: everything that influences the future.
 
 use alloc::vec::Vec;
 
@@ -24,7 +24,7 @@ pub(crate) struct Island {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Reported {
     pub(crate) shapes: ContactEvent,
-    /// The shapes that are sensors and detect the other one; `None` if neither is a sensor.
+    /// The sensors of the pair: see [`State::sensor_of`].
     pub(crate) sensor: Option<Side>,
 }
 
@@ -36,8 +36,9 @@ pub(crate) enum Side {
     Both,
 }
 
-/// Everything that influences the future. Its encoding in files is derived. Snapshots and hashes take the state apart
-/// field by field, so that a new field does not compile until they contain it.
+/// Everything that influences the future, and the names and numbers that games store. Its encoding in files is derived.
+/// Snapshots and hashes take the state apart field by field, so that a new field does not compile until they contain
+/// it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
     pub(crate) config: Config,
@@ -129,7 +130,8 @@ impl State {
         self.bodies.at(self.shapes.at(shape).body().slot())
     }
 
-    /// The shapes of a pair that are sensors and detect the other one; `None` if neither is a sensor.
+    /// The sensors of a pair that may touch: the only one, or those of two that detect the other one. `None` if neither
+    /// shape is a sensor.
     pub(crate) fn sensor_of(&self, (a, b): Pair) -> Option<Side> {
         let (a, b) = (self.shapes.at(a), self.shapes.at(b));
         match (a.is_sensor(), b.is_sensor()) {

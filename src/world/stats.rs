@@ -64,8 +64,7 @@ pub struct StepStats {
     pub bodies: u32,
     /// Number of solved joints.
     pub joints: u32,
-    /// Number of pairs of shapes that may collide and have overlapping fat boxes, at least one shape of each on an
-    /// active body.
+    /// Number of pairs of shapes: see [`World::pair_count`](super::World::pair_count).
     pub pairs: u32,
     /// Number of pairs with contact points. Sensors do not count.
     pub contacts: u32,
@@ -76,10 +75,10 @@ pub struct StepStats {
     /// Number of contact points that had an impulse in the previous tick and are lost although their shapes still
     /// touch.
     pub points_lost: u32,
-    /// Number of polygon pairs that the cached separating axis of the previous tick still separates. Pairs of small
-    /// boxes are never among them.
+    /// Number of polygon pairs that the cached separating axis of the previous tick still separates. Depends on the
+    /// [`Backend`](super::Backend): SIMD backends do not use cached axes for most pairs of small boxes.
     pub axis_hits: u32,
-    /// Number of polygon pairs that needed a full separating axis test.
+    /// Number of polygon pairs that needed a full separating axis test. Depends on the [`Backend`](super::Backend).
     pub axis_searches: u32,
     /// Number of fast bodies that continuous collision has stopped; see [`crate::body::Continuous`].
     pub impacts: u32,

@@ -157,8 +157,7 @@ fn boxes_balls_and_hinges() -> World {
     world
 }
 
-/// The accumulated velocity change of the contacts equals the sum of their impulses, except for the rounding of about
-/// twenty changes per row.
+/// The accumulated velocity change of the contacts equals the sum of their impulses, except for rounding.
 #[test]
 fn contact_velocities_are_what_the_impulses_amount_to() {
     for (name, mut world) in [("mixed", boxes_balls_and_hinges()), ("polygons", hundred_polygons())] {
@@ -173,8 +172,8 @@ fn contact_velocities_are_what_the_impulses_amount_to() {
     }
 }
 
-/// A box that is locked along x is pushed along x by a ball that leans on it. The velocity that the lock removes again
-/// must not count as a missing velocity change.
+/// A ball hits a box that is locked along x. The velocity that the lock removes again must not count as a missing
+/// velocity change.
 #[test]
 fn contact_velocities_are_known_of_what_is_locked() {
     let mut world = World::default();
