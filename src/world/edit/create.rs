@@ -104,7 +104,8 @@ impl World {
     /// Attaches a shape to a body. Unless the body's mass was given, it is recomputed from all shapes.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, a value is out of range, or the world is full.
+    /// [`WorldError`] if the handle is stale, a value is out of range, the body rotates too fast for its new mass, or
+    /// the world is full.
     #[doc(alias = "collider")]
     #[doc(alias = "fixture")]
     pub fn add_shape(&mut self, body: BodyId, shape: &ShapeDef) -> Result<ShapeId, WorldError> {

@@ -31,7 +31,8 @@ impl World {
     /// Removes a shape. Unless the body's mass was given, it is recomputed from the remaining shapes.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, or the mass of a dynamic body would be out of range.
+    /// [`WorldError`] if the handle is stale, the mass of a dynamic body would be out of range, or the body rotates too
+    /// fast for its new mass.
     pub fn remove_shape(&mut self, id: ShapeId) -> Result<(), WorldError> {
         let shape = self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?;
         let body = shape.body();
@@ -46,7 +47,7 @@ impl World {
         let owner = self.state.bodies.redefine(body.slot());
         owner.shapes.retain(|other| *other != id);
         self.replace_mass(body.slot(), mass);
-        // The centre of mass has moved, which changes the rounding of the positions of all other shapes.
+        // The centre of mass may have moved, which changes the rounding of the positions of all other shapes.
         self.scratch.update_body(&self.state, body.slot());
         Ok(())
     }
@@ -73,7 +74,7 @@ impl World {
         }
     }
 
-    /// Ends the contacts of shapes that are about to be removed or changed. The next tick reports the ends.
+    /// Ends the contacts of shapes that are about to be removed, changed or disabled. The next tick reports the ends.
     pub(super) fn end_contacts(&mut self, ids: &[ShapeId]) {
         let mut slots: Vec<u32> = ids.iter().map(|id| id.slot()).collect();
         slots.sort_unstable();

@@ -1,13 +1,14 @@
 //! Explosions: impulses on all dynamic bodies near a point.
 //!
 //! ```text
-//! P = I(d) w n      w  width of the shape across n, as seen from the centre of the explosion
+//! P = I(d) w n      P  impulse on a shape at distance d
 //!                   I  impulse per metre: constant up to the radius, then falling linearly to 0 over the falloff
-//!                   n  unit vector away from the centre
+//!                   w  width of the shape across n
+//!                   n  unit vector away from the centre of the explosion
 //! ```
 //!
-//! This follows Box2D's `b2World_Explode`. A shape at distance `d` gets the impulse at its nearest point. A pressure
-//! wave in two dimensions would decay as `1 / d`. The constant core and the linear falloff are common in games.
+//! This follows Box2D's `b2World_Explode`. The impulse acts at the shape's point nearest to the centre, or at the
+//! shape's middle if the shape contains the centre.
 
 use alloc::vec::Vec;
 
@@ -25,7 +26,8 @@ const SHAPE_WORK: u64 = 2;
 
 impl World {
     /// Applies an impulse away from the explosion's centre to every dynamic body in reach, shape by shape in slot
-    /// order, and wakes the body. Sensors and disabled bodies are left out. Speeds are clamped to their range.
+    /// order, and wakes the body. Sensors, shapes outside of the explosion's mask and disabled bodies are left out.
+    /// Speeds are clamped to their range.
     ///
     /// # Errors
     /// [`WorldError::ExplosionOutOfRange`] if a value of the explosion is out of range,

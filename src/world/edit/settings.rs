@@ -16,8 +16,8 @@ impl World {
     /// Wakes all bodies if a setting that affects the balance of forces changes: gravity, the tick rate, sub-steps,
     /// iterations, the tuning of contacts and joints, and [`Config::sleeping`] when it is switched off. Impulses that
     /// contacts and joints keep for the next tick are converted to the new length of a sub-step, so that bodies at rest
-    /// stay at rest. If the speed limit is lowered, the next tick slows down the bodies that exceed it. A kinematic
-    /// body with a target still reaches it in the next tick, with the velocity that it was given.
+    /// stay at rest. If the speed limit is lowered, the next tick slows down the dynamic bodies that exceed it. A
+    /// kinematic body with a target still reaches it in the next tick, with the velocity that it was given.
     ///
     /// In a match over a network and in a recording the tick rate must stay the same.
     ///

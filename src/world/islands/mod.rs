@@ -6,9 +6,10 @@
 //! - when an edit applies a force or impulse to one of its bodies, or changes the velocity, pose or a property of one,
 //!   except for its user data and its name,
 //! - when a joint of one of its bodies is added, changed or removed,
-//! - when an edit adds, moves, changes or removes a shape whose fat box overlaps that of one of its bodies, except when
-//!   it spawns a dynamic body,
-//! - when an edit moves, enables or disables a body that is joined to one of its bodies, or changes its kind,
+//! - when an edit adds, moves, changes or removes a shape whose fat box overlaps that of one of its bodies, or enables,
+//!   disables or changes the kind of a body with such a shape, except when it spawns a dynamic body,
+//! - when an edit moves, enables or disables a body that is joined to one of its bodies, changes its kind, or sets a
+//!   kinematic body that is joined to one of its bodies in motion,
 //! - when gravity or another setting that affects the balance of forces changes,
 //! - when a fixed or kinematic body that it touches or is joined to is woken by an edit.
 //!

@@ -24,7 +24,7 @@ pub(crate) fn put_to_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) 
     put_sleepy_sets_to_sleep(state, scratch);
 }
 
-/// Unites the bodies of the awake set that contacts and joints of the last tick connect.
+/// Unites the bodies of the awake set that contacts and joints connect.
 pub(crate) fn unite_connected(state: &State, scratch: &mut Scratch) {
     let Scratch { awake, union, .. } = scratch;
     union.reset(awake.bodies(), state.bodies.slot_count());

@@ -50,8 +50,8 @@ pub(crate) fn contact_ended(state: &mut State, (a, b): Pair) {
     }
 }
 
-/// Wakes a body and every body with a shape whose fat box overlaps one of its own. To be called before and after a
-/// change of the body.
+/// Wakes a body and every body with a shape whose fat box overlaps one of its own. An edit that gives the body new fat
+/// boxes calls it before and after the change.
 pub(crate) fn wake_overlapping(state: &mut State, scratch: &mut Scratch, slot: u32) {
     wake_body(state, scratch, slot);
     for index in 0..state.bodies.at(slot).shapes().len() {

@@ -78,8 +78,8 @@ pub struct ContactForce {
 
 impl World {
     /// Returns the contacts of the last tick that had points, sorted by pair, as the narrow phase found them at the
-    /// start of the tick. Sensors have no manifolds. Manifolds are not part of the state: after a restore the result is
-    /// empty until the next tick. Contacts of a shape that is removed or replaced are dropped at once.
+    /// start of the tick. Sensors have no manifolds. Contacts between bodies that have fallen asleep, and contacts that
+    /// an edit ends, are left out. After a restore the result is empty until the next tick.
     #[doc(alias = "manifold")]
     pub fn contacts(&self) -> impl Iterator<Item = ContactView<'_>> {
         let output = self.scratch.contacts.output();
@@ -123,8 +123,7 @@ impl ContactView<'_> {
         })
     }
 
-    /// The colour of the solver's graph colouring that the contact had in the last tick. `None` if it was not solved,
-    /// as with a sensor.
+    /// The colour of the solver's graph colouring that the contact had in the last tick. `None` if it was not solved.
     #[must_use]
     pub fn solver_colour(&self) -> Option<SolverColour> {
         let touching = &self.world.scratch.contacts.output().touching;

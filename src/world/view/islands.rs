@@ -9,11 +9,11 @@ use crate::world::cache::UnionFind;
 use crate::world::islands::{unite, unite_touching};
 
 impl World {
-    /// Returns the sets of dynamic bodies that fall asleep and wake together: those connected by contacts and joints of
-    /// the last tick, and sleeping islands. The bodies of a set are in slot order, and the sets are ordered by their
-    /// first body.
+    /// Returns the sets of enabled dynamic bodies that fall asleep and wake together: those connected by contacts and
+    /// joints of the last tick, and sleeping islands. The bodies of a set are in slot order, and the sets are ordered by
+    /// their first body.
     ///
-    /// For tools: every call computes the sets again, in about the time of the sleep phase of a tick.
+    /// For tools: every call computes the sets again.
     #[must_use]
     pub fn islands(&self) -> Vec<Vec<BodyId>> {
         let state = &self.state;

@@ -56,7 +56,7 @@ impl World {
     /// Returns the distance in metres by which the anchors violate the joint: the distance of the anchors of a revolute
     /// joint or of a weld with rigid anchors, the offset across the axis of a prismatic or wheel joint, the deviation
     /// from the rod or the limits of a distance joint, the distance of the teeth of a gear or rack along the pitch
-    /// line, the length by which the rope of a pulley is too long. The error of a gear without a pitch point is an
+    /// line, the length by which the rope of a pulley is too short. The error of a gear without a pitch point is an
     /// angle in radians, in which one tooth is a full turn. Springs, motors and the limits of other kinds do not count.
     /// `None` for motor and filter joints.
     #[doc(alias = "separation")]
@@ -80,7 +80,8 @@ impl World {
         }
     }
 
-    /// Returns the largest [error](World::joint_error) of all enabled joints, in metres; 0 without joints.
+    /// Returns the largest [error](World::joint_error) of all enabled joints, in metres; 0 without joints. The error of
+    /// a gear without a pitch point, in radians, is compared as if it were in metres.
     #[must_use]
     pub fn widest_joint_gap(&self) -> Fx {
         let enabled = self.joints().filter(|(_, joint)| joint.def().enabled);
