@@ -53,8 +53,8 @@ pub(crate) fn fat_box(shape: &ShapeDef, body: &Body, config: &Config) -> Aabb {
     }
 }
 
-/// The fat box around `bounds` with a margin in metres. Its corners are multiples of 2^-22 m, so that a snapshot can
-/// store their distance from the body's centre in 32 bits.
+/// The fat box around `bounds` with a margin in metres. The coordinates of its corners are multiples of 2^-22 m, so
+/// that a snapshot can store each of them relative to the body's centre in 32 bits.
 pub(crate) fn fattened(bounds: Aabb, margin: Fx) -> Aabb {
     bounds.expanded(margin).rounded_out(FAT_GRID_SHIFT)
 }

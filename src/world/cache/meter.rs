@@ -1,7 +1,6 @@
 //! Work units: [`WorkMeter`] counts work whose amount is known only when it is done, up to a budget.
 
-/// Number of pairs per body up to which all pairs are assumed to be solved in SIMD batches of eight. A pile whose
-/// bodies do not overlap deeply has up to six pairs per body.
+/// Number of pairs per body up to which all pairs are assumed to be solved in SIMD batches of eight.
 const PAIRS_PER_BODY: u64 = 32;
 
 /// Additional cost of a pair beyond [`PAIRS_PER_BODY`], in ordinary pairs: measured on a thousand squares at the same
@@ -16,8 +15,8 @@ pub(crate) const NARROW_PHASE_WORK: u64 = 4;
 /// position.
 pub(crate) const NEW_PAIR_WORK: u64 = 8;
 
-/// Counts work units against a budget. Work beyond the budget is skipped. The meter is not part of the state. The state
-/// of a world whose meter is exhausted is wrong, and the caller that set the budget must discard it.
+/// Counts work units against a budget. Work beyond the budget may be skipped. The meter is not part of the state. The
+/// state of a world whose meter is exhausted may be wrong, and the caller that set the budget must discard it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WorkMeter {
     spent: u64,

@@ -6,12 +6,12 @@
 //!
 //! | owner | content | invalid when |
 //! |---|---|---|
-//! | [`ShapeCache`] | broad phases, poses, predicted motion | updated with every body and shape |
-//! | [`AwakeSet`] | slots of awake bodies and of their joints | something wakes, sleeps, is added or removed |
+//! | [`ShapeCache`] | broad phase, poses, predicted motion | updated with every body and shape |
+//! | [`AwakeSet`] | slots of awake bodies and of their joints | something wakes, sleeps, is added, changed or removed |
 //! | [`JointLinks`] | joints of each body | updated with every joint |
 //! | [`PairCache`] | which pairs may have changed, pairs kept apart by joints | see [`Changes`] |
 //! | [`ContactCache`] | manifolds, surfaces, cached separating axes | contacts are reordered, shapes redefined |
-//! | [`Solver`] | constraints of the last tick | never read before the next tick prepares it |
+//! | [`Solver`] | constraints of the last tick | every tick prepares it again |
 
 mod awake;
 mod changes;

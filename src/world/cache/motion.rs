@@ -25,7 +25,7 @@ pub(crate) type Travel = FixedI32<U24>;
 pub(crate) struct PredictedMotion {
     /// Centre of mass at the start of the tick.
     pub(crate) centre: Vec2<Fx>,
-    /// Displacement of the centre of mass: at most 52 m.
+    /// Displacement of the centre of mass: at most 52 m on each axis.
     pub(crate) shift: Vec2<Travel>,
     /// Rotation of the body, in radians.
     pub(crate) turn: Travel,
@@ -224,7 +224,7 @@ pub(crate) struct Margins {
     pub(crate) touching: Step,
     /// Distance in metres by which shapes approach each other in a tick at [`IMPACT_SPEED`].
     pub(crate) impact: Step,
-    /// Largest relative movement of two shapes at which a contact keeps its manifold, in metres.
+    /// Upper limit, for shapes of any size, of the relative movement at which a contact keeps its manifold, in metres.
     pub(crate) kept: Length,
 }
 

@@ -45,7 +45,7 @@ impl PoseRange<'_> {
         is_rotated || by != Vec2::ZERO
     }
 
-    /// Poses the shapes of a body again after it was translated but not rotated, as most bodies are that fall or rest.
+    /// Poses the shapes of a body again after it was translated but not rotated.
     pub(super) fn shift_body(&mut self, body: &Body, by: Vec2<Fx>) {
         for &id in body.shapes() {
             let index = self.index(id.slot());
@@ -55,7 +55,7 @@ impl PoseRange<'_> {
         }
     }
 
-    /// Poses the shapes of a body again after it was moved.
+    /// Poses the shapes of a body again after it was rotated, and possibly translated.
     pub(super) fn renew_body(&mut self, shapes: &Arena<Shape, ShapeId>, body: &Body) {
         let rotation = LazyCell::new(|| body.rotation());
         for &id in body.shapes() {

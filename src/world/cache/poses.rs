@@ -60,7 +60,7 @@ impl Extents {
 }
 
 impl Poses {
-    /// Poses the shapes of a body that was added, or whose shapes or mass were changed.
+    /// Poses the shapes of a body that was added, changed, or moved by an edit.
     pub(crate) fn pose_body(&mut self, state: &State, slot: u32) {
         self.shapes.resize_with(state.shapes.slot_count(), || None);
         self.boxes.resize(state.shapes.slot_count());

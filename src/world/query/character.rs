@@ -2,13 +2,13 @@
 //! meet.
 //!
 //! A move is a cast. At a hit the rest of the translation is deflected along the surface and cast again, until nothing
-//! is left. Casts are exact and stop 0.1 mm before they touch, so that a character never enters a shape. Planes, as in
-//! Box2D's `b2SolvePlanes`, are used only to push the character out of shapes that have moved over it: sliding along
-//! planes instead of casting would stop it at corners that it just misses.
+//! is left. Casts are exact and stop 0.1 mm before they touch, so that walking does not move a character into a shape.
+//! Planes, as in Box2D's `b2SolvePlanes`, push the character out of shapes that have moved over it. They do not replace
+//! the casts of a walk: sliding along planes would stop the character at corners that it just misses.
 //!
 //! Only the slope distinguishes ground from walls. On ground a character stands without sliding, and walks at the same
-//! speed as on level ground. Along any other surface it slides, but never upwards. The rest of a walk into a wall is
-//! dropped.
+//! speed as on level ground. Along any other surface it slides, but is not deflected upwards. The rest of a walk into a
+//! wall is dropped.
 //!
 //! Ground carries the character. A character stores the pose that the body of its ground had at its last move. The next
 //! move starts with the displacement of the point under its feet since then: exact for lifts, turning platforms and
@@ -87,8 +87,8 @@ impl Mover {
     }
 
     /// Sets the largest height in metres of steps that the character climbs without a jump, clamped to 0 to 100. A step
-    /// needs room for the character above it. A character with upright sides first rises above the step, by up to the
-    /// character's displacement in a tick, and then moves onto the step.
+    /// needs room for the character above it. A character with upright sides rises in each tick by at most its
+    /// displacement in that tick, until it is above the step, and then moves onto the step.
     #[must_use]
     pub fn step_height(mut self, height: Fx) -> Self {
         self.step_height = height.clamp(Fx::ZERO, HEIGHT_MAX);
@@ -96,8 +96,8 @@ impl Mover {
     }
 
     /// Sets the distance in metres by which the ground may fall within a tick while the character still follows it,
-    /// clamped to 0 to 100. It should be at least the distance per tick times the steepest slope, and at least the
-    /// height of the steps that the character walks down.
+    /// clamped to 0 to 100. It should be at least the distance per tick times the tangent of the steepest slope, and at
+    /// least the height of the steps that the character walks down.
     #[must_use]
     pub fn snap_distance(mut self, distance: Fx) -> Self {
         self.snap_distance = distance.clamp(Fx::ZERO, HEIGHT_MAX);

@@ -2,9 +2,10 @@
 //! and allocates nothing except its list of results. Casts that start in contact with more than 3 shapes, and moves of
 //! characters, may allocate temporary lists as well.
 //!
-//! The order of results is part of the contract. Along a ray or a cast, results are ordered by their exact fraction
-//! before rounding, so that the nearer of two hits comes first on a ray of any length, and then by slot. All other
-//! results are in slot order.
+//! The order of results is part of the contract. Along a ray or a cast without rotation, results are ordered by their
+//! exact fraction before rounding, so that the nearer of two hits comes first on a ray of any length, and then by slot.
+//! Along a cast that turns, they are ordered by their rounded fraction and then by slot. Lists of shapes and of planes
+//! near a place are in slot order.
 
 mod cast;
 mod character;

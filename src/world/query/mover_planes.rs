@@ -4,10 +4,10 @@
 //! minimise |x - target|²   subject to   s_i + n_i . x >= 0
 //! ```
 //!
-//! In two dimensions this takes few divisions. A plane with a limited push is soft: the mover may enter it. If there
-//! are soft planes, or no point is outside of all planes, the planes push along their normals in turn until nothing
-//! moves any more. A later push of a plane may reduce its accumulated push, but not below 0 (C. Hildreth, "A Quadratic
-//! Programming Procedure", 1957), as in Box2D v3's `b2SolvePlanes`.
+//! for planes with separations `s_i` and normals `n_i`. A plane with a limited push is soft: the mover may enter it. If
+//! there are soft planes, or no point is outside of all planes, the planes push along their normals in turn until the
+//! pushes hardly change. A later push of a plane may reduce its accumulated push, but not below 0 (C. Hildreth, "A
+//! Quadratic Programming Procedure", 1957), as in Box2D v3's `b2SolvePlanes`.
 
 use alloc::vec::Vec;
 

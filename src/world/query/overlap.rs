@@ -73,7 +73,7 @@ impl World {
 
     /// Returns the shape nearest to a point, at most `within` metres away, and the nearest points: A is the point of
     /// the query, B is on the shape. A point inside a shape has a negative distance from it. `None` if `within` is
-    /// negative; [`Fx::MAX`] finds every shape.
+    /// negative. With [`Fx::MAX`] no shape is too far away.
     #[must_use]
     #[doc(alias = "nearest")]
     pub fn closest(
@@ -104,8 +104,8 @@ impl World {
         closest
     }
 
-    /// Returns the distance between two shapes and their nearest points. `None` if one of them was removed or is
-    /// disabled.
+    /// Returns the distance between two shapes and their nearest points. `None` if one of them was removed or its body
+    /// is disabled.
     #[must_use]
     pub fn distance(&self, a: ShapeId, b: ShapeId) -> Option<ClosestPoints> {
         (self.is_present(a) && self.is_present(b)).then_some(())?;
@@ -116,7 +116,7 @@ impl World {
     }
 
     /// Returns the distance between a probe and a shape and their nearest points, A on the probe and B on the shape.
-    /// `None` if the shape was removed or is disabled.
+    /// `None` if the shape was removed or its body is disabled.
     #[must_use]
     pub fn probe_distance(&self, probe: &Probe, shape: ShapeId) -> Option<ClosestPoints> {
         self.is_present(shape).then_some(())?;

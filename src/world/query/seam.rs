@@ -50,9 +50,9 @@ impl Rest {
     const SKIN_MAX: Fx = SKIN.saturating_add(SKIN_TOLERANCE);
 
     /// Distance in metres by which a cast along a translation approaches a surface, or `None` if it moves into the
-    /// surface. A cast slides along a surface that it approaches by at most half a millimetre per metre: the bodies of
-    /// a pile are parallel to within 0.1 mm per metre. The distance includes 1 µm per metre for the next tile, because
-    /// the sides of rotated tiles are parallel to within 0.5 µm per metre.
+    /// surface. A cast slides along a surface that it approaches by at most half a millimetre per metre and at most
+    /// `approach_max`: the bodies of a pile are parallel to within 0.1 mm per metre. The distance includes 1 µm per
+    /// metre for the next tile, because the sides of rotated tiles are parallel to within 0.5 µm per metre.
     fn approach(self, normal: Vec2<Unit>, translation: Vec2<Fx>) -> Option<Fx> {
         let length = translation.length();
         let approach = normal.widen().dot(translation).saturating_neg().max(Fx::ZERO);

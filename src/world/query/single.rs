@@ -80,7 +80,7 @@ pub enum TimeOfImpact {
 
 impl World {
     /// Returns a shape of the world as a probe at its current pose, for queries of that shape alone. `None` if it was
-    /// removed or is disabled.
+    /// removed or its body is disabled.
     ///
     /// ```
     /// use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};

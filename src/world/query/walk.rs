@@ -14,7 +14,8 @@ use crate::fx;
 use crate::math::{Fx, Rot, Unit, Vec2};
 use crate::world::World;
 
-/// Largest number of deflections in a tick, and of attempts to push a character out of overlaps.
+/// Largest number of casts in a slide or on the way down to the ground, and of attempts to push a character out of
+/// overlaps.
 const TURNS_MAX: u32 = 8;
 
 /// Length in metres below which the rest of a translation is dropped.

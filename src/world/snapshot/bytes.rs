@@ -99,11 +99,12 @@ impl World {
         state_to_bytes(self.state.get())
     }
 
-    /// Returns the world that [`World::to_bytes`] has written. Safe for untrusted bytes: the memory used is bounded by
-    /// their number, and a state that breaks an invariant is refused.
+    /// Returns the world that [`World::to_bytes`] has written. Safe for untrusted bytes: the memory used is limited,
+    /// and a state that breaks an invariant is refused.
     ///
     /// # Errors
-    /// [`SnapshotError`] for any bytes that [`World::to_bytes`] cannot have written.
+    /// [`SnapshotError`] if the bytes are damaged, were made by an engine with another format or other semantics, or
+    /// contain a state that breaks an invariant.
     #[doc(alias = "deserialize")]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, SnapshotError> {
         let opened = ENVELOPE.open(bytes)?;

@@ -56,7 +56,8 @@ impl fmt::Display for Section {
     }
 }
 
-/// The digests of a world's sections, in order. Two worlds that differ have a section whose digests differ.
+/// The digests of a world's sections, in order. Two worlds that differ have a section whose digests differ, except for
+/// collisions of the hash function.
 ///
 /// ```
 /// use lockstep2d::world::{World, WorldDigest};

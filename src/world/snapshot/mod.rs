@@ -1,10 +1,12 @@
 //! Copies of the state: in memory for rollback, as bytes for files and networks, as digests for comparison, and as a
 //! readable view for reports.
 //!
-//! A snapshot has two parts. Data that every tick changes (poses, velocities, fat boxes, impulses) is packed into
-//! buffers, whose layout is described at the top of `bodies.rs` and `constraints.rs`. All other data is copied in pages
-//! of 32 slots, which snapshots share as long as nothing in them changes (`body/arena/pages.rs`). Digests are taken
-//! over the same bytes, so that hashing a saved state costs no more than reading it once.
+//! Data that every tick changes (poses, velocities, fat boxes, impulses) is packed into buffers, whose layout is
+//! described at the top of `bodies.rs` and `constraints.rs`. The other data of bodies, shapes, joints and islands is
+//! copied in pages of 32 slots, which snapshots share as long as nothing in them changes (`body/arena/pages.rs`).
+//! Sleeping contacts are packed and shared as a whole (`sleeping_contacts.rs`). A snapshot stores its digests. Those of
+//! the buffers are computed when the buffers are written, those of pages and sleeping contacts once for all snapshots
+//! that share them.
 
 mod bodies;
 mod bytes;

@@ -30,11 +30,11 @@ pub(super) struct Stale {
 
 impl World {
     /// Restores a saved state, also one of another world. The following ticks are bit-identical to those that followed
-    /// the save. [`World::contacts`] and [`World::events`] are empty until the next tick.
+    /// the save. [`World::contacts`], [`World::events`] and [`World::stats`] are empty until the next tick.
     ///
-    /// Costs a fraction of a tick. Data that every tick changes is copied, and the world coordinates of shapes that have
-    /// moved since the save are computed again. Definitions that have changed since the save are copied in pages of 32
-    /// slots.
+    /// Costs a fraction of a tick. Data that every tick changes is copied, and the world coordinates of shapes that
+    /// have moved since the save are computed again. Definitions that have changed since the save are copied in pages
+    /// of 32 slots.
     #[doc(alias = "rollback")]
     #[doc(alias = "load")]
     pub fn restore(&mut self, snapshot: &Snapshot) {

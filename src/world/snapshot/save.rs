@@ -41,8 +41,8 @@ impl World {
         self.state.set_digest(snapshot.digest());
     }
 
-    /// Returns the hash of everything that influences the future. Costs about as much as [`World::save_into`], or
-    /// nothing if the world has not changed since it was last hashed or saved.
+    /// Returns the hash of the state, which contains everything that influences the future. Costs about as much as
+    /// [`World::save`], or nothing if the world has not changed since it was last hashed or saved.
     #[must_use]
     #[doc(alias = "checksum")]
     pub fn state_hash(&self) -> StateHash {

@@ -1,10 +1,10 @@
 //! Areas: the effects of sensors with an [`Area`] on the bodies in them, for one tick.
 //!
 //! Forces are computed once per tick. With `s` sub-steps, the mean of the times at which the sub-steps begin is a
-//! fraction `(s - 1) / 2 s` of the tick after its start. Forces are computed at the poses that the velocities predict
-//! for that time. With forces at the poses at the start of the tick, a spring such as a floating box would gain `h^2
-//! omega^2 (s - 1) / 2 s` of its energy in each tick, because the sub-steps move it by less than the symplectic Euler
-//! method does.
+//! fraction `(s - 1) / (2 s)` of the tick after its start. Forces are computed at the poses that the velocities predict
+//! for that time. With forces at the poses at the start of a tick of `h` seconds, a spring of angular frequency
+//! `omega`, such as a floating box, would gain `h^2 omega^2 (s - 1) / (2 s)` of its energy in each tick, because the
+//! sub-steps move it by less than the symplectic Euler method does.
 
 use crate::body::{Area, Attraction, Body, Falloff, Geometry, Handle, Shape, area_of};
 use crate::collision::{Pair, RelativePose, Ring, SupportShape, overlap};

@@ -197,7 +197,7 @@ fn first_impact(
         } else {
             shapes.broad_phase().each_fixed_overlap(area, visit);
         }
-        // Counted after the search for this shape. An exhausted meter need not end the search, because the budget
+        // Counted after the search for this shape. An exhausted meter need not end that search, because the budget
         // already covers comparing all shapes of the world.
         meter.spend(1 + visited / VISITS_PER_WORK);
     }

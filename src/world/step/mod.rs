@@ -35,8 +35,8 @@ impl World {
         }
     }
 
-    /// [`World::step`] with an observer that is called at the beginning of each phase, for profiles. The
-    /// caller reads the clock.
+    /// [`World::step`] with an observer that is called at the beginning of each phase, for profiles. The caller reads
+    /// the clock. Such a tick adds nothing to [`World::phase_digests`].
     ///
     /// ```
     /// # use lockstep2d::world::World;

@@ -11,8 +11,8 @@ use crate::world::state::State;
 use crate::world::stats::Phase;
 
 impl World {
-    /// Starts to record a digest after every phase of every tick, and discards digests recorded earlier. A tick then
-    /// takes several times as long. Recording does not change the simulation.
+    /// Starts to record a digest after every phase of every [`World::step`], and discards digests recorded earlier. A
+    /// tick then takes several times as long. Recording does not change the simulation.
     pub fn log_phases(&mut self) {
         self.phases = Some(PhaseLog::default());
     }
@@ -22,8 +22,8 @@ impl World {
         self.phases = None;
     }
 
-    /// Returns the digests of every tick since [`World::log_phases`], in order: eight for each tick, the first one at
-    /// the beginning of the tick. Empty if nothing is recorded.
+    /// Returns the digests of every [`World::step`] since [`World::log_phases`], in order: eight for each tick, the
+    /// first one at the beginning of the tick. Empty if nothing is recorded.
     ///
     /// ```
     /// # use lockstep2d::world::{Phase, World};
@@ -39,8 +39,8 @@ impl World {
         self.phases.as_ref().map_or(&[], |log| &log.digests)
     }
 
-    /// Returns the state at the start of the last tick since [`World::log_phases`], with all edits before that tick.
-    /// `None` before the first tick, and if nothing is recorded.
+    /// Returns the state at the start of the last [`World::step`] since [`World::log_phases`], with all edits before
+    /// that tick. `None` before the first such tick, and if nothing is recorded.
     #[must_use]
     pub fn step_start(&self) -> Option<&Snapshot> {
         self.phases.as_ref()?.start.as_ref()
