@@ -61,7 +61,8 @@ impl core::error::Error for DecodeError {}
 /// Appends the canonical encoding of `value` to `bytes`.
 ///
 /// # Panics
-/// If the type's `Serialize` returns an error, which derived implementations never do.
+/// If the type's `Serialize` returns an error, or does not announce the length of a list or map (a derived
+/// implementation with `#[serde(flatten)]` does not).
 pub fn encode_into<T: Serialize + ?Sized>(value: &T, bytes: &mut Vec<u8>) {
     struct Append<'a>(&'a mut Vec<u8>);
     impl bincode::enc::write::Writer for Append<'_> {
@@ -75,6 +76,9 @@ pub fn encode_into<T: Serialize + ?Sized>(value: &T, bytes: &mut Vec<u8>) {
 }
 
 /// Returns the canonical encoding of `value`.
+///
+/// # Panics
+/// As [`encode_into`].
 #[must_use]
 pub fn encode<T: Serialize + ?Sized>(value: &T) -> Vec<u8> {
     // Most values are short: this capacity saves them the reallocations of a growing vector.
@@ -87,8 +91,8 @@ pub fn encode<T: Serialize + ?Sized>(value: &T) -> Vec<u8> {
 pub const DECODE_BYTES_MAX: usize = 256 << 20;
 
 /// Slack of the decoder's limit in bytes: the size of the largest number, a `u128`. If the announced length of a string
-/// exceeds the bytes given by at most the slack, the error is that bytes are missing. If the length exceeds them by
-/// more, the error is that it is too large.
+/// exceeds the bytes that are left by at most the slack, the error is that bytes are missing. If the length exceeds
+/// them by more, the error is that it is too large.
 const SLACK: usize = 16;
 
 /// Decodes a value whose canonical encoding is all of `bytes`.

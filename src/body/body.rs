@@ -16,8 +16,8 @@ use crate::math::{
     widen,
 };
 
-/// Limit in m/s of each component of the linear velocity, and of `u = k w`. The difference of two such components fits
-/// [`Speed`].
+/// Limit in m/s of each component of the linear velocity, and of `u = k w`, the radius of gyration times the angular
+/// velocity. The difference of two such components fits [`Speed`].
 pub(crate) const SPEED_MAX: Speed = Speed::lit("511");
 
 /// Centre of mass in the world, and rotation.
@@ -280,7 +280,8 @@ impl Body {
         self.spin = if self.turns() { narrow(fx_mul(omega, self.mass.gyration)) } else { Speed::ZERO };
     }
 
-    /// Changes the mass. Keeps the pose, the angular velocity and the velocity of every material point.
+    /// Changes the mass. Keeps the origin, the rotation, the angular velocity and the velocity of every material point,
+    /// unless a speed would exceed [`SPEED_MAX`].
     pub(crate) fn set_mass(&mut self, mass: MassProperties) {
         let (position, angle, omega) = (self.position(), self.angle, self.angular_velocity());
         let old_centre = self.centre;
@@ -319,7 +320,7 @@ impl Body {
         }
     }
 
-    /// Sets the velocity to zero.
+    /// Sets the linear and the angular velocity to zero.
     pub(crate) fn stop(&mut self) {
         self.velocity = Vec2::ZERO;
         self.spin = Speed::ZERO;

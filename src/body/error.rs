@@ -27,14 +27,14 @@ pub enum GeometryError {
     },
     /// Two neighbouring vertices are closer than 0.5 mm.
     ShortEdge {
-        /// The first of the two vertices.
+        /// Index of the first of the two vertices.
         vertex: u64,
     },
     /// The outline is convex, but its vertices are in clockwise order.
     Clockwise,
     /// The outline is concave, collinear, or crosses itself.
     NotConvex {
-        /// First vertex of an edge that has another vertex on its outer side or on its line.
+        /// Index of the vertex at which an edge starts that has another vertex on its outer side or on its line.
         vertex: u64,
     },
     /// The chain has fewer than 2 points (3 if it is closed), or more than 4096 links.
@@ -186,7 +186,8 @@ pub enum WorldError {
         /// Largest value allowed.
         max: Fx,
     },
-    /// The mass of a dynamic body is not within 10 mg to 2^30 kg. A mass computed from shapes may also be 0.
+    /// The mass of a dynamic body is not within 10 mg to 2^30 kg. A body whose mass is computed from its shapes may
+    /// also have a mass of 0, which [`MassProperties::of_shapes`](super::MassProperties::of_shapes) rejects.
     MassOutOfRange {
         /// The mass in kg.
         value: Fx,

@@ -5,10 +5,9 @@ use serde::{Deserialize, Serialize};
 /// Collision filter. Two shapes in the same non-zero group always collide if the group is positive, and never if it is
 /// negative. Otherwise they collide if each shape's mask includes at least one of the other shape's categories.
 ///
-/// The broad phase does not search for pairs within a negative group from -1 to -32 768. It also does not search for
-/// pairs of shapes without a group that belong to a single category, the same for both, and exclude this category from
-/// their masks. Use such a group or category for a large set of shapes that do not collide with each other: bullets,
-/// debris, nets or ragdolls.
+/// The tree of the broad phase skips most pairs within a negative group from -1 to -32 768. It also skips most pairs of
+/// shapes without a group that belong to the same single category and exclude this category from their masks. Use such
+/// a group or category for a large set of shapes that do not collide with each other, such as bullets or debris.
 ///
 /// ```
 /// # use lockstep2d::body::Filter;

@@ -83,9 +83,9 @@ pub struct MassProperties {
     pub(crate) mass: Fx,
     /// Centre of mass in the body's frame.
     pub(crate) centre: Vec2<Fx>,
-    /// Radius of gyration in metres. An arbitrary positive length for a fixed or kinematic body.
+    /// Radius of gyration in metres. An arbitrary positive length if the mass is 0.
     pub(crate) gyration: Fx,
-    /// `1 / gyration`.
+    /// `1 / gyration`; 0 if the rotation is locked.
     pub(crate) inverse_gyration: Reciprocal,
 }
 

@@ -85,7 +85,7 @@ impl Polygon {
     /// Creates the convex hull of points. Points inside it or on its edges are left out.
     ///
     /// # Errors
-    /// If a point is out of range, or the hull has no area or more than 8 vertices.
+    /// If a point is out of range, or the hull has no area, more than 8 vertices or an edge shorter than 0.5 mm.
     pub fn hull(points: &[Vec2<Fx>]) -> Result<Self, GeometryError> {
         for &point in points {
             check_vertex(point)?;
@@ -143,7 +143,7 @@ impl Polygon {
     /// Returns the polygon rotated about the shape's centre.
     ///
     /// # Errors
-    /// If a vertex leaves the range.
+    /// If the outline leaves the range, or is not a valid polygon after its vertices have been rounded.
     pub fn rotated(&self, angle: Angle) -> Result<Self, GeometryError> {
         let rotation = Rot::from_angle(angle);
         self.mapped(|vertex| rotation.apply_wide(vertex))
@@ -152,7 +152,7 @@ impl Polygon {
     /// Returns the polygon translated relative to the shape's centre, in metres.
     ///
     /// # Errors
-    /// If a vertex leaves the range.
+    /// If the outline leaves the range.
     pub fn translated(&self, by: Vec2<Fx>) -> Result<Self, GeometryError> {
         self.mapped(|vertex| vertex + by)
     }

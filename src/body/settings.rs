@@ -96,14 +96,14 @@ pub struct BodySettings {
     /// Whether the body may fall asleep.
     pub may_sleep: bool,
     /// Speed in m/s below which the body becomes ready to sleep, 0 to 400. The same limit applies to twice the angular
-    /// velocity times the radius of gyration, which is about the speed of the body's outline. A body that is slower for
-    /// half a second falls asleep: with the default of 0.05 m/s, an acceleration below 0.1 m/s² does not move a body
-    /// from rest.
+    /// velocity times the radius of gyration, which is about the speed of the body's outline. A body falls asleep when
+    /// it and all dynamic bodies connected to it by contacts or joints have been slower for half a second: with the
+    /// default of 0.05 m/s, an acceleration below 0.1 m/s² does not move a body from rest.
     pub sleep_speed: Fx,
 }
 
 impl Default for BodySettings {
-    /// No damping, no locks, swept against fixed bodies, sleeps below 0.05 m/s.
+    /// No damping, a gravity scale of 1, no locks, swept against fixed bodies, sleeps below 0.05 m/s.
     fn default() -> Self {
         Self::new()
     }

@@ -15,8 +15,8 @@ use super::shape_fields::ShapeFields;
 use crate::fx;
 use crate::math::{Aabb, Angle, Fx, Vec2};
 
-/// Largest world coordinate in metres, on each axis and in both directions, so that sums of a few coordinates cannot
-/// overflow.
+/// Largest world coordinate in metres, on each axis and in both directions: half of what [`Fx`] can store, so that the
+/// sum of a coordinate and a smaller length cannot overflow.
 pub const WORLD_EXTENT_MAX: Fx = fx!(1073741824);
 
 /// Largest distance in metres of a shape or a joint anchor from the origin of a movable body, on each axis of the

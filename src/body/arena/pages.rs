@@ -2,7 +2,8 @@
 //! While no slot of an arena changes, snapshots share the whole arena through one pointer.
 //!
 //! A copied value leaves out the fields that every step changes (velocities, impulses); snapshots store those
-//! separately. A world in which no value is inserted, removed or redefined therefore copies no page at all.
+//! separately. After its first snapshot, a world in which no value is inserted, removed or redefined therefore copies
+//! no page.
 
 use alloc::boxed::Box;
 use alloc::sync::Arc;
@@ -42,7 +43,7 @@ struct Whole<T> {
 }
 
 /// Copies of the pages, of the vacancies and of the whole arena. A cell is empty if its part of the arena has changed
-/// since the last copy. A cache, not part of the state.
+/// since the last copy, or was never copied. A cache, not part of the state.
 #[derive(Debug)]
 pub(super) struct Kept<T> {
     pages: Vec<OnceBox<Arc<Page<T>>>>,
