@@ -15,7 +15,7 @@ pub(crate) type Pair = (u32, u32);
 pub(crate) struct Contact {
     /// Shape slots, the smaller first. Contacts are sorted by this key.
     pub(crate) shapes: Pair,
-    /// Whether the shapes touch, as last reported by the contact events.
+    /// Whether the shapes touched in the last tick or, if one is a sensor, overlapped at its end.
     pub(crate) touching: bool,
     /// Whether one shape is a one-way platform that lets the other pass: see `one_way.rs`.
     pub(crate) passing: bool,
@@ -23,7 +23,8 @@ pub(crate) struct Contact {
     pub(crate) count: u8,
     pub(crate) points: [PointImpulse; 2],
     pub(crate) kept: KeptManifold,
-    /// Accumulated angular impulse of rolling resistance, times `(mA + mB) / s`: see `solver/contact/rolling.rs`.
+    /// Accumulated angular impulse of rolling resistance, times `(mA + mB) / s`, with the inverse masses `mA` and `mB`
+    /// and the scale `s` of `solver/contact/rolling.rs`.
     pub(crate) rolling: Speed,
 }
 
@@ -31,7 +32,8 @@ pub(crate) struct Contact {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct PointImpulse {
     pub(crate) feature: u16,
-    /// Normal impulse times `mA + mB`: `p = L / D` of `solver/row.rs`. It does not depend on the lever arms.
+    /// Normal impulse times the sum of the inverse masses `mA + mB`: `p = L / D` of `solver/row.rs`. It does not depend
+    /// on the lever arms.
     pub(crate) normal: Speed,
     /// Tangent impulse with the same scale: this point's share of the total friction of both points.
     pub(crate) tangent: Speed,

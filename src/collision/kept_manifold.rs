@@ -18,7 +18,7 @@ use crate::math::{Angle, Fx, Length, Step, TAU, Unit, Vec2, round_shift, saturat
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct KeptManifold {
     /// Contact normal; zero if there is no manifold, or if the manifold cannot be kept because it belongs to a time of
-    /// impact or because a shape has changed.
+    /// impact or because the shapes or the centre of mass of a body have changed.
     pub(crate) normal: Vec2<Unit>,
     /// Vector from A's centre of mass to the first point.
     pub(crate) arm_a: Vec2<Length>,
@@ -244,7 +244,8 @@ mod tests {
     }
 
     impl Boxes {
-        /// A box with an offset of up to 3 m on top of another one, up to 5 mm deep.
+        /// Two boxes, one on top of the other and up to 5 mm deep in it. Each is up to 3 m from its body's centre of
+        /// mass on each axis.
         fn random(rng: &mut Rng) -> Self {
             let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));
             let mut offset = || Vec2::new(rng.range(fx!(-3), fx!(3)), rng.range(fx!(-3), fx!(3)));

@@ -103,8 +103,8 @@ impl Aabb {
         Aabb::new(self.lower - margin, self.upper + margin)
     }
 
-    /// Like [`Aabb::expanded`], for a box and a margin within the world: their sum cannot overflow, so it is not
-    /// saturated.
+    /// Like [`Aabb::expanded`], but not saturated: for a box within the world and a margin that is so much smaller than
+    /// the world that their sum cannot overflow.
     #[inline]
     #[must_use]
     pub(crate) fn expanded_nearby(self, margin: Fx) -> Self {

@@ -10,7 +10,7 @@
 use fixed::types::extra::{LeEqU32, U18, U20, U21, U22, U24, U26, U27, U30, U32};
 use fixed::{FixedI32, FixedI64};
 
-/// World position in metres and every public scalar: ±2.1e9, resolution 0.23 nm.
+/// World position in metres, and most scalars of the public interface: ±2.1e9, resolution 0.23 nm.
 pub type Fx = FixedI64<U32>;
 /// A vertex relative to its shape's centre, or a lever arm, in metres: ±512, resolution 0.24 µm.
 pub type Length = FixedI32<U22>;
@@ -28,7 +28,7 @@ pub type Unit = FixedI32<U30>;
 pub type Ratio = FixedI32<U24>;
 /// Rate at which a constraint error is turned into speed, in 1/s: ±8192, resolution 3.8e-6.
 pub type Rate = FixedI32<U18>;
-/// Friction limit of a tangent row per unit of the normal impulse, `mu Dt / Dn`: ±2048, resolution 9.5e-7.
+/// Friction limit of a tangent row per unit of the normal impulse: ±2048, resolution 9.5e-7.
 pub type FrictionRatio = FixedI32<U20>;
 
 /// `x / 2^shift`, rounded to nearest, ties towards +infinity. `shift` may be 0.

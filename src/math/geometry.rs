@@ -1,9 +1,9 @@
 //! Exact planar predicates: orientation, point in polygon, segment intersection.
 //!
-//! Every predicate uses the sign of `(b - a) x (c - a)`, computed without rounding for any world coordinates, so
-//! results for neighbouring inputs never contradict each other. J. R. Shewchuk, "Adaptive Precision Floating-Point
-//! Arithmetic and Fast Robust Geometric Predicates", 1997, describes how rounded predicates fail. Only returned points
-//! are rounded: once, to nearest, ties towards +infinity.
+//! Every predicate uses the signs of cross products of differences, such as `(b - a) x (c - a)`. They are computed
+//! without rounding for any world coordinates, so results for neighbouring inputs never contradict each other. J. R.
+//! Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997, describes how
+//! rounded predicates fail. Only returned points are rounded: once, to nearest, ties towards +infinity.
 
 use super::formats::Fx;
 use super::vec2::Vec2;

@@ -1,8 +1,8 @@
-//! `1 / x` with 31 significant bits for any size of `x`.
+//! `1 / x` with 31 significant bits, for `x` from 2^-30 to 2^30.
 //!
-//! In a format with a fixed binary point, the reciprocal of a 500 m radius would have 15 significant bits, and the
-//! reciprocal of a 2 mm radius would overflow. A mantissa and a shift cover both, and a multiplication by them is one
-//! widening 32-bit product on any machine.
+//! In the format of [`Ratio`](super::formats::Ratio), the reciprocal of a radius of 500 m would have 15 significant
+//! bits, and the reciprocal of a radius of 2 mm would overflow. A mantissa and a shift cover both, and a multiplication
+//! by them is one widening 32-bit product on any machine.
 
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
@@ -24,7 +24,7 @@ use super::formats::{Fx, div_round, round_shift, round_shift_wide, saturate, sat
 pub struct Reciprocal {
     /// Mantissa: 0, or 2^30 to 2^31 - 1.
     mantissa: i32,
-    /// Shift: 0 to 63.
+    /// Shift: 0 to 60.
     shift: u32,
 }
 
@@ -78,7 +78,7 @@ impl Reciprocal {
         Fx::from_bits(saturate_wide(rounded))
     }
 
-    /// Returns the mantissa, 0 or 2^30 to 2^31 - 1, and the shift, 0 to 63: the reciprocal is `mantissa / 2^shift`.
+    /// Returns the mantissa, 0 or 2^30 to 2^31 - 1, and the shift, 0 to 60: the reciprocal is `mantissa / 2^shift`.
     #[inline]
     #[expect(clippy::cast_possible_wrap, reason = "at most 63")]
     pub(crate) const fn parts(self) -> (i32, i32) {

@@ -37,7 +37,7 @@ pub(crate) struct Threads {
 pub(crate) enum Sharing {
     /// Ticks run on one thread or on all, whichever took less time in earlier ticks, except for a few trials.
     Adaptive,
-    /// The threads share every tick.
+    /// The threads share every tick with at least [`BODIES_MIN`] active bodies.
     Always,
 }
 

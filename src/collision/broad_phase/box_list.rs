@@ -1,4 +1,4 @@
-//! Linear list of boxes by slot: brute force, used as the test oracle of the faster structures.
+//! Linear list of boxes by slot: the storage of sweep and prune, and the brute-force oracle of the faster structures.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;

@@ -139,7 +139,7 @@ impl Facing {
     }
 
     /// Contact with a circle about the origin, if its centre is beside the link, in the region of the vertex at which
-    /// the link starts, or beyond a free end.
+    /// the link starts, beyond a free end, or beyond a concave vertex within the margin.
     pub(crate) fn collide_circle(&self, radius: Length, margin: Length) -> Manifold {
         let (a, b) = (self.hull.vertices()[0], self.hull.vertices()[1]);
         let past = |vertex: Vec2<Length>, direction: Vec2<Unit>| -> Length { (-vertex).dot(direction) };

@@ -143,8 +143,7 @@ mod tests {
     use crate::fx;
     use crate::math::{Rng, fx_div, fx_mul};
 
-    /// Distance along a ray of length 1 to 30 m to the surface, within about 2e-7 m; `None` for a miss. A ray that
-    /// passes within 2e-6 m of the surface without reaching it is undecided: `Err`.
+    /// Distance along a ray to the surface, as of [`samples::march`].
     fn trace(shape: &SupportShape, origin: Vec2<Fx>, translation: Vec2<Fx>) -> Result<Option<Fx>, ()> {
         let length = translation.length();
         samples::march(length, |way| {

@@ -76,7 +76,8 @@ impl Faces {
     }
 }
 
-/// A convex outline in 32-bit coordinates: a polygon, or a segment or capsule as a two-sided polygon.
+/// A convex outline in 32-bit coordinates: a polygon, a segment or capsule as a two-sided polygon, or a circle as a
+/// single point.
 #[derive(Clone, Debug)]
 pub(crate) struct Hull {
     count: usize,

@@ -19,8 +19,8 @@ use crate::math::{Fx, Rot, Unit, Vec2, div_round, round_shift, round_shift_wide,
 /// A coordinate in metres with 28 fraction bits.
 pub(crate) type Grid = FixedI64<U28>;
 
-/// Largest radius of a support shape in metres, larger than the radius of any shape. Products of this radius and a
-/// cross product of world coordinates fit 128 bits.
+/// Largest radius of a support shape in metres, larger than the radius of any shape. The products of a radius and a
+/// length in `query/ray.rs` fit 128 bits.
 pub(crate) const RADIUS_MAX: Fx = fx!(512);
 
 /// Number of fraction bits of a world coordinate beyond those of the grid.
@@ -248,7 +248,8 @@ impl Fraction {
     const FRAC_NBITS: u32 = 62;
     const ONE: i64 = 1 << Self::FRAC_NBITS;
 
-    /// `numerator / denominator`, rounded down, for `0 <= numerator <= denominator != 0`.
+    /// `numerator / denominator`, rounded down, for `0 <= numerator <= denominator != 0`. If the denominator has more
+    /// than 64 bits, the excess lowest bits of both are dropped first.
     pub(in crate::collision) fn ratio(numerator: i128, denominator: i128) -> Self {
         let excess = (i128::BITS - denominator.leading_zeros()).saturating_sub(u64::BITS);
         let quotient = ((numerator >> excess) << Self::FRAC_NBITS) / (denominator >> excess).max(1);

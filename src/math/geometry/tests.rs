@@ -90,7 +90,7 @@ fn segments_meet_where_rational_arithmetic_says() {
     let mut rng = Rng::new(2);
     let (mut hits, mut parallel) = (0, 0);
     for round in 0..20_000 {
-        // Every other figure is on a smaller grid, where half of the segments touch in some special way.
+        // Every other figure is on a smaller grid, where segments often touch at their ends or overlap.
         let part = |v: i128| if round % 2 == 0 { v } else { v / 3 };
         let [a0, a1, b0, b1] = [(); 4].map(|()| draw(&mut rng)).map(|(x, y)| (part(x), part(y)));
         let at = PLACES[round % PLACES.len()];

@@ -21,7 +21,8 @@ pub(super) struct Rebuilt {
     below: Vec<u32>,
 }
 
-/// A leaf that is not in the tree yet: its centre on a grid of 2^32 cells per side around all leaves, and its node.
+/// A leaf that is not in the tree yet: its centre on a grid of up to 2^32 cells per side around the centres of all
+/// leaves, and its node.
 #[derive(Clone, Copy, Debug)]
 struct Loose {
     x: u32,

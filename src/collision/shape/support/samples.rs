@@ -9,7 +9,7 @@ pub(in crate::collision) fn vector(rng: &mut Rng, size: Fx) -> Vec2<Fx> {
     Vec2::new(rng.range(-size, size), rng.range(-size, size))
 }
 
-/// A random point, segment, capsule, disc or polygon, with or without a radius, about its own centre.
+/// A random point, disc, segment, capsule or polygon near the origin, with or without a radius.
 pub(in crate::collision) fn support(rng: &mut Rng) -> SupportShape {
     loop {
         let points: Vec<_> = (0..7).map(|_| vector(rng, fx!(1))).collect();
@@ -47,7 +47,7 @@ pub(in crate::collision) fn placed(rng: &mut Rng, spread: Fx) -> SupportShape {
 
 /// Sphere tracing: the distance in metres along a path of `length` metres at which it reaches a surface, within
 /// 2e-7 m; `None` if it does not. `gap_at` returns the distance from the surface at a position on the path. A path
-/// that passes within 2e-6 m of the surface without reaching it is undecided, an error.
+/// that passes within 2e-6 m of the surface without reaching it, or takes more than 2000 steps, is undecided: `Err`.
 pub(in crate::collision) fn march(length: Fx, mut gap_at: impl FnMut(Fx) -> Fx) -> Result<Option<Fx>, ()> {
     let (mut travelled, mut nearest) = (Fx::ZERO, Fx::MAX);
     for _ in 0..2000 {
