@@ -187,7 +187,7 @@ pub enum Style {
     /// A line from a joint's anchor to the centre of mass of the body, or between the anchors where the joint allows
     /// them to be apart: a rod, a spring, the travel of a slider, a rope.
     JointArm,
-    /// A line from the centre of mass to its predicted position in a tenth of a second.
+    /// A line from the centre of mass to its position a tenth of a second later at constant velocity.
     Velocity,
     /// The centre of mass of a body.
     CentreOfMass,
@@ -202,9 +202,9 @@ pub enum Style {
     ContactNormal(ContactProximity),
     /// A contact point.
     ContactPoint(ContactProximity),
-    /// The normal force at a contact point on shape B. The length is 0.2 m times the square root of the resulting
-    /// acceleration in units of 10 m/s²: 0.2 m below a box at rest, and 2 m below a hundred boxes. The root keeps large
-    /// forces in the picture.
+    /// The normal force at a contact point on shape B. The length is 0.2 m times the square root of the relative
+    /// acceleration that the force gives to the centres of mass, in units of 10 m/s²: 0.2 m below a ball that rests on
+    /// the ground, and ten times as long for a hundred times the force. The root keeps large forces in the picture.
     ContactForce,
     /// The friction force at a contact point, to the same scale.
     ContactFriction,

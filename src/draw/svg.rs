@@ -1,6 +1,6 @@
 //! Draws a tick as an SVG document.
 //!
-//! Each body has one path with its id as a tooltip, and each other style has one path for all its primitives: a picture
+//! The outlines of a body have its id as a tooltip. The lines and points of each other style share one path: a picture
 //! of 5000 boxes at rest takes about two megabytes. Points are lines of zero length, and strokes do not scale, so that
 //! a picture can be enlarged in a browser to see exactly where two shapes touch.
 
@@ -123,7 +123,7 @@ fn sorted_by_style(world: &World, view: &View, screen: &Screen, marks: &Marks) -
     layers
 }
 
-/// Whether each body has its own path.
+/// Whether the style is that of outlines, which have the id of their body as a tooltip.
 fn has_tooltip(style: Style) -> bool {
     matches!(
         style,

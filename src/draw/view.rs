@@ -52,7 +52,7 @@ pub enum Frame {
     /// The window chosen by [`fit`](super::fit()).
     Fit,
     /// This window, centred. If the picture has another aspect ratio, it shows more of the world on its longer side. A
-    /// window narrower than 2 cm is shown as 2 cm wide.
+    /// side of the window that is shorter than 2 cm is extended to 2 cm.
     ///
     /// Use the same window for several ticks of one scene.
     Window(Aabb),

@@ -68,8 +68,8 @@ pub(crate) fn collide_near(
 ) -> Manifold {
     use Outline::{Circle, Link, Polygon, Segment};
     let d: Vec2<Length> = (b.centre - a.centre).narrow();
-    // Anchors are relative to the centre of one shape: of the polygon for a circle and a polygon, of the other shape for
-    // a segment or link, and of A otherwise.
+    // Anchors are relative to the centre of one shape: of the polygon for a circle and a polygon, of the other shape
+    // for a segment or link, and of A otherwise.
     let mut origin = a.centre;
     let mut manifold = match (&a.outline, &b.outline) {
         (Circle { radius: radius_a }, Circle { radius: radius_b }) => {
