@@ -298,8 +298,8 @@ pub enum WorldError {
         /// Largest number of such objects.
         limit: u32,
     },
-    /// The kind or the state of the body does not allow the change. For example, only enabled dynamic bodies take forces
-    /// and impulses.
+    /// The kind or the state of the body does not allow the change. For example, only enabled dynamic bodies take
+    /// forces and impulses.
     WrongKind(BodyId),
 }
 
