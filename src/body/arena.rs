@@ -180,7 +180,7 @@ impl<T> ArenaRange<'_, T> {
 }
 
 /// Largest number of slots that decoding accepts: the capacity of a world plus some retired slots. A vacant slot takes
-/// 5 bytes in a file and hundreds in memory, so the length of a file alone does not bound the allocation.
+/// 5 bytes in a file and up to some hundred in memory. Without this limit, a small file could cause a large allocation.
 const DECODED_SLOTS_MAX: usize = (1 << 20) + (1 << 12);
 
 fn slots_within_limit<'de, T, D>(deserializer: D) -> Result<Vec<Slot<T>>, D::Error>
