@@ -89,7 +89,7 @@ impl<G: Game> ByteSwaps<G> {
         let mut byte_swaps: Vec<_> = byte_swaps.filter(|(range, _)| !overlap(range, &world)).collect();
         byte_swaps.sort_by(|a, b| (a.0.start, a.0.end, &a.1).cmp(&(b.0.start, b.0.end, &b.1)));
         byte_swaps.dedup();
-        // If there are more than [`TRIES_MAX`] swaps, each save starts at a different swap.
+        // Only [`TRIES_MAX`] swaps are tried. The first one depends on the tick, so that other saves try other swaps.
         let turn = usize::try_from(moment.tick).unwrap_or(0).wrapping_mul(7) % byte_swaps.len().max(1);
         byte_swaps.rotate_left(turn);
         for (range, replacement) in byte_swaps.into_iter().take(TRIES_MAX) {

@@ -56,8 +56,8 @@ pub struct Failure {
     pub replay: Vec<u8>,
     /// Number of ticks in the replay.
     pub ticks: u64,
-    /// Number of runs of the replay that failed in the same way, and number of runs. A game that depends on a random
-    /// iteration order does not always fail.
+    /// Number of runs of the replay that failed, and number of runs. A game that depends on a random iteration order
+    /// does not always fail.
     pub failed: (u32, u32),
 }
 

@@ -54,7 +54,7 @@ pub enum Fault {
     },
     /// Two states have the same hash but different futures under the same inputs.
     Unhashed,
-    /// The recording of the game fails verification.
+    /// The recording of the game fails verification, or the reference run exceeds a limit on work.
     Verdict(Verdict),
     /// The game cannot be recorded to its end.
     Unrecordable(RecordError),

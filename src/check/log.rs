@@ -11,7 +11,7 @@ use crate::replay::{
     CHECKPOINT_INTERVAL, Flaw, Limits, RawReplay, ReadError, Reader, Recording, TickInputs, Verdict,
 };
 
-/// Checkpoint interval of the replays that are recorded here.
+/// Checkpoint interval of the replays that a check records.
 pub(super) const INTERVAL: u32 = CHECKPOINT_INTERVAL;
 
 /// The inputs of every player for one tick.
@@ -73,7 +73,7 @@ pub(super) struct Logged<G: Game> {
 
 /// Reads the first `to` ticks of a replay.
 pub(super) fn read<G: Game>(file: &[u8], limits: &Limits, to: u64) -> Result<Logged<G>, CheckError> {
-    // Opening the replay scans the file and starts the game, so that the following calls usually return no errors.
+    // Opening the replay scans the file and starts the game. Afterwards only the encoding of inputs can be wrong.
     let players = RawReplay::<G>::open(file, limits)?.game().players();
     let refused = |error: ReadError| CheckError::Replay(error.into());
     let mut ticks = TickInputs::open(file, limits).map_err(refused)?;

@@ -11,7 +11,7 @@ use super::options::{CheckOptions, Depths, Variant};
 use crate::lockstep::Game;
 use crate::replay::{Recording, Verdict, verify};
 
-/// Number of replicas that are compared with the reference run when a failure may be random.
+/// Number of replicas of [`Variant::Again`] that are compared with the reference run to detect a random failure.
 const AGAIN: usize = 4;
 
 /// Plays a log in all variants.

@@ -3,8 +3,8 @@
 //!
 //! [`check`] takes a [`Game`] and an input log. It plays the log in a reference run, and beside it in every variant
 //! ([`Variant`]) of [`CheckOptions::variants`]: again from the start, encoded and reloaded at every tick, rolled back
-//! by 1 to 8 ticks, with caches cleared, on other thread counts and so on. After every tick all variants must have the
-//! same hash. If one differs, the result is a [`Failure`]: the variant, the tick, the fields that differ, and a
+//! by 1 to 8 ticks, with caches cleared, on other thread counts and so on. All variants must reach the state hashes of
+//! the reference run. If one differs, the result is a [`Failure`]: the variant, the tick, the fields that differ, and a
 //! minimised replay.
 //!
 //! ```
@@ -54,8 +54,8 @@ use log::{INTERVAL, Log, Logged};
 /// tick, with an input for each player.
 ///
 /// # Errors
-/// [`CheckError::Failed`] with the fault of the game; [`CheckError::Record`] if the setup cannot start a game, or if
-/// there is not exactly one input per player, so that a replay cannot represent them.
+/// [`CheckError::Failed`] with the fault of the game; [`CheckError::Record`] if the setup cannot start a game, or if a
+/// replay cannot represent the setup or the inputs, for example because there is not exactly one input per player.
 pub fn check<G: Game>(
     setup: &G::Setup,
     inputs: &[Vec<G::Input>],

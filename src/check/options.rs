@@ -31,21 +31,22 @@ pub enum Variant {
     HashPolled,
     /// The hash is polled after the last tick only: without polls in between, the final state must be the same.
     HashUnpolled,
-    /// After every tick the state is saved, encoded, decoded and loaded into a new game, which continues.
+    /// Every [`CheckOptions::every`] ticks, the state is saved, encoded, decoded and loaded into a new game, which
+    /// continues.
     Reloaded,
-    /// After every tick the game is rolled back by some ticks and plays them again, sometimes with wrong predictions of
-    /// the inputs first and then with the actual inputs.
+    /// Every [`CheckOptions::every`] ticks, the game is rolled back by some ticks and plays them again, sometimes with
+    /// predicted inputs first and then with the actual inputs.
     RolledBack,
-    /// All caches of the world are cleared after every tick.
+    /// All caches of the world are cleared every [`CheckOptions::every`] ticks.
     ClearedScratch,
     /// The solver runs on another backend.
     Backend(Backend),
     /// The broad phase uses another algorithm.
     BroadPhase(BroadPhaseKind),
-    /// A tick runs on another number of threads; skipped without the feature `parallel`.
+    /// The world steps on this number of threads. Without the feature `parallel`, the variant changes nothing.
     Threads(usize),
-    /// Bytes of a save are replaced by bytes of another tick's save. If the hash does not change, future states must
-    /// not change.
+    /// Bytes of a save are replaced by bytes of another tick's save. If the hash does not change, the hashes of the
+    /// following ticks must not change either.
     ByteSwapped,
     /// The game is recorded and its replay verified, claims included.
     Recorded,
@@ -116,11 +117,11 @@ impl fmt::Display for Variant {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Depths {
-    /// One combination of depth and prediction per tick, in turn. With the default depths, all combinations occur
-    /// within 24 ticks, at a cost of about eight steps per tick.
+    /// One combination of depth and prediction per tick, in turn. With depths up to 8, all combinations occur within 24
+    /// ticks, at a cost of about eight steps per tick.
     #[default]
     InTurn,
-    /// All combinations of depth and prediction at every tick, at a cost of 180 steps per tick.
+    /// All combinations of depth and prediction at every tick. With depths up to 8, this costs 180 steps per tick.
     Each,
 }
 
@@ -160,13 +161,13 @@ pub struct CheckOptions {
     pub from: u64,
     /// The tick at which the check ends, if the log is longer.
     pub to: u64,
-    /// Number of runs of each shortened log, to measure how often it fails; at least 1. A log that fails randomly,
-    /// because of a `HashMap`, is shortened only while it fails as often as before.
+    /// Maximum number of runs of each shortened log, to measure how often it fails; at least 1. A log that fails
+    /// randomly, because of a `HashMap`, is shortened only while it fails as often as before.
     pub repeats: u32,
-    /// Maximum number of ticks simulated to minimise a failing log. With 0 the log is only cut after the failing tick,
-    /// and not played again.
+    /// Number of simulated ticks after which a failing log is not minimised further. With 0 the log is only cut after
+    /// the tick at which the fault was detected.
     pub budget: u64,
-    /// Limits of the replays that are checked and recorded.
+    /// Limits of the reference run, and of the replays that are read and verified.
     pub limits: Limits,
 }
 

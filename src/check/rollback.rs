@@ -63,8 +63,8 @@ impl<G: Game> Past<G> {
         Ok(())
     }
 
-    /// Rolls back to a moment and plays up to the current tick: first with the predicted inputs, then with the actual
-    /// ones.
+    /// Rolls back to a moment and plays up to the current tick: first with the predicted inputs, unless they are the
+    /// actual ones, then with the actual ones.
     fn roll_back(
         &self,
         game: &mut G,

@@ -174,8 +174,8 @@ pub trait Game: Sized {
     fn players(&self) -> u32;
 
     /// Ticks per second; constant during a game. A game that steps its world once in a tick returns the world's
-    /// [`Config::tick_rate`](crate::world::Config::tick_rate). With another rate everything moves too fast or too slow,
-    /// in all variants of [`check`](crate::check) and on all machines alike.
+    /// [`Config::tick_rate`](crate::world::Config::tick_rate). With another rate everything moves too fast or too slow.
+    /// [`check`](crate::check) does not detect this mistake.
     fn tick_rate(&self) -> u32;
 
     /// Advances one tick. `inputs` has one entry for each player, in player order.
@@ -193,8 +193,8 @@ pub trait Game: Sized {
     fn load(&mut self, save: &Self::Save);
 
     /// Work units of the next tick: an upper bound of its cost, except for the work that the world itself counts during
-    /// a step. A verifier uses the bound to limit the computing time of an untrusted file. The bound of the sandbox is
-    /// roughly the number of bodies, contacts and joints, multiplied by the number of sub-steps.
+    /// a step. A verifier uses the bound to limit the computing time of an untrusted file. A game with a world can base
+    /// the bound on [`World::work`].
     fn work(&self, inputs: &[Self::Input]) -> u64;
 
     /// Input of a seat without a player, in every tick before a player has joined and after the player has left. The

@@ -115,7 +115,8 @@ impl Game for Sandbox {
         }
     }
 
-    /// Every command costs as many work units as in a tick. A setup is also limited to 100 million units.
+    /// Charges each command before it is executed, and adds the work that the world counts during the command. If
+    /// `work_max` is larger than 100 million units, the limit is 100 million.
     fn new_within(setup: &SandboxSetup, work_max: u64) -> Result<(Self, u64), StartError> {
         let max = work_max.min(SETUP_WORK_MAX);
         let refused = |why| StartError::Refused(SetupError { why });
@@ -181,10 +182,8 @@ impl Game for Sandbox {
         Some(&mut self.world)
     }
 
-    /// The sum of bodies, shapes, pairs and joints, multiplied by the solver's sub-steps and iterations, plus the work
-    /// of the commands. Shapes that were just placed on top of each other create new pairs in the tick. The bound
-    /// assumes the worst case: as many new pairs as the world allows, found by comparing every shape with every other.
-    /// The world itself counts work that is known only during the tick.
+    /// The bound of [`World::work`] for a world that already contains the objects that the commands add, plus the work
+    /// of the commands. The world itself counts work that is known only during the tick.
     fn work(&self, inputs: &[Vec<Command>]) -> u64 {
         let mut costs = Costs::of(&self.world);
         inputs.iter().flatten().for_each(|command| costs.add(command));

@@ -7,7 +7,7 @@ use crate::body::{BodyId, BodyKind};
 use crate::solver::SolverSettings;
 use crate::world::{AddedWork, Command, World};
 
-/// Work units of a shape that is created, or replaced.
+/// Work units of a shape that is created or replaced.
 const SHAPE_WORK: u64 = 8;
 /// Work units of a body, of a joint, or of a shape that is only visited.
 const VISIT_WORK: u64 = 4;
@@ -36,7 +36,7 @@ impl<'a> Costs<'a> {
         self.added.joints = self.added.joints.saturating_add(joints_added(command));
         match command {
             Command::AddShape { .. } => self.grown = self.grown.saturating_add(1),
-            // Settings that are out of range are refused, and cost nothing.
+            // Settings that are out of range are refused, so the solver never runs with them.
             Command::SetConfig { config } if config.validate().is_ok() => {
                 self.rounds = self.rounds.max(rounds(&config.solver));
             }
@@ -44,8 +44,8 @@ impl<'a> Costs<'a> {
         }
     }
 
-    /// Returns the work units of a command. A command visits the shapes of its body, and a removal visits all contacts
-    /// and joints.
+    /// Returns the work units of a command. Many commands visit the shapes of their body, and a removal visits all
+    /// pairs and joints.
     pub(super) fn command(&self, command: &Command) -> u64 {
         match command {
             Command::Spawn { .. } | Command::SpawnEach { .. } => {
@@ -105,7 +105,7 @@ impl<'a> Costs<'a> {
         count(self.world.shape_count()).saturating_add(self.added.shapes)
     }
 
-    /// Work units of a removal, which visits all contacts and joints.
+    /// Work units of a removal, which visits all pairs and joints.
     fn removal(&self) -> u64 {
         count(self.world.pair_count()).saturating_add(self.joints())
     }
