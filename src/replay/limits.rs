@@ -8,7 +8,7 @@ use super::reader::ReadError;
 /// Bounds on the size of a replay and on its computing time.
 ///
 /// The default accepts anything that an ordinary game records in a day. It allows 20 000 million work units, which take
-/// less than an hour of computing for an ordinary game, and up to five and a half hours for a file made to be slow. A
+/// less than an hour of computing for an ordinary game, and about five and a half hours for a file made to be slow. A
 /// server for one game should narrow the limits, for example to a race of ten minutes and two players.
 ///
 /// ```

@@ -20,8 +20,9 @@
 //!
 //! # Untrusted files
 //!
-//! [`Limits`] are checked before any allocation or simulation. A file is scanned to its end (lengths, checksums, chain,
-//! run lengths) before the game is started, so that a damaged file costs no simulation.
+//! The [`Limits`] on work and bodies are checked while the replay is played, all others before the game is started. A
+//! file is scanned to its end (lengths, checksums, chain, run lengths) before the game is started, so that a damaged
+//! file costs no simulation.
 
 mod bytes;
 mod flaw;

@@ -50,7 +50,8 @@ impl<'a, G: Game> RawReplay<'a, G> {
     /// Scans the whole file and starts the game.
     ///
     /// # Errors
-    /// The [`Verdict`] when nothing can be played: the file is malformed, exceeds a limit, or belongs to another game.
+    /// The [`Verdict`] when nothing can be played: the file is malformed, exceeds a limit, or is
+    /// [`Verdict::Unverifiable`].
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, Verdict> {
         Self::open_to_end(file, limits).map(|(raw, _)| raw)
     }

@@ -1,6 +1,6 @@
 //! [`Reader`]: reads the structure of a replay, block by block, independently of the game.
 //!
-//! The reader checks all properties that do not require stepping the game: lengths, checksums, the chain, run lengths,
+//! The reader checks all properties that do not depend on the game's types: lengths, checksums, the chain, run lengths,
 //! the order of the blocks, the trailer's counts.
 
 use core::fmt;
@@ -85,7 +85,7 @@ pub enum Part<'a> {
     Inputs(InputBlock<'a>),
     /// The end of a complete file.
     Trailer(Trailer),
-    /// The file ends before its trailer: its recorder was stopped or is still running.
+    /// The file ends before its trailer, for example because its recorder was stopped or is still running.
     Cut,
 }
 
@@ -165,7 +165,7 @@ impl<'a> Reader<'a> {
     /// Reads the header.
     ///
     /// # Errors
-    /// [`ReadError`] when the header is malformed or exceeds `limits`.
+    /// [`ReadError`] when the header is malformed or has another format version, or when the file exceeds `limits`.
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, ReadError> {
         LimitKind::FileBytes.check(file.len() as u64, limits.file_bytes)?;
         let ReadHeader { header, start, inputs_digest, chain, length } = Header::read(file, limits)?;

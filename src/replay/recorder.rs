@@ -67,9 +67,9 @@ pub enum RecordError {
     },
     /// The inputs cannot be recorded.
     Inputs(InputError),
-    /// The inputs of this block exceed the maximum payload.
+    /// With these inputs, the block could exceed the maximum payload.
     BlockLength {
-        /// Length in bytes.
+        /// Upper bound of the payload in bytes.
         bytes: u64,
     },
     /// The block is full, and its checkpoint has not been given.

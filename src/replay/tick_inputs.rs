@@ -37,7 +37,7 @@ impl<'a> TickInputs<'a> {
     /// Opens a replay at its first tick.
     ///
     /// # Errors
-    /// [`ReadError`] when the header is malformed or exceeds a limit.
+    /// Same as [`Reader::open`].
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, ReadError> {
         let reader = Reader::open(file, limits)?;
         Ok(TickInputs { reader, block: None, block_left: 0, runs: Runs::new(&[], 0), run: None })

@@ -99,13 +99,13 @@ pub enum ClaimDifference {
         /// Hash of the game.
         actual: StateHash,
     },
-    /// A value that the game reports differs.
+    /// A claim differs.
     Value {
         /// Name of the value.
         name: String,
-        /// Value in the trailer.
+        /// Value in the trailer; `None` if the trailer does not have the name.
         claimed: Option<i64>,
-        /// Value of the game.
+        /// Value of the game; `None` if the game does not report the name.
         actual: Option<i64>,
     },
 }

@@ -28,7 +28,7 @@ pub fn verify<G: Game>(file: &[u8], limits: &Limits) -> Verdict {
     }
 }
 
-/// Result of a step of a [`VerifiedReplay`].
+/// Result of a step of a replay.
 ///
 /// ```
 /// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
@@ -83,8 +83,8 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
     /// Scans the whole file, starts the game and compares the start checkpoint.
     ///
     /// # Errors
-    /// The [`Verdict`] when nothing can be played: the file is malformed, exceeds a limit, belongs to another game, or
-    /// its setup leads to another start state.
+    /// The [`Verdict`] when nothing can be played: the file is malformed, exceeds a limit, is
+    /// [`Verdict::Unverifiable`], or its setup leads to another start state.
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, Verdict> {
         let (raw, ending) = RawReplay::<G>::open_to_end(file, limits)?;
         let reader = raw.position().inputs.reader();
@@ -184,7 +184,7 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
         }
         let (tick, inputs) = (self.tick(), &self.raw.position().inputs);
         let block_ticks = inputs.finished_block().map_or(0, |block| u64::from(block.ticks));
-        // All earlier blocks have been compared.
+        // The state at the start of the block has been compared.
         Err(Verdict::Diverged { last_equal: Some(tick - block_ticks), first_different: tick })
     }
 

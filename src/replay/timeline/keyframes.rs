@@ -73,7 +73,7 @@ impl<'a> Keyframes<'a> {
         }
     }
 
-    /// Doubles the interval and removes the keyframes whose ticks are not multiples of the new one.
+    /// Doubles the interval and removes the keyframes whose ticks are not multiples of the new interval.
     fn thin_out(&mut self) {
         self.interval = self.interval.saturating_mul(2);
         let interval = self.interval;

@@ -159,8 +159,7 @@ impl<'a, G: Game> Timeline<'a, G> {
     /// Scans the whole file and starts the game; no tick is played.
     ///
     /// # Errors
-    /// The [`Verdict`] when nothing can be played: the file is malformed, exceeds a limit, belongs to another game, or
-    /// its setup leads to another start state.
+    /// Same as [`VerifiedReplay::open`].
     pub fn open(file: &'a [u8], options: &TimelineOptions, limits: &Limits) -> Result<Self, Verdict> {
         let replay = VerifiedReplay::<G>::open(file, limits)?;
         let position = replay.position().clone();
@@ -225,9 +224,9 @@ impl<'a, G: Game> Timeline<'a, G> {
     /// Every checkpoint on the way is compared.
     ///
     /// # Errors
-    /// [`SeekError`]. If the replay cannot be played up to `tick`, the game stays at the last tick that was played, and
-    /// all earlier ticks remain reachable. If there is no such tick or its keyframe is wrong, the current tick does not
-    /// change.
+    /// [`SeekError`]. If playing fails, the game stays at the last tick that was played, and all earlier ticks remain
+    /// reachable. If there is no such tick, if it is known to be unreachable, or if its keyframe is wrong, the current
+    /// tick does not change.
     pub fn seek(&mut self, tick: u64) -> Result<(), SeekError> {
         if tick > self.ticks() {
             return Err(SeekError::NoSuchTick { tick, ticks: self.ticks() });
@@ -284,8 +283,9 @@ impl<'a, G: Game> Timeline<'a, G> {
         self.seek(here)
     }
 
-    /// Encodes the keyframes as the bytes of a file, for a later [`Timeline::use_keyframes`]. Only keyframes at
-    /// checkpoints of the replay are included: all of them, unless the interval is shorter than the replay's blocks.
+    /// Encodes the keyframes as the bytes of a file, for a later [`Timeline::use_keyframes`]. Only keyframes at the ends
+    /// of blocks are included: all except the keyframe of tick 0, unless the interval is shorter than the replay's
+    /// blocks.
     #[must_use]
     pub fn keyframes_to_bytes(&self) -> Vec<u8> {
         bytes::encode::<G>(self.file, &self.keyframes)
@@ -320,7 +320,7 @@ impl<'a, G: Game> Timeline<'a, G> {
         }
     }
 
-    /// Restores the latest saved state at or before `tick`, unless the current state is at least as late.
+    /// Restores the latest saved state at or before `tick`, unless the current tick lies between that state and `tick`.
     fn go_to_latest_before(&mut self, tick: u64) -> Result<(), SeekError> {
         let frame = self.keyframes.latest(tick);
         let kept = self.trail.latest(tick);
