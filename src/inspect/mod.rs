@@ -37,7 +37,7 @@ pub const DEPTH_MAX: u32 = 128;
 /// Returns all fields of a value, in serialization order.
 ///
 /// An `Option` results in the fields of its value or in `none`, a variant in its name and its fields, and an empty list
-/// or map in a field of its own. Therefore two values with the same fields are equal.
+/// or map in a field of its own.
 ///
 /// # Errors
 /// [`InspectError`] if the value's `Serialize` returns an error or the value is nested deeper than [`DEPTH_MAX`].

@@ -10,7 +10,7 @@ use super::transport::Transport;
 use crate::math::Rng;
 use crate::session::Address;
 
-/// Additional delay of a reordered packet, which later packets overtake.
+/// Additional delay of a reordered packet, which later packets may overtake.
 const REORDER_DELAY: Duration = Duration::from_millis(20);
 /// Maximum number of packets waiting for one receiver. Further ones are lost, as when the buffer of a socket is full.
 const QUEUE_MAX: usize = 8192;
@@ -33,13 +33,13 @@ const QUEUE_MAX: usize = 8192;
 pub struct LinkConditions {
     /// Smallest time from sending to receiving.
     pub latency: Duration,
-    /// Largest additional time, which differs from packet to packet. Packets keep their order.
+    /// Largest additional time, which differs from packet to packet. It does not change the order of the packets.
     pub jitter: Duration,
     /// Lost packets in percent.
     pub loss: u8,
     /// Packets in percent that arrive twice.
     pub duplication: u8,
-    /// Packets in percent that are delayed by another 20 ms, so that later packets overtake them.
+    /// Packets in percent that are delayed by another 20 ms, so that later packets may overtake them.
     pub reordering: u8,
 }
 

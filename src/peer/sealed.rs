@@ -24,7 +24,8 @@ const HEADER: usize = 16;
 const TAG: usize = 16;
 /// Number of words of a replay window.
 const WINDOW_WORDS: usize = 32;
-/// Length of a replay window: a packet that arrives after 2048 later packets of its sender is dropped.
+/// Length of a replay window: a packet that was sent 2048 packets or more before the newest one of its sender is
+/// dropped.
 const WINDOW: u64 = 2048;
 /// Maximum number of senders with a replay window. Beyond it, the sender that was silent longest is removed.
 const SENDERS_MAX: usize = 1024;

@@ -62,7 +62,8 @@ impl<G: Game> Simulation<G> {
         }
     }
 
-    /// Continues from a state received from another peer. There is no replay, because the earlier inputs are unknown.
+    /// Continues from a state received from another peer. If it is not the state of tick 0, there is no replay, because
+    /// the earlier inputs are unknown.
     pub(super) fn resume(&mut self, tick: u64, bytes: &[u8]) -> Result<(), PeerError> {
         let wrong = |why: &dyn core::fmt::Display| PeerError::State { why: alloc::format!("{why}") };
         let (hash, save): (StateHash, G::Save) = codec::decode(bytes).map_err(|error| wrong(&error))?;

@@ -47,7 +47,7 @@ mod udp {
     use super::Transport;
     use crate::session::Address;
 
-    /// Payload of an IP packet of 1280 bytes, which every network carries, with the smallest IP and UDP headers.
+    /// Largest payload of an IP packet of 1280 bytes: the headers of IPv4 and UDP have at least 28 bytes.
     const PAYLOAD_MAX: usize = 1280 - 28;
 
     /// A UDP socket.

@@ -1,9 +1,9 @@
 //! Finds the body in which a difference originated, among many bodies that differ.
 //!
 //! A body with a wrong velocity affects all bodies that it touches in the same tick: dozens of bodies differ, and the
-//! largest difference need not be at the origin. Therefore the bodies are sorted by the difference in motion, and
-//! single bit flips in the last correct state are tried in this order. A flip that leads to exactly the wrong state is
-//! the explanation.
+//! largest difference need not be at the origin. Therefore single bit flips of the bodies that differ are tried in the
+//! last correct state. Bits whose value is closest to the observed difference come first. A flip that leads to exactly
+//! the wrong state is the explanation.
 
 use alloc::collections::BTreeMap;
 use alloc::format;
@@ -18,9 +18,10 @@ use crate::inspect::{Difference, InspectError, Value, differences, fields};
 use crate::lockstep::Game;
 use crate::world::BodyField;
 
-/// Maximum work units spent on trying bit flips: about ten seconds. The limits may allow fewer.
+/// Maximum work units that [`compare`](super::compare::compare) spends on trying bit flips: about ten seconds. The
+/// limits may allow fewer.
 pub(super) const WORK_MAX: u64 = 400_000_000;
-/// Minimum work units of one try, which cover loading and hashing the state.
+/// Minimum work units that are charged for a step. Half as many are charged for loading and hashing a state.
 const TRY_WORK: u64 = 1000;
 
 /// A tick in which one side diverged.

@@ -67,8 +67,8 @@ impl From<InspectError> for CompareError {
 
 /// Finds the first difference between two reports, replays or snapshots, and the side that diverged.
 ///
-/// The inputs of the replay are simulated again by the running engine, within the limits. If both files are snapshots,
-/// `G` may be any game.
+/// The inputs of the longer replay are simulated again by the running engine, within the limits. Two snapshots are
+/// compared without a simulation, and `G` may be any game.
 ///
 /// # Errors
 /// [`CompareError`] when the files cannot be compared at all. If only a part of the result cannot be determined, a note

@@ -74,9 +74,11 @@ pub enum Blame {
     Nobody,
     /// One side diverged, the other did not.
     Side(Side),
-    /// Both sides diverged. If they agree with each other, they used another engine or other rules than this program.
+    /// Both sides diverged. If they agree with each other, they probably used another engine or other rules than this
+    /// program.
     Both,
-    /// Unknown, because there are no inputs to simulate, or because the inputs differ.
+    /// Unknown: there are no inputs to simulate, the setups differ, or [`bisect`](super::bisect) compared replays with
+    /// different inputs.
     Unknown,
 }
 
@@ -102,7 +104,7 @@ pub struct InputDifference {
     pub differences: Vec<Difference>,
 }
 
-/// A subject of comparison that exists on one side only or differs between two states: a body, a contact, an entry of
+/// A part of the state that differs between two states, or that only one of them has: a body, a contact, an entry of
 /// any map, or a section without entries.
 ///
 /// ```
@@ -157,7 +159,7 @@ pub struct Subject {
 pub struct Explanation {
     /// Number of ticks after which the bit flipped.
     pub tick: u64,
-    /// Path of the body.
+    /// Path of the body or other subject that contains the bit.
     pub path: String,
     /// Index of the bit, counted from the lowest.
     pub bit: u32,

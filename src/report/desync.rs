@@ -164,7 +164,7 @@ impl DesyncReport {
     }
 
     /// The seats that agree at the checkpoint [`DesyncReport::tick`], largest group first. With three peers or more,
-    /// this shows which peer diverged.
+    /// this usually shows which peer diverged.
     #[must_use]
     pub fn groups(&self) -> Vec<Group> {
         let mut groups: BTreeMap<StateHash, Vec<u32>> = BTreeMap::new();
@@ -190,8 +190,8 @@ impl DesyncReport {
         &self.body.saves
     }
 
-    /// Phase digests of steps, by the ticks that they led to, in ascending order. Only a [`Trace`](super::Trace)
-    /// contains them.
+    /// Phase digests of steps, by the ticks that they led to, in ascending order. Only the report of a
+    /// [`Trace`](super::Trace) contains them.
     #[must_use]
     pub fn phases(&self) -> &[(u64, TickPhases)] {
         &self.body.phases

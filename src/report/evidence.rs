@@ -175,7 +175,7 @@ impl<'a> SideEvidence<'a> {
             return Some(a == b);
         }
         let (a, b) = self.checkpoints.get(&tick).zip(other.checkpoints.get(&tick))?;
-        // Checkpoints with different input digests (another interval in the header) cannot be compared.
+        // Checkpoints with different input digests, for example because of different intervals, cannot be compared.
         (a.inputs == b.inputs).then_some(a.hash == b.hash)
     }
 

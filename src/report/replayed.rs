@@ -20,8 +20,9 @@ use crate::replay::{Limits, RawReplay, Step};
 pub(super) enum Effort {
     /// Plays all ticks for which either side has data. Searches for an explanation of a difference up to a fixed limit.
     Thorough,
-    /// Plays up to the first difference, and limits the search for an explanation such that both together cost less
-    /// than playing all ticks three times.
+    /// Plays until a side has diverged and the states of both sides after the divergence are available, or the file of
+    /// the diverged side contains no further state. Limits the search for an explanation such that both together cost
+    /// less than playing all ticks three times.
     Bounded,
 }
 
@@ -184,7 +185,7 @@ impl<G: Game> Beside<'_, '_, G> {
         self.conclude()
     }
 
-    /// Whether the remaining ticks cannot change the result.
+    /// Whether [`Effort::Bounded`] needs no further ticks.
     fn is_enough(&self) -> bool {
         let tick = self.raw.tick();
         let has_diverged = |side: &usize| self.found.trajectories[*side].diverges.is_some();

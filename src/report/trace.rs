@@ -12,8 +12,8 @@ use crate::replay::{CHECKPOINT_INTERVAL, Limits, RawReplay, RecordError, Recorde
 /// A game that is recorded with the state hash, the save and the phase digests of its last ticks. The result is a
 /// [`DesyncReport`] that names no desync; [`bisect`](super::bisect) compares it with the running engine.
 ///
-/// A replay has one hash per second, which shows the second in which two engines diverge. A trace of that second, made
-/// by the engine that wrote the replay, shows the tick, the phase, the body and the field.
+/// A replay usually has one hash per second, which shows the second in which two engines diverge. A trace of that
+/// second, made by the engine that wrote the replay, shows the tick, the phase, the body and the field.
 ///
 /// ```
 /// use lockstep2d::lockstep::{Sandbox, SandboxSetup};

@@ -283,8 +283,8 @@ impl<'a, G: Game> Timeline<'a, G> {
         self.seek(here)
     }
 
-    /// Encodes the keyframes as the bytes of a file, for a later [`Timeline::use_keyframes`]. Only keyframes at the ends
-    /// of blocks are included: all except the keyframe of tick 0, unless the interval is shorter than the replay's
+    /// Encodes the keyframes as the bytes of a file, for a later [`Timeline::use_keyframes`]. Only keyframes at the end
+    /// of a block are included: all except the keyframe of tick 0, unless the interval is shorter than the replay's
     /// blocks.
     #[must_use]
     pub fn keyframes_to_bytes(&self) -> Vec<u8> {

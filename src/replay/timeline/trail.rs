@@ -21,8 +21,8 @@ impl<'a, S> Trail<'a, S> {
         self.saves.range(..=tick).next_back().map(|(_, kept)| kept)
     }
 
-    /// Inserts a save and removes others until at most `length` are left: first those of later ticks, latest first, then
-    /// the earliest.
+    /// Inserts a save and removes others until at most `length` are left: first those of later ticks, latest first,
+    /// then the earliest.
     pub(super) fn keep(&mut self, position: ReplayPosition<'a>, save: S, length: u64) {
         let tick = position.tick;
         self.saves.insert(tick, (position, save));
