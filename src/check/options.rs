@@ -157,7 +157,8 @@ pub struct CheckOptions {
     pub depths: Depths,
     /// Whether the phases of the physics step are compared, too.
     pub phases: Phases,
-    /// The tick at which checking begins; before it, only the reference run is played.
+    /// The tick at which checking begins; before it, only the reference run is played. [`Variant::Recorded`] begins at
+    /// tick 0.
     pub from: u64,
     /// The tick at which the check ends, if the log is longer.
     pub to: u64,

@@ -32,8 +32,8 @@ pub struct Past<S> {
     pub save: S,
 }
 
-/// Number of ticks kept in addition to the guaranteed two seconds. Entries of mispredicted ticks displace the oldest
-/// entries, and a rollback removes up to this many mispredicted ticks.
+/// Number of ticks kept in addition to two seconds. Entries of mispredicted ticks displace the oldest entries, and a
+/// rollback then removes them. After a rollback of at most this many ticks, at least two seconds are left.
 const ROLLBACK_TICKS: u32 = 16;
 
 /// Saves and state hashes of the last ticks. Saves of a world share unchanged data, so a few seconds of them cost

@@ -322,7 +322,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
     }
 
     /// Sends the request to join to another contact, or again to the same one, for example after a time without an
-    /// answer.
+    /// answer. A session in progress is discarded.
     pub fn ask(&mut self, contact: Address) {
         self.endpoint.ask(contact);
     }

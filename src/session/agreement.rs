@@ -42,7 +42,7 @@ pub(super) struct Agreement {
 const STEPS_MAX: usize = 64;
 
 impl Session {
-    /// Takes all steps of the agreement that packets make possible.
+    /// Takes all steps of the agreement that are possible now.
     pub(super) fn agree(&mut self) {
         for _ in 0..STEPS_MAX {
             if !self.agreement_step() {
@@ -51,7 +51,7 @@ impl Session {
         }
     }
 
-    /// Begins a ballot if it is time for one, and takes all steps of the agreement that are possible.
+    /// Begins a ballot if it is time for one, and takes all steps of the agreement that are possible now.
     pub(super) fn agree_in_time(&mut self) {
         if self.view.voter(self.me).is_some() && self.agreement.proposal.is_none() {
             self.begin_ballot();

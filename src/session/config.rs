@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::view::SEATS_MAX;
 
-/// One millisecond in microseconds, the time unit of a session.
+/// One millisecond in microseconds. All times of a session are in microseconds.
 pub(super) const MS: u64 = 1000;
 
 /// Largest number of ticks that may be played with guessed inputs.
@@ -92,8 +92,8 @@ pub struct Config {
     pub delay_min: u16,
     /// Largest delay of inputs in ticks, at most [`DELAY_MAX`].
     pub delay_max: u16,
-    /// Number of ticks from the cut of a view change to the first tick of the peers that join. It should last longer
-    /// than two network delays.
+    /// Lead of the peers that join, in ticks: their first tick lies three round trips plus this number of ticks after
+    /// the cut of the view change, but at most half of `history` after it, unless this number is larger.
     pub seat_lead: u16,
     /// A peer that lags by at most this many ticks has caught up and may have a seat.
     pub seat_within: u16,

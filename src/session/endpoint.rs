@@ -220,7 +220,7 @@ impl Endpoint {
         Ok(endpoint)
     }
 
-    /// Sends the request to join to another peer, or again to the same one.
+    /// Sends the request to join to another peer, or again to the same one. A session in progress is discarded.
     pub fn ask(&mut self, contact: Address) {
         self.contact = Some(contact);
         let nonce = token(self.secret, self.me, &contact).wrapping_add(self.packets_seed());

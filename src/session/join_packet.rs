@@ -57,8 +57,8 @@ pub(super) enum JoinPacket {
         hash: u64,
         length: u64,
     },
-    /// The receiver of a state has all chunks before `next` and those after it whose bit is set. Up to `window` chunks
-    /// from `next` on may be sent.
+    /// The receiver of a state has all chunks before `next`, and those from `next` on whose bit is set. Up to `window`
+    /// chunks from `next` on may be sent.
     Want {
         hash: u64,
         next: u32,

@@ -168,8 +168,8 @@ impl Session {
         }
     }
 
-    /// Whether a peer that has finished or left may stop answering: no other peer needs its answers any more (`known`),
-    /// or the maximum time has passed.
+    /// Whether a peer that has finished or left may stop answering: the minimum time has passed and no other peer needs
+    /// its answers any more (`known`), or the maximum time has passed.
     fn lingered(&self, since: u64, known: bool) -> bool {
         let timing = &self.config.timing;
         let hasty = self.config.has(Fault::HastyLeave);

@@ -25,7 +25,7 @@ pub(super) struct Pace {
     delay_at: u64,
     /// Whether this peer plays no tick because another peer is far behind.
     held: bool,
-    /// Number of ticks that may be played at once to catch up.
+    /// Number of complete ticks, or of final ticks for a peer without a vote, that this peer has not played yet.
     behind: Tick,
     /// Whether this peer has just got a seat. It then plays all complete ticks without waiting for the time at which
     /// each is due.

@@ -18,7 +18,7 @@ const HASHES_MAX: usize = 16;
 pub(super) struct Play {
     pub(super) played: Tick,
     pub(super) confirmed: Tick,
-    /// Inputs of the ticks before `played` that may still change.
+    /// Inputs with which the ticks from `used_from` to `played` were played. A rollback may play these ticks again.
     used: VecDeque<TickInputs>,
     /// First tick of `used`.
     used_from: Tick,
@@ -161,8 +161,8 @@ impl Session {
         spans.map(|(index, span)| (index, span.seat))
     }
 
-    /// First tick of an own span whose input must not be issued yet. At the start of a span, the inputs of the first
-    /// ticks, as many as the input delay, are issued at once, so that the others need not wait for them.
+    /// First tick of an own span whose input must not be issued yet. At the start of a span, one input more than the
+    /// delay is issued at once, so that the other peers need not wait for the first ticks.
     fn issue_limit(&self, span: usize) -> Tick {
         if !self.view.begun {
             return 0;

@@ -11,7 +11,7 @@ use super::view::has_bit;
 pub enum InputStatus {
     /// Issued by the player.
     Confirmed,
-    /// Not received yet; the player's last known input is used instead.
+    /// Not received yet; the player's last known input is used instead, or zeros if there is none.
     Guessed,
     /// No peer plays the seat.
     Absent,

@@ -1,7 +1,7 @@
 //! [`Routes`]: the addresses of peers. A packet is attributed to the peer whose incarnation it states, whatever address
 //! it comes from. But packets of the match are sent to an address only after a probe or the handshake has shown that
 //! the peer receives packets there. Therefore a peer whose address changes is found again, and no peer can direct
-//! traffic to an address that is not its own.
+//! packets of the match to an address that is not its own.
 
 use alloc::vec::Vec;
 
@@ -116,7 +116,7 @@ impl Routes {
         self.list.retain(|route| matters(route.id));
     }
 
-    /// At most `most` known addresses to send to other peers. Each call starts at another address.
+    /// At most `most` known addresses to send to other peers. If there are more, the next call starts at another one.
     pub(super) fn known(&mut self, most: usize) -> Vec<(PeerId, Address)> {
         let known: Vec<_> = self.list.iter().filter_map(|route| Some((route.id, route.address?))).collect();
         self.turn = self.turn.wrapping_add(most);
