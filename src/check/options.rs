@@ -117,11 +117,12 @@ impl fmt::Display for Variant {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Depths {
-    /// One combination of depth and prediction per tick, in turn. With depths up to 8, all combinations occur within 24
-    /// ticks, at a cost of about eight steps per tick.
+    /// One combination of depth and prediction per tick, in turn. With the default depths of 1 to 8 ticks, all
+    /// combinations occur within 24 ticks, at a cost of about eight steps per tick.
     #[default]
     InTurn,
-    /// All combinations of depth and prediction at every tick. With depths up to 8, this costs 180 steps per tick.
+    /// All combinations of depth and prediction at every tick. With the default depths of 1 to 8 ticks, this costs 180
+    /// steps per tick.
     Each,
 }
 

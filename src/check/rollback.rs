@@ -53,7 +53,7 @@ impl<G: Game> Past<G> {
         }
         for (depth, guess) in rollbacks(now.options.depths, depth_max, now.tick) {
             let last = self.moments.len() - 1;
-            // Near the start the depth is limited by the number of ticks played.
+            // Near the start, the depth is limited by the number of recorded states.
             let depth = depth.min(u32::try_from(last).unwrap_or(u32::MAX));
             if depth > 0 {
                 *steps += u64::from(depth) * if guess == Guess::Right { 1 } else { 2 };

@@ -20,9 +20,9 @@
 //!
 //! # Untrusted files
 //!
-//! The [`Limits`] on work and bodies are checked while the replay is played, all others before the game is started. A
-//! file is scanned to its end (lengths, checksums, chain, run lengths) before the game is started, so that a damaged
-//! file costs no simulation.
+//! The [`Limits`] on work and bodies are checked when the game is started and in every tick, all others before the game
+//! is started. A file is scanned to its end (lengths, checksums, chain, run lengths) before the game is started, so
+//! that a damaged file costs no simulation.
 
 mod bytes;
 mod flaw;

@@ -2,8 +2,8 @@
 //!
 //! A body with a wrong velocity affects all bodies that it touches in the same tick: dozens of bodies differ, and the
 //! largest difference need not be at the origin. Therefore single bit flips of the bodies that differ are tried in the
-//! last correct state. Bits whose value is closest to the observed difference come first. A flip that leads to exactly
-//! the wrong state is the explanation.
+//! last correct state. Bits whose value is closest to the observed difference come first. If no body that differs is
+//! known, the bits of all bodies are tried. A flip that leads to exactly the wrong state is the explanation.
 
 use alloc::collections::BTreeMap;
 use alloc::format;
