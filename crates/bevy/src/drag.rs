@@ -77,7 +77,8 @@ impl Plugin for DragPlugin {
     }
 }
 
-/// Converts a position in units of `Transform` to metres, clamped to the range of world coordinates.
+/// Converts a position in units of `Transform` to metres, saturating at the range of [`Fx`]. A coordinate that is not
+/// finite becomes 0.
 pub fn to_metres(at: FloatVec2, settings: &LockstepSettings) -> Vec2<Fx> {
     let metres = |value: f32| Fx::saturating_from_num(if value.is_finite() { value } else { 0.0 });
     let at = at / settings.pixels_per_metre;
@@ -127,7 +128,7 @@ fn grip(world: &World, id: BodyId, at: Vec2<Fx>) -> Option<Held> {
 const STIFFNESS: Fx = fx!(158);
 /// Damping per mass in 1/s: the spring is critically damped.
 const DAMPING: Fx = fx!(25);
-/// Largest acceleration in m/s2.
+/// Largest acceleration along each axis, in m/s2.
 const ACCELERATION_MAX: Fx = fx!(500);
 
 /// The force of a damped spring from the grip to the pointer.

@@ -11,22 +11,22 @@ use lockstep2d::replay::{RecordError, SeekError, Verdict};
 /// Reason why a driver cannot start or continue.
 #[derive(Clone, Debug)]
 pub enum LockstepError {
-    /// The game cannot start from its setup.
+    /// The game of a sync test cannot start from its setup.
     Setup(SetupError),
-    /// The inputs cannot be encoded.
+    /// The inputs of a sync test cannot be encoded.
     Inputs(InputError),
-    /// The replay of a local game cannot be written.
+    /// A local game cannot start from its setup, or cannot be recorded.
     Record(RecordError),
-    /// The match cannot continue.
+    /// A match cannot start or continue, or a report of a desync cannot be made.
     Match(PeerError),
-    /// The file is not a replay of this game.
+    /// No tick of the replay can be played.
     Replay(Box<Verdict>),
     /// The replay cannot be played to a tick.
     Seek(SeekError),
     /// A sync test found a state that depends on more than the inputs: saving and loading the game loses state, or a
     /// step reads something that is not part of the game.
     SyncTest {
-        /// Number of ticks played.
+        /// Number of ticks after which the states differ.
         tick: u64,
         /// Hash when the tick was played first.
         first: StateHash,
@@ -86,7 +86,8 @@ impl From<SetupError> for LockstepError {
     }
 }
 
-/// The driver stopped for good. The game stays at the last tick that it has played.
+/// The driver stopped and plays no more ticks. Only a replay can continue, after a
+/// [`Lockstep::seek`](crate::Lockstep::seek).
 #[derive(Message, Clone, Debug)]
 pub struct LockstepFailed(
     /// Reason.

@@ -1,10 +1,11 @@
 //! Events of the simulation as Bevy messages, and for observers.
 //!
 //! With rollback a tick may be played several times. A [`ConfirmedEvent`] is sent when its tick is final, so that no
-//! rollback can change it: every peer receives the same confirmed events, in the same order, each once. A
-//! [`PredictedEvent`] is sent when the event occurs in a played tick for the first time, for sounds and particles; a
-//! [`RetractedEvent`] follows if a rollback removes the event. In a local game and in a replay, the predicted and the
-//! confirmed event are sent in the same frame.
+//! rollback can change it: all peers have the same confirmed events, in the same order, each once. Ticks that a peer
+//! does not play itself, because it joins late or receives a state, have no events for it. A [`PredictedEvent`] is sent
+//! when the event occurs in a played tick for the first time, for sounds and particles; a [`RetractedEvent`] follows if
+//! a rollback removes the event. In a local game and in a replay, the predicted and the confirmed event are sent in the
+//! same frame.
 
 use bevy::prelude::{Entity, EntityEvent, Message};
 use lockstep2d::body::{BodyId, ShapeId};
@@ -66,7 +67,7 @@ pub(crate) struct LoggedEvent {
     /// Number of ticks played, including the tick of the event.
     pub(crate) tick: u64,
     pub(crate) event: WorldEvent,
-    /// Bodies of the shapes or of the joint, as far as they exist after the tick; or the body that fell asleep.
+    /// Bodies of the shapes or of the joint, if the shape or joint exists after the tick; or the body that fell asleep.
     pub(crate) bodies: [Option<BodyId>; 2],
 }
 
@@ -115,7 +116,7 @@ pub struct ConfirmedEvent {
     /// The event.
     pub event: WorldEvent,
     /// Views of the bodies: of shapes A and B, of the sensor and the visitor, of the joint, or of the body that fell
-    /// asleep. `None` for a body that no longer exists.
+    /// asleep. `None` for a body or a shape that no longer exists, and for both bodies of a joint that broke.
     pub views: [Option<Entity>; 2],
 }
 

@@ -58,8 +58,8 @@ impl<G: LockstepGame> Lockstep<G> {
         Ok(Self::new(Driver::Local(Box::new(LocalDriver::new(setup)?))))
     }
 
-    /// A local game for tests: after every tick it loads the state of `depth` ticks ago, plays these ticks again, and
-    /// compares all state hashes. It stops with [`LockstepError::SyncTest`] if they differ.
+    /// A local game for tests: after every tick, from tick `depth` on, it loads the state of `depth` ticks ago, plays
+    /// these ticks again, and compares all state hashes. It stops with [`LockstepError::SyncTest`] if they differ.
     ///
     /// # Errors
     /// [`LockstepError::Setup`] when the setup cannot start a game.
@@ -156,8 +156,8 @@ impl<G: LockstepGame> Lockstep<G> {
     }
 
     /// Stops the ticks. In a match the others are asked to stop, too ([`MatchEvent`](crate::MatchEvent)); their game
-    /// decides whether they do. Peers that do not stop wait for this one, and continue without it after
-    /// [`PeerOptions::patience`]. This peer returns to the match when it resumes.
+    /// decides whether they do. Peers that do not stop have to wait for this one: [`PeerOptions::patience`] limits only
+    /// the wait for a peer that sends nothing, and a paused peer still sends packets.
     pub fn pause(&mut self) {
         self.set_paused(true);
     }
@@ -185,7 +185,7 @@ impl<G: LockstepGame> Lockstep<G> {
         self.single_steps = self.single_steps.saturating_add(1);
     }
 
-    /// The reason why the driver has stopped for good, if it has. The plugin has also sent it as the message
+    /// The reason why the driver has stopped, if it has. The plugin has also sent it as the message
     /// [`LockstepFailed`](crate::LockstepFailed) and written it to the log.
     #[must_use]
     pub const fn failure(&self) -> Option<&LockstepError> {

@@ -37,7 +37,7 @@ impl<G: Game> Observed<G> {
         &self.game
     }
 
-    /// The log. Only one thread ever uses it.
+    /// The log.
     pub(crate) fn log(&self) -> MutexGuard<'_, StepLog> {
         self.log.lock().unwrap_or_else(PoisonError::into_inner)
     }

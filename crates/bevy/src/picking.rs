@@ -63,7 +63,7 @@ impl<G: LockstepGame> Plugin for LockstepPickingPlugin<G> {
 }
 
 /// Drags the dynamic bodies of a [`Sandbox`] with the primary button or a finger: [`LockstepPickingPlugin`] and
-/// [`DragPlugin`], connected. A body is not dragged where anything else of the app is in front of it.
+/// [`DragPlugin`], connected. A body is not dragged where another entity that blocks pointers is in front of it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PointerDragPlugin;
 

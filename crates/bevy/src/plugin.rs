@@ -51,7 +51,7 @@ impl<G> LockstepPlugin<G> {
 #[derive(Resource, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Resource)]
 pub struct LockstepSettings {
-    /// Units of `Transform` per metre. Choose a scale at which a ball of half a metre is more than a pixel large.
+    /// Units of `Transform` per metre. A unit is a pixel in Bevy's default 2D camera.
     pub pixels_per_metre: f32,
     /// Whether poses of views are interpolated between the last two ticks: motion is smooth at every frame rate, but
     /// drawn up to a tick late. Otherwise views have the poses of the last tick.

@@ -49,7 +49,8 @@ pub(crate) struct StepLog {
     shown: Option<Stamp>,
     /// Poses of the tick `shown` after it was played again.
     pub(crate) shown_again: Option<Poses>,
-    /// Bodies that were missing in a loaded state. A later body with the same id may be a different body.
+    /// Bodies whose ids may now belong to other bodies: those that were missing in a loaded state, and all bodies that
+    /// existed before a seek.
     pub(crate) missing: Vec<BodyId>,
     /// Number of ticks played since the last frame, including those played again.
     pub(crate) stepped: u32,
@@ -132,7 +133,7 @@ impl StepLog {
         self.is_after_stale = true;
     }
 
-    /// Begins an epoch. The ticks before it are unknown to the epoch.
+    /// Begins an epoch. Returns 0: a load that begins an epoch does not count as a rollback.
     fn begin_epoch(&mut self, stamp: Option<Stamp>) -> u64 {
         let base = stamp.and_then(|stamp| Some(self.base_of(stamp.epoch)? + stamp.ticks));
         self.bases.push(base);

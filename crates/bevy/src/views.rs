@@ -11,11 +11,12 @@ use crate::smoothing::Offset;
 /// An entity that shows a body. The plugin spawns one for every body, with a [`Transform`], and despawns it with the
 /// body. Add components or children that draw the body, for example in an observer of `On<Add, BodyView>`.
 ///
-/// If an entity already has this component when the body appears, that entity becomes the view, and the plugin spawns
-/// none.
+/// If this component is added to an entity in the frame in which the body appears, or before the game is inserted, that
+/// entity becomes the view, and the plugin spawns none.
 ///
 /// The plugin writes x, y and rotation of the `Transform`; z and scale belong to the game. Two bodies that exist one
-/// after the other have two views, even if a rollback gives them the same id.
+/// after the other have two views, even if a rollback gives them the same id, unless they are equal in kind, user data
+/// and shapes.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[component(immutable)]
 #[require(Transform)]

@@ -12,13 +12,13 @@ use crate::game::LockstepGame;
 use crate::inputs::Inputs;
 use crate::observed::Observed;
 
-/// Plays every tick, then loads the state of `depth` ticks ago and plays these ticks again. The states after each tick
-/// have to be equal both times.
+/// Plays every tick. From tick `depth` on, it then loads the state of `depth` ticks ago and plays these ticks again. The
+/// states after each tick have to be equal both times.
 pub(crate) struct SyncTestDriver<G: LockstepGame> {
     game: Observed<G>,
     timestep: FixedTimestep,
     tick: u64,
-    /// Number of ticks that are played again after each tick.
+    /// Number of ticks that are played again after each tick, once so many have been played.
     depth: u32,
     history: History<Observed<G>>,
     /// Inputs of the last `depth` ticks.
@@ -41,7 +41,7 @@ impl<G: LockstepGame> SyncTestDriver<G> {
         Ok(())
     }
 
-    /// Plays one tick, and then the last `depth` ticks again.
+    /// Plays one tick, and then the last `depth` ticks again, once there are so many.
     pub(crate) fn step(&mut self, inputs: &mut Inputs<G>) -> Result<(), LockstepError> {
         let players = self.game.players();
         let encoded = EncodedInputs::new(&inputs.next(players as usize), players)?;
