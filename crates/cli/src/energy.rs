@@ -1,4 +1,4 @@
-//! [`Measures`]: quantities of a world that should be conserved or stay small.
+//! [`Measures`]: the energies of a world, and errors that should stay small.
 //!
 //! They are floats because they are only drawn. Only correctly rounded operations of IEEE 754 are used, so that the
 //! same replay gives the same plot on every machine.
@@ -11,7 +11,7 @@
 use lockstep2d::math::Fx;
 use lockstep2d::world::World;
 
-/// Quantities of a world that should be conserved or stay small.
+/// The energies of a world, and errors that should stay small.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Measures {
     /// Kinetic energy of all enabled dynamic bodies, in J.

@@ -1,4 +1,5 @@
-//! [`catch`]: catches a panic of the game, so that other files are still verified and all commands report it alike.
+//! [`catch`]: catches a panic of the game, so that `verify` continues with other files, and `export`, `inspect` and
+//! `stats` end with an error.
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};

@@ -12,7 +12,7 @@ use crate::identity::GameDigest;
 /// Maximum number of signatures in a file: enough for all players of a match, and servers.
 pub const SIGNATURES_MAX: usize = 256;
 
-/// Maximum size of a signature file in bytes. A larger file has more than [`SIGNATURES_MAX`] signatures.
+/// Maximum size of a signature file in bytes, more than [`SIGNATURES_MAX`] signatures take.
 pub const FILE_BYTES_MAX: u64 = 64 << 10;
 
 /// Appended to the name of a replay for the name of its signature file.

@@ -15,7 +15,7 @@ pub(crate) const TOOL: &str = env!("CARGO_BIN_EXE_lockstep2d");
 /// The contents of a file that exists already.
 pub(crate) const OLD: &[u8] = b"what was there before";
 
-/// Every command that writes more than 512 bytes to the file `to`.
+/// Commands that write more than 512 bytes to the file `to`.
 fn writers(to: &str) -> Vec<Vec<String>> {
     let stack = golden("box_stack");
     [

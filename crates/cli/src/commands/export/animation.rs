@@ -12,13 +12,13 @@ use super::{Arguments, Output, Replay};
 use crate::context::{CommandResult, Context};
 use crate::error::CommandError;
 
-/// Largest default frame rate in frames per second. A higher rate makes no visible difference.
+/// Largest default frame rate in frames per second.
 const FRAME_RATE_MAX: u32 = 30;
 /// Default width of an animation in pixels, smaller than for pictures to keep files small.
 const WIDTH: u32 = 640;
 /// Highest frame rate at which most programs show a GIF: their shortest frame time is 2/100 s.
 const GIF_RATE_MAX: u32 = 50;
-/// Number of ticks that are sampled to find a window that fits the world at all of them.
+/// Maximum number of ticks, besides the last one, that are sampled to find a window that fits the world at all of them.
 const SAMPLES: u64 = 100;
 /// Number of sampled ticks for each sample picture. The palette is computed from the sample pictures.
 const SAMPLES_OF_A_PICTURE: usize = 10;

@@ -1,4 +1,4 @@
-//! [`Cache`]: a folder of cached reports, so that no file is played twice.
+//! [`Cache`]: a folder of cached reports, so that a file with a known verdict is not played again.
 
 use std::fs::{self, File};
 use std::hash::{BuildHasher, Hasher, RandomState};
@@ -26,7 +26,7 @@ const ENTRY_BYTES_MAX: u64 = 1 << 20;
 /// writers of an entry write the same bytes. An entry that is damaged or cannot be read counts as absent.
 pub(super) struct Cache {
     folder: PathBuf,
-    /// Hash of the rules, the semantics and the limits, which are the same for all files.
+    /// Hash of what is the same for all files: versions, rules and limits.
     context: Hash,
 }
 

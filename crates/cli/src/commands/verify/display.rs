@@ -113,7 +113,7 @@ impl<'a, 'c> Display<'a, 'c> {
         }
         self.count_signed(signed);
         if let Some(error) = unkept.as_ref().filter(|_| !self.is_cache_failing) {
-            // Warn only once: the cause is the same for all files.
+            // Warn only once: the cause is usually the same for all files.
             self.is_cache_failing = true;
             let warning = format!("verdicts cannot be cached: {error}");
             self.progress.aside(|| self.console.warning(warning));

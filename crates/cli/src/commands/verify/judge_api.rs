@@ -65,7 +65,8 @@ impl<G: Game> Judge<G> {
         &self.limits
     }
 
-    /// Verifies the bytes of a file. A panic of the game is a verdict. Returns `None` after [`Judge::stop`].
+    /// Verifies the bytes of a file. A panic of the game is a verdict. Returns `None` if [`Judge::stop`] has ended the
+    /// verification.
     ///
     /// `bytes` may be truncated to one byte more than the size limit; the verdict is the same.
     #[must_use]

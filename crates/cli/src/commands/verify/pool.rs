@@ -6,11 +6,11 @@ use std::sync::{Mutex, mpsc};
 use std::thread;
 use std::time::Duration;
 
-/// Maximum number of tasks that are started before the result of the first of them is shown. With [`Order::Tasks`],
-/// their results are held in memory while a long task runs.
+/// Maximum number of started tasks whose results are not yet shown. With [`Order::Tasks`], results are held in memory
+/// while an earlier task runs.
 const AHEAD_MAX: u64 = 1024;
 
-/// Longest time between two calls of [`Sink::pause`].
+/// Longest wait for a result before [`Sink::pause`] is called.
 const MOMENT: Duration = Duration::from_millis(100);
 
 /// Stack size of a thread in bytes. It equals the usual size for a main thread, which a game may rely on. Untouched
@@ -34,7 +34,7 @@ pub(super) trait Sink<R> {
     /// Shows one result.
     fn result(&mut self, result: R) -> Result<(), Self::Error>;
 
-    /// Called repeatedly, at least every [`MOMENT`]. [`Pause::End`] ends the run.
+    /// Called repeatedly, also while no result arrives. [`Pause::End`] ends the run.
     fn pause(&mut self) -> Result<Pause, Self::Error>;
 
     /// Called after [`Pause::End`], when all held results have been shown. Tasks may still be running.
@@ -48,7 +48,8 @@ pub(super) enum Pause {
     End,
 }
 
-/// Calls `work` with each of `tasks` on `jobs` threads, and `sink` with the results.
+/// Calls `work` with each of `tasks` on `jobs` threads, and `sink` with the results. If the system refuses threads,
+/// there are fewer; without any, the tasks run on this thread and [`Sink::pause`] is not called.
 ///
 /// After an error of `sink` or a [`Pause::End`], `stop` is set and no more tasks are started. Long-running work should
 /// check `stop`.

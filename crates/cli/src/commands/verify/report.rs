@@ -12,7 +12,8 @@ use crate::console::json_text;
 use crate::identity::GameDigest;
 use crate::panics::{PANICKED, Panic, PanicText};
 
-/// The verdict on a file's bytes with its details. It depends on nothing but the bytes, the limits and the program.
+/// The verdict on a file's bytes with its details. Except for a panic, it depends on nothing but the bytes, the limits
+/// and the program.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Report {
     /// Readable text: the verdict, a colon, the details.
@@ -22,7 +23,7 @@ pub(super) struct Report {
     hash: Option<String>,
     /// Number of bytes read from the file: at most one more than the limit.
     bytes: u64,
-    /// Fields that only this verdict has, by name.
+    /// Further fields of the JSON line, by name; the verdict determines which there are.
     details: Map<String, Value>,
 }
 

@@ -7,9 +7,9 @@ use std::str::FromStr;
 /// One part of `count`, numbered from 1, as test runners do.
 ///
 /// The part of a file depends only on a hash of its path below the argument through which it was found, and not on
-/// other files. Two processes that list a changing folder at different times therefore never both take or both skip a
-/// file. A file also stays in its part, where its verdict may be cached, when other files are added. The disadvantage
-/// is imbalance: parts of 1000 files differ by about thirty.
+/// other files. Processes that list a changing folder at different times therefore never take the same file, and skip
+/// no file that all of them find. A file also stays in its part, where its verdict may be cached, when other files are
+/// added. The disadvantage is imbalance: parts of 1000 files differ by about thirty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Shard {
     index: u32,
