@@ -3,8 +3,8 @@
 //! The simulation is one resource, [`Lockstep<G>`](Lockstep), for any [`Game`](lockstep2d::lockstep::Game). A driver
 //! plays it: [local](Lockstep::local), a [replay](Lockstep::replay), or a [match](Lockstep::host) over a network.
 //! Entities are *views* of the bodies in the game: they appear and disappear with the bodies, also through rollbacks,
-//! late joins and seeks. The plugin writes their interpolated poses to their `Transform`s, and never reads a pose
-//! from there. So nothing that Bevy does can change the simulation, and no component needs to be registered for rollback.
+//! late joins and seeks. The plugin writes interpolated poses to their `Transform`s, and never reads a pose from
+//! there. So nothing that Bevy does can change the simulation, and no component needs to be registered for rollback.
 //!
 //! ```
 //! use bevy::prelude::*;

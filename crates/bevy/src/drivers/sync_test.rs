@@ -12,8 +12,8 @@ use crate::game::LockstepGame;
 use crate::inputs::Inputs;
 use crate::observed::Observed;
 
-/// Plays every tick. From tick `depth` on, it then loads the state of `depth` ticks ago and plays these ticks again. The
-/// states after each tick have to be equal both times.
+/// Plays every tick. From tick `depth` on, it then loads the state of `depth` ticks ago and plays these ticks again.
+/// The states after each tick have to be equal both times.
 pub(crate) struct SyncTestDriver<G: LockstepGame> {
     game: Observed<G>,
     timestep: FixedTimestep,
