@@ -28,7 +28,7 @@ pub(super) const CHARACTER: Scene = Scene {
     script: |tick, game| play(tick, game).unwrap_or_default(),
 };
 
-/// A wall, a floor, a slope of 27 degrees, four steps down, a floor, a slope of 60 degrees and a wall.
+/// A wall, a floor, a slope of 27 degrees, a plateau, four steps down, a floor, a slope of 60 degrees and a wall.
 fn level() -> Vec<Vec2<Fx>> {
     let mut points = vec![(fx!(-10), fx!(6)), (fx!(-10), fx!(0)), (fx!(0), fx!(0)), (fx!(6), fx!(3))];
     let (mut x, mut y) = (fx!(9), fx!(3));

@@ -1,4 +1,4 @@
-//! Scenes of one or two bodies whose motion has a textbook solution.
+//! Scenes of a few bodies with known results.
 
 use super::Scene;
 use super::builder::{build, floor, rectangle, weightless};

@@ -1,4 +1,4 @@
-//! Scenes of [`lockstep2d`] as plain data, built once and shared by tests, replays, tools and benchmarks.
+//! Scenes of [`lockstep2d`] as plain data, shared by tests, replays, tools and benchmarks.
 //!
 //! [`ALL`] lists them, [`Scene::find`] finds one by name, and [`Builder`] builds custom setups.
 #![no_std]

@@ -1,5 +1,5 @@
-//! A dynamic character: a body that a spring leg holds above the ground, pushed by forces alone. It takes part in the
-//! simulation: it pushes crates, loads the ground with its weight, and is carried by moving ground.
+//! A dynamic character: a body that a spring leg holds above the ground, moved by forces and impulses alone. It takes
+//! part in the simulation: it pushes crates, loads dynamic ground with its weight, and is carried by moving ground.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -34,7 +34,7 @@ pub(super) const SPRING_LEG: Scene = Scene {
     script: |tick, game| play(tick, game.world()).unwrap_or_default(),
 };
 
-/// A wall, a floor, four steps up, a slope of 17 degrees down, a floor with a pit for the lift, and a wall.
+/// A wall, a floor, four steps up, a slope of 17 degrees down, a floor, a pit for the lift, an upper floor, and a wall.
 fn level() -> Vec<Vec2<Fx>> {
     let mut points = vec![(fx!(-9), fx!(6)), (fx!(-9), fx!(0))];
     let (mut x, mut y) = (fx!(-2), fx!(0));

@@ -25,8 +25,8 @@ use crate::metrics::Metrics;
 use crate::queue::{Added, Queue, json};
 use crate::shutdown::{Phase, Shutdown};
 
-/// Longest time for which the server holds a request for a job. If the server answers, an
-/// idle worker takes at most this long to end.
+/// Longest time for which the server holds a request for a job. If the server answers, an idle worker takes at most
+/// this long to end.
 const EXPIRES: Duration = Duration::from_secs(2);
 
 /// Time after [`EXPIRES`] at which a request counts as lost, because the server has gone.
@@ -208,8 +208,8 @@ impl<G: Game + 'static> Work<G> {
     }
 }
 
-/// Acknowledges a job and waits until the server has confirmed it. Without a confirmation, the job is delivered again
-/// and dropped because it has a result.
+/// Sends an acknowledgement of a job and waits until the server has confirmed it. If the acknowledgement of a job with
+/// a result is lost, the job is delivered again, and dropped because it has a result.
 async fn acknowledge(message: &Message, kind: AckKind) {
     let _ = message.double_ack_with(kind).await;
 }

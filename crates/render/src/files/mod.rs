@@ -40,8 +40,9 @@ enum Format<W: Write> {
 }
 
 impl<W: Write> Animation<W> {
-    /// Starts a GIF. Up to 255 colours are exact; a frame with more colours is reduced to the nearest of 255 colours
-    /// chosen from it. GIF has no partial opacity: translucent pixels become opaque.
+    /// Starts a GIF. Frames with up to 255 colours are exact, except the first one if it and the announced frames have
+    /// more colours together. The colours of the other frames are replaced by the nearest of at most 255. GIF has no
+    /// partial opacity: translucent pixels become opaque.
     pub fn gif(writer: W, pace: Pace) -> Self {
         Animation(Format::Gif(gif::Gif::new(writer, pace)))
     }
@@ -51,8 +52,9 @@ impl<W: Write> Animation<W> {
         Animation(Format::Apng(Box::new(apng::Apng::new(writer, pace, frames))))
     }
 
-    /// Announces the colours of a later frame, of any size. A GIF stores the colours announced before the first frame
-    /// once in a global palette; frames with other colours each need their own palette.
+    /// Announces the colours of a later frame, of any size. A GIF has a global palette for the first frame and the
+    /// frames announced before it. As soon as a frame has colours that this palette does not represent well, that frame
+    /// and all later ones contain palettes of their own.
     pub fn expect(&mut self, frame: &Image) {
         match &mut self.0 {
             Format::Gif(gif) => gif.expect(frame),
