@@ -55,7 +55,8 @@ export class Direct {
         this.#links.clear();
     }
 
-    // The member with the smaller address makes the offer. The other member requests the connection with a `wish`.
+    // The member whose address comes first, as text, makes the offer. The other member requests the connection with a
+    // `wish`.
     #connect() {
         const names = new Set(this.#relay.others.map(nameOf));
         [...this.#links.values()].filter(({ name }) => !names.has(name)).forEach(({ address }) => this.#drop(address));

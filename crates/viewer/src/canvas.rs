@@ -10,7 +10,7 @@ use lockstep2d_render::{Brush, CELL_HEIGHT, Camera, Colour, DrawList, filled, pa
 
 /// Number of corners of a circle.
 const CORNERS: u16 = 48;
-/// Background of a headline, on which bright and dark colours can be read.
+/// Background of a headline.
 const PLATE: Colour = Colour::hex(0x14_181d);
 /// Opacity of the inside of a body that is painted in a colour of its own.
 const INSIDE: u8 = 150;

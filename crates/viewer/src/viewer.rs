@@ -153,8 +153,8 @@ impl<G: Game + 'static> Viewer<G> {
         self
     }
 
-    /// Sets a function that returns the game's own state for the inspector. By default the inspector makes a save in
-    /// every frame and shows all fields of [`Game::Save`] except those of the world.
+    /// Sets a function that returns the game's own state for the inspector. By default the inspector, while it shows
+    /// this state, makes a save in every frame and lists all fields of [`Game::Save`] except those of the world.
     #[must_use]
     pub fn state<S: Serialize>(mut self, state: impl Fn(&G) -> S + 'static) -> Self {
         let list = move |game: &G| listed(&fields(&state(game)).unwrap_or_default());

@@ -5,7 +5,7 @@
 
 const element = (id) => document.getElementById(id);
 
-// Verdict names, which are shown with a capital letter as in the library.
+// Verdict names, whose first letter is shown as a capital.
 const VERDICTS = /\b(match|claim mismatch|diverged|incomplete|malformed|limit exceeded|unverifiable)\b/;
 
 function report([name, tick, ticks, hash, status]) {

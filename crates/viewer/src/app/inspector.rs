@@ -23,8 +23,8 @@ pub(super) struct Inspector {
     scrolled: usize,
 }
 
-/// Returns the body at a screen position or, if there is none, the closest one within [`REACH`]. Of several overlapping
-/// bodies, it returns the one in the last slot, because that one is painted on top.
+/// Returns the body at a screen position or, if there is none, the closest one within [`REACH`]. Sensors are left out.
+/// Of several overlapping bodies, it returns the one whose shape is in the last slot, which is usually painted on top.
 pub(super) fn body_at(world: &World, camera: &Camera, at: [f32; 2]) -> Option<BodyId> {
     let point = camera.point(at);
     let beside = {

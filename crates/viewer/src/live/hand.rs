@@ -75,7 +75,7 @@ impl Hand {
         }
     }
 
-    /// Releases the held body without a command, because the world was replaced by another state.
+    /// Releases the held body without a command, after a seek to an earlier tick or after commands were dropped.
     pub(super) fn forget(&mut self) {
         self.hold = Hold::Nothing;
         self.litter = true;

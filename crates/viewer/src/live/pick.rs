@@ -14,15 +14,15 @@ pub(super) struct Picked {
     pub(super) point: Vec2<Fx>,
 }
 
-/// Picks the body at `aim` among those for which `wanted` holds: the topmost one that contains the point or, if none
-/// contains it, the nearest one within `aim.within`. Solid shapes take precedence over sensors.
+/// Picks the body at `aim` among those for which `wanted` holds: the one that contains the point, with its shape in the
+/// last slot, or, if none contains it, the nearest one within `aim.within`. Solid shapes take precedence over sensors.
 pub(super) fn pick(world: &World, aim: Aim, wanted: impl Fn(&Body) -> bool) -> Option<Picked> {
     let solid = QueryFilter::default();
     let all = QueryFilter { sensors: true, ..solid };
     let is_wanted =
         |shape: &ShapeId| world.body_of(*shape).and_then(|id| world.body(id)).is_some_and(&wanted);
     [solid, all].into_iter().find_map(|filter| {
-        // Bodies in later slots are drawn on top.
+        // The shape in the last slot is usually drawn on top.
         let here = world.overlap_point(aim.at, filter).into_iter().rev().find(is_wanted);
         let here = here.and_then(|shape| Some(Picked { body: world.body_of(shape)?, point: aim.at }));
         here.or_else(|| nearest(world, aim, filter, is_wanted))

@@ -7,7 +7,7 @@ use lockstep2d::world::Command;
 
 use super::act::Form;
 
-/// Radius or half width of a body placed by a click, in metres.
+/// Radius, half width or, for a capsule, length of the segment of a body placed by a click, in metres.
 const SIZE: Fx = fx!(0.5);
 /// Drags shorter than this, in metres, count as clicks.
 const CLICK: Fx = fx!(0.05);

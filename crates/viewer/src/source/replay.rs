@@ -9,8 +9,8 @@ use lockstep2d_render::{Camera, DrawList};
 use super::{Source, SourceError};
 use crate::play::Presentation;
 
-/// Interval between keyframes, in ticks. Seeking backwards replays fewer ticks than this, which takes up to half a
-/// second in large scenes.
+/// Initial interval between keyframes, in ticks. Seeking backwards replays at most one interval, which takes up to half
+/// a second in large scenes.
 const INTERVAL: u32 = 60;
 
 /// Work units that are verified per frame, which take a few milliseconds.
