@@ -41,7 +41,8 @@ struct Held {
 }
 
 impl DragHand {
-    /// Presses the pointer at a position. The first dynamic body there is held until [`DragHand::release`].
+    /// Presses the pointer at a position. The first dynamic body there is held until [`DragHand::release`]. If there is
+    /// none, the first one that the pointer reaches is held.
     pub fn hold(&mut self, at: FloatVec2) {
         self.at = Some(at);
     }

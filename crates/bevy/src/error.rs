@@ -17,7 +17,7 @@ pub enum LockstepError {
     Inputs(InputError),
     /// A local game cannot start from its setup, or cannot be recorded.
     Record(RecordError),
-    /// A match cannot start or continue, or a report of a desync cannot be made.
+    /// A match cannot start or continue, or its replay or a report of a desync cannot be made.
     Match(PeerError),
     /// No tick of the replay can be played.
     Replay(Box<Verdict>),

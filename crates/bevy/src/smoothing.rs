@@ -57,8 +57,8 @@ pub(crate) struct Offset {
     angle: f32,
 }
 
-/// Displacement in metres below which an offset is dropped if its angle is also small: such an offset is less than a
-/// pixel.
+/// Displacement in metres below which an offset is dropped if its angle is also small. At the default scale it is a
+/// tenth of a pixel.
 const POSITION_MIN: f32 = 1e-3;
 /// Angle in radians below which an offset is dropped if its displacement is also small.
 const ANGLE_MIN: f32 = 1e-3;

@@ -1,4 +1,4 @@
-//! Seeking back shows the same picture as before, in all layers, contact points included.
+//! Seeking back shows the same picture as before, in all layers except the broad phase.
 
 use std::path::Path;
 

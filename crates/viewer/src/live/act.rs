@@ -134,8 +134,8 @@ pub trait Playground {
     /// Queues an act for the next tick. Several acts may be queued.
     ///
     /// If the next tick is already recorded, because the user went back, and the queued acts issue commands, it is
-    /// played again with these acts in place of the recorded ones, and all later ticks are dropped. A seek to an earlier
-    /// tick drops queued acts and releases the held body.
+    /// played again with these acts in place of the recorded ones, and all later ticks are dropped. A seek to an
+    /// earlier tick drops queued acts and releases the held body.
     fn act(&mut self, act: Act);
 
     /// Returns the held body; `None` also between the grab and the tick that carries it out.
