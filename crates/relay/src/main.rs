@@ -45,7 +45,7 @@ struct Arguments {
     /// Seconds without a frame after which a member is disconnected
     #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=3600))]
     idle_seconds: u64,
-    /// Print a line of JSON for each event
+    /// Print the address of the relay as a line of JSON
     #[arg(long)]
     json: bool,
 }

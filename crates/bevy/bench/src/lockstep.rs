@@ -1,4 +1,4 @@
-//! This plugin: the game that its drivers step and save.
+//! bevy_lockstep2d: the game that its drivers step and save, without an app.
 
 use std::collections::VecDeque;
 
