@@ -1,11 +1,11 @@
 //! Events of the simulation as Bevy messages, and for observers.
 //!
 //! With rollback a tick may be played several times. A [`ConfirmedEvent`] is sent when its tick is final, so that no
-//! rollback can change it: all peers have the same confirmed events, in the same order, each once. Ticks that a peer
-//! does not play itself, because it joins late or receives a state, have no events for it. A [`PredictedEvent`] is sent
-//! when the event occurs in a played tick for the first time, for sounds and particles; a [`RetractedEvent`] follows if
-//! a rollback removes the event. In a local game and in a replay, the predicted and the confirmed event are sent in the
-//! same frame.
+//! rollback can change it: all peers have the same confirmed events, in the same order, each once. A peer that joins
+//! late or returns receives a state, and misses events before that state. A [`PredictedEvent`] is sent when the event
+//! occurs in a played tick for the first time, for sounds and particles; a [`RetractedEvent`] follows if a rollback
+//! removes the event. In a local game and in a replay, the predicted and the confirmed event are sent in the same
+//! frame.
 
 use bevy::prelude::{Entity, EntityEvent, Message};
 use lockstep2d::body::{BodyId, ShapeId};

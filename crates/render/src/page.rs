@@ -9,7 +9,7 @@ use crate::list::DrawList;
 use crate::paint::{Brush, paint};
 use crate::text::{CELL_WIDTH, width_of};
 
-/// Colour of all text except the names of styles.
+/// Colour of the legend, except the names of styles, and of the scale bar.
 const INK: Colour = Colour::hex(0x222222);
 /// Background colour of the legend.
 const WHITE: Colour = Colour::hex(0xffffff);

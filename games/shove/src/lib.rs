@@ -2,8 +2,9 @@
 //!
 //! The view is from above. A player is a disc, controlled by a [`Pad`] of one byte; it can dash when the dash is
 //! recharged. In the centre a mill swings two flails, bumpers kick bodies that hit them, plates recharge the dash of
-//! players that enter them, and crates lie around. A player whose centre leaves the platform has fallen, and each
-//! player still standing gets a point. The last player standing wins the round, unless the time runs out first.
+//! players that enter them, and crates lie around. A player whose centre leaves the platform has fallen, and during a
+//! round each player still standing gets a point. The last player standing wins the round, unless the time runs out
+//! first.
 //!
 //! The game is deliberately small. It is the example for lockstep, rollback, late join and the viewer.
 //!

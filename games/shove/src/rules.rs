@@ -41,7 +41,7 @@ pub(crate) struct Seat {
     pub(crate) body: Option<BodyId>,
     /// Number of ticks until the player can dash again.
     pub(crate) recharge: u8,
-    /// Score: one point for each player that fell while this player was standing.
+    /// Score: one point for each player that fell in [`Phase::Fight`] while this player was standing.
     pub(crate) score: u32,
     /// Number of rounds that the player has won.
     pub(crate) won: u32,

@@ -22,7 +22,7 @@ pub struct Player {
     pub velocity: Vec2<Fx>,
     /// Number of ticks until the player can dash again.
     pub recharge: u32,
-    /// Score: one point for each player that fell while this player was standing.
+    /// Score: one point for each player that fell in [`Phase::Fight`] while this player was standing.
     pub score: u32,
     /// Number of rounds that the player has won.
     pub won: u32,

@@ -23,7 +23,7 @@ pub struct Limits {
     pub datagrams_per_second: u32,
     /// Time without any frame after which a member is disconnected. The member is pinged three times within this time.
     pub idle: Duration,
-    /// Origins of web pages that may connect. Empty: all. Native clients have no origin and are always admitted.
+    /// Origins of web pages that may connect. Empty: all. Clients that send no origin, as native ones do, are admitted.
     pub origins: Vec<String>,
 }
 
