@@ -24,7 +24,7 @@ pub(super) struct Inspector {
 }
 
 /// Returns the body at a screen position or, if there is none, the closest one within [`REACH`]. Sensors are left out.
-/// Of several overlapping bodies, it returns the one whose shape is in the last slot, which is usually painted on top.
+/// If bodies overlap, it returns the one whose shape is in the last slot, which is usually painted on top.
 pub(super) fn body_at(world: &World, camera: &Camera, at: [f32; 2]) -> Option<BodyId> {
     let point = camera.point(at);
     let beside = {
