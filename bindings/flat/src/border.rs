@@ -162,7 +162,8 @@ impl<'a, T: Plain> Out<'a, T> {
         if self.0.is_null() { Ok(()) } else { self.set(value) }
     }
 
-    /// Writes the number of items to `count`, and the items if there is room for `capacity`.
+    /// Writes the number of items to `count`, and the items if there are at most `capacity`. Otherwise the result is
+    /// [`Status::Buffer`].
     pub(crate) fn set_all(&mut self, capacity: usize, count: &mut Out<'_, usize>, items: &[T]) -> Outcome {
         count.set(items.len())?;
         if items.len() > capacity {

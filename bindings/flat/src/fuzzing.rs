@@ -1,5 +1,5 @@
 //! Calls functions of the API with arguments that are drawn from bytes and often wrong, for tests and for the fuzz
-//! target `flat`. All functions are drawn with equal probability. Their list comes from the `api!` macro.
+//! target `flat`. The list of all functions comes from the `api!` macro.
 
 use crate::border::{In, Out, Plain};
 use crate::functions::DRAWN;
@@ -18,7 +18,7 @@ const BYTES: usize = 4096;
 const REMEMBERED: usize = 12;
 
 /// Names of parameters that are handles of objects. A handle that an output parameter returns is mostly passed to
-/// parameters of the same name.
+/// parameters of the same name; `copy` is the handle of a world.
 const HANDLES: [&str; 11] = [
     "world",
     "target",
@@ -49,7 +49,7 @@ pub struct Caller<'a> {
     input: std::slice::Iter<'a, u8>,
     handles: Vec<(&'static str, u32)>,
     ids: Vec<u64>,
-    /// The last contents of a buffer for each item size, such as definitions made by an `_init` function, or packets.
+    /// The last output for each item size, such as a definition made by an `_init` function, or a packet.
     known: Vec<(usize, Box<[u64]>)>,
     buffers: Vec<Buffer>,
     /// Number of items in the buffer of the last pointer argument.
@@ -57,8 +57,8 @@ pub struct Caller<'a> {
     codes: Vec<i32>,
 }
 
-/// Calls functions as long as there is input. Returns their codes, and the hashes of the worlds at the end. All objects
-/// are freed.
+/// Calls functions as long as there is input. Returns their codes, and the lower halves of the hashes of the worlds at
+/// the end. Frees the objects whose handles parameters named in `HANDLES` have returned.
 ///
 /// # Panics
 /// If a call has failed in the library itself.
@@ -139,8 +139,9 @@ impl Caller<'_> {
         known.unwrap_or_else(|| self.word())
     }
 
-    /// Draws memory for items of `item` bytes: null, misaligned, filled with zeros, or the last output for items of
-    /// this size with some words changed. Returns its address and an offset in bytes.
+    /// Draws memory for items of `item` bytes, filled with zeros or with the last output for items of this size. Up to
+    /// three words of an input are changed. Returns the address and an offset in bytes, which is 1 for a misaligned
+    /// pointer; `None` for a null pointer.
     fn buffer(&mut self, name: &str, item: usize, is_output: bool) -> Option<(*mut u64, usize)> {
         self.items = if item == 1 { BYTES } else { ITEMS };
         let kind = self.byte();

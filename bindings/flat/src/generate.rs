@@ -12,15 +12,15 @@ const OPENING: &str = "\
  *
  * Written by the tests of lockstep2d-flat; do not edit it.
  *
- * Functions return a status: LS2D_OK, LS2D_NONE if there is nothing to return, or an error, whose text ls2d_last_error
- * copies. Objects are referred to by handles, numbers that are never 0. A wrong or stale handle is an error, never
- * undefined behaviour. ls2d_free frees objects of all kinds.
+ * Most functions return a status: LS2D_OK, LS2D_NONE if there is nothing to return, or an error, whose text
+ * ls2d_last_error copies. Objects are referred to by handles, numbers that are never 0. A wrong or stale handle is an
+ * error, never undefined behaviour. ls2d_free frees objects of all kinds.
  *
  * Pointers are null or point to as many items as the function reads or writes, and nothing else uses that memory during
- * the call. Functions with a buffer take its capacity in items and write the number of items; if the buffer is too
- * short, they write the number that is needed and return LS2D_BUFFER.
+ * the call. Functions with a buffer take its capacity in items. If the buffer is too short, they return LS2D_BUFFER.
+ * Functions with a pointer for the number of items write that number in both cases.
  *
- * Structs that the caller fills begin with their size; ls2d_*_init functions set it and the defaults.
+ * Structs with an ls2d_*_init function, except ls2d_rng, begin with their size. The function sets it and the defaults.
  *
  * Numbers are integers: ls2d_fx has 32 fraction bits (LS2D_FX(1) is a metre), ls2d_angle is in units of 2^-32 turn.
  * Different objects may be used on several threads at once. */
@@ -44,7 +44,7 @@ typedef uint32_t ls2d_handle;
 #define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)((int64_t)(numerator) * 4294967296 / (denominator)))
 /* An angle of whole degrees, rounded towards zero. */
 #define LS2D_DEGREES(whole) ((ls2d_angle)(int64_t)((int64_t)(whole) * 4294967296 / 360))
-/* Value of ls2d_body, ls2d_shape and ls2d_joint for none. */
+/* An ls2d_body, ls2d_shape or ls2d_joint that refers to nothing. */
 #define LS2D_NO_ID UINT64_MAX
 ";
 

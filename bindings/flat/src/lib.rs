@@ -3,9 +3,11 @@
 //!
 //! - Objects are referred to by handles, numbers that are looked up in a table. A handle that is wrong, stale, freed
 //!   twice or of another kind is an error.
-//! - Functions return a status code; `ls2d_last_error` copies the error text. No function panics or calls back.
+//! - Functions that can fail return a status code; `ls2d_last_error` copies the error text. No function panics or calls
+//!   back.
 //! - Numbers of the simulation are integers: [`RawFx`] has 32 fraction bits, [`RawAngle`] is in units of 2^-32 turn.
-//! - Structs are the same on all machines, have no gaps, and begin with their size if the caller fills them.
+//! - Structs are the same on all machines and have no gaps. Structs with an `_init` function, except [`RawRng`], begin
+//!   with their size.
 //! - Different objects may be used on different threads at the same time. Calls with the same object wait for each
 //!   other.
 //!

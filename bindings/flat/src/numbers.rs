@@ -14,7 +14,7 @@ aliases! {
     /// An angle in units of 2^-32 turn, counter-clockwise: a quarter turn is 1073741824.
     RawAngle(u32) = "ls2d_angle";
     /// A body of a world: the lowest 21 bits are its slot, the bits above them the number of earlier bodies in that
-    /// slot. Always less than 2^53, so that a JavaScript number represents it exactly.
+    /// slot. Less than 2^53, so that a JavaScript number represents it exactly; only `LS2D_NO_ID` is larger.
     RawBody(u64) = "ls2d_body";
     /// A shape of a world, encoded like a body.
     RawShape(u64) = "ls2d_shape";

@@ -33,15 +33,15 @@ statuses! {
     Null = 2, "LS2D_NULL";
     /// A pointer is not aligned for its type.
     Misaligned = 3, "LS2D_MISALIGNED";
-    /// The handle is null, was freed, or never existed.
+    /// No object has the handle: it was freed, or never existed.
     Handle = 4, "LS2D_HANDLE";
     /// The handle belongs to an object of another kind.
     HandleKind = 5, "LS2D_HANDLE_KIND";
     /// The `size` of a struct does not match this version of the library.
     Size = 6, "LS2D_SIZE";
-    /// A kind, flag, count or index is out of its range.
+    /// An argument is out of its range, for example a kind, flag, count or tick; or the call is not possible now.
     Value = 7, "LS2D_VALUE";
-    /// The buffer is too short. The number of items that it has to hold was written.
+    /// The buffer is too short. If the function has a pointer for the number of items, the number needed was written.
     Buffer = 8, "LS2D_BUFFER";
     /// A text is invalid, for example not UTF-8 or not a number.
     Text = 9, "LS2D_TEXT";
@@ -81,7 +81,7 @@ statuses! {
     Damping = 31, "LS2D_DAMPING";
     /// A gravity scale is out of range.
     GravityScale = 32, "LS2D_GRAVITY_SCALE";
-    /// A property of an area is out of range.
+    /// A property of an area is out of range, or the shape cannot be an area.
     Area = 33, "LS2D_AREA";
     /// A joint connects a body to itself.
     JointToItself = 34, "LS2D_JOINT_TO_ITSELF";
@@ -89,9 +89,9 @@ statuses! {
     JointBodies = 35, "LS2D_JOINT_BODIES";
     /// The joint has no such part.
     JointPart = 36, "LS2D_JOINT_PART";
-    /// A property of a joint is out of range.
+    /// A property of a joint is out of range, or its lower limit is above the upper one.
     Joint = 37, "LS2D_JOINT";
-    /// A setting of the world is out of range.
+    /// A setting of the world or a property of an explosion is out of range.
     Setting = 38, "LS2D_SETTING";
     /// A limit of the world cannot be changed.
     FixedSetting = 39, "LS2D_FIXED_SETTING";
@@ -107,7 +107,7 @@ statuses! {
     Record = 51, "LS2D_RECORD";
     /// A parameter of a match is out of its range.
     Config = 60, "LS2D_CONFIG";
-    /// The inputs do not have the expected number of bytes.
+    /// The inputs do not have the expected number of bytes, or the input of an absent player is not zeros.
     Inputs = 61, "LS2D_INPUTS";
     /// This peer does not take part in the match yet.
     NotInMatch = 62, "LS2D_NOT_IN_MATCH";

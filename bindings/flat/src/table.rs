@@ -200,7 +200,7 @@ fn remove(handle: u32) -> Outcome<Shared> {
     Ok(object)
 }
 
-/// Frees an object. A call on another thread that uses the object is completed first.
+/// Removes an object from the table. If a call on another thread uses the object, its memory is freed after that call.
 pub(crate) fn free(handle: u32) -> Outcome {
     // The object is dropped after the table is unlocked.
     remove(handle).map(drop)

@@ -305,7 +305,7 @@ api! {
         edit(target, Command::SetGravity { gravity: vector(x, y) }).map(|_| ())
     }
 
-    /// Changes the settings of the world, except for its limits.
+    /// Changes the settings of the world. Its limits have to stay the same.
     fn ls2d_set_config(target: u32, config: In<'_, RawConfig>) {
         edit(target, Command::SetConfig { config: config.get()?.config()? }).map(|_| ())
     }

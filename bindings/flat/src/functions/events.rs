@@ -29,7 +29,7 @@ api! {
         copy(world, |world| &world.events().moved, RawPose::of_move, events, capacity, count)
     }
 
-    /// Shapes that began to touch, sorted.
+    /// Pairs of shapes that began to touch, sorted by shape A, then by shape B.
     fn ls2d_events_contact_begin(
         world: u32,
         events: Out<'_, RawContactEvent>,
@@ -39,7 +39,7 @@ api! {
         copy(world, |world| &world.events().contact_begin, RawContactEvent::of, events, capacity, count)
     }
 
-    /// Shapes that ceased to touch, sorted.
+    /// Pairs of shapes that ceased to touch, sorted by shape A, then by shape B.
     fn ls2d_events_contact_end(
         world: u32,
         events: Out<'_, RawContactEvent>,
@@ -49,7 +49,8 @@ api! {
         copy(world, |world| &world.events().contact_end, RawContactEvent::of, events, capacity, count)
     }
 
-    /// Shapes that hit each other, sorted. Only shapes with `LS2D_SHAPE_HIT_EVENTS` report hits.
+    /// Pairs of shapes that hit each other, sorted by shape A, then by shape B. A pair reports hits if at least one of
+    /// its shapes has `LS2D_SHAPE_HIT_EVENTS`.
     fn ls2d_events_hits(world: u32, events: Out<'_, RawHitEvent>, capacity: usize, count: Out<'_, usize>) {
         copy(world, |world| &world.events().hits, RawHitEvent::of, events, capacity, count)
     }

@@ -14,7 +14,8 @@ use crate::numbers::RawHash;
 use crate::status::{Failure, Outcome, Status, value};
 use crate::table::{self, Bytes, with};
 
-/// Setup of a host's game: rules, players, tick rate, bytes of an input, hash of the first state, the game's own setup.
+/// Setup of a host's game: name and version of the rules, players, tick rate, bytes of an input, hash of the first
+/// state, the game's own setup.
 pub(super) type HostSetup = (Vec<u8>, u32, u32, u32, u32, StateHash, Vec<u8>);
 
 /// Players, tick rate, state hash and claims of a game that the host plays, for its recorder.

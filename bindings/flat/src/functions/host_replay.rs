@@ -17,7 +17,7 @@ use crate::records::{RawLimits, RawVerdict};
 use crate::status::{Failure, Outcome, Status, note};
 use crate::table::{self, Bytes, with};
 
-/// Largest number of states that seeking asks the game to save, unless the caller sets the interval.
+/// Largest number of intervals between saved states, unless the caller sets the interval.
 const SAVES: u64 = 256;
 /// Smallest number of ticks between saved states, unless the caller sets the interval.
 const SAVE_INTERVAL: u64 = 60;
@@ -68,7 +68,7 @@ pub(crate) struct HostReplay {
     claims: Vec<(String, i64)>,
     /// The tick to go to.
     pub(super) target: u64,
-    /// Ticks of the saved states, multiples of the interval.
+    /// Ticks of the states that the game has saved.
     pub(super) saved: BTreeSet<u64>,
     pub(super) interval: u64,
 }

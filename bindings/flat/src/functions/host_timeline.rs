@@ -21,7 +21,7 @@ impl HostReplay {
             let failure = || value("the tick to go to, without a saved state before it,", self.target);
             return request(REQUEST_LOAD, latest.ok_or_else(failure)?, 0);
         }
-        // A single tick is always played, never loaded, so that the game can show the events of this tick.
+        // A step forwards by one tick is played, not loaded, so that the game can show the events of this tick.
         if let Some(latest) = latest.filter(|&latest| latest > self.tick && self.target - self.tick > 1) {
             return request(REQUEST_LOAD, latest, 0);
         }
@@ -90,8 +90,8 @@ api! {
         })
     }
 
-    /// Sets the interval in ticks at which seeking requests to save the state. The default is 60, or more for replays
-    /// that would otherwise need more than 256 saved states.
+    /// Sets the interval in ticks at which seeking requests to save the state. The default is 60, or a 256th of the
+    /// replay's ticks if that is more.
     fn ls2d_replay_set_interval(replay: u32, ticks: u32) {
         with(replay, |replay: &mut HostReplay| {
             if ticks == 0 {

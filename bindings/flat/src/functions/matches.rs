@@ -236,7 +236,7 @@ api! {
         })
     }
 
-    /// The next packet to send, of at most 1472 bytes, and the address to send it to, of at most 32 bytes. `LS2D_NONE`
+    /// The next packet to send, of at most 1200 bytes, and the address to send it to, of at most 32 bytes. `LS2D_NONE`
     /// if there is none.
     fn ls2d_match_next_packet(
         handle: u32,
@@ -356,8 +356,8 @@ api! {
         })
     }
 
-    /// Requests an end of the match after a number of ticks. The end is decided two seconds before; until then, other
-    /// peers can join.
+    /// Requests an end of the match after a number of ticks. The request is sent two seconds before the end. Until a
+    /// majority has decided on an end, other peers can join.
     fn ls2d_match_end_at(handle: u32, ticks: u32) {
         with(handle, |game: &mut Match| {
             game.session()?.end_at(ticks);

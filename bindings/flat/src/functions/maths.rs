@@ -40,7 +40,7 @@ api! {
         text.set_all(capacity, &mut length, number.fx().to_string().as_bytes())
     }
 
-    /// `numerator / denominator`, rounded to nearest.
+    /// `numerator / denominator`, rounded to nearest, saturating. `LS2D_NUMBER` if `denominator` is 0.
     fn ls2d_fx_ratio(numerator: i64, denominator: i64, number: Out<'_, RawFx>) {
         let mut number = number;
         if denominator == 0 {
@@ -70,15 +70,15 @@ api! {
         number.set(RawFx::of(sqrt(a.fx()).ok_or_else(|| undefined("root of a negative number"))?))
     }
 
-    /// Length of a vector, rounded to nearest.
+    /// Length of a vector, rounded to nearest, saturating.
     fn ls2d_fx_hypot(x: RawFx, y: RawFx) -> RawFx { RawFx::of(hypot(x.fx(), y.fx())) }
 
-    /// `a.x b.x + a.y b.y`, rounded once.
+    /// `a.x b.x + a.y b.y`, rounded once, saturating.
     fn ls2d_vec2_dot(ax: RawFx, ay: RawFx, bx: RawFx, by: RawFx) -> RawFx {
         RawFx::of(Vec2::new(ax.fx(), ay.fx()).dot(Vec2::new(bx.fx(), by.fx())))
     }
 
-    /// `a.x b.y - a.y b.x`, rounded once.
+    /// `a.x b.y - a.y b.x`, rounded once, saturating.
     fn ls2d_vec2_cross(ax: RawFx, ay: RawFx, bx: RawFx, by: RawFx) -> RawFx {
         RawFx::of(Vec2::new(ax.fx(), ay.fx()).cross(Vec2::new(bx.fx(), by.fx())))
     }
@@ -124,8 +124,8 @@ api! {
         rng.set(described(&Rng::new(seed))?)
     }
 
-    /// Draws a uniform number from 0 to below `bound`. `from` is the generator before the draw, `rng` the one after it;
-    /// they may point to the same struct.
+    /// Draws a uniform number from 0 to below `bound`; 0 if `bound` is 0. `from` is the generator before the draw,
+    /// `rng` the one after it; they may point to the same struct.
     fn ls2d_rng_below(from: In<'_, RawRng>, rng: Out<'_, RawRng>, bound: u32, number: Out<'_, u32>) {
         let (mut rng, mut number) = (rng, number);
         let mut drawn = generator(from.get()?)?;
@@ -133,8 +133,8 @@ api! {
         rng.set(described(&drawn)?)
     }
 
-    /// Draws a uniform number from `low` to below `high`. `from` is the generator before the draw, `rng` the one after
-    /// it; they may point to the same struct.
+    /// Draws a uniform number from `low` to below `high`; `low` if the range is empty. `from` is the generator before
+    /// the draw, `rng` the one after it; they may point to the same struct.
     fn ls2d_rng_range(
         from: In<'_, RawRng>,
         rng: Out<'_, RawRng>,

@@ -45,7 +45,8 @@ pub(super) fn set_opened<T: Kind>(
 }
 
 api! {
-    /// Sets the default limits of a replay. They allow a day of play. A file made to be slow can take hours to verify.
+    /// Sets the default limits of a replay. They allow a day of play at 60 ticks per second. A file made to be slow can
+    /// take hours to verify.
     fn ls2d_limits_init(limits: Out<'_, RawLimits>) {
         let mut limits = limits;
         limits.set(RawLimits::of(&Limits::default()))

@@ -30,7 +30,7 @@ fn failed(error: &SeekError) -> Failure {
     Failure::new(status, error.to_string())
 }
 
-/// Steps a timeline by a tick, if there is one.
+/// Moves a timeline. The result is the failure for `LS2D_NONE` if there is no further tick.
 fn go(timeline: u32, by: impl FnOnce(&mut Seekable<'_>) -> Result<Step, SeekError>) -> Outcome {
     with(timeline, |timeline: &mut SandboxTimeline| {
         match timeline.with_dependent_mut(|_, timeline| by(timeline)) {

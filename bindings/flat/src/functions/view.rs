@@ -169,7 +169,7 @@ api! {
         })
     }
 
-    /// Force in N and torque in N m of a joint on body B in the last tick.
+    /// Force in N that a joint exerted on body B in the last sub-step, and its torque in N m about B's anchor.
     fn ls2d_joint_force(world: u32, id: RawJoint, force: Out<'_, RawVec2>, torque: Out<'_, RawFx>) {
         let (mut force, mut torque) = (force, torque);
         with(world, |world: &mut World| {

@@ -17,8 +17,9 @@ api! {
         config.set(RawConfig::of(&Config::default()))
     }
 
-    /// Raises the number of sub-steps and the stiffness of contacts so that stacks of bodies of `size` metres are
-    /// stable, and reduces the speculative distance if it is more than a fiftieth of `size`.
+    /// Raises the number of sub-steps and the stiffness of contacts so that a stack of 8 boxes of `size` metres sinks
+    /// by less than 2.5 % of a box, with at most 64 sub-steps per tick. Reduces the speculative distance to a fiftieth
+    /// of `size`, but not below 1 mm. Call it after gravity and the tick rate are set.
     fn ls2d_config_for_smallest(config: Out<'_, RawConfig>, from: In<'_, RawConfig>, size: RawFx) {
         let mut config = config;
         let adapted = from.get()?.config()?.for_smallest(size.fx());

@@ -94,9 +94,9 @@ records! {
 
     /// Properties of a body.
     struct BodyInfo = "ls2d_body_info" {
-        /// Kind of motion.
+        /// `LS2D_FIXED`, `LS2D_KINEMATIC` or `LS2D_DYNAMIC`.
         kind: u32,
-        /// `LS2D_BODY_` flags.
+        /// `LS2D_BODY_` flags, without `LS2D_BODY_GIVEN_MASS`.
         flags: u32,
         /// Origin in the world, in metres.
         position: RawVec2,
@@ -195,7 +195,7 @@ fn settings_flags(settings: &BodySettings) -> u32 {
         | flag(settings.may_sleep, BODY_MAY_SLEEP)
 }
 
-/// Parses a name that ends with the first zero byte.
+/// Parses a name that ends before the first zero byte.
 pub(crate) fn name_of(bytes: &[u8]) -> Outcome<Option<Name>> {
     let text = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
     if text.is_empty() {

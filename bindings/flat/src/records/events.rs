@@ -6,7 +6,7 @@ use crate::describe::records;
 use crate::numbers::{RawFx, RawJoint, RawShape, RawVec2};
 
 records! {
-    /// Two shapes that began or ceased to touch. Their handles may be stale if a shape was removed.
+    /// Two shapes that began or ceased to touch. A handle is stale if its shape was removed.
     struct RawContactEvent = "ls2d_contact_event" {
         /// The shape in the smaller slot.
         shape_a: RawShape,
@@ -30,7 +30,7 @@ records! {
         impulse: RawFx,
     }
 
-    /// A sensor that began or ceased to overlap a shape. Their handles may be stale if one was removed.
+    /// A sensor that began or ceased to overlap a shape. A handle is stale if its shape was removed.
     struct RawSensorEvent = "ls2d_sensor_event" {
         /// The sensor.
         sensor: RawShape,

@@ -62,7 +62,7 @@ constants! {
 
 records! {
     /// Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field named in the description of a flag is
-    /// read only if that flag is set.
+    /// read only if that flag is set, except for `length`, which a pulley reads without a flag.
     struct RawJointDef = "ls2d_joint_def" {
         /// Size of this struct in bytes.
         size: u32,

@@ -29,19 +29,21 @@ constants! {
     REQUEST_LOAD = 1, "LS2D_REQUEST_LOAD";
     /// Request: simulate `tick` with the inputs.
     REQUEST_ADVANCE = 2, "LS2D_REQUEST_ADVANCE";
-    /// Request: pass the hash of the copy of the state before `tick` to `ls2d_match_report_hash`.
+    /// Request of a match: pass the hash of the copy of the state before `tick` to `ls2d_match_report_hash`. Request of
+    /// a replay: pass the hash of the current state to `ls2d_replay_check`.
     REQUEST_CHECKSUM = 3, "LS2D_REQUEST_CHECKSUM";
     /// Request: copies of states before `tick` are no longer needed.
     REQUEST_FORGET = 4, "LS2D_REQUEST_FORGET";
-    /// Event: the status of the match has changed; `value` is the new `LS2D_MATCH_` status.
+    /// Event: the status of the match has changed; `value` is the new `LS2D_MATCH_` status. For `LS2D_MATCH_FINISHED`,
+    /// `tick` is the number of ticks of the match.
     EVENT_STATUS = 0, "LS2D_EVENT_STATUS";
-    /// Event: the seats of the peers have changed.
+    /// Event: the voters, the seats, or the start or end of the match have changed; `value` counts the changes.
     EVENT_VIEW = 1, "LS2D_EVENT_VIEW";
     /// Event: `peer` has `seat` from `tick` on.
     EVENT_SEATED = 2, "LS2D_EVENT_SEATED";
     /// Event: `peer` no longer has `seat` from `tick` on.
     EVENT_UNSEATED = 3, "LS2D_EVENT_UNSEATED";
-    /// Event: play stalls because inputs of `peer` are missing; `value` is 1 if its packets arrive.
+    /// Event: play stalls because inputs of `peer` are missing; `value` is 1 if it is heard, also through other peers.
     EVENT_WAITING = 4, "LS2D_EVENT_WAITING";
     /// Event: play continues.
     EVENT_RESUMED = 5, "LS2D_EVENT_RESUMED";
@@ -74,7 +76,7 @@ constants! {
     MATCH_JOINING = 0, "LS2D_MATCH_JOINING";
     /// Status: follows the match.
     MATCH_WATCHING = 1, "LS2D_MATCH_WATCHING";
-    /// Status: has a seat in a match that has not begun, because too few seats are taken.
+    /// Status: has a seat, or is a dedicated server, in a match that has not begun, because too few seats are taken.
     MATCH_WAITING = 2, "LS2D_MATCH_WAITING";
     /// Status: plays.
     MATCH_PLAYING = 3, "LS2D_MATCH_PLAYING";
@@ -129,7 +131,8 @@ records! {
         kind: u32,
         /// Reserved: 0.
         reserved: u32,
-        /// Number of ticks that were played; for `LS2D_DIVERGED`, the tick of the first checkpoint that differs.
+        /// Number of ticks that were played, for `LS2D_MATCH`, `LS2D_CLAIM_MISMATCH` and `LS2D_INCOMPLETE`; for
+        /// `LS2D_DIVERGED`, the tick of the first checkpoint that differs; otherwise 0.
         ticks: u64,
         /// Hash of the last state for `LS2D_MATCH`, `LS2D_CLAIM_MISMATCH` and `LS2D_INCOMPLETE`; otherwise 0.
         hash: RawHash,
@@ -163,7 +166,7 @@ records! {
         history: u32,
         /// Number of final ticks whose inputs are kept for peers that return.
         log_ticks: u32,
-        /// First tick of a joining peer, counted from the cut (the tick at which the change takes effect).
+        /// Number of ticks from the tick at which a join takes effect to the first tick of the peer that joins.
         seat_lead: u32,
         /// A peer that lags by at most this many ticks may have a seat.
         seat_within: u32,
@@ -180,7 +183,7 @@ records! {
         secret: [u64; 2],
     }
 
-    /// A request of a match to the game.
+    /// A request of a match or of a replay to the game.
     struct RawRequest = "ls2d_request" {
         /// `LS2D_REQUEST_SAVE` and so on.
         kind: u32,
@@ -208,7 +211,7 @@ records! {
         reserved: u32,
         /// Hash of this peer, for `LS2D_EVENT_DESYNC`.
         ours: RawHash,
-        /// Hash of the other peer.
+        /// Hash of the other peer, for `LS2D_EVENT_DESYNC`.
         theirs: RawHash,
     }
 }

@@ -1,7 +1,7 @@
 //! Structs that callers fill or receive, and their conversions from and to the types of the library.
 //!
-//! Structs that callers fill begin with their size in bytes, so that a program that was compiled with another version
-//! of the header is refused. `ls2d_*_init` functions set the size and the defaults.
+//! Structs with an `ls2d_*_init` function, except `ls2d_rng`, begin with their size in bytes, so that a program that
+//! was compiled with another version of the header is refused. The function sets the size and the defaults.
 
 mod body;
 mod character;

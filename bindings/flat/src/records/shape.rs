@@ -87,7 +87,7 @@ records! {
         count: u32,
         /// Points in metres from the shape's centre.
         points: [RawVec2; 8],
-        /// Radius of a circle or capsule, rounding of a polygon, in metres.
+        /// Radius of a circle or capsule, rounding radius of a polygon, hull or rectangle, in metres.
         radius: RawFx,
         /// Centre of the shape in the body's frame, in metres.
         offset: RawVec2,
@@ -99,7 +99,7 @@ records! {
         restitution: RawFx,
         /// Approach speed in m/s below which the shape does not bounce, with `LS2D_SHAPE_RESTITUTION_THRESHOLD`.
         restitution_threshold: RawFx,
-        /// Rolling resistance of a round shape.
+        /// Rolling resistance of a round shape, as a fraction of its radius.
         rolling_resistance: RawFx,
         /// Speed of the surface around the shape, clockwise, in m/s.
         surface_speed: RawFx,
@@ -116,11 +116,11 @@ records! {
         restitution_mixing: u32,
         /// Direction in which others pass, in the body's frame, with `LS2D_SHAPE_ONE_WAY`.
         one_way: RawAngle,
-        /// Acceleration in m/s² of bodies in the area.
+        /// Acceleration in m/s² of bodies in the area, along the axes of the area's body.
         area_acceleration: RawVec2,
-        /// Force in N per m² of the part of a body that is inside the area.
+        /// Force in N per m² of the part of a body that is inside the area, along the axes of the area's body.
         area_force: RawVec2,
-        /// Velocity of the medium in m/s.
+        /// Velocity of the medium in m/s relative to the area's body, along that body's axes.
         area_flow: RawVec2,
         /// Rate per second at which the velocity of bodies approaches that of the medium.
         area_linear_drag: RawFx,

@@ -11,7 +11,7 @@ use crate::*;
 const TICKS: u64 = 500;
 const PLAYERS: usize = 3;
 
-/// Sums the inputs of the players, and counts the ticks in which nobody played a seat.
+/// A weighted sum of the inputs of each player, and the number of absences, one for each tick and absent player.
 #[derive(Clone, Default, PartialEq, Eq, Debug)]
 struct Sums {
     sums: [u64; PLAYERS],
