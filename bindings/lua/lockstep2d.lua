@@ -45,7 +45,7 @@ local returns_status = {}
 for name in header:gmatch("\nls2d_status (ls2d_[%w_]+)%(") do
     returns_status[name] = true
 end
--- LuaJIT parses declarations only, so comments, macros and the code for C++ are removed.
+-- `ffi.cdef` has no preprocessor, so that its directives and the code for C++ are removed, and the comments with them.
 ffi.cdef((header:gsub("/%*.-%*/", ""):gsub("#ifdef __cplusplus.-#endif", ""):gsub("\n#[^\n]*", "")))
 local C = load_library()
 assert(C.ls2d_api_version() == ls.API_VERSION, "lockstep2d.h and the library have different versions")

@@ -24,7 +24,7 @@ function Driver.new(options)
     for field, value in pairs(options.settings or {}) do
         config[field] = value
     end
-    -- Random numbers of the system, for `peer`, `key` and `secret`: nobody else may guess them.
+    -- Random numbers for `peer`, `key` and `secret`, which nobody else may be able to guess.
     local random = options.random
     if not random then
         local file = io.open("/dev/urandom", "rb")

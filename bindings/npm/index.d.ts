@@ -163,7 +163,7 @@ export interface AreaOptions {
     acceleration?: Vec;
     /** Force in N per m² of the part of a body that is inside the area, within ±2^20 on each axis. */
     force?: Vec;
-    /** Velocity of the medium in m/s, within ±400 on each axis. It acts by `linearDrag`. */
+    /** Velocity of the medium in m/s relative to the area's body, within ±400 on each axis. It acts by `linearDrag`. */
     flow?: Vec;
     /** Rate per second at which the velocity of bodies approaches that of the medium, 0 to 1000. */
     linearDrag?: Num;
@@ -246,7 +246,7 @@ export function polygon(points: readonly Vec[], options?: ShapeOptions): ShapeDe
 export function hull(points: readonly Vec[], options?: ShapeOptions): ShapeDef;
 /** All points within `radius` metres, at least 0.002, of the line from `a` to `b`, which are at least 0.002 m apart. */
 export function capsule(a: Vec, b: Vec, radius: Num, options?: ShapeOptions): ShapeDef;
-/** A line without area, of any length. It has no mass, and does not collide with segments and chains. */
+/** A line without area, at least 0.002 m long. It has no mass, and does not collide with segments and chains. */
 export function segment(a: Vec, b: Vec, options?: ShapeOptions): ShapeDef;
 /** A smooth outline of 2 points or more, with up to 4096 lines, for ground and walls. It has no mass. `closed` connects
  * the last point with the first. `oneSided` makes it solid only from the right side, along the points in their order.
@@ -557,7 +557,7 @@ declare class Edits extends Handle {
     /** Disables a joint: it keeps its handle and has no effect. */
     disableJoint(joint: JointId): void;
     /** A force in N during the next tick, at a point of the world in metres. Forces add up. The body has to be dynamic
-     * and enabled, otherwise this throws `WRONG_KIND`; so do torques and impulses. */
+     * and enabled, otherwise this throws `WRONG_KIND`, as `applyTorque`, `applyImpulse` and `applyAngularImpulse` do. */
     applyForce(body: BodyId, force: Vec, point: Vec): void;
     /** A torque in N m during the next tick, counter-clockwise. */
     applyTorque(body: BodyId, torque: Num): void;
@@ -867,10 +867,11 @@ export class World extends Edits {
     jointAnchors(joint: JointId): [Vec2, Vec2];
     /** Angle of a joint in rad, including whole turns. */
     jointAngle(joint: JointId): Fx | undefined;
-    /** Force in N and torque in N m of a joint on body B in the last tick. */
+    /** Force in N that a joint exerted on body B in the last sub-step, and its torque in N m about B's anchor. */
     jointForce(joint: JointId): { force: Vec2; torque: Fx } | undefined;
-    /** For drawing: five floats for each enabled body: its handle, x, y, angle in radians, and 1 if it is awake. With a
-     * `target` that is long enough, the result is a part of it. In TypeScript, `poses[i] as BodyId` is the handle. */
+    /** For drawing: five floats for each enabled body: its handle, x, y, angle in radians, and 1 if it is awake,
+     * otherwise 0. With a `target` that is long enough, the result is a part of it. In TypeScript, `poses[5 * i] as
+     * BodyId` is a handle. */
     poses(target?: Float64Array): Float64Array;
     /** The events of the last tick: after `step(120)`, those of the 120th tick only. To see all of them, call it after
      * each `step()`. */
@@ -991,7 +992,8 @@ export interface Verdict {
      * - `limit_exceeded`: the file exceeds one of the `Limits`.
      * - `unverifiable`: recorded by another version of the engine, or with other rules. */
     verdict: "match" | "claim_mismatch" | "diverged" | "incomplete" | "malformed" | "limit_exceeded" | "unverifiable";
-    /** Number of ticks that were played; for `diverged`, the tick of the first checkpoint that differs. */
+    /** Number of ticks that were played, for `match`, `claim_mismatch` and `incomplete`; for `diverged`, the tick of the
+     * first checkpoint that differs; otherwise 0. */
     ticks: number;
     /** Hash of the last state for `match`, `claim_mismatch` and `incomplete`; otherwise 32 zeros. For a `Replay` this
      * is the hash that was passed to `verdict`. For a `Recording` it covers the world and the number of refused
@@ -1119,8 +1121,8 @@ export class Replay extends Handle {
     /** The next request on the way to the tick of `seek`: `save`, `load`, `advance`, or `checksum`, which `check`
      * answers. Throws an error with the code RECORD if the game has diverged from the file. */
     nextRequest(): MatchRequest | undefined;
-    /** Sets the interval in ticks at which seeking requests to save the state: 60 by default, or more for replays that
-     * would otherwise need more than 256 saved states. */
+    /** Sets the interval in ticks at which seeking requests to save the state: 60 by default, or a 256th of the replay's
+     * ticks if that is more. */
     setInterval(ticks: number): void;
 }
 /** A game that a `ReplayDriver` plays. `save` and `hash` have to cover its whole state. */
@@ -1184,8 +1186,7 @@ export interface MatchOptions {
     /** Number of final ticks whose inputs are kept for peers that return: 36 000 by default. After a longer absence a
      * peer downloads a state. */
     logTicks?: number;
-    /** Ticks from the cut, where a change of the players takes effect, to the first tick that a joining peer plays: 8
-     * by default. */
+    /** Ticks from the tick at which a join takes effect to the first tick of the peer that joins: 8 by default. */
     seatLead?: number;
     /** A peer that lags by at most this many ticks may have a seat: 40 by default. */
     seatWithin?: number;
@@ -1212,8 +1213,8 @@ export interface MatchOptions {
  * - `connecting`: requests to join, or downloads the initial state.
  * - `joining`: follows the match and requests a seat. A peer stays `joining`, without an event, while no seat is free.
  * - `watching`: follows the match and requests no seat.
- * - `waiting`: has a seat in a match that has not begun.
- * - `playing`: has a seat in a match that has begun.
+ * - `waiting`: has a seat, or is a dedicated server, in a match that has not begun.
+ * - `playing`: has a seat, or is a dedicated server, in a match that has begun.
  * - `paused`: receives no packets from a majority, and only a majority can continue the match. A peer that has just
  *   downloaded the state may be `paused` for a moment before it is `joining` or `watching`.
  * - `dropped`: the other peers went on without this peer, which requests its seat again.
@@ -1231,15 +1232,15 @@ export type MatchStatus =
  * An event of a match. Fields that are not named for a kind have no meaning: most are 0, the hashes are 32 zeros.
  *
  * - `status`: the status of the match has changed to `status`.
- * - `view`: the seats of the peers have changed.
+ * - `view`: the voters, the seats, or the start or end of the match have changed; `value` counts the changes.
  * - `seated`, `unseated`: from `tick` on, `peer` has or no longer has `seat`.
- * - `waiting`: play stalls because inputs of `peer` are missing; `value` is 1 if its packets arrive, so that its game
- *   is slow.
+ * - `waiting`: play stalls because inputs of `peer` are missing; `value` is 1 if `peer` is heard, also through other
+ *   peers: it is connected, but its game does not advance.
  * - `resumed`: play continues.
  * - `pause`: `peer` requests a pause (`value` is 1) or withdraws its request (0).
  * - `end`: the match ends after `tick` ticks.
  * - `desync`: after `tick` ticks, `peer` has the hash `theirs` instead of `ours`.
- * - `conflict`: `peer` has issued two different inputs for `tick`. Its inputs are no longer accepted.
+ * - `conflict`: `peer` has issued two different inputs for `tick`. The input that arrived first counts.
  * - `tooFarBehind`: the other peers no longer keep the inputs that this peer lacks; it has to join again.
  * - `refused`: the contact refuses the request to join, because of `reason`.
  * - `state`: the encoded `state` after `tick` ticks. The game has to load it before further requests are fulfilled.
@@ -1328,7 +1329,8 @@ export class Match extends Handle {
     readonly status: MatchStatus;
     /** Numbers of ticks: `played` counts all ticks played, including those with guessed inputs; `final` counts the
      * ticks whose inputs are final; `confirmed` counts the ticks played with final inputs. While the status is
-     * `connecting`, this, `finalInputs`, `link`, `advance` and all functions from `leave` on throw `NOT_IN_MATCH`. */
+     * `connecting`, `ticks`, `finalInputs`, `link`, `advance`, `reportHash`, and `leave` and all functions after it
+     * throw `NOT_IN_MATCH`. */
     ticks(): { played: number; final: number; confirmed: number };
     /** The final inputs of all seats for a tick, or undefined if they are not kept. */
     finalInputs(tick: number): TickInputs | undefined;
@@ -1340,8 +1342,8 @@ export class Match extends Handle {
     link(peer: number): { ping: number; loss: number; delay: number } | undefined;
     /** Leaves the match. Call `update` until the status is `closed`, so that the other peers are informed. */
     leave(): void;
-    /** Requests an end of the match after a number of ticks. The end is decided two seconds before; until then, other
-     * peers can join. */
+    /** Requests an end of the match after a number of ticks. The request is sent two seconds before the end. Until a
+     * majority has decided on an end, other peers can join. */
     endAt(ticks: number): void;
     /** Requests a pause from all other peers, or withdraws the request. */
     pause(paused: boolean): void;

@@ -71,7 +71,7 @@ export const hull = (corners, options) => shape(C.HULL, { points: points(corners
 export const capsule = (a, b, radius, options) => shape(C.CAPSULE, { points: [a, b], radius }, options);
 /** A line without area. */
 export const segment = (a, b, options) => shape(C.SEGMENT, { points: [a, b] }, options);
-/** A smooth outline of any length, for ground and walls. */
+/** A smooth outline of up to 4096 lines, for ground and walls. */
 export const chain = (corners, { closed = false, oneSided = false, ...options } = {}) => {
     flag(closed, "closed");
     flag(oneSided, "oneSided");

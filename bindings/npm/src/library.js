@@ -50,8 +50,8 @@ async function load(modules, { simd, wasm }) {
     variant = wasm ? "given" : chosen ? "simd" : "plain";
 }
 
-/** Makes the function `init` for two inlined modules, with and without SIMD. Later calls of `init` wait for the first
- * one and change nothing. */
+/** Makes the function `init` for two inlined modules, with and without SIMD. After a call that has not failed, further
+ * calls of `init` wait for it and change nothing. */
 export const initializer = (modules) => (options) => {
     starting ??= start(modules, options).catch((error) => {
         starting = undefined;

@@ -1,4 +1,4 @@
-// Mathematics for the rules of a game. `fx` has the arithmetic.
+// Mathematics for the rules of a game. `fx.js` has the arithmetic.
 import { count, integer } from "./check.js";
 import { Angle, bitsOf, rawOf, vectorOf, Fx } from "./fx.js";
 import { call, fxAt, give, hashAt, library, scratch, u32, read } from "./library.js";

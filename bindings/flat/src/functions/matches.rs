@@ -108,8 +108,8 @@ fn describe(request: &Request) -> (RawRequest, Option<&TickInputs>) {
 }
 
 api! {
-    /// Sets the defaults of a match with a number of seats: lockstep at 60 ticks per second, inputs of one byte, a start
-    /// with two taken seats, or with the only one. The caller sets `peer`, `key` and `secret` to random numbers.
+    /// Sets the defaults of a match with a number of seats: lockstep at 60 ticks per second, inputs of one byte, a
+    /// start with two taken seats, or with the only one. The caller sets `peer`, `key` and `secret` to random numbers.
     fn ls2d_match_config_init(seats: u32, config: Out<'_, RawMatchConfig>) {
         let mut config = config;
         let number = u8::try_from(seats).map_err(|_| value("the number of seats", seats))?;

@@ -79,7 +79,7 @@ export function handles(): number {
     world.restore(world);
     // @ts-expect-error The position is not a setting.
     world.setBody(crate, { position: [0, 0] });
-    // @ts-expect-error A list of commands has no poses.
+    // @ts-expect-error A list of commands does not know the poses of bodies, which `anchor` needs.
     new Commands().addJoint({ type: "weld", a: 0 as BodyId, b: 1 as BodyId, anchor: [0, 0] });
     return (sizes.get(poses[0] as BodyId) ?? 0) + crate + world.shapeBox(shape!).lower.x.toNumber();
 }
