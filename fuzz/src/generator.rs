@@ -12,7 +12,7 @@ use lockstep2d::{codec, fx};
 use crate::source::Source;
 use crate::{joints, ordinary, settings, shapes};
 
-/// Generates commands, and keeps handles that have become stale.
+/// Generates commands, and keeps the handles that it has used, which may become stale.
 pub struct Generator {
     /// Centre of the scene.
     middle: Vec2<Fx>,

@@ -1,5 +1,5 @@
 //! Compares hulls with a slow implementation of the definition: an edge is a pair of points with all others to its
-//! left.
+//! left, or on it.
 
 use lockstep2d::body::{Polygon, SHAPE_EXTENT_MAX};
 use lockstep2d::math::{Fx, Length, Rng, Vec2};

@@ -121,7 +121,7 @@ fn ordinary_surface(source: &mut Source<'_>, geometry: Geometry) -> ShapeDef {
     def
 }
 
-/// A chain for the ground: links between evenly spaced points, 8 m to either side.
+/// A chain for the ground: links between points with evenly spaced x coordinates from -8 m to 8 m.
 pub fn ordinary_chain(source: &mut Source<'_>) -> Vec<ShapeDef> {
     let stretches = source.pick(&[8, 4, 16, 1, 2]);
     let point = |source: &mut Source<'_>, index: i64| {

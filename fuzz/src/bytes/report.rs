@@ -12,7 +12,8 @@ use super::replay::{LIMITS, ball};
 use crate::memory::Memory;
 use crate::snapshots::repair;
 
-/// Reports of both games: for each game a correct one, and one of a peer that diverged after two ticks.
+/// Reports of [`Memory`] and of a [`Sandbox`]: for each game a correct one, and one of a peer that diverged after two
+/// ticks.
 static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let memory = |fail: bool| {
         report::<Memory>(&(), &[[1, 2, 3], [1, 2, 3], [4, 5, 6], [0, 255, 0]], |game, tick| {

@@ -85,8 +85,8 @@ impl State {
         codec::encode(self)
     }
 
-    /// Makes a change that is often valid. Nothing is changed when there is nothing to change, or when a body's mass
-    /// cannot be computed from its shapes.
+    /// Makes a change that is often valid. Nothing is changed if the drawn change is impossible, for example because
+    /// there is no joint, or because a body's mass cannot be computed from its shapes.
     pub fn alter(&mut self, source: &mut Source<'_>) {
         let before = self.clone();
         if self.try_alter(source).is_none() {
