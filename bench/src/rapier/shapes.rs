@@ -160,7 +160,8 @@ fn with_material(collider: ColliderBuilder, shape: &ShapeDef) -> Result<Collider
 const CATEGORY_BITS: u32 = 0xF;
 
 /// Converts a collision filter. rapier2d has no group numbers, only 32 categories. A negative group becomes one of 28
-/// categories, in rotation, that does not collide with itself. Ragdolls that share a category are at least 30 m apart.
+/// categories, in rotation, that does not collide with itself. So ragdolls whose groups differ by a multiple of 28 pass
+/// through each other, unlike in the other engines.
 fn groups(filter: &Filter) -> InteractionGroups {
     let numbered = |bits: u64| (bits & u64::from(u32::MAX)) as u32;
     let (mut memberships, mut accepted) = (numbered(filter.category), numbered(filter.mask));

@@ -64,7 +64,7 @@ pub struct Cell {
     pub vs_rapier: f64,
 }
 
-/// Geometric means of all cells.
+/// Geometric means and largest ratios of all cells.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Summary {
     /// Always true, to distinguish the summary from a cell.
