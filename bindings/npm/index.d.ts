@@ -591,7 +591,7 @@ declare class Edits extends Handle {
     /** Takes a body out of the simulation: it keeps its pose and velocity, collides with nothing, and no query finds
      * it. */
     disable(body: BodyId): void;
-    /** Wakes a body, with all bodies that contacts and joints connect it to. */
+    /** Wakes a body, with all dynamic bodies that contacts and joints connect it to. */
     wake(body: BodyId): void;
     /** Puts a dynamic body to sleep, with all dynamic bodies that contacts and joints connect it to. */
     sleep(body: BodyId): void;

@@ -39,8 +39,8 @@ fn a_capsule_lies_on_two_points_and_rests() {
     assert_eq!(world.faults(), 0);
 }
 
-/// In about one heap in a hundred, one or two bodies keep rocking against a wall at 0.05 to 0.4 m/s. In each version of
-/// the semantics these were 20 or 21 of 2400 heaps, which were dropped from heights a millimetre apart.
+/// In about one heap in a hundred, one or two bodies keep rocking against a wall at 0.05 to 0.4 m/s, so that one of the
+/// six heaps may have such bodies.
 #[test]
 fn capsules_pile_up_on_boxes_circles_and_segments() {
     let speeds = [0, 1, 2, 3, 4, 5].map(|millimetres| {

@@ -67,7 +67,7 @@ pub(crate) struct Peer {
     pub(crate) lost_seats: u32,
     /// Whether the peer is in a menu, so that its game does not advance.
     pub(crate) in_menu: bool,
-    /// Peers that the session reported to wait for. The flag tells whether packets of that peer arrive.
+    /// Peers that the session reported to wait for. The flag tells whether that peer is heard, also through others.
     pub(crate) waiting: Vec<(PeerId, bool)>,
     pub(crate) desyncs: u32,
     bytes: u64,

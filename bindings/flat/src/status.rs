@@ -209,7 +209,7 @@ pub(crate) fn note(failure: Failure) -> Status {
     status
 }
 
-/// Text of the last failure on this thread.
+/// Text of the last failure or verdict on this thread.
 pub(crate) fn last_text() -> String {
     LAST.with_borrow(String::clone)
 }

@@ -21,8 +21,8 @@ api! {
     /// Version of the engine's arithmetic: programs with different versions compute different states.
     fn ls2d_semantics() -> u32 { lockstep2d::SEMANTICS }
 
-    /// Copies the text of the last failure on this thread as UTF-8, and writes its length in bytes. It is not
-    /// terminated by a zero. If the buffer is shorter, the text is cut.
+    /// Copies the text of the last failure or verdict on this thread as UTF-8, and writes its length in bytes. The text
+    /// is not terminated by a zero. If the buffer is shorter, the text is cut.
     fn ls2d_last_error(buffer: Out<'_, u8>, capacity: usize, length: Out<'_, usize>) {
         let (mut buffer, mut length) = (buffer, length);
         let text = last_text();
