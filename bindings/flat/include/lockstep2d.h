@@ -2,15 +2,15 @@
  *
  * Written by the tests of lockstep2d-flat; do not edit it.
  *
- * Functions return a status: LS2D_OK, LS2D_NONE if there is nothing to return, or an error, whose text ls2d_last_error
- * copies. Objects are referred to by handles, numbers that are never 0. A wrong or stale handle is an error, never
- * undefined behaviour. ls2d_free frees objects of all kinds.
+ * Most functions return a status: LS2D_OK, LS2D_NONE if there is nothing to return, or an error, whose text
+ * ls2d_last_error copies. Objects are referred to by handles, numbers that are never 0. A wrong or stale handle is an
+ * error, never undefined behaviour. ls2d_free frees objects of all kinds.
  *
  * Pointers are null or point to as many items as the function reads or writes, and nothing else uses that memory during
- * the call. Functions with a buffer take its capacity in items and write the number of items; if the buffer is too
- * short, they write the number that is needed and return LS2D_BUFFER.
+ * the call. Functions with a buffer take its capacity in items. If the buffer is too short, they return LS2D_BUFFER.
+ * Functions with a pointer for the number of items write that number in both cases.
  *
- * Structs that the caller fills begin with their size; ls2d_*_init functions set it and the defaults.
+ * Structs with an ls2d_*_init function, except ls2d_rng, begin with their size. The function sets it and the defaults.
  *
  * Numbers are integers: ls2d_fx has 32 fraction bits (LS2D_FX(1) is a metre), ls2d_angle is in units of 2^-32 turn.
  * Different objects may be used on several threads at once. */
@@ -34,7 +34,7 @@ typedef uint32_t ls2d_handle;
 #define LS2D_FX_RATIO(numerator, denominator) ((ls2d_fx)((int64_t)(numerator) * 4294967296 / (denominator)))
 /* An angle of whole degrees, rounded towards zero. */
 #define LS2D_DEGREES(whole) ((ls2d_angle)(int64_t)((int64_t)(whole) * 4294967296 / 360))
-/* Value of ls2d_body, ls2d_shape and ls2d_joint for none. */
+/* An ls2d_body, ls2d_shape or ls2d_joint that refers to nothing. */
 #define LS2D_NO_ID UINT64_MAX
 /* Version of this header, to be compared with ls2d_api_version(). */
 #define LS2D_API_VERSION 1
@@ -47,15 +47,15 @@ typedef uint32_t ls2d_handle;
 #define LS2D_NULL 2
 /* A pointer is not aligned for its type. */
 #define LS2D_MISALIGNED 3
-/* The handle is null, was freed, or never existed. */
+/* No object has the handle: it was freed, or never existed. */
 #define LS2D_HANDLE 4
 /* The handle belongs to an object of another kind. */
 #define LS2D_HANDLE_KIND 5
 /* The `size` of a struct does not match this version of the library. */
 #define LS2D_SIZE 6
-/* A kind, flag, count or index is out of its range. */
+/* An argument is out of its range, for example a kind, flag, count or tick; or the call is not possible now. */
 #define LS2D_VALUE 7
-/* The buffer is too short. The number of items that it has to hold was written. */
+/* The buffer is too short. If the function has a pointer for the number of items, the number needed was written. */
 #define LS2D_BUFFER 8
 /* A text is invalid, for example not UTF-8 or not a number. */
 #define LS2D_TEXT 9
@@ -95,7 +95,7 @@ typedef uint32_t ls2d_handle;
 #define LS2D_DAMPING 31
 /* A gravity scale is out of range. */
 #define LS2D_GRAVITY_SCALE 32
-/* A property of an area is out of range. */
+/* A property of an area is out of range, or the shape cannot be an area. */
 #define LS2D_AREA 33
 /* A joint connects a body to itself. */
 #define LS2D_JOINT_TO_ITSELF 34
@@ -103,9 +103,9 @@ typedef uint32_t ls2d_handle;
 #define LS2D_JOINT_BODIES 35
 /* The joint has no such part. */
 #define LS2D_JOINT_PART 36
-/* A property of a joint is out of range. */
+/* A property of a joint is out of range, or its lower limit is above the upper one. */
 #define LS2D_JOINT 37
-/* A setting of the world is out of range. */
+/* A setting of the world or a property of an explosion is out of range. */
 #define LS2D_SETTING 38
 /* A limit of the world cannot be changed. */
 #define LS2D_FIXED_SETTING 39
@@ -121,7 +121,7 @@ typedef uint32_t ls2d_handle;
 #define LS2D_RECORD 51
 /* A parameter of a match is out of its range. */
 #define LS2D_CONFIG 60
-/* The inputs do not have the expected number of bytes. */
+/* The inputs do not have the expected number of bytes, or the input of an absent player is not zeros. */
 #define LS2D_INPUTS 61
 /* This peer does not take part in the match yet. */
 #define LS2D_NOT_IN_MATCH 62
@@ -131,7 +131,7 @@ typedef int64_t ls2d_fx;
 /* An angle in units of 2^-32 turn, counter-clockwise: a quarter turn is 1073741824. */
 typedef uint32_t ls2d_angle;
 /* A body of a world: the lowest 21 bits are its slot, the bits above them the number of earlier bodies in that
- * slot. Always less than 2^53, so that a JavaScript number represents it exactly. */
+ * slot. Less than 2^53, so that a JavaScript number represents it exactly; only `LS2D_NO_ID` is larger. */
 typedef uint64_t ls2d_body;
 /* A shape of a world, encoded like a body. */
 typedef uint64_t ls2d_shape;
@@ -247,19 +247,21 @@ typedef uint64_t ls2d_joint;
 #define LS2D_REQUEST_LOAD 1
 /* Request: simulate `tick` with the inputs. */
 #define LS2D_REQUEST_ADVANCE 2
-/* Request: pass the hash of the copy of the state before `tick` to `ls2d_match_report_hash`. */
+/* Request of a match: pass the hash of the copy of the state before `tick` to `ls2d_match_report_hash`. Request of
+ * a replay: pass the hash of the current state to `ls2d_replay_check`. */
 #define LS2D_REQUEST_CHECKSUM 3
 /* Request: copies of states before `tick` are no longer needed. */
 #define LS2D_REQUEST_FORGET 4
-/* Event: the status of the match has changed; `value` is the new `LS2D_MATCH_` status. */
+/* Event: the status of the match has changed; `value` is the new `LS2D_MATCH_` status. For `LS2D_MATCH_FINISHED`,
+ * `tick` is the number of ticks of the match. */
 #define LS2D_EVENT_STATUS 0
-/* Event: the seats of the peers have changed. */
+/* Event: the voters, the seats, or the start or end of the match have changed; `value` counts the changes. */
 #define LS2D_EVENT_VIEW 1
 /* Event: `peer` has `seat` from `tick` on. */
 #define LS2D_EVENT_SEATED 2
 /* Event: `peer` no longer has `seat` from `tick` on. */
 #define LS2D_EVENT_UNSEATED 3
-/* Event: play stalls because inputs of `peer` are missing; `value` is 1 if its packets arrive. */
+/* Event: play stalls because inputs of `peer` are missing; `value` is 1 if it is heard, also through other peers. */
 #define LS2D_EVENT_WAITING 4
 /* Event: play continues. */
 #define LS2D_EVENT_RESUMED 5
@@ -292,7 +294,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MATCH_JOINING 0
 /* Status: follows the match. */
 #define LS2D_MATCH_WATCHING 1
-/* Status: has a seat in a match that has not begun, because too few seats are taken. */
+/* Status: has a seat, or is a dedicated server, in a match that has not begun, because too few seats are taken. */
 #define LS2D_MATCH_WAITING 2
 /* Status: plays. */
 #define LS2D_MATCH_PLAYING 3
@@ -490,9 +492,9 @@ typedef struct ls2d_body_def {
 
 /* Properties of a body. */
 typedef struct ls2d_body_info {
-    /* Kind of motion. */
+    /* `LS2D_FIXED`, `LS2D_KINEMATIC` or `LS2D_DYNAMIC`. */
     uint32_t kind;
-    /* `LS2D_BODY_` flags. */
+    /* `LS2D_BODY_` flags, without `LS2D_BODY_GIVEN_MASS`. */
     uint32_t flags;
     /* Origin in the world, in metres. */
     ls2d_vec2 position;
@@ -568,7 +570,7 @@ typedef struct ls2d_shape_def {
     uint32_t count;
     /* Points in metres from the shape's centre. */
     ls2d_vec2 points[8];
-    /* Radius of a circle or capsule, rounding of a polygon, in metres. */
+    /* Radius of a circle or capsule, rounding radius of a polygon, hull or rectangle, in metres. */
     ls2d_fx radius;
     /* Centre of the shape in the body's frame, in metres. */
     ls2d_vec2 offset;
@@ -580,7 +582,7 @@ typedef struct ls2d_shape_def {
     ls2d_fx restitution;
     /* Approach speed in m/s below which the shape does not bounce, with `LS2D_SHAPE_RESTITUTION_THRESHOLD`. */
     ls2d_fx restitution_threshold;
-    /* Rolling resistance of a round shape. */
+    /* Rolling resistance of a round shape, as a fraction of its radius. */
     ls2d_fx rolling_resistance;
     /* Speed of the surface around the shape, clockwise, in m/s. */
     ls2d_fx surface_speed;
@@ -597,11 +599,11 @@ typedef struct ls2d_shape_def {
     uint32_t restitution_mixing;
     /* Direction in which others pass, in the body's frame, with `LS2D_SHAPE_ONE_WAY`. */
     ls2d_angle one_way;
-    /* Acceleration in m/s² of bodies in the area. */
+    /* Acceleration in m/s² of bodies in the area, along the axes of the area's body. */
     ls2d_vec2 area_acceleration;
-    /* Force in N per m² of the part of a body that is inside the area. */
+    /* Force in N per m² of the part of a body that is inside the area, along the axes of the area's body. */
     ls2d_vec2 area_force;
-    /* Velocity of the medium in m/s. */
+    /* Velocity of the medium in m/s relative to the area's body, along that body's axes. */
     ls2d_vec2 area_flow;
     /* Rate per second at which the velocity of bodies approaches that of the medium. */
     ls2d_fx area_linear_drag;
@@ -623,7 +625,7 @@ typedef struct ls2d_shape_def {
 } ls2d_shape_def;
 
 /* Definition of a joint. `ls2d_joint_def_init` sets the defaults. A field named in the description of a flag is
- * read only if that flag is set. */
+ * read only if that flag is set, except for `length`, which a pulley reads without a flag. */
 typedef struct ls2d_joint_def {
     /* Size of this struct in bytes. */
     uint32_t size;
@@ -841,7 +843,7 @@ typedef struct ls2d_mover_state {
     ls2d_mover_plane ground;
 } ls2d_mover_state;
 
-/* Two shapes that began or ceased to touch. Their handles may be stale if a shape was removed. */
+/* Two shapes that began or ceased to touch. A handle is stale if its shape was removed. */
 typedef struct ls2d_contact_event {
     /* The shape in the smaller slot. */
     ls2d_shape shape_a;
@@ -865,7 +867,7 @@ typedef struct ls2d_hit_event {
     ls2d_fx impulse;
 } ls2d_hit_event;
 
-/* A sensor that began or ceased to overlap a shape. Their handles may be stale if one was removed. */
+/* A sensor that began or ceased to overlap a shape. A handle is stale if its shape was removed. */
 typedef struct ls2d_sensor_event {
     /* The sensor. */
     ls2d_shape sensor;
@@ -919,7 +921,8 @@ typedef struct ls2d_verdict {
     uint32_t kind;
     /* Reserved: 0. */
     uint32_t reserved;
-    /* Number of ticks that were played; for `LS2D_DIVERGED`, the tick of the first checkpoint that differs. */
+    /* Number of ticks that were played, for `LS2D_MATCH`, `LS2D_CLAIM_MISMATCH` and `LS2D_INCOMPLETE`; for
+     * `LS2D_DIVERGED`, the tick of the first checkpoint that differs; otherwise 0. */
     uint64_t ticks;
     /* Hash of the last state for `LS2D_MATCH`, `LS2D_CLAIM_MISMATCH` and `LS2D_INCOMPLETE`; otherwise 0. */
     ls2d_hash hash;
@@ -953,7 +956,7 @@ typedef struct ls2d_match_config {
     uint32_t history;
     /* Number of final ticks whose inputs are kept for peers that return. */
     uint32_t log_ticks;
-    /* First tick of a joining peer, counted from the cut (the tick at which the change takes effect). */
+    /* Number of ticks from the tick at which a join takes effect to the first tick of the peer that joins. */
     uint32_t seat_lead;
     /* A peer that lags by at most this many ticks may have a seat. */
     uint32_t seat_within;
@@ -970,7 +973,7 @@ typedef struct ls2d_match_config {
     uint64_t secret[2];
 } ls2d_match_config;
 
-/* A request of a match to the game. */
+/* A request of a match or of a replay to the game. */
 typedef struct ls2d_request {
     /* `LS2D_REQUEST_SAVE` and so on. */
     uint32_t kind;
@@ -998,7 +1001,7 @@ typedef struct ls2d_match_event {
     uint32_t reserved;
     /* Hash of this peer, for `LS2D_EVENT_DESYNC`. */
     ls2d_hash ours;
-    /* Hash of the other peer. */
+    /* Hash of the other peer, for `LS2D_EVENT_DESYNC`. */
     ls2d_hash theirs;
 } ls2d_match_event;
 
@@ -1010,8 +1013,8 @@ uint32_t ls2d_api_version(void);
 /* Version of the engine's arithmetic: programs with different versions compute different states. */
 uint32_t ls2d_semantics(void);
 
-/* Copies the text of the last failure on this thread as UTF-8, and writes its length in bytes. It is not
- * terminated by a zero. If the buffer is shorter, the text is cut. */
+/* Copies the text of the last failure or verdict on this thread as UTF-8, and writes its length in bytes. The text
+ * is not terminated by a zero. If the buffer is shorter, the text is cut. */
 ls2d_status ls2d_last_error(uint8_t *buffer, size_t capacity, size_t *length);
 
 /* Frees an object of any kind. Afterwards every use of its handle is an error, including freeing it again. */
@@ -1039,8 +1042,9 @@ size_t ls2d_scratch(size_t size);
 /* Sets the default settings of a world: 60 ticks per second, gravity of 10 m/s² downwards. */
 ls2d_status ls2d_config_init(ls2d_config *config);
 
-/* Raises the number of sub-steps and the stiffness of contacts so that stacks of bodies of `size` metres are
- * stable, and reduces the speculative distance if it is more than a fiftieth of `size`. */
+/* Raises the number of sub-steps and the stiffness of contacts so that a stack of 8 boxes of `size` metres sinks
+ * by less than 2.5 % of a box, with at most 64 sub-steps per tick. Reduces the speculative distance to a fiftieth
+ * of `size`, but not below 1 mm. Call it after gravity and the tick rate are set. */
 ls2d_status ls2d_config_for_smallest(ls2d_config *config, const ls2d_config *from, ls2d_fx size);
 
 /* Makes an empty world. A null `config` stands for the default settings. */
@@ -1220,7 +1224,7 @@ ls2d_status ls2d_sleep(uint32_t target, ls2d_body body);
 /* Sets the gravity in m/s². */
 ls2d_status ls2d_set_gravity(uint32_t target, ls2d_fx x, ls2d_fx y);
 
-/* Changes the settings of the world, except for its limits. */
+/* Changes the settings of the world. Its limits have to stay the same. */
 ls2d_status ls2d_set_config(uint32_t target, const ls2d_config *config);
 
 /* Applies impulses away from a point. */
@@ -1273,7 +1277,7 @@ ls2d_status ls2d_joint_anchors(uint32_t world, ls2d_joint id, ls2d_vec2 *a, ls2d
 /* Angle of a joint in rad, including whole turns. */
 ls2d_status ls2d_joint_angle(uint32_t world, ls2d_joint id, ls2d_fx *angle);
 
-/* Force in N and torque in N m of a joint on body B in the last tick. */
+/* Force in N that a joint exerted on body B in the last sub-step, and its torque in N m about B's anchor. */
 ls2d_status ls2d_joint_force(uint32_t world, ls2d_joint id, ls2d_vec2 *force, ls2d_fx *torque);
 
 /* Sets the anchors and angles of a definition for the current poses of the bodies: the anchor at a point of the
@@ -1291,13 +1295,14 @@ ls2d_status ls2d_draw_poses(uint32_t world, double *rows, size_t capacity, size_
 /* Bodies that moved or fell asleep, in slot order, with their poses. */
 ls2d_status ls2d_events_moved(uint32_t world, ls2d_pose *events, size_t capacity, size_t *count);
 
-/* Shapes that began to touch, sorted. */
+/* Pairs of shapes that began to touch, sorted by shape A, then by shape B. */
 ls2d_status ls2d_events_contact_begin(uint32_t world, ls2d_contact_event *events, size_t capacity, size_t *count);
 
-/* Shapes that ceased to touch, sorted. */
+/* Pairs of shapes that ceased to touch, sorted by shape A, then by shape B. */
 ls2d_status ls2d_events_contact_end(uint32_t world, ls2d_contact_event *events, size_t capacity, size_t *count);
 
-/* Shapes that hit each other, sorted. Only shapes with `LS2D_SHAPE_HIT_EVENTS` report hits. */
+/* Pairs of shapes that hit each other, sorted by shape A, then by shape B. A pair reports hits if at least one of
+ * its shapes has `LS2D_SHAPE_HIT_EVENTS`. */
 ls2d_status ls2d_events_hits(uint32_t world, ls2d_hit_event *events, size_t capacity, size_t *count);
 
 /* Shapes that began to overlap a sensor, sorted by `fraction`. */
@@ -1379,7 +1384,8 @@ ls2d_status ls2d_world_decode(const uint8_t *data, size_t size, uint32_t *world)
 
 /* ---- Replays of worlds ---- */
 
-/* Sets the default limits of a replay. They allow a day of play. A file made to be slow can take hours to verify. */
+/* Sets the default limits of a replay. They allow a day of play at 60 ticks per second. A file made to be slow can
+ * take hours to verify. */
 ls2d_status ls2d_limits_init(ls2d_limits *limits);
 
 /* Starts recording a world that the list `commands` sets up, with a checkpoint every `interval` ticks. A null
@@ -1494,14 +1500,14 @@ ls2d_status ls2d_replay_seek(uint32_t replay, uint64_t tick);
  * can be reached. */
 ls2d_status ls2d_replay_next_request(uint32_t replay, ls2d_request *request, uint8_t *inputs, size_t capacity, size_t *size);
 
-/* Sets the interval in ticks at which seeking requests to save the state. The default is 60, or more for replays
- * that would otherwise need more than 256 saved states. */
+/* Sets the interval in ticks at which seeking requests to save the state. The default is 60, or a 256th of the
+ * replay's ticks if that is more. */
 ls2d_status ls2d_replay_set_interval(uint32_t replay, uint32_t ticks);
 
 /* ---- Matches ---- */
 
-/* Sets the defaults of a match with a number of seats: lockstep at 60 ticks per second, inputs of one byte, a start
- * with two taken seats, or with the only one. The caller sets `peer`, `key` and `secret` to random numbers. */
+/* Sets the defaults of a match with a number of seats: lockstep at 60 ticks per second, inputs of one byte, a
+ * start with two taken seats, or with the only one. The caller sets `peer`, `key` and `secret` to random numbers. */
 ls2d_status ls2d_match_config_init(uint32_t seats, ls2d_match_config *config);
 
 /* Opens a match. All peers have to pass the same `offer`: versions, rules, setup, at most 512 bytes. */
@@ -1535,7 +1541,7 @@ ls2d_status ls2d_match_next_request(uint32_t handle, ls2d_request *request, uint
 /* Passes the hash that `LS2D_REQUEST_CHECKSUM` requests. */
 ls2d_status ls2d_match_report_hash(uint32_t handle, uint32_t tick, const ls2d_hash *hash);
 
-/* The next packet to send, of at most 1472 bytes, and the address to send it to, of at most 32 bytes. `LS2D_NONE`
+/* The next packet to send, of at most 1200 bytes, and the address to send it to, of at most 32 bytes. `LS2D_NONE`
  * if there is none. */
 ls2d_status ls2d_match_next_packet(uint32_t handle, uint8_t *to, size_t to_capacity, size_t *to_size, uint8_t *packet, size_t capacity, size_t *size);
 
@@ -1568,8 +1574,8 @@ ls2d_status ls2d_match_link(uint32_t handle, uint32_t peer, uint32_t *delay, uin
 /* Leaves the match. Call `ls2d_match_update` until the status is `LS2D_MATCH_CLOSED`. */
 ls2d_status ls2d_match_leave(uint32_t handle);
 
-/* Requests an end of the match after a number of ticks. The end is decided two seconds before; until then, other
- * peers can join. */
+/* Requests an end of the match after a number of ticks. The request is sent two seconds before the end. Until a
+ * majority has decided on an end, other peers can join. */
 ls2d_status ls2d_match_end_at(uint32_t handle, uint32_t ticks);
 
 /* Requests a pause from all other peers, or, with 0, withdraws the request. */
@@ -1592,7 +1598,7 @@ ls2d_status ls2d_fx_parse(const uint8_t *text, size_t length, ls2d_fx *number);
 /* Writes a number as decimal text with all its digits, and the length of the text. */
 ls2d_status ls2d_fx_format(ls2d_fx number, uint8_t *text, size_t capacity, size_t *length);
 
-/* `numerator / denominator`, rounded to nearest. */
+/* `numerator / denominator`, rounded to nearest, saturating. `LS2D_NUMBER` if `denominator` is 0. */
 ls2d_status ls2d_fx_ratio(int64_t numerator, int64_t denominator, ls2d_fx *number);
 
 /* `a + b`, saturating. */
@@ -1610,13 +1616,13 @@ ls2d_status ls2d_fx_div(ls2d_fx a, ls2d_fx b, ls2d_fx *number);
 /* Square root, rounded to nearest. `LS2D_NUMBER` for a negative number. */
 ls2d_status ls2d_fx_sqrt(ls2d_fx a, ls2d_fx *number);
 
-/* Length of a vector, rounded to nearest. */
+/* Length of a vector, rounded to nearest, saturating. */
 ls2d_fx ls2d_fx_hypot(ls2d_fx x, ls2d_fx y);
 
-/* `a.x b.x + a.y b.y`, rounded once. */
+/* `a.x b.x + a.y b.y`, rounded once, saturating. */
 ls2d_fx ls2d_vec2_dot(ls2d_fx ax, ls2d_fx ay, ls2d_fx bx, ls2d_fx by);
 
-/* `a.x b.y - a.y b.x`, rounded once. */
+/* `a.x b.y - a.y b.x`, rounded once, saturating. */
 ls2d_fx ls2d_vec2_cross(ls2d_fx ax, ls2d_fx ay, ls2d_fx bx, ls2d_fx by);
 
 /* The direction of a vector as a unit vector. `LS2D_NUMBER` for the zero vector. */
@@ -1649,12 +1655,12 @@ ls2d_fx ls2d_angle_to_radians(ls2d_angle angle);
 /* Makes a random number generator, to be kept in the state of the game. */
 ls2d_status ls2d_rng_init(uint64_t seed, ls2d_rng *rng);
 
-/* Draws a uniform number from 0 to below `bound`. `from` is the generator before the draw, `rng` the one after it;
- * they may point to the same struct. */
+/* Draws a uniform number from 0 to below `bound`; 0 if `bound` is 0. `from` is the generator before the draw,
+ * `rng` the one after it; they may point to the same struct. */
 ls2d_status ls2d_rng_below(const ls2d_rng *from, ls2d_rng *rng, uint32_t bound, uint32_t *number);
 
-/* Draws a uniform number from `low` to below `high`. `from` is the generator before the draw, `rng` the one after
- * it; they may point to the same struct. */
+/* Draws a uniform number from `low` to below `high`; `low` if the range is empty. `from` is the generator before
+ * the draw, `rng` the one after it; they may point to the same struct. */
 ls2d_status ls2d_rng_range(const ls2d_rng *from, ls2d_rng *rng, ls2d_fx low, ls2d_fx high, ls2d_fx *number);
 
 /* Hash of bytes, for the state hash of a game with more state than a world. */
