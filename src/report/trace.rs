@@ -89,7 +89,8 @@ impl<G: Game> Trace<G> {
     /// engine computes them. The checkpoints of the file are ignored.
     ///
     /// # Errors
-    /// [`TraceError`] when nothing can be played or a limit is exceeded.
+    /// [`TraceError`] when the file or its inputs are malformed, the file is unverifiable, a limit is exceeded, or the
+    /// inputs cannot be recorded again.
     pub fn of_replay(
         file: &[u8],
         limits: &Limits,

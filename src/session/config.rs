@@ -26,7 +26,8 @@ pub const INPUT_BYTES_MAX: u16 = 512;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
     /// Time for which play stalls because of a missing peer before the others go on without it. `u64::MAX`: without a
-    /// limit, until a peer calls [`Session::go_on_without`](super::Session::go_on_without).
+    /// limit, until a quorum or the tie-holder votes with
+    /// [`Session::go_on_without`](super::Session::go_on_without).
     pub patience: u64,
     /// A peer counts as heard if a packet from it arrived within this time.
     pub heard: u64,

@@ -4,8 +4,8 @@
 //! v' = (v - K h omega^2 x) / (1 + K (2 zeta h omega + h^2 omega^2)),   x' = x + h v'
 //! ```
 //!
-//! Only rounding differs. `K` is 1, except where a spring between two points also turns the bodies, or where two
-//! springs act.
+//! Only rounding differs. `K` is 1, except where a spring that pulls at the end of an arm also turns the bodies, or
+//! where two springs act.
 
 use lockstep2d::body::JointId;
 use lockstep2d::fx;

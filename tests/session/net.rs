@@ -19,7 +19,8 @@ pub(super) struct Node {
     pub(super) events: Vec<JoinEvent>,
     pub(super) joined_at: Option<Us>,
     pub(super) desynced: bool,
-    /// Longest time between two ticks since the endpoint began to play.
+    /// Longest time between two ticks, the second of which is after the first two seconds of simulated time. Tests set
+    /// it to 0 to measure what follows.
     pub(super) stall: Us,
     /// Time of the last tick.
     pub(super) last_tick: Us,

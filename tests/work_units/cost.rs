@@ -1,4 +1,4 @@
-//! The time that a part of a game takes for each unit that it is charged.
+//! Measures how long the setup and the ticks of a game take for each work unit that they are charged.
 
 use std::time::{Duration, Instant};
 

@@ -1059,7 +1059,8 @@ ls2d_status ls2d_world_step(uint32_t world);
 /* Advances a world by some ticks. Only the events of the last one are kept. */
 ls2d_status ls2d_world_steps(uint32_t world, uint32_t ticks);
 
-/* Hash of the state of a world. The same edits in the same order give the same hash on every machine. */
+/* Hash of the state of a world. The same settings, edits and ticks in the same order give the
+ * same hash on every machine. */
 ls2d_status ls2d_world_hash(uint32_t world, ls2d_hash *hash);
 
 /* Hash of a section of the state: 0 settings, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands, 6 random

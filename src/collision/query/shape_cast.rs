@@ -128,7 +128,7 @@ fn is_before(u: Vec2<Grid>, v: Vec2<Grid>) -> bool {
 
 #[cfg(test)]
 mod tests {
-    //! Tests against repeated advances by the distance, which never pass a contact.
+    //! The first test compares casts with repeated advances by the distance, which never pass a contact.
 
     use super::*;
     use crate::collision::shape::support::samples;

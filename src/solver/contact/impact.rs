@@ -38,9 +38,10 @@ pub(super) struct Impacts<const N: usize> {
     /// Before [`PredictImpacts`] runs in that sub-step, the field contains the relative normal velocity before forces
     /// act.
     forced: [Ints<N>; 2],
-    /// For each point, the relative normal velocity before contacts act: `va` for a point that hits, else `v`.
+    /// For each point, the relative normal velocity before contacts act: `va` for a point that bounces, else `v`. A
+    /// point bounces if it approaches fast and its gap is below [`NEAR`] at the time `f` of the first impact.
     pub(super) approach: [Ints<N>; 2],
-    /// For each point that hits, `a (f - 1/2)`.
+    /// For each point that bounces, `a (f - 1/2)`; 0 for the others.
     pub(super) drift: [Ints<N>; 2],
     /// For each point that hits, `s' / h`: the speed that opens the gap within a sub-step.
     pub(super) rebound: [Ints<N>; 2],

@@ -58,7 +58,8 @@ api! {
         })
     }
 
-    /// Hash of the state of a world. The same edits in the same order give the same hash on every machine.
+    /// Hash of the state of a world. The same settings, edits and ticks in the same order give the
+    /// same hash on every machine.
     fn ls2d_world_hash(world: u32, hash: Out<'_, RawHash>) {
         let mut hash = hash;
         with(world, |world: &mut World| hash.set(RawHash::of(world.state_hash())))

@@ -5,7 +5,8 @@ use lockstep2d_render::{CELL_HEIGHT, DrawList, width_of};
 use super::theme;
 use crate::event::Key;
 
-/// A row of the help: the keys as text, the keys as values (to compare them with the keys of a game), and their effect.
+/// A row of the help: keys as text, keys as values, and their effect. The row is left out if the game uses one of the
+/// values as a key of a player.
 type Line = (&'static str, &'static [Key], &'static str);
 
 const LINES: &[Line] = &[

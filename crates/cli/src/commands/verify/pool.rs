@@ -51,8 +51,8 @@ pub(super) enum Pause {
 /// Calls `work` with each of `tasks` on `jobs` threads, and `sink` with the results. If the system refuses threads,
 /// there are fewer; without any, the tasks run on this thread and [`Sink::pause`] is not called.
 ///
-/// After an error of `sink` or a [`Pause::End`], `stop` is set and no more tasks are started. Long-running work should
-/// check `stop`.
+/// After an error of `sink` or a [`Pause::End`], no more tasks are started, and `stop` is set for the tasks that are
+/// running. Long-running work should check `stop`.
 ///
 /// # Errors
 /// The error of `sink`.
