@@ -39,9 +39,9 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
     let wild = generator::config(&mut source);
     let config = Config { gravity: Vec2::ZERO, sleeping: false, ..wild };
     let (still, moving) = (shapes::shape(&mut source), shapes::shape(&mut source));
-    let mut first = Pair::new(config, still, moving, false)?;
-    let mut second = Pair::new(config, still, moving, true)?;
-    let mut bare = first.clone();
+    let new = Pair::new(config, still, moving, false)?;
+    let new_swapped = Pair::new(config, still, moving, true)?;
+    let (mut first, mut bare) = (new.clone(), new.clone());
     bare.world.set_broad_phase(BroadPhaseKind::BruteForce);
     // This world tests boxes one pair at a time, while the other worlds may test several pairs in SIMD lanes.
     let scalar = bare.world.set_backend(Backend::Scalar);
@@ -51,13 +51,16 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
         let reach = source.pick(&[500, 1500, 500, 5000, 0, 120_000]);
         let position = source.mostly_vec(-reach, reach);
         let angle = source.angle();
-        for pair in [&mut first, &mut second, &mut bare] {
+        // A contact of a pair that has moved by less than 5 mm keeps its manifold, whose normal may be that of a tie.
+        // Worlds without a kept manifold are therefore compared with the distance and with exchanged shapes.
+        let (mut fresh, mut swapped) = (new.clone(), new_swapped.clone());
+        for pair in [&mut first, &mut bare, &mut fresh, &mut swapped] {
             pair.place(position, angle);
         }
         bare.world.clear_scratch();
         distances(&first);
         let before = first.world.distance(first.shapes[0], first.shapes[1]).map(|it| it.distance);
-        for pair in [&mut first, &mut second, &mut bare] {
+        for pair in [&mut first, &mut bare, &mut fresh, &mut swapped] {
             pair.world.step();
         }
         let (found, again) = (first.contact(), bare.contact());
@@ -67,7 +70,8 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
             bare.world.state_hash(),
             "the state must not depend on caches or SIMD"
         );
-        let Some((manifold, _)) = found else { continue };
+        found.iter().for_each(|(manifold, _)| check(manifold));
+        let Some((manifold, _)) = fresh.contact() else { continue };
         contacts += 1;
         check(&manifold);
         let links = [still, moving].iter().any(|def| matches!(def.geometry, Geometry::Link { .. }));
@@ -84,7 +88,7 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
                 "separation {least} m, but distance {before} m, at {position:?} {angle:?}: {still:?} {moving:?}"
             );
         }
-        if let Some((swapped, _)) = second.contact() {
+        if let Some((swapped, _)) = swapped.contact() {
             let other = separation(&swapped);
             assert!(
                 (least - other).abs() <= ERROR,
