@@ -34,7 +34,7 @@ pub(super) trait BatchKind: Clone + Debug + 'static {
     fn has_extra<const N: usize>(batch: &Self::Batch<N>) -> bool;
 }
 
-/// An operation of the solver on one batch. [`Run`] calls it for every batch of a colour.
+/// An operation of the solver on one batch. [`Run`] calls it for one batch after the other.
 pub(super) trait Operation<K: BatchKind>: Copy + Send + Sync {
     /// Must be `#[inline(always)]`: see [`Kernel::run`].
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, K, N>);

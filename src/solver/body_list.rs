@@ -62,7 +62,7 @@ impl BodyList {
         slots.iter().for_each(|&slot| self.add(slot, bodies.at(slot)));
     }
 
-    /// Starts a list without bodies, for a world with `slot_count` slots.
+    /// Starts a list that contains only the ground, for a world with `slot_count` body slots.
     pub(super) fn begin(&mut self, slot_count: usize) {
         for &slot in &self.slots {
             self.indices[slot as usize] = GROUND;
@@ -130,7 +130,7 @@ impl BodyList {
         &self.poses
     }
 
-    /// The constants of a body, by its index.
+    /// The facts of a body, by its index.
     pub(super) fn facts(&self, index: u32) -> &BodyFacts {
         &self.facts[index as usize]
     }

@@ -23,7 +23,7 @@ const BUCKETS: usize = 256;
 pub(super) struct Node {
     /// Hash bucket. Constraints are coloured bucket by bucket.
     bucket: u8,
-    /// Constraints of one colour and one size are solved together.
+    /// Within a thread, the constraints of a colour are ordered by size.
     size: Size,
     /// Whether the constraint is cold: it gets more iterations (`COLD_ROUNDS`). Cold constraints are listed separately.
     cold: bool,
@@ -64,12 +64,12 @@ pub(super) enum Size {
 pub enum SolverColour {
     /// The contact has this colour, counted from 0. It is independent of all other contacts of the colour.
     Group(u8),
-    /// The contact fits no colour, because its bodies have more contacts than there are colours. It is solved by
-    /// itself, before all colours.
+    /// The contact fits no colour, because other contacts of its bodies already have all colours. It is solved by
+    /// itself, before the contacts with a colour.
     Overflow,
 }
 
-/// The constraints of a colour.
+/// The constraints of a colour that one thread solves.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Group<'a> {
     /// The indices of the constraints, large ones first.

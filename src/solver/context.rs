@@ -84,7 +84,7 @@ impl<'a> StepContext<'a> {
         self.member.is_alone()
     }
 
-    /// Waits for all other threads, which may then read the results of this one.
+    /// Waits for all other threads. Afterwards, each thread may read the results of the others.
     pub(super) fn wait(&self) {
         self.member.wait();
     }

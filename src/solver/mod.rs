@@ -1,12 +1,14 @@
 //! The solver: sequential impulses in sub-steps, in a fixed order.
 //!
 //! `sub_step` lists the stages of a sub-step, which follow E. Catto's soft step (Solver2D, `solve_soft_step.c`).
-//! `integrate` moves bodies. `contact_velocity` and `contact` solve contacts, `joint/hinge` hinges, `joint/list` all
-//! other joints, and `joint/block` the joints for which iterations do not converge.
+//! `integrate` moves bodies. `contact_velocity` and `contact` solve contacts, `joint/hinge` solves hinges, and
+//! `joint/list` all other joints. `joint/block` solves the hinges and other joints for which iterations do not
+//! converge.
 //!
 //! A row removes velocity along one direction (`row`). A point block pins two points together (`point_block`). Contacts
-//! and hinges are solved in batches of eight (`batches`), by code that is written once for any number of lanes
-//! (`simd`). The rows and points of all other joints are solved one by one. The joints of a block are solved together.
+//! and hinges are solved in batches (`batches`): of eight on machines with vector instructions, by code that is written
+//! once for any number of lanes (`simd`). The rows and points of all other joints are solved one by one. The joints of
+//! a block are solved together.
 
 mod batches;
 mod body;

@@ -123,7 +123,8 @@ impl PointBlock {
         };
         let (xx, xy, yy) = (sum(|e| e.x, |e| e.x), sum(|e| e.x, |e| e.y), sum(|e| e.y, |e| e.y));
         let product = |a: Ratio, b: Ratio| i128::from(a.to_bits()) * i128::from(b.to_bits());
-        // 24 fraction bits of `eA x eB` are enough: rounding it changes the determinant by less than a 2^-25 part.
+        // 24 fraction bits of `eA x eB` are enough: rounding it changes the determinant by a relative error of less
+        // than 2^-25.
         let cross = round_shift_wide(product(e_a.x, e_b.y) - product(e_a.y, e_b.x), 24);
         let shares = product_of_fractions(fractions);
         let square = saturate_wide(round_shift_wide(cross * cross, 24));

@@ -180,9 +180,10 @@ impl Row {
         Speed::from_bits(vn)
     }
 
-    /// `nB.vB - nA.vA + eB tB - eA tA` in the format of speeds, with the spins `t`. The linear part has 30 bits more.
-    /// It is rounded to the scale of the angular part, which has 24 bits more, and then the sum is rounded. Speeds are
-    /// below 2^30 units, so that the linear part of directions of up to 2 stays below 2^62.
+    /// `nB.vB - nA.vA + eB uB - eA uA` in the format of speeds. `linear` is the sum of the first two terms, with 30
+    /// more fraction bits. It is rounded to the scale of the angular part, which has 24 more fraction bits, and then
+    /// the sum is rounded. Speeds are below 2^30 units, so that `linear` stays below 2^63 for directions of length up
+    /// to 2.
     #[inline]
     fn along(&self, linear: i64, turn_a: i32, turn_b: i32) -> i64 {
         let angular = i64::from(self.e_b.to_bits()) * i64::from(turn_b)

@@ -81,7 +81,7 @@ pub struct SolverSettings {
     /// that connects a body without any other joint to a body that is not dynamic. Such a joint disturbs no
     /// other joint.
     pub joint_hertz: Fx,
-    /// Damping ratio of joints, 0 to 100.
+    /// Damping ratio, 0 to 100, of joints that have no softness of their own.
     pub joint_damping_ratio: Fx,
     /// Approach speed in m/s below which restitution is not applied, 0 to 400, for shapes without a threshold of their
     /// own ([`Material::restitution_threshold`](crate::body::Material::restitution_threshold)).
@@ -172,7 +172,7 @@ pub(crate) struct Tuning {
     /// Softness of joints without a softness of their own.
     pub(crate) joint: Softness,
     /// Softness of the anchors of anchored hinges, which hold a body without any other joint to a body that is not
-    /// dynamic.
+    /// dynamic, and have no softness of their own.
     pub(crate) anchored: Softness,
     pub(crate) relax: bool,
     pub(crate) speed_max: Speed,

@@ -16,8 +16,8 @@ pub(in crate::solver) struct Batch<const N: usize> {
     /// The normal, from A to B, with the fraction bits of a lever ratio. The tangent is perpendicular to it.
     pub(super) n_x: Ints<N>,
     pub(super) n_y: Ints<N>,
-    /// -1 in lanes in which one of the bodies is not moved by impulses, or -2 if in addition the other one has an
-    /// impact. These contacts are stiffer.
+    /// -1 in lanes in which impulses do not move one of the bodies, or -2 if in addition the other body has an impact.
+    /// These contacts are stiffer.
     pub(super) immovable: Ints<N>,
     /// -1 in lanes with two points. In the other lanes of a batch of two points, the second point is a copy of the
     /// first point, without an impulse.
@@ -27,7 +27,7 @@ pub(in crate::solver) struct Batch<const N: usize> {
     /// along the tangent.
     pub(super) tangent: Row<N>,
     pub(super) tangent_lambda: Ints<N>,
-    /// Largest number of points of a contact in the batch. Points beyond this number are stale and never read.
+    /// Largest number of points of a contact in the batch. Points beyond this number are stale and have no effect.
     pub(super) count: usize,
     /// Whether any contact in the batch has extras. The batch then has a [`super::extras::ContactExtras`].
     pub(super) extras: bool,
@@ -52,7 +52,7 @@ pub(super) struct Point<const N: usize> {
 }
 
 /// `N` rows: lever ratios, and the velocity changes by an impulse of 1. The linear part of the Jacobian is the normal
-/// or the tangent, which is stored once in the batch.
+/// or the tangent of the batch ([`Batch::directions`]).
 #[derive(Clone, Debug)]
 pub(super) struct Row<const N: usize> {
     pub(super) e_a: Ints<N>,
@@ -95,7 +95,7 @@ impl<const N: usize> Batch<N> {
         pushed: [0; 2],
     };
 
-    /// Resets the fields that filling the batch does not overwrite.
+    /// Resets the fields that filling the batch does not set as a whole.
     #[inline(always)]
     pub(super) fn begin(&mut self) {
         self.bodies = Self::NONE.bodies;

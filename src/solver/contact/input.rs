@@ -19,8 +19,9 @@ pub(crate) struct ActiveContact {
     pub(crate) contact: u32,
     /// Index of its manifold among the manifolds of the tick.
     pub(crate) manifold: u32,
-    /// Slots of the shapes and of their bodies.
+    /// Slots of the shapes.
     pub(crate) shapes: Pair,
+    /// Slots of the bodies of the shapes.
     pub(crate) bodies: (u32, u32),
     pub(crate) surface: Surface,
     /// Whether the shapes may approach each other so fast that the impulses of the last tick are no useful initial
@@ -31,7 +32,8 @@ pub(crate) struct ActiveContact {
     /// Whether the contact needs more than rows along the normal and the tangent. It does if its surface has extras or
     /// if it has a hit event.
     pub(crate) extras: bool,
-    /// Whether the rows are those of the last tick: the contact has kept its manifold and its surface.
+    /// Whether the rows are those of the last tick: the contact has kept its manifold and its surface, and has no
+    /// extras.
     pub(crate) keeps_rows: bool,
 }
 
@@ -73,8 +75,8 @@ pub(super) struct Input {
     /// Impulses of the last tick, `p = L / D`: along the normal of each point, and along the tangent. The last number
     /// is the number of points.
     pub(super) carried: Quad,
-    /// The separations of the points, in the format of a step, the friction, and the distance of the surfaces half-way
-    /// between the points.
+    /// The separations of the points, in the format of a step, the friction, and the gap between the surfaces half-way
+    /// between the points, 0 for an overlap.
     pub(super) rest: Quad,
 }
 

@@ -1,6 +1,6 @@
 //! Contacts: one row along the normal for each point and one along the tangent for both points.
 //!
-//! With the rows and gains of `row.rs`, eight contacts at a time:
+//! With the rows and gains of `row.rs`, for a batch of contacts at a time:
 //!
 //! ```text
 //! J  = (-n, -eA, n, eB)                                  the form of the rows along the normal and the tangent
@@ -9,13 +9,13 @@
 //! vA -= gA d n,  uA -= fA d,  vB += gB d n,  uB += fB d
 //! ```
 //!
-//! Each operation on a batch has a file of its own: `warm_start`, `solve` (the equations for `w` and `L'`), `measure`,
-//! `impact`, `restitution` and `hit`. `jacobian` computes `J v` and the velocity changes by impulses. `prepare` fills
-//! the batches of a tick, `rows` computes their rows, and `store` returns the impulses to the state. `overflow_policy`
-//! defines the two ways in which numbers are kept within their formats.
+//! The operations on a batch are in `warm_start`, `solve` (the equations for `w` and `L'`), `measure`, `impact`,
+//! `restitution` and `hit`. `jacobian` computes `J v` and the velocity changes by impulses. `prepare` fills the batches
+//! of a tick, `rows` computes their rows, and `store` returns the impulses to the state. `overflow_policy` defines the
+//! two ways in which numbers are kept within their formats.
 //!
-//! The difference of two velocities fits its format, because each velocity is below 512 m/s. A sum that may not fit
-//! saturates. Lanes without a contact have gains of 0, so that their other numbers do not matter.
+//! The difference of two velocities fits its format, because each velocity is below 512 m/s. Lanes without a contact
+//! have gains of 0, so that their other numbers do not matter.
 
 mod batch;
 mod constants;

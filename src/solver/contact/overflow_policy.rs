@@ -1,10 +1,10 @@
 //! Overflow policies: how numbers are kept within their formats.
 //!
-//! [`Saturating`] saturates every sum, and counts a fault for each velocity or normal impulse that it clamps.
-//! [`Unchecked`] does neither: it records whether all numbers were within bounds in which no sum can overflow and no
-//! clamp can act. Nearly all contacts are within these bounds: they are neither fast nor deep, and their impulses are
-//! small. Most batches are solved with `Unchecked` first, and again with `Saturating` if a number was out of bounds.
-//! Within the bounds, both policies give the same bits:
+//! [`Saturating`] saturates every sum that may not fit its format, and counts a fault for each velocity or normal
+//! impulse that it clamps. [`Unchecked`] does neither: it records whether all numbers were within bounds in which no
+//! sum can overflow and no clamp can act. Nearly all contacts are within these bounds: they are neither fast nor deep,
+//! and their impulses are small. Most batches are solved with `Unchecked` first, and again with `Saturating` if a
+//! number was out of bounds. Within the bounds, both policies give the same bits:
 //!
 //! ```text
 //! |vx|, |vy|, |u| < 64 at first, |d| < 4 for at most 10 rows       velocities stay below 104, spins below 84
@@ -52,7 +52,7 @@ pub(super) trait OverflowPolicy<L: Lanes<N>, const N: usize> {
     /// Restricts the counting of faults to the given lanes.
     #[inline(always)]
     fn count_faults_in(&mut self, _: L::Mask) {}
-    /// Checks displacements, or the velocities at the start of an iteration.
+    /// Checks velocities or displacements that an operation has loaded.
     #[inline(always)]
     fn see(&mut self, _: &BodyPairW<L, N>) {}
     /// Checks an accumulated impulse.
@@ -79,7 +79,8 @@ pub(super) trait OverflowPolicy<L: Lanes<N>, const N: usize> {
     fn apply_again(&mut self, pair: &mut BodyPairW<L, N>, row: &Row<N>, lambda: L::Int);
 }
 
-/// Saturates every sum. Counts each velocity and each normal impulse that it clamps as a fault.
+/// Saturates every sum that may not fit its format. Counts each velocity and each normal impulse that it clamps as a
+/// fault.
 pub(super) struct Saturating<'a, L: Lanes<N>, const N: usize> {
     faults: &'a mut Faults,
     /// The lanes whose faults are counted.
@@ -205,7 +206,7 @@ impl<L: Lanes<N>, const N: usize> Unchecked<L, N> {
         self.small = L::or(self.small, L::add(number, L::splat(1 << SMALL_BITS)));
     }
 
-    /// Whether the rows and surfaces of a batch are within the bounds.
+    /// Whether the rows of a batch are within the bounds, and no contact has a surface speed or rolling resistance.
     #[inline(always)]
     pub(super) fn suits(batch: &Batch<N>, extras: Option<&ContactExtras<N>>) -> bool {
         let ratio = L::splat(UNCHECKED_RATIO.to_bits());

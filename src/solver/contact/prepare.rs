@@ -163,7 +163,8 @@ impl<const N: usize> Batches<Contacts, N> {
 }
 
 /// Keeps the rows of a batch, if it had the same contacts in the last tick and their rows have not changed. Only the
-/// separations are new: the impulses for the warm start are in the batch.
+/// separations are new: the impulses for the warm start are in the batch. Returns `false` if the batch has to be filled
+/// again. Batches with extras, an impact or a wedged body always are.
 #[inline(always)]
 fn keep<L: Lanes<N>, const N: usize>(
     batch: &mut Batch<N>,

@@ -52,7 +52,7 @@ impl<const N: usize> RollingRows<N> {
         let [a, b] = [pair.bodies.0, pair.bodies.1].map(|slot| list.facts(list.index_of(slot)));
         let fractions = MassFractions::of_masses(a.mass, b.mass);
         let (row, denominator, scale) = ScalarRow::angular(a.inverse_gyration, b.inverse_gyration, fractions);
-        // The scale is 0 if neither body turns.
+        // The scale is 0 if impulses turn neither body.
         let Some(length) = fx_div(pair.surface.rolling_resistance, scale.into()) else { return };
         let (e, f) = row.turning_parts();
         (self.row.e_a.0[lane], self.row.e_b.0[lane]) = (e[0].to_bits(), e[1].to_bits());

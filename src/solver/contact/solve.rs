@@ -36,9 +36,9 @@ const NORMAL_ROUNDS_MAX: u32 = 4;
 /// Change of the second point's impulse, in m/s, below which the points are not solved again.
 const SETTLED: Speed = Speed::lit("0.005");
 
-/// Normal velocity below which an overlap with a body that no impulse moves is as rigid as a gap, if the other body has
-/// an impact. A soft contact would remove only a part of the approach velocity. Without an impact the velocity comes
-/// from other constraints: a wheel on a fixed axle that overlaps the ground would shake.
+/// Normal velocity, in m/s, below which an overlap with a body that no impulse moves is as rigid as a gap, if the other
+/// body has an impact. A soft contact would remove only a part of the approach velocity. Without an impact the velocity
+/// comes from other constraints: a wheel on a fixed axle that overlaps the ground would shake.
 const IMPACT_SPEED: Speed = Speed::lit("-1");
 
 /// Order in which the two points of a contact are solved. It alternates, because the point that is solved first turns
@@ -273,8 +273,8 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
     }
 
     /// The contact equation. Solves a point in the given lanes: computes the accumulated impulse that it should have
-    /// instead of `old`, and applies the difference. `other` is the impulse of the other point, with which it bounces
-    /// together. Returns the impulses of all lanes.
+    /// instead of `old`, and applies the difference. `other` is the impulse of the other point: a point with a rebound
+    /// bounces if either point pushes. Returns the impulses of all lanes.
     #[inline(always)]
     fn solve<C: OverflowPolicy<L, N>>(
         &self,
@@ -330,7 +330,8 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
     }
 }
 
-/// Limit of the impulse of a friction or rolling row: the normal impulses of both points times their friction ratios.
+/// Limit of the impulse of a friction or rolling row: the normal impulses of both points times their friction ratios,
+/// at most [`TANGENT_MAX`].
 #[inline(always)]
 fn limit<L: Lanes<N>, C: OverflowPolicy<L, N>, const N: usize>(
     friction_ratios: [&Ints<N>; 2],

@@ -1,5 +1,5 @@
-//! The velocity change that the warm start applies to a body is the one that contacts have caused. `world::tests`
-//! checks the same property for whole worlds with `contact_velocity_error`.
+//! The warm start applies the velocity changes that contacts caused in the last sub-step. A clamped velocity is a
+//! fault. `world::tests` compares the velocity changes with the impulses in whole worlds (`contact_velocity_error`).
 
 use std::vec::Vec;
 

@@ -1,7 +1,7 @@
 //! Semi-implicit Euler: velocities first, then displacements from the new velocities.
 //!
-//! Eight bodies are integrated at a time (`kernel`) if all of them are dynamic, have no locked axis and are within all
-//! limits. All other bodies are integrated one by one.
+//! With vector instructions, eight bodies are integrated at a time (`kernel`) if all of them are dynamic, have no
+//! locked axis and are within all limits. All other bodies are integrated one by one.
 
 mod area_effect;
 mod kernel;
@@ -19,7 +19,8 @@ use crate::simd::Quad;
 pub(crate) use area_effect::AreaEffect;
 use sub_step::SubStep;
 
-/// Largest displacement of a body in a tick along each axis, in metres.
+/// Largest displacement of a body in a tick, in metres: along each axis, and of the rotation times the radius of
+/// gyration.
 const SHIFT_MAX: Shift = Shift::lit("15.999");
 
 /// A body that moves, with the velocity changes that are the same in every sub-step of the tick.

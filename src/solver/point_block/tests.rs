@@ -67,7 +67,7 @@ fn an_impulse_of_limited_length_is_no_longer() {
             let bodies = &mut BodyPair { a: &mut a, b: &mut b, remainders, faults: &mut faults };
             block.solve_within(bodies, goal, &Softness::RIGID, most, &mut lambda);
         }
-        // p = (vB - vA) / (aA + aB) for all mass fractions.
+        // The mass fractions add up to 1, so that `p` is the change of `vB - vA`.
         let p = (b.velocity - a.velocity).widen().length();
         assert!(p <= Fx::from(most) + fx!(0.00001), "{p} of {most}");
     }

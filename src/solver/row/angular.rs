@@ -15,7 +15,7 @@ use super::{Denominator, MassFractions, RATIO_MAX, Row, turning};
 use crate::math::{Length, Ratio, Reciprocal, Speed, Unit, div_round, mul, saturate, saturate_wide};
 
 impl Row {
-    /// Returns the row between two bodies, its denominator and `s`. The last two are 0 if neither body turns.
+    /// Returns the row between two bodies, its denominator and `s`. The last two are 0 if impulses turn neither body.
     pub(crate) fn angular(
         a: Reciprocal,
         b: Reciprocal,
@@ -37,8 +37,8 @@ impl Row {
         (Row { e_a, e_b, f_a, f_b, ..Row::NONE }, denominator, s)
     }
 
-    /// The shares of A and B in a change of the relative angular velocity. They add up to about 1, unless neither
-    /// body turns.
+    /// The shares of A and B in a change of the relative angular velocity. They add up to about 1, unless impulses turn
+    /// neither body.
     pub(crate) fn shares(&self) -> (Unit, Unit) {
         (mul(self.f_a, self.e_a), mul(self.f_b, self.e_b))
     }
@@ -54,8 +54,8 @@ fn quotient(n: i64, d: i64) -> i64 {
     }
 }
 
-/// `1 / sqrt(aA / kA^2 + aB / kB^2)`, at most a hundred times the radius of gyration of each body that turns. It only
-/// sets the units of a row, so that it need not be exact.
+/// `1 / sqrt(aA / kA^2 + aB / kB^2)`, at most a hundred times the radius of gyration of each body that impulses turn.
+/// It only sets the units of a row, so that it need not be exact.
 pub(in crate::solver) fn angular_scale([a, b]: [Reciprocal; 2], fractions: MassFractions) -> Length {
     // 1 / k has 21 fraction bits, so that the sum has 72.
     let inverse = |inverse_gyration: Reciprocal, fraction: Unit| -> Speed {

@@ -1,4 +1,4 @@
-//! Rows whose directions on A and B differ, or are not unit vectors: gears and pulleys.
+//! Rows of gears, racks and pulleys. Their directions on A and B may differ, and need not be unit vectors.
 //!
 //! ```text
 //! vn = nB.vB + eB uB - nA.vA - eA uA
@@ -12,7 +12,8 @@ use super::{Denominator, MassFractions, RATIO_MAX, Row, turning};
 use crate::math::{Length, Ratio, Reciprocal, Unit, Vec2, mul, saturate};
 
 impl Row {
-    /// A row with the directions of A and B, at most 2 long, and the arms of both about their centres, in metres.
+    /// A row with a direction on each body, at most 2 long, and the lever arm of each body about its centre of mass, in
+    /// metres.
     pub(crate) fn coupled(
         n: [Vec2<Unit>; 2],
         arms: [Length; 2],
