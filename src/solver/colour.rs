@@ -38,7 +38,7 @@ impl Node {
     }
 }
 
-/// The amount of work in a constraint. Contacts with one point are small.
+/// The amount of work in a constraint. Contacts with one point are small, all other constraints are large.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Size {
     Large,

@@ -56,7 +56,7 @@ impl Operation<Contacts> for ApplyRestitution {
         }
         let masks = [bounces::<L, N>(batch, extras, 0), bounces::<L, N>(batch, extras, 1)];
         let masks = [L::both(masks[0], takes_part), L::both(masks[1], takes_part)];
-        // Lanes that are not active keep their bits.
+        // Impulses are applied only in active lanes.
         let active = L::either(masks[0], masks[1]);
         if !L::any(active) {
             return;

@@ -1,4 +1,4 @@
-//! Couplings of gears, racks and pulleys: a row whose parts on A and B differ.
+//! Couplings of gears, racks and pulleys. Each measures one row ([`Row::coupled`]).
 
 use core::cell::Cell;
 

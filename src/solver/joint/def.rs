@@ -28,9 +28,9 @@ pub struct JointDef {
     pub body_a: BodyId,
     /// The second body, B.
     pub body_b: BodyId,
-    /// The joint's frame in A's frame.
+    /// The joint's frame on A, in the frame of body A.
     pub frame_a: JointFrame,
-    /// The joint's frame in B's frame.
+    /// The joint's frame on B, in the frame of body B.
     pub frame_b: JointFrame,
     /// Whether the two bodies collide with each other.
     pub collide_connected: bool,
@@ -40,8 +40,8 @@ pub struct JointDef {
     /// The kind of joint: the relative motion that it allows.
     pub kind: JointKind,
     /// Stiffness and damping of everything that the joint holds rigidly, its limits included; `None` for those of the
-    /// world, [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz). The frequency is limited to
-    /// a quarter of the sub-step rate. Springs and motors have parameters of their own.
+    /// world: `joint_hertz` and `joint_damping_ratio` of [`SolverSettings`](crate::solver::SolverSettings). The
+    /// frequency is limited to a quarter of the sub-step rate. Springs and motors have parameters of their own.
     pub softness: Option<Soft>,
     /// The load beyond which the joint is reported or breaks.
     pub threshold: Threshold,
@@ -72,7 +72,8 @@ pub struct JointFrame {
     /// Origin of the joint's frame in the body's frame, in metres: within ±128 on each axis, or within ±2^30 on a fixed
     /// body.
     pub anchor: Vec2<Fx>,
-    /// Rotation of the joint's frame in the body's frame. Sliding joints slide along the x axis of A's frame.
+    /// Rotation of the joint's frame in the body's frame. Sliding joints slide along the x axis of the joint's frame on
+    /// A.
     pub angle: Angle,
 }
 
@@ -227,28 +228,28 @@ impl JointDef {
         }
     }
 
-    /// Sets the anchor in A's frame, in metres.
+    /// Sets the anchor on A, in metres in the frame of body A.
     #[must_use]
     pub fn anchor_a(mut self, anchor: impl Into<Vec2<Fx>>) -> Self {
         self.frame_a.anchor = anchor.into();
         self
     }
 
-    /// Sets the anchor in B's frame, in metres.
+    /// Sets the anchor on B, in metres in the frame of body B.
     #[must_use]
     pub fn anchor_b(mut self, anchor: impl Into<Vec2<Fx>>) -> Self {
         self.frame_b.anchor = anchor.into();
         self
     }
 
-    /// Sets the angle of the joint's frame in A's frame: the direction of the axis of joints that slide.
+    /// Sets the angle of the joint's frame on A, relative to body A: the direction of the axis of joints that slide.
     #[must_use]
     pub const fn angle_a(mut self, angle: Angle) -> Self {
         self.frame_a.angle = angle;
         self
     }
 
-    /// Sets the angle of the joint's frame in B's frame.
+    /// Sets the angle of the joint's frame on B, relative to body B.
     #[must_use]
     pub const fn angle_b(mut self, angle: Angle) -> Self {
         self.frame_b.angle = angle;

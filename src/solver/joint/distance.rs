@@ -32,7 +32,7 @@ use crate::math::Fx;
 #[doc(alias = "DistanceJoint")]
 #[doc(alias = "RopeJoint")]
 pub struct Distance {
-    /// Length in metres that is held rigidly, at least 0.001.
+    /// Length in metres that is held rigidly, 0.001 to 2^20.
     pub rod: Option<Fx>,
     /// Range of the length in metres, 0 or more.
     pub limit: Option<JointLimit>,

@@ -69,7 +69,7 @@ fn check_either_sign(what: &'static str, value: Fx, min: Fx, max: Fx) -> Result<
 pub struct Gear {
     /// Teeth of A's wheel: 1 to 1000, or -1 to -1000 for a ring.
     pub teeth_a: i32,
-    /// Teeth of B's wheel: 1 to 1000, or -1 to -1000 for a ring.
+    /// Teeth of B's wheel: 1 to 1000, or -1 to -1000 for a ring if A's wheel is not a ring.
     pub teeth_b: i32,
 }
 

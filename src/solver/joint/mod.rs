@@ -1,9 +1,9 @@
 //! Joints: their definitions, their state, and the rows and point blocks that the solver solves.
 //!
-//! A kind of joint only lists its parts (`parts`): rows, each with its function (spring, motor, limit or holding a
-//! position) and its direction, and points, which pull or drive the anchors. Everything else is common to all kinds
-//! except hinges, which are solved in batches (`hinge`). Within a joint the order is that of Box2D v3: springs, motors
-//! and limits first, and the rigid parts last.
+//! A kind of joint lists its parts (`parts`): rows, each with its function (spring, motor, limit or holding a position)
+//! and its direction, and points, which pull or drive the anchors. Gears, racks and pulleys measure their rows by a
+//! coupling (`coupling`). Hinges are solved in batches (`hinge`). Within a joint the order is that of Box2D v3:
+//! springs, motors and limits first, and the rigid parts last.
 
 mod block;
 mod cache_key;

@@ -16,8 +16,9 @@ const DAMPING_RATIO_MAX: Fx = fx!(100);
 /// The range of a joint's position, in radians or metres, within ±2^20. The lower end is not above the upper one.
 ///
 /// A limit has the stiffness of a rigid joint: under a steady acceleration `a` against the limit, the position exceeds
-/// it by `a / (2 pi f)^2`, with the [joint stiffness](crate::solver::SolverSettings::joint_hertz) `f`, at most a
-/// quarter of the sub-step rate.
+/// it by `a / (2 pi f)^2`. Here `f` is the frequency of [`JointDef::softness`](crate::solver::JointDef::softness) or,
+/// without it, [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz), at most a quarter of the
+/// sub-step rate.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, math::Vec2, world::World};
@@ -100,7 +101,8 @@ pub struct Spring {
     pub target: Fx,
 }
 
-/// Softness of a joint that is not rigid.
+/// Frequency and damping ratio of a spring, or of what a joint holds rigidly
+/// ([`JointDef::softness`](crate::solver::JointDef::softness)).
 ///
 /// An angular spring has this frequency if both bodies are free. A linear spring, between anchors, has it if both
 /// bodies are point masses: its stiffness is `(2 pi hertz)^2 m` N/m in all directions, with the reduced mass `m = MA MB

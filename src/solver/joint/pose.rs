@@ -150,7 +150,8 @@ impl Ends {
         }
     }
 
-    /// Measures along an axis of A. The axis turns with A about A's centre, so that A's arm reaches to B's anchor.
+    /// Measures along an axis of A. The axis turns with A about A's centre, so that A's arm reaches to B's anchor,
+    /// unless that arm is too long ([`JointPose::levers_at_one_point`]).
     fn measure_axis(&self, axis: Vec2<Unit>, pose: &JointPose, body_rotations: &[BodyRotation]) -> Measure {
         let n = body_rotations[self.body_a as usize].rotation.apply(axis);
         let [a, b] = pose.levers_at_one_point().unwrap_or([pose.reach_of_a(), pose.lever_b]);

@@ -41,9 +41,10 @@ const RATIO_MAX: Fx = fx!(4);
 pub struct Pulley {
     /// The wheel on A's side, in m in the world, within ±2^30.
     pub wheel_a: Vec2<Fx>,
-    /// The wheel on B's side.
+    /// The wheel on B's side, in m in the world, within ±2^30.
     pub wheel_b: Vec2<Fx>,
-    /// Length of the rope in metres, 0 to 2^20, without the part between the wheels.
+    /// Length of the rope in metres, 0 to 2^20, without the part between the wheels, where B's side counts `ratio`
+    /// times.
     pub length: Fx,
     /// Factor by which the length on B's side counts, 0.25 to 4.
     pub ratio: Fx,

@@ -58,7 +58,8 @@ pub(super) struct Measure {
     pub(super) denominator: Denominator,
     /// Position along the direction in m or rad.
     pub(super) position: Fx,
-    /// Units of the row per unit of the position: 1, or `s` for an angle.
+    /// Units of the row per unit of the position: `s` for an angle, the factor on both directions for a pulley,
+    /// otherwise 1.
     pub(super) scale: Fx,
     /// For an axis that turns with A: the arms of both bodies over their radii of gyration. 0 for other directions.
     pub(super) reach: [Ratio; 2],
@@ -77,7 +78,7 @@ pub(super) struct JointRow {
     /// For a spring: [`Softness::push`] of its stretch. For other rows: the negated target speed.
     bias: Speed,
     /// For a spring: its softness at the current pose. For a limit or a row that holds a position: the softness of the
-    /// joint.
+    /// joint. For a motor: [`Softness::RIGID`].
     softness: Softness,
     /// Whether the row is a limit that is not reached.
     open: bool,
@@ -214,7 +215,7 @@ impl JointRow {
             }
         }
         if denominator == 0 {
-            // Neither body moves along this row.
+            // Impulses move neither body along this row.
             self.bounds = (Speed::ZERO, Speed::ZERO);
         }
     }

@@ -1,6 +1,7 @@
 //! The joints that each thread solves in the sub-steps of a tick.
 //!
-//! Every thread has hinges of each colour. One thread also solves all other joints, while the other threads wait.
+//! The hinges of each colour are divided among all threads. One thread also solves all other joints, while the other
+//! threads wait.
 
 use super::super::context::{SolverPass, StepContext};
 use super::block::Blocks;
@@ -163,7 +164,8 @@ struct Stretch {
 }
 
 /// Largest predicted rotation of a body, in radians. Impulses do not act along the averaged lever ratios, so that an
-/// iteration may add energy to joints that it does not solve exactly. With this limit, no star of hinges gains energy
+/// iteration may add energy to joints that it does not solve exactly. With this limit, stars of bodies on free hinges
+/// reach at most 1.00 times their initial energy in trials at 60 Hz. With 0.1 radians they reach 1.56 times
 /// (`docs/DESIGN.md`).
 const TURN_MAX: Unit = Unit::lit("0.04");
 

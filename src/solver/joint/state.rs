@@ -35,7 +35,7 @@ pub struct Joint {
     pub(crate) def: Box<JointDef>,
     pub(crate) impulses: JointImpulses,
     /// The angle of B's frame in A's at the end of the last tick in which the joint was solved, with whole turns, in
-    /// units of 2^-32 turn.
+    /// units of 2^-32 turn. 0 for a new joint.
     pub(crate) turns: i64,
 }
 

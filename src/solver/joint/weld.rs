@@ -35,8 +35,9 @@ use crate::math::Fx;
 #[doc(alias = "WeldJoint")]
 pub struct Weld {
     /// Softness of the anchors; `None` is rigid. The frequency is that of two point masses with the masses of the
-    /// bodies, and the stiffness is the same in all directions ([`Soft`]). Forces act on both bodies at B's anchor, so
-    /// that a soft weld conserves angular momentum however far it is stretched.
+    /// bodies, and the stiffness is the same in all directions ([`Soft`]). Forces act on both bodies as those of a
+    /// [`Motor`](crate::solver::Motor) joint do, so that a soft weld conserves angular momentum however far it is
+    /// stretched.
     pub linear: Option<Soft>,
     /// Softness of the angle; `None` is rigid.
     pub angular: Option<Soft>,
@@ -68,7 +69,7 @@ impl Weld {
         self.linear.is_none().then_some(parts)
     }
 
-    /// Adds the parts of the weld, if its anchors are soft.
+    /// Adds the parts of a weld with soft anchors.
     pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
         match self.angular {
             Some(soft) => parts.spring(Direction::Angle, Some(soft.towards(Fx::ZERO))),

@@ -1,8 +1,8 @@
 //! Units with bounds in a block: limits, which may only push, and motors and springs of limited force. An active-set
-//! method finds the bounds that are reached. At first, all motors are active, as are the limits and springs that would
-//! be within their bounds if no other unit acted on their two bodies. Each round solves the equations of the active
-//! units. A unit whose impulse would be beyond a bound is then held at that bound. The rounds end when no active unit
-//! is beyond a bound.
+//! method finds the bounds that are reached. At first, the units that [`Block::activate`] chooses are active. Each
+//! round solves the equations of the active units and of the units without bounds. An active unit whose impulse would
+//! be beyond a bound is then held at that bound. In the first [`ROUNDS_MAX`] rounds, motors are exempt unless they are
+//! among those furthest beyond. The rounds end when no active unit is beyond a bound.
 
 use super::super::super::context::{Pass, StepContext};
 use super::super::hinge::{HingeSet, Poses};
@@ -27,7 +27,7 @@ pub(super) struct BoundedUnit {
 /// solution even if other rows depend linearly on the limit.
 const OPEN_SCALE: i64 = ONE - (1 << 20);
 
-/// `S^2` of a motor, with 30 fraction bits. It is closer to 1 than `S^2` of a limit, because the error of the speed is
+/// `S^2` of a motor, with 30 fraction bits. It is closer to 1 than [`OPEN_SCALE`], because the error of the speed is
 /// the impulse times `1 - S^2`, and the impulse is large under leverage.
 const DRIVE_SCALE: i64 = ONE - (1 << 16);
 

@@ -7,9 +7,9 @@
 //! - it is so light, or its arms are so long, that its share in the mobility of the point of each of two hinges is
 //!   large, or that the sum of its shares over all hinges, without the largest share, is large.
 //!
-//! All joints of a crowded body are solved in a block. Two crowded bodies with a common joint share a block, as long as
-//! it does not grow beyond [`ROWS_MAX`]. The choice depends on the joints of a body alone, so that joints elsewhere do
-//! not affect it.
+//! All joints of a crowded body that have rows for a block ([`Candidate::rows`]) are solved in one. Two crowded bodies
+//! with a common joint share a block, as long as it does not grow beyond [`ROWS_MAX`]. Whether a body is crowded
+//! depends on its own joints alone, so that joints elsewhere do not affect it.
 
 use alloc::vec::Vec;
 

@@ -19,7 +19,7 @@ use crate::math::{round_shift, round_shift_wide, saturate, saturate_wide};
 pub(super) const ONE: i64 = 1 << 30;
 
 /// Smallest square of a diagonal entry of a factor, with 60 fraction bits: 2^-16. The relax pass adds four times as
-/// much to the diagonal, so that only rounding errors could lead to a smaller one.
+/// much to the diagonal, so that in this pass only rounding errors could lead to a smaller one.
 const PIVOT_MIN: i64 = 1 << 44;
 
 /// The entries of the matrix below the diagonal, which is 1.

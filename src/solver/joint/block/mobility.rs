@@ -38,7 +38,8 @@ impl Mobility {
         self.spins != [ONE; 2]
     }
 
-    /// The part of the rotations in the denominator of two rows with the lever ratios `e` and `other`.
+    /// The sum of `a e other` over both bodies, with geometric stiffness: the part of the rotations in an entry of `K`,
+    /// or in `D` of a row if `other` is `e`.
     pub(super) fn turning(&self, e: [Ratio; 2], other: [Ratio; 2]) -> i64 {
         let MassFractions { a, b } = self.fractions;
         product(turning(a, e[0], other[0]), self.spins[0])

@@ -95,7 +95,8 @@ struct Block {
     current: Scales,
     /// `L` of each row, a speed with 32 fraction bits. It may be larger than a joint can store.
     impulses: Vec<i64>,
-    /// The bodies, and changes of their velocities with 32 fraction bits.
+    /// The bodies, and changes of their velocities with 32 fraction bits. The update of the inertia uses the changes as
+    /// working memory.
     bodies: Vec<(u32, [i64; 3])>,
     /// For each unit, the places of its bodies in `bodies`.
     places: Vec<[u32; 2]>,

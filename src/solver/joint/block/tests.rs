@@ -1,4 +1,4 @@
-//! A factor solves its equations, and the chosen joints are those of crowded bodies.
+//! Tests of the equations of a block, of the scaling of its rows, and of the choice of joints.
 
 use std::vec;
 use std::vec::Vec;

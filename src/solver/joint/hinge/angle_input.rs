@@ -95,7 +95,7 @@ struct Angular {
     e: [Ratio; 2],
     f: [Unit; 2],
     s: Fx,
-    /// Largest impulse. 0 if neither body turns.
+    /// Largest impulse. 0 if impulses turn neither body.
     max: Speed,
     /// Largest impulse of the motor.
     drive_max: Speed,
@@ -132,7 +132,7 @@ pub(super) struct SpringInput {
     pub(super) target: i64,
     /// Push of the spring, a speed, per turn of the distance from the target: `massScale biasRate 2 pi s`.
     pub(super) stiffness: Fx,
-    /// Largest impulse. 0 if neither body turns.
+    /// Largest impulse. 0 if impulses turn neither body.
     pub(super) max: Speed,
     pub(super) held: bool,
     pub(super) lambda: Speed,
@@ -156,7 +156,7 @@ pub(super) struct LimitInput {
     pub(super) closed: Fx,
     /// Speed at which a limit is reached within a sub-step, per turn of the distance from it: `2 pi s / h`.
     pub(super) open: Fx,
-    /// Largest impulse. 0 if neither body turns.
+    /// Largest impulse. 0 if impulses turn neither body.
     pub(super) max: Speed,
     pub(super) lambda: [Speed; 2],
 }

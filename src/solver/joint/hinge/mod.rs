@@ -1,4 +1,4 @@
-//! Hinges: joints that pin two points together, with or without rows on the angle, eight at a time.
+//! Hinges: joints that pin two points together, with or without rows on the angle, solved in batches.
 //!
 //! Revolute joints and welds with rigid anchors are hinges. Each operation on a batch has a file of its own: `refresh`
 //! computes lever ratios, gains and gaps at the current pose, `warm_start` and `solve` change velocities by the point
@@ -64,7 +64,8 @@ pub(super) struct Poses<'a> {
     pub(super) body_rotations: &'a [BodyRotation],
 }
 
-/// The hinges of a tick, except those with a colour, which are in a [`HingeShare`].
+/// The inputs of all hinges of a tick, and the batches of the overflow and of the hinges in blocks. The batches of all
+/// other hinges are in a [`HingeShare`].
 #[derive(Clone, Debug, Default)]
 pub(super) struct HingeSet {
     /// The hinges in the order of the state, before they are put into batches.
@@ -109,7 +110,7 @@ impl HingeSet {
 pub(super) struct HingeShare {
     ordinary: Coloured<Hinges>,
     /// Anchored hinges, whose points are stiffer: they connect a body that has no other joint to a body that no impulse
-    /// moves.
+    /// moves, and have no softness of their own.
     anchored: Coloured<Hinges>,
     /// Whether bodies have moved since the batches were refreshed.
     is_stale: bool,

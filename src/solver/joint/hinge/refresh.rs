@@ -1,8 +1,9 @@
 //! Refresh: computes lever ratios, gains and gaps of hinges at the current pose.
 //!
 //! Lever ratios are rotated from their body's frame, `e = R e0`, instead of being computed again from the arms, because
-//! their length does not change. Both levers then reach to the middle of the gap, `eA + perp(gap) / (2 kA)` and
-//! `eB - perp(gap) / (2 kB)`: an impulse that acts on both bodies at one point conserves angular momentum.
+//! their length does not change. Between two bodies that impulses move, both levers then reach to the middle of the
+//! gap, with `eA + perp(gap) / (2 kA)` and `eB - perp(gap) / (2 kB)`: an impulse that acts on both bodies at one point
+//! conserves angular momentum.
 //!
 //! The products of `K` are computed exactly, in two parts of 32 bits, and then rounded:
 //!
@@ -42,7 +43,7 @@ pub(super) struct Refresh<'a> {
 }
 
 impl Refresh<'_> {
-    /// The softness of a batch: its own, or that of all batches of its list.
+    /// The softness of a batch: its own, or that of all ordinary or of all anchored hinges.
     #[inline(always)]
     pub(super) fn stiffness_of<const N: usize>(&self, batch: &Batch<N>, records: &Records<N>) -> Stiffness {
         match batch.is_tuned {
@@ -132,8 +133,8 @@ fn rotated_ratios<L: Lanes<N>, const N: usize>(quads: &[L::Int; 4], ratios: &[In
 /// Fraction bits of [`gap_factors`].
 pub(super) const FACTOR: u32 = 14;
 
-/// `1 / (2 kA)` and `-1 / (2 kB)` in 1/m, by which a gap becomes a change of lever ratios. 0 if one of the bodies is
-/// not moved by impulses: angular momentum is then not conserved in any case, and impulses act at the anchors.
+/// `1 / (2 kA)` and `-1 / (2 kB)` in 1/m: the changes of the lever ratios per metre of the gap. 0 if impulses do not
+/// move one of the bodies: angular momentum is then not conserved in any case, and impulses act at the anchors.
 /// Saturates for radii of gyration below 2^-18 m.
 pub(super) fn gap_factors(inverse_gyrations: [Reciprocal; 2], fractions: MassFractions) -> [i32; 2] {
     if fractions.a == 0 || fractions.b == 0 {

@@ -44,7 +44,7 @@ struct Sizes {
 
 /// Sizes that occur in games.
 const COMMON: Sizes = Sizes { arm: fx!(16), speed: fx!(10), gap: fx!(0.1) };
-/// Sizes beyond every clamp.
+/// Sizes at which clamps act.
 const EXTREME: Sizes = Sizes { arm: fx!(500), speed: fx!(511), gap: fx!(2000) };
 
 /// Settings with which anchored hinges are as stiff as other hinges, so that both can be compared.

@@ -11,7 +11,7 @@ use crate::math::{Ratio, Speed, Unit, round_shift};
 use crate::simd::{Ints, Lanes};
 
 impl AngleRows<1> {
-    /// The spring, or the row that holds the angle. `None` without such a row, or if neither body turns.
+    /// The spring, or the row that holds the angle. `None` without such a row, or if impulses turn neither body.
     pub(in super::super) fn blocked_row(&self) -> Option<BlockedAngle> {
         let SpringRow { max, mass_scale, holds, .. } = &self.spring;
         (self.has_spring && max.0[0] > 0).then(|| BlockedAngle {
