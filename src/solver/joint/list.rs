@@ -42,7 +42,7 @@ struct JointConstraint {
     ends: Ends,
 }
 
-/// The indices of a joint's bodies, and its numbers of rows and points.
+/// The indices of a joint's bodies, its numbers of rows and points, and its remainders.
 #[derive(Clone, Copy, Debug)]
 struct Link {
     bodies: [u32; 2],

@@ -1,8 +1,7 @@
 //! The revolute joint: a point block whose arms and gains are both updated after every displacement.
 //!
-//! If only the arms were updated, long arms would over-correct and explode. If neither were updated within a tick, a
-//! grid of joints would explode (`docs/DESIGN.md` has the figures). Spring, motor and limits are rows on the angle,
-//! with `J v = w_b - w_a`.
+//! If only the arms were updated, joints with long arms would over-correct and explode. If neither were updated within
+//! a tick, a grid of joints would explode. Spring, motor and limits are rows on the angle, with `J v = w_b - w_a`.
 
 use serde::{Deserialize, Serialize};
 

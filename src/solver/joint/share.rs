@@ -156,7 +156,7 @@ impl OwnJoints<'_> {
 }
 
 /// Coefficients for averaging a lever ratio over a predicted rotation `t`: the ratio changes by `half t` of its length
-/// perpendicular to itself, and by `sixth t^2` of its length along itself.
+/// perpendicular to itself, and shrinks by `sixth t^2` of its length.
 #[derive(Clone, Copy)]
 struct Stretch {
     half: Unit,

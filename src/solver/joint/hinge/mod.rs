@@ -59,7 +59,7 @@ impl BatchKind for Hinges {
 #[derive(Clone, Copy)]
 pub(super) struct Poses<'a> {
     /// Cosine and sine of the rotation, and two factors for averaging a lever ratio over the predicted rotation: its
-    /// relative change perpendicular to itself, and along itself.
+    /// relative change perpendicular to itself, and its relative decrease along itself.
     pub(super) quads: &'a [Quad],
     pub(super) body_rotations: &'a [BodyRotation],
 }
