@@ -54,7 +54,7 @@ pub(super) struct BatchParts<'a, K: BatchKind, const N: usize> {
 pub(super) struct BatchList<K: BatchKind> {
     /// The overflow: the constraints that fit no colour, in the order in which they are solved.
     pub(super) overflow: Batches<K, 1>,
-    /// For each thread, its batches of all other constraints, colour by colour.
+    /// For each thread, the batches of the constraints with a colour that it solves, colour by colour.
     pub(super) coloured: Vec<Coloured<K>>,
 }
 

@@ -43,8 +43,8 @@ impl Operation<Contacts> for ApplyRestitution {
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
         let BatchParts { batch, record, extra: Some(extras), bodies, faults } = parts else { return };
         let policy = &mut Saturating::<L, N>::new(faults);
-        // Velocities are read for all lanes before it is known which lanes bounce. Velocities that do not fit are
-        // therefore not counted as faults here.
+        // Velocities are read in all lanes, also in those that do not bounce. A velocity that does not fit is therefore
+        // not counted as a fault here.
         let mut unread = 0;
         let reader = &mut Saturating::<L, N>::new(&mut unread);
         let restitution = L::load(&extras.restitution);

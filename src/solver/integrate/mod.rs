@@ -149,7 +149,7 @@ impl MovingBody {
     }
 }
 
-/// Integrates the velocities of all bodies that move.
+/// Integrates the velocities of bodies that move.
 pub(super) fn integrate_velocities(moving: &[MovingBody], context: &StepContext<'_>) {
     let &StepContext { machine, bodies, tuning, .. } = context;
     machine.run(kernel::Velocities { moving, bodies, speed_max: tuning.speed_max });

@@ -1,4 +1,5 @@
-//! Every backend computes the same rows as the equations, which are evaluated here one number at a time.
+//! Tests of the rows of contacts. Every backend has to compute the rows of the equations, which are evaluated here one
+//! number at a time.
 
 use super::super::super::row::MassFractions;
 use super::*;

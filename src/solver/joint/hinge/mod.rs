@@ -85,7 +85,7 @@ pub(super) struct HingeSet {
 }
 
 impl HingeSet {
-    /// Invalidates the batches, because bodies have moved. The next operation refreshes each batch before it solves it,
+    /// Invalidates the batches, because bodies have moved. The next operation refreshes each batch before it uses it,
     /// so that the batch is fetched from memory only once.
     pub(super) fn expire(&mut self) {
         self.is_stale = true;
