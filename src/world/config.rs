@@ -12,11 +12,11 @@ use crate::solver::{ContactTuning, RATE_MAX, SUB_STEPS_MAX, SolverSettings, chec
 ///
 /// # Small bodies
 ///
-/// Contacts are springs that yield in proportion to `g / hertz^2` for each body that they carry, independent of its
-/// size. With the default 30 Hz a stack of 8 boxes on the ground sinks by 19.6 mm: 2 % of a box of 1 m, but 20 % of one
-/// of 10 cm, and a stack of boxes of 1 cm collapses. The stiffness in Hz is at most an eighth of the sub-step rate, so
-/// that smaller bodies need more sub-steps. [`Config::for_smallest`] sets both. With 60 ticks per second and 10 m/s² it
-/// gives:
+/// Soft contacts are springs. A contact yields in proportion to `g / hertz^2` for each body that it carries, whatever
+/// the size of that body. With the default 30 Hz a stack of 8 boxes on the ground sinks by 19.6 mm: 2 % of a box of
+/// 1 m, but 20 % of one of 10 cm, and a stack of boxes of 1 cm collapses. The stiffness in Hz is at most an eighth of
+/// the sub-step rate, so that smaller bodies need more sub-steps. [`Config::for_smallest`] sets both. With 60 ticks per
+/// second and 10 m/s² it gives:
 ///
 /// | smallest box | sub-steps | contact stiffness | speculative distance | 8 boxes sink by |
 /// |---|---|---|---|---|
@@ -28,11 +28,11 @@ use crate::solver::{ContactTuning, RATE_MAX, SUB_STEPS_MAX, SolverSettings, chec
 /// | 5 mm | 52 | 390 Hz | 1 mm | 2.4 % |
 ///
 /// The table depends on gravity divided by size: boxes of 10 cm under 1 m/s² need the same settings as boxes of 1 m
-/// under 10 m/s². A unit of length other than the metre changes nothing, because gravity changes with it. The smallest
-/// body has a radius of gyration of 2 mm, such as a square of 5 mm or a ball with a radius of 3 mm, and a mass of
-/// 10 mg. Speeds in settings are not adapted and may have to be lowered as well: a box of 1 cm that falls by its own
-/// height lands with 0.45 m/s, less than the 1 m/s below which bodies [do not
-/// bounce](SolverSettings::restitution_threshold), and the 0.05 m/s below which they
+/// under 10 m/s². Another unit of length than the metre changes nothing, because it scales gravity and sizes by the
+/// same factor. A dynamic body with mass needs a radius of gyration of at least 2 mm, such as that of a square of 5 mm
+/// or of a ball with a radius of 3 mm, and a mass of at least 10 mg. Speeds in settings are not adapted and may have to
+/// be lowered as well: a box of 1 cm that falls by its own height lands with 0.45 m/s, less than the 1 m/s below which
+/// bodies [do not bounce](SolverSettings::restitution_threshold), and the 0.05 m/s below which they
 /// [sleep](crate::body::BodySettings::sleep_speed) are five of its widths per second.
 ///
 /// ```
@@ -68,8 +68,9 @@ pub struct Config {
     pub shape_limit: u32,
     /// Largest number of joints, at most 2^20.
     pub joint_limit: u32,
-    /// Largest number of pairs of near shapes in a tick, at most 2^20. If there are more, those in the smallest slots
-    /// are processed, and the tick counts as a fault. This bounds time and memory for untrusted worlds, in which every
+    /// Largest number of pairs of shapes in a tick, at most 2^20: see
+    /// [`World::pair_count`](crate::world::World::pair_count). If there are more, those in the smallest slots are
+    /// processed, and the tick counts as a fault. The limit bounds time and memory for untrusted worlds, in which every
     /// shape may overlap every other one.
     pub pair_limit: u32,
 }
@@ -95,8 +96,8 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Distance in metres below which shapes begin to touch: a quarter of the speculative distance. They cease to touch
-    /// beyond the speculative distance. The difference keeps a contact that wobbles from beginning and ending
+    /// Distance in metres within which shapes begin to touch: a quarter of the speculative distance. They cease to
+    /// touch beyond the speculative distance. The difference keeps a contact that wobbles from beginning and ending
     /// repeatedly.
     #[must_use]
     pub fn touching_distance(&self) -> Fx {
@@ -119,9 +120,10 @@ impl Config {
     /// Returns these settings with enough sub-steps and contact stiffness for a stack of 8 boxes of `size` metres to
     /// sink by less than 2.5 % of a box; see [`Config`] for a table. Call it after gravity and the tick rate are set.
     /// Also reduces the speculative distance to a fiftieth of `size`, but not below 1 mm. Settings that are sufficient
-    /// stay as they are. The method sets at most 64 sub-steps per tick and 4000 per second. With 60 ticks per second
-    /// and 10 m/s², that is sufficient for the smallest boxes that the engine accepts, 5 mm. At 30 ticks per second it
-    /// is sufficient down to 14 mm; the needed number of sub-steps per second is `sqrt(4800 g / size)`.
+    /// stay as they are. The stiffness is only set if contacts are [soft](ContactTuning::Soft). The method sets at most
+    /// 64 sub-steps per tick and 4000 per second. With 60 ticks per second and 10 m/s², that is sufficient for the
+    /// smallest boxes that the engine accepts, 5 mm. At 30 ticks per second it is sufficient down to about 13 mm; the
+    /// needed number of sub-steps per second is `sqrt(4800 g / size)`.
     ///
     /// ```
     /// use lockstep2d::{fx, world::{Config, World}};
@@ -151,7 +153,7 @@ impl Config {
         self
     }
 
-    /// The name of the first limit that differs in other settings. Limits bound memory.
+    /// The name of the first limit that differs in other settings.
     pub(crate) fn first_changed_limit(&self, other: &Config) -> Option<&'static str> {
         let limits = [
             (self.body_limit, other.body_limit, "body_limit"),

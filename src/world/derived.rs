@@ -11,8 +11,8 @@ use crate::math::{Aabb, Fx};
 /// Number of low bits of an [`Fx`] that are 0 in the corners of fat boxes: their grid is 2^-22 m.
 pub(crate) const FAT_GRID_SHIFT: u32 = 10;
 
-/// Largest offset of a shape from its body in metres. Offsets on bodies that can move become lever arms, which have a
-/// smaller range than positions.
+/// Largest distance of a shape from its body's origin on each axis, in metres. On bodies that can move, these distances
+/// become lever arms, which have a smaller range than positions.
 pub(crate) fn offset_max(kind: BodyKind) -> Fx {
     match kind {
         BodyKind::Fixed => WORLD_EXTENT_MAX,
@@ -23,7 +23,8 @@ pub(crate) fn offset_max(kind: BodyKind) -> Fx {
 /// Mass properties of a body with the given shapes.
 ///
 /// # Errors
-/// When the mass of a dynamic body, or a given mass, is out of range.
+/// [`WorldError`] if the mass or the radius of gyration of a dynamic body is out of range, or if a given mass, radius
+/// of gyration or centre of mass is.
 pub(crate) fn mass_of<'a>(
     kind: BodyKind,
     source: MassSource,
@@ -54,7 +55,7 @@ pub(crate) fn fat_box(shape: &ShapeDef, body: &Body, config: &Config) -> Aabb {
 }
 
 /// The fat box around `bounds` with a margin in metres. The coordinates of its corners are multiples of 2^-22 m, so
-/// that a snapshot can store each of them relative to the body's centre in 32 bits.
+/// that a snapshot can store coordinates near the body's centre as 32-bit offsets from it.
 pub(crate) fn fattened(bounds: Aabb, margin: Fx) -> Aabb {
     bounds.expanded(margin).rounded_out(FAT_GRID_SHIFT)
 }

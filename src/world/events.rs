@@ -72,7 +72,7 @@ pub struct HitEvent {
     pub shape_a: ShapeId,
     /// The shape in the larger slot.
     pub shape_b: ShapeId,
-    /// Contact point in the world, in metres.
+    /// The contact point with the fastest approach, in the world, in metres.
     pub point: Vec2<Fx>,
     /// Unit vector from A to B.
     pub normal: Vec2<Unit>,
@@ -226,8 +226,9 @@ pub struct Events {
     /// Bodies that moved within the tick or fell asleep, in slot order. Bodies that only an edit has moved are not
     /// listed.
     pub moved: Vec<MoveEvent>,
-    /// Pairs that came within [`super::Config::touching_distance`] or pushed each other in the tick. Sorted by shape A,
-    /// then by shape B, like `contact_end` and `hits`.
+    /// Pairs that began to touch: solid shapes that were within [`super::Config::touching_distance`] at the start of
+    /// the tick, or pushed each other in the tick. A pair is reported if either shape enables contact events. Sorted by
+    /// shape A, then by shape B, like `contact_end` and `hits`.
     pub contact_begin: Vec<ContactEvent>,
     /// Pairs that moved further apart than [`super::Config::speculative_distance`], and pairs that an edit has ended,
     /// for example by removing or disabling one of the shapes.

@@ -3,9 +3,9 @@
 //! | folder | content |
 //! |---|---|
 //! | `step` | one tick, one file for each stage |
-//! | `edit` | changes between ticks: creating, removing, setters, forces, commands |
+//! | `edit` | changes between ticks, such as creating, removing, setters, forces and commands |
 //! | `query` | rays, casts, overlaps, characters |
-//! | `view` | read-only views of contacts, joints and islands |
+//! | `view` | read-only views of contacts, joints, islands and the surroundings of a body; the cost of a tick |
 //! | `snapshot` | saving, restoring, bytes, digests, validation |
 //! | `islands` | waking and putting to sleep, for the step and for edits |
 //! | `cache` | caches, buffers and results of the last tick |

@@ -36,9 +36,9 @@ pub(crate) enum Side {
     Both,
 }
 
-/// Everything that influences the future, and the names and numbers that games store. Its encoding in files is derived.
-/// Snapshots and hashes take the state apart field by field, so that a new field does not compile until they contain
-/// it.
+/// Everything that influences the future, and the names and numbers that games store. Serde derives its encoding in
+/// files. Snapshots and hashes take the state apart field by field, so that a new field does not compile until they
+/// contain it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
     pub(crate) config: Config,
@@ -95,7 +95,7 @@ impl State {
     }
 
     /// Drops the manifolds of a body's contacts, because its shapes or its centre of mass change. The next tick
-    /// collides them again.
+    /// collides these shapes again.
     pub(crate) fn end_manifolds(&mut self, body: u32) {
         let shapes = &self.shapes;
         let is_own = |shape: u32| shapes.get_slot(shape).is_some_and(|shape| shape.body().slot() == body);
@@ -130,8 +130,8 @@ impl State {
         self.bodies.at(self.shapes.at(shape).body().slot())
     }
 
-    /// The sensors of a pair that may touch: the only one, or those of two that detect the other one. `None` if neither
-    /// shape is a sensor.
+    /// The sensors of a pair that may touch: its only sensor or, if both shapes are sensors, those that detect the
+    /// other one. `None` if neither shape is a sensor.
     pub(crate) fn sensor_of(&self, (a, b): Pair) -> Option<Side> {
         let (a, b) = (self.shapes.at(a), self.shapes.at(b));
         match (a.is_sensor(), b.is_sensor()) {

@@ -62,7 +62,7 @@ impl Phase {
 pub struct StepStats {
     /// Number of simulated bodies: enabled bodies that are kinematic, or dynamic and awake.
     pub bodies: u32,
-    /// Number of solved joints.
+    /// Number of solved joints, without those that broke in the tick.
     pub joints: u32,
     /// Number of pairs of shapes: see [`World::pair_count`](super::World::pair_count).
     pub pairs: u32,
@@ -75,10 +75,11 @@ pub struct StepStats {
     /// Number of contact points that had an impulse in the previous tick and are lost although their shapes still
     /// touch.
     pub points_lost: u32,
-    /// Number of polygon pairs that the cached separating axis of the previous tick still separates. Depends on the
-    /// [`Backend`](super::Backend): SIMD backends do not use cached axes for most pairs of small boxes.
+    /// Number of pairs of polygons, capsules and segments that the separating axis of an earlier tick, which is cached,
+    /// still separates. Axes of pairs of small boxes are not cached.
     pub axis_hits: u32,
-    /// Number of polygon pairs that needed a full separating axis test. Depends on the [`Backend`](super::Backend).
+    /// Number of full separating axis tests. A fast pair that first touches within the tick may be tested several
+    /// times.
     pub axis_searches: u32,
     /// Number of fast bodies that continuous collision has stopped; see [`crate::body::Continuous`].
     pub impacts: u32,

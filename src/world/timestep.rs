@@ -31,8 +31,8 @@ impl FixedTimestep {
         FixedTimestep { tick_rate, ticks_max: Self::DEFAULT_TICKS_MAX, remainder: 0 }
     }
 
-    /// Sets the largest number of ticks that one call of [`FixedTimestep::advance`] returns. Time beyond them is
-    /// dropped, so that the game slows down on a machine that is too slow for real time, instead of falling behind
+    /// Sets the largest number of ticks that one call of [`FixedTimestep::advance`] returns. Ticks beyond this number
+    /// are dropped, so that the game slows down on a machine that is too slow for real time, instead of falling behind
     /// without limit.
     #[must_use]
     pub const fn ticks_max(mut self, ticks: u32) -> Self {

@@ -16,8 +16,8 @@ pub(crate) struct Changes {
     /// Filters, sensors, kinds, masses or joints have changed: all pairs have to be checked again for permission to
     /// collide.
     rules: bool,
-    /// Slots of shapes that may have new pairs: their fat box is new, their body has become active or inactive, or the
-    /// joints of their body have changed. A slot may be listed twice.
+    /// Slots of shapes that may have new pairs: their fat box is new, their body was edited or has become active or
+    /// inactive, or the joints of their body have changed. A slot may be listed twice.
     shapes: Vec<u32>,
     /// Fat box of each shape at the last pair update. Two shapes whose boxes overlapped then are not a new pair.
     /// [`Aabb::NOWHERE`] if the shape may have new pairs for a reason other than a new fat box.
@@ -50,8 +50,8 @@ impl Changes {
         self.everything || self.rules
     }
 
-    /// Slots of shapes that may have new pairs: their fat box is new, their body has become active or inactive, or the
-    /// joints of their body have changed. A slot may be listed twice.
+    /// Slots of shapes that may have new pairs: their fat box is new, their body was edited or has become active or
+    /// inactive, or the joints of their body have changed. A slot may be listed twice.
     pub(crate) fn shapes(&self) -> &[u32] {
         &self.shapes
     }
@@ -76,7 +76,7 @@ impl Changes {
         self.shapes.push(shape);
     }
 
-    /// Records that the shapes of a body may have new pairs although their fat boxes are the same.
+    /// Records that the shapes of a body may have new pairs even if their fat boxes have not changed.
     pub(crate) fn body_changed(&mut self, body: &Body) {
         for id in body.shapes() {
             self.shapes.push(id.slot());

@@ -8,8 +8,8 @@ use crate::solver::ActiveContact;
 use crate::threads::Threads;
 use crate::world::events::HitEvent;
 
-/// Cache of the narrow phase. Manifolds and axes are indexed by a contact's index in the state, and so become invalid
-/// when contacts are reordered.
+/// Cache of the narrow phase. Manifolds and axes refer to contacts by their index in the state, and become invalid when
+/// contacts are reordered.
 #[derive(Clone, Debug)]
 pub(crate) struct ContactCache {
     /// Output of the last narrow phase.

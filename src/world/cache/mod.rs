@@ -6,12 +6,12 @@
 //!
 //! | owner | content | invalid when |
 //! |---|---|---|
-//! | [`ShapeCache`] | broad phase, poses, predicted motion | updated with every body and shape |
+//! | [`ShapeCache`] | broad phase, poses, predicted motion | never: updated with every body and shape |
 //! | [`AwakeSet`] | slots of awake bodies and of their joints | something wakes, sleeps, is added, changed or removed |
-//! | [`JointLinks`] | joints of each body | updated with every joint |
+//! | [`JointLinks`] | joints of each body | never: updated with every joint |
 //! | [`PairCache`] | which pairs may have changed, pairs kept apart by joints | see [`Changes`] |
 //! | [`ContactCache`] | manifolds, surfaces, cached separating axes | contacts are reordered, shapes redefined |
-//! | [`Solver`] | constraints of the last tick | every tick prepares it again |
+//! | [`Solver`] | constraints of the last tick | the next tick begins, and prepares it again |
 
 mod awake;
 mod changes;
@@ -105,7 +105,8 @@ impl Scratch {
         self.results.clear();
     }
 
-    /// Updates all caches after a body was added, enabled, redefined or moved by an edit.
+    /// Updates the caches of shapes, pairs and awake bodies after a body was added, enabled, redefined or moved by an
+    /// edit.
     pub(crate) fn update_body(&mut self, state: &State, slot: u32) {
         let body = state.bodies.at(slot);
         self.shapes.update_body(state, slot);

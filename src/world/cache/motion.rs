@@ -225,10 +225,11 @@ pub(crate) struct Margins {
     /// Distance in metres by which shapes approach each other in a tick at [`IMPACT_SPEED`].
     pub(crate) impact: Step,
     /// Upper limit, for shapes of any size, of the relative movement at which a contact keeps its manifold, in metres.
+    /// It does not apply to a round shape on a body that is not dynamic.
     pub(crate) kept: Length,
 }
 
-/// Approach speed in m/s from which a contact is an impact.
+/// Approach speed in m/s above which a contact is an impact.
 const IMPACT_SPEED: Fx = fx!(5);
 
 impl Margins {

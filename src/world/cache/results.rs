@@ -1,4 +1,5 @@
-//! Events and statistics of a tick, and the buffers of continuous collision.
+//! Events and statistics of a tick, the buffers of the threads that predict and move bodies, and those of continuous
+//! collision.
 
 use alloc::vec::Vec;
 
@@ -27,7 +28,7 @@ impl TickResults {
 #[derive(Clone, Debug, Default)]
 #[repr(align(128))]
 pub(crate) struct Predicted {
-    /// Slots of the shapes that move. They are kept until the next tick.
+    /// Slots of the shapes whose motion was predicted. They are kept until the next tick.
     pub(crate) moving: Vec<u32>,
     pub(crate) outgrown: Vec<Outgrown>,
     /// Slots of the bodies with a shape in the range of another thread.
@@ -57,7 +58,7 @@ pub(crate) struct Outgrown {
 #[derive(Clone, Debug, Default)]
 #[repr(align(128))]
 pub(crate) struct Finalised {
-    /// Kinematic bodies that have stopped.
+    /// Kinematic bodies in their first tick at rest, after which they are inactive.
     pub(crate) settled: Vec<u32>,
     /// Shapes that have left their fat box.
     pub(crate) left_boxes: Vec<u32>,

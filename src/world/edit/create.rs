@@ -42,7 +42,8 @@ impl World {
     /// Adds a body with its shapes.
     ///
     /// # Errors
-    /// [`WorldError`] if a value, including the mass of a dynamic body, is out of range, or the world is full.
+    /// [`WorldError`] if a value, including the mass of a dynamic body, is out of range, the body's name or the area of
+    /// a shape is not valid, the world is full, or there are more than [`SHAPES_PER_BODY_MAX`] shapes.
     #[doc(alias = "create_body")]
     #[doc(alias = "rigid body")]
     pub fn spawn(&mut self, body: &BodyDef, shapes: &[ShapeDef]) -> Result<BodyId, WorldError> {
@@ -101,11 +102,11 @@ impl World {
             .collect()
     }
 
-    /// Attaches a shape to a body. Unless the body's mass was given, it is recomputed from all shapes.
+    /// Attaches a shape to a body. Unless the body's mass was given, the mass is recomputed from all shapes.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, a value is out of range, the body rotates too fast for its new mass, or
-    /// the world is full.
+    /// [`WorldError`] if the handle is stale, a value is out of range, an area is not valid, the body rotates too fast
+    /// for its new mass, the world is full, or the body has [`SHAPES_PER_BODY_MAX`] shapes already.
     #[doc(alias = "collider")]
     #[doc(alias = "fixture")]
     pub fn add_shape(&mut self, body: BodyId, shape: &ShapeDef) -> Result<ShapeId, WorldError> {

@@ -28,7 +28,7 @@ impl World {
         Ok(())
     }
 
-    /// Removes a shape. Unless the body's mass was given, it is recomputed from the remaining shapes.
+    /// Removes a shape. Unless the body's mass was given, the mass is recomputed from the remaining shapes.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the mass of a dynamic body would be out of range, or the body rotates too

@@ -26,8 +26,8 @@ const SHAPE_WORK: u64 = 2;
 
 impl World {
     /// Applies an impulse away from the explosion's centre to every dynamic body in reach, shape by shape in slot
-    /// order, and wakes the body. Sensors, shapes outside of the explosion's mask and disabled bodies are left out.
-    /// Speeds are clamped to their range.
+    /// order, and wakes the body. Sensors, shapes outside of the explosion's mask and disabled bodies are left out. The
+    /// next tick limits speeds to [`speed_max`](crate::solver::SolverSettings::speed_max).
     ///
     /// # Errors
     /// [`WorldError::ExplosionOutOfRange`] if a value of the explosion is out of range,
@@ -124,7 +124,7 @@ impl Explosion {
         !shape.is_sensor() && shape.filter().category & self.mask != 0
     }
 
-    /// The impulse on a shape in coordinates relative to the explosion's centre; `None` if it is out of reach.
+    /// The impulse on a shape that is given relative to the explosion's centre; `None` if it is out of reach.
     fn on(&self, shape: &SupportShape) -> Option<Push> {
         let found = distance(shape, &SupportShape::point(Vec2::ZERO));
         let strength = self.at_distance(found.distance);

@@ -80,7 +80,7 @@ impl World {
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the body is disabled, asleep or not dynamic, the bit does not exist, the
-    /// axis is locked, or the result is out of range. The world is then unchanged.
+    /// axis or the rotation is locked, or the result is out of range. The world is then unchanged.
     pub fn flip_bit(&mut self, id: BodyId, field: BodyField, bit: u32) -> Result<(), WorldError> {
         let body = self.state.get().bodies.get(id).ok_or(WorldError::StaleBody(id))?;
         let locks = body.settings.locks;

@@ -196,9 +196,9 @@ impl World {
     }
 
     /// Replaces the definition of a shape: read [`crate::body::Shape::def`], change a copy, and pass it here. Unless
-    /// the body's mass was given, it is recomputed from its shapes. If the change makes the shape a sensor or a solid
-    /// shape, or switches its contact events or, on a sensor, a switch for sensor events, its contacts end. Otherwise a
-    /// contact lasts as long as its shapes touch and may collide.
+    /// the body's mass was given, the mass is recomputed from its shapes. If the change makes the shape a sensor or a
+    /// solid shape, or switches its contact events or, on a sensor, a switch for sensor events, its contacts end.
+    /// Otherwise a contact lasts as long as its shapes touch and may collide.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, a value, including the mass of a dynamic body, is out of range, or the

@@ -85,7 +85,7 @@ pub(crate) fn wake_overlapping_shape(state: &mut State, scratch: &mut Scratch, s
     }
 }
 
-/// Wakes the sleeping bodies that touch a body.
+/// Wakes the sleeping bodies that touch a body or that an area connects to it.
 pub(crate) fn wake_touching(state: &mut State, scratch: &mut Scratch, slot: u32) {
     let other_body = |contact: &Contact| {
         let (a, b) = contact.shapes;

@@ -190,7 +190,8 @@ impl MoverState {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Moved {
-    /// The new state. Its velocity is the old one, limited by the surfaces met; ground only stops a fall.
+    /// The new state. Its velocity is the old one without the components that the surfaces stop; ground stops only the
+    /// fall. It is relative to the ground or to the world: see [`MoverState::velocity`].
     pub state: MoverState,
     /// The surfaces that the character has met, in order.
     pub met: Vec<MoverPlane>,

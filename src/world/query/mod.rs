@@ -1,6 +1,6 @@
-//! Queries: find shapes of a world between ticks. A query changes nothing, sees every enabled body at its current pose,
-//! and allocates nothing except its list of results. Casts that start in contact with more than 3 shapes, and moves of
-//! characters, may allocate temporary lists as well.
+//! Queries that find shapes of a world between ticks. A query changes nothing, sees enabled bodies at their current
+//! poses, and allocates nothing except its list of results. Casts that start in contact with more than 3 shapes, and
+//! moves of characters, may allocate temporary lists as well.
 //!
 //! The order of results is part of the contract. Along a ray or a cast without rotation, results are ordered by their
 //! exact fraction before rounding, so that the nearer of two hits comes first on a ray of any length, and then by slot.

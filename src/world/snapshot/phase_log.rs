@@ -29,8 +29,8 @@ use crate::world::stats::Phase;
 pub struct PhaseDigest {
     /// The phase, or `None` for the beginning of the tick.
     pub phase: Option<Phase>,
-    /// Digest of the state and of the data that later phases read: the manifolds, and the velocities and displacements
-    /// in the solver.
+    /// Digest of the state; after [`Phase::NarrowPhase`] also of the manifolds, after [`Phase::Prepare`] and
+    /// [`Phase::Solve`] also of the velocities and displacements in the solver.
     pub digest: StateHash,
 }
 

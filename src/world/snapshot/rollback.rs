@@ -18,8 +18,9 @@ use crate::world::state::{Island, Reported, State};
 /// A copy of a world's state, for [`World::restore`](crate::world::World::restore).
 ///
 /// It shares unchanged data with the world and with other snapshots. Its own memory is mainly 36 bytes for each body,
-/// 16 for each shape of a body that is not fixed, 8 for each pair of near shapes, and 80 more for each pair with
-/// impulses: see [`Snapshot::rollback_bytes`]. It stores its [`Snapshot::state_hash`].
+/// 16 for each shape of a body that is not fixed, 8 for each pair that
+/// [`World::pair_count`](crate::world::World::pair_count) counts, and 80 more for each pair with impulses: see
+/// [`Snapshot::rollback_bytes`]. It stores its [`Snapshot::state_hash`].
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};

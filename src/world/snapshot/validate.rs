@@ -1,5 +1,4 @@
-//! The invariants of the state. They are checked for every state that comes from outside, and in tests after every
-//! tick.
+//! The invariants of the state. They are checked for every state that is decoded from bytes, and by tests.
 
 use alloc::format;
 use alloc::string::String;

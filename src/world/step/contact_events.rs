@@ -1,5 +1,6 @@
-//! Contact and hit events, which are reported at the end of a tick, and sensor events whose cause is a change between
-//! ticks. All other sensor events follow when the bodies have been moved (`sensor_events.rs`).
+//! Contact and hit events, which are reported at the end of a tick, and the ends of sensor overlaps whose contact an
+//! edit or the pair update has ended. All other sensor events follow when the bodies have been moved
+//! (`sensor_events.rs`).
 
 use super::sensor_events::push_sensor_events;
 use crate::collision::{Contact, Manifold};

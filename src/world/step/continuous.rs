@@ -215,7 +215,8 @@ fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (SupportShape, S
     let slot = state.shapes.at(shape).body().slot();
     let Ok(index) = scratch.awake.bodies().binary_search(&slot) else { return stands };
     let start = scratch.sweeps.starts[index];
-    // The smaller of the possible rotations. Obstacles that rotate by more than half a turn in a tick are not handled.
+    // The smaller of the possible rotations. Obstacles that rotate by more than half a turn in a tick are swept the
+    // shorter way.
     let turn = (body.angle - start.angle).to_turns().to_bits();
     let support = support.rotated(Rot::from_angle(start.angle - body.angle));
     (support, Sweep { start: start.centre, end: body.centre, turn })

@@ -11,7 +11,7 @@ pub(super) struct Recycling<'a> {
     bodies: [&'a Body; 2],
     shapes: [&'a ShapeMotion; 2],
     extents: [Length; 2],
-    /// Whether a round shape may roll on a body that no impulse moves.
+    /// Whether a round shape may roll on a body that is not dynamic.
     rolls: bool,
     /// Largest change of a lever arm, in metres, at which the contact keeps the arm.
     arm_tolerance: Length,
@@ -21,13 +21,13 @@ pub(super) struct Recycling<'a> {
 }
 
 impl<'a> Recycling<'a> {
-    /// The limits of two shapes that touch at `count` points. Arms are kept while they change by at most a 64th of the
-    /// smaller shape's extent. Manifolds are kept if the relative movement, including the movement in this tick, is
-    /// also at most a quarter of the speculative distance.
+    /// The limits of two shapes that touch at `count` points. An arm is kept while it changes by at most a 64th of the
+    /// smaller shape's extent. A manifold is kept while the relative movement, including the movement in this tick, is
+    /// at most that 64th and at most a quarter of the speculative distance.
     ///
-    /// If a round shape may roll on a body that is not dynamic, the limits are 256 times smaller: an outdated normal
-    /// stops a slow ball at a seam between two blocks, and lets a roly-poly toy lean. Between two dynamic bodies the
-    /// limits are not reduced, because plates on rollers are stable only with kept arms.
+    /// If a round shape may roll on a body that is not dynamic, arms and manifolds are kept only up to a 256th of that
+    /// 64th: an outdated normal stops a slow ball at a seam between two blocks, and lets a roly-poly toy lean. Between
+    /// two dynamic bodies the limits are not reduced, because plates on rollers are stable only with kept arms.
     ///
     /// Nothing is kept on a kinematic body that turns. The arms would lag behind the rotation, so that the velocity at
     /// the contact would be wrong: a crate of 4 m x 2 m would creep by 35 mm/s at 1 rad/s.

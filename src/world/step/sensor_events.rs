@@ -185,7 +185,8 @@ impl MovedShape {
 }
 
 /// Reports the crossings between shapes that have left their fat box in this tick and shapes with which they have no
-/// contact yet. A pair that overlaps at the end of the tick becomes a contact at once.
+/// contact yet. A pair that overlaps at the end of the tick becomes a contact at once, or is left out if the world is
+/// at its pair limit.
 fn report_unforeseen(state: &mut State, scratch: &mut Scratch) {
     if scratch.sweeps.left_boxes.is_empty() {
         return;

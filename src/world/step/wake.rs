@@ -9,8 +9,8 @@ use crate::world::cache::Scratch;
 use crate::world::islands::wake_island;
 use crate::world::state::State;
 
-/// Wakes the islands that active bodies touch, then the islands that those touch, and so on. Each round checks only the
-/// pairs of bodies that the previous round has woken. Returns whether any body has woken.
+/// Wakes the islands that active bodies touch, then the islands that those touch, and so on. Each round after the first
+/// checks only the pairs of bodies that the previous round has woken. Returns whether any body has woken.
 pub(super) fn wake_touched(state: &mut State, scratch: &mut Scratch) -> bool {
     if state.islands.len() == 0 {
         return false;

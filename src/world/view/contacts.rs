@@ -38,7 +38,7 @@ pub struct ContactView<'a> {
     contact: &'a Contact,
 }
 
-/// Formats all fields except the world.
+/// Formats the public fields, with the normal and the points of the manifold.
 impl fmt::Debug for ContactView<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("ContactView")

@@ -51,7 +51,8 @@ impl World {
 
     /// Returns the shapes that a sensor overlapped at the end of the last tick, in slot order: those whose overlap was
     /// begun by a [`SensorEvent`](crate::world::SensorEvent) and has not ended. Empty if the shape is no sensor or is
-    /// not in the world. The result follows from the state, so that it is the same after a restore.
+    /// not in the world, or if its body is disabled. The result follows from the state, so that it is the same after a
+    /// restore.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, world::World};

@@ -57,7 +57,7 @@ impl World {
     /// Starts to count work whose amount is known only when it is done: sweeps of fast bodies, pairs that begin in a
     /// tick, joints in blocks, shapes in reach of an explosion or of an edit that wakes bodies, and shapes that cross a
     /// sensor outside of their fat boxes. Work beyond `max` units may be skipped, so that the state may be wrong from
-    /// then on. Otherwise no result changes. Without a call there is no bound.
+    /// then on. As long as the budget covers the work, no result changes. Without a call there is no bound.
     pub(crate) fn start_work_meter(&mut self, max: u64) {
         self.scratch.meter = WorkMeter::start(max);
     }
