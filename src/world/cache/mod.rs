@@ -11,7 +11,7 @@
 //! | [`JointLinks`] | joints of each body | never: updated with every joint |
 //! | [`PairCache`] | which pairs may have changed, pairs kept apart by joints | see [`Changes`] |
 //! | [`ContactCache`] | manifolds, surfaces, cached separating axes | contacts are reordered, shapes redefined |
-//! | [`Solver`] | constraints of the last tick | the next tick begins, and prepares it again |
+//! | [`Solver`] | constraints of the last tick | the next tick begins |
 
 mod awake;
 mod changes;

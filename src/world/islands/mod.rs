@@ -6,11 +6,11 @@
 //! - when an edit wakes one of its bodies, applies a force or impulse to it, or changes its velocity, its pose or a
 //!   property other than its user data and its name,
 //! - when a joint of one of its bodies is added, changed or removed,
-//! - when an edit adds, moves, changes or removes a shape whose fat box overlaps that of one of its bodies, or enables
-//!   or disables a body with such a shape, changes its kind, or gives mass to it or takes its mass away; but not when
-//!   the edit spawns a dynamic body,
-//! - when an edit moves, enables or disables a body that is joined to one of its bodies, changes its kind, gives mass
-//!   to it or takes its mass away, or sets a kinematic body that is joined to one of its bodies in motion,
+//! - when an edit adds, moves, changes or removes a shape whose fat box overlaps that of one of its bodies (unless it
+//!   spawns a dynamic body), enables or disables a body with such a shape, or changes the kind of that body or whether
+//!   it has mass,
+//! - when an edit moves, enables or disables a body that is joined to one of its bodies, changes the kind of that body
+//!   or whether it has mass, or sets that body in motion if it is kinematic,
 //! - when gravity or another setting that affects the balance of forces changes,
 //! - when a fixed or kinematic body that it touches or is joined to is woken by an edit.
 //!

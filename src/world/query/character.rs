@@ -79,7 +79,7 @@ impl Mover {
         Ok(mover.slope_max(Angle::EIGHTH))
     }
 
-    /// Sets the steepest slope that is ground, measured from level. Angles above 90 degrees count as 90 degrees.
+    /// Sets the steepest slope that is ground, measured from level. Angles from 90 to 270 degrees count as 90 degrees.
     #[must_use]
     pub fn slope_max(mut self, slope: Angle) -> Self {
         self.ground_cosine = slope.cos().max(Unit::ZERO);

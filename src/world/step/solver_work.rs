@@ -3,8 +3,8 @@
 use crate::world::cache::{NARROW_PHASE_WORK, NEW_PAIR_WORK, Scratch, pair_work};
 use crate::world::state::State;
 
-/// Work units of a joint in a block in each sub-step: a full block of 96 rows factors its matrix for both passes, in
-/// several rounds if it has limits or motors.
+/// Work units of a joint in a block in each sub-step: a full block of 96 rows factors its matrix for the bias pass and
+/// for the relax pass, in several rounds if it has limits or motors.
 const BLOCKED_JOINT_WORK: u64 = 96;
 
 /// Number of active and sleeping contacts.

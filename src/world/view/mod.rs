@@ -1,4 +1,5 @@
-//! Read-only views of a world for games and tools: contacts, joints, islands, and the surroundings of a body.
+//! Read-only views of a world for games and tools: contacts, joints, islands, the surroundings of a body, and the cost
+//! of a tick.
 
 mod contacts;
 mod islands;
