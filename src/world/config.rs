@@ -52,8 +52,9 @@ pub struct Config {
     /// Distance in metres at which shapes get contact points before they touch, 0.001 to 1. Pairs that approach each
     /// other get a larger margin, which follows from their speeds at the start of the tick.
     pub speculative_distance: Fx,
-    /// Largest margin of the fat boxes in the broad phase in metres, 0.001 to 10. The margin of a shape is at most a
-    /// 32nd of the larger side of its AABB. A larger margin refits boxes less often, but gives more pairs.
+    /// Largest margin of fat boxes in metres, 0.001 to 10. The fat box of a shape, which the broad phase uses, contains
+    /// the AABB that the shape sweeps in a tick. On a body that can move, it is larger by a margin of at most a 32nd of
+    /// the larger side of the shape's AABB. With larger margins, fat boxes change less often, but more of them overlap.
     pub fat_margin: Fx,
     /// Whether bodies at rest fall asleep.
     pub sleeping: bool,

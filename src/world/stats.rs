@@ -76,7 +76,7 @@ pub struct StepStats {
     /// touch.
     pub points_lost: u32,
     /// Number of pairs of polygons, capsules and segments that the separating axis of an earlier tick, which is cached,
-    /// still separates. Axes of pairs of small boxes are not cached.
+    /// still separates. Pairs of boxes whose corners are within 3 m of their centres do not use the cache.
     pub axis_hits: u32,
     /// Number of full separating axis tests. A fast pair that first touches within the tick may be tested several
     /// times.

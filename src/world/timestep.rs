@@ -17,7 +17,8 @@ pub struct FixedTimestep {
     remainder: u64,
 }
 
-/// One tick in the unit of the remainder: nanoseconds per second.
+/// One tick in the unit of `remainder`: a tick lasts `10^9 / tick_rate` nanoseconds, and the remainder is in
+/// nanoseconds times the tick rate.
 const TICK: u64 = 1_000_000_000;
 
 impl FixedTimestep {

@@ -123,8 +123,8 @@ impl World {
         Ok(())
     }
 
-    /// Takes a body out of the simulation until [`World::enable`]. It keeps its pose and its velocity, but has no
-    /// contacts, its joints are not solved, and no query finds it.
+    /// Takes a body out of the simulation until [`World::enable`]. It keeps its pose and its velocity, but loses its
+    /// applied forces and its target. It has no contacts, its joints are not solved, and no query finds it.
     ///
     /// # Errors
     /// [`WorldError::StaleBody`] if it is not in the world.

@@ -22,9 +22,9 @@ impl World {
     /// position, both at constant speed. The rotation is in turns, counter-clockwise, and may exceed a turn.
     ///
     /// The probe stops 0.1 to 0.15 mm before it touches. A shape that the probe touches at the start stops it once the
-    /// probe has moved 0.05 to 0.1 mm deeper. A probe that turns by 163 turns or more, or reaches further than 1024 m
-    /// from its position, is stopped as soon as the box around the disc in which it turns may reach the box around a
-    /// shape.
+    /// probe has moved 0.05 to 0.1 mm deeper. A probe other than a circle that turns by 163 turns or more, or that
+    /// turns and reaches further than 1024 m from its position, is stopped as soon as the box around the disc in which
+    /// it turns may reach the box around a shape.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, math::Vec2, world::{Probe, World}};

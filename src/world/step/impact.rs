@@ -51,8 +51,8 @@ impl MovingShape<'_> {
 }
 
 impl SpeculativePair<'_> {
-    /// Whether the shapes are apart and may approach each other so fast that the manifold at the time of impact is
-    /// another one.
+    /// Whether the shapes are apart and may approach each other so fast that the manifold at the time of impact
+    /// differs.
     #[inline]
     pub(super) fn may_impact(&self, manifold: &Manifold) -> bool {
         self.closing.is_longer_than(self.margins.touching)
