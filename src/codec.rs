@@ -15,7 +15,7 @@ type Layout = Configuration<LittleEndian, Fixint>;
 
 const LAYOUT: Layout = bincode::config::standard().with_little_endian().with_fixed_int_encoding();
 
-/// Error of decoding bytes that are not the canonical encoding of the expected value.
+/// Reason why [`decode`] rejects bytes.
 ///
 /// ```
 /// use lockstep2d::codec::{self, DecodeError};
@@ -103,13 +103,14 @@ const SLACK: usize = 16;
 /// of values that take no bytes, whose length is unbounded, and recursive types, whose depth is unbounded.
 ///
 /// # Errors
-/// [`DecodeError`] if the bytes are not exactly the encoding of one such value.
+/// [`DecodeError`] if there are more than [`DECODE_BYTES_MAX`] bytes, or they are not exactly the encoding of one such
+/// value.
 pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, DecodeError> {
     let unused = DECODE_BYTES_MAX.checked_sub(bytes.len());
     let unused = unused.ok_or(DecodeError::TooLong { count: bytes.len() as u64 })?;
     // bincode allocates the announced length of a string before it checks that the bytes are present, unless the length
     // exceeds a limit. The limit is a compile-time constant. Claiming the part of it that these bytes do not need
-    // lowers it to their number.
+    // lowers it to their number plus the slack.
     let layout = LAYOUT.with_limit::<{ DECODE_BYTES_MAX + SLACK }>();
     let mut decoder = DecoderImpl::new(Rest(bytes), layout, ());
     let decoded = decoder.claim_bytes_read(unused).and_then(|()| Compat::<T>::decode(&mut decoder));
@@ -174,8 +175,8 @@ mod tests {
         }
     }
 
-    /// The allocation is limited by the number of bytes given: a length that exceeds it by more than the slack is
-    /// rejected because of its size, not because of the missing bytes.
+    /// The allocation is limited by the number of bytes given: a length that exceeds the bytes that are left by more
+    /// than the slack is rejected because of its size, not because of the missing bytes.
     #[test]
     fn an_announced_length_is_limited_by_how_much_there_is() {
         for count in [8, 4 << 10, (4 << 10) + 1, 1 << 20] {

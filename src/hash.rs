@@ -83,8 +83,7 @@ mod tests {
         assert_eq!(alloc::format!("{}", StateHash(0xab)), "000000000000000000000000000000ab");
     }
 
-    /// Tests with and without vector instructions: the expected values are from the reference implementation in C,
-    /// xxHash 0.8.
+    /// The expected values are from the reference implementation in C, xxHash 0.8.
     #[test]
     fn digests_of_all_lengths_are_those_of_the_reference() {
         let byte = |i: u32| u8::try_from((i * i + 7 * i + 13 * (i >> 8)) & 0xff).expect("masked");

@@ -68,7 +68,7 @@ macro_rules! define_handle {
 }
 
 define_handle! {
-    /// Handle of a body. Valid until that body is despawned; never resolves to another body.
+    /// Handle of a body. Valid until that body is despawned; afterwards it refers to no body.
     ///
     /// ```
     /// # use lockstep2d::{body::{BodyDef, BodyId}, world::World};
@@ -87,7 +87,7 @@ define_handle! {
     BodyId
 }
 define_handle! {
-    /// Handle of a shape. Valid until that shape or its body is removed.
+    /// Handle of a shape. Valid until that shape is removed or its body is despawned.
     ///
     /// ```
     /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef, ShapeId}, fx, world::World};
@@ -122,7 +122,7 @@ define_handle! {
     IslandId
 }
 define_handle! {
-    /// Handle of a joint. Valid until that joint or one of its bodies is removed.
+    /// Handle of a joint. Valid until that joint is removed or one of its bodies is despawned.
     ///
     /// ```
     /// # use lockstep2d::{body::{BodyDef, JointId}, fx, solver::{JointDef, Revolute}, world::World};
@@ -151,7 +151,7 @@ struct Slot<T> {
 pub(crate) struct Arena<T, H> {
     #[serde(deserialize_with = "slots_within_limit")]
     slots: Vec<Slot<T>>,
-    /// Vacant slots; the last element was freed last.
+    /// Vacant slots that are not retired; the last element was freed last.
     free: Vec<u32>,
     /// Number of retired slots: vacant slots whose generation counter is exhausted.
     retired: u32,
@@ -217,7 +217,7 @@ impl<T, H> Default for Arena<T, H> {
 }
 
 impl<T, H: Handle> Arena<T, H> {
-    /// Number of slots ever used: the largest slot index plus 1.
+    /// Number of slots, occupied or not: the largest slot index plus 1.
     pub(crate) fn slot_count(&self) -> usize {
         self.slots.len()
     }
@@ -301,8 +301,8 @@ impl<T, H: Handle> Arena<T, H> {
         self.slots[slot as usize].value.as_mut().expect("an occupied slot")
     }
 
-    /// Divides the values into ranges of slots. Each range but the last ends at one of the given slots. Only for
-    /// changes of fields that every step changes: see [`Arena::at_mut`].
+    /// Divides the values into ranges of slots, one for each given end. A range ends before its end slot, or at the
+    /// last slot if the arena has fewer. Only for changes of fields that every step changes: see [`Arena::at_mut`].
     pub(crate) fn split(
         &mut self,
         ends: impl Iterator<Item = u32> + Clone,
@@ -347,7 +347,8 @@ impl<T, H: Handle> Arena<T, H> {
         })
     }
 
-    /// Whether the free list contains exactly the vacant slots that are not retired, each once.
+    /// Whether the free list contains exactly the vacant slots that are not retired, each once, and the number of
+    /// retired slots is right.
     pub(crate) fn is_consistent(&self) -> bool {
         let mut listed = alloc::vec![false; self.slots.len()];
         let all_vacant = self.free.iter().all(|&index| {

@@ -281,7 +281,7 @@ impl Body {
     }
 
     /// Changes the mass. Keeps the origin, the rotation, the angular velocity and the velocity of every material point,
-    /// unless a speed would exceed [`SPEED_MAX`].
+    /// unless a speed would exceed [`SPEED_MAX`] or a degree of freedom is locked.
     pub(crate) fn set_mass(&mut self, mass: MassProperties) {
         let (position, angle, omega) = (self.position(), self.angle, self.angular_velocity());
         let old_centre = self.centre;
@@ -326,7 +326,7 @@ impl Body {
         self.spin = Speed::ZERO;
     }
 
-    /// Clamps every velocity component to ±[`SPEED_MAX`], the range that the kernels require.
+    /// Clamps every velocity component to ±[`SPEED_MAX`], and clears the velocity along locked axes.
     fn clamp_velocity(&mut self) {
         let clamp = |speed: Speed| speed.clamp(-SPEED_MAX, SPEED_MAX);
         self.velocity = Vec2::new(clamp(self.velocity.x), clamp(self.velocity.y));

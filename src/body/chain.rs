@@ -72,8 +72,8 @@ impl<'a> Chain<'a> {
     /// # Errors
     /// [`GeometryError::ChainLength`] unless there are at least 2 points (3 for a closed chain) and at most 4096 links;
     /// [`GeometryError::MaterialCount`] unless there are no materials, one, or one per link;
-    /// [`GeometryError::SizeOutOfRange`] if neighbouring points are closer than 2 mm, or a point is outside of the
-    /// world.
+    /// [`GeometryError::SizeOutOfRange`] if neighbouring points are closer than 2 mm, or a coordinate is not within
+    /// ±2^30 m.
     pub fn links(&self) -> Result<Vec<ShapeDef>, GeometryError> {
         let points = self.points;
         let count = if self.closed { points.len() } else { points.len().saturating_sub(1) };

@@ -110,7 +110,7 @@ impl Geometry {
     /// Creates a segment from its ends, in metres from the shape's centre.
     ///
     /// # Errors
-    /// If the segment is shorter than 2 mm or leaves the world.
+    /// If the segment is shorter than 2 mm, or a coordinate of an end is not within ±2^30 m.
     pub fn segment(a: impl Into<Vec2<Fx>>, b: impl Into<Vec2<Fx>>) -> Result<Self, GeometryError> {
         let segment = Geometry::Segment { a: a.into(), b: b.into() };
         segment.validate().map(|()| segment)

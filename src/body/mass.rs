@@ -1,7 +1,7 @@
 //! Mass, centre of mass and radius of gyration from shapes and densities.
 //!
-//! The radius of gyration `k = sqrt(I / m)` replaces the moment of inertia everywhere. With `u = k w`, both linear and
-//! angular velocity are speeds in m/s of the same mass `m`. The parts of a body are summed by the parallel axis
+//! Bodies store the radius of gyration `k = sqrt(I / m)` instead of the moment of inertia. With `u = k w`, both linear
+//! and angular velocity are speeds in m/s of the same mass `m`. The parts of a body are summed by the parallel axis
 //! theorem:
 //!
 //! ```text
@@ -10,7 +10,7 @@
 //! m k^2 = sum m_i (k_i^2 + |c_i - c|^2)
 //! ```
 //!
-//! All sums are exact integers; each quotient is rounded once. `figure.rs` computes the part of a polygon.
+//! The sums are 128-bit integers, and each quotient is rounded once. `figure.rs` computes the part of a polygon.
 
 mod figure;
 

@@ -11,9 +11,10 @@ use crate::math::{Angle, Fx, Length, Rot, Unit, Vec2};
 /// Largest number of vertices of a polygon.
 pub const POLYGON_VERTICES_MAX: usize = 8;
 
-/// Largest extent of a shape from its centre on each axis of its own frame, radius included, in metres. Rotated by any
-/// angle, the shape stays within 156 m. If the boxes of two shapes are at most 15 m apart, a vertex of one is at most
-/// three times 156 m plus 15 m from the centre of the other on each axis, which is within the range of [`Length`].
+/// Largest extent of a circle, capsule or polygon from the shape's centre on each axis of its own frame, radius
+/// included, in metres. Rotated by any angle, such a shape stays within 156 m. If the boxes of two such shapes are at
+/// most 15 m apart, a vertex of one is at most three times 156 m plus 15 m from the centre of the other on each axis,
+/// which is within the range of [`Length`].
 pub const SHAPE_EXTENT_MAX: Fx = crate::fx!(110);
 
 /// Smallest edge length in metres, about 2000 units of [`Length`]: a shorter edge has no reliable direction.
@@ -99,7 +100,7 @@ impl Polygon {
     /// Creates a rectangle centred on the shape's centre from its half extents, in metres.
     ///
     /// # Errors
-    /// If a half extent is out of range.
+    /// If a half extent is not within 0.25 mm to 110 m.
     pub fn rectangle(half_width: Fx, half_height: Fx) -> Result<Self, GeometryError> {
         let (x, y) = (half_width, half_height);
         check_half("half width of a rectangle", x)?;
@@ -111,7 +112,7 @@ impl Polygon {
     /// Creates a square centred on the shape's centre from its half extent, in metres.
     ///
     /// # Errors
-    /// If the half extent is out of range.
+    /// If the half extent is not within 0.25 mm to 110 m.
     pub fn square(half_extent: Fx) -> Result<Self, GeometryError> {
         check_half("half extent of a square", half_extent)?;
         Self::rectangle(half_extent, half_extent)

@@ -117,7 +117,7 @@ impl ShapeDef {
         self
     }
 
-    /// Sets the restitution, 0 to 1.5. It applies to approach speeds above [`Material::restitution_threshold`].
+    /// Sets the restitution, 0 to 1.5. It applies to approach speeds of at least [`Material::restitution_threshold`].
     #[must_use]
     pub fn restitution(mut self, restitution: Fx) -> Self {
         self.material.restitution = restitution;
@@ -260,8 +260,8 @@ pub struct Shape {
     pub(crate) body: BodyId,
     /// Boxed, so that the fields that steps change lie close together. Saving them then reads less memory.
     pub(crate) def: Box<ShapeDef>,
-    /// Fat AABB used by the broad phase: the swept AABB of the shape over the tick, plus a margin so that it seldom
-    /// changes. It decides which pairs exist, so it is part of the state.
+    /// Fat AABB used by the broad phase: the swept AABB of the shape over an earlier tick, plus a margin so that it
+    /// seldom changes. It decides which pairs exist, so it is part of the state.
     pub(crate) fat: Aabb,
 }
 

@@ -153,7 +153,7 @@ const fn midpoint(a: Fx, b: Fx) -> Fx {
 
 #[cfg(test)]
 mod tests {
-    //! Compares the relations between boxes with the points of a small grid that lie in them.
+    //! The relations between boxes are compared with the points of a small grid that lie in them.
 
     use super::*;
     use crate::fx;

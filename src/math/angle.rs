@@ -15,7 +15,7 @@ use super::formats::{Fx, Unit, round_shift_wide};
 use super::trig::{arc_tangent, signed, sine};
 use super::vec2::Vec2;
 
-/// 3.14159265...
+/// Pi, 3.14159265...
 pub const PI: Fx = Fx::from_bits(13_493_037_705);
 /// 2 pi: radians in a turn.
 pub const TAU: Fx = Fx::from_bits(26_986_075_409);

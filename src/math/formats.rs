@@ -1,11 +1,11 @@
 //! Number formats, one alias per quantity, and the operations that convert between them.
 //!
-//! Every operation here rounds once, to nearest (ties towards +infinity; away from zero in divisions), and saturates
-//! instead of wrapping, in every build profile. The binary point of the result is inferred from its type, so the
-//! compiler checks the scales: `let s: Step = mul(length, unit);` cannot be off by a shift.
+//! The operations round at most once, to nearest (ties towards +infinity; away from zero in divisions), and saturate
+//! instead of wrapping. The binary point of the result is inferred from its type, so the compiler checks the scales:
+//! `let s: Step = mul(length, unit);` cannot be off by a shift.
 //!
 //! The ranges were chosen from the values that occur when a floating-point version of the solver simulates the
-//! benchmark scenes. `docs/DESIGN.md` lists the largest value of each quantity.
+//! benchmark scenes. `docs/DESIGN.md` lists the largest values.
 
 use fixed::types::extra::{LeEqU32, U18, U20, U21, U22, U24, U26, U27, U30, U32};
 use fixed::{FixedI32, FixedI64};
@@ -17,7 +17,7 @@ pub type Length = FixedI32<U22>;
 /// A speed in m/s: ±1024, resolution 4.8e-7. Used for linear velocity, for angular velocity times the radius of
 /// gyration, `u = k w`, and for the impulse of a row divided by its effective mass.
 pub type Speed = FixedI32<U21>;
-/// Displacement within one step, or separation of a contact, in metres: ±16, resolution 7.5 nm.
+/// Separation of a contact, or gap of a joint, in metres: ±16, resolution 7.5 nm.
 pub type Step = FixedI32<U27>;
 /// Displacement of a body within a tick, in metres: ±32, resolution 15 nm. Values are kept within ±16, so that the
 /// difference of two displacements fits.
@@ -35,8 +35,8 @@ pub type FrictionRatio = FixedI32<U20>;
 #[inline]
 #[must_use]
 pub const fn round_shift(x: i64, shift: u32) -> i64 {
-    // All bits to be dropped except the highest are shifted out before one half is added, so that the sum cannot
-    // overflow.
+    // All bits to be dropped except the highest are shifted out before one half is added, so that the sum can overflow
+    // only for a shift of 1.
     if shift == 0 { x } else { ((x >> (shift - 1)) + 1) >> 1 }
 }
 

@@ -1,6 +1,6 @@
-//! `1 / x` with 31 significant bits, for `x` from 2^-30 to 2^30.
+//! `1 / x` with 31 significant bits, for `x` from 2^-30 to below 2^30.
 //!
-//! In the format of [`Ratio`](super::formats::Ratio), the reciprocal of a radius of 500 m would have 15 significant
+//! In the format of [`Ratio`](super::formats::Ratio), the reciprocal of a radius of 500 m would have 16 significant
 //! bits, and the reciprocal of a radius of 2 mm would overflow. A mantissa and a shift cover both, and a multiplication
 //! by them is one widening 32-bit product on any machine.
 
@@ -85,7 +85,7 @@ impl Reciprocal {
         (self.mantissa, self.shift as i32)
     }
 
-    /// Exact `a / x`: the product, and its number of fraction bits beyond those of `a`.
+    /// Exact product of `a` and the reciprocal, and its number of fraction bits beyond those of `a`.
     #[inline]
     pub(crate) fn times_exact<A: LeEqU32>(self, a: FixedI32<A>) -> (i64, u32) {
         (i64::from(a.to_bits()) * i64::from(self.mantissa), self.shift)

@@ -91,7 +91,8 @@ impl Vec2<Fx> {
         if sum == 0 {
             return None;
         }
-        // An even shift normalises the sum to 128 bits, so that its root, and each component, has 64.
+        // An even shift normalises the sum to 127 or 128 bits, so that its root has 64 bits, and each component at most
+        // 64.
         let shift = sum.leading_zeros() & !1;
         let scale = inverse_root(high_half(sum << shift)) as u128;
         let x_part = high_half(((x.unsigned_abs() << (shift / 2)) as u128 * scale) << 32);
@@ -145,7 +146,7 @@ const fn polar(x: i32, y: i32) -> Option<(Vec2<Unit>, i32)> {
     if sum == 0 {
         return None;
     }
-    // An even shift normalises the sum to 64 bits, so that its root, and each component, has 32.
+    // An even shift normalises the sum to 63 or 64 bits, so that its root has 32 bits, and each component at most 32.
     let shift = sum.leading_zeros() & !1;
     let scale = inverse_root(sum << shift);
     let x_part = ((x.unsigned_abs() as u64) << (shift / 2)) * scale;

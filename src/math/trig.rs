@@ -1,9 +1,9 @@
 //! Sine, cosine and arc tangent in integer arithmetic.
 //!
-//! `sin(pi x / 2) = x (c0 - c1 z + c2 z^2 - ... - c5 z^5)` with `z = x^2`, for `x` in one quarter turn. The whole turn
-//! is folded to this quarter by symmetry: the sine is exactly odd, the cosine exactly even, and both are exact at the
-//! quarter turns. `atan(t) = t (c0 - c1 z + ... + c6 z^6)` for `|t| <= tan(1/16 turn)`. The plane is folded at the
-//! diagonal and by `atan t = pi/4 - atan((1 - t) / (1 + t))`.
+//! `sin(pi x / 2) = x (c0 - c1 z + c2 z^2 - ... - c5 z^5)` with `z = x^2`, for `x` from 0 to 1 quarter turn. The whole
+//! turn is folded to this quarter by symmetry: the sine is exactly odd, the cosine exactly even, and both are exact at
+//! the quarter turns. `atan(t) = t (c0 - c1 z + ... + c6 z^6)` with `z = t^2`, for `|t| <= tan(1/16 turn)`. The plane is
+//! folded at the diagonal and by `atan t = pi/4 - atan((1 - t) / (1 + t))`.
 //!
 //! The coefficients are minimax, from a Remez exchange with 50 digits that is weighted by the absolute error of the
 //! result. The sine is constrained to 1 at the quarter turn. Each coefficient is then rounded to the scale given at its
@@ -97,7 +97,7 @@ pub(super) const fn signed(angle: u32) -> i32 {
 
 #[cfg(test)]
 mod tests {
-    //! Tests against Taylor series in 128-bit integers in units of 2^-60, with an error below 2^-54.
+    //! Errors are measured against Taylor series in 128-bit integers in units of 2^-60, with an error below 2^-54.
 
     use super::*;
     use crate::math::Rng;
@@ -173,7 +173,7 @@ mod tests {
     /// Error of `arc_tangent` in thousandths of 2^-32 turn.
     fn arc_tangent_error(x: i64, y: i64) -> i128 {
         let (sin, cos) = slow_sin_cos(arc_tangent(x, y));
-        // The vector is scaled up, so that the integer root below is accurate to 50 bits.
+        // The vector is scaled up, so that the integer root below has at least 62 bits.
         let shift = (x.unsigned_abs() | y.unsigned_abs()).leading_zeros().saturating_sub(1);
         let (x, y) = (i128::from(x) << shift, i128::from(y) << shift);
         let length = (x.unsigned_abs().pow(2) + y.unsigned_abs().pow(2)).isqrt();

@@ -14,8 +14,8 @@ use super::formats::{
 
 /// A vector or a point. Sums and differences saturate.
 ///
-/// Pairs and arrays convert to vectors. Builders, commands and queries of a world take `impl Into<Vec2<Fx>>`, so that a
-/// position may be a vector or a pair: `BodyDef::dynamic().position((fx!(0), fx!(10)))`.
+/// Pairs and arrays convert to vectors. Most functions that take a position or a velocity accept `impl Into<Vec2<Fx>>`,
+/// so that it may be a vector or a pair: `BodyDef::dynamic().position((fx!(0), fx!(10)))`.
 ///
 /// ```
 /// use lockstep2d::{fx, math::Vec2};

@@ -185,7 +185,8 @@ mod tests {
         assert!(sum > top);
     }
 
-    /// Compares both branches of [`scaled`] on the same fractions: a common factor of 2^64 forces the slow branch.
+    /// Compares both branches of [`scaled`] on the same fractions: a common factor of 2^64 leads to the slow branch,
+    /// unless `x numerator` is below 2^64.
     #[test]
     fn long_division_agrees_with_the_short_one() {
         let mut rng = Rng::new(1);

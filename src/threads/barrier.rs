@@ -11,7 +11,7 @@ const SPINS: u32 = 100;
 #[derive(Debug)]
 pub(super) struct Barrier {
     count: usize,
-    /// Number of members that have arrived.
+    /// Number of members that have arrived since all of them last arrived.
     arrived: AtomicUsize,
     /// Number of times that all members have arrived.
     generation: AtomicUsize,

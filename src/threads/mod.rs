@@ -35,7 +35,8 @@ pub(crate) struct Threads {
 #[cfg(feature = "parallel")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sharing {
-    /// Ticks run on one thread or on all, whichever took less time in earlier ticks, except for a few trials.
+    /// Ticks with at least [`BODIES_MIN`] active bodies run on one thread or on all, whichever took less time in
+    /// earlier ticks, except for a few trials.
     Adaptive,
     /// The threads share every tick with at least [`BODIES_MIN`] active bodies.
     Always,
@@ -153,7 +154,7 @@ impl Threads {
         }
     }
 
-    /// Number of threads.
+    /// Number of threads, including the calling one.
     #[cfg(feature = "parallel")]
     pub(crate) fn count(&self) -> usize {
         self.team.as_ref().map_or(1, |team| team.count())

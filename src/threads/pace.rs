@@ -27,7 +27,7 @@ pub(super) enum Mode {
 /// may take long.
 #[derive(Clone, Debug)]
 pub(super) struct Pace {
-    /// Time of a tick in nanoseconds per 1024 active bodies, by mode: the mean of the last few ticks, or the time of
+    /// Time of a tick in nanoseconds per 1024 active bodies, by mode: a running mean of the last ticks, or the time of
     /// the last trial. `None` before the first tick in the mode.
     costs: [Option<u64>; 2],
     faster: Mode,

@@ -38,7 +38,8 @@ struct Vacancies {
 struct Whole<T> {
     pages: Vec<Arc<Page<T>>>,
     vacancies: Arc<Vacancies>,
-    /// Digests of the vacancies and of each page, stored together so that reading them does not visit every page.
+    /// Digest of the vacancies, then the digest of each page. They are stored together, so that reading them does not
+    /// visit every page.
     digests: Vec<StateHash>,
 }
 
@@ -92,7 +93,7 @@ impl<T> Kept<T> {
         }
     }
 
-    /// Invalidates the copies of the free list and of the page that contains a slot. `slot_count` may have grown by
+    /// Invalidates the copies of the vacancies and of the page that contains a slot. `slot_count` may have grown by
     /// one.
     pub(super) fn came_or_went(&mut self, slot: u32, slot_count: usize) {
         self.fit(slot_count);
@@ -124,7 +125,7 @@ impl<T> Clone for SharedArena<T> {
 }
 
 impl<T> SharedArena<T> {
-    /// Digests of the free list and of each page.
+    /// Digest of the vacancies, then the digest of each page.
     pub(crate) fn digests(&self) -> impl Iterator<Item = StateHash> {
         self.0.digests.iter().copied()
     }

@@ -1,6 +1,6 @@
-//! Tests every predicate against rational arithmetic on a small grid, where touching, crossing at corners and
-//! overlapping are common; then with the same figures scaled and moved to the edge of the world, where a product has
-//! 130 bits.
+//! Tests the predicates against integer and rational arithmetic on a small grid, where touching, crossing at corners
+//! and overlapping are common. Most figures are then scaled or moved, up to the size and the edge of the number range,
+//! where a cross product has 128 bits.
 
 use super::*;
 use crate::fx;

@@ -1,5 +1,5 @@
-//! Tests roots against the neighbouring squares, and unit vectors against a long division and an integer root with 33
-//! more bits.
+//! Tests of square roots, lengths and unit vectors. Most roots are compared with the neighbouring squares, and unit
+//! vectors with a long division and an integer root that have 33 more bits.
 
 use super::*;
 use crate::fx;

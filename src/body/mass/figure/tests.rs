@@ -1,5 +1,5 @@
-//! Tests the moments against textbook formulas in exact rational numbers, against a polygon of thousands of vertices
-//! along the same outline, and against counted grid points.
+//! Tests of the area, centre and radius of gyration of rounded polygons. The expected values come from formulas in
+//! exact rational numbers, from polygons of thousands of vertices along the same outline, and from counted grid points.
 
 use alloc::vec::Vec;
 
@@ -15,7 +15,7 @@ fn figure(polygon: &Polygon) -> Figure {
     Figure::of_polygon(polygon.vertices()).rounded(polygon.vertices(), polygon.radius())
 }
 
-/// Asserts that two numbers are within `1 / parts` of each other.
+/// Asserts that the error of `actual` is at most `expected / parts`.
 fn close(actual: i128, expected: i128, parts: i128) {
     let error = (actual - expected).abs();
     assert!(error * parts <= expected.abs(), "expected {expected} to 1 in {parts}, got {actual}");
@@ -38,11 +38,11 @@ fn random_rounded_hull(rng: &mut Rng, extent: Fx) -> Option<Polygon> {
     Polygon::hull(&points).ok()?.rounded(rng.range(fx!(0.002), extent)).ok()
 }
 
-/// Twice the area and the squared radius of gyration of a rectangle with half extents `a` and `b`, rounded by `r`, all
-/// in units of `unit`. The shape consists of the rectangle, four rectangles on its sides, and four
-/// quarter discs.
+/// Twice the area and the squared radius of gyration, in m² with 44 fraction bits, of a rectangle rounded by `r`. Its
+/// half extents `a` and `b`, and `r`, are in units of `unit`. The shape consists of the rectangle, four rectangles on
+/// its sides, and four quarter discs.
 fn rounded_rectangle(a: i128, b: i128, r: i128, unit: Fx) -> (i128, i128) {
-    /// A convergent of pi, correct to 17 digits.
+    /// A convergent of pi, correct to 17 decimal places.
     const PI_NUMERATOR: i128 = 1_068_966_896;
     const PI_DENOMINATOR: i128 = 340_262_731;
     // Everything is multiplied by 12 and by the denominator of pi.
@@ -135,8 +135,8 @@ fn symmetric_shapes_keep_their_centre() {
     assert!((x - y).abs() <= 1, "the coordinates of the centre should be equal: {x} {y}");
 }
 
-/// The outline with 4096 chords per turn. The relative error of its sectors is 4e-7, and its points are rounded to
-/// 2.4e-7 m.
+/// The outline with at least 4096 chords per turn. The relative error of its sectors is at most 4e-7. Its points are
+/// rounded to 2.4e-7 m.
 fn fine_outline(polygon: &Polygon) -> Vec<Vec2<Length>> {
     let (vertices, normals) = (polygon.vertices(), polygon.normals());
     let count = vertices.len();
