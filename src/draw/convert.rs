@@ -11,7 +11,7 @@ use crate::math::{Fx, Vec2};
 /// assert_eq!(draw::to_f32(ball - camera), [0.25, -1.5]);
 /// ```
 ///
-/// With the feature `mint`, `Vec2<Fx>` converts into the vectors and points of the crate `mint`, as in
+/// With the feature `mint`, `Vec2<Fx>` converts into `mint::Vector2<f32>` and `mint::Point2<f32>`, as in
 /// `mint::Vector2::from(v)`, and through them into the types of `glam`, `nalgebra`, `cgmath` and others.
 #[expect(clippy::disallowed_types, reason = "graphics libraries take floats")]
 #[must_use]

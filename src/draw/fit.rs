@@ -9,8 +9,8 @@ use crate::math::{Aabb, Fx, Vec2};
 use crate::world::World;
 
 /// Smallest reach of a scene in metres. The reach is the distance from the median position to the farthest body of the
-/// scene, and bodies within four times the reach belong to the scene. Therefore all bodies within 64 m of the median
-/// position belong to it.
+/// scene, or this value if it is larger. Bodies within four times the reach belong to the scene, so that all bodies
+/// within 64 m of the median position belong to it.
 const SCENE_REACH_MIN: Fx = fx!(16);
 /// Maximum distance, in scene sizes, at which ground is included.
 const GROUND_SIZES: i64 = 12;
@@ -21,11 +21,11 @@ const GROUND_REACH: Fx = fx!(16);
 /// Maximum size, in metres, of a fixed shape that is shown if no body can move.
 const FIXED_SIZE_MAX: Fx = fx!(512);
 
-/// Returns the window around all bodies that can move, their joints, and the ground near them, with a margin.
+/// Returns the window around the bodies that can move, their joints, and the ground near them, with a margin.
 ///
 /// A body far away from all others is left out, because it would make the rest too small to see. A fixed shape larger
-/// than the distance up to which ground is included contributes only its nearest point. The window depends on the
-/// current positions, so it moves with the bodies.
+/// than the distance up to which ground is included contributes only its nearest point. If no body can move, the window
+/// shows the fixed shapes of at most 512 m. The window depends on the current positions, so it moves with the bodies.
 #[must_use]
 pub fn fit(world: &World) -> Aabb {
     let moving = world.bodies().filter(|(_, body)| body.kind() != BodyKind::Fixed);

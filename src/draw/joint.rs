@@ -54,7 +54,7 @@ pub(super) fn add(world: &World, id: JointId, layers: Layers, found: Sink<'_>) {
     }
 }
 
-/// Returns the position without joint error that is nearest to B's anchor.
+/// Returns the position nearest to B's anchor at which [`World::joint_error`] would be 0.
 fn nearest_allowed(joint: &Joint, world: &World, (anchor_a, anchor_b): (Vec2<Fx>, Vec2<Fx>)) -> Vec2<Fx> {
     let def = joint.def();
     match &def.kind {

@@ -9,7 +9,7 @@ use crate::hash::StateHash;
 use crate::math::Fx;
 use crate::world::World;
 
-/// The text of a picture of a world, below its title.
+/// The text of a picture of a world, except for its title.
 ///
 /// ```
 /// use lockstep2d::{draw::{Layers, Legend, primitives}, world::World};

@@ -23,7 +23,7 @@ pub struct Paint {
     pub width: u16,
 }
 
-/// A translucent colour.
+/// A colour and its opacity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fill {
     /// Colour as `0xRRGGBB`.

@@ -1,4 +1,4 @@
-//! Converts primitives to SVG path data.
+//! Converts primitives to SVG path data and text elements.
 
 use alloc::string::String;
 use core::fmt::{Arguments, Write};
@@ -12,7 +12,8 @@ pub(super) fn push(text: &mut String, arguments: Arguments<'_>) {
     text.write_fmt(arguments).expect("a String takes any text");
 }
 
-/// Appends the visible part of a form to path data. `direction_length` is the length of a [`Form::Direction`].
+/// Appends a form to path data, if it is visible. Lines and boxes are clipped. `direction_length` is the length of a
+/// [`Form::Direction`].
 pub(super) fn add(path: &mut String, form: &Form, screen: &Screen, direction_length: Pixel) {
     match form {
         Form::Point(place) => add_point(path, *place, screen),

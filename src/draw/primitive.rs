@@ -88,7 +88,7 @@ impl Layers {
         ]
     }
 
-    /// Splits the layers into groups in painting order. Within a group nothing hides anything else.
+    /// Splits the layers into groups in painting order: each group is painted over the one before it.
     #[must_use]
     pub fn stacked(self) -> [Layers; 5] {
         let Layers { outlines, islands, broad_phase, fat_boxes, joints, joint_errors, .. } = self;
@@ -105,7 +105,7 @@ impl Layers {
 }
 
 impl Default for Layers {
-    /// Outlines, fat boxes, contact points and normals, joints and centres of mass. These layers show most faults.
+    /// Outlines, fat boxes, contact points and normals, joints and centres of mass.
     fn default() -> Self {
         Layers {
             outlines: true,
@@ -204,7 +204,8 @@ pub enum Style {
     ContactPoint(ContactProximity),
     /// The normal force at a contact point on shape B. The length is 0.2 m times the square root of the relative
     /// acceleration that the force gives to the centres of mass, in units of 10 m/s²: 0.2 m below a ball that rests on
-    /// the ground, and ten times as long for a hundred times the force. The root keeps large forces in the picture.
+    /// the ground under the default gravity, and ten times as long for a hundred times the force. The root keeps large
+    /// forces in the picture.
     ContactForce,
     /// The friction force at a contact point, to the same scale.
     ContactFriction,

@@ -20,7 +20,7 @@ const FORCE_LENGTH: Fx = fx!(0.2);
 const FORCE_UNIT: i64 = 10;
 
 /// Returns the primitives of the given layers of a world: the boxes of the broad phase, then the bodies, islands,
-/// contacts and joints, each in slot order.
+/// contacts and joints. Bodies and joints are in slot order.
 #[must_use]
 pub fn primitives(world: &World, layers: Layers) -> Vec<Primitive> {
     let mut found = Vec::new();
@@ -130,8 +130,7 @@ fn add_outlines(world: &World, (id, body): (BodyId, &Body), style: Style, found:
     }
 }
 
-/// Adds the outlines of each island, in a colour that depends on its first body, so that an island keeps its colour
-/// while it grows.
+/// Adds the outlines of each island, in a colour that depends on its first body.
 fn add_islands(world: &World, found: Sink<'_>) {
     for island in world.islands() {
         let Some(first) = island.first() else { continue };

@@ -11,7 +11,7 @@ use crate::fx;
 use crate::math::{Aabb, Fx, Vec2, div_round, saturate_wide, segment_intersection};
 
 /// Minimum width and height of the window in metres. In a picture of 960 pixels with a much narrower window, the
-/// largest shapes (110 m from the centre to a side) would have coordinates of more than 2^23 pixels, at which common
+/// largest polygons (110 m from the centre to a side) would have coordinates of more than 2^23 pixels, at which common
 /// renderers (cairo) overflow.
 const WINDOW_MIN: Fx = fx!(0.02);
 

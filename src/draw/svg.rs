@@ -1,8 +1,8 @@
 //! Draws a tick as an SVG document.
 //!
-//! The outlines of a body have its id as a tooltip. The lines and points of each other style share one path: a picture
-//! of 5000 boxes at rest takes about two megabytes. Points are lines of zero length, and strokes do not scale, so that
-//! a picture can be enlarged in a browser to see exactly where two shapes touch.
+//! The outlines of a body have its id and its name as a tooltip. The lines and points of each other style share one
+//! path: a picture of 5000 boxes at rest takes about two megabytes. Points are lines of zero length, and strokes do not
+//! scale, so that a picture can be enlarged in a browser to see exactly where two shapes touch.
 
 use alloc::collections::BTreeMap;
 use alloc::string::String;
@@ -66,7 +66,7 @@ pub fn svg(world: &World, view: &View) -> String {
 
 /// Size of marks: scaled down for small bodies, so that marks stay smaller than the bodies below them.
 struct Marks {
-    /// Mean half extent of moving shapes on the screen, in hundredths of a pixel.
+    /// Mean half extent, in hundredths of a pixel, of the fat boxes of shapes that can move; clamped.
     body: i64,
 }
 
@@ -123,7 +123,7 @@ fn sorted_by_style(world: &World, view: &View, screen: &Screen, marks: &Marks) -
     layers
 }
 
-/// Whether the style is that of outlines, which have the id of their body as a tooltip.
+/// Whether the style is that of outlines, which have a tooltip with the id and the name of their body.
 fn has_tooltip(style: Style) -> bool {
     matches!(
         style,
@@ -170,7 +170,7 @@ fn add_legend(text: &mut String, world: &World, view: &View, layers: &BTreeMap<S
     text.push_str("</text>\n</g>\n");
 }
 
-/// Adds a bar of 1, 2 or 5 times a power of ten metres, a tenth to a quarter of the picture wide.
+/// Adds a scale bar, a tenth to a quarter of the picture wide.
 fn add_scale_bar(text: &mut String, screen: &Screen, (width, height): (u32, u32)) {
     let Some(Bar { length, label }) = Bar::up_to(|bar| screen.length(bar).0 <= i64::from(width) * 25) else {
         return;
@@ -188,8 +188,7 @@ fn add_scale_bar(text: &mut String, screen: &Screen, (width, height): (u32, u32)
     );
 }
 
-/// Appends text with all markup escaped. Control characters below U+0020, and other characters that XML does not allow,
-/// become U+FFFD.
+/// Appends text with all markup escaped. Control characters below U+0020, and U+FFFE and U+FFFF, become U+FFFD.
 fn add_escaped(text: &mut String, raw: &str) {
     for character in raw.chars() {
         match character {

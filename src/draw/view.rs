@@ -51,7 +51,7 @@ impl Default for View {
 pub enum Frame {
     /// The window chosen by [`fit`](super::fit()).
     Fit,
-    /// This window, centred. If the picture has another aspect ratio, it shows more of the world on its longer side. A
+    /// This window, centred. If the picture has another aspect ratio, it shows more of the world in one direction. A
     /// side of the window that is shorter than 2 cm is extended to 2 cm.
     ///
     /// Use the same window for several ticks of one scene.

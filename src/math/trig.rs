@@ -2,8 +2,8 @@
 //!
 //! `sin(pi x / 2) = x (c0 - c1 z + c2 z^2 - ... - c5 z^5)` with `z = x^2`, for `x` from 0 to 1 quarter turn. The whole
 //! turn is folded to this quarter by symmetry: the sine is exactly odd, the cosine exactly even, and both are exact at
-//! the quarter turns. `atan(t) = t (c0 - c1 z + ... + c6 z^6)` with `z = t^2`, for `|t| <= tan(1/16 turn)`. The plane is
-//! folded at the diagonal and by `atan t = pi/4 - atan((1 - t) / (1 + t))`.
+//! the quarter turns. `atan(t) = t (c0 - c1 z + ... + c6 z^6)` with `z = t^2`, for `|t| <= tan(1/16 turn)`. The plane
+//! is folded at the diagonal and by `atan t = pi/4 - atan((1 - t) / (1 + t))`.
 //!
 //! The coefficients are minimax, from a Remez exchange with 50 digits that is weighted by the absolute error of the
 //! result. The sine is constrained to 1 at the quarter turn. Each coefficient is then rounded to the scale given at its
