@@ -19,7 +19,7 @@ pub(crate) struct Contact {
     pub(crate) touching: bool,
     /// Whether one shape is a one-way platform that lets the other pass: see `one_way.rs`.
     pub(crate) passing: bool,
-    /// Number of points with accumulated impulses.
+    /// Number of points with stored impulses.
     pub(crate) count: u8,
     pub(crate) points: [PointImpulse; 2],
     pub(crate) kept: KeptManifold,

@@ -164,8 +164,8 @@ impl BroadPhase {
         }
     }
 
-    /// Replaces all boxes. The new boxes have no collision classes. Cheaper than a [`Self::put`] for each box. An item
-    /// is a slot, its box, and whether its body is fixed. If a slot repeats, its last box is kept.
+    /// Replaces all boxes. The new boxes have no collision classes. For trees this is cheaper than a [`Self::put`] for
+    /// each box. An item is a slot, its box, and whether its body is fixed. If a slot repeats, its last box is kept.
     pub(crate) fn refill(&mut self, boxes: impl IntoIterator<Item = (u32, Aabb, bool)>) {
         *self = BroadPhase::new(self.kind());
         let boxes = boxes.into_iter();
@@ -216,7 +216,7 @@ impl BroadPhase {
                     }
                 };
                 match structure {
-                    // Marking more than half of the boxes that are not fixed costs more than it saves.
+                    // Marking more slots than half of the boxes that are not fixed costs more than it saves.
                     Structure::Trees(trees) if set.slots.len() < trees.moving_len() / 2 => {
                         trees.each_pair_of(&set.slots, found);
                     }

@@ -18,7 +18,7 @@ pub(super) struct Trees {
 }
 
 impl Trees {
-    /// Number of boxes that are not fixed.
+    /// Number of boxes of bodies that are not fixed.
     pub(super) fn moving_len(&self) -> usize {
         self.moving.len()
     }

@@ -1,5 +1,5 @@
-//! Box against box, eight pairs at a time with SIMD: in most worlds most shapes are boxes. Each pair gets bit for bit
-//! the manifold that [`hull_hull`](super::hull_hull) computes. The few pairs whose incident edge lies beside the
+//! Box against box, eight pairs at a time with SIMD: in most worlds most shapes are boxes. Each manifold with points is
+//! bit for bit the one that [`hull_hull`](super::hull_hull) computes. The few pairs whose incident edge lies beside the
 //! reference face, or whose nearest features are two corners, are left to the scalar path.
 
 mod kernel;

@@ -201,7 +201,7 @@ fn faces(
 
 #[cfg(test)]
 mod tests {
-    //! Tests against brute force over all vertex and edge pairs, with the predicates of `math`.
+    //! Distances are compared with brute force over all pairs of a vertex and an edge, with the predicates of `math`.
 
     use super::*;
     use crate::collision::shape::support::{samples, to_grid};

@@ -210,7 +210,7 @@ mod tests {
     }
 
     /// The parts of a shape that are in two adjacent areas add up to the whole shape, in size and centre, for every
-    /// kind of shape.
+    /// kind of shape that has an area.
     #[test]
     fn neighbouring_areas_divide_a_shape() {
         let mut rng = Rng::new(7);

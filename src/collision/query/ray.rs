@@ -3,8 +3,8 @@
 //! The outline of a convex core with a radius `r` consists of its edges, moved outwards by `r`, and of circles about
 //! its vertices. For an edge vector `e` from `p`, a ray crosses the moved line where `e x (o + t d - p) = -r |e|`; it
 //! enters a circle about `p` half a chord before the ray's nearest point to `p`. Each `t` is a quotient of exact
-//! products. The only approximations are `|e|` and `|d|`, with a relative error of 1.5e-9, and they are only multiplied
-//! by the radius. Rays and segments may therefore be as long as the world.
+//! products. The only approximations are `|e|` and `|d|`, with a relative error of 1.5e-9, and they only affect lengths
+//! up to the radius. Rays and segments may therefore be as long as the world.
 
 use super::distance::overlap;
 use crate::collision::shape::support::{
@@ -134,8 +134,8 @@ pub(in crate::collision) fn approach(normal: Vec2<Unit>, translation: Vec2<Grid>
 
 #[cfg(test)]
 mod tests {
-    //! Tests against sphere tracing: a point that repeatedly advances by its distance from the shape never passes the
-    //! surface.
+    //! The first test compares rays with sphere tracing: a point that repeatedly advances by its distance from the
+    //! shape never passes the surface.
 
     use super::*;
     use crate::collision::query::distance::distance;

@@ -29,7 +29,8 @@ pub(crate) const TOLERANCE: Fx = fx!(0.00005);
 /// set-ups in contact.
 const STEPS_MAX: u32 = 48;
 
-/// Largest number of steps of a query. Queries are rare, so the limit can be higher.
+/// Largest number of steps of a query, which has a policy other than [`StartPolicy::Protect`]. Queries are rare, so the
+/// limit can be higher.
 const QUERY_STEPS_MAX: u32 = 512;
 
 /// Largest rotation in radians of a shape that is not a disc about its body's centre. With this limit and
@@ -127,9 +128,9 @@ pub(crate) fn first_impact(
 const OVERLAP_STEPS_MAX: u32 = 256;
 
 /// Fraction of the tick after which two shapes first overlap, to within 0.05 mm of depth; 0 if they overlap at the
-/// start. `None` if they do not overlap within the tick, or only by less than 0.05 mm. Arguments as for
-/// [`time_of_impact`], but neither shape is protected. Two segments, which have no depth unless they cross, count as
-/// overlapping when they come within 0.05 mm of each other.
+/// start. `None` if they do not overlap within the tick, or only by less than 0.05 mm, or if a shape rotates too far or
+/// the search takes too many steps. Arguments as for [`time_of_impact`], but neither shape is protected. Two segments,
+/// which have no depth unless they cross, count as overlapping when they come within 0.05 mm of each other.
 pub(crate) fn first_overlap(
     a: &SupportShape,
     sweep_a: &Sweep,

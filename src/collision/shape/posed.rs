@@ -1,4 +1,4 @@
-//! Posed shapes: each shape is rotated to world axes once per tick, so that its pairs only translate.
+//! Posed shapes: each shape is rotated to world axes once per tick, and its pairs only translate it.
 
 use core::ops::Deref;
 
@@ -265,8 +265,8 @@ impl PosedShape {
         Self::of_geometry(&shape.geometry, centre_of(shape, body, || rotation), rotation)
     }
 
-    /// Poses the same shape again after its body has moved, writing only the fields that change. `rotation` is
-    /// evaluated lazily, only if the shape depends on it.
+    /// Poses the same shape again after its body has moved. Of circles, polygons and capsules it writes only the fields
+    /// that change. `rotation` is evaluated lazily, only if the shape depends on it.
     #[inline(always)]
     pub(crate) fn renew(&mut self, shape: &ShapeDef, body: &Body, rotation: &impl Deref<Target = Rot>) {
         let centre = centre_of(shape, body, || **rotation);

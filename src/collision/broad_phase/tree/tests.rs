@@ -1,4 +1,4 @@
-//! Tests that the tree stays valid under any sequence of changes, and that no order of boxes makes it deep.
+//! Tests that the tree stays valid and finds its pairs while boxes change, and how high it becomes.
 
 use super::*;
 use crate::body::Filter;
@@ -11,7 +11,7 @@ impl Tree {
         self.nodes.iter().filter(|node| !node.is_leaf()).map(|node| perimeter(node.aabb) >> 16).sum()
     }
 
-    /// Panics unless links, boxes, heights and the free list are valid. Returns the height.
+    /// Panics unless links, boxes, heights, classes, marks and the list of vacant nodes are valid. Returns the height.
     fn validate(&self) -> u8 {
         let mut reached = 0;
         let mut stack = Vec::new();

@@ -1,4 +1,5 @@
-//! Tests the SIMD box path against the scalar narrow phase of any two hulls.
+//! Tests of the SIMD path: manifolds are compared with those of the scalar narrow phase, and rotated boxes with boxes
+//! that are posed from scratch.
 
 use super::*;
 use crate::body::{Body, BodyDef, MassProperties, Polygon, ShapeDef};

@@ -1,4 +1,5 @@
-//! Tests chains against a naive oracle: the distance from a polyline, by brute force in 64 bits.
+//! Tests of chains: their distances are those of a polyline, a flat chain pushes along its normal, and a single link
+//! collides like a segment.
 
 use alloc::vec::Vec;
 

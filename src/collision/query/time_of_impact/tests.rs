@@ -1,4 +1,4 @@
-//! Tests the time of impact against the separation at many moments of the tick.
+//! Tests of the time of impact. Random motions are checked by the separation at many moments of the tick.
 
 use super::*;
 use crate::collision::shape::support::samples;
