@@ -57,7 +57,7 @@ mod threads;
 pub mod world;
 
 /// Version of the engine's arithmetic. It changes whenever the same inputs give a different state. Replays and
-/// snapshots store it; a file with another version is rejected, not misread.
+/// snapshots store it. A snapshot with another version is rejected, and a replay with another version cannot be played.
 pub const SEMANTICS: u32 = 19;
 
 /// Version of this crate.

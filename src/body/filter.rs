@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Collision filter. Two shapes in the same non-zero group always collide if the group is positive, and never if it is
-/// negative. Otherwise they collide if each shape's mask includes at least one of the other shape's categories.
+/// Collision filter. Two shapes in the same non-zero group may collide if the group is positive, whatever their masks,
+/// and never collide if it is negative. Other shapes may collide if each shape's mask includes at least one of the other
+/// shape's categories.
 ///
 /// The tree of the broad phase skips most pairs within a negative group from -1 to -32 768. It also skips most pairs of
 /// shapes without a group that belong to the same single category and exclude this category from their masks. Use such
@@ -18,7 +19,7 @@ use serde::{Deserialize, Serialize};
 pub struct Filter {
     /// The categories this shape belongs to, one bit each.
     pub category: u64,
-    /// The categories this shape collides with.
+    /// The categories that this shape may collide with, one bit each.
     pub mask: u64,
     /// Overrides categories among shapes of the same non-zero group.
     pub group: i32,

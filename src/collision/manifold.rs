@@ -53,7 +53,7 @@ pub struct ManifoldPoint {
 /// touch later in the tick. The separations are always those at the start of the tick.
 ///
 /// While shapes hardly move relative to each other, their contact keeps the normal and the points of an earlier tick.
-/// The points move with the bodies, and may be off by a 64th of the smaller shape's extent.
+/// The points move with the bodies, and may be off by up to a 64th of the smaller shape's extent.
 ///
 /// ```
 /// use lockstep2d::{body::Polygon, fx, math::Vec2, world::Probe};

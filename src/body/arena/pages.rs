@@ -1,7 +1,7 @@
 //! Arena pages that snapshots share. A page is copied once and then shared by all snapshots until a slot in it changes.
 //! While no slot of an arena changes, snapshots share the whole arena through one pointer.
 //!
-//! A copied value leaves out the fields that every step changes (velocities, impulses); snapshots store those
+//! A copied value leaves out the fields that every step changes, such as velocities and impulses. Snapshots store them
 //! separately. After its first snapshot, a world in which no value is inserted, removed or redefined therefore copies
 //! no page.
 

@@ -1,4 +1,4 @@
-//! Exact geometry of two shapes, for queries and continuous collision.
+//! Distances, casts, times of impact and overlaps of two shapes, for queries, continuous collision and areas.
 
 mod distance;
 mod immersion;
