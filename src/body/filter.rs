@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 /// Collision filter. Two shapes in the same non-zero group may collide if the group is positive, whatever their masks,
-/// and never collide if it is negative. Other shapes may collide if each shape's mask includes at least one of the other
-/// shape's categories.
+/// and never collide if it is negative. Other shapes may collide if each shape's mask includes at least one of the
+/// other shape's categories.
 ///
 /// The tree of the broad phase skips most pairs within a negative group from -1 to -32 768. It also skips most pairs of
 /// shapes without a group that belong to the same single category and exclude this category from their masks. Use such

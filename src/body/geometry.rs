@@ -49,8 +49,8 @@ pub enum Geometry {
         radius: Fx,
     },
     /// A line segment of a chain, created by [`Chain`](super::Chain). Like a segment it has no area, does not collide
-    /// with segments or links, and may be as long as the world if its body is fixed. At an end with a neighbour, contact
-    /// normals are limited to the directions that the whole chain allows, which prevents ghost collisions.
+    /// with segments or links, and may be as long as the world if its body is fixed. At an end with a neighbour,
+    /// contact normals are limited to the directions that the whole chain allows, which prevents ghost collisions.
     Link {
         /// First end, in metres from the shape's centre.
         a: Vec2<Fx>,
