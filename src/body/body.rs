@@ -220,7 +220,7 @@ impl Body {
         &self.shapes
     }
 
-    /// Damping, gravity scale, locks and sleep settings.
+    /// Damping, gravity scale, locks, continuous collision and sleep settings.
     #[must_use]
     pub const fn settings(&self) -> &BodySettings {
         &self.settings

@@ -62,11 +62,11 @@ pub struct BodyDef {
     pub angular_velocity: Fx,
     /// Source of the mass of a dynamic body.
     pub mass: MassSource,
-    /// Damping, gravity scale, locks and sleep settings.
+    /// Damping, gravity scale, locks, continuous collision and sleep settings.
     pub settings: BodySettings,
     /// Whether the body takes part in the simulation. A disabled body keeps its pose and collides with nothing.
     pub enabled: bool,
-    /// Whether the body starts asleep. Only dynamic bodies sleep.
+    /// Whether the body starts asleep. Only enabled dynamic bodies sleep, and only in worlds in which sleeping is on.
     pub asleep: bool,
     /// Number for the game's own use. The engine does not read it, but it is part of the state and its hash.
     pub user_data: u64,

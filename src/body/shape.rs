@@ -48,7 +48,7 @@ pub struct ShapeDef {
     pub geometry: Geometry,
     /// Shape's centre in the body's frame, in metres from the body's origin.
     pub offset: Vec2<Fx>,
-    /// Mass per area, in kg/m².
+    /// Mass per area, in kg/m², 0 to 2^20.
     pub density: Fx,
     /// Friction, restitution, rolling resistance and surface speed.
     pub material: Material,
