@@ -260,8 +260,8 @@ pub struct Shape {
     pub(crate) body: BodyId,
     /// Boxed, so that the fields that steps change lie close together. Saving them then reads less memory.
     pub(crate) def: Box<ShapeDef>,
-    /// Fat AABB used by the broad phase: the swept AABB of the shape over an earlier tick, plus a margin so that it
-    /// seldom changes. It decides which pairs exist, so it is part of the state.
+    /// Fat AABB used by the broad phase: the AABB of the shape, swept over the tick in which the fat AABB was last
+    /// computed, plus a margin so that it seldom changes. It decides which pairs exist, so it is part of the state.
     pub(crate) fat: Aabb,
 }
 

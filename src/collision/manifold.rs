@@ -49,8 +49,8 @@ pub struct ManifoldPoint {
     pub feature: Feature,
 }
 
-/// Contact manifold of shape A and shape B at the start of the tick, or at the time of impact for shapes that first
-/// touch later in the tick. The separations are always those at the start of the tick.
+/// Contact manifold of shape A and shape B at the start of the tick, or at the time of impact for shapes that approach
+/// fast and first touch later in the tick. The separations are always those at the start of the tick.
 ///
 /// While shapes hardly move relative to each other, their contact keeps the normal and the points of an earlier tick.
 /// The points move with the bodies, and may be off by up to a 64th of the smaller shape's extent.

@@ -147,7 +147,7 @@ mod tests {
             assert!((wide.x - Fx::from_num(turn.apply(v).x)).abs() <= narrow_half());
             let back = turn.apply_inverse(turn.apply(v)) - v;
             // Rounding contributes at most 1.3 units. The error of cos^2 + sin^2 is at most 2.24 units of 2^-30, which
-            // are 2.7 units of `Length` for 300 m.
+            // are less than 2.7 units of `Length` for 300 m.
             assert!(back.x.abs().to_bits() <= 4 && back.y.abs().to_bits() <= 4, "{turn:?} {v:?} {back:?}");
         }
     }

@@ -1,6 +1,6 @@
 //! Tests the predicates against integer and rational arithmetic on a small grid, where touching, crossing at corners
 //! and overlapping are common. Most figures are then scaled or moved, up to the size and the edge of the number range,
-//! where a cross product has 128 bits.
+//! where a cross product has up to 128 bits.
 
 use super::*;
 use crate::fx;
