@@ -25,21 +25,24 @@ pub const INPUT_BYTES_MAX: u16 = 512;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
-    /// Time for which play stalls because of a missing peer before the others go on without it. `u64::MAX`: without a
-    /// limit, until a quorum or the tie-holder votes with
+    /// Time for which play stalls because of a missing peer before the others go on without it. `u64::MAX`: no limit. A
+    /// quorum or the tie-holder can end a stall at any time with
     /// [`Session::go_on_without`](super::Session::go_on_without).
     pub patience: u64,
-    /// A peer counts as heard if a packet from it arrived within this time.
+    /// A peer counts as heard if a packet from it arrived within this time. Also the shortest stall that is reported
+    /// with [`Event::Waiting`](super::Event::Waiting).
     pub heard: u64,
     /// A peer's row (its latest status record) counts as fresh for this time after it arrived.
     pub fresh: u64,
-    /// Time for which a proposer that has promises from a quorum waits for further promises.
+    /// Maximum time for which a proposer that has promises from a quorum waits for the promises of the other voters.
     pub promises: u64,
-    /// Time without a decision after which another proposer starts a ballot.
+    /// Minimum time after a promise without a decision before another ballot starts. The time grows with the number of
+    /// rounds that led to no decision.
     pub ballot: u64,
     /// Minimum time for which a peer that has finished or left still answers.
     pub linger: u64,
-    /// Maximum time for which a peer that has finished or left still answers.
+    /// Maximum time for which a peer that has finished or left still answers. Also the maximum time for which a peer
+    /// that wants to leave waits for the decision of the others.
     pub linger_max: u64,
     /// Upper bound of the time counted between two calls, so that a process that was suspended does not take the other
     /// peers for silent.
@@ -82,25 +85,26 @@ pub struct Config {
     pub input_bytes: u16,
     /// Duration of a tick in microseconds, 1000 to 1 000 000.
     pub tick_micros: u32,
-    /// Number of seats that have to be taken before the first tick.
+    /// Number of seats that have to be taken before the first tick, at most `seats`.
     pub start_with: u8,
     /// Bit for each seat that this peer asks for; 0 for any seats that are free.
     pub seats_wanted: u64,
     /// Number of ticks that may be played with guessed inputs, at most [`GUESS_MAX`]; 0 is lockstep. Each peer chooses
     /// its own.
     pub guess: u16,
-    /// Smallest delay of inputs in ticks. Each peer chooses its own.
+    /// Smallest delay of inputs in ticks, at most `delay_max`. Each peer chooses its own.
     pub delay_min: u16,
     /// Largest delay of inputs in ticks, at most [`DELAY_MAX`].
     pub delay_max: u16,
-    /// Lead of the peers that join, in ticks: their first tick lies three round trips plus this number of ticks after
-    /// the cut of the view change, but at most half of `history` after it, unless this number is larger.
+    /// In a match that has begun, the first tick of a peer that joins lies this number of ticks plus three round trips
+    /// after the cut of the view change. The distance is limited to half of `history`, or to `seat_lead` if that is
+    /// larger.
     pub seat_lead: u16,
     /// A peer that lags by at most this many ticks has caught up and may have a seat.
     pub seat_within: u16,
     /// Number of ticks that may be played beyond the last final one, at least 16.
     pub history: u16,
-    /// Number of final ticks whose inputs are kept for peers that reconnect.
+    /// Minimum number of final ticks whose inputs are kept for peers that reconnect; at least `history`.
     pub log_ticks: u32,
     /// Interval in ticks at which states are saved, from 1 to half of `history`.
     pub save_interval: u16,
@@ -241,7 +245,7 @@ pub enum Fault {
     ForgetAccepted,
     /// A change is accepted without the inputs before its cut.
     AcceptBlind,
-    /// A peer that leaves does not linger.
+    /// A peer that has finished or left does not linger.
     HastyLeave,
     /// Wrong guesses are not corrected.
     NoRollback,

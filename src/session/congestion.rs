@@ -1,10 +1,10 @@
 //! [`Congestion`]: the rate at which a state is sent to one receiver.
 //!
-//! Additive increase, multiplicative decrease (Chiu and Jain 1989), evaluated once per round trip. The rate of a period
-//! was too high if more than an eighth of its chunks were lost, or if the round trip rose by more than 60 ms above the
-//! smallest one. Such a rise means that a queue fills up, and the inputs of the match pass through the same queue. Loss
-//! below an eighth is attributed to the link. Until the rate is too high for the first time, it grows by half in each
-//! period in which it limited the sending.
+//! Additive increase, multiplicative decrease (Chiu and Jain 1989), evaluated after each period of about one round
+//! trip. The rate of a period was too high if more than an eighth of its chunks were lost, or if the round trip rose by
+//! more than 60 ms above the smallest one. Such a rise means that a queue fills up, and the inputs of the match pass
+//! through the same queue. Loss of up to an eighth is attributed to the link. Until the rate is too high for the first
+//! time, it grows by half after each period in which it limited the sending.
 
 /// Initial rate in bytes a second.
 const RATE_START: u64 = 1_000_000;

@@ -1,16 +1,15 @@
 //! [`Contacts`]: alternative contacts for a peer without a vote that has lost its contact.
 //!
-//! A spectator receives the match through the peer that admitted it. When it no longer receives packets from a
-//! majority, it contacts the other peers whose addresses it has learned, one after the other, with the same handshake
-//! as when joining. The peer that admits it serves it from then on. The spectator keeps its state and continues at its
-//! current tick.
+//! A spectator receives the match through the peer that admitted it. When it no longer receives rows of a majority, it
+//! contacts the peers whose addresses it has learned, one after the other, with the same handshake as when joining. The
+//! peer that admits it serves it from then on. The spectator keeps its state and continues at its current tick.
 
 use alloc::vec::Vec;
 
 use super::address::Address;
 use super::id::PeerId;
 
-/// Time without a majority after which other peers are contacted, in microseconds.
+/// Time without rows of a majority after which other peers are contacted, in microseconds.
 const SILENCE: u64 = 500_000;
 /// Time after which an unanswered attempt is given up, in microseconds.
 const ASK_TIME: u64 = 1_500_000;
@@ -52,8 +51,8 @@ impl Contacts {
         }
     }
 
-    /// Returns the contact to send a hello to, if one is due. `is_silent` is whether this peer receives no packets from
-    /// a majority. `nonce` generates the number of a new handshake.
+    /// Returns the contact to send a hello to, if one is due. `is_silent` is whether this peer has no recent rows of a
+    /// majority. `nonce` generates the number of a new handshake.
     pub(super) fn update(
         &mut self,
         now: u64,

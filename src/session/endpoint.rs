@@ -188,7 +188,7 @@ impl Endpoint {
         }
     }
 
-    /// Opens a match. `seats` are your own seats, one bit for each; none for a dedicated server.
+    /// Opens a match. `seats` has a bit for each seat of this peer; it is 0 for a dedicated server.
     ///
     /// # Errors
     /// [`ConfigError`] if a parameter is out of its range.
@@ -220,7 +220,8 @@ impl Endpoint {
         Ok(endpoint)
     }
 
-    /// Sends the request to join to another peer, or again to the same one. A session in progress is discarded.
+    /// Requests to join through another contact, or again through the same one. The next call of
+    /// [`update`](Endpoint::update) sends the request. A session in progress is discarded.
     pub fn ask(&mut self, contact: Address) {
         self.contact = Some(contact);
         let nonce = token(self.secret, self.me, &contact).wrapping_add(self.packets_seed());
@@ -287,8 +288,8 @@ impl Endpoint {
         self.guests.anybody_waits()
     }
 
-    /// Offers the state after `tick` ticks, all of which must be final. The state is sent to all peers that wait for
-    /// one, while play continues.
+    /// Offers the state after `tick` ticks, all of which must be final; otherwise the call has no effect. The state is
+    /// sent to all peers that wait for one, while play continues.
     pub fn offer_state(&mut self, tick: Tick, state: Vec<u8>) {
         let Phase::InMatch(session) = &self.phase else { return };
         if tick > session.final_tick() {
@@ -335,7 +336,7 @@ impl Endpoint {
         }
     }
 
-    /// Asks other peers to serve this peer, if it has no vote and receives no packets from a majority.
+    /// Asks other peers to serve this peer, if it has no vote and has no recent rows of a majority.
     fn search(&mut self, now: u64) {
         let Phase::InMatch(session) = &self.phase else { return };
         let is_silent = session.status() == Status::Paused && session.view().voter(self.me).is_none();

@@ -45,7 +45,7 @@ impl Endpoint {
             JoinPacket::Challenge { nonce, cookie } => {
                 if let Phase::InMatch(session) = &mut self.phase {
                     if self.contacts.take_challenge(nonce, cookie) {
-                        // The sender is going to serve this peer, so this peer sends packets to it.
+                        // The sender serves this peer if it admits it. This peer sends its own packets there already.
                         session.attach(sender, None);
                         self.routes.prove(sender, from, now);
                     }

@@ -29,10 +29,10 @@ pub enum Status {
     Waiting,
     /// Takes part in a match that has begun, with a seat or as a dedicated server.
     Playing,
-    /// Receives no packets from a majority, and only a majority can continue the match. A peer without a seat may ask
-    /// another contact.
+    /// No recent status records of a majority have arrived, directly or through other peers, and only a majority can
+    /// continue the match. A peer without a seat may ask another contact.
     Paused,
-    /// The others continued without this peer, which requests a seat again.
+    /// The others continued without this peer. A player requests a seat again.
     Dropped,
     /// The others removed this peer for good.
     Kicked,

@@ -22,6 +22,6 @@ impl fmt::Display for PeerId {
 }
 
 /// Identity of a participant that outlives its process: the lobby assigns it, or the game derives it from a public key.
-/// A peer that returns with the same key gets its former seat, if that is still free.
+/// A peer that returns with the same key, and asks for no other seat, gets its former seat if that is still free.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Key(pub u64);

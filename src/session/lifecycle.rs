@@ -1,4 +1,4 @@
-//! The [`Status`] of a session, determined in one place after each update.
+//! The [`Status`] of a session, determined by each call of [`Session::update`].
 
 use super::config::Fault;
 use super::event::{Event, Status};
@@ -11,7 +11,8 @@ use super::view::{View, has_bit};
 #[derive(Clone, Debug)]
 pub(super) struct Lifecycle {
     pub(super) status: Status,
-    /// Time at which this peer first wanted to leave, lost its vote, or held all ticks of the match as final.
+    /// Time at which this peer began to leave, had left, or had finished. The time limits of `Timing::linger` and
+    /// `Timing::linger_max` start here.
     since: Option<u64>,
     /// Whether this peer had a seat and lost it against its will.
     dropped: bool,
@@ -150,7 +151,7 @@ impl Session {
             return if self.lingered(since, known) { Status::Closed } else { Status::Left };
         }
         if self.wants.leave {
-            // A minority cannot decide on a departure, so the peer leaves without a decision after this time.
+            // A minority cannot decide on a departure, so the peer leaves without a decision after `linger_max`.
             let since = *self.lifecycle.since.get_or_insert(self.clock.active);
             let waited = self.clock.active > since.saturating_add(self.config.timing.linger_max);
             return if waited { Status::Closed } else { Status::Leaving };

@@ -1,9 +1,9 @@
 //! [`Pace`]: the time at which the next tick is due, and the number of ticks by which this peer's inputs are delayed.
 //!
-//! The current tick of another peer is estimated from its newest row, the age of that row and half a round trip. Each
-//! peer steers towards the median of these estimates: it lengthens its ticks by up to 1/8 when it is ahead, and
-//! shortens them by up to 1/16 when it is behind. Therefore the speed of play changes gradually, and clocks that run at
-//! different rates do no harm.
+//! The current tick of another player is estimated from its newest row, the age of that row and half a round trip. Each
+//! voter steers towards the median of these estimates, and a peer without a vote towards [`FOLLOW`] ticks behind the
+//! final ticks. A peer lengthens its ticks by up to 1/8 when it is ahead, and shortens them by up to 1/16 when it is
+//! behind. Therefore the speed of play changes gradually, and clocks that run at different rates do no harm.
 
 use alloc::vec::Vec;
 
@@ -32,15 +32,15 @@ pub(super) struct Pace {
     hurries: bool,
 }
 
-/// Largest number of ticks by which a peer runs ahead of the slowest.
+/// Number of ticks ahead of the slowest other player beyond which a voter waits for it.
 const AHEAD_MAX: i64 = 6;
 /// Largest lateness that is made up, in ticks. Any further lateness is dropped.
 const LATE_MAX: u64 = 3;
-/// Minimum number of complete but unplayed ticks at which a peer catches up at once.
+/// From this value of [`Pace::behind`] on, a peer plays ticks before they are due.
 const CATCH_UP: Tick = 12;
-/// Time between changes of the delay, in microseconds.
+/// Minimum time between changes of the delay by one tick, in microseconds.
 const DELAY_INTERVAL: u64 = 500_000;
-/// Number of ticks by which a peer without a seat stays behind the final ticks.
+/// Number of ticks by which a peer without a vote stays behind the final ticks.
 const FOLLOW: i64 = 2;
 /// Units per tick in which leads over other peers are measured.
 const PART: i64 = 256;
@@ -162,7 +162,7 @@ impl Session {
     }
 
     /// Target of the input delay in ticks, from the slowest link to another player: half a round trip, twice the jitter
-    /// and one tick, less [`Config::guess`].
+    /// and one tick, less [`Config::guess`], clamped to the bounds in [`Config`].
     fn delay_aim(&self) -> u16 {
         let (least, most) = (self.config.delay_min, self.config.delay_max);
         let tick = self.pace.tick_micros.max(1);

@@ -82,7 +82,8 @@ pub(super) fn open(match_tag: u64, bytes: &[u8]) -> Decoded<&[u8]> {
     }
 }
 
-/// Composes a packet part by part, in the order of the methods, and never beyond [`PACKET_BYTES_MAX`].
+/// Composes a packet part by part, in the order of the methods. Parts that would not fit in [`PACKET_BYTES_MAX`] are
+/// left out.
 pub(super) struct Composer {
     bytes: Vec<u8>,
     flags: u8,

@@ -20,7 +20,8 @@ pub(super) struct Remote {
     pub(super) fresh: Option<u64>,
     /// Time at which the last packet arrived from the peer itself.
     pub(super) heard: Option<u64>,
-    /// Time at which the newest row arrived that states a connection of the peer to a quorum.
+    /// Time at which the newest row arrived that states a connection of the peer to a quorum. Before the first such
+    /// row, the time at which the peer became known.
     pub(super) contact: u64,
     /// Whether the peer is served although it has no vote.
     pub(super) attached: bool,

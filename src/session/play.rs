@@ -161,8 +161,8 @@ impl Session {
         spans.map(|(index, span)| (index, span.seat))
     }
 
-    /// First tick of an own span whose input must not be issued yet. At the start of a span, one input more than the
-    /// delay is issued at once, so that the other peers need not wait for the first ticks.
+    /// First tick of an own span whose input must not be issued yet. At the start of a span, the inputs of `delay + 1`
+    /// ticks are issued at once, so that the other peers need not wait for the first ticks.
     fn issue_limit(&self, span: usize) -> Tick {
         if !self.view.begun {
             return 0;

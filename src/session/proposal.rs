@@ -282,8 +282,8 @@ impl Session {
             .min(Tick::from(self.config.history / 2).max(lead))
     }
 
-    /// Bit for each voter that the new view leaves out: it wants to leave, is removed, or has neither promised the
-    /// ballot nor been in contact for `patience`.
+    /// Bit for each voter that wants to leave, is removed, or has neither promised the ballot nor been in contact for
+    /// `patience`.
     fn leaving(&self, promisers: u64) -> u64 {
         let active = self.clock.active;
         let number = self.view.number;

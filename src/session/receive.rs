@@ -9,7 +9,8 @@ use super::peers::PEERS_MAX;
 use super::row::Row;
 use super::state::Session;
 
-/// Inputs more than this many ticks ahead of the complete ticks are not kept, so that no peer exhausts the memory.
+/// Once a span's inputs are known for more than this many ticks after the complete ones, further inputs are dropped, so
+/// that no peer exhausts the memory.
 const INPUTS_AHEAD_MAX: Tick = 1024;
 
 impl Session {
@@ -21,7 +22,7 @@ impl Session {
     }
 
     /// Processes a received packet. Returns its sender, or `None` if it is not a packet of this match from a known
-    /// peer.
+    /// peer, or if this session is closed.
     pub fn receive(&mut self, now: u64, bytes: &[u8]) -> Option<PeerId> {
         self.look(now);
         if self.status().is_closed() {
@@ -97,7 +98,7 @@ impl Session {
     fn take_inputs(&mut self, index: usize, start: u32, inputs: &[u8]) {
         let Some(span) = self.view.spans.get(index) else { return };
         let owner = span.owner;
-        // The bound does not slow down a peer that catches up: a packet has at most 64 ticks of a span.
+        // The bound does not slow down a peer that catches up: each packet brings it at most 64 ticks of a span.
         let far = self.progress.complete.saturating_add(INPUTS_AHEAD_MAX);
         if owner == self.me || self.log.next(index) > far.max(span.from) {
             return;

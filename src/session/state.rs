@@ -40,7 +40,7 @@ pub enum Role {
         /// Number of seats, at least 1.
         seats: u8,
     },
-    /// Follows the final ticks without a seat.
+    /// Requests no seat: a peer that only watches and plays only final ticks, or a dedicated server.
     Spectator,
 }
 
@@ -244,7 +244,7 @@ impl Session {
 
     /// Requests an end of the match after `ticks` ticks. If several peers request an end, the largest number counts.
     /// The request is sent two seconds before the end, and not before the match begins. Until a majority has decided on
-    /// an end, peers can join. After that no peer can join, and the end does not change any more.
+    /// an end, peers can get seats. After that no peer gets a seat, and the end does not change any more.
     pub fn end_at(&mut self, ticks: Tick) {
         self.end_at = Some(ticks);
     }
@@ -270,8 +270,7 @@ impl Session {
 
     fn remove(&mut self, removal: Removal) {
         if !self.wants.removals.contains(&removal) {
-            // The oldest vote is dropped. If its peer has already been removed, the only effect is that this peer may
-            // return.
+            // The oldest vote is dropped. If the peer that it names has been removed already, that peer may return.
             if self.wants.removals.len() == REMOVALS_MAX {
                 self.wants.removals.remove(0);
             }
@@ -284,13 +283,15 @@ impl Session {
         self.role = role;
     }
 
-    /// Sets the bounds of the delay of this peer's inputs, in ticks.
+    /// Sets the bounds of the delay of this peer's inputs, in ticks. `most` is reduced to
+    /// [`DELAY_MAX`](super::DELAY_MAX) if it is larger, and `least` to `most`.
     pub fn set_delay(&mut self, least: u16, most: u16) {
         self.config.delay_max = most.min(super::config::DELAY_MAX);
         self.config.delay_min = least.min(self.config.delay_max);
     }
 
-    /// Sets how many ticks may be played with guessed inputs. 0 is lockstep.
+    /// Sets how many ticks may be played with guessed inputs; 0 is lockstep. Values above
+    /// [`GUESS_MAX`](super::GUESS_MAX) are reduced to it.
     pub fn set_guess(&mut self, ticks: u16) {
         self.config.guess = ticks.min(super::config::GUESS_MAX);
     }

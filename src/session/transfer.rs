@@ -90,7 +90,8 @@ impl Upload {
         self.next = next;
         self.window = window.min(WINDOW_MAX);
         self.cursor = next;
-        // The newest chunk that has arrived since the last request measures the round trip.
+        // The last chunk in the window that has arrived since the previous request measures the round trip, if it was
+        // sent only once.
         let end = next.saturating_add(self.window);
         let newest =
             (first..end).rev().find(|&index| self.has(index) && !in_masks(&masks_before, first, index));

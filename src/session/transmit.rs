@@ -1,4 +1,5 @@
-//! Outgoing packets: this peer's row to every peer that is served, and the inputs that each receiver lacks.
+//! Outgoing packets: this peer's row to every peer that is served, with the decided changes, the inputs and the rows of
+//! other peers that the receiver lacks.
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
@@ -33,14 +34,14 @@ const HELP_TICKS: Tick = 20;
 /// Interval, in versions of the row, at which a peer that has no vote or has lost contact to a quorum sends its row to
 /// all peers that it knows.
 const TRY_ROWS: u32 = 8;
-/// Longest time between packets in microseconds, in a match of up to 16 peers.
+/// Longest time between packets in microseconds, if at most 16 peers are known.
 const INTERVAL_MAX: u64 = 100_000;
 /// Interval, in versions of the row, at which the row contains a state hash.
 const HASH_ROWS: u32 = 4;
 
 impl Session {
-    /// Time between packets: the duration of a tick, but at most [`INTERVAL_MAX`]. In matches of more than 16 peers it
-    /// is twice as long, and of more than 32 peers three times.
+    /// Time between packets: the duration of a tick, but at most [`INTERVAL_MAX`]. It is twice as long if more than 16
+    /// peers are known, and three times as long if more than 32 are known.
     pub(super) fn send_interval(&self) -> u64 {
         let many = match self.peers.list.len() {
             0..=16 => 1,
@@ -209,7 +210,8 @@ impl Session {
         Some((u16::try_from(index).ok()?, start, inputs))
     }
 
-    /// Rows of other peers that the receiver does not hear. With each version of the own row, another peer is first.
+    /// Rows of voters, and of peers that request seats, that the receiver does not hear. With each version of the own
+    /// row, another peer is first.
     fn foreign_rows(&self, receiver: &Remote) -> Vec<&Remote> {
         if self.config.has(Fault::NoRelay) {
             return Vec::new();

@@ -175,7 +175,7 @@ impl View {
         self.end.unwrap_or(NEVER)
     }
 
-    /// Bit for each seat that no peer plays.
+    /// Bit for each of the [`SEATS_MAX`] seats that no peer plays or is going to play.
     #[must_use]
     pub fn free_seats(&self) -> u64 {
         let taken = self.spans.iter().filter(|span| span.is_open());
