@@ -21,7 +21,7 @@ use crate::world::World;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RulesId {
-    /// A short name, at most 64 bytes.
+    /// A short name of 1 to 64 bytes.
     pub name: &'static str,
     /// The version of the rules.
     pub version: u32,

@@ -105,8 +105,9 @@ impl Game for Sandbox {
 
     const RULES: RulesId = RulesId { name: "sandbox", version: 1 };
 
-    /// Refuses a setup if the world refuses its settings or any of its commands. Only a player's commands are skipped
-    /// if the world refuses them, because they may be wrong predictions.
+    /// Refuses a setup if the world refuses its settings or any of its commands, or if it takes more than 100 million
+    /// work units. Only a player's commands are skipped if the world refuses them, because they may be wrong
+    /// predictions.
     fn new(setup: &SandboxSetup) -> Result<Self, SetupError> {
         match Self::new_within(setup, SETUP_WORK_MAX) {
             Ok((game, _)) => Ok(game),

@@ -24,13 +24,14 @@ use crate::session::ConfigError;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PeerError {
-    /// The setup cannot start a game, or the replay cannot be written.
+    /// The setup cannot start a game, the checkpoint interval is out of its range, or inputs or claims cannot be
+    /// recorded.
     Record(RecordError),
     /// An option, or a number of the game that the session depends on, is out of its range. The error names the field
     /// of [`PeerOptions`](super::PeerOptions), such as `delay.0`, or the method, such as `Game::tick_rate`.
     Config(ConfigError),
-    /// An encoded input is longer than [`PeerOptions::input_bytes`](super::PeerOptions::input_bytes), or, without that
-    /// option, has another length than the default input.
+    /// An encoded input is longer than [`PeerOptions::input_bytes`](super::PeerOptions::input_bytes). Without that
+    /// option: it has another length than the default input, or the default input is longer than 65 535 bytes.
     InputLength {
         /// Bytes of the encoded input.
         bytes: usize,
@@ -68,9 +69,9 @@ pub enum PeerError {
         /// Reason why the state cannot be used.
         why: String,
     },
-    /// A state is needed that is no longer kept.
+    /// A state, or the inputs of a tick, are needed but no longer kept.
     NoState {
-        /// Number of ticks played before that state.
+        /// Number of ticks played before that state or that tick.
         tick: u64,
     },
 }

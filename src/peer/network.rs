@@ -96,7 +96,8 @@ struct State {
     rng: Rng,
     now: Duration,
     sent: u64,
-    /// Time at which the last packet of a link arrives. Later packets arrive no earlier, so that the order is kept.
+    /// Time at which the last packet of a link arrives, without [`REORDER_DELAY`]. Later packets arrive no earlier, so
+    /// that jitter does not change the order.
     last: BTreeMap<(u32, u32), Duration>,
     /// Packets in flight, by time of arrival and order of sending.
     flying: BTreeMap<(Duration, u64), Datagram>,
@@ -156,7 +157,7 @@ impl Network {
         self.state().conditions = conditions;
     }
 
-    /// Changes the conditions of one link in one direction.
+    /// Changes the conditions of one link in one direction, for packets sent from now on.
     pub fn set_link(&self, from: u32, to: u32, conditions: LinkConditions) {
         self.state().links.insert((from, to), conditions);
     }

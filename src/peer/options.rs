@@ -11,8 +11,8 @@ use super::input_slot::{InputSlot, LENGTH_BYTES};
 
 /// Options of a peer. `patience`, `input_bytes` and `match_tag` have to be the same for all peers of a match.
 ///
-/// The defaults are those of [`PeerOptions::lockstep`] and [`PeerOptions::rollback`]. A value out of its range is an
-/// error of [`Peer::host`](super::Peer::host), `join` and `watch` that names the option, its value and its range.
+/// The defaults are those of [`PeerOptions::lockstep`] and [`PeerOptions::rollback`].
+/// [`Peer::host`](super::Peer::host), `join` and `watch` return an error if a value is out of its range.
 ///
 /// ```
 /// use core::time::Duration;
@@ -29,8 +29,8 @@ pub struct PeerOptions {
     /// Smallest and largest delay of own inputs in ticks, at most 60. Within these bounds the delay follows the
     /// latency. Default: (0, 20) in lockstep, (1, 20) with rollback. Each peer chooses its own.
     pub delay: (u16, u16),
-    /// Time for which all peers wait for a peer that sends nothing before they continue without it. `Duration::MAX`:
-    /// without a limit. Any duration is possible. Default: 2 s.
+    /// Time for which the other peers wait for a missing peer before they continue without it. `Duration::MAX`: no
+    /// limit. Any duration is possible. Default: 2 s.
     pub patience: Duration,
     /// Number of seats that have to be taken before the first tick: 0 to the number of players of the game. Default: 2.
     pub start_with: u8,
@@ -51,7 +51,7 @@ pub struct PeerOptions {
 }
 
 impl PeerOptions {
-    /// Lockstep, with a delay of up to 20 ticks.
+    /// Lockstep, with an input delay of 0 to 20 ticks.
     #[must_use]
     pub const fn lockstep() -> Self {
         PeerOptions {
@@ -67,7 +67,7 @@ impl PeerOptions {
         }
     }
 
-    /// Up to 8 guessed ticks, with a delay of at least 1 tick.
+    /// Up to 8 guessed ticks, with an input delay of 1 to 20 ticks.
     #[must_use]
     pub const fn rollback() -> Self {
         PeerOptions { guess: 8, delay: (1, 20), ..Self::lockstep() }

@@ -138,7 +138,8 @@ impl<G: Game, T: Transport> Peer<G, T> {
         Ok(Peer { transport, endpoint, simulation, parameters, slot, now: 0, end: None, inputs, events })
     }
 
-    /// Processes received packets and sends packets that are due. `now` is the time since a fixed moment in the past.
+    /// Processes received packets, plays the ticks that the session requests again, and sends packets that are due.
+    /// `now` is the time since a fixed moment in the past.
     ///
     /// # Errors
     /// [`PeerError`] when this peer cannot continue.
@@ -352,8 +353,9 @@ impl<G: Game, T: Transport> Peer<G, T> {
         &mut self.transport
     }
 
-    /// This peer's report of a desync, as the bytes of a file. The reports of any two peers together show which peer
-    /// diverged, at which tick, and in which part of the state.
+    /// This peer's report of a desync, as the bytes of a file. From the reports of two peers with different states,
+    /// [`compare`](crate::report::compare) finds the first known tick and the part of the state that differ. If one of
+    /// the reports contains a replay, it also finds the side that diverged.
     ///
     /// # Errors
     /// [`PeerError`] when the states that the report needs are not kept.

@@ -76,7 +76,7 @@ pub enum Flaw {
     SplitRun,
     /// A block has more ticks than the header's checkpoint interval.
     BlockTicks {
-        /// Ticks in the block.
+        /// Ticks in the block, counted up to the run that exceeds the interval.
         ticks: u64,
         /// The checkpoint interval.
         interval: u32,

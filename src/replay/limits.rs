@@ -38,7 +38,7 @@ pub struct Limits {
     /// Work units of one tick, as counted by [`Game::work`](crate::lockstep::Game::work) and by the world while it
     /// plays the tick.
     pub tick_work: u64,
-    /// Work units of the whole game.
+    /// Work units of the whole game, including its setup.
     pub total_work: u64,
 }
 

@@ -4,8 +4,8 @@ use super::limits::{LimitKind, Limits};
 use super::verdict::Verdict;
 use crate::lockstep::Game;
 
-/// Plays a tick of a game with `step`, within the limits of a tick and of the whole replay. `spent` is the work of all
-/// ticks so far, to which the work of this tick is added.
+/// Plays a tick of a game with `step`, within the limits of a tick and of the whole replay. `spent` is the work of the
+/// setup and of all ticks so far, to which the work of this tick is added.
 pub(crate) fn play_within<G: Game, T>(
     game: &mut G,
     inputs: &[G::Input],

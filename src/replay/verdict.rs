@@ -43,9 +43,10 @@ pub enum Verdict {
         /// Tick of the first checkpoint that differs.
         first_different: u64,
     },
-    /// The file ends before its trailer. All checkpoints in the complete blocks agree.
+    /// The file ends before its trailer, or [`VerifiedReplay::conclude`](super::VerifiedReplay::conclude) was called
+    /// before the end of the file. All checkpoints up to there agree.
     Incomplete {
-        /// Number of ticks in the complete blocks, all of which were played.
+        /// Number of ticks played: all ticks in the complete blocks, if the replay was played to its end.
         ticks: u64,
         /// Hash of the state after these ticks.
         hash: StateHash,
@@ -182,7 +183,7 @@ impl Verdict {
         }
     }
 
-    /// Hash of the last state, if all states up to it agreed with the recording.
+    /// Hash of the last state played, if all checkpoints up to it agree.
     #[must_use]
     pub fn hash(&self) -> Option<StateHash> {
         match self {

@@ -135,7 +135,7 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
         self.raw.ticks()
     }
 
-    /// The trailer, if the file is complete. Its statements are true only if the verdict is [`Verdict::Match`].
+    /// The trailer, if the file is complete. Its statements are verified only if the verdict is [`Verdict::Match`].
     #[must_use]
     pub fn trailer(&self) -> Option<&Trailer> {
         self.ending.trailer.as_ref()

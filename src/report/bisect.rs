@@ -11,8 +11,8 @@ use crate::lockstep::Game;
 use crate::replay::Limits;
 
 /// Finds the first tick at which two trajectories differ, the stage of that tick, and the differences, with the
-/// probable origin first. The search plays the inputs once, with a save and a hash per tick. The total cost, including
-/// the search for a single bit flip that explains all differences, is less than playing all ticks three times.
+/// probable origin first. Equal inputs are played once, with a save and a hash per tick. The total cost, including the
+/// search for a single bit flip that explains all differences, is less than playing all ticks three times.
 ///
 /// Without `b`, the other trajectory is the one that the running engine computes from the same inputs. A replay shows
 /// only between which of its checkpoints the trajectories diverge. A [`Trace`](super::Trace) of these ticks, made by

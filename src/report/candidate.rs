@@ -21,7 +21,7 @@ use crate::world::BodyField;
 /// Maximum work units that [`compare`](super::compare::compare) spends on trying bit flips: about ten seconds. The
 /// limits may allow fewer.
 pub(super) const WORK_MAX: u64 = 400_000_000;
-/// Minimum work units that are charged for a step. Half as many are charged for loading and hashing a state.
+/// Minimum work units that are charged for a step. Loading and hashing a state is charged with half the work of a step.
 const TRY_WORK: u64 = 1000;
 
 /// A tick in which one side diverged.

@@ -243,7 +243,7 @@ impl Comparison {
         }
     }
 
-    /// Whether nothing differs in the ticks that both files cover.
+    /// Whether no difference was found, neither between the files nor between a file and the rerun.
     #[must_use]
     pub fn is_equal(&self) -> bool {
         self.setup.is_empty()

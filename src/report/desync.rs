@@ -40,7 +40,8 @@ pub struct Group {
     pub seats: Vec<u32>,
 }
 
-/// The data of one peer at a desync. Two reports together show which peer diverged, when and where.
+/// The data of one peer at a desync. [`compare`](super::compare()) finds out from two reports where the states differ
+/// and, if one of the reports contains a replay, which peer diverged.
 ///
 /// ```
 /// # use lockstep2d::{hash::StateHash, lockstep::{Game, History, Sandbox, SandboxSetup}, replay::Recording};
@@ -203,7 +204,7 @@ impl DesyncReport {
         self.body.history.len().saturating_sub(self.body.saves.len())
     }
 
-    /// The replay up to the time of the report, as the bytes of a file.
+    /// The replay up to the time of the report, as the bytes of a file; empty if the peer has no replay.
     #[must_use]
     pub fn replay(&self) -> &[u8] {
         &self.body.replay

@@ -34,7 +34,7 @@ pub enum Evidence {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EvidenceError {
-    /// A report that is damaged or has another format.
+    /// A report that is damaged, too long, or has another format.
     Report(ReportError),
     /// A snapshot that is damaged, or has another format or other semantics.
     World(SnapshotError),
@@ -66,7 +66,8 @@ impl Evidence {
     /// Reads a file. Its first bytes determine the kind.
     ///
     /// # Errors
-    /// [`EvidenceError`] for bytes that are neither a report nor a replay nor a snapshot.
+    /// [`EvidenceError`] for a report or snapshot that cannot be read, and for bytes that are neither a report nor a
+    /// replay nor a snapshot. A replay is not checked.
     pub fn read(bytes: Vec<u8>, limits: &Limits) -> Result<Self, EvidenceError> {
         if bytes.starts_with(&replay::MAGIC) {
             return Ok(Evidence::Replay(bytes));

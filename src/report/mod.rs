@@ -1,9 +1,10 @@
 //! Desync reports, and their comparison, which determines the side that diverged, the tick and the part of the state.
 //!
 //! A peer keeps a [`History`](crate::lockstep::History) of the last seconds. When it receives a hash that differs from
-//! its own, it writes a [`DesyncReport`]: the hashes and saves of its history, and the replay so far. [`compare`] takes
-//! two reports or replays and simulates the confirmed inputs again. A side whose states differ from this rerun has
-//! diverged from the rules. This works with two peers, too. Two snapshots are compared without a simulation.
+//! its own, its game can write a [`DesyncReport`]: the hashes and saves of the history, and the replay so far.
+//! [`compare`] takes two reports or replays and simulates the confirmed inputs again. A side whose states differ from
+//! this rerun has diverged from the rules. This works with two peers, too. Two snapshots are compared without a
+//! simulation.
 //!
 //! [`bisect`] also examines a single file and finds the tick at which its trajectory diverges from the running
 //! engine's. A [`Trace`] contains more data for this than a replay.

@@ -27,7 +27,8 @@ pub const PHASE_DIGESTS_MAX: usize = 1024;
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TickPhases {
-    /// The digests, in the order of the phases.
+    /// For each step of the world: the digest at its start, then the digests after its phases, in order. At most
+    /// [`PHASE_DIGESTS_MAX`].
     pub digests: Vec<StateHash>,
     /// The bytes of the world at the start of its step, as differences to the world after the previous tick.
     start: Vec<Patch>,

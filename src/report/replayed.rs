@@ -18,7 +18,8 @@ use crate::replay::{Limits, RawReplay, Step};
 /// Extent of the simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Effort {
-    /// Plays all ticks for which either side has data. Searches for an explanation of a difference up to a fixed limit.
+    /// Plays all ticks for which either side has data, up to the first input that differs. Searches for an explanation
+    /// of a difference up to a fixed limit.
     Thorough,
     /// Plays until a side has diverged and the states of both sides after the divergence are available, or the file of
     /// the diverged side contains no further state. Limits the search for an explanation such that both together cost
