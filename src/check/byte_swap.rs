@@ -19,7 +19,7 @@ use crate::lockstep::Game;
 /// Minimum interval in ticks between kept saves. At the start, saves at ticks that are powers of two are kept in
 /// addition.
 const INTERVAL: u64 = 16;
-/// Number of ticks for which the futures are compared.
+/// Maximum number of ticks for which the two futures are compared.
 const FUTURE: usize = 48;
 /// Maximum number of saves of other ticks to take bytes from.
 const DONORS_MAX: usize = 6;

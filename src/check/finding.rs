@@ -100,7 +100,8 @@ pub struct Finding {
     pub fault: Fault,
     /// Number of ticks after which the fault exists.
     pub tick: u64,
-    /// Number of ticks played when the fault was detected: more than `tick` after a rollback.
+    /// Number of ticks played when the fault was detected. It may be more than `tick` for [`Variant::RolledBack`] and
+    /// [`Variant::ByteSwapped`].
     pub played: u64,
     /// The first phase of the physics step whose digest differs, if phases are compared; `None` also if a difference
     /// existed before the step.

@@ -173,7 +173,7 @@ impl<G: Game> Search<'_, G> {
     }
 
     /// Removes ticks, then all inputs of ticks, then inputs of single players, then changes between ticks. Repeats this
-    /// as long as the log becomes smaller.
+    /// until the log does not become smaller any more or the budget is spent.
     fn shrink(&mut self, log: &Log<G>, mut best: Attempt<G>) -> Attempt<G> {
         loop {
             let before = weight(&best.ticks);

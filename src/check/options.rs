@@ -24,8 +24,8 @@ use crate::world::Backend;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Variant {
-    /// The inputs are played again from the start, in the same process. This detects random iteration orders, global
-    /// state, addresses and clocks.
+    /// The inputs are played again from [`CheckOptions::from`] on, in the same process. This detects random iteration
+    /// orders, global state, addresses and clocks.
     Again,
     /// Hash, work, claims and save are polled twice after every tick: polling must not change the state.
     HashPolled,
@@ -53,7 +53,9 @@ pub enum Variant {
 }
 
 impl Variant {
-    /// All variants available on this machine.
+    /// All variants, among them [`Variant::Backend`] with each available backend except the best one,
+    /// [`Variant::BroadPhase`] with each algorithm except the default one, and, with the feature `parallel`,
+    /// [`Variant::Threads`] with 2 and with 4 threads.
     #[must_use]
     pub fn all() -> Vec<Variant> {
         let mut variants = vec![
@@ -174,7 +176,8 @@ pub struct CheckOptions {
 }
 
 impl Default for CheckOptions {
-    /// Checks everything at every tick: suitable for logs of some hundred ticks.
+    /// All variants at every tick, one rollback per tick, without a comparison of phases: suitable for logs of some
+    /// hundred ticks.
     fn default() -> Self {
         CheckOptions {
             variants: Variant::all(),

@@ -16,7 +16,8 @@ use crate::math::Rng;
 /// The first byte of a tick decides whether inputs are held, for up to 16 ticks, or whether one player or all players
 /// get new ones. New inputs are made by the input's own `Deserialize`: the bytes choose variants, lengths and numbers,
 /// such that lists are short, and numbers are often small or near the maximum or the middle of their range. An input
-/// whose `Deserialize` fails is replaced by the default.
+/// whose `Deserialize` fails is replaced by the default. If the inputs of a tick do not survive encoding and decoding,
+/// all of them are replaced.
 #[must_use]
 pub fn inputs_from_bytes<G: Game>(players: u32, bytes: &[u8]) -> Vec<Vec<G::Input>> {
     let mut source = Source { bytes, depth: 0 };

@@ -67,7 +67,7 @@ impl Value {
 
 impl Value {
     /// A fixed-point number in decimal, with enough digits to distinguish it from its neighbours; `None` for other
-    /// values.
+    /// values, if the number of fraction bits is unknown, or if the computation exceeds 128 bits.
     #[must_use]
     pub fn decimal(&self) -> Option<String> {
         match self {
@@ -144,13 +144,14 @@ impl Field {
     }
 
     /// Path of the object that contains the field, such as `world.bodies.body 12v1`: an entry of the outermost map.
+    /// `None` if the field is not in a map.
     #[must_use]
     pub fn subject(&self) -> Option<&str> {
         self.subject.map(|(end, _)| &self.path[..end])
     }
 
-    /// Section that contains the field, such as `world.bodies`: the path of the outermost map, or the first name if
-    /// there is no map.
+    /// Section that contains the field, such as `world.bodies`: the path of the outermost map. If the field is not in a
+    /// map: the first name of the path, or nothing if the path begins with an index.
     #[must_use]
     pub fn section(&self) -> &str {
         let end = match self.subject {

@@ -24,8 +24,8 @@ use crate::session::ConfigError;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PeerError {
-    /// The setup cannot start a game, the checkpoint interval is out of its range, or inputs or claims cannot be
-    /// recorded.
+    /// The setup cannot start a game, the checkpoint interval is out of its range, or a replay cannot represent the
+    /// game, its inputs or its claims.
     Record(RecordError),
     /// An option, or a number of the game that the session depends on, is out of its range. The error names the field
     /// of [`PeerOptions`](super::PeerOptions), such as `delay.0`, or the method, such as `Game::tick_rate`.

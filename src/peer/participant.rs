@@ -138,7 +138,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         Ok(Peer { transport, endpoint, simulation, parameters, slot, now: 0, end: None, inputs, events })
     }
 
-    /// Processes received packets, plays the ticks that the session requests again, and sends packets that are due.
+    /// Processes received packets, plays ticks again if their inputs have changed, and sends packets that are due.
     /// `now` is the time since a fixed moment in the past.
     ///
     /// # Errors
@@ -354,8 +354,8 @@ impl<G: Game, T: Transport> Peer<G, T> {
     }
 
     /// This peer's report of a desync, as the bytes of a file. From the reports of two peers with different states,
-    /// [`compare`](crate::report::compare) finds the first known tick and the part of the state that differ. If one of
-    /// the reports contains a replay, it also finds the side that diverged.
+    /// [`compare`](crate::report::compare()) finds the first known tick at which the states differ, and the parts that
+    /// differ. If one of the reports contains a replay, it also finds the side that diverged.
     ///
     /// # Errors
     /// [`PeerError`] when the states that the report needs are not kept.

@@ -4,10 +4,10 @@
 //! XChaCha20-Poly1305; its nonce consists of sender, eight zero bytes and counter. Packets of at most 1200 bytes become
 //! at most 1232 bytes long, which with headers fit into 1280 bytes, the smallest maximum packet size of IPv6.
 //!
-//! **A nonce must never be used twice with one key.** Within one [`Sealed`] the counter prevents this. Between several
-//! of them, also after a restart, the sender number prevents it: [`Sealed::new`] chooses a random number of 64 bits.
-//! Among `n` random numbers, two are equal with a probability of about `n^2 / 2^65`: for 10 000 numbers, 3 in 10^12.
-//! Nothing has to be stored.
+//! **A nonce must never be used twice with one key.** Within one [`Sealed`], the counter prevents this. Across several
+//! of them, for example after a restart, the sender number prevents it, which `Sealed::new` draws from 2^64 numbers at
+//! random. Among `n` such numbers, two are equal with a probability of about `n^2 / 2^65`: for 10 000 numbers, 3 in
+//! 10^12. Nothing has to be stored.
 
 use alloc::vec::Vec;
 use core::fmt;

@@ -32,7 +32,7 @@ const ENVELOPE: Envelope = Envelope { magic: REPORT_MAGIC, format: REPORT_FORMAT
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ReportError {
-    /// The bytes do not start with [`REPORT_MAGIC`].
+    /// The bytes do not start with [`REPORT_MAGIC`], or are shorter than the header.
     NotAReport,
     /// The layout has another version.
     Format {
@@ -48,7 +48,7 @@ pub enum ReportError {
     },
     /// The number of bytes is not the number announced in the header.
     Length {
-        /// Number of bytes that the header announces, including the header.
+        /// Length of the whole file according to its header, in bytes.
         announced: u64,
         /// Number of bytes found.
         found: u64,

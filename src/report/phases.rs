@@ -30,9 +30,9 @@ pub struct TickPhases {
     /// For each step of the world: the digest at its start, then the digests after its phases, in order. At most
     /// [`PHASE_DIGESTS_MAX`].
     pub digests: Vec<StateHash>,
-    /// The bytes of the world at the start of its step, as differences to the world after the previous tick.
+    /// The bytes of the world at the start of its last step, as differences to the world after the previous tick.
     start: Vec<Patch>,
-    /// Length of the world at the start of its step, in bytes.
+    /// Length of the world at the start of its last step, in bytes.
     start_length: u64,
 }
 

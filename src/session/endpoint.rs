@@ -20,7 +20,7 @@ use super::state::{Role, Session};
 use super::transfer::{Download, Pinned};
 use super::view::View;
 
-/// Largest state that is accepted, in bytes.
+/// Largest download that is accepted, in bytes: the game's state, with the view and the addresses of the peers.
 pub const STATE_BYTES_MAX: u64 = 256 << 20;
 /// Time between attempts to reach the contact, in microseconds.
 const HELLO_INTERVAL: u64 = 200_000;
@@ -49,7 +49,8 @@ const PACKETS_MAX: usize = 8192;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JoinEvent {
-    /// The contact refuses the request to join.
+    /// The contact refuses the request to join. After [`RefusalReason::NotReady`] the endpoint asks again; after any
+    /// other reason it waits for [`Endpoint::ask`].
     Refused {
         /// Reason of the refusal.
         reason: RefusalReason,

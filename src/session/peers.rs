@@ -10,7 +10,7 @@ use super::view::{View, bit};
 /// Largest number of known peers. Beyond it, the peer without a vote that has been silent longest is removed.
 pub(super) const PEERS_MAX: usize = 192;
 
-/// The data that a session keeps about another peer.
+/// The data that a session keeps about a peer.
 #[derive(Clone, Debug)]
 pub(super) struct Remote {
     pub(super) id: PeerId,

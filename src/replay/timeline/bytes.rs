@@ -40,7 +40,7 @@ const ENVELOPE: Envelope = Envelope { magic: KEYFRAMES_MAGIC, format: KEYFRAMES_
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum KeyframesError {
-    /// The bytes do not start with [`KEYFRAMES_MAGIC`].
+    /// The bytes do not start with [`KEYFRAMES_MAGIC`], or are shorter than the header.
     NotKeyframes,
     /// The layout has another version.
     Format {
@@ -63,7 +63,7 @@ pub enum KeyframesError {
     OtherReplay,
     /// The number of bytes is not the number announced in the header.
     Length {
-        /// Number of bytes that the header announces, including the header.
+        /// Length of the whole file according to its header, in bytes.
         announced: u64,
         /// Number of bytes found.
         found: u64,
