@@ -1,4 +1,4 @@
-//! Simulates the inputs of the files again and compares every tick with the hashes of both sides.
+//! Simulates the inputs of the files again and compares the states with the hashes that both sides state.
 
 use alloc::format;
 use alloc::string::String;

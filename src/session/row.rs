@@ -1,4 +1,4 @@
-//! [`Row`]: the status that a peer sends to all others. Only the row with the highest version counts, so that lost,
+//! [`Row`]: the status that a peer sends to other peers. Only the row with the highest version counts, so that lost,
 //! duplicated and reordered packets do no harm.
 
 use alloc::sync::Arc;
@@ -47,7 +47,7 @@ pub(super) enum Removal {
     Kick(Key),
 }
 
-/// The status of a peer, sent to all others.
+/// The status of a peer, sent to other peers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Row {
     pub(super) version: u32,
