@@ -176,8 +176,8 @@ pub struct CheckOptions {
 }
 
 impl Default for CheckOptions {
-    /// All variants at every tick, one rollback per tick, without a comparison of phases: suitable for logs of some
-    /// hundred ticks.
+    /// All variants with an interval of one tick and one rollback per tick, without a comparison of phases: suitable
+    /// for logs of some hundred ticks.
     fn default() -> Self {
         CheckOptions {
             variants: Variant::all(),

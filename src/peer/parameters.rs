@@ -43,8 +43,8 @@ pub struct PeerParameters {
     pub tick_rate: u32,
     /// Number of seats.
     pub players: u32,
-    /// Bytes that an input takes in a packet: [`PeerOptions::input_bytes`](super::PeerOptions::input_bytes) plus 2, or
-    /// without that option the length of the default input, at least 1.
+    /// Size of an input in the session, in bytes: [`PeerOptions::input_bytes`](super::PeerOptions::input_bytes) plus 2,
+    /// or without that option the length of the default input, at least 1.
     pub input_bytes: u16,
     /// [`PeerOptions::patience`](super::PeerOptions::patience) in microseconds.
     pub patience: u64,

@@ -183,7 +183,7 @@ impl Verdict {
         }
     }
 
-    /// Hash of the last state played, if all checkpoints up to it agree.
+    /// Hash of the last state played, if the verdict contains it. All checkpoints up to that state agree.
     #[must_use]
     pub fn hash(&self) -> Option<StateHash> {
         match self {

@@ -21,8 +21,8 @@ impl Session {
         self.clock.now = self.clock.now.max(now);
     }
 
-    /// Processes a received packet. Returns its sender, or `None` if it is not a packet of this match from a known
-    /// peer, or if this session is closed.
+    /// Processes a received packet. Returns its sender, or `None` if it is not a packet of this match from another
+    /// known peer, or if this session is closed.
     pub fn receive(&mut self, now: u64, bytes: &[u8]) -> Option<PeerId> {
         self.look(now);
         if self.status().is_closed() {

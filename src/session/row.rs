@@ -63,7 +63,7 @@ pub(super) struct Row {
     pub(super) have: Vec<(u16, Tick)>,
     /// Bit for each voter from which a packet arrived recently.
     pub(super) hears: u64,
-    /// Other peers from which a packet arrived recently. At most [`STRANGERS_MAX`].
+    /// Peers without a vote from which a packet arrived recently. At most [`STRANGERS_MAX`].
     pub(super) hears_others: Vec<PeerId>,
     /// Whether rows of a quorum arrived recently.
     pub(super) connected: bool,

@@ -90,7 +90,7 @@ impl Upload {
         self.next = next;
         self.window = window.min(WINDOW_MAX);
         self.cursor = next;
-        // The last chunk in the window that has arrived since the previous request measures the round trip, if it was
+        // The highest-numbered chunk that has arrived since the previous request measures the round trip, if it was
         // sent only once.
         let end = next.saturating_add(self.window);
         let newest =
