@@ -45,7 +45,7 @@ impl Endpoint {
             JoinPacket::Challenge { nonce, cookie } => {
                 if let Phase::InMatch(session) = &mut self.phase {
                     if self.contacts.take_challenge(nonce, cookie) {
-                        // The sender serves this peer if it admits it. This peer sends its own packets there already.
+                        // This peer sends packets to the contact from now on, even before the contact admits it.
                         session.attach(sender, None);
                         self.routes.prove(sender, from, now);
                     }

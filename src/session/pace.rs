@@ -32,11 +32,11 @@ pub(super) struct Pace {
     hurries: bool,
 }
 
-/// Number of ticks ahead of the slowest other player beyond which a voter waits for it.
+/// A voter waits while it is more than this many ticks ahead of the slowest other player.
 const AHEAD_MAX: i64 = 6;
 /// Largest lateness that is made up, in ticks. Any further lateness is dropped.
 const LATE_MAX: u64 = 3;
-/// From this value of [`Pace::behind`] on, a peer plays ticks before they are due.
+/// A peer plays ticks before they are due while [`Pace::behind`] is at least this number.
 const CATCH_UP: Tick = 12;
 /// Minimum time between changes of the delay by one tick, in microseconds.
 const DELAY_INTERVAL: u64 = 500_000;
