@@ -36,8 +36,8 @@ pub struct Timing {
     pub fresh: u64,
     /// Maximum time for which a proposer that has promises from a quorum waits for the promises of the other voters.
     pub promises: u64,
-    /// Minimum time between the promise of a ballot and the start of another ballot, if no decision is reached. It grows
-    /// with the number of rounds without a decision.
+    /// Minimum time between the promise of a ballot and the start of another one, if no decision is reached. The time
+    /// grows with the number of rounds without a decision.
     pub ballot: u64,
     /// Minimum time for which a peer that has finished or left still answers.
     pub linger: u64,
