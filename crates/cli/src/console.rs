@@ -12,8 +12,8 @@ pub(crate) const GOOD: Style = AnsiColor::Green.on_default().bold();
 pub(crate) const DOUBTFUL: Style = AnsiColor::Yellow.on_default().bold();
 pub(crate) const BAD: Style = AnsiColor::Red.on_default().bold();
 
-/// The two output streams of a command. Both are written with ANSI colours; a stream that is not a terminal strips
-/// them.
+/// The two output streams of a command. Both are written with ANSI colours. The streams of
+/// [`Tool::run`](crate::Tool::run) strip them where colours are not supported.
 pub(crate) struct Console<'a> {
     pub(crate) out: &'a mut dyn Write,
     pub(crate) err: &'a mut dyn Write,

@@ -27,7 +27,7 @@ impl<'a, G: Game> Context<'a, G> {
         &self.tool.limits
     }
 
-    /// Reads a file that the command requires, up to the size limit: see [`files::read`].
+    /// Reads a file that the command requires, with the size limit for replays: see [`files::read`].
     ///
     /// # Errors
     /// [`CommandError::Read`] when the file cannot be read.

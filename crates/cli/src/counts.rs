@@ -14,6 +14,7 @@ pub(crate) struct Counts {
     pub(crate) asleep: usize,
     pub(crate) shapes: usize,
     pub(crate) joints: usize,
+    /// [`World::pair_count`].
     pub(crate) pairs: usize,
 }
 

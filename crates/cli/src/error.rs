@@ -32,7 +32,7 @@ pub(crate) enum CommandError {
     Busy { path: PathBuf },
     /// There is no scene of this name.
     UnknownScene { name: String, known: Vec<&'static str> },
-    /// The scene cannot be recorded.
+    /// A replay cannot be recorded.
     Record(RecordError),
     /// A replay ends before the requested tick.
     NoSuchTick { path: PathBuf, tick: u64, ticks: u64 },
@@ -54,7 +54,7 @@ pub(crate) enum CommandError {
     State { why: String },
     /// The state has no such body.
     NoBody { id: String },
-    /// The state has no such field or tick.
+    /// A file has no such state, or a state has no such field.
     NothingThere { what: String },
     /// The game does not expose its world, so it cannot be drawn.
     NoPictures,
@@ -70,7 +70,7 @@ pub(crate) enum CommandError {
     Useless { option: &'static str, format: &'static str },
     /// A file has only one state, and the format needs several.
     OneState { path: PathBuf, format: &'static str },
-    /// A file is not a replay, report or snapshot.
+    /// A file is not a replay, report or snapshot, or a report or snapshot is damaged or of another version.
     Evidence { path: PathBuf, error: EvidenceError },
     /// A replay cannot be traced.
     Trace { path: PathBuf, error: TraceError },

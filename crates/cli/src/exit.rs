@@ -17,7 +17,7 @@ pub enum Exit {
     Success,
     /// All files match, but a required signature is missing or not valid. Exit code 3.
     Unsigned,
-    /// A file does not match, or something differs. Exit code 1.
+    /// A file does not match, something differs, or a replay is damaged or cannot be played. Exit code 1.
     NoMatch,
     /// Wrong usage, a path that cannot be read or written, files that cannot be compared, or nothing to do. Exit code
     /// 2.

@@ -45,8 +45,8 @@ impl fmt::Display for Shown<'_> {
     }
 }
 
-/// Shows untrusted text on one line. Line breaks and other control characters are escaped, and so are characters that
-/// change the direction of text or are invisible, because they could make one name look like another.
+/// Shows untrusted text on one line. Line breaks and other control characters are escaped, and so are the characters of
+/// [`is_invisible`], because they could make one name look like another.
 pub(crate) struct OneLine<'a>(pub(crate) &'a str);
 
 impl fmt::Display for OneLine<'_> {
@@ -62,7 +62,8 @@ impl fmt::Display for OneLine<'_> {
     }
 }
 
-/// Whether a character is a line or paragraph separator, or changes how its neighbours are shown without being visible.
+/// Whether a character is a line or paragraph separator, a soft hyphen, a zero-width or bidirectional control, an
+/// interlinear annotation mark, or a tag.
 fn is_invisible(character: char) -> bool {
     matches!(
         character,

@@ -10,8 +10,8 @@ use lockstep2d::replay::{Limits, Mismatch, Part, ReadError, Reader, Verdict};
 /// Prefix of the hashed data, so that no other use of BLAKE3 gives the same digest.
 const DOMAIN: &[u8] = b"lockstep2d game 1";
 
-/// The BLAKE3 digest of the rules, setup and inputs of a game, defined in FORMAT.md. `verify --json` prints it as
-/// `game`.
+/// The BLAKE3 digest of the engine semantics, rules, setup and inputs of a game, defined in FORMAT.md. `verify --json`
+/// prints it as `game`.
 ///
 /// The digest does not depend on block boundaries, checkpoints or the trailer. It covers the inputs of the complete
 /// blocks, so a file that ends before its trailer has the digest of the game up to its last complete block.
@@ -24,7 +24,7 @@ impl GameDigest {
     ///
     /// # Errors
     /// [`Verdict::Malformed`] and [`Verdict::LimitExceeded`] for a file that is damaged or too large, and
-    /// [`Verdict::Unverifiable`] for a file of another game, other rules or other semantics.
+    /// [`Verdict::Unverifiable`] for a file with another format version, other semantics or other rules.
     pub fn of_replay<G: Game>(replay: &[u8], limits: &Limits) -> Result<Self, Verdict> {
         let reader = Reader::open(replay, limits)?;
         let header = reader.header();
@@ -37,7 +37,7 @@ impl GameDigest {
     /// Computes the digest of a replay of any game.
     ///
     /// # Errors
-    /// [`ReadError`] for a file that is damaged or too large.
+    /// [`ReadError`] for a file that is damaged, too large, or has another format version.
     pub(crate) fn of_any(replay: &[u8], limits: &Limits) -> Result<Self, ReadError> {
         let mut reader = Reader::open(replay, limits)?;
         let mut hasher = Hasher::new();

@@ -2,9 +2,11 @@
 //!
 //! Invariants, for a target that is a regular file or does not exist:
 //! - The target has either its old contents or all of the new ones, also after a full disk, a panic or a kill.
-//! - An existing file is replaced only with `--force` or [`Overwrite::ALWAYS`].
-//! - At most one process writes a target at a time. The others fail before they change anything.
-//! - A private file can be read only by its owner, from its creation on.
+//! - An existing file is replaced only with `--force` or [`Overwrite::ALWAYS`]. On a file system without hard links, a
+//!   file that another program creates just before [`OutputFile::publish`] can still be replaced.
+//! - On a file system with locks, at most one process writes a target at a time. The others fail and leave the target
+//!   unchanged.
+//! - On Unix, a private file can be read only by its owner, from its creation on.
 //!
 //! A process that is killed leaves its temporary file behind. The lock on it ends with the process, so the next writer
 //! of the same target reuses the file.
@@ -25,7 +27,7 @@ const SUFFIX: &str = ".unfinished";
 #[cfg(unix)]
 const OWNER_ONLY: u32 = 0o600;
 
-/// Maximum number of attempts to lock a temporary file that other processes keep renaming.
+/// Maximum number of attempts to lock a temporary file that other processes keep renaming or deleting.
 const ATTEMPTS_MAX: u32 = 100;
 
 /// Whether an existing file is replaced.
@@ -54,11 +56,11 @@ enum Readers {
 pub(crate) struct OutputFile {
     /// The path that the user gave, for messages.
     name: PathBuf,
-    /// The path to replace: `name` without links.
+    /// The path to replace: `name` with its links resolved.
     target: PathBuf,
     /// The temporary file, or `None` if the target is written directly.
     temporary: Option<PathBuf>,
-    /// Locked while it is open, unless the target is written directly.
+    /// Locked while it is open, unless the target is written directly or the file system has no locks.
     file: File,
     overwrite: Overwrite,
 }
@@ -71,7 +73,7 @@ impl OutputFile {
     ///
     /// # Errors
     /// [`CommandError::Exists`] for an existing file without `--force`, [`CommandError::Busy`] if another process
-    /// writes the same target, and [`CommandError::Write`].
+    /// writes the same target, and [`CommandError::Write`] if the file cannot be created or opened.
     pub(crate) fn create(path: &Path, overwrite: Overwrite) -> Result<Self, CommandError> {
         Self::create_for(path, overwrite, Readers::Default)
     }
@@ -121,8 +123,8 @@ impl OutputFile {
     /// Makes the file appear under the name of the target, after its bytes have reached the disk.
     ///
     /// # Errors
-    /// [`CommandError::Write`], or [`CommandError::Exists`] if another program has created the target meanwhile. The
-    /// target is unchanged.
+    /// [`CommandError::Write`], or [`CommandError::Exists`] if another program has created the target meanwhile. A
+    /// target that is not written directly is then unchanged.
     pub(crate) fn publish(mut self) -> Result<(), CommandError> {
         let failed = CommandError::write(&self.name);
         let Some(temporary) = &self.temporary else {
@@ -165,7 +167,7 @@ impl Drop for OutputFile {
     }
 }
 
-/// Checks that the target may be written, without creating anything.
+/// Checks that no file would be replaced without permission. Creates nothing.
 ///
 /// # Errors
 /// [`CommandError::Exists`] for an existing regular file without `--force`.

@@ -17,7 +17,8 @@ pub(crate) struct Copy<G: Game> {
 
 /// Reason why a replay cannot be copied.
 pub(crate) enum CopyError {
-    /// The replay can be played for `ticks` ticks, and no further.
+    /// The replay cannot be played as far as requested. Its first `ticks` ticks, if any, can be
+    /// copied.
     Replay { ticks: u64, verdict: Verdict },
     /// The setup or the inputs of the replay cannot be recorded.
     Record(RecordError),

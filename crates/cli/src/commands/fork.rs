@@ -102,7 +102,7 @@ fn play_lines<G: Game>(copy: &mut Copy<G>, path: &Path, limits: &Limits) -> Resu
     } else {
         Box::new(File::open(path).map_err(&read_error)?)
     };
-    // Inputs take about ten times as many bytes in JSON as in a replay.
+    // Inputs take more bytes in JSON than in a replay, so the limit is larger than that of a replay.
     let lines = BufReader::new(source.take(limits.file_bytes.saturating_mul(16))).lines();
     for (number, line) in (1..).zip(lines) {
         let line = line.map_err(&read_error)?;

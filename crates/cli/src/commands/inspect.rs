@@ -1,4 +1,4 @@
-//! `inspect`: describes a file without playing it, and lists the fields of a state.
+//! `inspect`: describes a file without playing it, or lists the fields of one of its states.
 
 use std::path::{Path, PathBuf};
 
@@ -110,8 +110,8 @@ fn state_of_replay<G: Game>(
     Ok(State { tick: Some(tick), hash: Some(replay.game().state_hash()), fields })
 }
 
-/// The state of the report's peer at a tick, which may differ from the state that its replay leads to. If the report
-/// has no save of that tick, the state is computed from the replay.
+/// The state of the peer that wrote the report, at a tick. It may differ from the state that the report's replay leads
+/// to. If the report has no save of that tick, the state is computed from the replay.
 fn state_of_report<G: Game>(
     report: &DesyncReport,
     arguments: &Arguments,

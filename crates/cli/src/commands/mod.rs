@@ -1,5 +1,5 @@
-//! The commands, one file each. In each file, `Arguments` declares the arguments of the command and `run` executes it.
-//! [`table`] has a row for each command.
+//! The commands that a tool has without the viewer, one module each. In each module, `Arguments` declares the arguments
+//! of the command and `run` executes it. [`table`] has a row for each command.
 
 mod bisect;
 mod diff;
@@ -38,7 +38,7 @@ macro_rules! rows {
     };
 }
 
-/// The commands of a game's tool, in the order in which the help lists them.
+/// The commands of this module, in the order in which the help lists them.
 pub(crate) fn table<G: Game>(has_scenes: bool) -> Vec<Row<G>> {
     let mut table = rows![
         "verify" => verify,

@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "K", default_value_t = 0)]
     back: u64,
     /// The file of keyframes (saved states) of the replay: used if it exists, and written, also without --force, when
-    /// this run reaches new keyframes; the first one is at tick --interval
+    /// this run reaches new keyframes
     #[arg(long, value_name = "FILE")]
     keyframes: Option<PathBuf>,
     /// Number of ticks between keyframes

@@ -82,7 +82,8 @@ struct Line {
 /// Reads a signature file.
 ///
 /// # Errors
-/// [`CommandError::Read`], [`CommandError::NoText`] and [`CommandError::Line`].
+/// [`CommandError::Read`] if it cannot be read, [`CommandError::NoText`] if it is not a regular file, too large or not
+/// UTF-8, and [`CommandError::Line`] if it cannot be parsed.
 pub(crate) fn read_signatures(path: &Path) -> Result<Signatures, CommandError> {
     // If the path is a pipe, reading it would block.
     if !fs::metadata(path).map_err(CommandError::read(path))?.is_file() {
@@ -94,7 +95,8 @@ pub(crate) fn read_signatures(path: &Path) -> Result<Signatures, CommandError> {
 /// Reads a text file.
 ///
 /// # Errors
-/// [`CommandError::Read`] and [`CommandError::NoText`].
+/// [`CommandError::Read`] if it cannot be read, and [`CommandError::NoText`] if it is larger than `bytes_max` or not
+/// UTF-8.
 pub(crate) fn read_text(path: &Path, bytes_max: u64) -> Result<String, CommandError> {
     let no_text = || CommandError::NoText { path: path.to_path_buf() };
     let bytes = files::read(path, bytes_max).map_err(CommandError::read(path))?;

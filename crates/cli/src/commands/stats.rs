@@ -63,7 +63,7 @@ fn stats<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> Comman
     failed.map_or(Ok(Exit::Success), |verdict| Err(refused(verdict)))
 }
 
-/// A line of JSON, in the order of the table. The names are fixed and need no escapes.
+/// The figures of a tick as a line of JSON. The names are fixed and need no escapes.
 fn line(tick: u64, hash: StateHash, figures: &[(&str, u64)]) -> String {
     let mut line = format!("{{\"tick\":{tick},\"hash\":\"{hash}\"");
     line.extend(figures.iter().map(|(name, value)| format!(",\"{name}\":{value}")));

@@ -26,7 +26,7 @@ pub(crate) struct Arguments {
     /// The last tick to trace [default: the end]
     #[arg(long, value_name = "TICK")]
     to: Option<u64>,
-    /// Number of ticks before it to trace
+    /// Number of ticks to trace
     #[arg(long, default_value_t = 120)]
     ticks: u32,
     /// The file to write

@@ -133,7 +133,8 @@ impl LimitArguments {
     }
 }
 
-/// Adds the limits of the tool to the help of the arguments that override them.
+/// Adds the limits of the tool to the help of the arguments that override them. `command` must have the arguments of
+/// [`LimitArguments`].
 pub fn with_defaults(command: Command, limits: &Limits) -> Command {
     let defaults = [
         ("max_bytes", limits.file_bytes),

@@ -83,7 +83,7 @@ impl Signatures {
     /// Adds a signature. An earlier signature by the same key is replaced.
     ///
     /// # Errors
-    /// [`Flaw::TooMany`].
+    /// [`Flaw::TooMany`] if there are already [`SIGNATURES_MAX`] signatures by other keys.
     pub fn add(&mut self, signature: Signature) -> Result<(), LineError> {
         if let Some(known) = self.0.iter_mut().find(|known| known.key == signature.key) {
             *known = signature;

@@ -29,7 +29,7 @@ fn pictures(file: &[u8], ticks: &[u64], view: &View) -> Vec<Image> {
     pictures
 }
 
-/// The window that fits the world at about a hundred sampled ticks of a range, including the last tick.
+/// The window that fits the world at up to 101 sampled ticks of a range and at its last tick.
 fn window(file: &[u8], mut ticks: RangeInclusive<u64>) -> Aabb {
     let step = usize::try_from((ticks.end() - ticks.start()).div_ceil(100).max(1)).unwrap();
     let last = *ticks.end();

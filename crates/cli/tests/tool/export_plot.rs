@@ -11,7 +11,8 @@ use lockstep2d_cli::Exit;
 
 use crate::{golden, run_sandbox};
 
-/// The names of all start tags, in order. Checks that every element is closed and every attribute quoted.
+/// The names of all start tags, in order. Checks that every element is closed and that the quotes of every tag are
+/// balanced.
 fn elements(xml: &str) -> Vec<&str> {
     let (mut open, mut found, mut rest) = (Vec::new(), Vec::new(), xml);
     while let Some((before, after)) = rest.split_once('<') {
@@ -130,8 +131,8 @@ fn energy_in_free_fall_is_constant() {
     assert!(still < fast / 100.0, "kinetic from {still} to {fast}");
 }
 
-/// A pendulum turns potential energy into kinetic energy and back with small losses. At the height of its release its
-/// kinetic energy is 0.
+/// A pendulum turns potential energy into kinetic energy and back with small losses. At its turning points its kinetic
+/// energy is nearly 0.
 #[test]
 fn energy_of_a_pendulum_goes_back_and_forth() {
     let svg = plot("pendulum", &[]);

@@ -19,7 +19,7 @@ fn line(out: &str) -> Value {
 #[test]
 fn every_limit_has_its_flag() {
     let folder = Folder::new("flags");
-    // 20 ticks with 1 + 1 + 1 work units each: 60 in total.
+    // A tick takes one work unit, and one for each of the two numbers 1 and -1. 20 ticks take 60.
     let mut recording = Recording::<Counter>::start(&setup(), 10).unwrap();
     for _ in 0..20 {
         recording.step(&add(1, -1)).unwrap();

@@ -1,5 +1,5 @@
-//! End-to-end tests of the command-line tools, run for the test game `Counter` and for the sandbox: arguments in;
-//! files, output and exit codes out.
+//! End-to-end tests of the command-line tools, run for the test game `Counter`, for the sandbox and for games of single
+//! tests: arguments in; files, output and exit codes out.
 #![expect(clippy::unwrap_used, reason = "a failure in a helper fails the test")]
 
 #[path = "../../../../tests/replay/counter.rs"]
@@ -104,7 +104,7 @@ fn replay(ticks: u64) -> Vec<u8> {
     recording.finish().unwrap()
 }
 
-/// One of the replays of this repository.
+/// The path of one of the replays of this repository.
 fn golden(scene: &str) -> String {
     format!("{}/../../replays/{scene}.replay", env!("CARGO_MANIFEST_DIR"))
 }

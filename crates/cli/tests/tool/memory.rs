@@ -1,4 +1,4 @@
-//! Peak memory of all tools for files that need much memory, compared with the table of docs/VERIFYING.md.
+//! Peak memory of the commands for files that need much memory, compared with the table of docs/VERIFYING.md.
 
 use std::process::{Command, Stdio};
 use std::time::Duration;
@@ -85,8 +85,8 @@ fn replay_of(commands: Vec<Edit>, ticks: u32) -> Vec<u8> {
 fn verify_takes_no_more_memory_than_is_documented() {
     type Row = (&'static str, fn() -> Vec<Edit>, u32, &'static str, u64);
     const DEFAULT: &str = "10000000";
-    // The last three columns are the number of ticks, the limit of work units, and the memory in KB. Recording a tick
-    // of a million joints takes a minute.
+    // The last three columns are the number of ticks, the limit of work units for a tick, and the memory in KB. A tick
+    // of a million joints is slow to record, so these replays have one tick.
     let rows: [Row; 8] = [
         ("200 squares on one spot", || pile(200), 10, "110000", 25_000),
         ("50 000 separate bodies", || field(50_000), 10, DEFAULT, 130_000),
@@ -114,8 +114,8 @@ fn verify_takes_no_more_memory_than_is_documented() {
 /// Additional memory in KB of the tool without optimisation, because its code is larger.
 const UNOPTIMISED: u64 = if cfg!(debug_assertions) { 3_000 } else { 0 };
 
-/// Runs all tools on three files. `verify` may take the memory in KB that the table states for such a file, and some
-/// tools a multiple of it.
+/// Runs nine commands on three files, or on two without the full sweep. `verify` may take the memory in KB that the
+/// table states for such a file, and some commands a multiple of it.
 #[test]
 fn no_tool_takes_more_memory_than_is_documented() {
     let folder = Folder::new("memory");
@@ -123,7 +123,7 @@ fn no_tool_takes_more_memory_than_is_documented() {
     fs::write(&dense, replay_of(pile(400), 10)).unwrap();
     fs::write(&wide, replay_of(field(50_000), 10)).unwrap();
     let (honest, mut wrong) = (golden("box_stack"), Vec::new());
-    // Some tools take seconds for the many bodies of `wide`.
+    // Some commands take seconds for the many bodies of `wide`.
     let files = sweep::sample([(&dense, 75_000), (&wide, 130_000), (&honest, 10_000)], 2);
     for (file, most) in files {
         for (times, arguments) in [

@@ -136,7 +136,7 @@ fn a_device_is_written_directly() {
     assert!(piped.status.success() && piped.stdout.starts_with(b"<svg"), "{}", message(&piped));
 }
 
-/// Starts a recorder that writes for minutes, and waits until its temporary file has bytes.
+/// Starts a recorder that would write for minutes, and waits until its temporary file has 4000 bytes.
 fn long_recorder(to: &str, extra: &[&str]) -> Child {
     let arguments = ["record", "box_stack", "--ticks", "10000000", "-o", to];
     let child = Command::new(TOOL).args(arguments).args(extra).stdout(Stdio::null()).spawn().unwrap();

@@ -251,14 +251,14 @@ fn keys_that_anybody_could_sign_for_are_refused() {
     }
 }
 
-/// The next number of a SplitMix64 generator.
+/// The next pseudorandom number: SplitMix64 without its last multiplication.
 fn random(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let value = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     value ^ (value >> 27)
 }
 
-/// Changes a file in one to three places.
+/// Applies one to three random changes to a file.
 fn mutate(bytes: &mut Vec<u8>, state: &mut u64) {
     for _ in 0..1 + random(state) % 3 {
         let at = usize::try_from(random(state)).unwrap() % bytes.len().max(1);
@@ -266,7 +266,7 @@ fn mutate(bytes: &mut Vec<u8>, state: &mut u64) {
         let byte = random(state).to_le_bytes()[0];
         match random(state) % 7 {
             0 if !bytes.is_empty() => bytes[at] ^= 1 << (byte % 8),
-            // A digit, so that the line stays well-formed.
+            // A hexadecimal digit, so that the line often stays well-formed.
             1 if !bytes.is_empty() => bytes[at] = b"0123456789abcdef"[usize::from(byte % 16)],
             2 if !bytes.is_empty() => drop(bytes.remove(at)),
             3 => bytes.insert(at, byte),

@@ -102,7 +102,7 @@ struct Camera<'a, G: Game> {
 
 impl<'a, G: Game> Camera<'a, G> {
     /// All frames have the same size. They have the aspect ratio of the game's own view, unless the arguments set both
-    /// width and height.
+    /// width and height, or a side would be outside of 64 to 16384 pixels.
     fn new(
         replay: &mut Replay<'_, G>,
         view: Option<fn(&G) -> View>,
@@ -123,8 +123,7 @@ impl<'a, G: Game> Camera<'a, G> {
         Ok(Camera { view, arguments, size, window: None })
     }
 
-    /// Finds a window that fits the world at all sampled ticks. Returns a few sample pictures, which have nearly all
-    /// colours of the animation.
+    /// Finds a window that fits the world at all sampled ticks. Returns the sample pictures for the palette.
     fn look_at(&mut self, replay: &mut Replay<'_, G>, frames: &Frames) -> Result<Vec<Image>, CommandError> {
         let mut window: Option<Aabb> = None;
         let mut pictures = Vec::new();

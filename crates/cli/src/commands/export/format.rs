@@ -77,7 +77,8 @@ fn by_extension(output: Option<&Path>) -> Option<Format> {
 }
 
 impl Format {
-    /// Returns the format, unless the extension of the output file belongs to another one.
+    /// Returns the format, unless the extension of the output file belongs to another one. A plot may have the
+    /// extension of an SVG, and an animated PNG that of a PNG.
     fn checked(self, output: Option<&Path>) -> Result<Self, CommandError> {
         let (Some(other), Some(path)) = (by_extension(output), output) else { return Ok(self) };
         let fits = match self {

@@ -63,7 +63,7 @@ struct Bytes {
 
 enum Setup {
     Fields(Vec<Field>),
-    /// The setup cannot be decoded, or belongs to another game.
+    /// The setup cannot be decoded, or belongs to other rules.
     Unknown,
 }
 

@@ -89,7 +89,7 @@ impl<'a, 'c> Display<'a, 'c> {
         }
     }
 
-    /// Prints an error. With `--json`, a file that cannot be read also gets a line among the results.
+    /// Prints an error. With `--json`, a path that cannot be read also gets a line among the results.
     fn trouble(&mut self, error: &CommandError) -> Result<(), CommandError> {
         self.exit = Exit::Trouble;
         if let (true, CommandError::Read { path, error }) = (self.json, error) {
@@ -124,7 +124,7 @@ impl<'a, 'c> Display<'a, 'c> {
         })
     }
 
-    /// Prints the line of a file that has exceeded its time limit. The file counts like one that cannot be read.
+    /// Prints the line of a file that has exceeded its time limit. The exit code is that of a file that cannot be read.
     fn out_of_time(
         &mut self,
         path: &Path,

@@ -14,7 +14,7 @@ use crate::panics;
 pub(super) struct Shared {
     /// Set when no more results are needed.
     pub(super) stop: AtomicBool,
-    /// Number of ticks played so far.
+    /// Number of ticks of all files played so far.
     pub(super) ticks: AtomicU64,
     /// The files that are being verified.
     pub(super) watch: Watch,

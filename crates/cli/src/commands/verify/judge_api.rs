@@ -11,7 +11,8 @@ use super::cache;
 use super::judge::{Outcome, Shared, judge};
 use super::report::Digests;
 
-/// Verifies files of the game `G` one by one, on any thread, and returns the same lines as `verify --json`.
+/// Verifies files of the game `G` one by one, on any thread, and returns the lines that `verify --json` prints for them
+/// without `--cache` and `--keys`.
 ///
 /// ```
 /// use lockstep2d::lockstep::Sandbox;
@@ -82,19 +83,21 @@ impl<G: Game> Judge<G> {
         }
     }
 
-    /// Stops the verification of all files, including later ones, before their next tick and without a verdict.
+    /// Stops the verification of all files, including later ones, before their next tick and without a verdict. A later
+    /// file whose first state cannot be reached, such as a malformed one, still gets a verdict.
     pub fn stop(&self) {
         self.shared.stop.store(true, Ordering::Relaxed);
     }
 
-    /// Number of ticks that were simulated.
+    /// Number of ticks that this judge has simulated, in all files together.
     #[must_use]
     pub fn ticks(&self) -> u64 {
         self.shared.ticks.load(Ordering::Relaxed)
     }
 
     /// Hash of everything that the verdict depends on, as 64 hexadecimal digits: the file with this BLAKE3 digest, the
-    /// rules, the semantics of the engine, and the limits. The entries of `verify --cache` are named by the same hash.
+    /// rules, the limits, and the versions of the engine's semantics, of the replay format and of the cache. The
+    /// entries of `verify --cache` are named by the same hash.
     #[must_use]
     pub fn key(&self, blake3: &[u8; 32]) -> String {
         cache::key(&cache::context(G::RULES, &self.limits), blake3).to_string()

@@ -310,7 +310,7 @@ mod tests {
         };
         let mut shown = EndWhenHeld(Shown::default(), &done);
         run(2, Order::Tasks, 0.., task, &stop, &mut shown).unwrap();
-        // The result of a task that has ended may still be in the channel.
+        // A task that has counted itself as done may not have sent its result yet.
         assert!(
             shown.0.is_ended && shown.0.numbers.len() as u64 >= AHEAD_MAX - 2,
             "{}",

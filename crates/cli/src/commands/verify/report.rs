@@ -37,7 +37,8 @@ pub(super) struct Digests {
 }
 
 impl Digests {
-    /// The digests of a file. A file that is damaged or exceeds a limit has no digest of its game.
+    /// The digests of a file. A file that is damaged, has another format version or exceeds a limit before the
+    /// simulation has no digest of its game.
     pub(super) fn of(bytes: &[u8], limits: &Limits) -> Self {
         Digests { blake3: blake3::hash(bytes), game: GameDigest::of_any(bytes, limits).ok() }
     }

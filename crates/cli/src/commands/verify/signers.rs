@@ -42,11 +42,11 @@ enum State {
     Missing,
     /// A signature by an allowed key is not valid for this game.
     Forged,
-    /// The signature file cannot be parsed.
+    /// The signature file cannot be parsed, is too large, or is not a regular file.
     Malformed,
 }
 
-/// Largest size of the file of public keys, for some 100 000 keys.
+/// Maximum size of the file of public keys in bytes: enough for 100 000 keys.
 const KEYS_BYTES_MAX: u64 = 16 << 20;
 
 impl Signers {

@@ -60,7 +60,7 @@ impl Axis {
         let powers = power_min..=30;
         let rounds = powers.flat_map(|power| [1, 2, 5].map(|digit| (digit, power)));
         let mut axes = rounds.map(|(digit, power)| {
-            // Parsing gives the nearest float. A product of powers of ten would not.
+            // Parsing gives the nearest float. A product of powers of ten may differ from it.
             let step: f64 = format!("{digit}e{power}").parse().unwrap_or(1.0);
             // A cast saturates if the step is far too small.
             let (first, last) = ((low / step).floor() as i64, (high / step).ceil() as i64);

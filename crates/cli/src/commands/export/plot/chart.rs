@@ -202,7 +202,8 @@ fn push(text: &mut String, arguments: std::fmt::Arguments<'_>) {
     text.write_fmt(arguments).expect("a String takes any text");
 }
 
-/// Escapes text for XML. Characters that XML does not allow become U+FFFD.
+/// Escapes text for the content of an XML element. U+FFFE, U+FFFF and the characters below U+0020, most of which XML
+/// does not allow, become U+FFFD.
 fn escaped(raw: &str) -> String {
     let mut text = String::new();
     for character in raw.chars() {
