@@ -1,9 +1,10 @@
 //! [`Event`]: input from the user.
 
-/// Input event, from the user or from a script. Positions are pixels from the upper left corner of the window.
+/// Input event, from the user or from a script. Positions are measured from the upper left corner of the window, in the
+/// units of the draw list: screen pixels divided by the scale factor of the screen.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
-    /// The window was resized to this width and height, in pixels.
+    /// The window was resized to this width and height, in the units of the draw list.
     Resized([f32; 2]),
     /// A key went down.
     Pressed(Key),
@@ -26,7 +27,7 @@ pub enum Event {
     },
 }
 
-/// Key of the keyboard: letters and digits as lower-case characters, other keys by name.
+/// Key of the keyboard: a lower-case character for a key that prints one, other keys by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
     /// Letter, digit or other printed character that the key produces without Shift.
@@ -49,11 +50,11 @@ pub enum Key {
     PageUp,
     /// The Page Down key.
     PageDown,
-    /// The Enter key.
+    /// The Enter key, also that of the number pad.
     Enter,
     /// The Escape key.
     Escape,
-    /// The Delete key.
+    /// The Delete or the Backspace key.
     Delete,
     /// The Tab key.
     Tab,

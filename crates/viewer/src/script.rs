@@ -6,7 +6,7 @@
 //! |---|---|
 //! | `press KEY`, `release KEY` | presses or releases a key |
 //! | `key KEY` | presses and releases a key |
-//! | `move X Y` | moves the pointer, in pixels from the upper left corner |
+//! | `move X Y` | moves the pointer to a position as in [`Event`] |
 //! | `down BUTTON`, `up BUTTON` | presses or releases a pointer button: `left`, `middle`, `right` |
 //! | `click X Y` | moves the pointer and clicks with the left button |
 //! | `wheel NOTCHES` | turns the wheel, away from the user if positive |

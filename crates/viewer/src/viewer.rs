@@ -93,7 +93,7 @@ impl<G: Game + 'static> Viewer<G> {
     }
 
     /// Adds a scene that can be played: its name, a line that describes it, and its setup for a random seed. The first
-    /// scene is shown at the start; the keys `[` and `]` switch between scenes.
+    /// scene is shown at the start, unless [`Viewer::first`] names another. The keys `[` and `]` switch between scenes.
     #[must_use]
     pub fn scene(
         mut self,
@@ -186,7 +186,7 @@ impl<G: Game + 'static> Viewer<G> {
     /// Runs the program with the arguments of this process, until its window is closed. On a web page this returns at
     /// once, and the viewer keeps running.
     ///
-    /// Exit codes are those of the command `lockstep2d`: 0 for success, 2 for an error, which is printed.
+    /// The exit code is 0 for success and 2 for an error, which is printed.
     #[must_use]
     pub fn run(self) -> ExitCode {
         #[cfg(not(target_arch = "wasm32"))]

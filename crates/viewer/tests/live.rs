@@ -40,7 +40,7 @@ fn check_replay(live: &mut Live, what: &str) {
     live.seek(here).unwrap();
 }
 
-/// Returns a random point within 0.5 m of a body on each axis, or sometimes anywhere.
+/// Returns a random point: mostly within 0.5 m of a body on each axis, else within 30 m of the origin on each axis.
 fn somewhere(rng: &mut Rng, world: &World) -> Vec2<Fx> {
     let count = u32::try_from(world.body_count()).unwrap();
     let offset = |rng: &mut Rng, by: Fx| Vec2::new(rng.range(-by, by), rng.range(-by, by));

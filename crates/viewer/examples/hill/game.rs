@@ -43,7 +43,7 @@ const STRENGTH: Fx = fx!(200);
 const RELOAD: u32 = 30;
 /// Ticks after which a shell is removed.
 const SHELL_TIME: u64 = 300;
-/// Largest torque at a wheel, in N m. With twice as much the car would turn over backwards.
+/// Largest torque at a wheel, in N m.
 const TORQUE: Fx = fx!(3);
 
 fn named(def: BodyDef, name: &str) -> Result<BodyDef, WorldError> {
@@ -105,7 +105,7 @@ impl Hill {
         Ok(())
     }
 
-    /// Counts the goals that a car has reached, and removes old shells and bodies that have fallen out of the world.
+    /// Counts the goals that the car has reached, and removes old shells and bodies that have fallen out of the world.
     fn judge(&mut self) -> Result<(), WorldError> {
         let reached = self.world.events().sensor_begin.iter().filter(|event| {
             let visitor = self.world.shape(event.visitor).map(|shape| shape.body());

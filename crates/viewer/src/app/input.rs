@@ -30,8 +30,8 @@ enum Doing {
     Panning,
     /// Moves along the timeline.
     Scrubbing,
-    /// Drags a body. The button went down at this position. The press is also a click if the pointer does not move
-    /// further than [`CLICK`].
+    /// Drags a body. The button went down at this position. The press is also a click if the button goes up within
+    /// [`CLICK`] of it.
     Dragging([f32; 2]),
     /// Draws a new body.
     Spawning,

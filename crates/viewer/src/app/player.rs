@@ -9,7 +9,7 @@ use crate::source::{Source, SourceError};
 /// Slowest and fastest playback speed, as exponents of two.
 const SPEEDS: std::ops::RangeInclusive<i32> = -5..=5;
 
-/// Budget of work per frame, in the unit of [`slice_of`]: about ten milliseconds.
+/// Budget of work per frame, in the unit of the costs in [`slice_of`].
 const SLICE: u64 = 60_000;
 
 /// Plays a source, or seeks to a tick.

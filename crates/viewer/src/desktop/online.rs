@@ -121,7 +121,7 @@ impl OnlineArgs {
     }
 }
 
-/// A socket at any free port, and the address of a contact.
+/// A socket at any free port, and the resolved address of a contact.
 fn towards(contact: &str) -> Result<(Udp, SocketAddr), Trouble> {
     let contact = resolve(contact)?;
     let udp = bind(if contact.is_ipv6() { "[::]:0" } else { "0.0.0.0:0" })?;

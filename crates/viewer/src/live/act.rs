@@ -91,12 +91,12 @@ pub enum Act {
     /// Releases the held body, which keeps its velocity, so that it can be thrown.
     Release,
     /// Adds a dynamic body. The drag from `at` to `to` gives the radius of a circle or polygon, half the width and
-    /// half the height of a box, or the two ends of a capsule. A drag shorter than 0.05 m gives the default size of
-    /// 0.5 m.
+    /// half the height of a box, or the two ends of a capsule's segment. Sizes are limited to 50 m. A drag shorter than
+    /// 0.05 m gives the default size of 0.5 m.
     Spawn {
         /// Form of the body.
         form: Form,
-        /// Centre of the body; one end of a capsule.
+        /// Centre of the body; for a capsule with a longer drag, one end of its segment.
         at: Vec2<Fx>,
         /// End of the drag.
         to: Vec2<Fx>,
@@ -105,13 +105,13 @@ pub enum Act {
     Delete(Aim),
     /// Sets gravity, in m/s².
     Gravity(Vec2<Fx>),
-    /// Pushes all bodies near a point away from it. [`Act::explode`] has settings that suit most scenes.
+    /// Pushes all dynamic bodies near a point away from it. [`Act::explode`] has settings that suit most scenes.
     Explode(Explosion),
 }
 
 impl Act {
-    /// Explosion at a point with a range of 8 m. Up to 4 m away it throws a 1 m block of 1 kg at 10 m/s, beyond that
-    /// more slowly.
+    /// Explosion at a point with a range of 8 m. Up to 4 m away it gives a resting block of 1 kg and 1 m width a speed of
+    /// 10 m/s, beyond that a lower speed.
     #[must_use]
     pub const fn explode(at: Vec2<Fx>) -> Self {
         Act::Explode(Explosion { radius: fx!(4), falloff: fx!(4), ..Explosion::new(at, fx!(10)) })

@@ -130,7 +130,7 @@ impl Hand {
         }
     }
 
-    /// Moves the anchor to the pointer. To be called in every live tick, after its acts.
+    /// Moves the anchor towards the pointer. To be called in every live tick, after its acts.
     pub(super) fn pull(&self, world: &World, commands: &mut Vec<Command>) {
         let Hold::Holding(grab, id) = self.hold else { return };
         let Some(anchor) = world.body(id) else { return };

@@ -52,11 +52,11 @@ fn polygon(radius: Fx, rng: &mut Rng) -> Result<Polygon, GeometryError> {
             Rot::from_angle(Angle::from_turns(part)).apply_wide(Vec2::new(distance, Fx::ZERO))
         })
         .collect();
-    // If two points are too close for a hull, a regular polygon replaces it.
+    // If the points have no valid hull, a regular polygon replaces it.
     Polygon::hull(&points).or_else(|_| Polygon::regular(corners, radius))
 }
 
-/// Capsule along the drag, with a radius of a fifth of the length of the drag.
+/// Capsule along the drag, with a radius of a fifth of the length of the drag, but at least [`HALF_MIN`].
 fn capsule(at: Vec2<Fx>, way: Option<Vec2<Fx>>, length: Fx) -> (BodyDef, Result<Geometry, GeometryError>) {
     let half = (length / 2).max(HALF_MIN);
     let radius = (length / 5).max(HALF_MIN);

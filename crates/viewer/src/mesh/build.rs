@@ -106,7 +106,7 @@ impl Mesh {
         self.strip.corners = corners;
     }
 
-    /// Adds a single segment. Fast path for most lines, with the same result as a [`Self::stroke`] of two points.
+    /// Adds a single segment. Most lines are single segments; this avoids the detour over a strip.
     fn segment(&mut self, [a, b]: [Point; 2], item: &Item, pixel: f32) {
         let [x, y] = [b[0] - a[0], b[1] - a[1]];
         let length = (x * x + y * y).sqrt();
@@ -145,7 +145,7 @@ impl Mesh {
         self.strip.corners = corners;
     }
 
-    /// Adds, in pieces, a line with more points than fit in a chunk.
+    /// Adds, in pieces, a line with more than [`RUN`] points.
     fn long_stroke(&mut self, points: &[Point], item: &Item, pixel: f32) {
         let mut from = 0;
         while from + 1 < points.len() {
@@ -246,7 +246,7 @@ fn is_visible(points: &[Point], width: f32, screen: &Screen) -> bool {
     seen == [[true; 2]; 2]
 }
 
-/// Triangle fan of a convex polygon; `None` if it has no corners or too many for 16-bit indices.
+/// Triangle fan of a convex polygon; `None` if it has no corners or more than fit in a chunk.
 fn fan(corners: usize) -> Option<impl Iterator<Item = [u16; 3]>> {
     let last =
         u16::try_from(corners.checked_sub(1)?).ok().filter(|&last| usize::from(last) < Chunk::VERTICES)?;

@@ -1,16 +1,16 @@
 //! [`Mesh`]: a draw list as triangles, for the GPU.
 //!
 //! All items use the same vertex format and are drawn in list order, so that text, outlines and areas can overlap in
-//! any order. The fragment shader computes the coverage of a pixel from the interpolated [`Vertex::sample`]. For
-//! shapes it is
+//! any order. The fragment shader computes the coverage of a pixel from the interpolated [`Vertex::sample`]. For lines
+//! and areas it is
 //!
 //! ```text
 //! coverage = clamp(reach - |distance|, 0, 1)
 //! ```
 //!
-//! where `distance` is the distance from the centre line in screen pixels, and `reach` is half the line width plus
-//! half a pixel. So edges are antialiased over one pixel, and a line takes two triangles per segment. For text, the
-//! coverage is the opacity of the glyph's pixel in the [`Atlas`].
+//! where, for a line, `distance` is the distance from the centre line in screen pixels, and `reach` is half the line
+//! width plus half a pixel. So edges are antialiased over one pixel, and a line takes two triangles per segment and two
+//! more at a sharp corner. For text, the coverage is the opacity of the glyph's pixel in the [`Atlas`].
 //!
 //! ```
 //! use lockstep2d_viewer::mesh::{Atlas, Chunk, Mesh, Screen, Vertex};
@@ -64,7 +64,7 @@ impl Chunk {
     /// Maximum number of vertices of a chunk.
     pub const VERTICES: usize = 1 << 15;
     /// Maximum number of indices of a chunk. The shape with the most indices per vertex is an area without a border,
-    /// with 4.5.
+    /// with fewer than 4.5.
     pub const INDICES: usize = 5 * Chunk::VERTICES;
 }
 

@@ -3,7 +3,7 @@
 type Point = [f32; 2];
 
 /// Mitre limit, as 1 + the cosine of the angle by which a line turns; corners with a smaller value get no mitre. At the
-/// limit, a turn by 126 degrees, a mitre extends 2.2 half-widths; at sharper corners it would be a long spike.
+/// limit, a turn by 127 degrees, a mitre extends 2.2 half-widths; at sharper corners it would be a long spike.
 const SHARP: f32 = 0.4;
 
 /// Segments up to this length, in the units of the draw list, are skipped because they have no reliable direction.

@@ -20,7 +20,7 @@ fn mesh_of(list: &DrawList, screen: &Screen) -> Mesh {
 }
 
 /// Renders a list in white on a black screen and returns the brightness of each pixel. Evaluates the same formula as
-/// the shader, at the centre of each pixel.
+/// the shader, near the centre of each pixel.
 fn drawn(list: &DrawList) -> Vec<f32> {
     let mesh = mesh_of(list, &SCREEN);
     let atlas = Atlas::default();

@@ -77,7 +77,7 @@ pub trait Source {
     /// Seeks to a tick.
     ///
     /// # Errors
-    /// [`SourceError`] if the tick cannot be reached; the source is then at the last tick that it could reach.
+    /// [`SourceError`] if the tick cannot be reached.
     fn seek(&mut self, tick: u64) -> Result<(), SourceError>;
 
     /// Status text, such as the verdict of a replay or the scores of a match; may be empty.
@@ -121,7 +121,7 @@ pub trait Source {
         None
     }
 
-    /// Closes the source: it leaves a network match, for example. Called once before the program ends; takes at most a
+    /// Closes the source: it leaves a network match, for example. Called before the program ends; should take at most a
     /// second.
     fn close(&mut self) {}
 

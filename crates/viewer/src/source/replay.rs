@@ -9,14 +9,14 @@ use lockstep2d_render::{Camera, DrawList};
 use super::{Source, SourceError};
 use crate::play::Presentation;
 
-/// Initial interval between keyframes, in ticks. Seeking backwards replays at most one interval, which takes up to half
-/// a second in large scenes.
+/// Initial interval between keyframes, in ticks. A shorter one makes seeking backwards faster and takes more memory.
 const INTERVAL: u32 = 60;
 
-/// Work units that are verified per frame, which take a few milliseconds.
+/// Work units after which a call of [`Source::think`] stops verifying.
 const THINK_WORK: u64 = 100_000;
 
-/// Replay of a game that has a world. It is verified in the background while it is shown.
+/// Replay of a game. It is verified in the background while it is shown. If the game has no world, an empty world is
+/// shown.
 ///
 /// ```
 /// use lockstep2d::lockstep::{Sandbox, SandboxSetup};

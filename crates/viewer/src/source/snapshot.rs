@@ -96,7 +96,8 @@ impl Source for Snapshot {
     fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
         let tick = tick.max(self.first);
         if tick < self.world.tick() {
-            // Restores a save before `tick` and steps to it, so that contact points are available.
+            // Restores a save before `tick` and steps to it, so that contact points are available, except at the first
+            // tick.
             let before = tick.saturating_sub(1).max(self.first);
             if let Some((_, save)) = self.saves.range(..=before).next_back() {
                 self.world.restore(save);

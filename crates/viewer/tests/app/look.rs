@@ -134,7 +134,7 @@ fn help_is_there_when_asked_for() {
     assert!(texts(&mut app).iter().any(|line| line.contains("play, pause")));
 }
 
-/// A game with the arrows and the space bar as keys.
+/// A game with the left arrow and the space bar as keys.
 fn played() -> App {
     let keys = Controls::new().key(Key::Left, |_: &mut Vec<_>| ()).key(' ', |_| ());
     let viewer = ["first", "second", "third"].into_iter().fold(Viewer::<Sandbox>::new(), |viewer, name| {

@@ -16,8 +16,8 @@ fn ten_ticks_back_is_pixel_for_pixel_what_it_was() {
         let (directory, replay) = (directory("back"), golden(replay));
         let ten = |key: &str| format!("key {key}\nframes 2\n").repeat(10);
         let (right, left) = (ten("right"), ten("left"));
-        // The first 400 frames complete the verification, whose progress would change the picture. Each frame is one
-        // tick: forwards by playing, then forwards and back by single steps.
+        // The first 400 frames complete the verification, whose progress would change the picture. The next 100 frames
+        // play 100 ticks. Single steps then go ten ticks forwards and back.
         let script = format!(
             "{ALL}key space\nkey home\nframes 400\nkey space\nframes 100\nkey space\nscreenshot played.png\nreport\n\
              {right}screenshot further.png\nreport\n{left}screenshot back.png\nreport\n\
