@@ -55,8 +55,8 @@ impl Content {
     /// files for this to matter.
     ///
     /// # Errors
-    /// [`OpenError`] for other kinds of files, for files of which nothing can be played, for replays of other games, and
-    /// for reports without a replay.
+    /// [`OpenError`] for other kinds of files, for files of which nothing can be played, for replays of other games,
+    /// and for reports without a replay.
     pub(crate) fn open(&self, name: &str, bytes: &'static [u8]) -> Result<Box<dyn Source>, OpenError> {
         match Evidence::read(bytes.to_vec(), &self.limits).map_err(OpenError::File)? {
             Evidence::Replay(_) => self.open_replay(name, bytes),

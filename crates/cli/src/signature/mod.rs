@@ -1,8 +1,8 @@
 //! Ed25519 signatures of games, with which key owners vouch for a replay.
 //!
 //! A signature covers the [`GameDigest`]. Therefore it is valid for exactly one combination of engine semantics, rules,
-//! setup and inputs, whatever blocks, checkpoints and trailer the file has. FORMAT.md gives the layout of the files, and
-//! VERIFYING.md explains what a signature does not prove.
+//! setup and inputs, whatever blocks, checkpoints and trailer the file has. FORMAT.md gives the layout of the files,
+//! and VERIFYING.md explains what a signature does not prove.
 //!
 //! A server checks the signatures of an upload:
 //!

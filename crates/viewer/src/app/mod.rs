@@ -203,7 +203,8 @@ impl App {
         Ok(())
     }
 
-    /// Shows a scene. If it cannot be opened, shows a message instead. Returns `false` if there is no scene of this name.
+    /// Shows a scene. If it cannot be opened, shows a message instead. Returns `false` if there is no scene of this
+    /// name.
     pub fn show_scene(&mut self, name: &str, seed: u64) -> bool {
         let Some(scene) = self.content.scene(name) else { return false };
         match (scene.open)(seed) {

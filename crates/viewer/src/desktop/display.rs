@@ -5,8 +5,8 @@ use std::os::linux::net::SocketAddrExt;
 use std::os::unix::net::{SocketAddr, UnixStream};
 use std::path::PathBuf;
 
-/// Checks that `DISPLAY` or `WAYLAND_DISPLAY` is set. If only `DISPLAY` is set and it names a local X server, checks that
-/// the server accepts connections.
+/// Checks that `DISPLAY` or `WAYLAND_DISPLAY` is set. If only `DISPLAY` is set and it names a local X server, checks
+/// that the server accepts connections.
 ///
 /// # Errors
 /// A message for the user that says what is missing.

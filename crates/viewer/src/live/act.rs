@@ -110,8 +110,8 @@ pub enum Act {
 }
 
 impl Act {
-    /// Explosion at a point with a range of 8 m. Up to 4 m away it gives a resting block of 1 kg and 1 m width a speed of
-    /// 10 m/s, beyond that a lower speed.
+    /// Explosion at a point with a range of 8 m. Up to 4 m away it gives a resting block of 1 kg and 1 m width a speed
+    /// of 10 m/s, beyond that a lower speed.
     #[must_use]
     pub const fn explode(at: Vec2<Fx>) -> Self {
         Act::Explode(Explosion { radius: fx!(4), falloff: fx!(4), ..Explosion::new(at, fx!(10)) })

@@ -1,5 +1,5 @@
-//! Each layer changes the pixels that it changes in a software rendering of the draw list, and gives them about the same
-//! colours.
+//! Each layer changes the pixels that it changes in a software rendering of the draw list, and gives them about the
+//! same colours.
 
 use std::collections::BTreeSet;
 
@@ -12,8 +12,8 @@ use super::run::{app, directory, golden, play, play_without_window};
 const SCENE: &str = "bridge.replay";
 const SECONDS: usize = 2;
 
-/// Script that seeks to the tick after [`SECONDS`] seconds, turns the initial layers off, and takes a screenshot without
-/// layers, one with each layer alone, and one after that layer is turned off again.
+/// Script that seeks to the tick after [`SECONDS`] seconds, turns the initial layers off, and takes a screenshot
+/// without layers, one with each layer alone, and one after that layer is turned off again.
 fn script() -> String {
     let forward = "key pagedown\n".repeat(SECONDS);
     let mut script =
