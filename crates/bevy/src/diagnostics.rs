@@ -22,15 +22,15 @@ impl<G> Default for LockstepDiagnosticsPlugin<G> {
 }
 
 impl<G> LockstepDiagnosticsPlugin<G> {
-    /// Time in milliseconds that the ticks of a frame take.
+    /// Time in milliseconds that the driver takes in a frame: [`LockstepStatus::step_time`].
     pub const STEP: DiagnosticPath = DiagnosticPath::const_new("lockstep/step");
-    /// Number of ticks that a frame rolled back.
+    /// Largest number of ticks by which a rollback in a frame went back.
     pub const ROLLBACK: DiagnosticPath = DiagnosticPath::const_new("lockstep/rollback");
     /// Number of played ticks that are not confirmed.
     pub const PREDICTED: DiagnosticPath = DiagnosticPath::const_new("lockstep/predicted");
     /// Bytes of a save, measured every 64 frames.
     pub const SAVE: DiagnosticPath = DiagnosticPath::const_new("lockstep/save");
-    /// Longest round trip to another peer in milliseconds.
+    /// Longest round trip to another player of a match in milliseconds.
     pub const PING: DiagnosticPath = DiagnosticPath::const_new("lockstep/ping");
 }
 

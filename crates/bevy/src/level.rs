@@ -107,8 +107,8 @@ impl core::error::Error for LevelError {}
 ///
 /// The components are removed, and the entities of bodies get their [`BodyView`]. Bodies and joints are created in the
 /// order of the indices of their entities (the order of spawning, unless the indices of despawned entities are reused),
-/// so that the same program builds the same level everywhere. In a match one peer builds the level and the others
-/// receive the commands: entities may differ between machines, commands do not.
+/// so that the same program builds the same level everywhere. For a match, build the level on one machine and send the
+/// commands to the others: entities may differ between machines, commands do not.
 ///
 /// # Errors
 /// [`LevelError`]. All entities are then unchanged.

@@ -1,10 +1,12 @@
 //! Deterministic 2D physics, rollback multiplayer and replays for Bevy, on [`lockstep2d`].
 //!
 //! The simulation is one resource, [`Lockstep<G>`](Lockstep), for any [`Game`](lockstep2d::lockstep::Game). A driver
-//! plays it: [local](Lockstep::local), a [replay](Lockstep::replay), or a [match](Lockstep::host) over a network.
+//! plays it: [local](Lockstep::local), a [replay](Lockstep::replay), a [match](Lockstep::host) over a network, or a
+//! [sync test](Lockstep::sync_test).
 //! Entities are *views* of the bodies in the game: they appear and disappear with the bodies, also through rollbacks,
 //! late joins and seeks. The plugin writes interpolated poses to their `Transform`s, and never reads a pose from
-//! there. So nothing that Bevy does can change the simulation, and no component needs to be registered for rollback.
+//! there. So Bevy can change the simulation only through [`Inputs`], and no component needs to be registered for
+//! rollback.
 //!
 //! ```
 //! use bevy::prelude::*;
@@ -28,8 +30,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Systems of the plugin run in the schedule `RunFixedMainLoop`, after `PreUpdate` and before `Update`, in the sets of
-//! [`LockstepSystems`]. Systems that read input and fill [`Inputs`] belong in [`LockstepSystems::Inputs`].
+//! Systems of [`LockstepPlugin`] run in the schedule `RunFixedMainLoop`, after `PreUpdate` and before `Update`, in the
+//! sets of [`LockstepSystems`]. Systems that read input and fill [`Inputs`] belong in [`LockstepSystems::Inputs`].
 
 // The library's ban on floats does not apply here: views are floats, and they affect a game only through its inputs.
 #![deny(missing_docs, clippy::iter_over_hash_type, clippy::unwrap_used)]

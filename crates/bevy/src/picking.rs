@@ -24,8 +24,8 @@ use crate::plugin::{LockstepSettings, LockstepSystems};
 use crate::views::{BodyView, BodyViews};
 
 /// A picking backend: views of bodies receive `Pointer<Click>`, `Pointer<Over>` and all other events of
-/// [`bevy::picking`], with the exact shapes of their bodies as hit areas. A view with [`Pickable::IGNORE`] is left out.
-/// Where bodies overlap, the view with the largest z is in front.
+/// [`bevy::picking`], with the exact shapes of their bodies, except sensors, as hit areas. A view with
+/// [`Pickable::IGNORE`] is left out. Where bodies overlap, the view with the largest z is in front.
 ///
 /// The backend needs the plugins of `bevy::picking`, which `DefaultPlugins` contains.
 ///
@@ -152,7 +152,7 @@ fn grab(
     }
 }
 
-/// Moves the hand with its pointer, and releases the body when the button goes up.
+/// Moves the hand with its pointer, and releases the body when the button goes up or the pointer is cancelled.
 fn move_hand(
     rays: Res<RayMap>,
     mut inputs: MessageReader<PointerInput>,

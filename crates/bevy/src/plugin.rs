@@ -86,7 +86,7 @@ impl LockstepSettings {
     }
 }
 
-/// Status of the game, updated every frame: for run conditions, diagnostics and inspectors.
+/// Status of the game, updated in every frame in which there is one: for run conditions, diagnostics and inspectors.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Resource)]
 pub struct LockstepStatus {
@@ -96,7 +96,7 @@ pub struct LockstepStatus {
     pub confirmed: u64,
     /// Ticks played in this frame, including repeated ones.
     pub stepped: u32,
-    /// Number of ticks by which a rollback in this frame went back.
+    /// Largest number of ticks by which a rollback in this frame went back.
     pub rolled_back: u32,
     /// Whether the game is paused.
     pub paused: bool,

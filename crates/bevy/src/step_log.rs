@@ -11,8 +11,9 @@ use lockstep2d::world::World;
 use crate::events::{LoggedEvent, each_event};
 use crate::poses::Poses;
 
-/// A tick, as a number of ticks since the start of an epoch. A new epoch begins with a seek, and with a state that
-/// another peer has sent or that was read from bytes. The driver sets the tick at which the epoch begins.
+/// A tick, as a number of ticks since the start of an epoch. A new epoch begins with a seek, and with a loaded state of
+/// an earlier epoch, from another peer or from bytes. The tick at which an epoch begins may be unknown until the driver
+/// sets it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Stamp {
     epoch: u32,

@@ -102,7 +102,7 @@ pub(crate) fn write_views<G: LockstepGame>(
     }
 }
 
-/// Despawns the views of bodies that a rollback has replaced by other bodies with the same ids.
+/// Despawns the views of bodies that a rollback or a seek has replaced by other bodies with the same ids.
 fn replace_strangers(commands: &mut Commands, views: &mut BodyViews, log: &StepLog, world: Option<&World>) {
     for &body in &log.missing {
         let is_same = |view: &View| view.identity == identity_of(world, body);

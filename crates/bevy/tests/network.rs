@@ -155,8 +155,8 @@ fn check_replay(mut players: Vec<Player>, end: u64) {
     assert_eq!(played, events);
 }
 
-/// Plays a match and returns the largest distance that a player's view moves in one frame, in metres, once the match
-/// runs.
+/// Plays a match and returns the largest distance that the host's view of the guest's body moves in one frame, in
+/// metres, once the match runs.
 fn largest_jump(settings: LockstepSettings) -> f32 {
     let network = bad_network();
     let setup = Setup::default();

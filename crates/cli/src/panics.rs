@@ -46,7 +46,7 @@ impl fmt::Display for PanicText<'_> {
 thread_local! {
     /// Whether a panic on this thread will be caught.
     static IS_CAUGHT: Cell<bool> = const { Cell::new(false) };
-    /// Location of the last panic on this thread.
+    /// Location of the last caught panic on this thread.
     static LOCATION: RefCell<Option<String>> = const { RefCell::new(None) };
     /// Number of ticks that the command on this thread has played.
     static TICKS: Cell<u64> = const { Cell::new(0) };

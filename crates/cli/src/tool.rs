@@ -73,7 +73,8 @@ impl<G: Game> Tool<G> {
     }
 
     /// Sets the default view of `export` on the game's world ([`Game::world`]): window, layers, size and title.
-    /// Arguments of the command override window, layers and size. If no view is set, [`View::default`] applies.
+    /// Animations use only the aspect ratio of the size. Arguments of the command override window, layers and size. If
+    /// no view is set, [`View::default`] applies.
     #[must_use]
     pub fn with_view(self, view: fn(&G) -> View) -> Self {
         Tool { view: Some(view), ..self }

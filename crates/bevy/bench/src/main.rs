@@ -1,4 +1,4 @@
-//! Measures saves and rollbacks of one pile of boxes in three engines, with a save in every tick as in a rollback game:
+//! Measures saves and rollbacks of piles of boxes in three engines, with a save in every tick as in a rollback game:
 //! this plugin, bevy_rapier2d and Avian. The latter two use the snapshots of bevy_ggrs. `cargo run --release` prints a
 //! table.
 

@@ -12,7 +12,8 @@ use crate::game::LockstepGame;
 use crate::inputs::Inputs;
 use crate::observed::Observed;
 
-/// Plays ticks at the rate of the game, without drift, and records them.
+/// Plays ticks at the rate of the game, without drift, and records them. In a long frame, ticks beyond
+/// [`FixedTimestep::DEFAULT_TICKS_MAX`] are dropped.
 pub(crate) struct LocalDriver<G: LockstepGame> {
     recording: Recording<Observed<G>>,
     timestep: FixedTimestep,

@@ -21,7 +21,7 @@ pub(crate) struct SyncTestDriver<G: LockstepGame> {
     /// Number of ticks that are played again after each tick, once so many have been played.
     depth: u32,
     history: History<Observed<G>>,
-    /// Inputs of the last `depth` ticks.
+    /// Inputs of the last ticks, at most `depth`.
     inputs: VecDeque<EncodedInputs<G::Input>>,
 }
 

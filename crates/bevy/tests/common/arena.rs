@@ -1,5 +1,5 @@
-//! A game for two players with everything that views and events have to follow: bodies that come and go, sensors, a
-//! joint that breaks, bodies that fall asleep.
+//! A game for two players with bodies that come and go, a sensor, and bodies that fall asleep, which views and events
+//! have to follow.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef, WorldError};
 use lockstep2d::hash::StateHash;

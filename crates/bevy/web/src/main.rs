@@ -75,7 +75,8 @@ fn tell(lockstep: Option<Res<Lockstep<Versus>>>, room: Res<Room>, mut windows: Q
     platform::show(&text, &mut windows);
 }
 
-/// Puts the room into the address of the page when the match begins, so that a page that is loaded again comes back.
+/// At an event of the match, puts the room into the address of the page, so that a page that is loaded again comes
+/// back. A desync is an error.
 fn enter(mut events: MessageReader<MatchEvent>, room: Res<Room>) -> Result {
     for MatchEvent(event) in events.read() {
         if let PeerEvent::Desync(desync) = event {

@@ -84,7 +84,7 @@ impl<G: Game> Judge<G> {
     }
 
     /// Stops the verification of all files, including later ones, before their next tick and without a verdict. A later
-    /// file whose first state cannot be reached, such as a malformed one, still gets a verdict.
+    /// file that cannot be opened, such as one with a malformed header, still gets a verdict.
     pub fn stop(&self) {
         self.shared.stop.store(true, Ordering::Relaxed);
     }
