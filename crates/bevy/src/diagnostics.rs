@@ -30,7 +30,7 @@ impl<G> LockstepDiagnosticsPlugin<G> {
     pub const PREDICTED: DiagnosticPath = DiagnosticPath::const_new("lockstep/predicted");
     /// Bytes of a save, measured every 64 frames.
     pub const SAVE: DiagnosticPath = DiagnosticPath::const_new("lockstep/save");
-    /// Longest round trip to another player of a match in milliseconds.
+    /// Longest round trip to another player, or to the dedicated server of a match, in milliseconds.
     pub const PING: DiagnosticPath = DiagnosticPath::const_new("lockstep/ping");
 }
 

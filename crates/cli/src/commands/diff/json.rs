@@ -80,7 +80,8 @@ pub(in crate::commands) fn fields(differences: &[Difference]) -> Vec<Json> {
     differences.iter().map(field).collect()
 }
 
-/// A value as readable text and, for a number, its bits as text, since they may exceed the range of JSON numbers.
+/// A value as readable text. A number, an angle or a boolean also has its bits, as text, since they may exceed the
+/// range of JSON numbers.
 fn value(value: Option<&Value>) -> Json {
     value.map_or(
         Json::Null,

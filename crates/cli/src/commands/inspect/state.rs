@@ -70,7 +70,8 @@ pub(super) fn field_text(field: &Field) -> String {
     shown(&format!("{path}: {}", field.value))
 }
 
-/// A value as readable text and, for a number, its bits as text, since they may exceed the range of JSON numbers.
+/// A field's path, and its value as readable text. A number, an angle or a boolean also has its bits, as text, since
+/// they may exceed the range of JSON numbers.
 pub(super) fn field_json(field: &Field) -> Json {
     let bits = field.value.bits().map(|bits| bits.to_string());
     json!({"path": field.path(), "text": field.value.to_string(), "bits": bits})

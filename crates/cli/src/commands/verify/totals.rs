@@ -19,7 +19,7 @@ pub(super) struct Totals {
     unsigned: u64,
     /// Files whose report came from the cache.
     cached: u64,
-    /// Ticks that were played in this run.
+    /// Ticks of the reports that did not come from the cache, and of undecided files.
     ticks: u64,
     pub(super) elapsed: Duration,
 }
