@@ -1,4 +1,4 @@
-//! Measures the cost of a frame in the scene `large_pyramid` with 5050 bodies: the mean CPU time of filling the draw
+//! Measures the cost of a frame in the scene `large_pyramid` with 5051 bodies: the mean CPU time of filling the draw
 //! list and of building its triangles, with the initial layers, with each layer alone, and with all layers.
 //!
 //! ```text
