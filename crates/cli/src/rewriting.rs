@@ -17,8 +17,7 @@ pub(crate) struct Copy<G: Game> {
 
 /// Reason why a replay cannot be copied.
 pub(crate) enum CopyError {
-    /// The replay cannot be played as far as requested. Its first `ticks` ticks, if any, can be
-    /// copied.
+    /// The replay cannot be played as far as requested. Its first `ticks` ticks, if any, can be copied.
     Replay { ticks: u64, verdict: Verdict },
     /// The setup or the inputs of the replay cannot be recorded.
     Record(RecordError),

@@ -138,7 +138,8 @@ pub trait Playground {
     /// earlier tick drops queued acts and releases the held body.
     fn act(&mut self, act: Act);
 
-    /// Returns the held body; `None` also between the grab and the tick that carries it out.
+    /// Returns the held body; `None` also before the second tick after the grab, which attaches the body to the
+    /// pointer.
     fn held(&self) -> Option<Held>;
 
     /// Number of queued acts. Acts remain queued while the world is paused.
