@@ -1,5 +1,5 @@
-//! Measures how the time of a step grows with the number of bodies `n`: the exponent `p` of `n^p`, in worlds with the
-//! same density of contacts at every size.
+//! Measures how the time of a step grows with the number of bodies `n`: the exponent `p` of `n^p`, in worlds with a
+//! similar number of contacts per body at every size.
 
 use anyhow::{Result, anyhow};
 use indicatif::ProgressBar;
@@ -150,7 +150,7 @@ fn churn(bodies: u32) -> Result<SandboxSetup, WorldError> {
 /// the same Froude number at any size.
 pub fn add_drum(scene: &mut Builder, centre: Vec2<Fx>, bodies: u32) -> Result<(), WorldError> {
     let side = bodies.isqrt().max(2);
-    // The drum is large enough for the upright grid of bodies to fit into it when it is turned by 30 degrees.
+    // The upright grid of bodies fits into the drum, which is turned by 30 degrees at the start.
     let apart = fx!(0.255);
     let half_grid = apart * i64::from(side) / 2;
     let half = half_grid * fx!(1.45) + fx!(0.5);

@@ -44,7 +44,7 @@ pub fn measure(world: World, plan: &Plan) -> Result<Growth> {
     Ok(Growth { world: world.name, points, p })
 }
 
-/// Runs this program under callgrind with [`step`] only. Returns the number of bodies and of instructions.
+/// Runs [`step`] in a process of its own under callgrind. Returns the numbers of dynamic bodies and of instructions.
 fn count(world: World, size: u32, steps: u64) -> Result<(usize, f64)> {
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])

@@ -1,4 +1,5 @@
-//! The engines start from the same world and simulate it in nearly the same way.
+//! Tests that the engines start from equal worlds and agree about them, that they continue from a save, and that the
+//! lines of JSON have the promised fields.
 
 use crate::compare::{self, Plan};
 use crate::engine::{Engine, Inventory, Kind};

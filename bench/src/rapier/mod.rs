@@ -46,7 +46,7 @@ impl Rapier {
         parameters.dt = 1.0 / config.tick_rate as f32;
         parameters.num_solver_iterations = usize::try_from(config.solver.sub_steps)?;
         parameters.contact_softness = softness(hertz.to_num());
-        // Contacts with static bodies are twice as stiff, as in the other two engines.
+        // The frequency of contacts with static bodies is doubled, as in the other two engines.
         parameters.static_contact_softness = softness(2.0 * hertz.to_num::<f32>());
         parameters.normalized_max_corrective_velocity = push_speed.to_num();
         parameters.normalized_max_linear_velocity = config.solver.speed_max.to_num();

@@ -36,7 +36,7 @@ pub struct Frame {
     pub rapier: Saving,
 }
 
-/// Cost of the saves and hashes of an engine: medians of the rounds.
+/// Cost of the saves and hashes of an engine.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Saving {
     /// CPU time of a save and its hash in microseconds.
