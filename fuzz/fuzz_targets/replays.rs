@@ -1,4 +1,5 @@
-//! Forged replays: the verifier must return a verdict other than `Match`, in bounded time and memory. See `verdicts`.
+//! Recorded, changed and forged replays: the verifier must return a verdict in bounded time and memory, and `Match`
+//! only for unchanged files. See `verdicts`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,5 @@
-//! Forged reports: reading must return an error or a comparison, in bounded time and memory. See `reports`.
+//! Reports as written, changed and forged: reading and comparing them must return an error or a result, in bounded
+//! time and memory. See `reports`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -12,9 +12,10 @@ use crate::generator::{self, Generator};
 use crate::shapes;
 use crate::source::Source;
 
-/// Maximum cost of a run, as counted by [`generator::cost`].
+/// A run ends when its cost exceeds this: the sum over the ticks of [`generator::cost`], plus the square of the number
+/// of shapes divided by 64.
 const COST_MAX: u64 = 120_000;
-/// Maximum number of shapes, because brute force compares every shape with every other.
+/// Number of shapes from which on no more bodies arrive, because brute force compares every shape with every other.
 const SHAPES_MAX: usize = 600;
 
 /// Runs the crowd that the bytes describe. Returns the number of pairs, summed over the ticks.

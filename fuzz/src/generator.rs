@@ -106,7 +106,8 @@ impl Generator {
         Generator { middle, lulls, bodies: Vec::new(), shapes: Vec::new(), joints: Vec::new() }
     }
 
-    /// The commands of the first tick: mostly a floor and a heap of bodies, often with an ordinary pile.
+    /// The commands of the first tick. In a scene that is not ordinary, these are mostly a floor and a heap of bodies,
+    /// often with an ordinary pile.
     pub fn setup(&mut self, source: &mut Source<'_>) -> Vec<Command> {
         let mut commands = Vec::new();
         if source.is_ordinary() {
@@ -237,7 +238,7 @@ impl Generator {
         self.middle + Vec2::new(source.thousandths(-reach, reach), source.thousandths(-reach, reach))
     }
 
-    /// Adds many equal bodies, for few bytes of input: at one point, or scattered around it.
+    /// Adds 1 to 80 equal bodies, for few bytes of input: at one point, or scattered around it.
     fn heap(&self, source: &mut Source<'_>, commands: &mut Vec<Command>) {
         let count = source.pick(&[12, 5, 20, 14, 3, 16, 8, 12, 1, 12, 18, 16, 10, 14, 40, 80]);
         let asleep = source.one_in(6);
@@ -334,7 +335,7 @@ impl Generator {
         Command::SetJoint { joint, def }
     }
 
-    /// A body: mostly an existing one, sometimes a despawned one, sometimes a handle that was never valid.
+    /// A body: mostly an existing one, sometimes a handle that was used before, which may be stale or was never valid.
     fn body(&mut self, source: &mut Source<'_>, world: &World) -> BodyId {
         let present: Vec<BodyId> = world.bodies().map(|(id, _)| id).collect();
         handle(source, &present, &mut self.bodies)

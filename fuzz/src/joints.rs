@@ -152,7 +152,7 @@ fn motor(source: &mut Source<'_>) -> Motor {
     joint
 }
 
-/// A joint kind for neighbouring bodies with anchors at the same point. Each kind holds or moves them gently.
+/// A joint kind for neighbouring bodies with anchors at the same point, with mostly moderate parameters.
 pub fn ordinary_kind(source: &mut Source<'_>) -> JointKind {
     let strength = source.thousandths(1000, 20_000);
     let speed = source.thousandths(-3000, 3000);

@@ -1,6 +1,6 @@
-//! Runs one scene in two worlds that must not differ. The plain world is rolled back once. The second world has another
-//! broad phase, is reloaded from bytes or has its caches cleared, or combines another broad phase with one of the
-//! latter two.
+//! Runs one scene in two worlds that must not differ. The plain world is rolled back at most once. The second world has
+//! another broad phase, is reloaded from bytes or has its caches cleared, or combines another broad phase with one of
+//! the latter two.
 
 use std::sync::Mutex;
 
@@ -11,12 +11,12 @@ use lockstep2d::world::{BodyField, Command, Events, Snapshot, World};
 use crate::generator::{self, Generator};
 use crate::source::Source;
 
-/// Maximum cost of a run, as counted by [`generator::cost`]: about three times the cost of an ordinary run.
+/// A run ends when the sum of [`generator::cost`] over its ticks exceeds this.
 const COST_MAX: u64 = 60_000;
 /// Maximum depth of the rollback, in ticks.
 const ROLLBACK_MAX: usize = 30;
 /// Interval in ticks of the invariant checks, in addition to those after commands and at the end. In a small world the
-/// checks take most of the time, and an invariant that is broken stays broken until the next check.
+/// checks take most of the time.
 const CHECK_INTERVAL: u64 = 8;
 
 /// Statistics of a run.
@@ -32,7 +32,7 @@ pub struct Seen {
     pub done: u64,
     /// Commands refused.
     pub refused: u64,
-    /// Faults: values clamped by the solver.
+    /// Number of [`faults`](World::faults).
     pub faults: u64,
     /// Bodies that fell asleep.
     pub slept: u64,
@@ -93,8 +93,8 @@ pub fn run(bytes: &[u8]) -> Seen {
     play(bytes, |_| ())
 }
 
-/// Same as [`run`], with a planted fault that the comparison has to find: in a crowd, one bit of one body of the second
-/// world flips.
+/// Runs the scene like [`run`], with a planted fault that the comparison has to find: in a crowd, one bit of one body of
+/// the second world flips.
 ///
 /// # Panics
 /// When the scene has a crowd: more than 12 touching contacts and at least eight bodies, the eighth of which can move.
@@ -294,7 +294,7 @@ struct Total {
     faulty: [u64; 2],
 }
 
-/// Adds a run to the statistics, which are printed regularly if `FUZZ_FIGURES` is set.
+/// Adds a run to the statistics, which are printed after every 100 runs if `FUZZ_FIGURES` is set.
 pub fn count(seen: Seen) {
     let Ok(mut total) = TOTAL.lock() else { return };
     total.runs += 1;

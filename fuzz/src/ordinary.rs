@@ -1,7 +1,6 @@
 //! Ordinary scenes: moderate sizes, masses and speeds; piles, containers, drums and chains, with many contacts and no
-//! values that should reach a clamp. One scene in five hundred reaches a clamp nevertheless. All such scenes that were
-//! examined have joints: a chain spawned across a pile has boxes wedged between its links, so that its joints and
-//! contacts contradict each other.
+//! values that should reach a clamp. About one scene in five hundred reaches a clamp nevertheless, for example when a
+//! chain is spawned across a pile, so that its joints and contacts contradict each other.
 
 use lockstep2d::body::{Area, BodyDef, BodyId, BodyKind, Geometry, ShapeDef};
 use lockstep2d::fx;
@@ -131,7 +130,8 @@ pub(crate) fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec
     let corner =
         middle + Vec2::new(source.thousandths(-2000, 0), FLOOR + source.pick(&[fx!(0), fx!(0.5), fx!(2)]));
     let asleep = source.one_in(6);
-    // The half second that bodies need to fall asleep is a large part of a short scene, so some get a high sleep speed.
+    // The half second that bodies need to fall asleep is a large part of a short scene, so most piles get a higher sleep
+    // speed.
     let sleep_speed = source.pick(&[fx!(0.05), fx!(0.5), fx!(2)]);
     for index in 0..count {
         let (column, row) = (Fx::from(index % columns), Fx::from(index / columns));

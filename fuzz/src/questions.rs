@@ -15,7 +15,7 @@ use crate::source::Source;
 
 mod singles;
 
-/// Maximum cost of a run, as counted by [`generator::cost`].
+/// A run ends when the sum of [`generator::cost`] over its ticks exceeds this.
 const COST_MAX: u64 = 60_000;
 /// Maximum difference in metres between two ways to compute a point.
 const TOLERANCE: Fx = fx!(0.005);
@@ -350,7 +350,7 @@ impl Questions<'_> {
         !planes.is_empty()
     }
 
-    /// Moves a character for a few ticks.
+    /// Moves a character up to four times, without stepping the world.
     fn walks(&self, source: &mut Source<'_>) -> bool {
         let shape = if self.ordinary { shapes::ordinary_shape(source) } else { shapes::shape(source) };
         let Ok(mover) = Mover::new(shape.geometry) else { return false };
@@ -367,8 +367,8 @@ impl Questions<'_> {
         met
     }
 
-    /// Shapes that contain a moving point or probe by more than the tolerance, at 17 samples of its path. Links are
-    /// left out, because they may be one-sided.
+    /// Returns the shapes in which a moving point or probe is deeper than the tolerance, at 17 samples of its path, with
+    /// the fraction of the path. Links are left out, because they may be one-sided.
     fn samples<'a>(
         &'a self,
         distance: impl Fn(Fx, ShapeId) -> Fx + 'a,

@@ -60,8 +60,8 @@ struct Trajectory {
 /// a peer that followed the rules. Returns the result as one word.
 ///
 /// # Panics
-/// If a report that was changed without correcting its hash is accepted, or if a side that followed the rules is
-/// blamed.
+/// If an unchanged report within the limits is refused, if a report that was changed without correcting its hash is
+/// accepted, if a side that followed the rules is blamed, or if the blame depends on the order of the sides.
 pub fn run(bytes: &[u8]) -> &'static str {
     let mut source = Source::new(bytes);
     let way = source.below(8);

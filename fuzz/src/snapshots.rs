@@ -19,7 +19,8 @@ const COST_MAX: u64 = 30_000;
 /// fields or bytes changed and, in most cases, the hash repaired. Returns whether it is accepted.
 ///
 /// # Panics
-/// When an accepted world breaks an invariant or depends on its caches within ten ticks.
+/// When an accepted world has another encoding, or breaks an invariant or depends on its caches or its broad phase
+/// within ten ticks.
 pub fn run(bytes: &[u8]) -> bool {
     let mut source = Source::new(bytes);
     if source.one_in(32) {

@@ -1,4 +1,4 @@
-//! Verifies forged replays, and recorded replays of extreme scenes.
+//! Verifies replays of small scenes, as recorded, changed or forged, and arbitrary bytes.
 
 use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 use lockstep2d::replay::{Limits, Recording, Verdict, verify};

@@ -1,7 +1,8 @@
 //! Work units bound the time in random worlds, too: no setup and no tick takes more than a microsecond for each unit
-//! that it is charged. `tests/work_units` of the library has the worlds that are made to be expensive.
+//! that it is charged, or three with debug assertions. `tests/work_units` of the library has the worlds that are made
+//! to be expensive.
 //!
-//! `WORLDS` is the number of worlds, 200 by default.
+//! The environment variable `WORLDS` sets the number of worlds, 200 by default.
 
 use std::time::{Duration, Instant};
 

@@ -1,4 +1,4 @@
-//! Targets whose input is a file or packets. Most inputs are refused within microseconds, so that millions can be
+//! Targets whose input is a file or packets. Most files are refused within microseconds, so that millions can be
 //! tried.
 //!
 //! If the input is a file, its first byte determines the meaning of the rest: the bytes of a file, or changes to an
@@ -41,7 +41,7 @@ fn attempt<'a>(bytes: &[u8], originals: &'a [Vec<u8>], repair: impl Fn(&mut Vec<
     Attempt { file, original }
 }
 
-/// Changes a few bytes, or copies a piece of another file into this one.
+/// Changes a few bytes, or copies a piece of one of the originals into the file.
 fn change(source: &mut Source<'_>, file: &mut Vec<u8>, originals: &[Vec<u8>]) {
     if !source.one_in(8) {
         return mutate(source, file);

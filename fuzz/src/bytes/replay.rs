@@ -13,7 +13,7 @@ use crate::forge;
 use crate::generator::spawn;
 use crate::memory::Memory;
 
-/// Limits that keep an execution within some tens of microseconds.
+/// Limits that keep an execution short.
 pub(super) const LIMITS: Limits = Limits {
     file_bytes: 8 << 10,
     setup_bytes: 4 << 10,
@@ -26,7 +26,7 @@ pub(super) const LIMITS: Limits = Limits {
     total_work: 4000,
 };
 
-/// Recordings of [`Memory`] and of three sandboxes, the last of which is truncated.
+/// Recordings of [`Memory`] and of two sandboxes, and a truncated copy of one of them.
 static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let memory = record::<Memory>(&(), 3, &[[1, 2, 3], [1, 2, 3], [4, 5, 6], [0, 255, 0], [9, 9, 9]]);
     let empty = record::<Sandbox>(&SandboxSetup::default(), 2, &[[vec![]], [vec![]], [vec![]]]);

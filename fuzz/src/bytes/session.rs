@@ -1,8 +1,8 @@
 //! Sends changed packets to three peers: two that play, and one that joins them.
 //!
-//! Two peers play for 20 to 39 ticks first; the third peer begins to join after 20 ticks. An input is a list of
-//! attacks. Each attack selects one of the packets sent so far, a change, a receiver, and whether the checksum is
-//! repaired.
+//! The first two peers connect and play from the start; the third begins to join after 20 ticks. After 20 to 39 ticks
+//! the attacks of the input follow. Each attack selects one of the last 64 packets, a change, a sender and a receiver,
+//! and whether the checksum is repaired.
 
 use lockstep2d::session::{Address, Config, Endpoint, Identity, Key, PeerId, Request, Role};
 
@@ -88,7 +88,7 @@ fn play(session: &mut lockstep2d::session::Session, now: u64) {
     while session.next_event().is_some() {}
 }
 
-/// Corrects the checksum of a packet of a match.
+/// Corrects the checksum of a packet of the match with this tag.
 pub fn repair(tag: u64, bytes: &mut [u8]) {
     if let Some((sum, body)) = bytes.split_first_chunk_mut::<4>() {
         let digest = twox_hash::XxHash3_128::oneshot_with_seed(tag, body).to_le_bytes();

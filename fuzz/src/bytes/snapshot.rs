@@ -40,7 +40,7 @@ static ORIGINALS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     [empty, touching, jointed, asleep, vacant].map(|world| world.to_bytes()).to_vec()
 });
 
-/// Reads a world and, if it is valid, steps it twice. Returns whether it is valid.
+/// Reads a world and, if it is valid, steps it at most twice. Returns whether it is valid.
 ///
 /// # Panics
 /// When an accepted world has another encoding, breaks an invariant, or depends on its caches.
