@@ -93,8 +93,8 @@ pub fn run(bytes: &[u8]) -> Seen {
     play(bytes, |_| ())
 }
 
-/// Runs the scene like [`run`], with a planted fault that the comparison has to find: in a crowd, one bit of one body of
-/// the second world flips.
+/// Runs the scene like [`run`], with a planted fault that the comparison has to find: in a crowd, one bit of one body
+/// of the second world flips.
 ///
 /// # Panics
 /// When the scene has a crowd: more than 12 touching contacts and at least eight bodies, the eighth of which can move.

@@ -130,8 +130,8 @@ pub(crate) fn pile(source: &mut Source<'_>, middle: Vec2<Fx>, commands: &mut Vec
     let corner =
         middle + Vec2::new(source.thousandths(-2000, 0), FLOOR + source.pick(&[fx!(0), fx!(0.5), fx!(2)]));
     let asleep = source.one_in(6);
-    // The half second that bodies need to fall asleep is a large part of a short scene, so most piles get a higher sleep
-    // speed.
+    // The half second that bodies need to fall asleep is a large part of a short scene, so most piles get a higher
+    // sleep speed.
     let sleep_speed = source.pick(&[fx!(0.05), fx!(0.5), fx!(2)]);
     for index in 0..count {
         let (column, row) = (Fx::from(index % columns), Fx::from(index / columns));

@@ -367,8 +367,8 @@ impl Questions<'_> {
         met
     }
 
-    /// Returns the shapes in which a moving point or probe is deeper than the tolerance, at 17 samples of its path, with
-    /// the fraction of the path. Links are left out, because they may be one-sided.
+    /// Returns the shapes in which a moving point or probe is deeper than the tolerance, at 17 samples of its path,
+    /// with the fraction of the path. Links are left out, because they may be one-sided.
     fn samples<'a>(
         &'a self,
         distance: impl Fn(Fx, ShapeId) -> Fx + 'a,
