@@ -183,7 +183,7 @@ local answers = {
     [ls.REQUEST_CHECKSUM] = function(self, tick)
         ls.match_report_hash(self.match, tick, self.saves[tick].hash)
     end,
-    -- Keeps the newest of the states that are no longer needed, for peers that join.
+    -- Keeps the newest state up to this tick, for peers that join.
     [ls.REQUEST_FORGET] = function(self, tick)
         local newest = self:newest(tick)
         self:forget(function(kept) return newest ~= nil and kept < newest end)

@@ -89,7 +89,7 @@ export class Fx {
     /** The decimal text. */
     toJSON(): string;
 }
-/** Makes a fixed-point number: `fx("1.25")`. Numbers beyond ±2^31 are errors. */
+/** Makes a fixed-point number: `fx("1.25")`. Numbers out of range are errors. */
 export function fx(value: Num): Fx;
 
 /** A rotation in units of 2^-32 turn, counter-clockwise. Immutable. Sums and differences drop whole turns. */
@@ -815,12 +815,13 @@ export class World extends Edits {
     execute(commands: Commands): number;
     /** Hash of the state: 32 hexadecimal digits, the same on every machine. */
     hash(): string;
-    /** Hash of a section: 0 settings, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands, 6 random numbers. */
+    /** Hash of a section: 0 settings, tick and fault count, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands,
+     * 6 random numbers. */
     digest(section: number): string;
     /** Number of ticks since the world was made. */
     readonly tick: number;
-    /** Number of results of the solver that were clamped since the world was made. A body at the speed limit does
-     * not count. */
+    /** Number of results of the solver that were clamped since the world was made, plus one for every tick in which
+     * `pairLimit` left pairs out. A body at the speed limit does not count. */
     readonly faults: number;
     /** Numbers of bodies, shapes, joints, awake bodies, and pairs of near shapes. */
     counts(): { bodies: number; shapes: number; joints: number; awake: number; pairs: number };
@@ -1113,7 +1114,7 @@ export class Replay extends Handle {
     check(hash: string): void;
     /** Adds a result of the game that was played. The verdict compares all added results with `claims`. */
     claim(name: string, number: number | bigint): void;
-    /** The verdict after the last tick, with the hash of the last state. */
+    /** The verdict after the last tick, or after a checkpoint that differs. `hash` is the hash of the current state. */
     verdict(hash: string): Verdict;
     /** Starts seeking to a tick: `nextRequest` returns the requests, which `ReplayDriver` fulfils. At the first call
      * the game has to be in the state before the first tick. */
@@ -1143,7 +1144,7 @@ export class ReplayDriver<Saved = unknown> {
     #private;
     /** The game has to be in the state before the first tick. */
     constructor(replay: Replay, game: ReplayGame<Saved>);
-    /** Number of ticks that the game has played. */
+    /** Current tick: the game is in the state after this number of ticks. */
     readonly tick: number;
     /** Goes to a tick. If it was played before, this simulates fewer ticks than the interval of the saved states.
      * Throws an error with the code RECORD if the game diverges from the file. The driver then stays at that tick, and

@@ -1043,8 +1043,8 @@ size_t ls2d_scratch(size_t size);
 ls2d_status ls2d_config_init(ls2d_config *config);
 
 /* Raises the number of sub-steps and the stiffness of contacts so that a stack of 8 boxes of `size` metres sinks
- * by less than 2.5 % of a box, with at most 64 sub-steps per tick. Reduces the speculative distance to a fiftieth
- * of `size`, but not below 1 mm. Call it after gravity and the tick rate are set. */
+ * by less than 2.5 % of a box, with at most 64 sub-steps per tick and 4000 per second. Reduces the speculative
+ * distance to a fiftieth of `size`, but not below 1 mm. Call it after gravity and the tick rate are set. */
 ls2d_status ls2d_config_for_smallest(ls2d_config *config, const ls2d_config *from, ls2d_fx size);
 
 /* Makes an empty world. A null `config` stands for the default settings. */
@@ -1059,19 +1059,19 @@ ls2d_status ls2d_world_step(uint32_t world);
 /* Advances a world by some ticks. Only the events of the last one are kept. */
 ls2d_status ls2d_world_steps(uint32_t world, uint32_t ticks);
 
-/* Hash of the state of a world. The same settings, edits and ticks in the same order give the
- * same hash on every machine. */
+/* Hash of the state of a world. The same settings, edits and ticks in the same order give the same hash on every
+ * machine. */
 ls2d_status ls2d_world_hash(uint32_t world, ls2d_hash *hash);
 
-/* Hash of a section of the state: 0 settings, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands, 6 random
- * numbers. */
+/* Hash of a section of the state: 0 settings, tick and fault count, 1 bodies, 2 shapes, 3 joints, 4 contacts,
+ * 5 islands, 6 random numbers. */
 ls2d_status ls2d_world_digest(uint32_t world, uint32_t section, ls2d_hash *hash);
 
 /* Number of ticks since the world was made. */
 ls2d_status ls2d_world_tick(uint32_t world, uint64_t *tick);
 
-/* Number of results of the solver that were clamped since the world was made. A body at the speed limit does not
- * count. */
+/* Number of results of the solver that were clamped since the world was made, plus one for every tick in which
+ * `pair_limit` left pairs out. A body at the speed limit does not count. */
 ls2d_status ls2d_world_faults(uint32_t world, uint64_t *faults);
 
 /* The settings of a world. */
@@ -1465,7 +1465,7 @@ ls2d_status ls2d_recorder_finish(uint32_t recorder, const ls2d_hash *hash, uint3
  * the handle is 0, and the result is `LS2D_RECORD`. */
 ls2d_status ls2d_replay_open(const uint8_t *data, size_t size, const ls2d_limits *limits, uint32_t *replay, ls2d_verdict *verdict);
 
-/* Name of the rules as bytes, and the figures of the header. Null pointers to figures are not written. */
+/* Name of the rules as bytes, and the figures of the replay. Null pointers to figures are not written. */
 ls2d_status ls2d_replay_rules(uint32_t replay, uint32_t *rules, uint32_t *rules_version, uint32_t *players, uint32_t *tick_rate, uint32_t *input_bytes, uint64_t *ticks);
 
 /* The setup of the game as bytes. */
@@ -1486,7 +1486,7 @@ ls2d_status ls2d_replay_check(uint32_t replay, const ls2d_hash *hash);
 /* Adds a result of the game that was played. The verdict compares all added results with those in the file. */
 ls2d_status ls2d_replay_claim(uint32_t replay, const uint8_t *name, size_t name_length, int64_t number);
 
-/* The verdict after the last tick, with the hash of the last state. */
+/* The verdict after the last tick, or after a checkpoint that differs. `hash` is the hash of the current state. */
 ls2d_status ls2d_replay_verdict(uint32_t replay, const ls2d_hash *hash, ls2d_verdict *verdict);
 
 /* ---- Timelines of replays of games with rules of their own ---- */

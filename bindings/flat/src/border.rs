@@ -10,7 +10,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::status::{Failure, Outcome, Status, note};
 
-/// Types that may be read from the memory of a caller.
+/// Types that may be read from the memory of a caller and written to it.
 ///
 /// # Safety
 /// Every byte pattern has to be a value of the type, and the type must have no padding.

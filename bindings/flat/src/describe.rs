@@ -42,7 +42,7 @@ pub(crate) struct Field {
 pub(crate) struct Struct {
     /// Name in C.
     pub(crate) name: &'static str,
-    /// Size in bytes, the same on all machines with 8-byte aligned `int64_t`.
+    /// Size in bytes.
     pub(crate) bytes: usize,
     /// Its fields in order, without gaps.
     pub(crate) fields: &'static [Field],

@@ -58,7 +58,7 @@ pub struct Caller<'a> {
 }
 
 /// Calls functions as long as there is input. Returns their codes, and the lower halves of the hashes of the worlds at
-/// the end. Frees the objects whose handles parameters named in `HANDLES` have returned.
+/// the end. Frees all objects whose handles were returned by output parameters that are named in `HANDLES`.
 ///
 /// # Panics
 /// If a call has failed in the library itself.

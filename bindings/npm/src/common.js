@@ -1,4 +1,4 @@
-// The exports of both entry points: everything except replays and matches.
+// The exports that both entry points share.
 export { Lockstep2dError } from "./error.js";
 export { Angle, Fx, degrees, fx, radians, turns } from "./fx.js";
 export { loaded } from "./library.js";

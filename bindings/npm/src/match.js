@@ -355,7 +355,7 @@ export class MatchDriver {
                 this.#match.reportHash(tick, this.#saved(tick).hash);
                 break;
             default:
-                // Keeps the newest of the states that are no longer needed, for peers that join.
+                // Keeps the newest state up to this tick, for peers that join.
                 this.#forgetBefore(tick);
         }
     }

@@ -32,7 +32,7 @@ function openAt(name, bytes, limits) {
     return u32(at);
 }
 
-/** Writes limits at an address. */
+/** Writes limits at an address, and returns the address. Without limits, returns 0, which selects the defaults. */
 function limitsAt(at, limits) {
     if (limits === undefined) {
         return 0;
@@ -226,7 +226,7 @@ export class Replay extends Handle {
         call("ls2d_replay_check", this.handle, at);
     }
 
-    /** The verdict after the last tick, with the hash of the last state. */
+    /** The verdict after the last tick, or after a checkpoint that differs. `hash` is the hash of the current state. */
     verdict(hash) {
         const at = scratch(16 + sizeOf("verdict"));
         writeHash(at, hash);
@@ -254,7 +254,7 @@ export class ReplayDriver {
         this.#game = game;
     }
 
-    /** Number of ticks that the game has played. */
+    /** Current tick: the game is in the state after this number of ticks. */
     get tick() {
         return this.#tick;
     }

@@ -91,8 +91,8 @@ export class World extends Edits {
         return hashAt(at);
     }
 
-    /** Hash of a section of the state: 0 settings, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands, 6 random
-     * numbers. */
+    /** Hash of a section of the state: 0 settings, tick and fault count, 1 bodies, 2 shapes, 3 joints, 4 contacts,
+     * 5 islands, 6 random numbers. */
     digest(section) {
         const at = scratch(16);
         call("ls2d_world_digest", this.handle, u32Of(section, "a section"), at);

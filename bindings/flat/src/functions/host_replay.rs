@@ -57,7 +57,7 @@ pub(crate) struct HostReplay {
     checkpoints: Vec<Checkpoint>,
     trailer: Option<Trailer>,
     pub(super) ticks: u64,
-    /// Number of ticks that the game has played.
+    /// Current tick: the game is in the state after this number of ticks.
     pub(super) tick: u64,
     /// Tick of the last comparison with a checkpoint; `None` before the first, and after a saved state was loaded.
     pub(super) compared: Option<u64>,
@@ -153,7 +153,7 @@ impl HostReplay {
         Ok(())
     }
 
-    /// The verdict after the last tick.
+    /// The verdict after the last tick, or after a checkpoint that differs. `hash` is the hash of the current state.
     fn verdict(&mut self, hash: StateHash) -> Outcome<Verdict> {
         self.check(hash)?;
         if let Some(failed) = &self.failed {
@@ -224,7 +224,7 @@ api! {
         set_opened(HostReplay::open(data.slice(size)?, &limits), &mut replay, &mut verdict)
     }
 
-    /// Name of the rules as bytes, and the figures of the header. Null pointers to figures are not written.
+    /// Name of the rules as bytes, and the figures of the replay. Null pointers to figures are not written.
     fn ls2d_replay_rules(
         replay: u32,
         rules: Out<'_, u32>,
@@ -303,7 +303,7 @@ api! {
         with(replay, |replay: &mut HostReplay| claim(&mut replay.claims, name, number))
     }
 
-    /// The verdict after the last tick, with the hash of the last state.
+    /// The verdict after the last tick, or after a checkpoint that differs. `hash` is the hash of the current state.
     fn ls2d_replay_verdict(replay: u32, hash: In<'_, RawHash>, verdict: Out<'_, RawVerdict>) {
         let mut verdict = verdict;
         let hash = hash.get()?.hash();

@@ -18,8 +18,8 @@ api! {
     }
 
     /// Raises the number of sub-steps and the stiffness of contacts so that a stack of 8 boxes of `size` metres sinks
-    /// by less than 2.5 % of a box, with at most 64 sub-steps per tick. Reduces the speculative distance to a fiftieth
-    /// of `size`, but not below 1 mm. Call it after gravity and the tick rate are set.
+    /// by less than 2.5 % of a box, with at most 64 sub-steps per tick and 4000 per second. Reduces the speculative
+    /// distance to a fiftieth of `size`, but not below 1 mm. Call it after gravity and the tick rate are set.
     fn ls2d_config_for_smallest(config: Out<'_, RawConfig>, from: In<'_, RawConfig>, size: RawFx) {
         let mut config = config;
         let adapted = from.get()?.config()?.for_smallest(size.fx());
@@ -58,15 +58,15 @@ api! {
         })
     }
 
-    /// Hash of the state of a world. The same settings, edits and ticks in the same order give the
-    /// same hash on every machine.
+    /// Hash of the state of a world. The same settings, edits and ticks in the same order give the same hash on every
+    /// machine.
     fn ls2d_world_hash(world: u32, hash: Out<'_, RawHash>) {
         let mut hash = hash;
         with(world, |world: &mut World| hash.set(RawHash::of(world.state_hash())))
     }
 
-    /// Hash of a section of the state: 0 settings, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands, 6 random
-    /// numbers.
+    /// Hash of a section of the state: 0 settings, tick and fault count, 1 bodies, 2 shapes, 3 joints, 4 contacts,
+    /// 5 islands, 6 random numbers.
     fn ls2d_world_digest(world: u32, section: u32, hash: Out<'_, RawHash>) {
         let mut hash = hash;
         let sections = [
@@ -92,8 +92,8 @@ api! {
         with(world, |world: &mut World| tick.set(world.tick()))
     }
 
-    /// Number of results of the solver that were clamped since the world was made. A body at the speed limit does not
-    /// count.
+    /// Number of results of the solver that were clamped since the world was made, plus one for every tick in which
+    /// `pair_limit` left pairs out. A body at the speed limit does not count.
     fn ls2d_world_faults(world: u32, faults: Out<'_, u64>) {
         let mut faults = faults;
         with(world, |world: &mut World| faults.set(world.faults()))

@@ -1,4 +1,4 @@
-//! Misuse of handles that are stale, freed or of another kind, and a panic in the library.
+//! Stale and unknown handles, a panic in the library, and the text of the last error.
 
 use super::done;
 use crate::status::{Failure, Outcome};

@@ -1,5 +1,5 @@
-//! Random sequences of calls with random, often wrong arguments: every call returns a code, and the same sequence gives
-//! the same codes and the same worlds.
+//! Random sequences of calls with random, often wrong arguments: no call fails in the library itself, and a repeated
+//! sequence gives equal codes and equal worlds.
 
 use lockstep2d::math::Rng;
 

@@ -1,5 +1,5 @@
-//! Scenes that are built and played through the flat API have the same hashes as through the Rust API: with the structs
-//! of definitions, with encoded commands, in recordings, and in replays.
+//! Scenes of at most 2000 shapes, a recording and its replay, definitions, a character, bodies that are added with
+//! joints, and masses, mostly compared with the Rust API.
 
 use lockstep2d::body::{Geometry, MassProperties, Polygon, ShapeDef};
 use lockstep2d::lockstep::{Game, Sandbox};
