@@ -10,7 +10,7 @@ Game.SEATS = 2
 Game.OFFER = "push the crates 1, semantics " .. ls.semantics()
 Game.LEFT, Game.RIGHT, Game.JUMP = 1, 2, 4
 
--- Start positions of the players, to which they return after a fall.
+-- The x coordinates in metres at which the players start, and to which they return after a fall.
 local STARTS = { -5, 5 }
 
 local function shape(kind, x, y, radius)

@@ -1,5 +1,5 @@
-//! The game used by the examples: two players push one ball. Its claim is the x coordinate of the ball, rounded
-//! down to metres.
+//! The game of the examples `custom_game`, `lockstep_match`, `rollback_match` and `spectator`: two players push one
+//! ball. Its claim is the x coordinate of the ball, rounded down to metres.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, ShapeDef, WorldError};
 use lockstep2d::fx;

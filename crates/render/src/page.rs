@@ -19,7 +19,7 @@ const LINE: f32 = 17.0;
 const MARGIN: f32 = 8.0;
 /// Typical length of the figures without the title, in characters.
 const FIGURES: usize = 100;
-/// Length of the hash, in characters.
+/// Room for the hash, in characters.
 const HASH: usize = 34;
 /// Typical length of the name of a style, in characters.
 const NAME: usize = 12;

@@ -1,4 +1,4 @@
-//! Tests that the scenes have the documented sizes.
+//! Tests that the scenes start, and that some of them have the documented sizes.
 
 use super::{ALL, Scene};
 use lockstep2d::fx;

@@ -20,7 +20,7 @@ pub(crate) enum WorkerError {
     Read { path: PathBuf, error: io::Error },
     /// A job cannot name this path: it is not relative, leads out of the folder, or is not UTF-8.
     Path { path: PathBuf },
-    /// A folder contains no replays.
+    /// A folder contains no replays, or a bucket contains no object and no replays under a name.
     NothingToSubmit { path: PathBuf },
     /// The standard output cannot be written.
     Output(io::Error),

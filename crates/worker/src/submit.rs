@@ -36,7 +36,7 @@ struct Line<'a> {
 enum Files {
     /// In the folders of the workers, at the paths that the files have in the folder of this command.
     Folder,
-    /// On this machine; workers find them in the object store of the queue.
+    /// In the file system of this command; workers find them in the object store of the queue.
     Objects(Box<ObjectStore>),
     Bucket(Bucket),
 }
@@ -60,7 +60,7 @@ fn print(line: &str) -> Result<(), WorkerError> {
     std::io::stdout().write_all(format!("{line}\n").as_bytes()).map_err(WorkerError::Output)
 }
 
-/// The names of the file at `path`, or of the replays in that folder.
+/// The name of the file at `path`, or the names of the replays in that folder.
 async fn replays<'a>(files: &'a Files, path: &'a Path) -> Result<Names<'a>, WorkerError> {
     if let Files::Bucket(bucket) = files {
         return bucket.replays(path.to_str().ok_or_else(|| no_name(path))?).await;

@@ -35,7 +35,7 @@ const LOST: Duration = Duration::from_secs(5);
 /// Pause before another attempt to read a file, multiplied by the number of deliveries so far.
 const READ_AGAIN: Duration = Duration::from_secs(1);
 
-/// The verdict on a file that was delivered several times, but whose workers always ended without a result.
+/// The verdict on a file that was delivered the maximum number of times, each time without a result.
 const CRASHED: &str = "crashed";
 /// Name, in the metrics, for the result of a file that cannot be read.
 const UNREAD: &str = "unread";
@@ -214,7 +214,7 @@ async fn acknowledge(message: &Message, kind: AckKind) {
     let _ = message.double_ack_with(kind).await;
 }
 
-/// The result of a file whose workers have all ended without a result. The file is not read again.
+/// The result of a file all of whose deliveries ended without a result. The file is not read again.
 fn crashed(job: &Job, deliveries: u64) -> Judged {
     #[derive(Serialize)]
     struct Line<'a> {

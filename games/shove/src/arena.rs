@@ -18,7 +18,7 @@ pub(crate) const TICK_RATE: u32 = 60;
 pub const START_RADIUS: Fx = fx!(12);
 /// Width of the ring that crumbles at a time, in metres.
 const RING: Fx = fx!(0.5);
-/// Number of rings of the platform that crumble in a round.
+/// Largest number of rings of the platform that crumble in a round.
 pub(crate) const RINGS: u8 = 15;
 
 /// Distance of the players' start positions from the centre, in metres.

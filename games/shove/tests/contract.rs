@@ -93,7 +93,7 @@ fn the_same_pads_give_the_same_hashes() {
 fn caches_do_not_matter() {
     for (setup, log) in logs() {
         let mut saved = None;
-        // Loading a save clears the caches outside the state.
+        // Loading a save of the current state must not change later ticks.
         play_again(&setup, &log, |tick, game| {
             let save = game.save();
             if tick % 7 == 0 {

@@ -174,7 +174,8 @@ fn two_workers_do_almost_twice_as_much_as_one() {
     assert!(best >= 180, "two workers have only {best} % of the throughput of one");
 }
 
-/// Compares the memory with docs/VERIFYING.md: 75 MB for 400 squares on one spot, plus 30 MB for the worker itself.
+/// Checks the peak memory of a worker. One of the files has 400 squares on one spot, for which docs/VERIFYING.md states
+/// a peak of 75 MB with `verify`.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_worker_takes_little_more_memory_than_verify() {

@@ -31,7 +31,7 @@ impl Log {
         Log { json, tick: None, stall, delay: None, desync: None, is_over: false }
     }
 
-    /// Writes the address of this peer.
+    /// Writes the address of this peer, if the output is JSON.
     pub(super) fn say_bound(&self, peer: &mut UdpPeer) -> std::io::Result<()> {
         let address = peer.transport_mut().local_address()?.to_string();
         if self.json {
@@ -59,7 +59,7 @@ impl Log {
         }
     }
 
-    /// Tracks progress. Writes the first tick and changes of the delay.
+    /// Tracks progress. Writes the first tick and changes of the delay, if the output is JSON.
     pub(super) fn watch(&mut self, peer: &UdpPeer, now: Duration) {
         let tick = peer.tick();
         match &mut self.tick {
