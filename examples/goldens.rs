@@ -14,7 +14,7 @@ const GOLDENS: &str = include_str!("../tests/goldens.txt");
 const BACKENDS: &str = include_str!("../tests/backends.txt");
 const SHORT: &str = include_str!("../tests/cross/short.txt");
 
-/// Replays recorded on another machine, each of which must verify and end in its golden hash.
+/// Committed replays, each of which must verify and end in the first golden hash of its scene.
 const REPLAYS: [(&str, &[u8]); 3] = [
     ("bridge", include_bytes!("../replays/bridge.replay")),
     ("game", include_bytes!("../replays/game.replay")),

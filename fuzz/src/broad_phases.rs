@@ -15,7 +15,8 @@ use crate::source::Source;
 /// A run ends when its cost exceeds this: the sum over the ticks of [`generator::cost`], plus the square of the number
 /// of shapes divided by 64.
 const COST_MAX: u64 = 120_000;
-/// Number of shapes from which on no more bodies arrive, because brute force compares every shape with every other.
+/// The crowd gets no more bodies while the world has this many shapes, because brute force compares every shape with
+/// every other.
 const SHAPES_MAX: usize = 600;
 
 /// Runs the crowd that the bytes describe. Returns the number of pairs, summed over the ticks.
