@@ -1,6 +1,6 @@
-//! The contract of determinism, for every scene: two runs, restores from bytes at every tick, rollbacks, cleared caches
-//! and another broad phase give the same hash and events after every tick. The final hash is the one in
-//! `tests/goldens.txt`, in every build profile and on every machine.
+//! The contract of determinism, for every scene: two runs, restores from bytes, rollbacks, cleared caches and another
+//! broad phase give the same hash and events after every tick. The final hash is the one in `tests/goldens.txt`, in
+//! every build profile and on every machine.
 
 use std::sync::{LazyLock, OnceLock};
 
@@ -45,7 +45,7 @@ fn assert_same(scene: &Scene, what: &str, trace: &Trace, reference: &Trace) {
     assert_eq!(differing, None, "{}: {what} changes the events of this tick", scene.name);
 }
 
-/// Largest number of ticks for which runs are compared.
+/// Largest number of ticks for which runs are compared in the long run.
 const TICKS_MAX: u64 = 300;
 
 /// The trace of an undisturbed run of a scene, up to the tick of its golden. The first test that needs a scene runs
@@ -58,7 +58,8 @@ fn undisturbed(scene: &Scene) -> &'static Trace {
 }
 
 /// Calls `hold` for every scene, with a number of ticks and the trace of an undisturbed run. The number of ticks is
-/// that of the scene's golden, at most [`TICKS_MAX`], and smaller outside of the long run.
+/// that of the scene's golden, but at most [`TICKS_MAX`] in the long run, and otherwise at most 150, or 30 for a large
+/// scene.
 fn each_scene(hold: impl Fn(&Scene, u64, &Trace) + Sync) {
     sweep::for_each(ALL.iter().collect(), |scene| {
         let ticks_max = sweep::size(TICKS_MAX, if shape_count(scene) > 2000 { 30 } else { 150 });

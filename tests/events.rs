@@ -1,4 +1,4 @@
-//! Contact events: each contact, however short, has exactly one begin and one end event.
+//! Contact events: each contact, however short, has one begin event, and one end event when it ends.
 
 use std::collections::BTreeSet;
 

@@ -33,7 +33,7 @@ const ALLOWED_FLOATS: &[&str] = &["src/draw/", "src/inspect/serializer.rs"];
 /// The only file that may use a clock: it measures whether ticks take less time on one thread or on all.
 const ALLOWED_CLOCK: &str = "src/threads/team.rs";
 
-/// Files that may use `unsafe`: SIMD instructions, prefetches, and bodies shared between threads.
+/// Files that may use `unsafe`: SIMD instructions, prefetches, and data shared between threads.
 const ALLOWED_UNSAFE: &[&str] = &[
     "src/simd/x86.rs",
     "src/simd/x86/avx2.rs",

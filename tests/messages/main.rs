@@ -1,4 +1,4 @@
-//! Error messages: the exact sentence of every error, with its values.
+//! Error messages of the library: the exact sentences, with their values.
 
 mod check;
 mod files;

@@ -1,6 +1,6 @@
-//! Joints without motors feed no energy into an assembly: the sum of kinetic, potential and spring energy grows by at
-//! most a hundredth. The assemblies are stars, trees, chains, loops, meshes and grids of 3 to 12 bodies, with mass
-//! ratios up to 100 and arms up to 16 radii of gyration.
+//! Joints without driving motors feed no energy into an assembly: the sum of kinetic, potential and spring energy grows
+//! by at most a hundredth, except in the assemblies of [`BEYOND`]. The assemblies are stars, trees, chains, loops,
+//! meshes and grids of 3 to 12 bodies, with mass ratios up to 100 and arms up to 16 radii of gyration.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -1,5 +1,5 @@
-//! Physics against theory. Each file covers one kind of motion and states what theory predicts. The goldens and
-//! `replays/` may change only while these tests pass.
+//! Physics against theory and, where there is no theory, against bounds. Each file of tests covers one subject. The
+//! goldens and `replays/` may change only while these tests pass.
 
 mod areas;
 mod assembly;

@@ -61,7 +61,7 @@ pub(crate) struct Peer {
     pub(crate) kicked: bool,
     pub(crate) spectator: bool,
     pub(crate) stopped_until: Us,
-    /// Speed of the clock in thousandths.
+    /// Speed of the clock, in thousandths of that of simulated time.
     pub(crate) skew: u64,
     pub(crate) queue: Vec<Vec<u8>>,
     pub(crate) lost_seats: u32,

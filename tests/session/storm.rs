@@ -1,5 +1,5 @@
-//! Random matches: a seed determines the peers, the links and the disturbances. All links heal after 20 s. From then
-//! on, every peer that still runs has to play, and to finish the match.
+//! Random matches: a seed determines the peers, the links and the disturbances. All links heal after 20 s. If the peers
+//! that still take part are then connected and a quorum of the newest view, they have to play and to finish the match.
 
 use lockstep2d::session::{Config, Role, Timing, View};
 

@@ -1,5 +1,5 @@
-//! The bytes of worlds and commands are as `docs/FORMAT.md` specifies: a reader that follows the document, without the
-//! engine's decoder, reads them.
+//! The bytes of worlds and commands are as `docs/FORMAT.md` specifies. A reader that follows the document, without the
+//! engine's decoder, reads those of a world.
 
 mod commands;
 mod reader;

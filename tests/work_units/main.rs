@@ -1,5 +1,6 @@
-//! Work units bound the time: no tick and no setup takes more than a microsecond for each unit that it is charged,
-//! whatever the commands do. Otherwise the limits of a verifier would not protect it.
+//! Work units bound the time: no tick and no setup takes more than a microsecond for each unit that it is charged
+//! (three in builds with debug assertions), whatever the commands do. Otherwise the limits of a verifier would not
+//! protect it.
 //!
 //! Every case is recorded and then played by the verifier's player, which charges the units. It is also verified with a
 //! limit below the work that it needs: the limit must stop verification within the time of its units. Times are

@@ -1,4 +1,4 @@
-//! Generator of random commands for a small and crowded world: commands of every kind, valid and invalid.
+//! Generator of random commands for a small and crowded world: commands of most kinds, valid and invalid.
 
 use lockstep2d::body::{
     Area, BodyDef, BodyId, BodyKind, BodySettings, Continuous, EventSwitches, Filter, JointId, MassSource,
@@ -25,7 +25,7 @@ impl Churn {
         Churn { rng: Rng::new(seed) }
     }
 
-    /// Creates a world with random settings: a floor, two walls, a sensor, a lift and up to 15 random bodies.
+    /// Creates a world with random settings: a floor, two walls, a pool, a lift and up to 15 random bodies.
     pub(crate) fn world(&mut self) -> World {
         let rng = &mut self.rng;
         let config = Config {
