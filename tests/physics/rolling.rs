@@ -1,5 +1,5 @@
 //! Balls that roll on a plane or on a level chain keep their speed at any tick rate. Balls that roll over flush blocks
-//! lose a little of it, and do not stop.
+//! lose a part of it, and do not stop.
 
 use lockstep2d::body::{BodyDef, Chain, Geometry, Polygon, ShapeDef};
 use lockstep2d::fx;
@@ -45,7 +45,7 @@ fn a_ball_keeps_its_speed_on_a_plane_and_on_a_chain() {
 }
 
 /// At a seam the ball stands on two blocks for a moment, and the corner of the block ahead takes over its weight. The
-/// ball loses a little of its speed there, and never stops.
+/// ball loses a part of its speed there, and never stops.
 #[test]
 fn a_ball_rolls_over_flush_blocks() {
     for rate in RATES {

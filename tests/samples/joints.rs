@@ -255,7 +255,7 @@ fn held_boxes(stage: &mut Stage, locks: BodyDef, change: impl Fn(JointDef) -> Jo
     bodies
 }
 
-/// Sample "Motion Locks". Each kind of joint holds a body whose rotation, or whose place, is locked.
+/// Sample "Motion Locks". Each of six kinds of joints holds a body whose rotation, or whose place, is locked.
 #[test]
 fn locks_and_joints_agree() {
     let mut stage = Stage::new();
