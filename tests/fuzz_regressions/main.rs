@@ -382,3 +382,18 @@ fn a_bar_below_an_outline_that_hardly_bends_touches_it_where_it_is() {
         assert!((place.y + fx!(0.5)).abs() < fx!(0.002), "{place:?}");
     }
 }
+
+#[test]
+fn an_overlap_beyond_the_range_of_separations_at_a_predicted_impact() {
+    // The slivers face each other with corners near their middles. The upper one turns by 19 degrees in the tick, so
+    // that one of its ends is more than 16 m inside the lower one when the corners are predicted to touch.
+    let sliver = |x: Fx, y: Fx| {
+        let corners = [(fx!(-100), fx!(0)), (x, y), (fx!(100), fx!(0))].map(Vec2::from);
+        ShapeDef::new(Polygon::hull(&corners).unwrap())
+    };
+    let mut world = World::new(Config { tick_rate: 15, gravity: Vec2::ZERO, ..Config::default() }).unwrap();
+    world.spawn(&BodyDef::fixed(), &[sliver(fx!(-17), fx!(0.01))]).unwrap();
+    let falling = BodyDef::dynamic().position((fx!(0), fx!(7))).velocity((fx!(0), fx!(-90)));
+    world.spawn(&falling.angular_velocity(fx!(-5)), &[sliver(fx!(17), fx!(-0.01))]).unwrap();
+    caches_decide_nothing(&mut world, 3);
+}

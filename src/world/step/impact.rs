@@ -87,7 +87,7 @@ impl SpeculativePair<'_> {
             let there = motions.map(|motion| motion.advanced(fraction));
             let next = soonest(there.each_ref(), &at_impact);
             found = Some((at_impact, fraction, there));
-            let Some(later) = next.filter(|next| next.separation.abs() > TOLERANCE) else { break };
+            let Some(later) = next.filter(|next| next.separation.saturating_abs() > TOLERANCE) else { break };
             match time_of_touch(&later, time) {
                 Some(later) => time = later,
                 None => break,
