@@ -1,7 +1,7 @@
 //! SIMD abstraction: the integer operations in which the wide kernels are written.
 //!
 //! A kernel is one generic function over [`Lanes`]; a backend is one implementation of that trait. The scalar backend,
-//! `Scalar<1>`, processes one row at a time. The other backends process eight rows that share no body, and no lane
+//! `Scalar<1>`, processes one row at a time. The other backends process [`WIDTH`] rows that share no body, and no lane
 //! depends on another. They use `Scalar<1>` for batches with a single row. Every backend therefore gives the same bits.
 //! Data that kernels process is laid out for the backend ([`Layout`]). Only 32-bit numbers and their 64-bit products
 //! occur, because all processors have the widening multiplication 32 x 32 -> 64 (`vpmuldq`, `smull`, `i64x2.extmul`).
@@ -29,11 +29,11 @@ pub(crate) use shared::Shared;
 
 use core::cell::Cell;
 
-/// Number of rows that a wide kernel processes at a time, on every machine.
-pub(crate) const WIDTH: usize = 8;
+/// Number of rows that a wide kernel processes at a time: eight, or four if vectors have 128 bits.
+pub(crate) use native::WIDTH;
 
 /// One number for each of `N` rows. Batches align these arrays, so that the widest load is fast. The type itself has no
-/// larger alignment, because a single row would then take as much memory as eight.
+/// larger alignment, because a single row would then take as much memory as a full vector.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(crate) struct Ints<const N: usize>(pub(crate) [i32; N]);
@@ -206,7 +206,7 @@ impl Machine {
         }
     }
 
-    /// Runs a kernel of eight lanes. Without vectors, it runs on arrays of eight numbers.
+    /// Runs a kernel of [`WIDTH`] lanes. Without vectors, it runs on arrays of plain integers.
     #[cfg(test)]
     pub(crate) fn run_wide(self, kernel: impl Kernel<WIDTH>) {
         match self.vectors() {

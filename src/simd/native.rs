@@ -1,6 +1,9 @@
 //! Placeholder for target architectures that have no vector backend.
 
-use super::{Backend, Kernel, WIDTH};
+use super::{Backend, Kernel};
+
+/// Number of lanes.
+pub(crate) const WIDTH: usize = 8;
 
 /// Uninhabited, because there are no vectors.
 #[derive(Clone, Copy, Debug)]

@@ -1,4 +1,4 @@
-//! WebAssembly backend: eight lanes in two vectors of 128 bits, and their products in four.
+//! WebAssembly backend: four lanes in a vector of 128 bits, and their products in two.
 #![expect(unsafe_code, reason = "loads and stores of vectors")]
 
 use core::arch::wasm32::*;
@@ -6,7 +6,7 @@ use core::cell::Cell;
 
 use super::body::{GROUND, SolverBody};
 use super::scalar::{Scalar, map};
-use super::{Backend, Ints, Kernel, Lanes, Quad, VelocityW, WIDTH};
+use super::{Backend, Ints, Kernel, Lanes, Quad, VelocityW};
 
 /// Vector instructions of WebAssembly. This file is only compiled for programs that use them; a machine without them
 /// rejects such a program as a whole.
@@ -34,130 +34,121 @@ impl Simd128 {
     }
 }
 
-type Ints32 = [v128; 2];
+/// Number of lanes.
+pub(crate) const WIDTH: usize = 4;
 
-/// Two products per vector: lanes 0 and 1, 2 and 3, 4 and 5, 6 and 7.
-type Products = [v128; 4];
+/// Two products per vector: lanes 0 and 1, lanes 2 and 3.
+type Products = [v128; 2];
 
 impl Lanes<WIDTH> for Simd128 {
-    type Int = Ints32;
+    type Int = v128;
     type Wide = Products;
-    type Mask = Ints32;
+    type Mask = v128;
 
     #[inline(always)]
-    fn load(from: &Ints<WIDTH>) -> Ints32 {
-        let (low, high) = from.0.split_at(4);
-        // SAFETY: loads 16 bytes each.
-        unsafe { [v128_load(low.as_ptr().cast()), v128_load(high.as_ptr().cast())] }
+    fn load(from: &Ints<WIDTH>) -> v128 {
+        // SAFETY: loads 16 bytes.
+        unsafe { v128_load(from.0.as_ptr().cast()) }
     }
 
     #[inline(always)]
-    fn store(value: Ints32, to: &mut Ints<WIDTH>) {
-        let (low, high) = to.0.split_at_mut(4);
-        // SAFETY: stores 16 bytes each.
-        unsafe {
-            v128_store(low.as_mut_ptr().cast(), value[0]);
-            v128_store(high.as_mut_ptr().cast(), value[1]);
-        }
+    fn store(value: v128, to: &mut Ints<WIDTH>) {
+        // SAFETY: stores 16 bytes.
+        unsafe { v128_store(to.0.as_mut_ptr().cast(), value) };
     }
 
     #[inline(always)]
-    fn splat(value: i32) -> Ints32 {
-        [i32x4_splat(value); 2]
+    fn splat(value: i32) -> v128 {
+        i32x4_splat(value)
     }
 
     #[inline(always)]
-    fn add(a: Ints32, b: Ints32) -> Ints32 {
-        map(a, b, |a, b| i32x4_add(a, b))
+    fn add(a: v128, b: v128) -> v128 {
+        i32x4_add(a, b)
     }
 
     #[inline(always)]
-    fn sub(a: Ints32, b: Ints32) -> Ints32 {
-        map(a, b, |a, b| i32x4_sub(a, b))
+    fn sub(a: v128, b: v128) -> v128 {
+        i32x4_sub(a, b)
     }
 
     #[inline(always)]
-    fn add_saturating(a: Ints32, b: Ints32) -> Ints32 {
-        map(a, b, |a, b| {
-            // The sum overflows where its sign differs from the signs of `a` and `b`.
-            let sum = i32x4_add(a, b);
-            limited(sum, v128_and(v128_xor(a, sum), v128_xor(b, sum)), a)
-        })
+    fn add_saturating(a: v128, b: v128) -> v128 {
+        // The sum overflows where its sign differs from the signs of `a` and `b`.
+        let sum = i32x4_add(a, b);
+        limited(sum, v128_and(v128_xor(a, sum), v128_xor(b, sum)), a)
     }
 
     #[inline(always)]
-    fn sub_saturating(a: Ints32, b: Ints32) -> Ints32 {
-        map(a, b, |a, b| {
-            // The difference overflows where `a` and `b` have different signs and its sign is not that of `a`.
-            let difference = i32x4_sub(a, b);
-            limited(difference, v128_and(v128_xor(a, b), v128_xor(a, difference)), a)
-        })
+    fn sub_saturating(a: v128, b: v128) -> v128 {
+        // The difference overflows where `a` and `b` have different signs and its sign is not that of `a`.
+        let difference = i32x4_sub(a, b);
+        limited(difference, v128_and(v128_xor(a, b), v128_xor(a, difference)), a)
     }
 
     #[inline(always)]
-    fn min(a: Ints32, b: Ints32) -> Ints32 {
-        map(a, b, |a, b| i32x4_min(a, b))
+    fn min(a: v128, b: v128) -> v128 {
+        i32x4_min(a, b)
     }
 
     #[inline(always)]
-    fn max(a: Ints32, b: Ints32) -> Ints32 {
-        map(a, b, |a, b| i32x4_max(a, b))
+    fn max(a: v128, b: v128) -> v128 {
+        i32x4_max(a, b)
     }
 
     #[inline(always)]
-    fn or(a: Ints32, b: Ints32) -> Ints32 {
-        map(a, b, |a, b| v128_or(a, b))
+    fn or(a: v128, b: v128) -> v128 {
+        v128_or(a, b)
     }
 
     #[inline(always)]
-    fn greater(a: Ints32, b: Ints32) -> Ints32 {
-        map(a, b, |a, b| i32x4_gt(a, b))
+    fn greater(a: v128, b: v128) -> v128 {
+        i32x4_gt(a, b)
     }
 
     #[inline(always)]
-    fn both(a: Ints32, b: Ints32) -> Ints32 {
-        map(a, b, |a, b| v128_and(a, b))
+    fn both(a: v128, b: v128) -> v128 {
+        v128_and(a, b)
     }
 
     #[inline(always)]
-    fn either(a: Ints32, b: Ints32) -> Ints32 {
-        map(a, b, |a, b| v128_or(a, b))
+    fn either(a: v128, b: v128) -> v128 {
+        v128_or(a, b)
     }
 
     #[inline(always)]
-    fn any([low, high]: Ints32) -> bool {
-        v128_any_true(v128_or(low, high))
+    fn any(mask: v128) -> bool {
+        v128_any_true(mask)
     }
 
     #[inline(always)]
-    fn bits([low, high]: Ints32) -> u32 {
-        u32::from(i32x4_bitmask(low)) | u32::from(i32x4_bitmask(high)) << 4
+    fn bits(mask: v128) -> u32 {
+        u32::from(i32x4_bitmask(mask))
     }
 
     #[inline(always)]
-    fn count(mask: Ints32) -> u32 {
+    fn count(mask: v128) -> u32 {
         Self::bits(mask).count_ones()
     }
 
     #[inline(always)]
-    fn select(mask: Ints32, yes: Ints32, no: Ints32) -> Ints32 {
-        core::array::from_fn(|i| v128_bitselect(yes[i], no[i], mask[i]))
+    fn select(mask: v128, yes: v128, no: v128) -> v128 {
+        v128_bitselect(yes, no, mask)
     }
 
     #[inline(always)]
-    fn to_int(mask: Ints32) -> Ints32 {
+    fn to_int(mask: v128) -> v128 {
         mask
     }
 
     #[inline(always)]
-    fn negative(a: Ints32) -> Ints32 {
-        a.map(sign)
+    fn negative(a: v128) -> v128 {
+        sign(a)
     }
 
     #[inline(always)]
-    fn mul(a: Ints32, b: Ints32) -> Products {
-        let pairs = map(a, b, |a, b| [i64x2_extmul_low_i32x4(a, b), i64x2_extmul_high_i32x4(a, b)]);
-        [pairs[0][0], pairs[0][1], pairs[1][0], pairs[1][1]]
+    fn mul(a: v128, b: v128) -> Products {
+        [i64x2_extmul_low_i32x4(a, b), i64x2_extmul_high_i32x4(a, b)]
     }
 
     #[inline(always)]
@@ -181,32 +172,27 @@ impl Lanes<WIDTH> for Simd128 {
     }
 
     #[inline(always)]
-    fn greater_wide(a: Products, b: Products) -> Ints32 {
+    fn greater_wide(a: Products, b: Products) -> v128 {
         Self::low(map(a, b, |a, b| i64x2_gt(a, b)))
     }
 
     #[inline(always)]
-    fn narrow<const SHIFT: i32>(a: Products) -> Ints32 {
-        let a = rounded::<SHIFT>(a);
-        [shifted::<SHIFT>(a[0], a[1]), shifted::<SHIFT>(a[2], a[3])]
+    fn narrow<const SHIFT: i32>(a: Products) -> v128 {
+        shifted::<SHIFT>(rounded::<SHIFT>(a))
     }
 
     #[inline(always)]
-    fn narrow_saturating<const SHIFT: i32>(a: Products) -> (Ints32, Ints32) {
+    fn narrow_saturating<const SHIFT: i32>(a: Products) -> (v128, v128) {
         let a = rounded::<SHIFT>(a);
-        let four = |a, b| {
-            // A number fits if all bits above those kept equal the sign bit of the result.
-            let low = shifted::<SHIFT>(a, b);
-            let high = i32x4_shuffle::<1, 3, 5, 7>(a, b);
-            let out = i32x4_ne(i32x4_shr(high, (SHIFT - 1).unsigned_abs()), sign(low));
-            (limited(low, out, high), out)
-        };
-        let (low, high) = (four(a[0], a[1]), four(a[2], a[3]));
-        ([low.0, high.0], [low.1, high.1])
+        // A number fits if all bits above those kept equal the sign bit of the result.
+        let low = shifted::<SHIFT>(a);
+        let high = i32x4_shuffle::<1, 3, 5, 7>(a[0], a[1]);
+        let out = i32x4_ne(i32x4_shr(high, (SHIFT - 1).unsigned_abs()), sign(low));
+        (limited(low, out, high), out)
     }
 
     #[inline(always)]
-    fn narrow_by(a: Products, shift: Ints32) -> Ints32 {
+    fn narrow_by(a: Products, shift: v128) -> v128 {
         // There is no shift with a count per lane.
         let mut shifts = Ints::ZERO;
         Self::store(shift, &mut shifts);
@@ -214,18 +200,14 @@ impl Lanes<WIDTH> for Simd128 {
     }
 
     #[inline(always)]
-    fn low(a: Products) -> Ints32 {
-        let four = |a, b| i32x4_shuffle::<0, 2, 4, 6>(a, b);
-        [four(a[0], a[1]), four(a[2], a[3])]
+    fn low([a, b]: Products) -> v128 {
+        i32x4_shuffle::<0, 2, 4, 6>(a, b)
     }
 
     #[inline(always)]
-    fn to_array(a: Products) -> [i64; WIDTH] {
-        let mut array = [0; WIDTH];
-        for (to, a) in array.chunks_exact_mut(2).zip(a) {
-            to.copy_from_slice(&[i64x2_extract_lane::<0>(a), i64x2_extract_lane::<1>(a)]);
-        }
-        array
+    fn to_array([a, b]: Products) -> [i64; WIDTH] {
+        let (first, second) = (i64x2_extract_lane::<0>, i64x2_extract_lane::<1>);
+        [first(a), second(a), first(b), second(b)]
     }
 
     #[inline(always)]
@@ -236,48 +218,45 @@ impl Lanes<WIDTH> for Simd128 {
 
     #[inline(always)]
     fn load_wide(from: &[i64; WIDTH]) -> Products {
-        core::array::from_fn(|i| i64x2(from[2 * i], from[2 * i + 1]))
+        [i64x2(from[0], from[1]), i64x2(from[2], from[3])]
     }
 
     #[inline(always)]
-    fn transposed(rows: [&Quad; WIDTH]) -> [Ints32; 4] {
+    fn transposed(rows: [&Quad; WIDTH]) -> [v128; 4] {
         // SAFETY: loads 16 bytes.
-        columns(rows.map(|row| unsafe { v128_load(row.0.as_ptr().cast()) }))
+        transposed(rows.map(|row| unsafe { v128_load(row.0.as_ptr().cast()) }))
     }
 
     #[inline(always)]
-    fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> VelocityW<Ints32> {
+    fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> VelocityW<v128> {
         // SAFETY: loads the first 16 bytes of a body.
         velocity_w(at.map(|at| unsafe { v128_load(SolverBody::velocity_bits(&bodies[at as usize]).cast()) }))
     }
 
     #[inline(always)]
-    fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> VelocityW<Ints32> {
+    fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH]) -> VelocityW<v128> {
         // SAFETY: loads the last 16 bytes of a body.
         velocity_w(at.map(|at| unsafe { v128_load(SolverBody::shift_bits(&bodies[at as usize]).cast()) }))
     }
 
     #[inline(always)]
-    fn set_velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH], velocities: VelocityW<Ints32>) {
+    fn set_velocities(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH], velocities: VelocityW<v128>) {
         set_velocities_w(at, velocities, |at| SolverBody::velocity_bits(&bodies[at as usize]));
     }
 
     #[inline(always)]
-    fn set_shifts(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH], shifts: VelocityW<Ints32>) {
+    fn set_shifts(bodies: &[Cell<SolverBody>], at: &[u32; WIDTH], shifts: VelocityW<v128>) {
         set_velocities_w(at, shifts, |at| SolverBody::shift_bits(&bodies[at as usize]));
     }
 }
 
 /// Scatters three numbers and a 0 to each body, except the ground.
 #[inline(always)]
-fn set_velocities_w(at: &[u32; WIDTH], v: VelocityW<Ints32>, place: impl Fn(u32) -> *mut i32) {
-    let zero = i32x4_splat(0);
-    for (half, at) in at.chunks_exact(4).enumerate() {
-        let rows = transposed([v.x[half], v.y[half], v.turn[half], zero]);
-        for (&at, row) in at.iter().zip(rows).filter(|&(&at, _)| at != GROUND) {
-            // SAFETY: stores 16 bytes of a body.
-            unsafe { v128_store(place(at).cast(), row) };
-        }
+fn set_velocities_w(at: &[u32; WIDTH], v: VelocityW<v128>, place: impl Fn(u32) -> *mut i32) {
+    let rows = transposed([v.x, v.y, v.turn, i32x4_splat(0)]);
+    for (&at, row) in at.iter().zip(rows).filter(|&(&at, _)| at != GROUND) {
+        // SAFETY: stores 16 bytes of a body.
+        unsafe { v128_store(place(at).cast(), row) };
     }
 }
 
@@ -301,26 +280,19 @@ fn rounded<const SHIFT: i32>(a: Products) -> Products {
 
 /// The 32 bits above the lowest `SHIFT`. A logical shift is enough: these bits equal those of an arithmetic shift.
 #[inline(always)]
-fn shifted<const SHIFT: i32>(a: v128, b: v128) -> v128 {
+fn shifted<const SHIFT: i32>([a, b]: Products) -> v128 {
     let shift = |a| u64x2_shr(a, SHIFT.unsigned_abs());
     i32x4_shuffle::<0, 2, 4, 6>(shift(a), shift(b))
 }
 
 /// Transposes rows of four numbers, and drops the last column.
 #[inline(always)]
-fn velocity_w(rows: [v128; WIDTH]) -> VelocityW<Ints32> {
-    let [x, y, turn, _] = columns(rows);
+fn velocity_w(rows: [v128; WIDTH]) -> VelocityW<v128> {
+    let [x, y, turn, _] = transposed(rows);
     VelocityW { x, y, turn }
 }
 
-/// Transposes rows of four numbers into columns over all lanes.
-#[inline(always)]
-fn columns(rows: [v128; WIDTH]) -> [Ints32; 4] {
-    let low = transposed([rows[0], rows[1], rows[2], rows[3]]);
-    let high = transposed([rows[4], rows[5], rows[6], rows[7]]);
-    map(low, high, |low, high| [low, high])
-}
-
+/// Transposes a matrix of four rows and four columns.
 #[inline(always)]
 fn transposed([r0, r1, r2, r3]: [v128; 4]) -> [v128; 4] {
     let (low_01, high_01) = (i32x4_shuffle::<0, 4, 1, 5>(r0, r1), i32x4_shuffle::<2, 6, 3, 7>(r0, r1));

@@ -8,9 +8,12 @@ mod avx512;
 #[path = "x86/records.rs"]
 mod records;
 
-use super::{Backend, Kernel, WIDTH};
+use super::{Backend, Kernel};
 use avx2::Avx2;
 use avx512::Avx512;
+
+/// Number of lanes of both backends.
+pub(crate) const WIDTH: usize = 8;
 
 /// The vectors of a backend that the processor has.
 #[derive(Clone, Copy, Debug)]

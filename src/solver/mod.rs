@@ -6,9 +6,9 @@
 //! converge.
 //!
 //! A row removes velocity along one direction (`row`). A point block pins two points together (`point_block`). Contacts
-//! and hinges are solved in batches (`batches`): of eight on machines with vector instructions, by code that is written
-//! once for any number of lanes (`simd`). The rows and points of all other joints are solved one by one. The joints of
-//! a block are solved together.
+//! and hinges are solved in batches (`batches`): of four or eight on machines with vector instructions, by code that is
+//! written once for any number of lanes (`simd`). The rows and points of all other joints are solved one by one. The
+//! joints of a block are solved together.
 
 mod batches;
 mod body;

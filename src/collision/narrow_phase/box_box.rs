@@ -1,6 +1,6 @@
-//! Box against box, eight pairs at a time with SIMD: in most worlds most shapes are boxes. Each manifold with points is
-//! bit for bit the one that [`hull_hull`](super::hull_hull) computes. The few pairs whose incident edge lies beside the
-//! reference face, or whose nearest features are two corners, are left to the scalar path.
+//! Box against box, [`WIDTH`] pairs at a time with SIMD: in most worlds most shapes are boxes. Each manifold with points
+//! is bit for bit the one that [`hull_hull`](super::hull_hull) computes. The few pairs whose incident edge lies beside
+//! the reference face, or whose nearest features are two corners, are left to the scalar path.
 
 mod kernel;
 #[cfg(test)]
@@ -117,7 +117,7 @@ pub(crate) struct BoxPairs {
     batches: Vec<Batch>,
 }
 
-/// Up to eight pairs. Unused lanes contain the boxes of the first pair.
+/// Up to [`WIDTH`] pairs. Unused lanes contain the boxes of the first pair.
 #[derive(Clone, Debug)]
 struct Batch {
     /// Slots of the two boxes of each pair.
@@ -129,7 +129,7 @@ struct Batch {
     manifolds: Manifolds,
 }
 
-/// Manifolds of eight pairs.
+/// Manifolds of the pairs of a batch.
 #[derive(Clone, Debug)]
 #[repr(C, align(32))]
 struct Manifolds {

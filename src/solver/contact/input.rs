@@ -47,7 +47,7 @@ pub(in crate::solver) struct ContactSource<'a> {
     pub(in crate::solver) list: &'a BodyList,
 }
 
-/// A lane of a batch that is being filled. The numbers are stored in quads, because the quads of eight lanes are
+/// A lane of a batch that is being filled. The numbers are stored in quads, because the quads of all lanes are
 /// transposed into vectors.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Input {

@@ -1,6 +1,6 @@
 //! Semi-implicit Euler: velocities first, then displacements from the new velocities.
 //!
-//! With vector instructions, eight bodies are integrated at a time (`kernel`) if all of them are dynamic, have no
+//! With vector instructions, several bodies are integrated at a time (`kernel`) if all of them are dynamic, have no
 //! locked axis and are within all limits. All other bodies are integrated one by one.
 
 mod area_effect;

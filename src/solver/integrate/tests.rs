@@ -1,4 +1,4 @@
-//! Integrating eight bodies at a time gives the same bits as integrating them one by one, on every backend.
+//! Integrating several bodies at a time gives the same bits as integrating them one by one, on every backend.
 
 use std::vec::Vec;
 

@@ -1,6 +1,6 @@
 //! Work units: [`WorkMeter`] counts work whose amount is known only when it is done, up to a budget.
 
-/// Number of pairs per body up to which all pairs are assumed to be solved in SIMD batches of eight.
+/// Number of pairs per body up to which all pairs are assumed to be solved in full SIMD batches.
 const PAIRS_PER_BODY: u64 = 32;
 
 /// Additional cost of a pair beyond [`PAIRS_PER_BODY`], in ordinary pairs: measured on a thousand squares at the same

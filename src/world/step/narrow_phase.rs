@@ -1,5 +1,5 @@
-//! Narrow phase: a manifold for every contact whose shapes may meet within the tick. SIMD backends collide pairs of
-//! small boxes eight at a time.
+//! Narrow phase: a manifold for every contact whose shapes may meet within the tick. SIMD backends collide several
+//! pairs of small boxes at a time.
 
 use core::ops::Range;
 

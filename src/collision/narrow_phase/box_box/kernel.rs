@@ -1,5 +1,5 @@
 //! SIMD kernel of [`hull_hull`](crate::collision::narrow_phase::hull_hull) for boxes: separating axis test and clipping
-//! of eight pairs at a time.
+//! of several pairs at a time.
 //!
 //! Let `n` be a face normal of a box, `v` a vertex on that face, `d` the vector from the centre of the box to the
 //! centre of another box, and `w` the vertices of the other box. Then

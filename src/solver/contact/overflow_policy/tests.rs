@@ -100,7 +100,7 @@ impl Kernel<WIDTH> for &mut Trial<'_> {
         let inputs = core::array::from_fn(|lane| self.inputs[lane]);
         fill::<L, WIDTH>(&inputs, &mut batch, &mut record.denominators);
         for lane in 0..WIDTH {
-            let index = u32::try_from(lane).expect("eight");
+            let index = u32::try_from(lane).expect("few lanes");
             (batch.bodies[0][lane], batch.bodies[1][lane]) = (1 + 2 * index, 2 + 2 * index);
         }
         batch.changed = batch.bodies;
