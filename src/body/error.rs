@@ -320,7 +320,7 @@ impl fmt::Display for WorldError {
             WorldError::OffsetOutOfRange { value, max } => {
                 write!(
                     f,
-                    "a shape or anchor is within ±{max} m of its body's origin on each axis, not {value}"
+                    "a shape, an anchor or a centre of mass is within ±{max} m of its body's origin on each axis, not {value}"
                 )
             }
             WorldError::SpeedOutOfRange { value, max } => {
@@ -373,8 +373,10 @@ impl fmt::Display for WorldError {
             }
             WorldError::FixedSetting { name } => write!(f, "the world limit `{name}` cannot be changed"),
             WorldError::NameInvalid => write!(f, "a name is 1 to 16 ASCII letters, digits, `-` and `_`"),
-            WorldError::Full { what, limit } => write!(f, "the world already holds {limit} {what}"),
-            WorldError::WrongKind(id) => write!(f, "the kind of body {id} does not allow this change"),
+            WorldError::Full { what, limit } => write!(f, "at most {limit} {what} are allowed"),
+            WorldError::WrongKind(id) => {
+                write!(f, "the kind or state of body {id} does not allow this change")
+            }
         }
     }
 }

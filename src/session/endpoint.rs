@@ -131,7 +131,6 @@ pub struct Endpoint {
     pub(super) routes: Routes,
     pub(super) guests: Guests,
     pub(super) contacts: Contacts,
-    pub(super) pinned: Option<Arc<Pinned>>,
     pub(super) address_list_at: u64,
     pub(super) packets: VecDeque<(Address, Vec<u8>)>,
     pub(super) events: VecDeque<JoinEvent>,
@@ -182,7 +181,6 @@ impl Endpoint {
             routes: Routes::default(),
             guests: Guests::default(),
             contacts: Contacts::default(),
-            pinned: None,
             address_list_at: 0,
             packets: VecDeque::new(),
             events: VecDeque::new(),
@@ -298,9 +296,7 @@ impl Endpoint {
         }
         let addresses = self.routes.known(usize::MAX);
         let start = StartState { view: session.view().clone(), addresses, tick, state };
-        let pinned = Arc::new(Pinned::new(tick, start.encode()));
-        self.guests.serve(&pinned);
-        self.pinned = Some(pinned);
+        self.guests.serve(&Arc::new(Pinned::new(tick, start.encode())));
     }
 
     /// Advances the endpoint to the time `now`, in microseconds: sends packets that are due and handles timeouts.

@@ -17,7 +17,7 @@ pub(crate) const IMPULSE_MAX: Speed = Speed::lit("1023");
 /// accumulated impulse in the warm start, or its change in an iteration. An accumulated impulse may be larger than
 /// [`STEP_MAX`], because it is the sum of several changes.
 #[inline]
-pub(crate) fn clamp_warm_start(lambda: &mut Speed, faults: &mut Faults) {
+pub(crate) fn clamp_lambda(lambda: &mut Speed, faults: &mut Faults) {
     let within = (*lambda).clamp(-STEP_MAX, STEP_MAX);
     *faults += u64::from(within != *lambda);
     *lambda = within;

@@ -53,7 +53,7 @@ use super::body::SolverBody;
 #[cfg(test)]
 use super::body_pair::Remainders;
 use super::body_pair::{BodyPair, Change};
-use super::limits::{Faults, IMPULSE_MAX, clamp_warm_start};
+use super::limits::{Faults, IMPULSE_MAX, clamp_lambda};
 use super::row::{Lever, MassFractions, turning};
 use super::softness::Softness;
 use crate::math::{Ratio, Speed, Unit, Vec2, mul, round_shift, round_shift_wide, saturate, saturate_wide};
@@ -214,8 +214,8 @@ impl PointBlock {
         let next = Vec2::new(accumulate(lambda.x, d.x, faults), accumulate(lambda.y, d.y, faults));
         let next = self.shortened(next, p_max);
         let mut d = next - *lambda;
-        clamp_warm_start(&mut d.x, faults);
-        clamp_warm_start(&mut d.y, faults);
+        clamp_lambda(&mut d.x, faults);
+        clamp_lambda(&mut d.y, faults);
         *lambda += d;
         self.apply(d, bodies);
     }

@@ -83,7 +83,7 @@ fn what_a_handle_names() {
         (WorldError::JointToItself(body), "a joint cannot connect body 7v2 to itself"),
         (WorldError::JointOfOtherBodies(joint), "the bodies of joint 7v2 cannot be changed"),
         (WorldError::JointWithout { joint, what: "motor" }, "joint 7v2 has no motor"),
-        (WorldError::WrongKind(body), "the kind of body 7v2 does not allow this change"),
+        (WorldError::WrongKind(body), "the kind or state of body 7v2 does not allow this change"),
     ]);
 }
 
@@ -98,7 +98,7 @@ fn values_out_of_range() {
         (WorldError::PositionOutOfRange { value }, "position 2.25 m is beyond 2^30 m"),
         (
             WorldError::OffsetOutOfRange { value, max: fx!(2) },
-            "a shape or anchor is within ±2 m of its body's origin on each axis, not 2.25",
+            "a shape, an anchor or a centre of mass is within ±2 m of its body's origin on each axis, not 2.25",
         ),
         (
             WorldError::SpeedOutOfRange { value, max: fx!(2) },
@@ -141,7 +141,7 @@ fn values_out_of_range() {
         ),
         (WorldError::FixedSetting { name: "pair_limit" }, "the world limit `pair_limit` cannot be changed"),
         (WorldError::NameInvalid, "a name is 1 to 16 ASCII letters, digits, `-` and `_`"),
-        (WorldError::Full { what: "bodies", limit: 12 }, "the world already holds 12 bodies"),
+        (WorldError::Full { what: "bodies", limit: 12 }, "at most 12 bodies are allowed"),
     ]);
 }
 

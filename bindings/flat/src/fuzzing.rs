@@ -18,7 +18,7 @@ const BYTES: usize = 4096;
 const REMEMBERED: usize = 12;
 
 /// Names of parameters that are handles of objects. A handle that an output parameter returns is mostly passed to
-/// parameters of the same name; `copy` is the handle of a world.
+/// parameters of the same name; `copy` is the handle of a world, and the outputs `rules` and `name` are those of bytes.
 const HANDLES: [&str; 11] = [
     "world",
     "target",
@@ -87,7 +87,11 @@ fn hash(world: u32) -> Option<u64> {
 
 /// The name under which the handles of a parameter are remembered; `None` if the parameter is no handle.
 fn family(name: &str) -> Option<&'static str> {
-    let name = if name == "copy" { "world" } else { name };
+    let name = match name {
+        "copy" => "world",
+        "rules" | "name" => "bytes",
+        _ => name,
+    };
     HANDLES.into_iter().find(|&handle| handle == name)
 }
 

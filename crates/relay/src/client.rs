@@ -68,7 +68,7 @@ struct Target {
 enum State {
     Open(Box<Socket>),
     /// A background thread is connecting.
-    Connecting(Receiver<Socket>),
+    Connecting(Receiver<(Socket, Members)>),
     /// Another connection has replaced this one.
     Closed,
 }
@@ -170,9 +170,9 @@ impl Relay {
             loop {
                 thread::sleep(pause);
                 let opened = open(&target);
-                if let Ok((socket, _)) = opened {
+                if let Ok(opened) = opened {
                     // If there is no receiver, the member was dropped, and the socket is closed.
-                    let _ = sender.send(socket);
+                    let _ = sender.send(opened);
                     return;
                 }
                 pause = (pause * 2).min(PAUSE_MAX);
@@ -185,7 +185,10 @@ impl Relay {
     fn socket(&mut self) -> Option<&mut Socket> {
         if let State::Connecting(receiver) = &self.state {
             match receiver.try_recv() {
-                Ok(socket) => self.state = State::Open(Box::new(socket)),
+                Ok((socket, members)) => {
+                    self.state = State::Open(Box::new(socket));
+                    self.set_members(&members);
+                }
                 Err(TryRecvError::Empty) => {}
                 Err(TryRecvError::Disconnected) => self.reconnect(),
             }

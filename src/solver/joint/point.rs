@@ -4,7 +4,7 @@
 use super::super::body::SolverBody;
 use super::super::body_pair::BodyPair;
 use super::super::context::Pass;
-use super::super::limits::{Faults, clamp_warm_start};
+use super::super::limits::{Faults, clamp_lambda};
 use super::super::point_block::{PointBlock, PointGoal};
 use super::super::softness::Softness;
 use super::pose::JointPose;
@@ -80,8 +80,8 @@ impl JointPoint {
 
     #[inline]
     pub(super) fn warm_start(&mut self, bodies: &mut BodyPair<'_>) {
-        clamp_warm_start(&mut self.lambda.x, bodies.faults);
-        clamp_warm_start(&mut self.lambda.y, bodies.faults);
+        clamp_lambda(&mut self.lambda.x, bodies.faults);
+        clamp_lambda(&mut self.lambda.y, bodies.faults);
         self.block.apply(self.lambda, bodies);
     }
 

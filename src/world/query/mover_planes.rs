@@ -310,7 +310,7 @@ mod tests {
     #[test]
     fn the_solved_translation_is_the_nearest_one_outside() {
         let mut rng = Rng::new(1);
-        let (mut worst, mut exact) = (Fx::ZERO, 0);
+        let mut worst = Fx::ZERO;
         for _ in 0..5000 {
             let count = 1 + rng.below(5);
             let mut planes: Vec<_> =
@@ -323,9 +323,7 @@ mod tests {
             let expected = nearest(target, &planes, fx!(0.00000001)).expect("the planes leave room");
             worst = worst.max(found.distance(target) - expected.distance(target));
             assert!(worst < fx!(0.000001), "{found:?} {expected:?} {target:?} {planes:?}");
-            exact += 1;
         }
-        assert_eq!(exact, 5000);
     }
 
     /// Compares rigid planes with the same planes under a limit that no push reaches.

@@ -11,7 +11,7 @@ impl Tree {
         if self.at(high).height - self.at(low).height > IMBALANCE_MAX {
             let [c, d] = self.at(high).children;
             let up = if self.at(c).height > self.at(d).height { c } else { d };
-            self.swap_if_balanced(at, low, high, up);
+            self.swap(at, low, high, up);
         }
     }
 
@@ -34,7 +34,7 @@ impl Tree {
             }
         }
         if let Some((child, sibling, up)) = best {
-            self.swap_if_balanced(at, child, sibling, up);
+            self.swap(at, child, sibling, up);
         }
     }
 
@@ -49,7 +49,7 @@ impl Tree {
     }
 
     /// Exchanges `child`, a child of the node `at`, with `up`, a child of `sibling`.
-    fn swap_if_balanced(&mut self, at: u32, child: u32, sibling: u32, up: u32) {
+    fn swap(&mut self, at: u32, child: u32, sibling: u32, up: u32) {
         self.replace_child(at, child, up);
         self.replace_child(sibling, up, child);
         self.at_mut(up).parent = at;
