@@ -133,8 +133,10 @@ fn members_find_each_other_after_a_restart_of_the_relay() {
     let server = Running::start(Limits::default());
     let address = server.address;
     let (mut a, mut b) = (server.enter("room", 1), server.enter("room", 2));
+    let gone = server.enter("room", 3);
     let to = *b.own();
-    drop(server);
+    until_others(&mut a, &[to, *gone.own()]);
+    drop((server, gone));
     until("the loss", || {
         let _ = (a.receive(), b.receive());
         (!a.is_open() && !b.is_open()).then_some(())
@@ -145,6 +147,10 @@ fn members_find_each_other_after_a_restart_of_the_relay() {
         b.receive()
     });
     assert_eq!(found, (*a.own(), b"again".to_vec()));
+    // The member that did not return is no longer listed.
+    let a_is = *a.own();
+    until_others(&mut a, &[to]);
+    until_others(&mut b, &[a_is]);
 }
 
 #[test]
