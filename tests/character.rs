@@ -74,7 +74,8 @@ fn the_character_of_the_scene_enters_nothing() {
     assert!(trace[870].x < fx!(5), "{:?}", trace[870]);
 }
 
-/// The dynamic character keeps its height above all kinds of ground, pushes the crates, and reaches the upper floor.
+/// The dynamic character stands at its height above the floor, jumps, pushes the first crate, and reaches the upper
+/// floor.
 #[test]
 fn the_character_on_a_spring_leg_gets_about() {
     let scene = Scene::find("spring_leg").expect("a scene");

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct RestTicks(u32);
 
 impl RestTicks {
-    /// Not at rest.
+    /// No tick at rest has been counted: the body is new, moving, fixed or asleep.
     pub(crate) const NONE: Self = RestTicks(0);
 
     /// Returns the counter as stored in the state.

@@ -134,8 +134,8 @@ pub enum Phases {
     /// Compares only the states between ticks.
     #[default]
     Ignored,
-    /// Compares the digests of the world, and of the data that later phases read, after each phase. A tick takes
-    /// several times as long.
+    /// Compares digests of the state after each phase, and of the manifolds and solver velocities after the phases that
+    /// compute them. A tick takes several times as long.
     Compared,
 }
 

@@ -1,4 +1,4 @@
-//! [`Game`]: rules that advance in ticks from encoded inputs.
+//! [`Game`]: the rules and the state of a game that advances in ticks from the inputs of its players.
 
 use alloc::string::String;
 use alloc::vec::Vec;

@@ -216,7 +216,7 @@ fn a_slow_graze_is_reflected() {
     );
 }
 
-/// Sample "Drop". Fast bodies of every kind stop at thin tiles.
+/// Sample "Drop". Fast balls, capsules and boxes stop at thin tiles.
 #[test]
 fn thin_tiles_stop_what_drops_on_them() {
     let tiles: Vec<_> =

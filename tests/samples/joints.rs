@@ -1,4 +1,5 @@
-//! Box2D's group "Joints": samples of one kind of joint each. `machines.rs` has the samples with several joints.
+//! Box2D's group "Joints": samples of the joints themselves. `machines.rs` has the samples of things that are built
+//! with joints.
 
 use lockstep2d::body::{BodyDef, BodyId};
 use lockstep2d::fx;

@@ -1,4 +1,4 @@
-//! Box2D's group "Joints": samples with several joints.
+//! Box2D's group "Joints": samples of things that are built with joints.
 
 use lockstep2d::body::{BodyDef, BodyId, Chain, Filter, JointId, ShapeDef};
 use lockstep2d::fx;

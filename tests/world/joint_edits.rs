@@ -177,7 +177,8 @@ fn a_joint_yields_by_its_own_softness() {
     }
 }
 
-/// Joints whose own softness equals that of the world move bit for bit like joints without a softness of their own.
+/// Joints of dynamic bodies whose own softness equals that of the world move bit for bit like joints without a softness
+/// of their own.
 #[test]
 fn the_softness_of_the_world_as_a_joints_own_changes_nothing() {
     let net = |own: u32| {

@@ -7,8 +7,9 @@
  * error, never undefined behaviour. ls2d_free frees objects of all kinds.
  *
  * Pointers are null or point to as many items as the function reads or writes, and nothing else uses that memory during
- * the call. Functions with a buffer take its capacity in items. If the buffer is too short, they return LS2D_BUFFER.
- * Functions with a pointer for the number of items write that number in both cases.
+ * the call. Functions with a buffer take its capacity in items. If the buffer is too short, they return LS2D_BUFFER,
+ * except ls2d_last_error, which cuts the text. Functions with a pointer for the number of items write that number in
+ * both cases; ls2d_match_next_packet only if the buffer for the address is long enough.
  *
  * Structs with an ls2d_*_init function, except ls2d_rng, begin with their size. The function sets it and the defaults.
  *

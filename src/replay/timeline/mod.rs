@@ -351,7 +351,8 @@ impl<'a, G: Game> Timeline<'a, G> {
         Err(SeekError::Keyframe { tick, why: "its state does not match the replay's checkpoint".into() })
     }
 
-    /// Saves the current state for steps backwards.
+    /// Saves the current state for steps backwards: in every tick, or in every few ticks if a quarter of the memory for
+    /// keyframes has no room for as many states as an interval has ticks.
     fn leave_trail(&mut self) {
         let length = (self.keyframes.bytes_max() / 4) / self.keyframes.latest(self.tick()).bytes();
         let length = u64::try_from(length).unwrap_or(u64::MAX).max(2);

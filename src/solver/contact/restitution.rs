@@ -1,5 +1,6 @@
-//! Restitution: a point that is pushed, and whose approach speed was not below the threshold of its surface, separates
-//! at `e` times the approach speed.
+//! Restitution: a point that is pushed, or bounces together with a point that is pushed, and whose approach speed was
+//! not below the threshold of its surface, separates at `e` times the approach speed, or more slowly if the contact
+//! would gain energy.
 //!
 //! ```text
 //! L' = max(L - (vn + e va + drift), 0)          in the sub-step in which it is pushed, after both passes

@@ -20,7 +20,8 @@ use crate::world::cache::{Extents, Scratch, SweptBody, WorkMeter};
 use crate::world::movement::move_body;
 use crate::world::state::State;
 
-/// Displacement in a tick, in metres, below which a body is not swept, however thin it is.
+/// Distance in metres: a body none of whose points moves further than this in a tick is not swept, however thin it is.
+/// Against a kinematic body, the movement relative to that body counts.
 const SWEPT_MIN: Fx = fx!(0.0005);
 
 /// Work units of computing a time of impact, which takes some 2 µs, and up to 10 µs for long thin shapes that rotate.
