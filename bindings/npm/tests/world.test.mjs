@@ -70,17 +70,18 @@ test("all joints and shapes can be defined", () => {
     const shapes = [L.circle("0.5"), L.capsule([0, 0], [1, 0], "0.2"), L.polygon([[0, 0], [1, 0], [0, 1]], { rounding: "0.05" }),
         L.hull([[0, 0], [0, 1], [1, 0], ["0.1", "0.1"]]), L.box(1, "0.1", { density: 3 })];
     const bodies = shapes.map((shape, index) => world.spawn({ position: [3 * index, 5], name: `b${index}`, shapes: [shape] }));
+    // The rod and the rope have the lengths that they need: a joint that is violated by metres causes faults.
     const kinds = [
         { type: "revolute", anchor: [1, 5], limit: ["-0.5", "0.5"], motor: { speed: 1, max: 10 } },
         { type: "prismatic", anchor: [1, 5], axis: [0, 1], spring: { hertz: 2, dampingRatio: "0.5", target: 0 } },
-        { type: "distance", rod: 3 },
+        { type: "distance", rod: 9 },
         { type: "weld", linearSpring: { hertz: 5, dampingRatio: 1 } },
         { type: "wheel", anchor: [4, 4], axis: [0, 1] },
         { type: "motor", linearMotor: { velocity: [1, 0], max: 5 } },
         { type: "filter" },
         { type: "gear", teeth: [10, 20] },
         { type: "rack", radius: "0.5" },
-        { type: "pulley", wheels: [[0, 9], [3, 9]], length: 9, ratio: 2 },
+        { type: "pulley", wheels: [[0, 9], [3, 9]], length: 19, ratio: 2 },
     ];
     const joints = kinds.map((kind, index) => world.addJoint({ a: index % 2 ? ground : bodies[0], b: bodies[1 + (index % 4)], ...kind }));
     assert.deepEqual(world.joints(), joints);
