@@ -10,11 +10,11 @@
 //! dw/dt = A (c - x) x (force - density field) / (M k^2)  - s angular_drag (w - w_medium)
 //! ```
 //!
-//! `x` is the body's centre of mass, `k` its radius of gyration, and `v` and `w` are its velocities. `field` is the
-//! acceleration that acts on the medium as well as on the body: gravity, plus the acceleration and the attraction of
-//! each area that the body is in, times the `s` of that area. `u` is the velocity of the medium, the sum of `flow` and
-//! the velocity of the area's body at `x`, and `w_medium` is the angular velocity of the area's body. The effects of
-//! several areas add up.
+//! `x` is the body's centre of mass, but between two parentheses it is the cross product. `k` is the body's radius of
+//! gyration, and `v` and `w` are its velocities. `field` is the acceleration that acts on the medium: the world's
+//! gravity, plus the acceleration and the attraction of each area that the body is in, times the `s` of that area. `u`
+//! is the velocity of the medium, the sum of `flow` and the velocity of the area's body at `x`, and `w_medium` is the
+//! angular velocity of the area's body. The effects of several areas add up.
 
 use serde::{Deserialize, Serialize};
 

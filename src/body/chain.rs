@@ -1,4 +1,4 @@
-//! Chains: smooth outlines of any length, for ground and walls.
+//! Chains: polylines for ground and walls, without ghost collisions at their corners.
 
 use alloc::vec::Vec;
 

@@ -8,7 +8,8 @@ use super::shape::WORLD_EXTENT_MAX;
 use crate::fx;
 use crate::math::{Aabb, Fx, Vec2};
 
-/// Smallest circle radius and segment length in metres.
+/// Smallest radius of a circle or capsule, and smallest distance between the ends of a segment, link or capsule, in
+/// metres.
 const SIZE_MIN: Fx = fx!(0.002);
 
 /// Geometry of a shape, relative to the shape's centre.

@@ -189,7 +189,7 @@ impl MassProperties {
             Fx::from_bits(saturate_wide(div_round(sum, mass)))
         };
         let centre = Vec2::new(weighted(|part| part.centre.x), weighted(|part| part.centre.y));
-        // Squares of lengths have 44 fraction bits. A mass has at most 62 bits and k² + d² at most 63, so that their
+        // Squares of lengths have 44 fraction bits. A mass has at most 63 bits and k² + d² at most 63, so that their
         // products fit 128 bits.
         let moment: i128 = parts
             .map(|part| {

@@ -20,8 +20,8 @@ pub const SHAPE_EXTENT_MAX: Fx = crate::fx!(110);
 /// Smallest edge length in metres, about 2000 units of [`Length`]: a shorter edge has no reliable direction.
 const EDGE_MIN: Fx = crate::fx!(0.0005);
 
-/// A convex polygon, counter-clockwise, relative to its shape's centre. With a radius its corners and edges are rounded
-/// outwards.
+/// A convex polygon, counter-clockwise, relative to its shape's centre. With a radius, its edges are moved outwards and
+/// its corners are round.
 ///
 /// ```
 /// use lockstep2d::{body::Polygon, fx, math::Vec2};
@@ -121,7 +121,7 @@ impl Polygon {
     /// Creates a regular polygon with its first vertex to the right of the centre, from its circumradius in metres.
     ///
     /// # Errors
-    /// If there are not 3 to 8 vertices or the radius is out of range.
+    /// If there are not 3 to 8 vertices, the radius is not within ±110 m, or an edge is shorter than 0.5 mm.
     pub fn regular(vertex_count: u32, radius: Fx) -> Result<Self, GeometryError> {
         if !(3..=8).contains(&vertex_count) {
             return Err(GeometryError::VertexCount { count: u64::from(vertex_count) });

@@ -97,8 +97,8 @@ pub struct BodySettings {
     pub may_sleep: bool,
     /// Speed in m/s below which the body becomes ready to sleep, 0 to 400. The same limit applies to twice the angular
     /// velocity times the radius of gyration, which is about the speed of the body's outline. A body falls asleep when
-    /// it and all dynamic bodies connected to it by contacts or joints have been slower than their limits for half a
-    /// second: with the default of 0.05 m/s, an acceleration below 0.1 m/s² does not move a body from rest.
+    /// it and all dynamic bodies connected to it by contacts, joints or areas have been slower than their limits for
+    /// half a second: with the default of 0.05 m/s, an acceleration below 0.1 m/s² does not move a body from rest.
     pub sleep_speed: Fx,
 }
 

@@ -148,7 +148,7 @@ mod tests {
         }
     }
 
-    /// The byte of a shape without an area equals the encoding of a `bool`.
+    /// Flags 2 and 3 announce an area, which is missing in these bytes. Greater flags are unknown.
     #[test]
     fn unknown_flags_are_refused() {
         let solid = encode(&shape());

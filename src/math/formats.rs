@@ -4,8 +4,8 @@
 //! instead of wrapping. The binary point of the result is inferred from its type, so the compiler checks the scales:
 //! `let s: Step = mul(length, unit);` cannot be off by a shift.
 //!
-//! The ranges were chosen from the values that occur when a floating-point version of the solver simulates the
-//! benchmark scenes. `docs/DESIGN.md` lists the largest values.
+//! The ranges were chosen from the values that occur when a floating-point version of the solver simulates large and
+//! heavily loaded scenes. `docs/DESIGN.md` lists the scenes and the largest values.
 
 use fixed::types::extra::{LeEqU32, U18, U20, U21, U22, U24, U26, U27, U30, U32};
 use fixed::{FixedI32, FixedI64};

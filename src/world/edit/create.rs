@@ -77,8 +77,8 @@ impl World {
         Ok(id)
     }
 
-    /// Adds a body with the same definition at every pose. A recording stores the definition once instead of once per
-    /// pose.
+    /// Adds one body for each pose, all with the same definition. A recording stores the definition once instead of
+    /// once per pose.
     ///
     /// # Errors
     /// The errors of [`World::spawn`]. No body is then added.
@@ -130,7 +130,8 @@ impl World {
     /// Connects two bodies by a joint. The joint has no effect while neither body is dynamic.
     ///
     /// # Errors
-    /// [`WorldError`] if a handle is stale, both bodies are the same, a value is out of range, or the world is full.
+    /// [`WorldError`] if a handle is stale, both bodies are the same, a value is out of range, a lower limit is above
+    /// the upper one, or the world is full.
     #[doc(alias = "create_joint")]
     #[doc(alias = "constraint")]
     pub fn add_joint(&mut self, def: &JointDef) -> Result<JointId, WorldError> {
@@ -139,8 +140,8 @@ impl World {
         Ok(self.insert_joint(*def))
     }
 
-    /// Adds a joint with the same definition between every pair of bodies. A recording stores the definition once
-    /// instead of once per pair.
+    /// Adds one joint for each given pair of bodies, all with the same definition. A recording stores the definition
+    /// once instead of once per pair.
     ///
     /// # Errors
     /// The errors of [`World::add_joint`]. No joint is then added.

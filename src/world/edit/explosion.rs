@@ -1,4 +1,4 @@
-//! Explosions: impulses on all dynamic bodies near a point.
+//! Explosions: impulses on the dynamic bodies near a point.
 //!
 //! ```text
 //! P = I(d) w n      P  impulse on a shape at distance d
@@ -27,7 +27,7 @@ const SHAPE_WORK: u64 = 2;
 impl World {
     /// Applies an impulse away from the explosion's centre to every dynamic body in reach, shape by shape in slot
     /// order, and wakes the body. Sensors, shapes outside of the explosion's mask and disabled bodies are left out. The
-    /// next tick limits speeds to [`speed_max`](crate::solver::SolverSettings::speed_max).
+    /// next tick limits speeds: see [`speed_max`](crate::solver::SolverSettings::speed_max).
     ///
     /// # Errors
     /// [`WorldError::ExplosionOutOfRange`] if a value of the explosion is out of range,

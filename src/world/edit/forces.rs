@@ -50,7 +50,7 @@ impl World {
     }
 
     /// Changes the velocity of a dynamic body at once by an impulse in N s at a world point, in metres. The next tick
-    /// limits the speed to [`crate::solver::SolverSettings::speed_max`].
+    /// limits the speed: see [`crate::solver::SolverSettings::speed_max`].
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, or the body is not dynamic or is disabled.
@@ -66,7 +66,7 @@ impl World {
     }
 
     /// Changes the velocity of a dynamic body at once by an impulse in N s at its centre of mass. The next tick limits
-    /// the speed to [`crate::solver::SolverSettings::speed_max`].
+    /// the speed: see [`crate::solver::SolverSettings::speed_max`].
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, or the body is not dynamic or is disabled.
@@ -93,7 +93,7 @@ impl World {
     /// Sets the velocity of a body's centre of mass in m/s and its angular velocity in rad/s.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, the body is fixed, or a speed is above
+    /// [`WorldError`] if the handle is stale, the body is fixed, or a speed exceeds the speed limit: see
     /// [`crate::solver::SolverSettings::speed_max`].
     pub fn set_velocity(
         &mut self,
@@ -125,8 +125,9 @@ impl World {
     /// target unless it is given another one. It rotates in the direction of the smaller angle.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, the body is not kinematic, the position is out of range, or a speed above
-    /// [`crate::solver::SolverSettings::speed_max`] would be needed to reach the pose within a tick.
+    /// [`WorldError`] if the handle is stale, the body is not kinematic, the position is out of range, or the body would
+    /// have to exceed the speed limit to reach the pose within a tick: see
+    /// [`crate::solver::SolverSettings::speed_max`].
     #[doc(alias = "set_target_transform")]
     #[doc(alias = "move_kinematic")]
     pub fn move_to(

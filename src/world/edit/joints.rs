@@ -38,8 +38,8 @@ impl World {
         self.joint_along(a, b, kind, anchor, Vec2::new(Fx::ONE, Fx::ZERO))
     }
 
-    /// Like [`World::joint_at`], with the axis of a slider or wheel as a direction in the world. Its length does not
-    /// matter; the zero vector is the x axis.
+    /// Like [`World::joint_at`], with the axis of a prismatic or wheel joint as a direction in the world. Its length
+    /// does not matter; the zero vector is the x axis.
     ///
     /// # Errors
     /// [`WorldError::StaleBody`] if a body is not in the world.
@@ -78,7 +78,8 @@ impl World {
     /// its bodies, unless the definition is the same.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, the bodies are different ones, or a value is out of range.
+    /// [`WorldError`] if the handle is stale, the bodies are different ones, a value is out of range, or a lower limit
+    /// is above the upper one.
     #[doc(alias = "motor")]
     #[doc(alias = "spring")]
     #[doc(alias = "limit")]

@@ -179,8 +179,8 @@ impl World {
         Ok(())
     }
 
-    /// Puts a dynamic body to sleep at any velocity, with all dynamic bodies that contacts and joints connect it to.
-    /// Does nothing if [`crate::world::Config::sleeping`] is off.
+    /// Puts a dynamic body to sleep at any velocity, with all dynamic bodies that contacts, joints and areas connect it
+    /// to. Does nothing if [`crate::world::Config::sleeping`] is off.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, or the body is disabled or not dynamic.
@@ -201,8 +201,8 @@ impl World {
     /// Otherwise a contact lasts as long as its shapes touch and may collide.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, a value, including the mass of a dynamic body, is out of range, or the
-    /// body rotates too fast for its new mass.
+    /// [`WorldError`] if the handle is stale, a value, including the mass of a dynamic body, is out of range, an area
+    /// is not valid, or the body rotates too fast for its new mass.
     #[doc(alias = "sensor")]
     #[doc(alias = "trigger")]
     pub fn set_shape(&mut self, id: ShapeId, def: &ShapeDef) -> Result<(), WorldError> {

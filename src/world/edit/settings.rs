@@ -104,7 +104,7 @@ impl World {
 
 /// Whether bodies at rest may move with the new settings.
 fn is_disturbed(old: &Config, new: &Config) -> bool {
-    // Destructured, so that a new setting does not compile until it is decided whether it wakes bodies.
+    // Destructured without `..`: whoever adds a setting has to decide here whether it wakes bodies.
     let Config {
         tick_rate,
         gravity,

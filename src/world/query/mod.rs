@@ -30,8 +30,7 @@ use crate::body::{BodyId, Handle, ShapeId};
 use crate::fx;
 use crate::math::Fx;
 
-/// Largest distance in metres from the AABB of a shape at which a query may still find the shape. Not 0, because
-/// queries round to a grid.
+/// Margin in metres by which queries enlarge the area that they search, because they round positions to a grid.
 const SLACK: Fx = fx!(0.000001);
 
 /// Selects the shapes that a query sees. The collision filters of the shape and of the query must accept each other.

@@ -6,8 +6,8 @@
 //!
 //! for planes with separations `s_i` and normals `n_i`. A plane with a limited push is soft: the mover may enter it. If
 //! there are soft planes, or no point is outside of all planes, the planes push along their normals in turn until the
-//! pushes hardly change. A later push of a plane may reduce its accumulated push, but not below 0 (C. Hildreth, "A
-//! Quadratic Programming Procedure", 1957), as in Box2D v3's `b2SolvePlanes`.
+//! pushes hardly change, or for 64 rounds. A later push of a plane may reduce its accumulated push, but not below 0 (C.
+//! Hildreth, "A Quadratic Programming Procedure", 1957), as in Box2D v3's `b2SolvePlanes`.
 
 use alloc::vec::Vec;
 

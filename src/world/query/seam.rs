@@ -69,8 +69,8 @@ const DEPTH_MAX: Fx = fx!(0.02);
 pub(super) struct Resting {
     /// The shape at the start of the first cast, relative to the position of the probe.
     moving: SupportShape,
-    /// Displacements in metres from the start of the first cast to where the shape rests on all surfaces, and to where
-    /// it rests on each of them.
+    /// Displacements in metres from the start of the first cast: to where the shape rests on all surfaces that it
+    /// touches and, if there are several, to where it rests on each one that it has to move away from.
     pub(super) lifts: SmallVec<[Vec2<Fx>; 4]>,
     pub(super) translation: Vec2<Fx>,
 }

@@ -9,9 +9,9 @@ use crate::world::cache::UnionFind;
 use crate::world::islands::{unite, unite_touching};
 
 impl World {
-    /// Returns the sets of enabled dynamic bodies that fall asleep and wake together: those connected by joints or by
-    /// contacts of the last tick, and sleeping islands. The bodies of a set are in slot order, and the sets are ordered
-    /// by their first body.
+    /// Returns the sets of enabled dynamic bodies that fall asleep and wake together: those connected by joints, by
+    /// contacts of the last tick or by areas, and sleeping islands. The bodies of a set are in slot order, and the sets
+    /// are ordered by their first body.
     ///
     /// For tools: every call computes the sets again.
     #[must_use]
