@@ -186,13 +186,14 @@ pub enum WorldError {
         /// Largest value allowed.
         max: Fx,
     },
-    /// The mass of a dynamic body is not within 10 mg to 2^30 kg. A body whose mass is computed from its shapes may
-    /// also have a mass of 0, which [`MassProperties::of_shapes`](super::MassProperties::of_shapes) rejects.
+    /// A given mass, or the mass of a dynamic body, is not within 10 mg to 2^30 kg. A body whose mass is computed from
+    /// its shapes may also have a mass of 0, which [`MassProperties::of_shapes`](super::MassProperties::of_shapes)
+    /// rejects.
     MassOutOfRange {
         /// The mass in kg.
         value: Fx,
     },
-    /// The radius of gyration of a dynamic body is not within 2 mm to 512 m.
+    /// A given radius of gyration, or that of a dynamic body, is not within 2 mm to 512 m.
     GyrationOutOfRange {
         /// The radius in metres.
         value: Fx,

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 /// | kind | value |
 /// |---|---|
 /// | fixed | 0 |
-/// | kinematic | 0 while it moves and until the first tick in which it is at rest, then 1 |
-/// | dynamic | ticks for which it has been slow enough to sleep, at most [`ticks_to_sleep`]; 0 while it sleeps |
+/// | kinematic | 1 from the first tick in which it is at rest until it moves or is woken by an edit; otherwise 0 |
+/// | dynamic | ticks since the last reset for which it has been slow enough to sleep, at most [`ticks_to_sleep`] |
 ///
 /// [`ticks_to_sleep`]: crate::world::Config::ticks_to_sleep
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct RestTicks(u32);
 
 impl RestTicks {
-    /// No tick at rest has been counted: the body is new, moving, fixed or asleep.
+    /// No tick at rest has been counted, for example because the body is new, moving, fixed or asleep.
     pub(crate) const NONE: Self = RestTicks(0);
 
     /// Returns the counter as stored in the state.

@@ -164,7 +164,7 @@ impl World {
     }
 
     /// Wakes a body with all bodies of its island. For a fixed or kinematic body, which does not sleep, wakes the
-    /// bodies that touch it or are joined to it.
+    /// bodies that touch it, are joined to it or are in one of its areas.
     ///
     /// # Errors
     /// [`WorldError::StaleBody`] if it is not in the world.

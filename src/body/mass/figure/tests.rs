@@ -1,5 +1,5 @@
-//! Tests of the area, centre and radius of gyration of rounded polygons. The expected values come from formulas in
-//! exact rational numbers, from polygons of thousands of vertices along the same outline, and from counted grid points.
+//! Tests of the area, centre and radius of gyration of rounded polygons. Most expected values come from formulas in
+//! exact rational numbers, from polygons of thousands of vertices along the same outline, or from counted grid points.
 
 use alloc::vec::Vec;
 
@@ -8,7 +8,7 @@ use crate::body::Polygon;
 use crate::fx;
 use crate::math::{PI, Rng, Rot};
 
-/// Fraction bits of areas and squares of lengths.
+/// The number 1 as an area or as the square of a length: 44 fraction bits.
 const ONE: i128 = 1 << 44;
 
 fn figure(polygon: &Polygon) -> Figure {
