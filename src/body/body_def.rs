@@ -212,7 +212,7 @@ impl BodyDef {
         self.continuous(Continuous::Kinematic)
     }
 
-    /// Prevents the body from falling asleep.
+    /// Prevents the body from falling asleep by itself: see [`BodySettings::may_sleep`].
     #[must_use]
     pub const fn never_sleeps(mut self) -> Self {
         self.settings.may_sleep = false;
@@ -226,7 +226,7 @@ impl BodyDef {
         self
     }
 
-    /// Starts the body asleep: ticks do not simulate it until something wakes it.
+    /// Starts the body asleep and at rest: ticks do not simulate it until something wakes it.
     #[must_use]
     pub const fn asleep(mut self) -> Self {
         self.asleep = true;

@@ -93,7 +93,8 @@ pub struct BodySettings {
     pub locks: MotionLocks,
     /// Bodies that this body is swept against.
     pub continuous: Continuous,
-    /// Whether the body may fall asleep.
+    /// Whether the body falls asleep by itself after a time at rest. [`World::sleep`](crate::world::World::sleep) does
+    /// not depend on it.
     pub may_sleep: bool,
     /// Speed in m/s below which the body becomes ready to sleep, 0 to 400. The same limit applies to twice the angular
     /// velocity times the radius of gyration, which is about the speed of the body's outline. A body falls asleep when
