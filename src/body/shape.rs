@@ -260,9 +260,9 @@ pub struct Shape {
     pub(crate) body: BodyId,
     /// Boxed, so that the fields that steps change lie close together. Saving them then reads less memory.
     pub(crate) def: Box<ShapeDef>,
-    /// Fat AABB used by the broad phase: the AABB of the shape plus a margin, so that it seldom changes. If a tick
-    /// computes it, the AABB is swept over that tick. Shapes of fixed bodies have no margin. The fat AABB decides which
-    /// pairs exist, so it is part of the state.
+    /// Fat AABB used by the broad phase: the AABB of the shape plus a margin, so that it seldom changes. If it is
+    /// computed at the start of a tick, it also covers the predicted motion in that tick. Shapes of fixed bodies have
+    /// no margin. The fat AABB decides which pairs exist, so it is part of the state.
     pub(crate) fat: Aabb,
 }
 

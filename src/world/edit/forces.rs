@@ -125,9 +125,8 @@ impl World {
     /// target unless it is given another one. It rotates in the direction of the smaller angle.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, the body is not kinematic, the position is out of range, or the body would
-    /// have to exceed the speed limit to reach the pose within a tick: see
-    /// [`crate::solver::SolverSettings::speed_max`].
+    /// [`WorldError`] if the handle is stale, the body is not kinematic, the position is out of range, or the pose
+    /// cannot be reached within a tick at the speed limit: see [`crate::solver::SolverSettings::speed_max`].
     #[doc(alias = "set_target_transform")]
     #[doc(alias = "move_kinematic")]
     pub fn move_to(
