@@ -65,9 +65,9 @@ pub struct Material {
     pub friction_mixing: Mixing,
     /// Fraction of the approach speed that a bounce returns, 0 to 1.5. Above 1 a bounce adds energy, as with the
     /// bumpers of a pinball machine; the combined value of a pair is clamped to 2, whatever its mixing rule. A velocity
-    /// component above 511 m/s after a bounce is clamped, which counts as a fault. Shapes that approach more slowly than
-    /// [`Material::restitution_threshold`] do not bounce. In a world with the default settings, a ball that falls from
-    /// a height `H` of 1.2 to 40 m onto level ground rebounds to `restitution^2 H`, within 0.4 mm.
+    /// component above 511 m/s after a bounce is clamped, which counts as a fault. Shapes that approach more slowly
+    /// than [`Material::restitution_threshold`] do not bounce. In a world with the default settings, a ball that falls
+    /// from a height `H` of 1.2 to 40 m onto level ground rebounds to `restitution^2 H`, within 0.4 mm.
     pub restitution: Fx,
     /// Rule that combines the restitution of two shapes.
     pub restitution_mixing: Mixing,
