@@ -154,7 +154,7 @@ impl Config {
         self
     }
 
-    /// The name of the first limit that differs in other settings.
+    /// The name of the first limit in which `other` differs.
     pub(crate) fn first_changed_limit(&self, other: &Config) -> Option<&'static str> {
         let limits = [
             (self.body_limit, other.body_limit, "body_limit"),

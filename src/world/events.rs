@@ -131,7 +131,7 @@ pub struct SensorEvent {
     pub visitor: ShapeId,
 }
 
-/// A body that moved.
+/// A body that moved or fell asleep.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, world::World};
@@ -233,7 +233,8 @@ pub struct Events {
     /// Pairs that moved further apart than [`super::Config::speculative_distance`], and pairs that an edit has ended,
     /// for example by removing or disabling one of the shapes.
     pub contact_end: Vec<ContactEvent>,
-    /// Pairs that pushed each other after an approach at [`super::Config::hit_speed`] or faster.
+    /// Pairs that pushed each other after an approach at [`super::Config::hit_speed`] or faster. A pair is reported if
+    /// either shape enables hit events.
     pub hits: Vec<HitEvent>,
     /// Shapes that began to overlap a sensor within the tick. Sorted by fraction, then by sensor, then by visitor.
     pub sensor_begin: Vec<SensorEvent>,

@@ -204,9 +204,10 @@ impl World {
         self.state.bodies.iter().filter(|(_, body)| is_simulated(body)).count()
     }
 
-    /// Number of pairs of shapes that may collide and have overlapping fat boxes, at least one shape of each on an
-    /// active body: a dynamic body that is awake, or a kinematic body that has not been at rest for a whole tick.
-    /// [`World::work`] returns a bound on the cost of the next tick.
+    /// Number of pairs of shapes with overlapping fat boxes that may collide, or of which one is a sensor that detects
+    /// the other. At least one shape of each pair is on an active body: a dynamic body that is awake, or a kinematic
+    /// body that has not been at rest for a whole tick. The next tick adds the pairs of new and moved shapes.
+    /// [`World::work`] returns a bound on the cost of that tick.
     #[must_use]
     pub fn pair_count(&self) -> usize {
         self.state.contacts.len()
@@ -259,17 +260,17 @@ impl World {
     ///
     /// The threads share a tick only if they make it shorter, which takes thousands of bodies and idle processors. The
     /// world compares the times of ticks with all threads and with the calling thread alone, and uses the faster way,
-    /// except in a few trial ticks. It starts with all threads. A tick with fewer than 256 awake bodies always uses the
-    /// calling thread alone. Threads keep their processors busy until the tick is over, even while only one of them has
-    /// work. Clones of the world share its threads: a tick that runs during a tick of another clone uses its calling
-    /// thread alone. Needs the feature `parallel`.
+    /// except in a few trial ticks. It starts with all threads. A tick uses the calling thread alone if the tick before
+    /// it simulated fewer than 256 bodies. Threads keep their processors busy until the tick is over, even while only
+    /// one of them has work. Clones of the world share its threads: a tick that runs during a tick of another clone
+    /// uses its calling thread alone. Needs the feature `parallel`.
     #[cfg(feature = "parallel")]
     pub fn set_threads(&mut self, count: usize) -> bool {
         self.start_threads(count, Sharing::Adaptive)
     }
 
-    /// Like [`World::set_threads`], but the threads share every tick with 256 awake bodies or more, also if that takes
-    /// longer. For tests and measurements. Needs the feature `parallel`.
+    /// Like [`World::set_threads`], but the threads share every tick that follows a tick with 256 simulated bodies or
+    /// more, also if that takes longer. For tests and measurements. Needs the feature `parallel`.
     #[cfg(feature = "parallel")]
     pub fn force_threads(&mut self, count: usize) -> bool {
         self.start_threads(count, Sharing::Always)

@@ -20,7 +20,8 @@ pub(crate) struct Changes {
     /// inactive, or the joints of their body have changed. A slot may be listed twice.
     shapes: Vec<u32>,
     /// Fat box of each shape at the last pair update. Two shapes whose boxes overlapped then are not a new pair.
-    /// [`Aabb::NOWHERE`] if the shape may have new pairs for a reason other than a new fat box.
+    /// [`Aabb::NOWHERE`] if the shape may have new pairs for a reason other than a new fat box, or if its box at that
+    /// time is not known.
     last_boxes: Vec<Aabb>,
 }
 
@@ -30,7 +31,7 @@ impl Changes {
         Changes { everything: true, ..Changes::default() }
     }
 
-    /// Whether a pair update has anything to do.
+    /// Whether anything is recorded.
     pub(crate) fn any(&self) -> bool {
         self.everything || self.sleeping_contacts || self.rules || !self.shapes.is_empty()
     }

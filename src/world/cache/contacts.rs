@@ -16,8 +16,8 @@ pub(crate) struct ContactCache {
     output: NarrowPhaseOutput,
     /// Output of each thread of a narrow phase.
     parts: Vec<NarrowPhaseOutput>,
-    /// For each contact of the state, the axis that separated its shapes in the last tick. May be shorter or longer
-    /// than the list of contacts: contacts without an entry have no cached axis.
+    /// For each contact of the state, the cached separating axis of its shapes. May be shorter or longer than the list
+    /// of contacts: contacts without an entry have no cached axis.
     axes: Vec<CachedAxis>,
     /// The touching pairs of the last tick, sorted by pair. Most of them still touch and have the same surface.
     touched: Vec<ActiveContact>,
@@ -27,7 +27,7 @@ pub(crate) struct ContactCache {
 
 /// The buffers of one narrow phase.
 pub(crate) struct NarrowPhaseBuffers<'a> {
-    /// For each contact, the axis that separated its shapes in the last tick.
+    /// For each contact, the cached separating axis of its shapes.
     pub(crate) axes: &'a mut [CachedAxis],
     /// An empty output for each thread.
     pub(crate) parts: &'a mut [NarrowPhaseOutput],

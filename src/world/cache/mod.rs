@@ -63,7 +63,7 @@ pub(crate) struct Scratch {
     pub(crate) predicted: Vec<Predicted>,
     /// Buffers of the threads that move bodies.
     pub(crate) finalised: Vec<Finalised>,
-    /// Buffers for continuous collision.
+    /// Buffers for continuous collision and for sensors.
     pub(crate) sweeps: Sweeps,
     pub(crate) solver: Solver,
     pub(crate) results: TickResults,

@@ -155,7 +155,7 @@ impl ShapeMotion {
     /// The vector from the centre of the bounds to the centre of another shape's bounds.
     #[inline]
     pub(crate) fn offset_to(&self, other: &ShapeMotion) -> Vec2<Fx> {
-        // Both are within the world extent, so that no sum overflows.
+        // Right for shapes less than 2^30 m apart, even if a sum wraps around at the edge of the world.
         let twice = |shape: &ShapeMotion| shape.bounds.lower.wrapping_add(shape.bounds.upper);
         let Vec2 { x, y } = twice(other).wrapping_sub(twice(self));
         Vec2::new(x >> 1, y >> 1)
@@ -165,7 +165,7 @@ impl ShapeMotion {
     /// centre.
     #[inline]
     pub(crate) fn extent(&self) -> Length {
-        // The shape is within the world extent, so that no sum overflows.
+        // Wraps around only for shapes of fixed bodies whose sides add up to 2^31 m or more.
         let size = self.bounds.upper.wrapping_sub(self.bounds.lower);
         narrow(size.x.wrapping_add(size.y) >> 1)
     }

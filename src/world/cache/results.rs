@@ -90,7 +90,7 @@ impl Finalised {
     }
 }
 
-/// Buffers for continuous collision. Their contents are only valid within a tick.
+/// Buffers for continuous collision and for sensors. Their contents are only valid within a tick.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sweeps {
     /// Poses of the bodies of the awake set at the start of the tick, in the order of the set.
@@ -110,6 +110,7 @@ pub(crate) struct SweptBody {
     pub(crate) sweep: Sweep,
     /// The pose to which the solver has moved the body.
     pub(crate) end: Pose,
-    /// Whether the body's displacement makes it fast. If not, the body may still be fast relative to a kinematic body.
+    /// Whether the body's displacement and rotation make it fast. If not, it may still be fast relative to a kinematic
+    /// body.
     pub(crate) is_fast: bool,
 }

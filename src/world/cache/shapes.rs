@@ -141,7 +141,8 @@ impl ShapeCache {
     }
 
     /// Updates poses after a restore. `shifted` lists the bodies that were only translated, `moved` those that were
-    /// rotated, and `redefined` those that were added or whose definition or shapes have changed.
+    /// rotated, and `redefined` those that may have been added or removed, or whose definition or shapes may have
+    /// changed.
     pub(crate) fn restore_poses(
         &mut self,
         state: &State,

@@ -1,7 +1,7 @@
 //! Sleeping islands: waking and putting to sleep, for the step and for edits between ticks.
 //!
 //! A body is sleepy once it has been slower than its `sleep_speed` for half a second. An island is a set of dynamic
-//! bodies that contacts and joints connect. It falls asleep when all its bodies are sleepy. It wakes as a whole:
+//! bodies that contacts, joints and areas connect. It falls asleep when all its bodies are sleepy. It wakes as a whole:
 //! - when an active body touches one of its bodies, or an area of an active body begins to act on one,
 //! - when an edit wakes one of its bodies, applies a force or impulse to it, or changes its velocity, its pose or a
 //!   property other than its user data and its name,

@@ -8,7 +8,7 @@ use crate::math::{Fx, Vec2};
 use crate::world::cache::{Scratch, UnionFind, is_awake, merge_sorted};
 use crate::world::state::{Island, State};
 
-/// Puts a body to sleep with every awake body that contacts or joints connect it to.
+/// Puts a body to sleep with every awake body that contacts, joints or areas connect it to.
 pub(crate) fn put_to_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) {
     scratch.awake.refresh(state);
     unite_connected(state, scratch);
@@ -24,7 +24,7 @@ pub(crate) fn put_to_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) 
     put_sleepy_sets_to_sleep(state, scratch);
 }
 
-/// Unites the bodies of the awake set that contacts and joints connect.
+/// Unites the bodies of the awake set that contacts, joints and areas connect.
 pub(crate) fn unite_connected(state: &State, scratch: &mut Scratch) {
     let Scratch { awake, union, .. } = scratch;
     union.reset(awake.bodies(), state.bodies.slot_count());

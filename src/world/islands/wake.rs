@@ -50,7 +50,7 @@ pub(crate) fn contact_ended(state: &mut State, (a, b): Pair) {
     }
 }
 
-/// Wakes a body and every body with a shape whose fat box overlaps one of its own. An edit that gives the body new fat
+/// Wakes a body and every body with a shape whose fat box overlaps one of its own. An edit that replaces the body's fat
 /// boxes calls it before and after the change.
 pub(crate) fn wake_overlapping(state: &mut State, scratch: &mut Scratch, slot: u32) {
     wake_body(state, scratch, slot);

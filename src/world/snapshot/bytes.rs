@@ -30,7 +30,7 @@ const ENVELOPE: Envelope = Envelope { magic: MAGIC, format: FORMAT };
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SnapshotError {
-    /// The bytes do not start with the magic of a world.
+    /// The bytes do not start with the magic of a world, or are shorter than a header.
     NotASnapshot,
     /// The layout has another version.
     Format {
@@ -44,7 +44,7 @@ pub enum SnapshotError {
     },
     /// There are fewer or more bytes than the header announces.
     Length {
-        /// Number of bytes that the header announces, including the header.
+        /// Number of bytes that the header announces, including the header and the hash at the end.
         announced: u64,
         /// Number of bytes found.
         found: u64,
@@ -103,8 +103,8 @@ impl World {
     /// and a state that breaks an invariant is refused.
     ///
     /// # Errors
-    /// [`SnapshotError`] if the bytes are damaged, were made by an engine with another format or other semantics, or
-    /// contain a state that breaks an invariant.
+    /// [`SnapshotError`] if the bytes are not those of a world, are damaged, were made by an engine with another format
+    /// or other semantics, or contain a state that breaks an invariant.
     #[doc(alias = "deserialize")]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, SnapshotError> {
         let opened = ENVELOPE.open(bytes)?;

@@ -20,17 +20,18 @@ pub(super) struct Stale {
     shifted: Vec<(u32, Vec2<Fx>)>,
     /// Shapes with another fat box, and that box.
     boxes: Vec<(u32, Aabb)>,
-    /// Bodies that were added, removed or redefined.
+    /// Bodies that may have been added, removed or redefined: those of every page that differs.
     redefined_bodies: Vec<u32>,
-    /// Shapes that were added, removed or redefined.
+    /// Shapes that may have been added, removed or redefined.
     redefined_shapes: Vec<u32>,
-    /// Whether a joint was added, removed or redefined.
+    /// Whether a joint may have been added, removed or redefined.
     any_joint: bool,
 }
 
 impl World {
-    /// Restores a saved state, also one of another world. The following ticks are bit-identical to those that followed
-    /// the save. [`World::contacts`], [`World::events`] and [`World::stats`] are empty until the next tick.
+    /// Restores a saved state, also one of another world. With the same edits, the following ticks are bit-identical to
+    /// those that followed the save. [`World::contacts`], [`World::events`] and [`World::stats`] are empty until the
+    /// next tick.
     ///
     /// Costs a fraction of a tick. Data that every tick changes is copied, and the world coordinates of shapes that
     /// have moved since the save are computed again. Definitions that have changed since the save are copied in pages

@@ -43,7 +43,7 @@ fn check(holds: bool, what: impl FnOnce() -> String) -> Result<(), Violation> {
 }
 
 impl World {
-    /// Checks every invariant of the state.
+    /// Checks the invariants of the state.
     ///
     /// # Errors
     /// The first [`Violation`] found. A world that was changed only through its methods has none.
@@ -92,7 +92,8 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
         let range = -WORLD_EXTENT_MAX..=WORLD_EXTENT_MAX;
         range.contains(&v.x) && range.contains(&v.y)
     };
-    // The origin is within the world extent. The centre of mass may be outside by its distance from the origin.
+    // Edits keep the origin within the world extent, and ticks the centre of mass. After an edit the centre may be
+    // outside by its distance from the origin, which is less than the tolerance.
     let reach = Vec2::new(crate::body::REACH_MAX * 8, crate::body::REACH_MAX * 8);
     check(inside(body.centre.max(-body.centre) - reach), || at("outside the world"))?;
     let speed = -SPEED_MAX..=SPEED_MAX;

@@ -17,7 +17,7 @@ use crate::world::state::State;
 /// in which effects are summed.
 type Visitor = [u32; 3];
 
-/// Lets every area act on the awake bodies in it, once the solver has their velocities.
+/// Lets every area act on the awake bodies with mass in it, once the solver has their velocities.
 pub(super) fn apply_areas(state: &mut State, scratch: &mut Scratch, tuning: &Tuning) {
     if !scratch.shapes.motion().may_have_sensors() {
         return;

@@ -1,6 +1,6 @@
-//! Contact and hit events, which are reported at the end of a tick, and the ends of sensor overlaps whose contact an
-//! edit or the pair update has ended. All other sensor events follow when the bodies have been moved
-//! (`sensor_events.rs`).
+//! Contact and hit events, and the ends of sensor overlaps whose contact an edit or the pair update has ended. They are
+//! reported after the sub-steps, before the bodies are moved. All other sensor events are reported when the bodies have
+//! been moved (`sensor_events.rs`).
 
 use super::sensor_events::push_sensor_events;
 use crate::collision::{Contact, Manifold};
@@ -12,8 +12,8 @@ use crate::world::islands::contact_ended;
 use crate::world::state::{Reported, State};
 
 /// Updates whether each contact touches, and reports the changes as events. A pair touches if it is near at the start
-/// of the tick, or if the solver has pushed it apart within the tick, because a fast bounce may begin and end between
-/// two ticks.
+/// of the tick, or if the solver has pushed it apart within the tick, because a fast bounce may begin and end within
+/// the tick.
 pub(super) fn report_contacts(state: &mut State, scratch: &mut Scratch) {
     let Scratch { results, pairs, shapes, contacts: cache, solver, .. } = scratch;
     let (events, motion, output) = (&mut results.events, shapes.motion(), cache.output());

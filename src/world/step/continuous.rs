@@ -31,8 +31,8 @@ const IMPACT_WORK: u64 = 16;
 const VISITS_PER_WORK: u64 = 8;
 
 /// Returns the sweep of a body that is fast, or that may be fast relative to a kinematic body. A body is fast if it may
-/// pass through a shape: if any of its points moves further than half of the inner radius of the body's thinnest shape,
-/// and further than [`SWEPT_MIN`]. `turn` is the body's rotation in units of 2^-32 turns.
+/// pass through a shape: if any of its points may move further than half of the inner radius of the body's thinnest
+/// solid shape, and further than [`SWEPT_MIN`]. `turn` is the body's rotation in units of 2^-32 turns.
 pub(super) fn swept_body(
     slot: u32,
     body: &Body,

@@ -17,7 +17,7 @@ use crate::world::cache::{
 use crate::world::events::{ContactEvent, HitEvent};
 use crate::world::state::State;
 
-/// Smallest number of contacts for a thread.
+/// Smallest number of contacts for a thread. The last thread may have fewer.
 const CONTACTS_MIN: usize = 512;
 
 /// Number of contacts in a block. Their bounds are tested before the pairs of small boxes among them are collided.
@@ -61,7 +61,7 @@ struct NarrowPhase<'a> {
 /// The contacts of a thread.
 struct Job<'a> {
     contacts: &'a mut [Contact],
-    /// For each of the contacts, the axis that separated its shapes in the last tick.
+    /// For each of the contacts, the cached separating axis of its shapes.
     axes: &'a mut [CachedAxis],
     /// Index of the first of the contacts in the state.
     first: u32,
@@ -185,7 +185,7 @@ impl NarrowPhase<'_> {
     }
 
     /// Completes the manifolds of the near contacts of a block, keeps those that have points, and lists the touching
-    /// pairs. Returns the touching pairs of the last tick that come after the block.
+    /// pairs. `touched` lists touching pairs of the last tick, sorted by pair. Returns its rest, for the next block.
     fn find_touching<'t>(
         &self,
         job: &mut Job<'_>,

@@ -1,9 +1,10 @@
 //! Pair update: adds and removes contacts so that they match the overlaps of fat boxes.
 //!
-//! `State::contacts` has a contact for every pair of shapes that may collide, have overlapping fat boxes, and of which
-//! at least one is on an active body. A contact that no longer has an active body moves to `State::sleeping_contacts`,
-//! and moves back when one of its bodies becomes active. The result is a function of the state:
-//! [`Changes`](crate::world::cache::Changes) only records where contacts may have to be added or removed.
+//! `State::contacts` has a contact for every pair of shapes whose fat boxes overlap, of which at least one is on an
+//! active body, and which [`NonCollidingPairs::may_touch`] accepts, up to the pair limit. A contact that no longer has
+//! an active body moves to `State::sleeping_contacts`, and moves back when one of its bodies becomes active. The result
+//! is a function of the state: [`Changes`](crate::world::cache::Changes) only records where contacts may have to be
+//! added or removed.
 
 use crate::collision::{Contact, Moved, Pair};
 use crate::world::cache::{Changes, MergedContacts, NonCollidingPairs, Scratch, ShapeCache, merge_sorted};
