@@ -14,7 +14,7 @@ const NONE: u32 = u32::MAX;
 /// The joints of each body.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct JointLinks {
-    /// For each body slot, the slot of the body's first joint.
+    /// For each body slot, the slot of the body's first joint, or [`NONE`].
     first: Vec<u32>,
     /// For each joint slot, its places in the lists of its two bodies.
     links: Vec<[Link; 2]>,

@@ -8,12 +8,12 @@ const PAIRS_PER_BODY: u64 = 32;
 /// position.
 const CROWDED_WORK: u64 = 64;
 
-/// Cost of comparing the shapes of a pair in a tick, independent of the solver settings: measured on shapes of extreme
-/// sizes.
+/// Work units of comparing the shapes of a pair in a tick, independent of the solver settings: measured on shapes of
+/// extreme sizes.
 pub(crate) const NARROW_PHASE_WORK: u64 = 4;
 
-/// Additional cost of a new pair, whose separating axis is not cached yet: measured on a hundred octagons at the same
-/// position.
+/// Additional work units of a new pair, whose separating axis is not cached yet: measured on a hundred octagons at the
+/// same position.
 pub(crate) const NEW_PAIR_WORK: u64 = 8;
 
 /// Counts work units against a budget. Work beyond the budget may be skipped. The meter is not part of the state. The

@@ -38,6 +38,6 @@ pub struct PhaseDigest {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PhaseLog {
     pub(crate) digests: Vec<PhaseDigest>,
-    /// The state at the start of the last tick.
+    /// The state at the start of the last recorded tick.
     pub(crate) start: Option<Snapshot>,
 }

@@ -27,8 +27,8 @@ pub(super) fn approach(
     manifold: &Manifold,
 ) -> impl Fn(&ManifoldPoint) -> i64 + use<> {
     let n = (raw(manifold.normal.x), raw(manifold.normal.y));
-    // Translations are at most 52 m on each axis, arms and anchors 725 m, rotations 128 rad: no product
-    // and no sum of products reaches 2^63.
+    // Translations are at most 52 m on each axis, arms and anchors 725 m, rotations 128 rad: no product and no sum of
+    // products reaches 2^63.
     let dot = (raw(a.shift.x) - raw(b.shift.x)) * n.0 + (raw(a.shift.y) - raw(b.shift.y)) * n.1;
     let lever = move |r: Vec2<Length>| (raw(r.x) * n.1 - raw(r.y) * n.0) >> Unit::FRAC_NBITS;
     let turned = move |turn: Travel, lever: i64| (raw(turn) * lever) >> TURN_BITS;
