@@ -1,5 +1,5 @@
-//! Work units: [`WorkMeter`] counts work whose amount is known only when it is done, and compares it
-//! with a budget.
+//! Work units: [`WorkMeter`] counts work whose amount is known only when it is done, and compares it with a
+//! budget.
 
 /// Number of pairs per body up to which all pairs are assumed to be solved in full SIMD batches.
 const PAIRS_PER_BODY: u64 = 32;
