@@ -1,5 +1,6 @@
 //! Limits of velocities and impulses, chosen so that a velocity within its limit plus a change of up to [`STEP_MAX`]
-//! does not overflow the 32-bit format.
+//! does not overflow the 32-bit format. Within a tick, the impulses of joints in blocks (`joint/block`) are not clamped
+//! to these limits: their velocity changes saturate instead.
 
 pub(crate) use crate::body::SPEED_MAX;
 use crate::math::Speed;

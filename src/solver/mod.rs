@@ -74,7 +74,7 @@ pub(crate) struct Solver {
     /// Working memory for the reaction of a single joint.
     reaction: JointSet,
     contacts: ContactSet,
-    /// The velocity changes of the bodies that each thread integrates.
+    /// For each thread, the velocity changes that contacts cause in the bodies that the thread integrates.
     contact_velocities: Vec<ContactVelocities>,
     pub(crate) results: ContactResults,
     colouring: Colouring,
@@ -119,8 +119,8 @@ impl Solver {
         self.list.body(slot)
     }
 
-    /// Makes the constraints of the joints in the given slots, in the order in which they are solved. Joints that are
-    /// solved in blocks are only selected.
+    /// Makes the constraints of the joints in the given slots, in the order in which they are solved. Also chooses the
+    /// joints that are solved in blocks. [`Self::prepare_blocks`] prepares the blocks.
     pub(crate) fn prepare_joints(
         &mut self,
         joints: &Arena<Joint, JointId>,

@@ -26,7 +26,7 @@ pub enum ContactTuning {
     /// Stiff damped springs, with a relax pass that removes the push-out velocity.
     Soft {
         /// Stiffness in Hz, 1 to 1000. A value above an eighth of the sub-step rate acts like an eighth of that rate.
-        /// The stiffness is doubled against bodies that are not dynamic. A stack sinks in proportion to `g / hertz^2`:
+        /// The value is doubled against bodies that are not dynamic. A stack sinks in proportion to `g / hertz^2`:
         /// see [`Config`](crate::world::Config) for small bodies.
         hertz: Fx,
         /// Damping ratio, 0 to 100.
@@ -77,7 +77,7 @@ pub struct SolverSettings {
     pub contact: ContactTuning,
     /// Stiffness in Hz, 1 to 1000, of joints that have no
     /// [softness of their own](crate::solver::JointDef::softness). A value above a quarter of the sub-step rate acts
-    /// like a quarter of that rate. The stiffness of the anchors is doubled for a hinge, or a weld with rigid anchors,
+    /// like a quarter of that rate. The value is doubled for the anchors of a hinge, or of a weld with rigid anchors,
     /// that connects a body without any other joint to a body that is not dynamic. Such a joint disturbs no
     /// other joint.
     pub joint_hertz: Fx,

@@ -31,8 +31,8 @@ pub(in crate::solver) struct Batch<const N: usize> {
     pub(super) count: usize,
     /// Whether any contact in the batch has extras. The batch then has a [`super::extras::ContactExtras`].
     pub(super) extras: bool,
-    /// Whether the warm start and the iterations first run without overflow checks
-    /// ([`super::overflow_policy::Unchecked`]).
+    /// Whether the warm start first runs without overflow checks ([`super::overflow_policy::Unchecked`]), and also the
+    /// iterations, if [`super::Constants::unchecked`] holds.
     pub(super) unchecked: bool,
     /// For each point, a bit mask of the lanes in which the shapes have pushed each other in this tick.
     pub(super) pushed: [u32; 2],

@@ -41,7 +41,7 @@ pub(super) struct Impacts<const N: usize> {
     /// For each point, the relative normal velocity before contacts act: `va` for a point that bounces, else `v`. A
     /// point bounces if it approaches fast and its gap is below [`NEAR`] at the time `f` of the first impact.
     pub(super) approach: [Ints<N>; 2],
-    /// For each point that bounces, `a (f - 1/2)`; 0 for the others.
+    /// For each point that bounces, `a (f - 1/2)` plus one unit of [`Speed`]; 0 for the others.
     pub(super) drift: [Ints<N>; 2],
     /// For each point that hits, `s' / h`: the speed that opens the gap within a sub-step.
     pub(super) rebound: [Ints<N>; 2],
@@ -231,7 +231,7 @@ fn time_of_impact(closing: Speed, v: Speed) -> Unit {
 struct Impact {
     /// `va`.
     approach: Speed,
-    /// `a (f - 1/2)`.
+    /// `a (f - 1/2)`, plus one unit of [`Speed`].
     drift: Speed,
     /// `vs`.
     after: Speed,

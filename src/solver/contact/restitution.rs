@@ -3,7 +3,7 @@
 //! would gain energy.
 //!
 //! ```text
-//! L' = max(L - (vn + e va + drift), 0)          in the sub-step in which it is pushed, after both passes
+//! L' = max(L - (vn + min(e va + drift, 0)), 0)     in the sub-step in which it is pushed, after the passes
 //! ```
 //!
 //! The impulse is not part of the accumulated impulse, which the next sub-step would apply again. `impact.rs` computes

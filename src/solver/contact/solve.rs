@@ -4,9 +4,10 @@
 //! ```text
 //! bias pass    w = massScale (vn + bias(s)) + impulseScale L        bias(s) = s / h            for a gap
 //!                                                                   max(rate min(s + slop, 0), -push) for an overlap
-//!              a gap is rigid: massScale = 1, impulseScale = 0
+//!              a gap, a bounce and a fast impact (IMPACT_SPEED) are rigid: massScale = 1, impulseScale = 0
 //!              s - s' takes the place of s for a point that bounces (`impact.rs`)
 //! relax pass   w = vn + s / h for a gap with an impulse, vn for an overlap or a point that bounces
+//!              L' = L for a gap without an impulse, 0 for a late point (`impact.rs`)
 //! normal       L' = max(L - w, 0)
 //! friction     |L'| <= sum of (mu Dt / Dn) Ln over the points,   w = vt + surface speed
 //! rolling      the same limit with the friction ratios of `rolling`,   w = vn

@@ -1,7 +1,7 @@
 //! Semi-implicit Euler: velocities first, then displacements from the new velocities.
 //!
-//! With vector instructions, several bodies are integrated at a time (`kernel`) if all of them are dynamic, have no
-//! locked axis and are within all limits. All other bodies are integrated one by one.
+//! With vector instructions, several bodies are integrated at a time (`kernel`) if all of them are dynamic and have no
+//! locked axis, and if none may be beyond a limit. All other bodies are integrated one by one.
 
 mod area_effect;
 mod kernel;
@@ -26,7 +26,8 @@ const SHIFT_MAX: Shift = Shift::lit("15.999");
 /// A body that moves, with the velocity changes that are the same in every sub-step of the tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MovingBody {
-    /// Velocity change in a sub-step by gravity and applied force along x and y, and by applied torque.
+    /// Velocity change in a sub-step along x and y by gravity, applied force and areas, and change of the spin by
+    /// applied torque and areas.
     step: Quad,
     /// Damping factors of the velocity and of the spin, `1 / (1 + h c)`. This implicit step is stable for any damping
     /// rate `c`. The third number is negative if the body is not dynamic or has a locked axis.

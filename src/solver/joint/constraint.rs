@@ -130,7 +130,7 @@ impl JointSet {
     }
 
     /// Makes the constraints of all joints that are solved, in the order in which they are solved, for `parts` threads.
-    /// Joints in blocks are only selected here.
+    /// Also chooses the joints that are solved in blocks. [`Self::prepare_blocks`] prepares the blocks.
     pub(in crate::solver) fn prepare(
         &mut self,
         source: &JointSource<'_>,

@@ -100,13 +100,13 @@ pub struct JointFrame {
 pub enum JointKind {
     /// The frames share their origin: a hinge.
     Revolute(Revolute),
-    /// B slides along A's x axis and does not turn: a lift, a drawer.
+    /// B slides along the x axis of A's frame and does not turn relative to A: a lift, a drawer.
     Prismatic(Prismatic),
     /// The origins keep a distance: a rod, a rope, a spring.
     Distance(Distance),
     /// The frames coincide: glue, rigid or soft.
     Weld(Weld),
-    /// B slides along A's x axis and turns: a wheel on its suspension.
+    /// B slides along the x axis of A's frame and turns: a wheel on its suspension.
     Wheel(Wheel),
     /// The frames are driven with limited force: top-down friction, dragging with a pointer.
     Motor(Motor),
@@ -115,7 +115,7 @@ pub enum JointKind {
     Filter,
     /// The wheels about the anchors turn in a ratio: toothed wheels, a wheel in a ring.
     Gear(Gear),
-    /// The wheel about A's anchor rolls along B's x axis.
+    /// The wheel about A's anchor rolls along the x axis of B's frame.
     Rack(Rack),
     /// A rope from anchor to anchor over two wheels that are fixed in the world.
     Pulley(Pulley),
@@ -338,7 +338,7 @@ impl JointDef {
 }
 
 impl JointKind {
-    /// The motor along or about the joint's one axis.
+    /// The motor along or about the axis of the joint. In a motor joint, the angular motor.
     pub(crate) fn motor_mut(&mut self) -> Option<&mut Drive> {
         match self {
             JointKind::Revolute(Revolute { motor, .. })

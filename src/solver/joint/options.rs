@@ -6,7 +6,7 @@ use crate::body::WorldError;
 use crate::fx;
 use crate::math::Fx;
 
-/// Largest limit, target or speed of a joint. The solver saturates at much smaller values.
+/// Largest limit, target, length or speed of a joint. The solver saturates at much smaller values.
 pub(super) const SIZE_MAX: Fx = fx!(1048576);
 /// Largest frequency of a spring in Hz.
 const HERTZ_MAX: Fx = fx!(1000);
@@ -14,6 +14,7 @@ const HERTZ_MAX: Fx = fx!(1000);
 const DAMPING_RATIO_MAX: Fx = fx!(100);
 
 /// The range of a joint's position, in radians or metres, within ±2^20. The lower end is not above the upper one.
+/// [`Distance::spring_force`](crate::solver::Distance::spring_force) is a range of forces in N instead.
 ///
 /// A limit has the stiffness of a rigid joint: under a steady acceleration `a` against the limit, the position exceeds
 /// it by `a / (2 pi f)^2`. Here `f` is the frequency of [`JointDef::softness`](crate::solver::JointDef::softness) or,

@@ -11,11 +11,12 @@ use crate::math::{Fx, Speed, Vec2, fx_div};
 
 /// Slots of impulses in the state of a joint. A point uses two slots.
 pub(super) mod slot {
+    /// A spring along or about an axis, or the row that holds the angle of a weld.
     pub(in super::super) const SPRING: u8 = 0;
     pub(in super::super) const DRIVE: u8 = 1;
     /// The lower limit. The upper limit is in the next slot. The linear spring of a motor joint uses both slots.
     pub(in super::super) const LIMIT: u8 = 2;
-    /// The part that holds the joint together: a point, or up to two rows. In a motor joint, the linear motor.
+    /// The point between the anchors, or up to two rows that hold a position. In a motor joint, the linear motor.
     pub(in super::super) const HOLD: u8 = 4;
 }
 

@@ -1,4 +1,4 @@
-//! The prismatic joint: B slides along A's x axis and does not rotate relative to A.
+//! The prismatic joint: B slides along the x axis of A's frame and does not rotate relative to A.
 //!
 //! With the axis `n` fixed in A and `d` from A's anchor to B's, the rows along the axis have
 //! `J v = n.(v_b - v_a) + (r_b x n) w_b - ((d + r_a) x n) w_a` (E. Catto, Box2D). Two rows hold the joint: one on the

@@ -43,8 +43,8 @@ pub struct Pulley {
     pub wheel_a: Vec2<Fx>,
     /// The wheel on B's side, in m in the world, within ±2^30.
     pub wheel_b: Vec2<Fx>,
-    /// Length of the rope in metres, 0 to 2^20, without the part between the wheels, where B's side counts `ratio`
-    /// times.
+    /// Length of the rope in metres, 0 to 2^20, without the part between the wheels. The length on B's side counts
+    /// `ratio` times.
     pub length: Fx,
     /// Factor by which the length on B's side counts, 0.25 to 4.
     pub ratio: Fx,
@@ -64,8 +64,8 @@ impl Pulley {
         self
     }
 
-    /// Length in metres of a taut rope with its anchors at two points of the world, where B's side counts `ratio`
-    /// times.
+    /// Length in metres of a taut rope with its anchors at two points of the world. The length on B's side counts
+    /// `ratio` times.
     pub(super) fn taut_length(&self, on_a: Vec2<Fx>, on_b: Vec2<Fx>) -> Fx {
         let beside = fx_mul(self.ratio, self.wheel_b.distance(on_b));
         self.wheel_a.distance(on_a).saturating_add(beside)

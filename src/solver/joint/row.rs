@@ -269,8 +269,9 @@ impl JointRow {
 }
 
 /// Returns the largest speed in m/s at which a limit may be approached from a distance of `gap`: at this speed the
-/// limit is reached in one sub-step of `1 / rate` seconds. Beyond the limit, `gap` and the speed are negative: the
-/// joint returns to the limit at `bias_rate` times the gap.
+/// limit is reached in one sub-step of `1 / rate` seconds. Beyond the limit, `gap` is negative, and the result is
+/// `bias_rate` times the gap: the speed at which the joint returns to the limit, or 0 for a motor, whose `bias_rate`
+/// is 0.
 fn approach(gap: Fx, bias_rate: Fx, rate: u32) -> Fx {
     fx_mul(gap, if gap > Fx::ZERO { Fx::from_num(rate) } else { bias_rate })
 }

@@ -153,7 +153,7 @@ impl Joint {
 pub enum JointPart {
     /// The motor, or both motors of a motor joint.
     Motor,
-    /// The limits.
+    /// The limits, or the rope of a pulley.
     Limit,
     /// The springs, or the soft parts of a weld.
     Spring,

@@ -65,8 +65,8 @@ mod tests {
     use crate::fx;
     use crate::math::{Fx, Rng, Rot, Speed, narrow};
 
-    /// One update removes the velocity of a row whose mobility is not too small, except rounding errors of up to 12
-    /// units of [`Speed`].
+    /// One update removes the velocity of a row whose `D` is not too small, except rounding errors of up to 12 units of
+    /// [`Speed`].
     #[test]
     fn an_update_removes_the_velocity_along_both_directions() {
         let mut rng = Rng::new(11);

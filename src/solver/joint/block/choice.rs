@@ -7,7 +7,7 @@
 //! - it is so light, or its arms are so long, that its share in the mobility of the point of each of two hinges is
 //!   large, or that the sum of its shares over all hinges, without the largest share, is large.
 //!
-//! All joints of a crowded body that have rows for a block ([`Candidate::rows`]) are solved in one. Two crowded bodies
+//! Each joint of a crowded body is solved in a block if it has rows for one ([`Candidate::rows`]). Two crowded bodies
 //! with a common joint share a block, as long as it does not grow beyond [`ROWS_MAX`]. Whether a body is crowded
 //! depends on its own joints alone, so that joints elsewhere do not affect it.
 

@@ -25,7 +25,7 @@ const KICK_MAX: i64 = 1000 * ONE;
 /// The change of the torque of a force while its body rotates.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Leverage {
-    /// No change, or a negligible one.
+    /// No change, as for a torque, or a change that is left out, as for a spring between two points.
     None,
     /// The point turns with the body and the force does not: the derivative is `F . r`. Contains the lever ratios of
     /// both bodies, which are the arms over the radii of gyration, turned by a right angle.

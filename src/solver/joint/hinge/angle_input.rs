@@ -67,7 +67,7 @@ impl Memo {
     }
 }
 
-/// Cache key: everything that a row on the angle between two bodies depends on.
+/// Cache key: everything on which a row on the angle between two bodies and its largest impulses depend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct AngularKey {
     /// `1 / k` and mass of each body.
