@@ -82,7 +82,7 @@ pub(super) struct ContactSet {
 /// Properties of the contacts of a tick that decide which operations they need.
 #[derive(Clone, Copy, Debug, Default)]
 struct Features {
-    /// Whether any contact is elastic.
+    /// Whether any contact is elastic: its restitution is above `restitution::ELASTIC`.
     elastic: bool,
     /// Whether any contact is cold.
     cold: bool,

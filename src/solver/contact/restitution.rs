@@ -1,6 +1,6 @@
-//! Restitution: a point that is pushed, or bounces together with a point that is pushed, and whose approach speed was
-//! not below the threshold of its surface, separates at `e` times the approach speed, or more slowly if the contact
-//! would gain energy.
+//! Restitution: a point bounces if its approach speed was not below the threshold of its surface, and if it is pushed
+//! or bounces together with a point that is pushed. It separates at `e` times the approach speed, or more slowly if `e`
+//! is at most 1 and the contact would gain energy.
 //!
 //! ```text
 //! L' = max(L - (vn + min(e va + drift, 0)), 0)     in the sub-step in which it is pushed, after the passes

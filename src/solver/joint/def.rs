@@ -102,7 +102,7 @@ pub enum JointKind {
     Revolute(Revolute),
     /// B slides along the x axis of A's frame and does not turn relative to A: a lift, a drawer.
     Prismatic(Prismatic),
-    /// The origins keep a distance: a rod, a rope, a spring.
+    /// The distance between the origins is held, limited or pulled to a length: a rod, a rope, a spring.
     Distance(Distance),
     /// The frames coincide: glue, rigid or soft.
     Weld(Weld),
