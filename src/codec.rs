@@ -98,8 +98,9 @@ const SLACK: usize = 16;
 /// Decodes a value whose canonical encoding is all of `bytes`.
 ///
 /// A length prefix is not trusted. For a string, the allocation is at most 16 bytes more than the bytes given. For a
-/// list of values, it is at most a small multiple of the number of bytes given, plus up to 1 MiB that is reserved for
-/// each list when it begins. Two kinds of types defeat these limits and must not be decoded from untrusted bytes: lists
+/// list of values, it is at most a multiple of the number of bytes given, plus up to 1 MiB that is reserved for each
+/// list when it begins; the factor depends on the size of a value in memory compared with its shortest encoding. Two
+/// kinds of types defeat these limits and must not be decoded from untrusted bytes: lists
 /// of values that take no bytes, whose length is unbounded, and recursive types, whose depth is unbounded.
 ///
 /// # Errors

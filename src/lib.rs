@@ -1,8 +1,8 @@
 //! lockstep2d: a deterministic fixed-point 2D physics and lockstep engine.
 //!
-//! The same setup and the same inputs give the same state hash after every tick, on every machine, because no
-//! floating-point number takes part. A saved replay contains hashes at a fixed interval of ticks, so that any machine
-//! can check this.
+//! The same setup and the same inputs give the same state hash after every tick, on every machine, because the
+//! simulation does not use floating-point numbers. A saved replay contains hashes at a fixed interval of ticks, so that
+//! any machine can check this.
 //!
 //! - [`world`]: start here. [`world::World`] owns bodies, shapes and joints and steps them.
 //! - [`body`]: definitions of bodies and shapes. [`solver`]: joints and settings. [`collision`]: contact manifolds.

@@ -28,7 +28,8 @@ pub enum PeerError {
     /// game, its inputs or its claims.
     Record(RecordError),
     /// An option, or a number of the game that the session depends on, is out of its range. The error names the field
-    /// of [`PeerOptions`](super::PeerOptions), such as `delay.0`, or the method, such as `Game::tick_rate`.
+    /// of [`PeerOptions`](super::PeerOptions), such as `delay.0`, the method, such as `Game::tick_rate`, or the `bytes
+    /// of the default input`.
     Config(ConfigError),
     /// An encoded input is longer than [`PeerOptions::input_bytes`](super::PeerOptions::input_bytes). Without that
     /// option: it has another length than the default input, or the default input is longer than 65 535 bytes.

@@ -35,7 +35,7 @@ pub enum PeerEvent {
     Desync(PeerDesync),
 }
 
-/// A desync: this peer and another one had different states at a final tick.
+/// A desync: this peer and another one had different states after the same number of final ticks.
 ///
 /// ```
 /// # use lockstep2d::lockstep::Game;

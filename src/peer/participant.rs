@@ -226,7 +226,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
     }
 
     /// Issues the inputs of this peer's own seats, in the order of the seats, and plays a tick if the inputs of the
-    /// other peers allow it. The list is empty for a peer without seats. Returns whether the inputs were issued;
+    /// other peers allow it. Inputs of a peer without seats are ignored. Returns whether the inputs were issued;
     /// otherwise they may be passed again.
     ///
     /// # Errors

@@ -6,8 +6,8 @@
 //! none, one of its own (`proposal.rs`). A voter accepts a change in the ballot that it promised, or in a higher one,
 //! if it holds the inputs of all ticks before the cut. A change is decided once a quorum of the old view has accepted
 //! it in one ballot. Every peer that sees the decision installs the change. The cut is the first tick that the change
-//! may affect: the largest frozen acknowledgement of the quorum that promised. It lies at or above every final tick,
-//! because a quorum acknowledged every final tick before its members froze.
+//! may affect: the largest frozen acknowledgement of the quorum that promised. All final ticks lie before the cut,
+//! because a quorum has acknowledged them, and any two quorums have a member in common.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -133,7 +133,7 @@ impl Session {
         true
     }
 
-    /// Whether this peer holds all ticks before the cut of a change.
+    /// Whether this peer holds the inputs of all ticks before the cut of a change.
     pub(super) fn holds(&self, change: &Change) -> bool {
         self.progress.complete >= change.cut || self.config.has(Fault::AcceptBlind)
     }
@@ -208,7 +208,8 @@ impl Session {
         self.is_quorum(set)
     }
 
-    /// Number of alive voters before this one, which is its rank among the proposers; 0 for a peer without a vote.
+    /// Number of voters before this one whose rows are fresh. Voters of lower rank start their ballots earlier. The rank
+    /// of a peer without a vote is 0.
     pub(super) fn rank(&self) -> u64 {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         let alive = self.peers.voters_that(|remote| within(remote.fresh, fresh, active));

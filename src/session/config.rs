@@ -29,8 +29,8 @@ pub struct Timing {
     /// quorum or the tie-holder can end a stall at any time with
     /// [`Session::go_on_without`](super::Session::go_on_without).
     pub patience: u64,
-    /// A peer counts as heard if a packet from it arrived within this time. Also the shortest stall that is reported
-    /// with [`Event::Waiting`](super::Event::Waiting).
+    /// A peer counts as heard if a packet from it arrived within this time. A stall is reported with
+    /// [`Event::Waiting`](super::Event::Waiting) once it is longer than this time and than six ticks.
     pub heard: u64,
     /// A peer's row (its latest status record) counts as fresh for this time after it arrived.
     pub fresh: u64,

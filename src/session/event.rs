@@ -123,7 +123,7 @@ pub enum Event {
         /// Number of ticks of the match.
         ticks: Tick,
     },
-    /// This peer and another one have different states at a final tick.
+    /// This peer and another one have different states after the same number of final ticks.
     Desync {
         /// The other peer.
         peer: PeerId,
@@ -142,6 +142,7 @@ pub enum Event {
         /// The tick for which the peer issued two inputs.
         tick: Tick,
     },
-    /// The other peers no longer keep the inputs that this peer lacks. It has to join again and download a state.
+    /// This peer is more than [`Config::log_ticks`](super::Config::log_ticks) ticks behind, so that the others may no
+    /// longer keep the inputs that it lacks. It has to join again and download a state.
     TooFarBehind,
 }

@@ -8,7 +8,7 @@ use super::view::Span;
 /// The inputs of a span, without gaps.
 #[derive(Clone, Debug)]
 struct SpanLog {
-    /// First tick in `bytes`. Earlier ones have been forgotten.
+    /// First tick whose input is in `bytes`.
     first: Tick,
     /// First tick whose input is missing.
     next: Tick,

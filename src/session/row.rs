@@ -7,7 +7,8 @@ use alloc::vec::Vec;
 use super::id::{Key, PeerId, Tick};
 use super::view::Change;
 
-/// An attempt to change a view. Later attempts have higher rounds; a peer makes at most one attempt per round.
+/// An attempt to change a view. Ballots are ordered by round, then by proposer. A peer makes at most one attempt per
+/// round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Ballot {
     pub(super) round: u32,
@@ -72,7 +73,7 @@ pub(super) struct Row {
     pub(super) promised: Option<Ballot>,
     pub(super) accepted: Option<(Ballot, Arc<Change>)>,
     pub(super) wants: Wants,
-    /// A final tick and the hash of the state before it.
+    /// A number of ticks, all of them final, and the hash of the state after them.
     pub(super) hash: Option<(Tick, u128)>,
 }
 

@@ -228,7 +228,7 @@ impl Session {
         self.peers.bound(&self.view);
     }
 
-    /// Stops serving a peer, for example because its transport reports that the connection is closed.
+    /// Stops serving a peer without a vote, for example because its transport reports that the connection is closed.
     pub fn detach(&mut self, id: PeerId) {
         if let Some(remote) = self.peers.find_mut(id) {
             remote.attached = false;

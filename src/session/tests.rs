@@ -66,8 +66,8 @@ fn what_is_written_is_read_again() {
     assert_eq!(&packet.inputs[..6], [1, 2, 1, 2, 3, 4]);
 }
 
-/// In a match of eight players, a row takes 21 bytes, and a packet with this row and eight ticks of one player's inputs
-/// takes 45 bytes.
+/// In a match of eight players, a row takes 21 bytes, and a packet with this row and one player's input, unchanged for
+/// eight ticks, takes 45 bytes.
 #[test]
 fn a_packet_of_eight_players_is_small() {
     let mut row = Row::new(7);

@@ -34,14 +34,14 @@ const HELP_TICKS: Tick = 20;
 /// Interval, in versions of the row, at which a peer that has no vote or has lost contact to a quorum sends its row to
 /// all peers that it knows.
 const TRY_ROWS: u32 = 8;
-/// Longest time between packets in microseconds, if at most 16 peers are known.
+/// Upper bound of [`Session::send_interval`] in microseconds, if at most 16 peers are known.
 const INTERVAL_MAX: u64 = 100_000;
 /// Interval, in versions of the row, at which the row contains a state hash.
 const HASH_ROWS: u32 = 4;
 
 impl Session {
-    /// Time between packets: the duration of a tick, but at most [`INTERVAL_MAX`]. It is twice as long if more than 16
-    /// peers are known, and three times as long if more than 32 are known.
+    /// Usual time between packets: the duration of a tick, but at most [`INTERVAL_MAX`]. It is twice as long if more
+    /// than 16 peers are known, and three times as long if more than 32 are known.
     pub(super) fn send_interval(&self) -> u64 {
         let many = match self.peers.list.len() {
             0..=16 => 1,

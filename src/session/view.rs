@@ -21,7 +21,7 @@ pub struct Voter {
     pub id: PeerId,
     /// Identity of the peer.
     pub key: Key,
-    /// Weight of the vote; 1 for players. A dedicated server that outweighs all others decides alone.
+    /// Weight of the vote: 1, unless [`View::found`] sets another one. A voter that outweighs all others decides alone.
     pub weight: u8,
 }
 
