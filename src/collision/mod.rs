@@ -1,5 +1,5 @@
-//! Collision detection: broad phase, narrow phase, and the persistent state of contacts. It reads bodies and returns
-//! contacts; it never changes a body.
+//! Collision detection: broad phase, narrow phase, queries, and the persistent state of contacts. It reads bodies and
+//! never changes them.
 
 mod broad_phase;
 mod contact;

@@ -38,7 +38,7 @@ pub fn fit(world: &World) -> Aabb {
             .unwrap_or_default(),
     };
     let side = longest_side(window);
-    // The world is empty or contains only a single point.
+    // There is nothing to show, or only a single point.
     if side == Fx::ZERO { window.expanded(fx!(5)) } else { window.expanded(side / 12) }
 }
 

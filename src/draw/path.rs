@@ -36,7 +36,7 @@ fn add_point(path: &mut String, place: Vec2<Fx>, screen: &Screen) {
     }
 }
 
-/// Adds a text element, not a path, slightly above the position.
+/// Adds a text element, not a path, slightly above and to the right of the position.
 fn add_label(elements: &mut String, place: Vec2<Fx>, text: &str, screen: &Screen) {
     if screen.seen.contains_point(place) {
         let (x, y) = screen.place(place);

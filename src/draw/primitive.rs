@@ -203,8 +203,8 @@ pub enum Style {
     /// A contact point.
     ContactPoint(ContactProximity),
     /// The normal force at a contact point on shape B. The length is 0.2 m times the square root of the relative
-    /// acceleration that the force gives to the centres of mass, in units of 10 m/s²: 0.2 m below a ball that rests on
-    /// the ground under the default gravity, and ten times as long for a hundred times the force. The root keeps large
+    /// acceleration that the force gives to the centres of mass, in units of 10 m/s²: 0.2 m for a ball that rests on
+    /// the ground under a gravity of 10 m/s², and ten times as long for a hundred times the force. The root keeps large
     /// forces in the picture.
     ContactForce,
     /// The friction force at a contact point, to the same scale.

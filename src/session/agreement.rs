@@ -208,8 +208,8 @@ impl Session {
         self.is_quorum(set)
     }
 
-    /// Number of voters before this one whose rows are fresh. Voters of lower rank start their ballots earlier. The rank
-    /// of a peer without a vote is 0.
+    /// Number of voters before this one whose rows are fresh. Voters of lower rank start ballots earlier. The rank of a
+    /// peer without a vote is 0.
     pub(super) fn rank(&self) -> u64 {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         let alive = self.peers.voters_that(|remote| within(remote.fresh, fresh, active));

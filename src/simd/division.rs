@@ -1,4 +1,4 @@
-//! Scalar division, for vector instruction sets without an integer division.
+//! Scalar division, for the scalar backend and for the vector backends that divide lane by lane.
 
 /// `1 / d`, rounded down, where `d` and the result have 30 fraction bits. `d` is clamped to at least 1.
 #[inline(always)]
@@ -24,7 +24,7 @@ pub(super) fn inverse([xx, xy, yy]: [i64; 3]) -> [i32; 3] {
     let (k11, k22) = (ONE + xx, ONE + yy);
     // The products have 92 fraction bits, of which 30 are kept.
     let det = ((i128::from(k11) * i128::from(k22) - i128::from(xy) * i128::from(xy)) >> 62) as u64;
-    // The determinant is normalised to 32 bits: its reciprocal then has 31 bits, and products fit 64 bits.
+    // The determinant is shifted down to at most 32 bits, so that the products with its reciprocal fit 64 bits.
     let excess = 32u32.saturating_sub((det | 1).leading_zeros());
     let reciprocal = ((1u64 << 62) / (det >> excess).max(1 << 29)) as i64;
     let entry = |value: i64| ((((value >> (16 + excess)) * reciprocal) + (1 << 31)) >> 32) as i32;

@@ -3,8 +3,9 @@
 //! A kernel is one generic function over [`Lanes`]; a backend is one implementation of that trait. The scalar backend,
 //! `Scalar<1>`, processes one row at a time. The other backends process [`WIDTH`] rows that share no body, and no lane
 //! depends on another. They use `Scalar<1>` for batches with a single row. Every backend therefore gives the same bits.
-//! Data that kernels process is laid out for the backend ([`Layout`]). Only 32-bit numbers and their 64-bit products
-//! occur, because all processors have the widening multiplication 32 x 32 -> 64 (`vpmuldq`, `smull`, `i64x2.extmul`).
+//! Data that kernels process is laid out for the backend ([`Layout`]). Lanes hold only 32-bit numbers and their 64-bit
+//! products, because each vector instruction set has a widening multiplication 32 x 32 -> 64 (`vpmuldq`, `smull`,
+//! `i64x2.extmul`).
 
 // Besides the scalar backend, only the vector backends of the target architecture are compiled.
 mod body;
@@ -216,7 +217,7 @@ impl Machine {
     }
 }
 
-/// SIMD backend of the solver. It changes the speed, never the result.
+/// SIMD backend of the solver and of the narrow phase for boxes. It changes the speed, never the result.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::World};

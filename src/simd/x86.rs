@@ -1,4 +1,4 @@
-//! Vector backends of x86-64: AVX2 and AVX-512, detected at run time.
+//! Vector backends of x86-64: AVX2 and AVX-512, detected at run time if the feature `std` is enabled.
 #![expect(unsafe_code, reason = "vendor intrinsics")]
 
 #[path = "x86/avx2.rs"]

@@ -2,8 +2,8 @@
 //! no thread reads anything that another thread writes.
 //!
 //! A team runs the parallel stages of a tick: the calling thread and the threads of a pool, each on its own part. The
-//! members of a team wait for each other at barriers; the sub-steps of a tick need a hundred of them. A barrier costs
-//! 0.1 microseconds. A fork and join of tasks in its place would cost 1 to 50 microseconds.
+//! members of a team wait for each other at barriers, about a hundred times in a tick. A barrier costs about 0.1
+//! microseconds. A fork and join of tasks in its place would cost 1 to 50 microseconds.
 
 #[cfg(feature = "parallel")]
 mod barrier;

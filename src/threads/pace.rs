@@ -1,7 +1,7 @@
 //! Decides which ticks the threads of a team share: those that are shorter with all threads than with one.
 //!
-//! The threads wait for each other a hundred times in a tick. If other programs use the processors as well, a wait
-//! lasts as long as a time slice of the operating system, and a tick takes up to thirty times as long as with one
+//! The threads wait for each other about a hundred times in a tick. If other programs use the processors as well, a
+//! wait lasts as long as a time slice of the operating system, and a tick takes up to thirty times as long as with one
 //! thread. Small worlds may be slower with several threads even on idle processors. The times of earlier ticks show
 //! both effects. Times never influence a result, because no result depends on the number of threads.
 

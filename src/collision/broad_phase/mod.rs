@@ -1,5 +1,5 @@
-//! Broad phase: pairs of overlapping fat AABBs. The result is a function of the boxes alone: every implementation
-//! returns the same pairs in sorted order, so the data structure is a cache and not part of the state.
+//! Broad phase: pairs of overlapping fat AABBs. Every implementation returns the same pairs in sorted order, so the
+//! data structure is a cache and not part of the state.
 
 mod box_list;
 mod search;

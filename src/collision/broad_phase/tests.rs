@@ -197,7 +197,7 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
     assert!(total > 3000, "expected over 3000 pairs, got {total}");
 }
 
-/// Coincident boxes have far more pairs than the limit; the surplus is not stored.
+/// Coincident boxes have far more pairs than the limit; the list of pairs stays short.
 #[test]
 fn pairs_beyond_the_limit_take_no_memory() {
     let mut crowd = Crowd::new(400);

@@ -42,8 +42,8 @@ pub(crate) fn may_meet(a: Aabb, b: Aabb, margin: Length) -> bool {
     a.expanded_nearby(widen(margin).wrapping_add(REJECT_SLACK)).overlaps(b)
 }
 
-/// Contact manifold of two posed shapes whose surfaces are at most `margin` metres apart. Pairs whose bounding boxes
-/// are too far apart are rejected early.
+/// Contact manifold of two posed shapes, without points if their surfaces are more than `margin` metres apart. Pairs
+/// whose bounding boxes are too far apart are rejected early.
 pub(crate) fn collide(
     a: &PosedShape,
     b: &PosedShape,
@@ -58,7 +58,7 @@ pub(crate) fn collide(
     }
 }
 
-/// Contact manifold of two posed shapes whose surfaces are at most `margin` metres apart.
+/// Contact manifold of two posed shapes, without points if their surfaces are more than `margin` metres apart.
 pub(crate) fn collide_near(
     a: &PosedShape,
     b: &PosedShape,

@@ -72,7 +72,8 @@ pub(crate) enum TimeOfImpact {
     /// The shapes first come within the target after this fraction of the tick.
     Hit { fraction: Fx },
     /// The shapes overlap at the start, so deeply that no direction of separation is reliable. With
-    /// [`StartPolicy::Report`], an overlap of any depth gives this result.
+    /// [`StartPolicy::Report`], an overlap of any depth gives this result. With [`StartPolicy::Protect`], a contact
+    /// at the start of two shapes without an inner radius gives it as well.
     Overlapped,
     /// The search gave up: the shapes do not come within the target before this fraction of the tick.
     Failed { fraction: Fx },

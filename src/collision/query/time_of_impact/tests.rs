@@ -84,8 +84,8 @@ fn no_contact_is_passed_and_none_is_invented() {
     );
 }
 
-/// For shapes that start in contact, the fraction that is reported as free never lets the centre of B pass the surface
-/// of A.
+/// After a start in contact, a shape B with an inner radius overlaps A by at most three quarters of that radius within
+/// the fraction that is reported as free.
 #[test]
 fn contact_is_left_or_deepened_but_not_passed() {
     let mut rng = Rng::new(2);
@@ -160,7 +160,7 @@ fn a_bullet_and_a_thin_rod_do_not_pass_a_wall() {
     );
 }
 
-/// The floor is as long as the world, and sloped so that its normal is rounded.
+/// The floor is nearly as long as the world, and sloped so that its normal is rounded.
 #[test]
 fn what_rests_or_slides_or_rolls_on_a_floor_is_free() {
     let far = at(fx!(1000000000), fx!(333333333.25));
