@@ -9,8 +9,7 @@ use alloc::vec::Vec;
 use super::address::Address;
 use super::id::PeerId;
 
-/// Time after the latest rows of a majority have ceased to be fresh, after which other peers are contacted, in
-/// microseconds.
+/// Time without fresh rows of a majority after which other peers are contacted, in microseconds.
 const SILENCE: u64 = 500_000;
 /// Time after which an unanswered attempt is given up, in microseconds.
 const ASK_TIME: u64 = 1_500_000;
