@@ -1,5 +1,5 @@
-//! Measures the cost of rollback with touching bodies, in multiples of the time of a step: a save, a hash, and a frame
-//! in which 8 ticks are simulated again. `cargo run --release --example rollback_cost` measures 1000 bodies. An
+//! Measures the cost of rollback with touching bodies, in multiples of the time of a step: a save with its hash, and a
+//! frame in which 8 ticks are simulated again. `cargo run --release --example rollback_cost` measures 1000 bodies. An
 //! argument sets another number: `cargo run --release --example rollback_cost 150`.
 
 use std::error::Error;

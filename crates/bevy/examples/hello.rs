@@ -1,4 +1,4 @@
-//! A ball falls onto a platform. Drag it with the mouse; Space throws everything up.
+//! A ball and a box fall onto a platform. Drag them with the mouse; Space throws them up.
 
 use bevy::prelude::*;
 use bevy_lockstep2d::PointerDragPlugin;

@@ -1,4 +1,5 @@
-//! A platformer: a character, a one-way platform, a lift, and coins that are sensors. Arrow keys or A, D and W.
+//! A platformer: a character, a one-way platform, a lift, and coins that are sensors. Arrow keys or A, D and W;
+//! Space jumps, too.
 
 use bevy::prelude::*;
 use bevy_lockstep2d::prelude::*;

@@ -1,5 +1,5 @@
-//! Plays a replay of the sandbox: `replay_player ../../replays/drum.replay`. Space pauses, the arrow keys step by a
-//! tick, Home and End go to the ends, PageUp and PageDown jump by 60 ticks.
+//! Plays a replay of the sandbox: `replay_player ../../replays/drum.replay`. Space pauses, the left and right arrow
+//! keys step by a tick, Home and End go to the ends, PageUp and PageDown jump by 60 ticks.
 
 use bevy::prelude::*;
 use bevy_lockstep2d::LockstepError;

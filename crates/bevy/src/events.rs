@@ -120,8 +120,8 @@ pub struct ConfirmedEvent {
     pub views: [Option<Entity>; 2],
 }
 
-/// An event that a rollback may still remove. Each event is sent once, when it first occurs in a played tick. If a
-/// rollback moves the event by a few ticks, it is not sent again.
+/// An event of a played tick. Until the tick is confirmed, a rollback may remove the event. Each event is sent once,
+/// when it first occurs. If a rollback moves the event by at most 16 ticks, it is not sent again.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PredictedEvent {
     /// Number of ticks played, including the tick of the event.

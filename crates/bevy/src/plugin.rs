@@ -18,7 +18,8 @@ use crate::systems::{remove_views, send_events, step, write_views};
 use crate::views::{BodyView, BodyViews};
 
 /// Plays the games of one type: whenever there is a resource [`Lockstep<G>`], its ticks are played, its bodies have
-/// views, and its events are sent. An app can have only one such plugin.
+/// views, and its events are sent. An app must have only one such plugin, because [`BodyViews`] and [`LockstepStatus`]
+/// belong to a single game.
 #[derive(Clone, Copy, Debug)]
 pub struct LockstepPlugin<G> {
     settings: LockstepSettings,

@@ -11,9 +11,9 @@ use lockstep2d::world::World;
 use crate::events::{LoggedEvent, each_event};
 use crate::poses::Poses;
 
-/// A tick, as a number of ticks since the start of an epoch. A new epoch begins with a seek, and with a loaded state of
-/// an earlier epoch, from another peer or from bytes. The tick at which an epoch begins may be unknown until the driver
-/// sets it.
+/// A tick, as a number of ticks since the start of an epoch. A new epoch begins with a seek, and when the loaded state
+/// belongs to an earlier epoch or was decoded from bytes, as a state of another peer is. The tick at which an epoch
+/// begins may be unknown until the driver sets it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Stamp {
     epoch: u32,
@@ -57,7 +57,7 @@ pub(crate) struct StepLog {
     pub(crate) stepped: u32,
     /// Largest number of ticks by which a load went back since the last frame.
     pub(crate) replayed: u32,
-    /// The tick to return to, while the driver simulates ticks whose results are not shown.
+    /// Tick at which [`StepLog::suspend`] was called; `None` while the log records.
     suspended_at: Option<Stamp>,
     /// Tick of the world before the step.
     world_tick: Option<u64>,

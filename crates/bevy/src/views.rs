@@ -81,7 +81,7 @@ impl BodyViews {
         self.entity(world.shape(shape)?.body())
     }
 
-    /// All bodies and their views, in the order of the bodies.
+    /// All bodies that have views, with these views, in slot order.
     pub fn iter(&self) -> impl Iterator<Item = (BodyId, Entity)> {
         self.slots.iter().flatten().map(|view| (view.body, view.entity))
     }

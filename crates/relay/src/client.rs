@@ -14,7 +14,7 @@ use tungstenite::{Message, WebSocket, client::client_with_config};
 
 use crate::frame::{ADDRESS_BYTES, Members, SECRET_BYTES, frame, of_text, unframe};
 
-/// Maximum time for connecting and for each step of the handshake.
+/// Maximum time for an attempt to connect to an address, and for each read and write of the handshake.
 const CONNECT_MAX: Duration = Duration::from_secs(5);
 /// First pause before connecting again. The pause doubles with each failure.
 const PAUSE_MIN: Duration = Duration::from_millis(250);
@@ -24,18 +24,19 @@ const PAUSE_MAX: Duration = Duration::from_secs(8);
 const FRAME_MAX: usize = 64 * 1024;
 /// Close code: another connection of the same member has replaced this one.
 const REPLACED: u16 = 4003;
-/// Largest number of bytes that wait to be sent. Further datagrams are dropped, as in the buffer of a socket.
+/// Largest number of bytes that wait to be sent. Further datagrams are dropped.
 const WRITE_MAX: usize = 512 * 1024;
 
 /// Reason why a relay cannot be used.
 #[derive(Debug)]
 pub enum RelayError {
-    /// The URL is not `ws://HOST:PORT`.
+    /// The URL does not begin with `ws://`, has no host, or has a path.
     Url {
         /// The URL.
         url: String,
     },
-    /// The relay cannot be reached, or has refused the connection.
+    /// The port is missing or invalid, the host is unknown, the relay cannot be reached, or it has refused the
+    /// connection.
     Refused {
         /// Message of the system or of the relay.
         why: String,
@@ -107,10 +108,10 @@ impl fmt::Debug for Relay {
 impl Relay {
     /// Enters a room, which is created if it does not exist. `url` is `ws://HOST:PORT`, `code` 1 to 32 letters, digits
     /// and `-`, and `secret` 16 random bytes. A member that returns with the same secret has the same address. Blocks
-    /// until the relay has answered, at most for some seconds.
+    /// until the relay has answered; each attempt to connect to an address, and each read and write, takes at most 5 s.
     ///
     /// # Errors
-    /// [`RelayError`] when the relay cannot be reached or refuses.
+    /// [`RelayError`] when the URL is invalid, or the relay cannot be reached or refuses.
     pub fn connect(url: &str, code: &str, secret: [u8; SECRET_BYTES]) -> Result<Self, RelayError> {
         let host = url.strip_prefix("ws://").map(|host| host.trim_end_matches('/'));
         let wrong = || RelayError::Url { url: url.to_owned() };

@@ -85,7 +85,7 @@ impl Builder {
         }
     }
 
-    /// Adds a joint of the same definition between every pair of bodies.
+    /// Adds a joint of the same definition between the two bodies of each pair in `ends`.
     ///
     /// # Errors
     /// [`WorldError`] when the world refuses a joint.

@@ -38,7 +38,7 @@ pub(super) fn grid(
     (0..columns).flat_map(move |column| (0..rows).map(move |row| place(column, row)))
 }
 
-/// Shifts the positions alternately to the right and to the left by `first`.
+/// Shifts the x coordinates alternately by `first` and by `-first`.
 fn staggered(places: impl Iterator<Item = Vec2<Fx>>, first: Fx) -> impl Iterator<Item = Vec2<Fx>> {
     places
         .enumerate()

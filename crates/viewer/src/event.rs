@@ -65,7 +65,7 @@ pub enum Key {
 }
 
 impl From<char> for Key {
-    /// The key of a character: the space bar for a space, and letters without regard to case.
+    /// The key of a character: the space bar for a space, and ASCII letters without regard to case.
     fn from(character: char) -> Self {
         match character {
             ' ' => Key::Space,

@@ -8,7 +8,7 @@ use lockstep2d_viewer::{App, Event, Key, LAYER_KEYS};
 
 const TICKS: usize = 100;
 
-/// Returns everything drawn except the layer list and the lines of text above it, which show the progress of
+/// Returns the drawing of the world, without panels, the timeline and texts of full size, which show the progress of
 /// verification.
 fn world(app: &mut App) -> DrawList {
     let list = app.draw();

@@ -9,7 +9,7 @@ use std::time::Duration;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpStream};
 
-/// Time that a client has to send its request.
+/// Maximum time for reading a request and sending the answer.
 const REQUEST_MAX: Duration = Duration::from_secs(5);
 
 /// Counters of a worker since its start.

@@ -6,7 +6,7 @@ use lockstep2d::math::Rng;
 use lockstep2d::replay::{CHECKPOINT_INTERVAL, Limits, Recording, verify};
 use my_game::{Input, MyGame, Setup};
 
-/// State hash after the last tick. Raise the version of the rules when a change of the rules changes it. It never
+/// State hash after 600 ticks. Raise the version of the rules when a change of the rules changes it. It never
 /// depends on the machine, the compiler or the optimisation.
 const GOLDEN: &str = "621d889f2e803eaa07536dddb610306e";
 

@@ -38,7 +38,7 @@ impl Transport for AnyTransport {
     }
 }
 
-/// Largest number of ticks that one frame plays, while a peer catches up after it has joined.
+/// Largest number of due ticks that one frame plays. It bounds the frames of a peer that catches up.
 const TICKS_PER_FRAME: u32 = 64;
 
 pub(crate) struct MatchDriver<G: LockstepGame> {

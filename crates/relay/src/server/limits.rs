@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-/// Limits of a relay. The memory is at most `connections` times (`queue_bytes` + a few `datagram_bytes`).
+/// Limits of a relay. The frames that wait for members contain at most `connections` times `queue_bytes` bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Largest number of connections at the same time.

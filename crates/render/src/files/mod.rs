@@ -13,10 +13,10 @@ use crate::raster::Image;
 
 pub use pace::Pace;
 
-/// Animation that repeats forever, written frame by frame. At most two frames are in memory, however many there are.
+/// Animation that repeats forever, written frame by frame. The memory does not grow with the number of frames.
 ///
-/// For each frame, only the bounding rectangle of the changed pixels is written. Unchanged pixels inside it are
-/// transparent where the format allows it.
+/// Of each frame after the first, only the bounding rectangle of the changed pixels is written. Unchanged pixels inside
+/// it are transparent, except in an APNG frame that is not opaque.
 ///
 /// ```
 /// use lockstep2d_render::{Animation, Colour, DrawList, Pace, raster};

@@ -2,8 +2,8 @@
 //!
 //! Pictures of a world have few colours, plus the shades of antialiased edges. Up to 255 colours are kept exactly. If
 //! there are more, the most frequent ones are kept, because a shift in the shade of a large area is visible. The
-//! others are divided into boxes, each with one mean colour: the box with the largest sum of squared errors is split
-//! at its mean, along the channel with the largest error, until there are enough boxes.
+//! others are divided into boxes, each with one mean colour: the box with the largest sum of squared errors in one
+//! channel is split at the mean of that channel, until there are enough boxes.
 
 use std::collections::BTreeMap;
 

@@ -1,5 +1,5 @@
-//! A game without any code for the viewer, shown in the viewer: a car on a hill, shells, a bridge that breaks, and
-//! goals.
+//! The viewer of a small game: a car on a hill, shells, a bridge that breaks, and goals. The rules in `game.rs` contain
+//! no code for the viewer.
 //!
 //! `cargo run --release -p lockstep2d-viewer --example hill`
 

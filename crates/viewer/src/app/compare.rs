@@ -23,7 +23,8 @@ pub(super) struct First {
     pub(super) tick: u64,
     /// The first body that differs, in slot order; `None` if no body differs but other state does.
     pub(super) body: Option<BodyId>,
-    /// The first differing field of that body, with both values. If no body differs: that of the game's own state.
+    /// Description of the difference: the first differing field of `body` with both values, or which source alone has
+    /// the body. If no body differs: the first differing field of the game's own state, if there is one.
     pub(super) field: String,
 }
 

@@ -106,7 +106,7 @@ impl Live {
         let all = [[script.clone(), done].concat()];
         self.note = None;
         match self.recording.play(&all) {
-            // A replay cannot hold all these commands: play the tick with the commands of the scene's script only.
+            // A replay cannot hold all these commands: drop those of the user.
             Err(RecordingError::TooMuch | RecordingError::Record(_)) if all[0].len() > script.len() => {
                 self.hand.forget();
                 self.note = Some("too many commands in one tick: they were dropped");

@@ -40,8 +40,8 @@ impl<S> History<S> {
         self.frames.contains_key(&tick)
     }
 
-    /// Adds a save that takes `bytes` of unshared memory, and drops the saves that are least useful from tick `here`
-    /// until the budget holds.
+    /// Adds a save that takes `bytes` of unshared memory. Drops the saves that are least useful from tick `here`, until
+    /// the rest fits in the budget or only the first and the last save are left.
     pub(super) fn keep(&mut self, tick: u64, save: S, bytes: usize, here: u64) {
         if self.has(tick) {
             return;
