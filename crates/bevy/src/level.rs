@@ -47,12 +47,12 @@ pub struct SpawnJoint {
     pub kind: JointKind,
     /// Point at which the bodies are joined, in metres in the world.
     pub anchor: Vec2<Fx>,
-    /// Direction of a slider or wheel in the world; other joints ignore it.
+    /// The x axis of the frames of the joint, as a direction in the world: a slider, wheel or rack moves along it.
     pub axis: Vec2<Fx>,
 }
 
 impl SpawnJoint {
-    /// A joint at a point of the world. A slider or wheel moves along the x axis.
+    /// A joint at a point of the world. A slider, wheel or rack moves along the x axis.
     #[must_use]
     pub fn new(
         [body_a, body_b]: [Entity; 2],
@@ -63,7 +63,7 @@ impl SpawnJoint {
         SpawnJoint { body_a, body_b, kind: kind.into(), anchor: anchor.into(), axis }
     }
 
-    /// Sets the direction of a slider or wheel.
+    /// Sets the direction of a slider, wheel or rack.
     #[must_use]
     pub fn axis(mut self, axis: impl Into<Vec2<Fx>>) -> Self {
         self.axis = axis.into();

@@ -15,7 +15,7 @@ const SIZE: (u32, u32) = (120, 80);
 const WHITE: Colour = Colour::hex(0xffffff);
 const THIRTY: Pace = Pace { ticks: 2, tick_rate: 60 };
 
-/// Square that moves by whole pixels, and text that changes: a dozen colours.
+/// Square that moves by whole pixels, and text that changes: few colours.
 fn flat(frame: u32) -> Image {
     let mut list = DrawList::default();
     list.rectangle([0.0, 60.0], [120.0, 20.0], Colour::hex(0xdddcd6));

@@ -116,7 +116,7 @@ fn push(tick: u64, world: &World, (character, body): (BodyId, &Body), hit: &Cast
     let shortened = RIDE_HEIGHT - (body.centre_of_mass().y - hit.point.y);
     let spring = fx_mul(STIFFNESS, shortened) - fx_mul(DAMPING, relative.y) - world.config().gravity.y;
     let up = if relative.y > LIFT_OFF { Fx::ZERO } else { spring.clamp(Fx::ZERO, PUSH_MAX) };
-    // Each tick, the drive removes a third of the difference to the wanted speed.
+    // Each tick, the drive removes a third of the difference to the wanted speed, unless DRIVE_MAX limits it.
     let along = ((wanted - relative.x) * 20).clamp(-DRIVE_MAX, DRIVE_MAX);
     let force = Vec2::new(along, up).scale(body.mass());
     let mut commands = vec![Command::ApplyForce { body: character, force, point: body.centre_of_mass() }];

@@ -18,7 +18,7 @@ pub(crate) struct SyncTestDriver<G: LockstepGame> {
     game: Observed<G>,
     timestep: FixedTimestep,
     tick: u64,
-    /// Number of ticks that are played again after each tick, once so many have been played.
+    /// Number of ticks by which a rollback goes back.
     depth: u32,
     history: History<Observed<G>>,
     /// Inputs of the last ticks, at most `depth`.
@@ -41,7 +41,7 @@ impl<G: LockstepGame> SyncTestDriver<G> {
         Ok(())
     }
 
-    /// Plays one tick, and then the last `depth` ticks again, once there are so many.
+    /// Plays one tick. From tick `depth` on, then plays the last `depth` ticks again.
     pub(crate) fn step(&mut self, inputs: &mut Inputs<G>) -> Result<(), LockstepError> {
         let players = self.game.players();
         let encoded = EncodedInputs::new(&inputs.next(players as usize), players)?;

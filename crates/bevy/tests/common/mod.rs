@@ -1,4 +1,4 @@
-//! A small game for two players and apps without a window, shared by the tests.
+//! Shared by the tests: a small game for two players, and apps without a window.
 #![allow(dead_code, reason = "each test uses a part of it")]
 
 pub mod arena;
@@ -51,7 +51,6 @@ pub fn app(game: Lockstep<Arena>, seed: u64, frame: Duration) -> App {
 fn press(mut inputs: ResMut<Inputs<Arena>>, lockstep: Option<Res<Lockstep<Arena>>>, seed: Res<Seed>) {
     let Some(lockstep) = lockstep else { return };
     for player in 0..2 {
-        // Directions change every quarter of a second, and shots and jumps come now and then.
         *inputs.held(player) = arena::pad_at(seed.0.wrapping_add(player.into()), lockstep.tick());
     }
 }

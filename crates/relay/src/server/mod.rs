@@ -54,7 +54,8 @@ impl Server {
         self.listener.local_addr()
     }
 
-    /// Serves until the future is dropped.
+    /// Accepts connections until the future is dropped. Accepted connections then go on until they end, or until the
+    /// runtime is dropped.
     pub async fn run(self) {
         let places = Arc::new(Semaphore::new(self.limits.connections));
         let shared = Arc::new(Shared { limits: self.limits, rooms: rooms::Rooms::default() });

@@ -21,8 +21,8 @@ use hand::Hand;
 ///
 /// Every tick is recorded, so that the user can pause, step back and go to any tick since the start. Playing on from
 /// an earlier tick shows the recorded ticks again. An [`Act`] that issues commands there cuts the recording and drops
-/// the later ticks. The recording can be saved as a replay at any time, and that replay verifies. If its work exceeds
-/// the default limit of a verifier, the status names the limit that it needs.
+/// the later ticks. The recording can be saved as a replay at any time, and that replay verifies. If the work
+/// of its ticks exceeds the default limit of a verifier, the status shows it as a value for `--max-work`.
 ///
 /// ```
 /// use lockstep2d_scenes::Scene;

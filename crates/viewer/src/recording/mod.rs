@@ -91,7 +91,7 @@ impl<G: Game> Recording<G> {
         self.tick == self.ticks()
     }
 
-    /// Work units of all recorded ticks, as a verifier counts them.
+    /// Work units of all recorded ticks, as counted by [`Game::work`]. A verifier counts those of the setup, too.
     pub(crate) fn work(&self) -> u64 {
         self.work.last().copied().unwrap_or(0)
     }
