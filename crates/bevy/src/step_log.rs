@@ -1,7 +1,7 @@
 //! [`StepLog`]: a record of the steps of a game, from which its views and events are made.
 //!
-//! A driver may load states and play ticks again in any order. The game itself fills the log, so that all drivers
-//! have the same views and events.
+//! A driver may load states and play ticks again in any order. The game itself fills the log, so that views and events
+//! do not depend on the driver.
 
 use std::collections::VecDeque;
 

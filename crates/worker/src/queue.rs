@@ -95,7 +95,7 @@ impl Queue {
         Ok(Queue { context, name, results, replicas })
     }
 
-    /// Adds a job. A job with the same bytes as one that was added within the last hour is not added again.
+    /// Adds a job, unless a job for the same bytes was added within the last hour.
     pub(crate) async fn submit(&self, job: &Job) -> Result<Added, WorkerError> {
         let payload = json(job);
         let publish = || async {

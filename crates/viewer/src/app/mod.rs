@@ -159,7 +159,7 @@ impl App {
         }
     }
 
-    /// Shows a source, and resets the view, the selection and the player.
+    /// Shows a source instead of the current one and its comparison. Resets the view, the selection and the player.
     pub fn show(&mut self, source: Box<dyn Source>) {
         self.source = Some(source);
         (self.comparison, self.file, self.message) = (None, None, None);

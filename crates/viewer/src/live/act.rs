@@ -105,7 +105,7 @@ pub enum Act {
     Delete(Aim),
     /// Sets gravity, in m/s².
     Gravity(Vec2<Fx>),
-    /// Pushes all dynamic bodies near a point away from it. [`Act::explode`] has settings that suit most scenes.
+    /// Sets off an explosion. [`Act::explode`] has settings that suit most scenes.
     Explode(Explosion),
 }
 

@@ -138,8 +138,8 @@ impl<G: Game + 'static, T: Transport> Online<G, T> {
         }
     }
 
-    /// Returns a complete replay of the final ticks so far. The match is still being recorded, so the ticks are played
-    /// again into a second recording.
+    /// Returns a complete replay of the ticks in the blocks that were taken from the peer so far. The match is still
+    /// being recorded, so the ticks are played again into a second recording.
     fn replay_so_far(&self) -> Result<Vec<u8>, SourceError> {
         if self.replay.is_empty() {
             return Err(SourceError("this peer has no replay of the match, or not yet".into()));

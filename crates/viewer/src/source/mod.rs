@@ -113,7 +113,7 @@ pub trait Source {
     /// Draws the game's own graphics on top of the world: scores, colours of players.
     fn decorate(&mut self, _list: &mut DrawList, _camera: &Camera) {}
 
-    /// Returns a replay file of all ticks so far; `None` if the source is not recorded.
+    /// Returns a replay file of the ticks recorded so far; `None` if the source is not recorded.
     ///
     /// # Errors
     /// [`SourceError`] if no replay can be made.
