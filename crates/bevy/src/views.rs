@@ -15,8 +15,8 @@ use crate::smoothing::Offset;
 /// entity becomes the view, and the plugin spawns none.
 ///
 /// The plugin writes x, y and rotation of the `Transform`; z and scale belong to the game. Two bodies that exist one
-/// after the other have two views, except if a rollback or a seek gives them the same id and they are equal in kind, user
-/// data and shapes.
+/// after the other have two views, except if a rollback or a seek gives them the same id and they are equal in kind,
+/// user data and shapes.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[component(immutable)]
 #[require(Transform)]

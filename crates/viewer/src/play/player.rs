@@ -8,8 +8,8 @@ use lockstep2d::lockstep::Game;
 use super::controls::Controls;
 use crate::event::{Event, Key};
 
-/// A computer player: returns the input for the next tick of a game. It is called for each
-/// tick that is not played from the recording.
+/// A computer player: returns the input for the next tick of a game. It is called for each tick that is
+/// not played from the recording.
 pub type Bot<G> = Box<dyn FnMut(&G) -> <G as Game>::Input>;
 
 /// Creates a bot from the random seed of the scene and the number of the seat.
