@@ -29,13 +29,14 @@ export interface InitOptions {
     /** A module to use instead of the inlined one. */
     wasm?: WebAssembly.Module | Response | BufferSource | undefined;
 }
-/** Loads the wasm module. Call it once before all other functions except `fx`, `degrees`, `radians` and `turns`. */
+/** Loads the wasm module. Call it once before all other functions except `fx`, `degrees`, `radians`, `turns` and
+ * `loaded`. */
 export function init(options?: InitOptions): Promise<void>;
 /** The module that was loaded: with SIMD, without SIMD, or `InitOptions.wasm`. Undefined before `init`. */
 export function loaded(): "simd" | "plain" | "given" | undefined;
 /** Version of the engine's arithmetic: programs with different versions compute different states. */
 export function semantics(): number;
-/** Number of objects that have not been disposed of. */
+/** Number of objects that neither `dispose` nor the garbage collector has freed. */
 export function objectCount(): number;
 
 /** An error with a code, such as `FLOAT`, `STALE_BODY`, `GEOMETRY`, `DISPOSED`. */
@@ -494,7 +495,8 @@ export interface ConfigOptions {
     /** Largest speed of a body in m/s, 1 to 400: 400 by default. Below 27 ticks per second, also at most 15 m per tick.
      * */
     speedMax?: Num;
-    /** Largest distance in metres at which shapes have speculative contact points, 0.001 to 1: 0.02 by default. */
+    /** Distance in metres at which shapes get contact points before they touch, 0.001 to 1: 0.02 by default. Pairs that
+     * approach each other have a larger distance. */
     speculativeDistance?: Num;
     /** Largest margin in metres of the bounding boxes in the broad phase, 0.001 to 10: 0.1 by default. */
     fatMargin?: Num;
@@ -557,7 +559,7 @@ declare class Edits extends Handle {
     /** Disables a joint: it keeps its handle and has no effect. */
     disableJoint(joint: JointId): void;
     /** A force in N during the next tick, at a point of the world in metres. Forces add up. The body has to be dynamic
-     * and enabled, otherwise this throws `WRONG_KIND`, as `applyTorque`, `applyImpulse` and `applyAngularImpulse` do. */
+     * and enabled; otherwise this throws `WRONG_KIND`, like `applyTorque`, `applyImpulse`, `applyAngularImpulse`. */
     applyForce(body: BodyId, force: Vec, point: Vec): void;
     /** A torque in N m during the next tick, counter-clockwise. */
     applyTorque(body: BodyId, torque: Num): void;
@@ -993,8 +995,8 @@ export interface Verdict {
      * - `limit_exceeded`: the file exceeds one of the `Limits`.
      * - `unverifiable`: recorded by another version of the engine, or with other rules. */
     verdict: "match" | "claim_mismatch" | "diverged" | "incomplete" | "malformed" | "limit_exceeded" | "unverifiable";
-    /** Number of ticks that were played, for `match`, `claim_mismatch` and `incomplete`; for `diverged`, the tick of the
-     * first checkpoint that differs; otherwise 0. */
+    /** Number of ticks that were played, for `match`, `claim_mismatch` and `incomplete`; for `diverged`, the tick of
+     * the first checkpoint that differs; otherwise 0. */
     ticks: number;
     /** Hash of the last state for `match`, `claim_mismatch` and `incomplete`; otherwise 32 zeros. For a `Replay` this
      * is the hash that was passed to `verdict`. For a `Recording` it covers the world and the number of refused
@@ -1122,8 +1124,8 @@ export class Replay extends Handle {
     /** The next request on the way to the tick of `seek`: `save`, `load`, `advance`, or `checksum`, which `check`
      * answers. Throws an error with the code RECORD if the game has diverged from the file. */
     nextRequest(): MatchRequest | undefined;
-    /** Sets the interval in ticks at which seeking requests to save the state: 60 by default, or a 256th of the replay's
-     * ticks if that is more. */
+    /** Sets the interval in ticks at which seeking requests to save the state: 60 by default, or a 256th of the
+     * replay's ticks if that is more. */
     setInterval(ticks: number): void;
 }
 /** A game that a `ReplayDriver` plays. `save` and `hash` have to cover its whole state. */
@@ -1184,8 +1186,8 @@ export interface MatchOptions {
     checkInterval?: number;
     /** Ticks that may be played beyond the last final tick, at least 16: 128 by default. */
     history?: number;
-    /** Number of final ticks whose inputs are kept for peers that return: 36 000 by default. After a longer absence a
-     * peer downloads a state. */
+    /** Minimum number of final ticks whose inputs are kept for peers that return: 36 000 by default. After a longer
+     * absence a peer may have to download a state. */
     logTicks?: number;
     /** Ticks from the tick at which a join takes effect to the first tick of the peer that joins: 8 by default. */
     seatLead?: number;
@@ -1216,8 +1218,9 @@ export interface MatchOptions {
  * - `watching`: follows the match and requests no seat.
  * - `waiting`: has a seat, or is a dedicated server, in a match that has not begun.
  * - `playing`: has a seat, or is a dedicated server, in a match that has begun.
- * - `paused`: receives no packets from a majority, and only a majority can continue the match. A peer that has just
- *   downloaded the state may be `paused` for a moment before it is `joining` or `watching`.
+ * - `paused`: hears from no majority of the peers, directly or through other peers, and only a majority can continue
+ *   the match. A peer that has just downloaded the state may be `paused` for a moment before it is `joining` or
+ *   `watching`.
  * - `dropped`: the other peers went on without this peer, which requests its seat again.
  * - `kicked`: removed permanently.
  * - `leaving`: announces its departure.
@@ -1344,7 +1347,7 @@ export class Match extends Handle {
     /** Leaves the match. Call `update` until the status is `closed`, so that the other peers are informed. */
     leave(): void;
     /** Requests an end of the match after a number of ticks. The request is sent two seconds before the end. Until a
-     * majority has decided on an end, other peers can join. */
+     * majority has decided on an end, other peers can get seats. */
     endAt(ticks: number): void;
     /** Requests a pause from all other peers, or withdraws the request. */
     pause(paused: boolean): void;
@@ -1426,8 +1429,8 @@ export class Relay {
     onPacket: (from: Uint8Array, packet: Uint8Array) => void;
     /** Called when a member enters or leaves the room, and after a reconnection. */
     onMembers: (others: Uint8Array[]) => void;
-    /** Sends a packet to a member. The packet is dropped if there is no connection, or if too many bytes wait to be
-     * sent. */
+    /** Sends a packet to a member. The packet is dropped if there is no connection, if too many bytes wait to be sent,
+     * or if `to` does not have the 8 bytes of an address. */
     send(to: Uint8Array, packet: Uint8Array): void;
     /** Leaves the room. */
     close(): void;

@@ -112,7 +112,7 @@ typedef uint32_t ls2d_handle;
 #define LS2D_FIXED_SETTING 39
 /* A name is not 1 to 16 ASCII letters, digits, `-` and `_`. */
 #define LS2D_NAME 40
-/* The world is full. */
+/* The largest number of bodies, shapes or joints of the world, or of shapes of a body, would be exceeded. */
 #define LS2D_FULL 41
 /* The kind of the body does not allow the change. */
 #define LS2D_WRONG_KIND 42
@@ -244,7 +244,8 @@ typedef uint64_t ls2d_joint;
 #define LS2D_UNVERIFIABLE 6
 /* Request: keep a copy of the state before `tick`. An older copy for the same tick is replaced. */
 #define LS2D_REQUEST_SAVE 0
-/* Request: restore the copy of the state before `tick`. Later copies are no longer needed. */
+/* Request: restore the copy of the state before `tick`. In a match, later copies are no longer needed. A replay
+ * may request them again. */
 #define LS2D_REQUEST_LOAD 1
 /* Request: simulate `tick` with the inputs. */
 #define LS2D_REQUEST_ADVANCE 2
@@ -299,7 +300,8 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MATCH_WAITING 2
 /* Status: plays. */
 #define LS2D_MATCH_PLAYING 3
-/* Status: receives no packets from a majority of the peers. */
+/* Status: hears from no majority of the peers, directly or through other peers. Only a majority can continue the
+ * match. */
 #define LS2D_MATCH_PAUSED 4
 /* Status: the other peers went on without this peer, which requests its seat again. */
 #define LS2D_MATCH_DROPPED 5
@@ -435,7 +437,8 @@ typedef struct ls2d_config {
     ls2d_fx restitution_threshold;
     /* Largest speed of a body in m/s. */
     ls2d_fx speed_max;
-    /* Largest distance in metres at which shapes have speculative contact points. */
+    /* Distance in metres at which shapes get contact points before they touch. Pairs that approach each other have
+     * a larger distance. */
     ls2d_fx speculative_distance;
     /* Largest margin in metres of the bounding boxes in the broad phase. */
     ls2d_fx fat_margin;
@@ -521,7 +524,7 @@ typedef struct ls2d_body_info {
     ls2d_fx angular_damping;
     /* Factor on gravity. */
     ls2d_fx gravity_scale;
-    /* Speed in m/s below which the body may fall asleep. */
+    /* Speed in m/s below which the body becomes ready to sleep. */
     ls2d_fx sleep_speed;
     /* An `LS2D_SWEEP_` constant: the bodies through which this body cannot tunnel. */
     uint32_t continuous;
@@ -732,7 +735,7 @@ typedef struct ls2d_ray_hit {
     ls2d_shape shape;
     /* Its body. */
     ls2d_body body;
-    /* Fraction of the ray, 0 to 1. */
+    /* Fraction of the translation, 0 to 1. */
     ls2d_fx fraction;
     /* Point in the world, in metres. */
     ls2d_vec2 point;
@@ -955,7 +958,7 @@ typedef struct ls2d_match_config {
     uint32_t check_interval;
     /* Number of ticks that may be played beyond the last final one. */
     uint32_t history;
-    /* Number of final ticks whose inputs are kept for peers that return. */
+    /* Minimum number of final ticks whose inputs are kept for peers that return. */
     uint32_t log_ticks;
     /* Number of ticks from the tick at which a join takes effect to the first tick of the peer that joins. */
     uint32_t seat_lead;
@@ -1030,7 +1033,7 @@ ls2d_status ls2d_bytes_size(uint32_t bytes, size_t *size);
 /* Copies the bytes of a bytes object. */
 ls2d_status ls2d_bytes_copy(uint32_t bytes, uint8_t *buffer, size_t capacity);
 
-/* Makes a bytes object, for functions that take one. */
+/* Makes a bytes object with a copy of some bytes. */
 ls2d_status ls2d_bytes_new(const uint8_t *data, size_t size, uint32_t *bytes);
 
 /* Returns the address of `size` bytes of memory with an alignment of 8, or 0 if there is not enough memory. It is
@@ -1577,7 +1580,7 @@ ls2d_status ls2d_match_link(uint32_t handle, uint32_t peer, uint32_t *delay, uin
 ls2d_status ls2d_match_leave(uint32_t handle);
 
 /* Requests an end of the match after a number of ticks. The request is sent two seconds before the end. Until a
- * majority has decided on an end, other peers can join. */
+ * majority has decided on an end, other peers can get seats. */
 ls2d_status ls2d_match_end_at(uint32_t handle, uint32_t ticks);
 
 /* Requests a pause from all other peers, or, with 0, withdraws the request. */

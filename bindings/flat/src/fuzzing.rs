@@ -58,7 +58,7 @@ pub struct Caller<'a> {
 }
 
 /// Calls functions as long as there is input. Returns their codes, and the lower halves of the hashes of the worlds at
-/// the end. Frees all objects whose handles were returned by output parameters that are named in `HANDLES`.
+/// the end. Frees the objects whose handles the functions wrote to output parameters for handles (`family`).
 ///
 /// # Panics
 /// If a call has failed in the library itself.

@@ -97,7 +97,7 @@ statuses! {
     FixedSetting = 39, "LS2D_FIXED_SETTING";
     /// A name is not 1 to 16 ASCII letters, digits, `-` and `_`.
     Name = 40, "LS2D_NAME";
-    /// The world is full.
+    /// The largest number of bodies, shapes or joints of the world, or of shapes of a body, would be exceeded.
     Full = 41, "LS2D_FULL";
     /// The kind of the body does not allow the change.
     WrongKind = 42, "LS2D_WRONG_KIND";

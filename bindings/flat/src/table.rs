@@ -57,7 +57,7 @@ pub(crate) trait Kind: Sized {
     fn wrap(self) -> Object;
 }
 
-/// Bytes that the library returns to the caller, or takes from it, as an object.
+/// Bytes as an object, such as an encoded world.
 pub(crate) struct Bytes(pub(crate) Vec<u8>);
 
 /// List of edits, to be executed later.

@@ -185,7 +185,7 @@ export class Match extends Handle {
         return Array.from({ length: 64 }, (_, seat) => seat).filter((seat) => ((bits >> BigInt(seat)) & 1n) === 1n);
     }
 
-    /** Measurements of the network path to a peer, or undefined if there are none. */
+    /** Measurements of the network path to a peer, or undefined if there is no such peer. */
     link(peer) {
         const at = scratch(24);
         if (!call("ls2d_match_link", this.handle, count(peer, "a peer"), at, at + 8, at + 16)) {

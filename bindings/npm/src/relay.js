@@ -106,7 +106,8 @@ export class Relay {
         this.#pause = Math.min(2 * this.#pause, PAUSE_MAX);
     }
 
-    /** Sends a packet. The packet is dropped if there is no connection, or if too many bytes wait to be sent. */
+    /** Sends a packet. The packet is dropped if there is no connection, if too many bytes wait to be sent, or if `to`
+     * does not have the length of an address. */
     send(to, packet) {
         if (!this.isOpen || to.length !== ADDRESS || this.#socket.bufferedAmount > BUFFERED_MAX) {
             return;

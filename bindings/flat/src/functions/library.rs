@@ -50,7 +50,7 @@ api! {
         table::with(bytes, |Bytes(bytes)| buffer.set_all(capacity, &mut Out::of(&mut size), bytes))
     }
 
-    /// Makes a bytes object, for functions that take one.
+    /// Makes a bytes object with a copy of some bytes.
     fn ls2d_bytes_new(data: In<'_, u8>, size: usize, bytes: Out<'_, u32>) {
         let mut bytes = bytes;
         bytes.check()?;

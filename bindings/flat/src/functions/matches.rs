@@ -357,7 +357,7 @@ api! {
     }
 
     /// Requests an end of the match after a number of ticks. The request is sent two seconds before the end. Until a
-    /// majority has decided on an end, other peers can join.
+    /// majority has decided on an end, other peers can get seats.
     fn ls2d_match_end_at(handle: u32, ticks: u32) {
         with(handle, |game: &mut Match| {
             game.session()?.end_at(ticks);

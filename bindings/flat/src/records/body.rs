@@ -122,7 +122,7 @@ records! {
         angular_damping: RawFx,
         /// Factor on gravity.
         gravity_scale: RawFx,
-        /// Speed in m/s below which the body may fall asleep.
+        /// Speed in m/s below which the body becomes ready to sleep.
         sleep_speed: RawFx,
         /// An `LS2D_SWEEP_` constant: the bodies through which this body cannot tunnel.
         continuous: u32,

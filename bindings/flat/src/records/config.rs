@@ -50,7 +50,8 @@ records! {
         restitution_threshold: RawFx,
         /// Largest speed of a body in m/s.
         speed_max: RawFx,
-        /// Largest distance in metres at which shapes have speculative contact points.
+        /// Distance in metres at which shapes get contact points before they touch. Pairs that approach each other have
+        /// a larger distance.
         speculative_distance: RawFx,
         /// Largest margin in metres of the bounding boxes in the broad phase.
         fat_margin: RawFx,

@@ -25,7 +25,8 @@ constants! {
     UNVERIFIABLE = 6, "LS2D_UNVERIFIABLE";
     /// Request: keep a copy of the state before `tick`. An older copy for the same tick is replaced.
     REQUEST_SAVE = 0, "LS2D_REQUEST_SAVE";
-    /// Request: restore the copy of the state before `tick`. Later copies are no longer needed.
+    /// Request: restore the copy of the state before `tick`. In a match, later copies are no longer needed. A replay
+    /// may request them again.
     REQUEST_LOAD = 1, "LS2D_REQUEST_LOAD";
     /// Request: simulate `tick` with the inputs.
     REQUEST_ADVANCE = 2, "LS2D_REQUEST_ADVANCE";
@@ -80,7 +81,8 @@ constants! {
     MATCH_WAITING = 2, "LS2D_MATCH_WAITING";
     /// Status: plays.
     MATCH_PLAYING = 3, "LS2D_MATCH_PLAYING";
-    /// Status: receives no packets from a majority of the peers.
+    /// Status: hears from no majority of the peers, directly or through other peers. Only a majority can continue the
+    /// match.
     MATCH_PAUSED = 4, "LS2D_MATCH_PAUSED";
     /// Status: the other peers went on without this peer, which requests its seat again.
     MATCH_DROPPED = 5, "LS2D_MATCH_DROPPED";
@@ -164,7 +166,7 @@ records! {
         check_interval: u32,
         /// Number of ticks that may be played beyond the last final one.
         history: u32,
-        /// Number of final ticks whose inputs are kept for peers that return.
+        /// Minimum number of final ticks whose inputs are kept for peers that return.
         log_ticks: u32,
         /// Number of ticks from the tick at which a join takes effect to the first tick of the peer that joins.
         seat_lead: u32,

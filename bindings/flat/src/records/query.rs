@@ -47,7 +47,7 @@ records! {
         shape: RawShape,
         /// Its body.
         body: RawBody,
-        /// Fraction of the ray, 0 to 1.
+        /// Fraction of the translation, 0 to 1.
         fraction: RawFx,
         /// Point in the world, in metres.
         point: RawVec2,
