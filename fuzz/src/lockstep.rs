@@ -97,7 +97,8 @@ pub fn run(bytes: &[u8]) -> Seen {
 /// of the second world flips.
 ///
 /// # Panics
-/// When the scene has a crowd: more than 12 touching contacts and at least eight bodies, the eighth of which can move.
+/// When the scene has a crowd: more than 12 touching contacts and at least eight bodies, the eighth of which
+/// accepts the flip.
 pub fn run_with_a_fault(bytes: &[u8]) {
     play(bytes, |variants| {
         let touching = variants.plain.contacts().filter(|contact| contact.touching).count();
@@ -106,7 +107,7 @@ pub fn run_with_a_fault(bytes: &[u8]) {
         if touching > 12
             && let Some(&body) = bodies.get(7)
         {
-            // The flip is refused if the body cannot move: if it is asleep, disabled, locked or not dynamic.
+            // The flip is refused if the body is asleep, disabled, locked or not dynamic.
             let _ = other.flip_bit(body, BodyField::ALL[0], 0);
         }
     });

@@ -1,7 +1,7 @@
-//! Regression tests: one minimal case for each finding of a fuzz target (`fuzz/`).
+//! Regression tests: minimal cases of findings of the fuzz targets (`fuzz/`).
 //!
-//! Each test is a promise about untrusted data: a typed error or a valid world, never a panic, and results that do not
-//! depend on caches.
+//! Untrusted data leads to a typed error or a valid world, never to a panic. Results do not depend on caches, and
+//! contact points are where the shapes touch.
 
 mod forged_snapshots;
 

@@ -11,7 +11,7 @@ const MATCHES: u64 = 300;
 /// only searched for in the long run.
 const MATCHES_RARE: u64 = 2000;
 
-/// Each fault, the first seed, and the step to the next seed: rare faults are searched for in storms only.
+/// Each fault, the first seed, and the step to the next seed. With a step of 10, all matches are of one `Class`.
 const FAULTS: [(Fault, u64, u64); 13] = [
     (Fault::NoFreeze, 0, 1),
     (Fault::OwnCut, 0, 1),

@@ -124,7 +124,7 @@ fn check_course(case: u64) {
     }
     expected.sort_unstable();
 
-    // Sensors on links and segments have no mass, and can only be on fixed or kinematic bodies.
+    // The sensors may be links and segments, which have no mass. Their bodies are fixed or kinematic.
     let (sensor_speed, kind) = match rng.below(3) {
         0 => (Fx::ZERO, BodyKind::Fixed),
         1 => (speed / 2, BodyKind::Kinematic),
