@@ -37,9 +37,9 @@ fn a_ragdoll_falls_asleep_in_one_piece() {
     assert!(joint_gap(game.world()) <= fx!(0.001), "gap {} m", joint_gap(game.world()));
 }
 
-/// In Box2D's fall of this ragdoll the deepest overlap is 5.0 mm. The deepest overlap of a single fall is partly chance,
-/// so this test plays 16 falls with different velocities: the deepest overlap is at most 6 mm in 15 of them, and at
-/// most 10 mm in the other one.
+/// In Box2D's fall of this ragdoll the deepest overlap is 5.0 mm. The deepest overlap of a single fall is partly
+/// chance, so this test plays 16 falls with different velocities: the deepest overlap is at most 6 mm in 15 of them,
+/// and at most 10 mm in the other one.
 #[test]
 fn a_falling_ragdoll_overlaps_no_more_than_in_box2d() {
     let mut rng = Rng::new(5);

@@ -180,8 +180,8 @@ export class Edits extends Handle {
         call("ls2d_set_kind", this.handle, id(body), bodyKind(type));
     }
 
-    /** Sets mass, centre of mass and radius of gyration, as `massOf` returns them. Without them, the body has the mass of
-     * its shapes. */
+    /** Sets mass, centre of mass and radius of gyration, as `massOf` returns them. Without them, the body has the mass
+     * of its shapes. */
     setMass(body, mass) {
         const at = scratch(sizeOf("body_def"));
         writeBody(at, { mass });
