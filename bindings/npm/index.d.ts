@@ -249,9 +249,9 @@ export function hull(points: readonly Vec[], options?: ShapeOptions): ShapeDef;
 export function capsule(a: Vec, b: Vec, radius: Num, options?: ShapeOptions): ShapeDef;
 /** A line without area, at least 0.002 m long. It has no mass, and does not collide with segments and chains. */
 export function segment(a: Vec, b: Vec, options?: ShapeOptions): ShapeDef;
-/** A smooth outline of 2 points or more, with up to 4096 lines, for ground and walls. It has no mass. `closed` connects
- * the last point with the first. `oneSided` makes it solid only from the right side, along the points in their order.
- * Both are false by default. */
+/** A smooth outline of 2 points or more, 3 if it is closed, with up to 4096 lines, for ground and walls. It has no
+ * mass. `closed` connects the last point with the first. `oneSided` makes it solid only from the right side, along the
+ * points in their order. Both are false by default. */
 export function chain(points: readonly Vec[], options?: ShapeOptions & { closed?: boolean; oneSided?: boolean }): ChainDef;
 
 /** Mass in kg, centre of mass and radius of gyration in metres of a dynamic body with some shapes, for the option
