@@ -244,8 +244,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_UNVERIFIABLE 6
 /* Request: keep a copy of the state before `tick`. An older copy for the same tick is replaced. */
 #define LS2D_REQUEST_SAVE 0
-/* Request: restore the copy of the state before `tick`. In a match, later copies are no longer needed. A replay
- * may request them again. */
+/* Request: restore the copy of the state before `tick`. Only a replay may request later copies again. */
 #define LS2D_REQUEST_LOAD 1
 /* Request: simulate `tick` with the inputs. */
 #define LS2D_REQUEST_ADVANCE 2
@@ -300,8 +299,7 @@ typedef uint64_t ls2d_joint;
 #define LS2D_MATCH_WAITING 2
 /* Status: plays. */
 #define LS2D_MATCH_PLAYING 3
-/* Status: hears from no majority of the peers, directly or through other peers. Only a majority can continue the
- * match. */
+/* Status: hears from no majority of the peers, directly or through other peers. */
 #define LS2D_MATCH_PAUSED 4
 /* Status: the other peers went on without this peer, which requests its seat again. */
 #define LS2D_MATCH_DROPPED 5

@@ -25,8 +25,7 @@ constants! {
     UNVERIFIABLE = 6, "LS2D_UNVERIFIABLE";
     /// Request: keep a copy of the state before `tick`. An older copy for the same tick is replaced.
     REQUEST_SAVE = 0, "LS2D_REQUEST_SAVE";
-    /// Request: restore the copy of the state before `tick`. In a match, later copies are no longer needed. A replay
-    /// may request them again.
+    /// Request: restore the copy of the state before `tick`. Only a replay may request later copies again.
     REQUEST_LOAD = 1, "LS2D_REQUEST_LOAD";
     /// Request: simulate `tick` with the inputs.
     REQUEST_ADVANCE = 2, "LS2D_REQUEST_ADVANCE";
@@ -81,8 +80,7 @@ constants! {
     MATCH_WAITING = 2, "LS2D_MATCH_WAITING";
     /// Status: plays.
     MATCH_PLAYING = 3, "LS2D_MATCH_PLAYING";
-    /// Status: hears from no majority of the peers, directly or through other peers. Only a majority can continue the
-    /// match.
+    /// Status: hears from no majority of the peers, directly or through other peers.
     MATCH_PAUSED = 4, "LS2D_MATCH_PAUSED";
     /// Status: the other peers went on without this peer, which requests its seat again.
     MATCH_DROPPED = 5, "LS2D_MATCH_DROPPED";
