@@ -108,7 +108,7 @@ impl<'s, G: Game> Checker<'s, G> {
         self.tick + self.replicas.iter().map(|replica| replica.steps).sum::<u64>()
     }
 
-    /// Plays one tick in every variant.
+    /// Plays one tick in the reference run and, from [`CheckOptions::from`] on, in the variants.
     ///
     /// # Errors
     /// The first [`Finding`].
@@ -155,7 +155,8 @@ impl<'s, G: Game> Checker<'s, G> {
         Now { setup, options, straight, inputs, hash: *hash, tick: *tick, phases, claims: Vec::new() }
     }
 
-    /// Starts the replicas of all variants, at the tick at which checking begins.
+    /// At the tick at which checking begins, starts a replica for each variant of the options, except
+    /// [`Variant::Recorded`] and, for a game that exposes no world, the variants that need one.
     fn begin(&mut self) -> Result<(), Box<Finding>> {
         if self.tick != self.options.from || !self.replicas.is_empty() {
             return Ok(());

@@ -73,8 +73,8 @@ pub fn check<G: Game>(
 /// checkpoints of the replay are ignored.
 ///
 /// # Errors
-/// Same as [`check`]; [`CheckError::Replay`] if the file is not a replay of this game or costs more than the limits
-/// allow.
+/// [`CheckError::Failed`] with the fault of the game; [`CheckError::Replay`] if the file is not a replay of this game,
+/// its setup cannot start a game, or it costs more than the limits allow.
 pub fn check_replay<G: Game>(file: &[u8], options: &CheckOptions) -> Result<Checked, CheckError> {
     let Logged { setup, log } = log::read::<G>(file, &options.limits, options.to)?;
     minimise::run(&setup, &log, options).map_err(|finding| match finding.fault {

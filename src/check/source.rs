@@ -15,9 +15,9 @@ use crate::math::Rng;
 ///
 /// The first byte of a tick decides whether inputs are held, for up to 16 ticks, or whether one player or all players
 /// get new ones. New inputs are made by the input's own `Deserialize`: the bytes choose variants, lengths and numbers,
-/// such that lists are short, and numbers are often small or near the maximum or the middle of their range. An input
-/// whose `Deserialize` fails is replaced by the default. If the inputs of a tick do not survive encoding and decoding,
-/// all of them are replaced.
+/// such that lists are short, and integers of more than 8 bits are often small or near the maximum or the middle of
+/// their range. An input whose `Deserialize` fails is replaced by the default. If the inputs of a tick do not survive
+/// encoding and decoding, all of them are replaced.
 #[must_use]
 pub fn inputs_from_bytes<G: Game>(players: u32, bytes: &[u8]) -> Vec<Vec<G::Input>> {
     let mut source = Source { bytes, depth: 0 };
@@ -40,7 +40,7 @@ pub fn inputs_from_bytes<G: Game>(players: u32, bytes: &[u8]) -> Vec<Vec<G::Inpu
     log
 }
 
-/// Generates random inputs for some players and a number of ticks. The same seed gives the same inputs.
+/// Generates random inputs for some players and a number of ticks. The same state of `rng` gives the same inputs.
 #[must_use]
 pub fn random_inputs<G: Game>(players: u32, ticks: u64, rng: &mut Rng) -> Vec<Vec<G::Input>> {
     let mut log = Vec::new();
@@ -66,7 +66,8 @@ where
 /// Maximum nesting depth of values.
 const DEPTH_MAX: u32 = 32;
 
-/// A deserializer that generates any requested value from bytes. After the last byte, it reads zeros.
+/// A deserializer that generates values of the requested types from bytes. Floating-point numbers are always 0. After
+/// the last byte, it reads zeros.
 struct Source<'a> {
     bytes: &'a [u8],
     depth: u32,
@@ -88,7 +89,8 @@ impl Source<'_> {
         I::deserialize(self).unwrap_or_default()
     }
 
-    /// Returns a number whose low `count` bits are used: often small, or near the maximum or the middle of the range.
+    /// Returns a number whose low `count` bits are used. With more than 8 bits, it is often small, or near the maximum
+    /// or the middle of the range.
     fn bits(&mut self, count: u32) -> u128 {
         if count <= 8 {
             return self.byte().into();

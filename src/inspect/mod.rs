@@ -1,7 +1,8 @@
 //! Converts any value to a list of named fields, and compares two such lists.
 //!
-//! A field has a path, such as `world.bodies.body 12v1.velocity.x`, and a [`Value`] that keeps the raw bits beside a
-//! readable form. Every type that implements `Serialize` can be inspected; its human-readable serialization is used.
+//! A field has a path, such as `world.bodies.body 12v1.velocity.x`, and a [`Value`], which is stored exactly and
+//! displayed in readable form. Every type that implements `Serialize` can be inspected; its human-readable
+//! serialization is used.
 //!
 //! ```
 //! use lockstep2d::{fx, inspect::{differences, fields}, math::Vec2};

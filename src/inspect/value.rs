@@ -137,7 +137,8 @@ pub struct Field {
 }
 
 impl Field {
-    /// Path: names separated by dots, and indices in brackets. Empty if the inspected value has no parts.
+    /// Path: names separated by dots, and indices in brackets. Empty if the inspected value has no parts, and for the
+    /// name of an inspected enum variant.
     #[must_use]
     pub fn path(&self) -> &str {
         &self.path
@@ -161,7 +162,7 @@ impl Field {
         &self.path[..end]
     }
 
-    /// Name of the field within its object, such as `velocity.x`.
+    /// Name of the field within its object, such as `velocity.x`; the whole path if the field is not in a map.
     #[must_use]
     pub fn name(&self) -> &str {
         match self.subject {

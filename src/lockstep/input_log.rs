@@ -42,8 +42,8 @@ impl core::error::Error for InputError {}
 
 /// The inputs of all players for one tick, as canonical bytes and as decoded from these bytes.
 ///
-/// An encoding may be lossy. The simulation always uses the decoded value, so that peers and verifiers, who receive
-/// only bytes, simulate the same.
+/// An encoding may be lossy. A game must be stepped with the decoded inputs, because peers and verifiers receive only
+/// the bytes.
 ///
 /// ```
 /// use lockstep2d::lockstep::EncodedInputs;

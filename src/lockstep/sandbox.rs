@@ -30,11 +30,10 @@ pub struct Sandbox {
     refused: u64,
 }
 
-/// Work units of a setup without commands: the allocations of a world.
+/// Work units of creating a world: the cost of a setup without commands.
 const START_WORK: u64 = 100;
 
-/// Maximum work units of a setup's commands, which take a few seconds. A million bodies with one shape each take 12
-/// million units.
+/// Maximum work units of a setup, which take a few seconds. A million bodies with one shape each take 12 million units.
 const SETUP_WORK_MAX: u64 = 100_000_000;
 
 /// Initial state of a sandbox.
@@ -85,8 +84,8 @@ impl Sandbox {
         &self.world
     }
 
-    /// Mutable access to the world, to configure caches and the broad phase, which are not state. Any other change is
-    /// missing from the input log, so a replay of the log diverges.
+    /// Mutable access to the world, for settings that are not part of the state, such as the broad phase and the
+    /// solver's backend. A change of the state is missing from the input log, so a replay of the log diverges.
     pub fn world_mut(&mut self) -> &mut World {
         &mut self.world
     }

@@ -69,8 +69,8 @@ pub(super) fn link(digest: StateHash, bytes: &[u8]) -> StateHash {
     StateHash::of_digests([digest, StateHash::of_bytes(bytes)])
 }
 
-/// Stored checksum of a chain: its low 64 bits. Since a chain covers all preceding bytes, dropped, swapped or repeated
-/// blocks are detected.
+/// Stored checksum of a chain: its low 64 bits. Since a chain covers the header and all blocks so far, dropped, swapped
+/// or repeated blocks are detected.
 pub(super) fn checksum(chain: StateHash) -> [u8; CHECKSUM_BYTES] {
     let [a, b, c, d, e, f, g, h, ..] = chain.0.to_le_bytes();
     [a, b, c, d, e, f, g, h]

@@ -85,7 +85,7 @@ pub enum Part<'a> {
     Inputs(InputBlock<'a>),
     /// The end of a complete file.
     Trailer(Trailer),
-    /// The file ends before its trailer, for example because its recorder was stopped or is still running.
+    /// The file ends before the end of its trailer, for example because its recorder was stopped or is still running.
     Cut,
 }
 

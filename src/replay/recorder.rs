@@ -53,7 +53,7 @@ pub enum RecordError {
         /// The interval in ticks.
         ticks: u32,
     },
-    /// The encoded setup does not decode, or decodes to a different setup.
+    /// The encoded setup does not decode, or decodes to a setup with other bytes.
     Setup,
     /// The game cannot start from the setup.
     SetupRefused {

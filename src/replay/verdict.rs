@@ -36,15 +36,15 @@ pub enum Verdict {
         /// The first difference.
         difference: ClaimDifference,
     },
-    /// The simulation diverges from the recorded game after `last_equal`.
+    /// The state of the simulation differs from the recorded game at a checkpoint.
     Diverged {
         /// Tick of the last checkpoint that agrees; `None` if the start checkpoint already differs.
         last_equal: Option<u64>,
         /// Tick of the first checkpoint that differs.
         first_different: u64,
     },
-    /// The file ends before its trailer, or [`VerifiedReplay::conclude`](super::VerifiedReplay::conclude) was called
-    /// before the end of the file. All checkpoints up to there agree.
+    /// The file ends before the end of its trailer, or [`VerifiedReplay::conclude`](super::VerifiedReplay::conclude)
+    /// was called before the last tick was played. All checkpoints up to there agree.
     Incomplete {
         /// Number of ticks played: all ticks in the complete blocks, if the replay was played to its end.
         ticks: u64,

@@ -16,10 +16,11 @@ use crate::replay::Limits;
 ///
 /// Without `b`, the other trajectory is the one that the running engine computes from the same inputs. A replay shows
 /// only between which of its checkpoints the trajectories diverge. A [`Trace`](super::Trace) of these ticks, made by
-/// the engine that wrote the replay, shows the exact tick. So does a desync report for the last seconds before it.
+/// the engine that wrote the replay, shows the exact tick. So does a desync report, for the last seconds before the
+/// desync.
 ///
-/// With `b`, the files are recordings of the same match on two machines, or two replays of any setups and inputs. They
-/// are simulated until the states differ. Two snapshots are compared without a simulation.
+/// With `b`, the files are recordings of the same match on two machines, or two replays of any setups and inputs. Their
+/// inputs are simulated until a difference is found. Two snapshots are compared without a simulation.
 ///
 /// # Errors
 /// [`CompareError`] when the files cannot be compared or played.

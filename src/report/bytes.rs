@@ -140,7 +140,7 @@ impl DesyncReport {
     /// is bounded by a small multiple of the file's length. The saves and the replay in the report are not checked yet.
     ///
     /// # Errors
-    /// [`ReportError`] for any other bytes.
+    /// [`ReportError`] for any other bytes, and for a report that is longer than the limit.
     pub fn from_bytes(bytes: &[u8], limits: &Limits) -> Result<Self, ReportError> {
         let opened = ENVELOPE.open(bytes)?;
         let found = bytes.len() as u64;

@@ -1,9 +1,10 @@
 //! Finds the body in which a difference originated, among many bodies that differ.
 //!
 //! A body with a wrong velocity affects all bodies that it touches in the same tick: dozens of bodies differ, and the
-//! largest difference need not be at the origin. Therefore single bit flips of the bodies that differ are tried in the
-//! last correct state. Bits whose value is closest to the observed difference come first. If no body that differs is
-//! known, the bits of all bodies are tried. A flip that leads to exactly the wrong state is the explanation.
+//! largest difference need not be at the origin. Therefore single bit flips of the speeds and poses of the bodies that
+//! differ are tried in the last correct state. Bits whose value is closest to the observed difference come first. If no
+//! body that differs is known, the speeds and poses of all bodies are tried, before and after the tick. A flip that
+//! leads to exactly the wrong state is the explanation.
 
 use alloc::collections::BTreeMap;
 use alloc::format;
@@ -38,7 +39,7 @@ pub(super) struct WrongTick<G: Game> {
     pub(super) phases: Option<TickPhases>,
 }
 
-/// Groups differences by section and body, sorted by the difference in motion, largest first.
+/// Groups differences by subject. The subjects are sorted by the difference in motion, largest first.
 pub(super) fn subjects(differences: Vec<Difference>) -> Vec<Subject> {
     let mut subjects: Vec<Subject> = Vec::new();
     let mut places = BTreeMap::new();
@@ -146,8 +147,8 @@ struct Candidate {
     distance: u32,
 }
 
-/// All bits of the bodies that differ. Bits whose value is close to the observed difference come first: unless the flip
-/// causes a strong collision, most of the difference stays in the number whose bit flipped.
+/// All bits of the speeds and poses of the bodies that differ. Bits whose value is close to the observed difference
+/// come first: unless the flip causes a strong collision, most of the difference stays in the number whose bit flipped.
 fn candidates(subjects: &[Subject]) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for subject in subjects.iter().filter(|subject| handle(&subject.path).is_some()) {
@@ -176,7 +177,7 @@ fn log2(number: u128) -> Option<u32> {
     Some((whole << 8) + u32::try_from(fraction).unwrap_or(0))
 }
 
-/// All bits of all bodies, before and after the tick.
+/// All bits of the speeds and poses of all bodies, after and before the tick.
 fn everybody<G: Game>(game: &mut G, before: &G::Save) -> Vec<Candidate> {
     game.load(before);
     let Some(world) = game.world_mut() else {
@@ -237,7 +238,7 @@ fn handle(path: &str) -> Option<(u32, u32)> {
     Some((slot.parse().ok()?, generation.parse().ok()?))
 }
 
-/// Flips a bit of a body's motion; `None` if the path has no body or the resulting speed is invalid.
+/// Flips a bit of a body's speed or pose; `None` if the state has no such body, or `World::flip_bit` refuses the bit.
 fn flip<G: Game>(game: &mut G, path: &str, field: BodyField, bit: u32) -> Option<()> {
     let handle = handle(path)?;
     let world = game.world_mut()?;

@@ -28,7 +28,7 @@ use crate::world::World;
 pub enum CompareError {
     /// A snapshot of a world can only be compared with another one.
     Kinds,
-    /// A report was made by another engine or another game.
+    /// A report was made by an engine with other semantics, by another game, or by another version of its rules.
     Unverifiable {
         /// The file.
         side: Side,

@@ -253,7 +253,7 @@ impl Comparison {
             && self.trajectories.iter().all(|trajectory| trajectory.diverges.is_none())
     }
 
-    /// The sections that contain differences, in order.
+    /// The sections that contain differences, in the order of `subjects`.
     #[must_use]
     pub fn sections(&self) -> Vec<&str> {
         let mut sections: Vec<&str> = Vec::new();

@@ -11,7 +11,7 @@ use crate::codec;
 use crate::hash::StateHash;
 use crate::lockstep::{Game, History, Past, RulesId};
 
-/// Maximum bytes of saves in a report.
+/// Maximum bytes of saves in a report from [`DesyncReport::new`].
 pub const SAVES_BYTES_MAX: usize = 32 << 20;
 
 /// A checkpoint at which the peers of a game have different states.
@@ -179,7 +179,7 @@ impl DesyncReport {
         groups
     }
 
-    /// The state hash after each tick in the peer's history, in ascending order of ticks.
+    /// The state hash after each known tick in the peer's history, in ascending order of ticks.
     #[must_use]
     pub fn history(&self) -> &[(u64, StateHash)] {
         &self.body.history

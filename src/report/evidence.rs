@@ -15,7 +15,7 @@ use crate::world::{SnapshotError, World};
 /// A file that can be compared with another one.
 #[derive(Clone, Debug)]
 pub enum Evidence {
-    /// The report that a peer wrote on a desync.
+    /// The report of a peer on a desync, or of a [`Trace`](super::Trace).
     Report(Box<DesyncReport>),
     /// The bytes of a replay, which are checked when it is played.
     Replay(Vec<u8>),

@@ -1,5 +1,5 @@
-//! Finds the stage of a tick at which two trajectories diverged, and the differences there, if the diverged side has
-//! recorded the phase digests of that tick.
+//! Finds the stage of a tick at which two trajectories diverged and, for a stage before the step, the differences at
+//! the start of the step. Requires phase digests of that tick from the diverged side.
 
 use alloc::string::String;
 

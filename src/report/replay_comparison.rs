@@ -61,7 +61,7 @@ struct ReplayComparison<'f, 'a, G: Game> {
 }
 
 impl<G: Game> ReplayComparison<'_, '_, G> {
-    /// Plays a tick. The states are equal before it, and A's game serves both sides.
+    /// Plays a tick. Before it, the states of both sides are equal, and A's game has this state.
     fn step(&mut self) -> Result<Step, ReplayComparisonError> {
         let of = |side| move |verdict| ReplayComparisonError::Verdict(side, verdict);
         let a = self.a.read_inputs().map_err(of(Side::A))?;

@@ -8,8 +8,8 @@ use crate::world::Phase;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stage {
-    /// Before the world's step: the rules computed a different state from the inputs, or code outside the rules changed
-    /// the state.
+    /// Before the world's step: the inputs were different, the rules computed a different state, or code outside the
+    /// rules or a memory error changed the state.
     BeforeStep,
     /// In a phase of the world's step.
     Phase(Phase),

@@ -76,7 +76,7 @@ pub(crate) enum CommandError {
     Trace { path: PathBuf, error: TraceError },
     /// A file of keys or signatures is damaged.
     Line { path: PathBuf, error: LineError },
-    /// A file of keys or signatures is too large, or is not text.
+    /// A file of keys or signatures is too large or not text, or a signature file is not a regular file.
     NoText { path: PathBuf },
     /// The system has no random numbers for a key.
     Random(RandomError),

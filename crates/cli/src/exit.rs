@@ -19,8 +19,8 @@ pub enum Exit {
     Unsigned,
     /// A file does not match, something differs, or a replay is damaged or cannot be played. Exit code 1.
     NoMatch,
-    /// Wrong usage, a path that cannot be read or written, files that cannot be compared, or nothing to do. Exit code
-    /// 2.
+    /// Any other failure, such as wrong usage, a path that cannot be read or written, or files that cannot be compared.
+    /// Exit code 2.
     Trouble,
 }
 

@@ -14,7 +14,7 @@ const DOMAIN: &[u8] = b"lockstep2d game 1";
 /// prints it as `game`.
 ///
 /// The digest does not depend on block boundaries, checkpoints or the trailer. It covers the inputs of the complete
-/// blocks, so a file that ends before its trailer has the digest of the game up to its last complete block.
+/// blocks, so an incomplete file has the digest of the game up to its last complete block.
 /// [`Signatures`](crate::signature::Signatures) has an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GameDigest(blake3::Hash);

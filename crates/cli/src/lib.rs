@@ -59,7 +59,7 @@ use lockstep2d::lockstep::Game;
 pub use clap;
 pub use commands::verify::{Judge, Judged, LimitArguments, with_defaults};
 pub use exit::Exit;
-/// The viewer that [`Tool::with_viewer`] takes.
+/// The crate of the viewers that [`Tool::with_viewer`] takes.
 #[cfg(feature = "view")]
 pub use lockstep2d_viewer;
 pub use sandbox::SandboxScenes;

@@ -14,8 +14,8 @@ const NAMES_MAX: usize = 4096;
 
 /// The replays in a folder and its subfolders, in the order of their paths, compared component by component.
 ///
-/// Links to folders are not followed, because they may form cycles. Only regular files count as replays: reading a pipe
-/// with the name of a replay would block for ever.
+/// Links to folders are not followed, because they may form cycles. Only regular files and links to them count as
+/// replays: reading a pipe with the name of a replay would block for ever.
 ///
 /// A file that is created during the walk may be found or not, but is never found twice.
 ///

@@ -16,9 +16,9 @@ const VISIT_WORK: u64 = 4;
 pub(super) struct Costs<'a> {
     world: &'a World,
     pub(super) added: AddedWork,
-    /// Number of shapes that the tick adds to existing bodies.
+    /// Number of [`Command::AddShape`] commands of the tick.
     grown: u64,
-    /// Largest number of passes of the solver in a tick.
+    /// Passes of the solver in a tick: sub-steps times iterations, the largest product of all settings of the tick.
     pub(super) rounds: u64,
 }
 

@@ -284,8 +284,8 @@ impl<'a, G: Game> Timeline<'a, G> {
     }
 
     /// Encodes the keyframes as the bytes of a file, for a later [`Timeline::use_keyframes`]. Only keyframes at the end
-    /// of a block are included: all except the keyframe of tick 0, unless the interval is shorter than the replay's
-    /// blocks.
+    /// of a block are included. If the interval is a multiple of the replay's checkpoint interval, these are all except
+    /// the keyframe of tick 0.
     #[must_use]
     pub fn keyframes_to_bytes(&self) -> Vec<u8> {
         bytes::encode::<G>(self.file, &self.keyframes)

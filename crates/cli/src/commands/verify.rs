@@ -93,13 +93,13 @@ pub struct LimitArguments {
     /// Maximum number of ticks
     #[arg(long, value_name = "N")]
     max_ticks: Option<u64>,
-    /// Maximum number of bodies in its world at any time
+    /// Maximum number of bodies in its world, at the start and after every tick
     #[arg(long, value_name = "N")]
     max_bodies: Option<u64>,
-    /// Maximum work units of one tick, as the game counts them
+    /// Maximum work units of one tick, as the game and its world count them
     #[arg(long, value_name = "N")]
     max_tick_work: Option<u64>,
-    /// Maximum work units of all ticks together
+    /// Maximum work units of the setup and all ticks together
     #[arg(long, value_name = "N")]
     max_work: Option<u64>,
 }
