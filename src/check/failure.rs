@@ -50,9 +50,9 @@ pub struct Failure {
     pub finding: Finding,
     /// The finding in the minimised replay.
     pub minimised: Finding,
-    /// A replay file with as few ticks and inputs as could be found; [`check_replay`](super::check_replay) reproduces
-    /// the failure. If the game is not deterministic between runs, the checkpoints in the replay may differ from those
-    /// of the next run.
+    /// A replay file with as few ticks and inputs as were found within the budget of the check.
+    /// [`check_replay`](super::check_replay) reproduces the failure. If the game is not deterministic between runs, the
+    /// checkpoints in the replay may differ from those of the next run.
     pub replay: Vec<u8>,
     /// Number of ticks in the replay.
     pub ticks: u64,

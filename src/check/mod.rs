@@ -17,7 +17,7 @@
 //! ```
 //!
 //! [`random_inputs`] and [`inputs_from_bytes`] make logs for any game, for plain tests and for a fuzzer;
-//! [`check_replay`] takes a replay instead. `docs/FUZZING.md` explains each failure.
+//! [`check_replay`] takes a replay instead. `docs/FUZZING.md` lists causes and remedies.
 //!
 //! # Limitations
 //!

@@ -154,6 +154,7 @@ pub struct CheckOptions {
     /// The variants to play.
     pub variants: Vec<Variant>,
     /// Interval in ticks at which the state is reloaded, rolled back or loses its caches; at least 1.
+    /// [`Variant::ByteSwapped`] keeps saves at this interval or every 16 ticks, whichever is longer.
     pub every: u64,
     /// Maximum rollback depth in ticks, up to 64.
     pub rollback_max: u32,

@@ -80,7 +80,8 @@ impl<'a> Costs<'a> {
             Command::SetBody { body, .. } | Command::SetMass { body, .. } => {
                 VISIT_WORK + self.shapes_of(*body)
             }
-            // Bodies joined to this one, and its neighbours, may have to be woken.
+            // The joints of the body are visited to wake the joined bodies. The world itself counts its search for
+            // bodies that overlap.
             Command::SetTransform { body, .. } => VISIT_WORK + self.shapes_of(*body) + self.joints(),
             Command::SetVelocity { body, .. } | Command::MoveTo { body, .. } if self.is_kinematic(*body) => {
                 1 + self.joints()
