@@ -16,8 +16,8 @@ use crate::codec;
 use crate::hash::StateHash;
 use crate::lockstep::{EncodedInputs, Game, InputError};
 
-/// Recommended checkpoint interval: one second at 60 Hz. A shorter interval costs bytes (29 per block). A longer
-/// interval loses more ticks in a crash and locates a divergence less precisely.
+/// Recommended checkpoint interval: one second at 60 Hz. A shorter interval costs bytes (29 per block, besides the
+/// runs). A longer interval loses more ticks in a crash and locates a divergence less precisely.
 pub const CHECKPOINT_INTERVAL: u32 = 60;
 
 /// Maximum length of a u32 in LEB128, in bytes.

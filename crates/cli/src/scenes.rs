@@ -47,7 +47,7 @@ pub struct SceneInfo {
     pub name: &'static str,
     /// One-line description.
     pub about: &'static str,
-    /// The default number of ticks to record.
+    /// The default number of ticks to record, as the list shows it: that of [`Scene::ticks`].
     pub ticks: u64,
 }
 

@@ -39,11 +39,11 @@ pub struct Tool<G: Game> {
     pub(crate) limits: Limits,
     pub(crate) catalogue: Option<Box<dyn Catalogue<G>>>,
     pub(crate) view: Option<fn(&G) -> View>,
-    /// Commands added by the game.
+    /// Commands added by [`Tool::with_command`] and `Tool::with_viewer`.
     own: Vec<(Command, OwnCommand)>,
 }
 
-/// Function that runs a command added by the game.
+/// Function that runs an added command.
 type OwnCommand = Box<dyn Fn(&ArgMatches) -> Exit>;
 
 impl<G: Game> Default for Tool<G> {

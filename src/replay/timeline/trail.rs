@@ -4,8 +4,8 @@ use alloc::collections::BTreeMap;
 
 use super::super::raw_replay::ReplayPosition;
 
-/// Saves by tick. Saves of ticks after the current one are removed first, because they are of no use to further steps
-/// backwards.
+/// Saves by tick. If there are too many, those of ticks after the newly saved one are removed first, because further
+/// steps backwards do not need them.
 pub(super) struct Trail<'a, S> {
     saves: BTreeMap<u64, (ReplayPosition<'a>, S)>,
 }

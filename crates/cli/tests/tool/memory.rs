@@ -65,7 +65,7 @@ fn joints(count: usize, kind: impl Into<JointKind>) -> Vec<Edit> {
     commands
 }
 
-/// Returns a motor joint without springs. The solver solves no block where there are only such joints.
+/// Returns a motor joint without springs. If all joints are of this kind, the solver solves no joints in blocks.
 fn motor() -> Motor {
     Motor::new().linear(Vec2::ZERO, fx!(1)).angular(fx!(0), fx!(1))
 }
