@@ -26,8 +26,8 @@ export type Rotation = Angle | 0;
 export interface InitOptions {
     /** Chooses the module with or without SIMD; by default, with SIMD if the machine has it. */
     simd?: boolean | undefined;
-    /** A module to use instead of the inlined one. */
-    wasm?: WebAssembly.Module | Response | BufferSource | undefined;
+    /** A module to use instead of the inlined one: a `WebAssembly.Module`, a `Response`, an `ArrayBuffer` or a view. */
+    wasm?: object | undefined;
 }
 /** Loads the wasm module. Call it once before all other functions except `fx`, `degrees`, `radians`, `turns` and
  * `loaded`. */
@@ -351,7 +351,8 @@ export interface JointOptions {
      * `angleB`, which must not be given as well, so that the angle of the joint is 0 now. Only `World.addJoint` accepts
      * it. */
     anchor?: Vec;
-    /** With `anchor`: direction in the world of the axis of a prismatic joint, wheel or rack. The x axis by default. */
+    /** With `anchor`: direction in the world of the axis of a prismatic joint, wheel or rack. The x axis by default;
+     * [0, 1] for the wheel of a car. */
     axis?: Vec;
     /** Anchor in A's frame in metres, within ±128 on each axis, or ±2^30 on a fixed body. The origin by default. */
     anchorA?: Vec;
@@ -382,7 +383,8 @@ export interface JointOptions {
     /** Whether the joint acts (all types): true by default. */
     enabled?: boolean;
     /** Force in N and torque in N m, 0 or more, beyond which the joint is reported in `Events.joints` or, with
-     * `breaks`, also removed (all types). Without a threshold by default. */
+     * `breaks`, also removed (all types). The load in the last sub-step of a tick counts, so that a shock within a tick
+     * may go unnoticed. Without a threshold by default. */
     threshold?: { force?: Num; torque?: Num; breaks?: boolean };
     /** Target velocity of B's anchor relative to A in m/s, along the axes of the world, and largest force in N (motor).
      * */
@@ -576,8 +578,8 @@ declare class Edits extends Handle {
     /** Gives a kinematic body the velocity with which it reaches this pose in the next tick. Throws `WRONG_KIND` for
      * other bodies. */
     moveTo(body: BodyId, position: Vec, angle?: Rotation): void;
-    /** Replaces the settings of a body, and wakes it. Settings that are not given have their defaults; `World.body` has
-     * the current ones. */
+    /** Replaces the settings of a body, and wakes it. Settings that are not given have their defaults. `World.body` has
+     * the current ones beside other properties, which are not accepted here. */
     setBody(body: BodyId, settings: BodySettings): void;
     /** Makes a body fixed, kinematic or dynamic. A body that becomes fixed stops. */
     setType(body: BodyId, type: BodyType): void;
@@ -843,7 +845,7 @@ export class World extends Edits {
     restore(snapshot: Snapshot): void;
     /** Properties of a body, or undefined if it is not in the world (any more). */
     body(body: BodyId): BodyInfo | undefined;
-    /** Name of a body, or undefined if it has none. */
+    /** Name of a body, or undefined if it has none or is not in the world (any more). */
     bodyName(body: BodyId): string | undefined;
     /** Velocity in m/s of the material point of a body at a point of the world, in metres. */
     velocityAt(body: BodyId, point: Vec): Vec2;
@@ -868,9 +870,10 @@ export class World extends Edits {
     joint(joint: JointId): JointInfo;
     /** The anchors of a joint in the world, in metres. */
     jointAnchors(joint: JointId): [Vec2, Vec2];
-    /** Angle of a joint in rad, including whole turns. */
+    /** Angle of a joint in rad, including whole turns. Undefined if the joint is not in the world (any more). */
     jointAngle(joint: JointId): Fx | undefined;
-    /** Force in N that a joint exerted on body B in the last sub-step, and its torque in N m about B's anchor. */
+    /** Force in N that a joint exerted on body B in the last sub-step, and its torque in N m about B's anchor. Undefined
+     * if the joint is not in the world (any more). */
     jointForce(joint: JointId): { force: Vec2; torque: Fx } | undefined;
     /** For drawing: five floats for each enabled body: its handle, x, y, angle in radians, and 1 if it is awake,
      * otherwise 0. With a `target` that is long enough, the result is a part of it. In TypeScript, `poses[5 * i] as

@@ -249,6 +249,9 @@ function checkJoint(options, known) {
             onlyKnown(options[part], known, `\`${part}\` of a joint`);
         }
     }
+    if (options.motor !== undefined && options.motor.max === undefined) {
+        fail("`motor` of a joint needs `max`, its largest force or torque");
+    }
     for (const name of ["limit", "springForce", "teeth", "wheels"]) {
         if (options[name] !== undefined && array(options[name], name).length !== 2) {
             fail(`${name} has 2 items, and not ${options[name].length}`);

@@ -170,7 +170,7 @@ export class Edits extends Handle {
     /** Sets damping, gravity scale, locks, sweeps and sleep settings. Settings that are not given get their defaults:
      * `world.body` returns the current ones. */
     setBody(body, options) {
-        onlyKnown(options, SETTINGS, "the settings of a body");
+        onlyKnown(options, SETTINGS, "`setBody`");
         const at = scratch(sizeOf("body_def"));
         writeBody(at, options);
         call("ls2d_set_body", this.handle, id(body), at);
@@ -233,6 +233,10 @@ export class Commands extends Edits {
         const at = scratch(8);
         call("ls2d_commands_new", at);
         super(u32(at));
+    }
+
+    place() {
+        fail("a list of commands has no poses that `anchor` could refer to: use `anchorA` and `anchorB`");
     }
 
     get length() {

@@ -147,6 +147,18 @@ export function writeHash(at, text, what = "a hash") {
     view.setBigUint64(at, BigInt(`0x${text.slice(16)}`), true);
 }
 
+/** Returns the result of a call, or false if the body or joint is not in the world (any more). */
+export function found(attempt) {
+    try {
+        return attempt();
+    } catch (error) {
+        if (error.code === "STALE_BODY" || error.code === "STALE_JOINT") {
+            return false;
+        }
+        throw error;
+    }
+}
+
 /** Converts a handle of a body, shape or joint to the type that the library takes. */
 export function id(value, what = "a body") {
     if (Number.isSafeInteger(value) && value >= 0) {

@@ -5,8 +5,8 @@ import { rawOf, vectorOf } from "./fx.js";
 import { readJoint } from "./joints.js";
 import { C } from "./layout.js";
 import {
-    Handle, call, copy, f64s, fieldAt, fxAt, give, hashAt, id, idAt, library, list, read, scratch, sizeOf, takeBytes, text, u32, u64,
-    write,
+    Handle, call, copy, f64s, fieldAt, found, fxAt, give, hashAt, id, idAt, library, list, read, scratch, sizeOf, takeBytes, text, u32,
+    u64, write,
 } from "./library.js";
 import { Commands, Edits } from "./edits.js";
 
@@ -165,28 +165,23 @@ export class World extends Edits {
     /** Properties of a body, or undefined if it is not in the world. */
     body(body) {
         const at = scratch(sizeOf("body_info"));
-        try {
-            call("ls2d_body_get", this.handle, id(body), at);
-        } catch (error) {
-            if (error.code === "STALE_BODY") {
-                return undefined;
-            }
-            throw error;
+        if (!found(() => call("ls2d_body_get", this.handle, id(body), at))) {
+            return undefined;
         }
-        const { kind, flags, continuous, reserved: _, ...found } = read("body_info", at);
-        found.type = KINDS[kind];
-        found.continuous = SWEEPS[continuous];
+        const { kind, flags, continuous, reserved: _, ...info } = read("body_info", at);
+        info.type = KINDS[kind];
+        info.continuous = SWEEPS[continuous];
         for (const [name, bit] of OPTIONS) {
-            found[name] = (flags & bit) !== 0;
+            info[name] = (flags & bit) !== 0;
         }
-        return found;
+        return info;
     }
 
-    /** Name of a body, or undefined if it has none. */
+    /** Name of a body, or undefined if it has none or is not in the world. */
     bodyName(body) {
         const at = scratch(16);
-        call("ls2d_body_name", this.handle, id(body), at);
-        return text(copy(at, 16)).replace(/\0+$/, "") || undefined;
+        const known = found(() => call("ls2d_body_name", this.handle, id(body), at));
+        return known ? text(copy(at, 16)).replace(/\0+$/, "") || undefined : undefined;
     }
 
     /** Velocity of the material point of a body at a point of the world. */
@@ -261,13 +256,13 @@ export class World extends Edits {
 
     jointAngle(joint) {
         const at = scratch(8);
-        return call("ls2d_joint_angle", this.handle, id(joint, "a joint"), at) ? fxAt(at) : undefined;
+        return found(() => call("ls2d_joint_angle", this.handle, id(joint, "a joint"), at)) ? fxAt(at) : undefined;
     }
 
     jointForce(joint) {
         const at = scratch(24);
-        const found = call("ls2d_joint_force", this.handle, id(joint, "a joint"), at, at + 16);
-        return found ? { force: { x: fxAt(at), y: fxAt(at + 8) }, torque: fxAt(at + 16) } : undefined;
+        const known = found(() => call("ls2d_joint_force", this.handle, id(joint, "a joint"), at, at + 16));
+        return known ? { force: { x: fxAt(at), y: fxAt(at + 8) }, torque: fxAt(at + 16) } : undefined;
     }
 
     /** For drawing: five floats for each enabled body: its handle, x, y, angle in radians, and 1 if it is awake. */

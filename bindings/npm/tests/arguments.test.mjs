@@ -58,6 +58,9 @@ test("a joint needs both of its bodies and knows its options", () => {
     }
     assert.throws(() => w.addJoint({ type: "revolute", a, b, motor: { speed: 1, maxTorque: 2 } }), /no option maxTorque/);
     assert.throws(() => w.addJoint({ type: "revolute", a, b, threshold: { force: 1, break: true } }), /no option break/);
+    assert.throws(() => w.addJoint({ type: "revolute", a, b, motor: { speed: 1 } }), /`motor` of a joint needs `max`/);
+    assert.throws(() => new L.Commands().addJoint({ type: "weld", a, b, anchor: [1, 5] }), /use `anchorA` and `anchorB`/);
+    assert.throws(() => w.setBody(a, { ...w.body(a) }), /`setBody` has no option position/);
     assert.throws(() => w.addJoint({ type: "revolute", a, b, limit: [0] }), /limit has 2 items/);
     assert.throws(() => w.addJoint({ type: "revolute", a, b, teeth: [1, 2] }), /type revolute has no option teeth/);
     assert.throws(() => w.addJoint({ type: "weld", a, b, anchor: [1, 5], anchorA: [1, 0] }), /either `anchor` or `anchorA`/);

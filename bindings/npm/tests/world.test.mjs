@@ -98,6 +98,12 @@ test("mistakes are errors with codes", () => {
     const { world, box } = fallingBox();
     world.despawn(box);
     assert.equal(world.body(box), undefined);
+    assert.equal(world.bodyName(box), undefined);
+    const ends = [1, 2].map((x) => world.spawn({ position: [x, 9], shapes: [L.circle("0.3")] }));
+    const joint = world.addJoint({ type: "distance", a: ends[0], b: ends[1], rod: 1 });
+    world.removeJoint(joint);
+    assert.deepEqual([world.jointForce(joint), world.jointAngle(joint)], [undefined, undefined]);
+    assert.throws(() => world.joint(joint), { code: "STALE_JOINT" });
     assert.throws(() => world.wake(box), { code: "STALE_BODY" });
     assert.throws(() => world.spawn({ shapes: [L.circle(0)] }), { code: "GEOMETRY" });
     assert.throws(() => world.spawn({ positon: [0, 1] }), /no option positon/);
@@ -179,7 +185,7 @@ test("a body has a name and a velocity at each point, a shape has a box and dist
     assert.ok(world.shapeDistance(one, other).lt(0));
     world.despawn(b);
     assert.equal(world.shapeDistance(one, other), undefined);
-    assert.throws(() => world.bodyName(b), { code: "STALE_BODY" });
+    assert.equal(world.bodyName(b), undefined);
     assert.throws(() => world.velocityAt(b, [0, 0]), { code: "STALE_BODY" });
     assert.throws(() => world.shapeBox(other), { code: "STALE_SHAPE" });
 });
