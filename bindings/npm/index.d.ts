@@ -822,7 +822,7 @@ export class World extends Edits {
     /** Hash of a section: 0 settings, tick and fault count, 1 bodies, 2 shapes, 3 joints, 4 contacts, 5 islands,
      * 6 random numbers. */
     digest(section: number): string;
-    /** Number of ticks since the world was made. */
+    /** Number of ticks of the state. `restore` and `fromBytes` set the number that was saved. */
     readonly tick: number;
     /** Number of results of the solver that were clamped since the world was made, plus one for every tick in which
      * `pairLimit` left pairs out. A body at the speed limit does not count. */

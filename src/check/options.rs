@@ -43,8 +43,8 @@ pub enum Variant {
     Backend(Backend),
     /// The broad phase uses another algorithm.
     BroadPhase(BroadPhaseKind),
-    /// The world has this number of threads, which share the ticks with 256 awake bodies or more. Without the feature
-    /// `parallel`, the variant changes nothing.
+    /// The world has this number of threads, which share every tick that follows a tick with 256 awake bodies or more.
+    /// The variant changes nothing without the feature `parallel`, or if the threads cannot be created.
     Threads(usize),
     /// Bytes of a save are replaced by bytes of another tick's save. If the hash does not change, the hashes of the
     /// following ticks must not change either.

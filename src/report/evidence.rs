@@ -180,7 +180,7 @@ impl<'a> SideEvidence<'a> {
         (a.inputs == b.inputs).then_some(a.hash == b.hash)
     }
 
-    /// The last tick for which this side states a hash.
+    /// The last tick for which this side states a hash; 0 if it states none.
     pub(super) fn last(&self) -> u64 {
         let last = |tick: Option<&u64>| tick.copied().unwrap_or(0);
         last(self.states.keys().next_back()).max(last(self.checkpoints.keys().next_back()))

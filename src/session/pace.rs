@@ -3,7 +3,8 @@
 //! The current tick of another player is estimated from its newest row, the age of that row and half a round trip. Each
 //! voter steers towards the median of these estimates, and a peer without a vote towards [`FOLLOW`] ticks behind the
 //! final ticks. A peer lengthens its ticks by up to 1/8 when it is ahead, and shortens them by up to 1/16 when it is
-//! behind. Therefore the speed of play changes gradually, and clocks that run at different rates do no harm.
+//! behind. Therefore the speed of play changes gradually, and clocks that run at different rates do no harm. A peer
+//! that is far behind plays ticks at once, and a voter that is far ahead waits.
 
 use alloc::vec::Vec;
 

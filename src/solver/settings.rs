@@ -171,8 +171,8 @@ pub(crate) struct Tuning {
     pub(crate) push_speed: Speed,
     /// Softness of joints without a softness of their own.
     pub(crate) joint: Softness,
-    /// Softness of the anchors of anchored hinges, which hold a body without any other joint to a body that is not
-    /// dynamic, and have no softness of their own.
+    /// Softness of the anchors of anchored hinges. Such a hinge joins a body that has no other joint to a body that
+    /// impulses do not move, and has no softness of its own.
     pub(crate) anchored: Softness,
     pub(crate) relax: bool,
     pub(crate) speed_max: Speed,

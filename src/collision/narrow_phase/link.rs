@@ -221,7 +221,8 @@ impl Facing {
         }
     }
 
-    /// Whether a point is beside the link, or beyond its ends by no more than the gap at a vertex that counts as flat.
+    /// Whether a point is beside the link, or beyond its ends by at most 1/64 of the radius
+    /// plus 0.5 mm, which is more than the gap at a vertex that counts as flat.
     fn is_beside(&self, place: Vec2<Length>, radius: Length) -> bool {
         let slack: Length = (radius / 64).saturating_add(Length::lit("0.0005"));
         let past = |vertex: Vec2<Length>| -> Length { (place - vertex).dot(self.direction) };

@@ -29,8 +29,8 @@ pub(in crate::solver) struct JointSet {
     places: Vec<u32>,
     /// The properties of bodies that the arrangement of their joints depends on.
     bodies: Vec<HingeBody>,
-    /// The rotation coefficients of `bodies`. They are kept from tick to tick, and are stored separately from `bodies`
-    /// because every sub-step reads them.
+    /// The rotation coefficients of `bodies`, stored separately because every sub-step reads them. While the
+    /// arrangement is reused, only their angles change from tick to tick.
     turning: Vec<Turning>,
     /// The rotations of bodies with joints, by the index of the body.
     body_rotations: Vec<BodyRotation>,

@@ -1,7 +1,8 @@
 //! Sleeping islands: waking and putting to sleep, for the step and for edits between ticks.
 //!
-//! A body is sleepy once it has been slower than its `sleep_speed` for half a second. An island is a set of dynamic
-//! bodies that contacts, joints and areas connect. It falls asleep when all its bodies are sleepy. It wakes as a whole:
+//! A body is sleepy once it has been slower than its `sleep_speed` for half a second, if its settings and those of the
+//! world let it sleep. An island is a set of dynamic bodies that contacts, joints and areas connect. It falls asleep
+//! when all its bodies are sleepy, or when an edit puts one of them to sleep. It wakes as a whole:
 //! - when an active body touches one of its bodies, or an area of an active body begins to act on one,
 //! - when an edit wakes one of its bodies, applies a force or impulse to it, or changes its velocity, its pose or a
 //!   property other than its user data and its name,
@@ -11,7 +12,7 @@
 //!   it has mass,
 //! - when an edit moves, enables or disables a body that is joined to one of its bodies, changes the kind of that body
 //!   or whether it has mass, or sets that body in motion if it is kinematic,
-//! - when gravity or another setting that affects the balance of forces changes,
+//! - when gravity or another setting that affects the balance of forces changes, or sleeping is turned off,
 //! - when a fixed or kinematic body that it touches or is joined to is woken by an edit.
 //!
 //! Bodies that touch a moving kinematic body, are joined to one, or are in an area of one do not become sleepy.

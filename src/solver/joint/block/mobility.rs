@@ -38,8 +38,8 @@ impl Mobility {
         self.spins != [ONE; 2]
     }
 
-    /// The sum of `a e other` over both bodies, with geometric stiffness: the part of the rotations in an entry of `K`,
-    /// or in `D` of a row if `other` is `e`.
+    /// The part of an entry of `K` that comes from rotations, or of the denominator `D` of a row if `other` is `e`: the
+    /// sum of the mass fraction times `e` times `other` times the factor of geometric stiffness over both bodies.
     pub(super) fn turning(&self, e: [Ratio; 2], other: [Ratio; 2]) -> i64 {
         let MassFractions { a, b } = self.fractions;
         product(turning(a, e[0], other[0]), self.spins[0])
