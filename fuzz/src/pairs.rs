@@ -59,7 +59,7 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
         }
         bare.world.clear_scratch();
         distances(&first);
-        let before = first.world.distance(first.shapes[0], first.shapes[1]).map(|it| it.distance);
+        let before = fresh.world.distance(fresh.shapes[0], fresh.shapes[1]).map(|it| it.distance);
         for pair in [&mut first, &mut bare, &mut fresh, &mut swapped] {
             pair.world.step();
         }
