@@ -1,6 +1,6 @@
 //! lockstep2d: a deterministic fixed-point 2D physics and lockstep engine.
 //!
-//! The same setup and the same inputs give the same state hash after every tick, on every machine, because the
+//! Equal setups and equal inputs give equal state hashes after every tick, on every machine, because the
 //! simulation does not use floating-point numbers. A saved replay contains hashes at a fixed interval of ticks, so that
 //! any machine can check this.
 //!

@@ -51,7 +51,7 @@ pub fn run(bytes: &[u8]) -> Option<u64> {
         let reach = source.pick(&[500, 1500, 500, 5000, 0, 120_000]);
         let position = source.mostly_vec(-reach, reach);
         let angle = source.angle();
-        // A contact of a pair that has moved by less than 5 mm keeps its manifold, whose normal may be that of a tie.
+        // The contact of a pair that has hardly moved keeps its manifold, whose normal may be that of a tie.
         // Worlds without a kept manifold are therefore compared with the distance and with exchanged shapes.
         let (mut fresh, mut swapped) = (new.clone(), new_swapped.clone());
         for pair in [&mut first, &mut bare, &mut fresh, &mut swapped] {

@@ -8,7 +8,7 @@ use super::body::{GROUND, SolverBody};
 use super::scalar::map;
 use super::{Backend, Ints, Kernel, Lanes, Quad, VelocityW};
 
-/// Number of lanes. Twice as many need two vectors for each number, more than the registers hold.
+/// Number of lanes. With twice as many, each number would take two vectors.
 pub(crate) const WIDTH: usize = 4;
 
 /// NEON instructions. This file is only compiled for targets that have them, so every intrinsic in an `unsafe` block is

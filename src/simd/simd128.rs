@@ -34,7 +34,7 @@ impl Simd128 {
     }
 }
 
-/// Number of lanes.
+/// Number of lanes. With twice as many, each number would take two vectors.
 pub(crate) const WIDTH: usize = 4;
 
 /// Two products per vector: lanes 0 and 1, lanes 2 and 3.

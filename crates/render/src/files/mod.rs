@@ -15,8 +15,8 @@ pub use pace::Pace;
 
 /// Animation that repeats forever, written frame by frame. The memory does not grow with the number of frames.
 ///
-/// Each frame after the first contains only the bounding rectangle of the changed pixels. Unchanged pixels inside it are
-/// transparent, except in an APNG frame that is not opaque.
+/// Each frame after the first contains only the bounding rectangle of the changed pixels. Unchanged pixels inside it
+/// are transparent, except in an APNG frame that is not opaque.
 ///
 /// ```
 /// use lockstep2d_render::{Animation, Colour, DrawList, Pace, raster};
