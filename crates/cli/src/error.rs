@@ -39,9 +39,7 @@ pub(crate) enum CommandError {
     /// A replay cannot be played as far as requested.
     Replay { path: PathBuf, verdict: Verdict },
     /// The game panics while a replay is played.
-    Panicked { path: PathBuf, panic: Panic, ticks: u64 },
-    /// A replay ends before the last tick to trace.
-    TraceEnds { path: PathBuf, tick: u64, ticks: u64 },
+    Panicked { path: PathBuf, panic: Panic, ticks: Option<u64> },
     /// The first tick of a range is after the last.
     Reversed { from: u64, to: u64 },
     /// A keyframe does not belong to the replay, or the game does not restore it exactly.
@@ -114,10 +112,9 @@ impl CommandError {
     /// The exit code of a command that stops with this error.
     pub(crate) fn exit(&self) -> Exit {
         match self {
-            CommandError::Replay { .. }
-            | CommandError::Trace { .. }
-            | CommandError::TraceEnds { .. }
-            | CommandError::Panicked { .. } => Exit::NoMatch,
+            CommandError::Replay { .. } | CommandError::Trace { .. } | CommandError::Panicked { .. } => {
+                Exit::NoMatch
+            }
             _ => Exit::Trouble,
         }
     }
@@ -152,8 +149,7 @@ impl fmt::Display for CommandError {
                 write!(f, "{}: {}", Shown(path), OneLine(&PanicText { panic, ticks: *ticks }.to_string()))
             }
             CommandError::Reversed { from, to } => write!(f, "--from {from} is after --to {to}"),
-            CommandError::NoSuchTick { path, tick, ticks }
-            | CommandError::TraceEnds { path, tick, ticks } => {
+            CommandError::NoSuchTick { path, tick, ticks } => {
                 write!(f, "{} has {ticks} ticks, there is no tick {tick}", Shown(path))
             }
             CommandError::Replay { path, verdict } => write!(f, "{}: {verdict}", Shown(path)),

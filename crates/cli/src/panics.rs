@@ -1,5 +1,5 @@
-//! [`catch`]: catches a panic of the game, so that `verify` continues with other files, and `export`, `inspect` and
-//! `stats` end with an error.
+//! [`catch`]: catches a panic of the game, so that `verify` continues with other files, and other commands end with an
+//! error.
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};
@@ -28,14 +28,17 @@ pub(crate) const PANICKED: &str = "panicked";
 /// Text of a panic of the game.
 pub(crate) struct PanicText<'a> {
     pub(crate) panic: &'a Panic,
-    /// Number of ticks that were played.
-    pub(crate) ticks: u64,
+    /// Number of ticks that were played, if the command counts them.
+    pub(crate) ticks: Option<u64>,
 }
 
 impl fmt::Display for PanicText<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let PanicText { panic: Panic { message, location }, ticks } = self;
-        write!(f, "{PANICKED}: the game, after {ticks} ticks")?;
+        write!(f, "{PANICKED}: the game")?;
+        if let Some(ticks) = ticks {
+            write!(f, ", after {ticks} ticks")?;
+        }
         if let Some(location) = location {
             write!(f, ", at {location}")?;
         }
@@ -48,13 +51,13 @@ thread_local! {
     static IS_CAUGHT: Cell<bool> = const { Cell::new(false) };
     /// Location of the last caught panic on this thread.
     static LOCATION: RefCell<Option<String>> = const { RefCell::new(None) };
-    /// Number of ticks that the command on this thread has played.
-    static TICKS: Cell<u64> = const { Cell::new(0) };
+    /// Number of ticks that the command on this thread has played, if it counts them.
+    static TICKS: Cell<Option<u64>> = const { Cell::new(None) };
 }
 
 /// Notes the number of ticks that the command on this thread has played, for [`guard`].
 pub(crate) fn played(ticks: u64) {
-    TICKS.set(ticks);
+    TICKS.set(Some(ticks));
 }
 
 /// Runs `work`. A panic is returned instead of printed. Data that `work` was changing must not be used afterwards.
@@ -83,7 +86,7 @@ fn listen() {
 
 /// Runs a command that plays the replay at `path`. A panic of the game stops the command with an error.
 pub(crate) fn guard(path: &Path, command: impl FnOnce() -> CommandResult) -> CommandResult {
-    played(0);
+    TICKS.set(None);
     catch(command).unwrap_or_else(|panic| {
         Err(CommandError::Panicked { path: path.to_path_buf(), panic, ticks: TICKS.get() })
     })

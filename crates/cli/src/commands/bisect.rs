@@ -22,7 +22,7 @@ use crate::error::CommandError;
 )]
 pub(crate) struct Arguments {
     /// A replay, a trace or a report of a divergence
-    a: PathBuf,
+    pub(super) a: PathBuf,
     /// A file to compare it with [default: a run of this program]
     b: Option<PathBuf>,
     #[command(flatten)]

@@ -23,7 +23,7 @@ mod text;
 )]
 pub(crate) struct Arguments {
     /// A report of a divergence, a replay, or a snapshot of a world
-    a: PathBuf,
+    pub(super) a: PathBuf,
     /// The file to compare it with
     b: PathBuf,
     #[command(flatten)]

@@ -36,12 +36,12 @@ use output::Output;
                         cover the ticks --from to --to. A line of JSON has the tick, the state hash and the game's \
                         save in readable form; a fixed-point number is given as bits and as a decimal. A snapshot of a \
                         world can be written as a picture or as a line of JSON.\n\nExit code: 0 when it was written, 1 \
-                        when the replay cannot be played up to the tick, 2 for wrong usage, or files that cannot be \
-                        read or written."
+                        when the replay cannot be played up to the tick, 2 for wrong usage, a tick after the end, or \
+                        files that cannot be read or written."
 )]
 pub(crate) struct Arguments {
     /// The replay, or a snapshot of a world
-    file: PathBuf,
+    pub(super) file: PathBuf,
     #[command(flatten)]
     formats: Formats,
     /// The file to write [default for JSON, SVG and plots: the standard output]
@@ -77,10 +77,6 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
-    panics::guard(&arguments.file, || export(arguments, context))
-}
-
-fn export<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let format = arguments.formats.chosen(arguments.output.as_deref())?;
     arguments.check(format)?;
     if let Some(path) = &arguments.output {

@@ -23,11 +23,11 @@ use crate::rewriting::{Copy, CopyError};
                         --idle ticks without input. A line is a JSON array with one input for each player; empty lines \
                         are skipped. The new replay is verified before it is written.\n\nExit code: 0 when it was \
                         written, 1 when the old replay cannot be played up to tick N or the new one would not match, 2 \
-                        for wrong usage, or files that cannot be read or written."
+                        for wrong usage, a tick after the end, or files that cannot be read or written."
 )]
 pub(crate) struct Arguments {
     /// The replay
-    file: PathBuf,
+    pub(super) file: PathBuf,
     /// Number of ticks to keep
     #[arg(long, value_name = "N")]
     tick: u64,

@@ -29,11 +29,11 @@ use state::State;
                         t ticks; 0 is the start. A snapshot, or a save written by `seek`, has one state, which any of \
                         --tick, --body and --path selects.\n\nExit code: 0 when the file is intact, even if it is an \
                         incomplete replay, 1 when a replay is damaged or cannot be played up to the tick, 2 for wrong \
-                        usage, or a file of another kind or that cannot be read."
+                        usage, a tick after the end, or a file of another kind or that cannot be read."
 )]
 pub(crate) struct Arguments {
     /// The file
-    file: PathBuf,
+    pub(super) file: PathBuf,
     /// List all fields of the state after N ticks
     #[arg(long, value_name = "N")]
     tick: Option<u64>,
@@ -52,10 +52,6 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
-    panics::guard(&arguments.file, || inspect(arguments, context))
-}
-
-fn inspect<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let bytes = context.load(&arguments.file)?;
     let path = || arguments.file.clone();
     match Evidence::read(bytes.clone(), context.limits()) {

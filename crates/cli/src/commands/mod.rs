@@ -21,6 +21,7 @@ use clap::{ArgMatches, Args, Command};
 use lockstep2d::lockstep::Game;
 
 use crate::context::{CommandResult, Context};
+use crate::panics;
 
 /// A command: its clap definition (name, help and arguments), and the function that executes it.
 pub(crate) struct Row<G: Game> {
@@ -28,12 +29,17 @@ pub(crate) struct Row<G: Game> {
     pub(crate) run: fn(&ArgMatches, &mut Context<'_, G>) -> CommandResult,
 }
 
-/// The rows of commands, each given as its name and its module.
+/// The rows of commands, each given as its name, its module, and the argument with the replay whose game may panic.
 macro_rules! rows {
-    ($($name:literal => $module:ident),+ $(,)?) => {
+    ($($name:literal => $module:ident $(($file:ident))?),+ $(,)?) => {
         vec![$(Row {
             command: $module::Arguments::augment_args(Command::new($name)),
-            run: |matches, context| $module::run(&arguments(matches), context),
+            run: |matches, context| {
+                let arguments: $module::Arguments = arguments(matches);
+                let mut run = || $module::run(&arguments, context);
+                $(let mut run = || panics::guard(&arguments.$file, &mut run);)?
+                run()
+            },
         }),+]
     };
 }
@@ -42,16 +48,16 @@ macro_rules! rows {
 pub(crate) fn table<G: Game>(has_scenes: bool) -> Vec<Row<G>> {
     let mut table = rows![
         "verify" => verify,
-        "diff" => diff,
-        "bisect" => bisect,
-        "trace" => trace,
-        "stress-saves" => stress_saves,
-        "inspect" => inspect,
-        "seek" => seek,
-        "fork" => fork,
-        "trim" => trim,
-        "stats" => stats,
-        "export" => export,
+        "diff" => diff(a),
+        "bisect" => bisect(a),
+        "trace" => trace(file),
+        "stress-saves" => stress_saves(file),
+        "inspect" => inspect(file),
+        "seek" => seek(file),
+        "fork" => fork(file),
+        "trim" => trim(file),
+        "stats" => stats(file),
+        "export" => export(file),
         "keygen" => keygen,
         "sign" => sign,
     ];

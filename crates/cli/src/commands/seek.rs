@@ -25,11 +25,12 @@ use crate::output_file::{self, OutputFile, Overwrite};
                         keyframes. Every keyframe must have the state hash that the replay states for its tick. This \
                         does not verify the replay: only `verify` checks that the inputs lead to these states.\n\nExit \
                         code: 0 when the tick was reached, 1 when the replay cannot be played up to the tick, 2 for \
-                        wrong usage, a file that cannot be read or written, or keyframes of another replay."
+                        wrong usage, a tick after the end, a file that cannot be read or written, or keyframes of \
+                        another replay."
 )]
 pub(crate) struct Arguments {
     /// The replay
-    file: PathBuf,
+    pub(super) file: PathBuf,
     /// The tick to go to; 0 is the start
     #[arg(long, value_name = "N")]
     tick: u64,

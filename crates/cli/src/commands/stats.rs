@@ -25,17 +25,13 @@ use crate::panics;
 )]
 pub(crate) struct Arguments {
     /// The replay
-    file: PathBuf,
+    pub(super) file: PathBuf,
     /// Print a line of JSON for each tick, instead of the largest and mean values
     #[arg(long)]
     json: bool,
 }
 
 pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
-    panics::guard(&arguments.file, || stats(arguments, context))
-}
-
-fn stats<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) -> CommandResult {
     let refused = CommandError::replay(&arguments.file);
     let bytes = context.load(&arguments.file)?;
     let mut replay = VerifiedReplay::<G>::open(&bytes, context.limits()).map_err(&refused)?;

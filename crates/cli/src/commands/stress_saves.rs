@@ -27,11 +27,11 @@ use crate::output_file::{OutputFile, Overwrite};
 #[derive(Args, Debug)]
 #[command(
     after_help = "Exit code: 0 when nothing differs, 1 when something does or the replay cannot be played, 2 for \
-                        wrong usage or a path that cannot be read or written."
+                        wrong usage, a tick after the end, or a path that cannot be read or written."
 )]
 pub(crate) struct Arguments {
     /// The replay
-    file: PathBuf,
+    pub(super) file: PathBuf,
     /// The first tick to compare; earlier ticks are only played
     #[arg(long, default_value_t = 0, value_name = "TICK")]
     from: u64,

@@ -18,11 +18,12 @@ use crate::output_file::{OutputFile, Overwrite};
     after_help = "This program plays the inputs again; checkpoints of the file are not checked. A program of another \
                         platform can `bisect` the trace to find the tick, phase, body and field in which the two first \
                         differ.\n\nExit code: 0 when it was written, 1 when the replay cannot be played up to the \
-                        tick, 2 for wrong usage, or files that cannot be read or written."
+                        tick, 2 for wrong usage, a tick after the end, or files that cannot be read or \
+                        written."
 )]
 pub(crate) struct Arguments {
     /// The replay
-    file: PathBuf,
+    pub(super) file: PathBuf,
     /// The last tick to trace [default: the end]
     #[arg(long, value_name = "TICK")]
     to: Option<u64>,
@@ -43,7 +44,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     let traced = Trace::<G>::of_replay(&bytes, context.limits(), to.unwrap_or(u64::MAX), *ticks);
     let report = traced.map_err(|error| CommandError::Trace { path: file.clone(), error })?;
     if let Some(tick) = to.filter(|tick| *tick > report.tick()) {
-        return Err(CommandError::TraceEnds { path: file.clone(), tick, ticks: report.tick() });
+        return Err(CommandError::NoSuchTick { path: file.clone(), tick, ticks: report.tick() });
     }
     written.append(&report.to_bytes())?;
     written.publish()?;

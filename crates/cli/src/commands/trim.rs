@@ -25,7 +25,7 @@ use crate::rewriting::{Copy, CopyError};
 )]
 pub(crate) struct Arguments {
     /// The replay
-    file: PathBuf,
+    pub(super) file: PathBuf,
     /// Maximum number of ticks to keep
     #[arg(long, value_name = "N")]
     ticks: Option<u64>,

@@ -90,7 +90,7 @@ fn a_trace_beyond_the_end_is_not_written() {
     let file = folder.write("a.replay", &replay(None));
     let trace = folder.path("a.trace");
     let outcome = run_sandbox(&["trace", &file, "--to", "51", "-o", &trace]);
-    assert_eq!((outcome.exit, outcome.out.as_str()), (Exit::NoMatch, ""));
+    assert_eq!((outcome.exit, outcome.out.as_str()), (Exit::Trouble, ""));
     assert!(outcome.err.contains("has 50 ticks, there is no tick 51"), "{}", outcome.err);
     assert!(!std::path::Path::new(&trace).exists());
     assert_eq!(run_sandbox(&["trace", &file, "--to", "50", "-o", &trace]).exit, Exit::Success);

@@ -128,6 +128,21 @@ fn a_panic_is_the_error_of_other_commands_too() {
             assert!(outcome.err.contains(part), "{arguments:?}: {}", outcome.err);
         }
     }
+    // These do not count the ticks.
+    for arguments in [
+        vec!["seek", &file, "--tick", "13"],
+        vec!["fork", &file, "--tick", "13", "-o", &picture],
+        vec!["trim", &file, "-o", &picture],
+        vec!["trace", &file, "-o", &picture],
+        vec!["stress-saves", &file],
+        vec!["bisect", &file],
+    ] {
+        let outcome = run_bomb(&arguments);
+        assert_eq!(outcome.exit, Exit::NoMatch, "{arguments:?}");
+        for part in ["a.replay: panicked: the game, at ", "batch.rs:", "somebody\\nadded 13"] {
+            assert!(outcome.err.contains(part), "{arguments:?}: {}", outcome.err);
+        }
+    }
     assert!(!std::path::Path::new(&picture).exists());
 }
 

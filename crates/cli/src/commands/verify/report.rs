@@ -77,7 +77,7 @@ impl Report {
 
     pub(super) fn of_panic(bytes: u64, ticks: u64, panic: &Panic) -> Self {
         let Panic { message, location } = panic;
-        let text = PanicText { panic, ticks }.to_string();
+        let text = PanicText { panic, ticks: Some(ticks) }.to_string();
         let details = object(json!({ "why": message, "location": location }));
         Report { text, verdict: PANICKED.into(), ticks, hash: None, bytes, details }
     }
