@@ -112,6 +112,8 @@ export class Angle {
     toRadians(): Fx;
     /** Radians for drawing, as a float. */
     toNumber(): number;
+    /** Degrees as decimal text, such as "45". */
+    toString(): string;
     /** Returns `bits`, for `JSON.stringify`. */
     toJSON(): number;
 }

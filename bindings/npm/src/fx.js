@@ -6,6 +6,8 @@ const ONE = 1n << 32n;
 const MAX = (1n << 63n) - 1n;
 const MIN = -(1n << 63n);
 const NUMBER = /^([+-]?)(\d+)(?:\.(\d+))?$/;
+// Name of the method whose result `console.log` prints in Node, Deno and Bun.
+const INSPECT = Symbol.for("nodejs.util.inspect.custom");
 // Cache of parsed strings: a program parses the same few strings repeatedly.
 const CACHE = new Map();
 const CACHE_MAX = 4096;
@@ -162,6 +164,10 @@ export class Fx {
         return this.toString();
     }
 
+    [INSPECT]() {
+        return `Fx(${this})`;
+    }
+
     // Refuses operators: otherwise `a < b` would compare floats, and `a + b` would concatenate strings.
     [Symbol.toPrimitive](hint) {
         if (hint === "string") {
@@ -210,8 +216,17 @@ export class Angle {
         return (Number(signed(this.bits)) / 4294967296) * 2 * Math.PI;
     }
 
+    /** Degrees as decimal text, such as "45". */
+    toString() {
+        return this.toDegrees().toString();
+    }
+
     toJSON() {
         return this.bits;
+    }
+
+    [INSPECT]() {
+        return `Angle(${this} degrees)`;
     }
 }
 

@@ -1,6 +1,7 @@
 // Numbers: arithmetic in JavaScript has the same results as in the library, and floats are refused.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { inspect } from "node:util";
 import { L } from "./common.mjs";
 import { library, fxAt, giveText, scratch, call } from "../src/library.js";
 
@@ -47,6 +48,12 @@ test("angles are those of the library", () => {
     assert.deepEqual([180, -90].map((degrees) => L.degrees(degrees).toNumber()), [Math.PI, -Math.PI / 2]);
     assert.deepEqual(L.rotate([2, 0], L.degrees(90)), { x: L.fx(0), y: L.fx(2) });
     assert.equal(L.sqrt("6.25").toString(), "2.5");
+});
+
+test("numbers and angles are readable in a console", () => {
+    assert.equal(inspect(L.fx("1.25")), "Fx(1.25)");
+    assert.equal(inspect([L.degrees("-22.5")]), "[ Angle(-22.5 degrees) ]");
+    assert.equal(`${L.degrees(45)}`, "45");
 });
 
 test("a float is an error that says why", () => {

@@ -184,3 +184,11 @@ test("files are opened and refused, although reading them moves the memory", () 
     assert.ok(moved > 0, "the memory has not moved");
     [...kept, recording, setup].forEach((object) => object.dispose());
 });
+
+test("the replay of a game with rules of its own is not verified as a world's", () => {
+    const recorder = new L.Recorder({ rules: "my game", players: 1, inputBytes: 1, start: new L.World().hash() });
+    recorder.record(Uint8Array.of(1));
+    const { verdict, text } = L.verifyReplay(recorder.finish(new L.World().hash()));
+    assert.equal(verdict, "unverifiable");
+    assert.match(text, /"host" stands for rules in the game's own program/);
+});

@@ -1,10 +1,11 @@
 //! Recording and verification of worlds that are changed by commands alone. The command `lockstep2d verify` also
 //! verifies the files.
 
-use lockstep2d::lockstep::{Sandbox, SandboxSetup};
-use lockstep2d::replay::{self, Limits, Recording, Verdict};
+use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
+use lockstep2d::replay::{self, Limits, Mismatch, Recording, Verdict};
 use lockstep2d::world::{Config, World};
 
+use super::host_recorder::HostGame;
 use crate::border::{In, Out};
 use crate::describe::api;
 use crate::records::{RawConfig, RawLimits, RawVerdict};
@@ -105,7 +106,17 @@ api! {
         let mut verdict = verdict;
         verdict.check()?;
         let found = replay::verify::<Sandbox>(data.slice(size)?, &limits_of(&limits)?);
-        note(Failure::new(Status::Ok, found.to_string()));
+        note(Failure::new(Status::Ok, text_of(&found)));
         verdict.set(RawVerdict::of(&found))
+    }
+}
+
+/// The verdict in words. For a replay of a host's game, says who can verify it.
+fn text_of(found: &Verdict) -> String {
+    match found {
+        Verdict::Unverifiable { why: Mismatch::Rules { file, .. } } if file.0 == HostGame::RULES.name => {
+            format!("{found}; {:?} stands for rules in the game's own program, which has to play it", file.0)
+        }
+        _ => found.to_string(),
     }
 }
