@@ -1,5 +1,15 @@
 // lockstep2d: deterministic 2D physics for the web.
 
+// For `using`: these declarations are those of TypeScript's library `esnext.disposable`, which a project may lack.
+declare global {
+    interface SymbolConstructor {
+        readonly dispose: unique symbol;
+    }
+    interface Disposable {
+        [Symbol.dispose](): void;
+    }
+}
+
 /** A fixed-point number as an argument: an integer, decimal text such as `"0.1"`, or an `Fx`. A float is an error. */
 export type Num = number | string | Fx;
 /** A vector as an argument. */
@@ -532,6 +542,8 @@ declare class Handle {
     protected constructor();
     /** Frees the object. Every later use except `dispose` throws `DISPOSED`. */
     dispose(): void;
+    /** Calls `dispose` at the end of a block: `using world = new World();`. */
+    [Symbol.dispose](): void;
 }
 
 /** Pose of a body that `spawnEach` adds. */
@@ -1163,6 +1175,8 @@ export class ReplayDriver<Saved = unknown> {
     stepBack(): boolean;
     /** Frees the saved states. The driver cannot be used afterwards. */
     dispose(): void;
+    /** Calls `dispose` at the end of a block. */
+    [Symbol.dispose](): void;
 }
 
 /** Parameters of a match and of a peer. The numbers of seats, ticks and bytes are integers. */

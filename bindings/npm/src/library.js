@@ -331,6 +331,11 @@ export class Handle {
         }
     }
 }
-if (Symbol.dispose) {
-    Handle.prototype[Symbol.dispose] = Handle.prototype.dispose;
+
+/** Lets `using` dispose of the objects of a class, where JavaScript has it. */
+export function disposable({ prototype }) {
+    if (Symbol.dispose) {
+        prototype[Symbol.dispose] = prototype.dispose;
+    }
 }
+disposable(Handle);

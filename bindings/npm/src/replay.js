@@ -2,7 +2,7 @@
 import { byteArray, count, instance, integer, long, onlyKnown, string } from "./check.js";
 import { writeConfig } from "./definitions.js";
 import { Commands } from "./edits.js";
-import { Handle, call, copy, fieldAt, give, giveText, hashAt, lastText, optionsOf, scratch, sizeOf, statusOf, takeBytes, text, u32, u64, write, writeHash } from "./library.js";
+import { Handle, call, copy, disposable, fieldAt, give, giveText, hashAt, lastText, optionsOf, scratch, sizeOf, statusOf, takeBytes, text, u32, u64, write, writeHash } from "./library.js";
 import { Lockstep2dError } from "./error.js";
 import { STATUS } from "./layout.js";
 import { nextRequest } from "./requests.js";
@@ -316,6 +316,7 @@ export class ReplayDriver {
         }
     }
 }
+disposable(ReplayDriver);
 
 /** Goes to any tick of a replay of a world: tick t is the state after t ticks. */
 export class Timeline extends Handle {

@@ -247,6 +247,12 @@ test("bodies and joints with one definition are added together, or none", () => 
     assert.deepEqual([world.counts().bodies, world.counts().joints], [600, 598]);
 });
 
+test("`using` disposes of a world", { skip: !Symbol.dispose }, () => {
+    const world = new L.World();
+    world[Symbol.dispose]();
+    assert.throws(() => world.step(), { code: "DISPOSED" });
+});
+
 test("10 000 worlds that are disposed leak nothing", () => {
     const before = L.objectCount();
     const memory = () => library().memory.buffer.byteLength;

@@ -84,6 +84,14 @@ export function handles(): number {
     return (sizes.get(poses[0] as BodyId) ?? 0) + crate + world.shapeBox(shape!).lower.x.toNumber();
 }
 
+export function brief(file: Uint8Array): string {
+    using brief = new World();
+    using replay = new Replay(file);
+    using driver = new ReplayDriver(replay, game);
+    driver.step();
+    return brief.hash();
+}
+
 export const codeOf = (error: unknown): string => (error as Lockstep2dError).code;
 // @ts-expect-error The types cannot refuse a number with a fraction, but they refuse a wrong object.
 world.setGravity({ wrong: true });
