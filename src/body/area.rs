@@ -1,19 +1,17 @@
 //! Areas: effects of a sensor on the bodies in it.
 //!
-//! An area fills its shape with a medium. The effects on a body depend on two numbers: `A`, the area in m² of the parts
-//! of the body's solid shapes that are inside, and `s`, the ratio of `A` to the area of all its solid shapes. For a
-//! body that consists of lines, `A` is 0 and `s` is the ratio of the lengths. `c` is the centre of area of the parts
-//! inside, and `M` is the body's mass:
+//! An area fills its shape with a medium. `A` is the area in m² of the parts of a body's solid shapes that are inside,
+//! `c` their centre, and `s` the ratio of `A` to the area of all solid shapes of the body. For a body of lines, `A` is
+//! 0 and `s` is the ratio of the lengths. `M` is the body's mass.
 //!
 //! ```text
 //! dv/dt = s acceleration + s attraction + A force / M - s linear_drag (v - u) - A density field / M
 //! dw/dt = A (c - x) x (force - density field) / (M k^2)  - s angular_drag (w - w_medium)
 //! ```
 //!
-//! `x` is the body's centre of mass, but between two parentheses it is the cross product. `k` is the body's radius of
-//! gyration, and `v` and `w` are its velocities. `field` is the acceleration that acts on the medium: the world's
-//! gravity, plus the acceleration and the attraction of each area that the body is in, times the `s` of that area. `u`
-//! is the velocity of the medium, the sum of `flow` and the velocity of the area's body at `x`, and `w_medium` is the
+//! `x` is the body's centre of mass, but between two parentheses it is the cross product. `k` is the radius of
+//! gyration, and `v` and `w` are the velocities. `field` is the world's gravity plus `s (acceleration + attraction)` of
+//! each area that the body is in. `u` is `flow` plus the velocity of the area's body at `x`, and `w_medium` is the
 //! angular velocity of the area's body. The effects of several areas add up.
 
 use serde::{Deserialize, Serialize};
@@ -24,24 +22,22 @@ use super::shape::DENSITY_MAX;
 use crate::fx;
 use crate::math::{Fx, Vec2};
 
-/// Largest acceleration of an area in m/s².
+/// In m/s².
 const ACCELERATION_MAX: Fx = fx!(10000);
-/// Largest force of an area in N/m².
+/// In N/m².
 const FORCE_MAX: Fx = fx!(1048576);
-/// Largest flow of an area in m/s.
+/// In m/s.
 const FLOW_MAX: Fx = fx!(400);
-/// Largest drag of an area per second.
+/// Per second.
 const DRAG_MAX: Fx = fx!(1000);
-/// Range of the radius of an attraction in metres.
+/// Range in metres.
 const RADIUS: (Fx, Fx) = (fx!(0.01), fx!(1048576));
 
 /// Effect of a sensor on the bodies in it: wind, water, a field of gravity.
 ///
 /// The area acts on the solid shapes of dynamic bodies with mass that the sensor detects, in proportion to the part of
-/// each shape that is inside. Rounded outlines are measured as polygons of 32 sides, with an error of at most 0.4 % of
-/// the radius for circles, and 1.7 % for capsules and rounded polygons. Directions are given in the frame of the area's
-/// body, and the medium moves with that body. The area's body itself feels no reaction: an area is an external
-/// influence, like gravity.
+/// each shape that is inside. Rounded outlines are measured as polygons of 32 sides, with an error of up to 0.4 % of
+/// the radius for circles, and 1.7 % for other rounded outlines. The area's body feels no reaction.
 ///
 /// ```
 /// use lockstep2d::{body::{Area, BodyDef, Polygon, ShapeDef}, fx, world::World};
@@ -65,23 +61,20 @@ const RADIUS: (Fx, Fx) = (fx!(0.01), fx!(1048576));
 #[doc(alias = "buoyancy")]
 #[doc(alias = "wind")]
 pub struct Area {
-    /// Acceleration in m/s², along the axes of the area's body, within ±10 000. It is added to gravity and does not
-    /// depend on the mass.
+    /// Acceleration in m/s², along the axes of the area's body, within ±10 000. It does not depend on the mass.
     pub acceleration: Vec2<Fx>,
     /// Acceleration towards the centre of the shape.
     pub attraction: Option<Attraction>,
-    /// Force in N per m² of the part that is in the area, along the axes of the area's body, within ±2^20: a wind that
-    /// moves light bodies more than heavy ones.
+    /// Force in N per m² of the part that is inside, along the axes of the area's body, within ±2^20: wind.
     pub force: Vec2<Fx>,
-    /// Velocity of the medium in m/s relative to the area's body, along that body's axes, within ±400 m/s. It acts
-    /// by drag.
+    /// Velocity of the medium in m/s relative to the area's body, along its axes, within ±400. It acts by drag.
     pub flow: Vec2<Fx>,
     /// Decay rate per second, 0 to 1000, of the velocity relative to the medium.
     pub linear_drag: Fx,
     /// Decay rate per second, 0 to 1000, of the angular velocity relative to the area's body.
     pub angular_drag: Fx,
-    /// Mass per area of the medium in kg/m², 0 to 2^20: bodies of a smaller density float in it. Buoyancy acts against
-    /// gravity and the accelerations of areas, at the centre of the part that is in the area.
+    /// Mass per area of the medium in kg/m², 0 to 2^20. Buoyancy opposes gravity and the accelerations of areas, at the
+    /// centre of the part that is inside.
     pub density: Fx,
 }
 
@@ -107,23 +100,22 @@ pub struct Area {
 #[doc(alias = "radial gravity")]
 #[doc(alias = "planet")]
 pub struct Attraction {
-    /// Acceleration in m/s² at the distance `radius`, within ±10 000. A negative one repels.
+    /// Acceleration in m/s² at the distance `radius`, within ±10 000. Negative values repel.
     pub acceleration: Fx,
-    /// Distance in metres, 0.01 to 2^20, at which the acceleration has the given value. Nearer to the centre it
-    /// decreases linearly to 0, as inside a planet.
+    /// Distance in metres, 0.01 to 2^20. Nearer to the centre the acceleration decreases linearly to 0.
     pub radius: Fx,
     /// Falloff of the acceleration beyond `radius`.
     pub falloff: Falloff,
 }
 
-/// Falloff of an attraction with the distance, beyond its radius.
+/// Falloff of an attraction beyond its radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Falloff {
-    /// The acceleration is constant.
+    /// Constant acceleration.
     Constant,
-    /// The acceleration is proportional to `1 / distance`.
+    /// Proportional to `1 / distance`.
     Inverse,
-    /// The acceleration is proportional to `1 / distance²`, as in Newton's law of gravitation.
+    /// Proportional to `1 / distance²`, as in Newton's law.
     InverseSquare,
 }
 
@@ -134,7 +126,7 @@ impl Area {
         Area::default()
     }
 
-    /// Creates a fluid with a density in kg/m², without drag.
+    /// Creates a fluid with a density in kg/m² and no drag.
     #[must_use]
     pub fn fluid(density: Fx) -> Self {
         Area { density, ..Area::default() }
@@ -147,8 +139,7 @@ impl Area {
         self
     }
 
-    /// Sets an attraction to the centre of the shape: the acceleration in m/s² at a distance of `radius` metres, and
-    /// its falloff beyond that distance.
+    /// Sets an attraction: see [`Attraction`].
     #[must_use]
     pub fn attraction(mut self, acceleration: Fx, radius: Fx, falloff: Falloff) -> Self {
         self.attraction = Some(Attraction { acceleration, radius, falloff });
@@ -183,7 +174,6 @@ impl Area {
         self
     }
 
-    /// Validates the area for a shape with the given geometry.
     pub(crate) fn validate(&self, geometry: &Geometry) -> Result<(), WorldError> {
         let Area { acceleration, attraction, force, flow, linear_drag, angular_drag, density } = *self;
         match geometry {

@@ -1,5 +1,4 @@
-//! Generational arena. A handle stays valid while other values are inserted and removed, and never resolves to a later
-//! value in the same slot.
+//! Generational arena: a handle never resolves to a later value in the same slot.
 //!
 //! The free list is part of the state, because it decides which handle the next value gets.
 
@@ -34,7 +33,7 @@ macro_rules! define_handle {
         }
 
         impl $name {
-            /// Slot of the value: a small, dense index that is reused. Suitable as an index into a game's side tables.
+            /// Slot of the value: a small index that is reused, for side tables.
             #[must_use]
             pub const fn index(self) -> u32 {
                 self.index
@@ -68,7 +67,7 @@ macro_rules! define_handle {
 }
 
 define_handle! {
-    /// Handle of a body. Valid until that body is despawned; afterwards it refers to no body.
+    /// Handle of a body. Valid until that body is despawned.
     ///
     /// ```
     /// # use lockstep2d::{body::{BodyDef, BodyId}, world::World};
@@ -151,9 +150,9 @@ struct Slot<T> {
 pub(crate) struct Arena<T, H> {
     #[serde(deserialize_with = "slots_within_limit")]
     slots: Vec<Slot<T>>,
-    /// Vacant slots that are not retired; the last element was freed last.
+    /// Vacant slots that are not retired. The last element was freed last.
     free: Vec<u32>,
-    /// Number of retired slots: vacant slots whose generation counter is exhausted.
+    /// Vacant slots whose generation counter is exhausted.
     retired: u32,
     #[serde(skip)]
     kept: Kept<T>,
@@ -163,24 +162,20 @@ pub(crate) struct Arena<T, H> {
 
 /// The values in a range of slots.
 pub(crate) struct ArenaRange<'a, T> {
-    /// The first slot.
     first: u32,
     slots: &'a mut [Slot<T>],
 }
 
 impl<T> ArenaRange<'_, T> {
-    /// Mutable access to the value in an occupied slot of the range: see [`Arena::at_mut`].
-    ///
-    /// # Panics
-    /// If the slot is vacant or in another range.
+    /// Panics if the slot is vacant or in another range. See [`Arena::at_mut`].
     #[inline]
     pub(crate) fn at_mut(&mut self, slot: u32) -> &mut T {
         self.slots[(slot - self.first) as usize].value.as_mut().expect("an occupied slot")
     }
 }
 
-/// Largest number of slots that decoding accepts: the capacity of a world plus some retired slots. A vacant slot takes
-/// 5 bytes in a file and up to some hundred in memory. Without this limit, a small file could cause a large allocation.
+/// Largest number of slots that decoding accepts: the capacity of a world plus some retired slots. Otherwise a small
+/// file could cause a large allocation.
 const DECODED_SLOTS_MAX: usize = (1 << 20) + (1 << 12);
 
 fn slots_within_limit<'de, T, D>(deserializer: D) -> Result<Vec<Slot<T>>, D::Error>
@@ -217,12 +212,10 @@ impl<T, H> Default for Arena<T, H> {
 }
 
 impl<T, H: Handle> Arena<T, H> {
-    /// Number of slots, occupied or not: the largest slot index plus 1.
     pub(crate) fn slot_count(&self) -> usize {
         self.slots.len()
     }
 
-    /// Number of values.
     pub(crate) fn len(&self) -> usize {
         self.slots.len() - self.free.len() - self.retired as usize
     }
@@ -238,7 +231,6 @@ impl<T, H: Handle> Arena<T, H> {
         handle
     }
 
-    /// Handle that the next [`Arena::insert`] returns.
     pub(crate) fn next_handle(&self) -> H {
         match self.free.last() {
             Some(&index) => H::from_parts(index, self.slots[index as usize].generation),
@@ -246,12 +238,11 @@ impl<T, H: Handle> Arena<T, H> {
         }
     }
 
-    /// Removes and returns a value. Its handle never resolves again.
     pub(crate) fn remove(&mut self, handle: H) -> Option<T> {
         self.get(handle)?;
         let slot = &mut self.slots[handle.slot() as usize];
         let value = slot.value.take();
-        // A slot with an exhausted generation counter is retired, not wrapped: an old handle must never resolve.
+        // Retired, not wrapped: an old handle must never resolve.
         if slot.generation < u32::MAX {
             slot.generation += 1;
             self.free.push(handle.slot());
@@ -267,42 +258,32 @@ impl<T, H: Handle> Arena<T, H> {
         if slot.generation == handle.generation() { slot.value.as_ref() } else { None }
     }
 
-    /// Mutable access to the value in an occupied slot, for any change. Invalidates the cached page copy.
-    ///
-    /// # Panics
-    /// If the slot is vacant: internal slot numbers never outlive their value.
+    /// Value in an occupied slot, for any change. Invalidates the cached page copy. Panics if the slot is vacant.
     pub(crate) fn redefine(&mut self, slot: u32) -> &mut T {
         self.kept.changed(slot);
         self.slots[slot as usize].value.as_mut().expect("an occupied slot")
     }
 
-    /// Mutable access to the value of a handle, for any change. Invalidates the cached page copy.
+    /// Value of a handle, for any change. Invalidates the cached page copy.
     pub(crate) fn get_mut(&mut self, handle: H) -> Option<&mut T> {
         self.get(handle)?;
         Some(self.redefine(handle.slot()))
     }
 
-    /// Value in an occupied slot.
-    ///
-    /// # Panics
-    /// If the slot is vacant: internal slot numbers never outlive their value.
+    /// Panics if the slot is vacant.
     #[inline]
     pub(crate) fn at(&self, slot: u32) -> &T {
         self.slots[slot as usize].value.as_ref().expect("an occupied slot")
     }
 
-    /// Mutable access to the value in an occupied slot, only for fields that every step changes. Keeps the cached page
-    /// copy: other changes need [`Arena::redefine`].
-    ///
-    /// # Panics
-    /// If the slot is vacant: internal slot numbers never outlive their value.
+    /// Value in an occupied slot, for changes of fields that every step changes. Keeps the cached page copy. Panics if
+    /// the slot is vacant.
     #[inline]
     pub(crate) fn at_mut(&mut self, slot: u32) -> &mut T {
         self.slots[slot as usize].value.as_mut().expect("an occupied slot")
     }
 
-    /// Divides the values into ranges of slots, one for each given end. A range ends before its end slot, or at the
-    /// last slot if the arena has fewer. Only for changes of fields that every step changes: see [`Arena::at_mut`].
+    /// Divides the values into ranges of slots that end before the given slots. See [`Arena::at_mut`].
     pub(crate) fn split(
         &mut self,
         ends: impl Iterator<Item = u32> + Clone,
@@ -312,34 +293,31 @@ impl<T, H: Handle> Arena<T, H> {
         firsts.zip(parts).map(|(first, slots)| ArenaRange { first, slots })
     }
 
-    /// Value in a slot; `None` if the slot is vacant.
     pub(crate) fn get_slot(&self, slot: u32) -> Option<&T> {
         self.slots.get(slot as usize)?.value.as_ref()
     }
 
-    /// Handle of the value in a slot or, if the slot is vacant, of the next value that the slot gets.
+    /// Handle of the value in a slot or, if the slot is vacant, of the next value there.
     pub(crate) fn handle_at(&self, slot: u32) -> H {
         H::from_parts(slot, self.slots[slot as usize].generation)
     }
 
-    /// Handles that the next values in vacant slots will get. The last handle is used first.
+    /// Handles that the next values in vacant slots will get. The last one is used first.
     pub(crate) fn free_handles(&self) -> impl Iterator<Item = H> {
         self.free.iter().map(|&slot| self.handle_at(slot))
     }
 
-    /// Number of slots whose generation counter is exhausted.
     pub(crate) fn retired(&self) -> u32 {
         self.retired
     }
 
-    /// Iterates all values in slot order.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (H, &T)> {
         self.slots.iter().zip(0u32..).filter_map(|(slot, index)| {
             slot.value.as_ref().map(|value| (H::from_parts(index, slot.generation), value))
         })
     }
 
-    /// Iterates all values in slot order mutably, only for fields that every step changes: see [`Arena::at_mut`].
+    /// For changes as in [`Arena::at_mut`].
     pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = (H, &mut T)> {
         self.slots.iter_mut().zip(0u32..).filter_map(|(slot, index)| {
             let generation = slot.generation;
@@ -347,8 +325,7 @@ impl<T, H: Handle> Arena<T, H> {
         })
     }
 
-    /// Whether the free list contains exactly the vacant slots that are not retired, each once, and the number of
-    /// retired slots is right.
+    /// Whether the free list contains exactly the vacant slots that are not retired, each once, and `retired` is right.
     pub(crate) fn is_consistent(&self) -> bool {
         let mut listed = alloc::vec![false; self.slots.len()];
         let all_vacant = self.free.iter().all(|&index| {

@@ -1,4 +1,4 @@
-//! Bodies: pose, velocity, mass, and the forces accumulated for the next tick.
+//! Bodies.
 
 use alloc::boxed::Box;
 
@@ -16,8 +16,7 @@ use crate::math::{
     widen,
 };
 
-/// Limit in m/s of each component of the linear velocity, and of `u = k w`, the radius of gyration times the angular
-/// velocity. The difference of two such components fits [`Speed`].
+/// Limit in m/s of each velocity component and of `u = k w`. The difference of two such components fits [`Speed`].
 pub(crate) const SPEED_MAX: Speed = Speed::lit("511");
 
 /// Centre of mass in the world, and rotation.
@@ -53,13 +52,12 @@ pub struct Body {
     #[serde(rename = "centre_of_mass")]
     pub(crate) centre: Vec2<Fx>,
     pub(crate) angle: Angle,
-    /// Velocity of the centre of mass.
     pub(crate) velocity: Vec2<Speed>,
-    /// Angular velocity times the radius of gyration, `u = k w`.
+    /// `u = k w`, the radius of gyration times the angular velocity.
     pub(crate) spin: Speed,
-    /// Applied force in N; cleared at the end of the next tick.
+    /// In N. Cleared at the end of the next tick.
     pub(crate) force: Vec2<Fx>,
-    /// Applied torque about the centre of mass in N m; cleared at the end of the next tick.
+    /// About the centre of mass in N m. Cleared at the end of the next tick.
     pub(crate) torque: Fx,
     /// Boxed, like `target`, so that the fields that every step reads lie close together.
     pub(crate) mass_source: Box<MassSource>,
@@ -67,11 +65,9 @@ pub struct Body {
     pub(crate) settings: BodySettings,
     pub(crate) enabled: bool,
     pub(crate) rest_ticks: RestTicks,
-    /// Sleeping island of the body; `None` while it is awake.
     pub(crate) island: Option<IslandId>,
     /// Pose that a kinematic body reaches in the next tick, if one was set.
     pub(crate) target: Option<Box<Pose>>,
-    /// Shapes in order of attachment.
     #[serde(with = "shape_list")]
     pub(crate) shapes: ShapeList,
     pub(crate) user_data: u64,
@@ -80,7 +76,6 @@ pub struct Body {
 }
 
 impl Body {
-    /// Creates a body without shapes.
     pub(crate) fn new(def: &BodyDef, mass: MassProperties) -> Self {
         let mut body = Body {
             kind: def.kind,
@@ -111,13 +106,13 @@ impl Body {
         Pose { centre: self.centre, angle: self.angle }
     }
 
-    /// Whether the body is fixed, kinematic or dynamic.
+    /// Kind of motion of the body.
     #[must_use]
     pub const fn kind(&self) -> BodyKind {
         self.kind
     }
 
-    /// Whether the body is dynamic: forces, contacts and joints move it.
+    /// Whether the body is dynamic.
     #[must_use]
     pub const fn is_dynamic(&self) -> bool {
         matches!(self.kind, BodyKind::Dynamic)
@@ -126,7 +121,7 @@ impl Body {
     /// Origin of the body in the world, in metres.
     #[must_use]
     pub fn position(&self) -> Vec2<Fx> {
-        // Most bodies have their centre of mass at their origin; this case needs no sine.
+        // The common case, which needs no sine.
         if self.mass.centre == Vec2::ZERO {
             return self.centre;
         }
@@ -175,31 +170,30 @@ impl Body {
         divide(widen(self.spin), self.mass.gyration)
     }
 
-    /// Velocity in m/s of the material point of the body at a world position.
+    /// Velocity in m/s of the body's material at a world position.
     #[must_use]
     pub fn velocity_at(&self, point: Vec2<Fx>) -> Vec2<Fx> {
         self.velocity() + (point - self.centre).perp().scale(self.angular_velocity())
     }
 
-    /// Mass in kg; 0 for fixed and kinematic bodies, and for a dynamic body whose shapes have no mass
-    /// ([`MassSource::Shapes`](super::MassSource::Shapes)).
+    /// Mass in kg. 0 for bodies that are not dynamic, and for dynamic ones [without mass](super::MassSource::Shapes).
     #[must_use]
     pub const fn mass(&self) -> Fx {
         self.mass.mass
     }
 
-    /// Whether forces and impulses change the body's velocity: it is dynamic, and its mass is not 0.
+    /// Whether forces and impulses change the body's velocity.
     pub(crate) fn has_mass(&self) -> bool {
         self.mass.mass > 0
     }
 
-    /// Moment of inertia about the centre of mass in kg m²; 0 if the mass is 0.
+    /// Moment of inertia about the centre of mass in kg m². 0 if the mass is 0.
     #[must_use]
     pub fn inertia(&self) -> Fx {
         self.mass.inertia()
     }
 
-    /// Radius of gyration in metres, `sqrt(inertia / mass)`; 4 m if the mass is 0.
+    /// Radius of gyration in metres, `sqrt(inertia / mass)`. 4 m if the mass is 0.
     #[must_use]
     pub const fn radius_of_gyration(&self) -> Fx {
         self.mass.gyration
@@ -214,13 +208,13 @@ impl Body {
         fx_mul(self.mass.mass, squared) / 2
     }
 
-    /// Shapes of the body in order of attachment.
+    /// Shapes in order of attachment.
     #[must_use]
     pub fn shapes(&self) -> &[ShapeId] {
         &self.shapes
     }
 
-    /// Damping, gravity scale, locks, continuous collision and sleep settings.
+    /// Settings of the body.
     #[must_use]
     pub const fn settings(&self) -> &BodySettings {
         &self.settings
@@ -232,20 +226,20 @@ impl Body {
         self.enabled
     }
 
-    /// Whether the body is asleep. A sleeping body is at rest, and ticks do not simulate it until something wakes it.
+    /// Whether the body is asleep: at rest, and not simulated until something wakes it.
     #[must_use]
     pub const fn is_asleep(&self) -> bool {
         self.island.is_some()
     }
 
-    /// Sleeping island of the body; `None` while it is awake.
+    /// Sleeping island of the body. `None` while it is awake.
     #[must_use]
     pub const fn island(&self) -> Option<IslandId> {
         self.island
     }
 
-    /// Whether the body can start or change contacts. Pairs of shapes whose bodies are both inactive are skipped. A
-    /// kinematic body stays active for one tick after it has come to rest, so that its final pose is processed.
+    /// Whether the body can start or change contacts. A kinematic body can for one tick after it has come to rest, so
+    /// that its final pose is processed.
     pub(crate) fn is_active(&self) -> bool {
         match self.kind {
             BodyKind::Fixed => false,
@@ -254,18 +248,17 @@ impl Body {
         }
     }
 
-    /// Whether the linear or angular velocity is non-zero.
     pub(crate) fn is_moving(&self) -> bool {
         self.velocity != Vec2::ZERO || self.spin != 0
     }
 
-    /// User data, set by the game.
+    /// User data.
     #[must_use]
     pub const fn user_data(&self) -> u64 {
         self.user_data
     }
 
-    /// Name for reports, set by the game.
+    /// Name for reports.
     #[must_use]
     pub fn name(&self) -> Option<Name> {
         self.name.as_deref().copied()
@@ -280,8 +273,7 @@ impl Body {
         self.spin = if self.turns() { narrow(fx_mul(omega, self.mass.gyration)) } else { Speed::ZERO };
     }
 
-    /// Changes the mass. Keeps the origin, the rotation, the angular velocity and the velocity of every material point,
-    /// unless a speed would exceed [`SPEED_MAX`] or a degree of freedom is locked.
+    /// Changes the mass and keeps the pose and the motion, except for clamped speeds and locked degrees of freedom.
     pub(crate) fn set_mass(&mut self, mass: MassProperties) {
         let (position, angle, omega) = (self.position(), self.angle, self.angular_velocity());
         let old_centre = self.centre;
@@ -298,7 +290,7 @@ impl Body {
         self.mass.inverse_gyration != Reciprocal::ZERO
     }
 
-    /// Clears velocity along locked axes, and resets the kinematic target to the current pose along them.
+    /// Clears velocity along locked axes, and holds the kinematic target at the current pose along them.
     pub(crate) fn hold_locked_axes(&mut self) {
         let (turns, locks) = (self.turns(), self.settings.locks);
         if locks.x {
@@ -307,7 +299,6 @@ impl Body {
         if locks.y {
             self.velocity.y = Speed::ZERO;
         }
-        // Few bodies have a target.
         let Some(target) = &mut self.target else { return };
         if locks.x {
             target.centre.x = self.centre.x;
@@ -320,13 +311,12 @@ impl Body {
         }
     }
 
-    /// Sets the linear and the angular velocity to zero.
     pub(crate) fn stop(&mut self) {
         self.velocity = Vec2::ZERO;
         self.spin = Speed::ZERO;
     }
 
-    /// Clamps every velocity component to ±[`SPEED_MAX`], and clears the velocity along locked axes.
+    /// Clamps velocity components to ±[`SPEED_MAX`], and clears the velocity along locked axes.
     fn clamp_velocity(&mut self) {
         let clamp = |speed: Speed| speed.clamp(-SPEED_MAX, SPEED_MAX);
         self.velocity = Vec2::new(clamp(self.velocity.x), clamp(self.velocity.y));
@@ -334,20 +324,20 @@ impl Body {
         self.hold_locked_axes();
     }
 
-    /// Adds a force in N at a world point. It acts until the end of the next tick.
+    /// Adds a force in N at a world point for the next tick.
     pub(crate) fn apply_force(&mut self, force: Vec2<Fx>, point: Vec2<Fx>) {
         self.force += force;
         self.torque = self.torque.saturating_add((point - self.centre).cross(force));
     }
 
-    /// Applies an impulse in N s at a world point, which changes velocity at once: `dv = P / m`, `du = r x P / (m k)`.
+    /// Applies an impulse in N s at a world point: `dv = P / m`, `du = r x P / (m k)`.
     pub(crate) fn apply_impulse(&mut self, impulse: Vec2<Fx>, point: Vec2<Fx>) {
         let dv = |p: Fx| narrow::<fixed::types::extra::U21>(divide(p, self.mass.mass));
         self.velocity += Vec2::new(dv(impulse.x), dv(impulse.y));
         self.apply_angular_impulse((point - self.centre).cross(impulse));
     }
 
-    /// Applies an angular impulse in N m s, which changes angular velocity at once.
+    /// Applies an angular impulse in N m s.
     pub(crate) fn apply_angular_impulse(&mut self, impulse: Fx) {
         if self.turns() {
             let du = narrow(divide(divide(impulse, self.mass.mass), self.mass.gyration));
@@ -356,8 +346,8 @@ impl Body {
         self.clamp_velocity();
     }
 
-    /// Returns the changes of `v` and `u` by the applied force and torque in one sub-step, at `rate` sub-steps per
-    /// second: `dv = F / (m rate)`, `du = torque / (m k rate)`.
+    /// Changes of `v` and `u` by the applied force and torque in one of `rate` sub-steps per second: `dv = F / (m
+    /// rate)`, `du = torque / (m k rate)`.
     pub(crate) fn acceleration_step(&self, rate: u32) -> (Vec2<Speed>, Speed) {
         self.step_by(self.force, self.torque, rate)
     }
@@ -375,12 +365,12 @@ impl Body {
     }
 }
 
-/// `a / b` of world quantities, rounded to nearest and saturated; 0 if `b` is 0, as for a body without mass.
+/// `a / b`, rounded to nearest and saturated. 0 if `b` is 0, as for a body without mass.
 fn divide(a: Fx, b: Fx) -> Fx {
     crate::math::fx_div(a, b).unwrap_or(Fx::ZERO)
 }
 
-/// `force / (mass rate)` as a speed, rounded to nearest and saturated; 0 if the mass is 0.
+/// `force / (mass rate)` as a speed, rounded to nearest and saturated. 0 if the mass is 0.
 fn over_mass(force: Fx, mass: Fx, rate: u32) -> Speed {
     if force == Fx::ZERO || mass == Fx::ZERO {
         return Speed::ZERO;

@@ -1,4 +1,4 @@
-//! Body definitions, with builder methods.
+//! Body definitions.
 
 use serde::{Deserialize, Serialize};
 
@@ -31,7 +31,7 @@ pub enum BodyKind {
     #[doc(alias = "static")]
     #[doc(alias = "StaticBody")]
     Fixed,
-    /// Moves with its velocity alone: lifts and doors. It pushes dynamic bodies and nothing pushes it.
+    /// Moves with its velocity and is not pushed: lifts and doors.
     Kinematic,
     /// Moved by forces, contacts and joints.
     Dynamic,
@@ -62,20 +62,20 @@ pub struct BodyDef {
     pub angular_velocity: Fx,
     /// Source of the mass of a dynamic body.
     pub mass: MassSource,
-    /// Damping, gravity scale, locks, continuous collision and sleep settings.
+    /// Other settings.
     pub settings: BodySettings,
     /// Whether the body takes part in the simulation. A disabled body keeps its pose and collides with nothing.
     pub enabled: bool,
-    /// Whether the body starts asleep. Only enabled dynamic bodies sleep, and only in worlds in which sleeping is on.
+    /// Whether the body starts asleep. It must be dynamic and enabled, in a world with sleeping on.
     pub asleep: bool,
-    /// Number for the game's own use. The engine does not read it, but it is part of the state and its hash.
+    /// Number for the game's own use. It is part of the state and its hash.
     pub user_data: u64,
-    /// Name of the body, which is shown in reports.
+    /// Name in reports.
     pub name: Option<Name>,
 }
 
 impl BodyDef {
-    /// Creates a definition of a body of the given kind, at rest at the origin.
+    /// Creates a definition of a body at rest at the origin.
     #[must_use]
     pub const fn new(kind: BodyKind) -> Self {
         BodyDef {
@@ -93,7 +93,7 @@ impl BodyDef {
         }
     }
 
-    /// Creates a definition of a fixed body, which does not move.
+    /// Creates a definition of a fixed body.
     #[must_use]
     #[doc(alias = "static")]
     #[doc(alias = "StaticBody")]
@@ -102,14 +102,13 @@ impl BodyDef {
         Self::new(BodyKind::Fixed)
     }
 
-    /// Creates a definition of a kinematic body, which moves with its velocity alone.
+    /// Creates a definition of a kinematic body.
     #[must_use]
     pub const fn kinematic() -> Self {
         Self::new(BodyKind::Kinematic)
     }
 
-    /// Creates a definition of a dynamic body, which forces, contacts and joints move. Its mass is that of its shapes,
-    /// unless [`BodyDef::mass`] sets it. Without mass, only damping changes its velocity: see [`MassSource::Shapes`].
+    /// Creates a definition of a dynamic body. Its mass is that of its shapes unless [`BodyDef::mass`] sets it.
     #[must_use]
     pub const fn dynamic() -> Self {
         Self::new(BodyKind::Dynamic)
@@ -150,14 +149,14 @@ impl BodyDef {
         self
     }
 
-    /// Sets the linear damping: the decay rate of the velocity, per second.
+    /// Sets the decay rate of the velocity, per second.
     #[must_use]
     pub const fn linear_damping(mut self, rate: Fx) -> Self {
         self.settings.linear_damping = rate;
         self
     }
 
-    /// Sets the angular damping: the decay rate of the angular velocity, per second.
+    /// Sets the decay rate of the angular velocity, per second.
     #[must_use]
     pub const fn angular_damping(mut self, rate: Fx) -> Self {
         self.settings.angular_damping = rate;
@@ -199,14 +198,13 @@ impl BodyDef {
         self
     }
 
-    /// Makes the body a bullet: it is swept against all bodies that are not bullets, so that it does not pass through
-    /// them.
+    /// Makes the body a bullet: see [`Continuous::Bullet`].
     #[must_use]
     pub const fn bullet(self) -> Self {
         self.continuous(Continuous::Bullet)
     }
 
-    /// Sweeps the body against kinematic bodies as well as fixed ones: see [`Continuous::Kinematic`].
+    /// Sweeps the body against fixed and kinematic bodies: see [`Continuous::Kinematic`].
     #[must_use]
     pub const fn swept_against_kinematic(self) -> Self {
         self.continuous(Continuous::Kinematic)
@@ -219,14 +217,14 @@ impl BodyDef {
         self
     }
 
-    /// Sets the speed below which the body becomes ready to sleep, in m/s.
+    /// Sets the speed in m/s below which the body becomes ready to sleep: see [`BodySettings::sleep_speed`].
     #[must_use]
     pub const fn sleep_speed(mut self, speed: Fx) -> Self {
         self.settings.sleep_speed = speed;
         self
     }
 
-    /// Starts the body asleep and at rest: ticks do not simulate it until something wakes it.
+    /// Starts the body asleep and at rest.
     #[must_use]
     pub const fn asleep(mut self) -> Self {
         self.asleep = true;
@@ -247,14 +245,14 @@ impl BodyDef {
         self
     }
 
-    /// Sets the name of the body, which is shown in reports.
+    /// Sets the name.
     #[must_use]
     pub const fn name(mut self, name: Name) -> Self {
         self.name = Some(name);
         self
     }
 
-    /// Validates everything but mass and speed, which depend on shapes and on the world.
+    /// Does not validate mass and speed, which depend on shapes and on the world.
     pub(crate) fn validate(&self) -> Result<(), WorldError> {
         check_position(self.position)?;
         self.settings.validate()?;
@@ -262,7 +260,6 @@ impl BodyDef {
     }
 }
 
-/// Checks that a position is inside the world.
 pub(crate) fn check_position(position: Vec2<Fx>) -> Result<(), WorldError> {
     for value in [position.x, position.y] {
         if !(-WORLD_EXTENT_MAX..=WORLD_EXTENT_MAX).contains(&value) {

@@ -1,4 +1,4 @@
-//! Chains: polylines for ground and walls, without ghost collisions at their corners.
+//! Chains of links, for ground and walls.
 
 use alloc::vec::Vec;
 
@@ -9,8 +9,7 @@ use super::material::Material;
 use super::shape::{SHAPES_PER_BODY_MAX, ShapeDef};
 use crate::math::{Fx, Vec2};
 
-/// A polyline of [`Geometry::Link`] shapes, one for each segment. Each link stores its neighbours, so that a body that
-/// slides or rolls over the chain has no ghost collisions at the joints between links.
+/// A polyline of [`Geometry::Link`] shapes, which store their neighbours. This prevents ghost collisions at the joints.
 ///
 /// ```
 /// use lockstep2d::{body::{BodyDef, Chain}, fx, math::Vec2, world::World};
@@ -31,7 +30,7 @@ pub struct Chain<'a> {
 }
 
 impl<'a> Chain<'a> {
-    /// Creates an open two-sided chain through points in metres from the body's origin, in the body's frame.
+    /// Creates an open two-sided chain through points in the body's frame, in metres.
     #[must_use]
     pub fn new(points: &'a [Vec2<Fx>]) -> Self {
         Chain { points, materials: &[], closed: false, sides: Sides::Both, filter: Filter::default() }
@@ -44,9 +43,9 @@ impl<'a> Chain<'a> {
         self
     }
 
-    /// Makes the chain solid only from its right side, looking along the points in their order: a closed chain in
-    /// counter-clockwise order is solid from outside, and ground whose points run from right to left is solid from
-    /// above. A shape whose centre is on the other side passes through.
+    /// Makes the chain solid from its right side, looking along its points. A counter-clockwise loop is then solid from
+    /// outside, and ground from right to left is solid from above. A shape whose centre is on the other side passes
+    /// through.
     #[must_use]
     pub fn one_sided(mut self) -> Self {
         self.sides = Sides::Right;

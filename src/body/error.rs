@@ -1,4 +1,4 @@
-//! Errors of geometry, and of changes to a world.
+//! Errors of geometry and of world changes.
 
 use core::fmt;
 
@@ -22,7 +22,7 @@ use crate::math::Fx;
 pub enum GeometryError {
     /// The polygon does not have 3 to 8 vertices.
     VertexCount {
-        /// Number of vertices given.
+        /// Number given.
         count: u64,
     },
     /// Two neighbouring vertices are closer than 0.5 mm.
@@ -42,14 +42,14 @@ pub enum GeometryError {
         /// Number of points given.
         points: u64,
     },
-    /// The number of materials of a chain is neither 0 nor 1 nor the number of its links.
+    /// The number of materials of a chain is not 0, 1 or the number of its links.
     MaterialCount {
         /// Number of links.
         links: u64,
         /// Number of materials given.
         materials: u64,
     },
-    /// A coordinate, radius or length is too small or too large.
+    /// A coordinate, radius or length is out of range.
     SizeOutOfRange {
         /// Name of the size, such as "radius of a circle".
         what: &'static str,
@@ -57,7 +57,7 @@ pub enum GeometryError {
         value: Fx,
         /// Smallest value allowed.
         min: Fx,
-        /// Largest value allowed; [`Fx::MAX`] for no limit.
+        /// Largest value allowed. [`Fx::MAX`] means no limit.
         max: Fx,
     },
 }
@@ -97,7 +97,7 @@ impl fmt::Display for GeometryError {
 
 impl core::error::Error for GeometryError {}
 
-/// The text of a range. [`Fx::MIN`] and [`Fx::MAX`] are open ends, and a range from [`Fx::DELTA`] excludes 0.
+/// Text of a range. [`Fx::MIN`] and [`Fx::MAX`] are open ends, and [`Fx::DELTA`] excludes 0.
 struct Range<'a> {
     min: &'a Fx,
     max: &'a Fx,
@@ -121,7 +121,7 @@ impl fmt::Display for Range<'_> {
     }
 }
 
-/// A change that the world rejects. The world stays as it was.
+/// A rejected change, which leaves the world as it was.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, WorldError}, fx, world::World};
@@ -136,13 +136,13 @@ impl fmt::Display for Range<'_> {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WorldError {
-    /// The geometry of a shape is not valid.
+    /// The geometry of a shape is invalid.
     Geometry(GeometryError),
-    /// The handle refers to a body that was removed or never existed.
+    /// No body with this handle exists.
     StaleBody(BodyId),
-    /// The handle refers to a shape that was removed or never existed.
+    /// No shape with this handle exists.
     StaleShape(ShapeId),
-    /// The handle refers to a joint that was removed or never existed.
+    /// No joint with this handle exists.
     StaleJoint(JointId),
     /// A position is further than 2^30 m from the origin on some axis.
     PositionOutOfRange {
@@ -157,17 +157,16 @@ pub enum WorldError {
         /// Largest distance allowed, in metres.
         max: Fx,
     },
-    /// A speed exceeds the limit of the world. The speed of a rotation is the angular velocity in rad/s times the
-    /// radius of gyration.
+    /// A speed, or an angular velocity in rad/s times the radius of gyration, exceeds the limit of the world.
     SpeedOutOfRange {
-        /// The requested speed in m/s.
+        /// Speed in m/s.
         value: Fx,
-        /// Largest speed allowed, in m/s.
+        /// Largest speed in m/s.
         max: Fx,
     },
     /// A sleep speed is not within 0 to 400 m/s.
     SleepSpeedOutOfRange {
-        /// The requested speed in m/s.
+        /// Speed in m/s.
         value: Fx,
     },
     /// The density is negative, or above 2^20 kg/m².
@@ -186,14 +185,12 @@ pub enum WorldError {
         /// Largest value allowed.
         max: Fx,
     },
-    /// A given mass, or the mass of a dynamic body, is not within 10 mg to 2^30 kg. A body whose mass is computed from
-    /// its shapes may also have a mass of 0, which [`MassProperties::of_shapes`](super::MassProperties::of_shapes)
-    /// rejects.
+    /// A mass is not within 10 mg to 2^30 kg.
     MassOutOfRange {
         /// The mass in kg.
         value: Fx,
     },
-    /// A given radius of gyration, or that of a dynamic body, is not within 2 mm to 512 m.
+    /// A radius of gyration is not within 2 mm to 512 m.
     GyrationOutOfRange {
         /// The radius in metres.
         value: Fx,
@@ -212,7 +209,7 @@ pub enum WorldError {
     AreaOutOfRange {
         /// Name of the property, such as "flow".
         what: &'static str,
-        /// The value, or the component of the vector.
+        /// Value, or component of the vector.
         value: Fx,
         /// Smallest value allowed.
         min: Fx,
@@ -221,13 +218,13 @@ pub enum WorldError {
     },
     /// A shape that is not a sensor cannot be an area.
     AreaNotSensor,
-    /// A segment or a link of a chain has no interior, so that it cannot be an area.
+    /// A segment or link has no interior, so it cannot be an area.
     AreaOfLine,
     /// A joint connects a body to itself.
     JointToItself(BodyId),
-    /// The new definition of a joint names other bodies. The bodies of a joint cannot be changed.
+    /// The bodies of a joint cannot be changed.
     JointOfOtherBodies(JointId),
-    /// The joint does not have the part that the change addresses, such as a motor.
+    /// The joint lacks the part to change, such as a motor.
     JointWithout {
         /// The joint.
         joint: JointId,
@@ -240,9 +237,9 @@ pub enum WorldError {
         what: &'static str,
         /// The number.
         value: Fx,
-        /// Smallest value allowed; [`Fx::MIN`] for no limit, [`Fx::DELTA`] for all above 0.
+        /// Smallest value allowed. [`Fx::MIN`] means no limit, [`Fx::DELTA`] any value above 0.
         min: Fx,
-        /// Largest value allowed; [`Fx::MAX`] for no limit.
+        /// Largest value allowed. [`Fx::MAX`] means no limit.
         max: Fx,
     },
     /// The lower limit of a joint is above the upper one.
@@ -285,22 +282,21 @@ pub enum WorldError {
         /// Largest value allowed.
         max: Fx,
     },
-    /// The change would alter a limit of the world, which is fixed when the world is created.
+    /// The change would alter a limit that is fixed when the world is created.
     FixedSetting {
         /// Name of the limit.
         name: &'static str,
     },
     /// A name is not 1 to 16 ASCII letters, digits, `-` and `_`.
     NameInvalid,
-    /// The change would exceed the largest number of bodies, shapes or joints of the world, or of shapes of a body.
+    /// The change would exceed a limit on bodies, shapes or joints.
     Full {
-        /// Kind of object whose limit would be exceeded.
+        /// Kind of object.
         what: &'static str,
         /// Largest number of such objects.
         limit: u32,
     },
-    /// The kind or the state of the body does not allow the change. For example, only enabled dynamic bodies take
-    /// forces and impulses.
+    /// The kind or state of the body does not allow the change. For example, fixed bodies take no forces.
     WrongKind(BodyId),
 }
 

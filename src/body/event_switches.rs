@@ -1,4 +1,4 @@
-//! Event switches: the events in which a shape takes part.
+//! Event switches.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,18 +22,18 @@ use serde::{Deserialize, Serialize};
 pub struct EventSwitches {
     /// Begin and end of contacts. A pair reports them if either shape enables them.
     pub contact: bool,
-    /// Hit events: contacts that push after an approach at [`crate::world::Config::hit_speed`] or faster. A pair
-    /// reports them if either shape enables them.
+    /// Hits: contacts after an approach at [`crate::world::Config::hit_speed`] or faster. A pair reports them if either
+    /// shape enables them.
     pub hit: bool,
-    /// Detection of the shape by sensors.
+    /// Detection by sensors.
     #[doc(alias = "trigger")]
     pub sensor: bool,
-    /// Whether the shape, if it is a sensor, detects other sensors whose `sensor` switch is on.
+    /// Detection of other sensors by this sensor, if their `sensor` switch is on.
     pub detect_sensors: bool,
 }
 
 impl Default for EventSwitches {
-    /// Contact and sensor events enabled; hit events and the detection of other sensors disabled.
+    /// Contact and sensor events on, others off.
     fn default() -> Self {
         EventSwitches { contact: true, hit: false, sensor: true, detect_sensors: false }
     }

@@ -2,13 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Collision filter. Two shapes in the same non-zero group may collide if the group is positive, whatever their masks,
-/// and never collide if it is negative. Other shapes may collide if each shape's mask includes at least one of the
-/// other shape's categories.
+/// Collision filter. Two shapes in one non-zero group may collide if the group is positive, and do not if it is
+/// negative. For other pairs, each shape's mask must include a category of the other shape.
 ///
-/// The tree of the broad phase skips most pairs within a negative group from -1 to -32 768. It also skips most pairs of
-/// shapes without a group that belong to the same single category and exclude this category from their masks. Use such
-/// a group or category for a large set of shapes that do not collide with each other, such as bullets or debris.
+/// The broad phase is faster for a large set of shapes that do not collide with each other, such as bullets, if they
+/// share one group from -1 to -32 768, or one single category that their masks exclude.
 ///
 /// ```
 /// # use lockstep2d::body::Filter;
@@ -17,16 +15,16 @@ use serde::{Deserialize, Serialize};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Filter {
-    /// The categories this shape belongs to, one bit each.
+    /// Categories of this shape, one bit each.
     pub category: u64,
-    /// The categories that this shape may collide with, one bit each.
+    /// Categories that this shape may collide with, one bit each.
     pub mask: u64,
-    /// Overrides categories among shapes of the same non-zero group.
+    /// Overrides categories and masks among shapes of the same non-zero group.
     pub group: i32,
 }
 
 impl Default for Filter {
-    /// Category 1, collides with everything, no group.
+    /// Category 1, collides with all categories, no group.
     fn default() -> Self {
         Filter { category: 1, mask: u64::MAX, group: 0 }
     }
@@ -42,13 +40,11 @@ impl Filter {
         self.mask & other.category != 0 && other.mask & self.category != 0
     }
 
-    /// Collision class of a shape.
     pub(crate) fn collision_class(&self) -> CollisionClass {
         let Filter { category, mask, group } = *self;
         let class = match group {
-            // Within one group neither category nor mask matters.
             ..0 => i64::from(group),
-            // Within one category the mask of each shape excludes the other.
+            // Each mask excludes the other shape.
             0 if category.is_power_of_two() && mask & category == 0 => i64::from(1 + category.ilog2()),
             _ => 0,
         };
@@ -56,13 +52,12 @@ impl Filter {
     }
 }
 
-/// Collision class: two shapes of the same class never collide with each other, unless the class is
-/// [`CollisionClass::NONE`].
+/// Shapes of one class do not collide with each other, unless the class is [`CollisionClass::NONE`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct CollisionClass(i16);
 
 impl CollisionClass {
-    /// Class of a shape that may collide with shapes of any class, and of a set that contains several classes.
+    /// Class of a shape that may collide with any class, and of a set of several classes.
     pub(crate) const NONE: Self = CollisionClass(0);
 
     /// Class of the union of two sets.

@@ -1,4 +1,4 @@
-//! Geometry of shapes, with size limits and bounding boxes.
+//! Geometry of shapes.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,8 +8,7 @@ use super::shape::WORLD_EXTENT_MAX;
 use crate::fx;
 use crate::math::{Aabb, Fx, Vec2};
 
-/// Smallest radius of a circle or capsule, and smallest distance between the ends of a segment, link or capsule, in
-/// metres.
+/// Smallest radius of circles and capsules, and distance between the ends of lines and capsules, in metres.
 const SIZE_MIN: Fx = fx!(0.002);
 
 /// Geometry of a shape, relative to the shape's centre.
@@ -25,13 +24,13 @@ const SIZE_MIN: Fx = fx!(0.002);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Geometry {
-    /// A disc centred on the shape's centre.
+    /// A disc about the shape's centre.
     Circle {
         /// Radius in metres, 0.002 to 110.
         radius: Fx,
     },
-    /// A line segment, solid from both sides. It has no area, and so no mass. Segments do not collide with each other.
-    /// A segment of a fixed body may be as long as the world.
+    /// A line segment, solid from both sides, without mass. Does not collide with segments and links. On a fixed body,
+    /// it may be as long as the world.
     Segment {
         /// First end, in metres from the shape's centre.
         a: Vec2<Fx>,
@@ -40,7 +39,7 @@ pub enum Geometry {
     },
     /// A convex polygon, optionally rounded.
     Polygon(Polygon),
-    /// All points within a radius of a line segment: a pill, or a stick with round ends.
+    /// All points within a radius of a line segment.
     Capsule {
         /// Centre of the first round end, in metres from the shape's centre.
         a: Vec2<Fx>,
@@ -49,9 +48,8 @@ pub enum Geometry {
         /// Radius in metres, at least 0.002. The capsule extends at most 110 m from the shape's centre on each axis.
         radius: Fx,
     },
-    /// A line segment of a chain, created by [`Chain`](super::Chain). Like a segment it has no area, does not collide
-    /// with segments or links, and may be as long as the world if its body is fixed. At an end with a neighbour,
-    /// contact normals are limited to the directions that the whole chain allows, which prevents ghost collisions.
+    /// A segment of a [`Chain`](super::Chain). An end with a neighbour limits contact normals to those that the whole
+    /// chain allows.
     Link {
         /// First end, in metres from the shape's centre.
         a: Vec2<Fx>,
@@ -88,7 +86,7 @@ pub enum Sides {
     /// Both sides.
     #[default]
     Both,
-    /// Only the right side, looking from `a` to `b`. A shape whose centre is on the left passes through.
+    /// The right side, looking from `a` to `b`. A shape whose centre is on the left passes through.
     Right,
 }
 
@@ -120,8 +118,7 @@ impl Geometry {
     /// Creates a capsule from the centres of its round ends, in metres from the shape's centre, and its radius.
     ///
     /// # Errors
-    /// If the centres are closer than 2 mm, the radius is below 2 mm, or the capsule extends further than 110 m on some
-    /// axis.
+    /// If the centres are closer than 2 mm, the radius is below 2 mm, or the capsule leaves the range of ±110 m.
     pub fn capsule(
         a: impl Into<Vec2<Fx>>,
         b: impl Into<Vec2<Fx>>,
@@ -131,7 +128,7 @@ impl Geometry {
         capsule.validate().map(|()| capsule)
     }
 
-    /// Validates the size. A [`Polygon`] is valid by construction.
+    /// A [`Polygon`] is valid by construction.
     pub(crate) fn validate(&self) -> Result<(), GeometryError> {
         match *self {
             Geometry::Circle { radius } => {
@@ -159,7 +156,7 @@ impl Geometry {
         Ok(())
     }
 
-    /// Bounding box of the geometry about its own centre, without rotation.
+    /// Bounding box about the shape's centre, without rotation.
     pub(crate) fn local_bounds(&self) -> Aabb {
         match self {
             Geometry::Circle { radius } => Aabb::new(Vec2::ZERO, Vec2::ZERO).expanded(*radius),
@@ -174,19 +171,16 @@ impl Geometry {
     }
 }
 
-/// Checks a size in metres.
 pub(super) fn check_size(what: &'static str, value: Fx, min: Fx, max: Fx) -> Result<(), GeometryError> {
     let in_range = (min..=max).contains(&value);
     if in_range { Ok(()) } else { Err(GeometryError::SizeOutOfRange { what, value, min, max }) }
 }
 
-/// Checks that points are within `extent` of the shape's centre on each axis.
 fn check_within(what: &'static str, points: &[Vec2<Fx>], extent: Fx) -> Result<(), GeometryError> {
     let mut coordinates = points.iter().flat_map(|point| [point.x, point.y]);
     coordinates.try_for_each(|value| check_size(what, value, -extent, extent))
 }
 
-/// Checks that a segment is long enough to have a reliable direction.
 fn check_length(what: &'static str, a: Vec2<Fx>, b: Vec2<Fx>) -> Result<(), GeometryError> {
     check_size(what, a.distance(b), SIZE_MIN, Fx::MAX)
 }

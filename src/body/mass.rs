@@ -1,8 +1,7 @@
 //! Mass, centre of mass and radius of gyration from shapes and densities.
 //!
-//! Bodies store the radius of gyration `k = sqrt(I / m)` instead of the moment of inertia. With `u = k w`, both linear
-//! and angular velocity are speeds in m/s of the same mass `m`. The parts of a body are summed by the parallel axis
-//! theorem:
+//! Bodies store the radius of gyration `k = sqrt(I / m)` instead of the moment of inertia. With `u = k w`, linear and
+//! angular velocity are both speeds in m/s of the mass `m`. The parallel axis theorem sums the parts of a body:
 //!
 //! ```text
 //! m     = sum m_i
@@ -10,7 +9,7 @@
 //! m k^2 = sum m_i (k_i^2 + |c_i - c|^2)
 //! ```
 //!
-//! The sums are 128-bit integers, and each quotient is rounded once. `figure.rs` computes the part of a polygon.
+//! Sums are 128-bit integers, and each quotient is rounded once.
 
 mod figure;
 
@@ -25,9 +24,9 @@ use super::shape::ShapeDef;
 use crate::fx;
 use crate::math::{Fx, PI, Reciprocal, Unit, Vec2, div_round, fx_mul, saturate_wide};
 
-/// Range of a dynamic body's mass in kg.
+/// Range in kg.
 const MASS: core::ops::RangeInclusive<Fx> = fx!(0.00001)..=fx!(1073741824);
-/// Range of a dynamic body's radius of gyration in metres.
+/// Range in metres.
 const GYRATION: core::ops::RangeInclusive<Fx> = fx!(0.002)..=fx!(512);
 
 /// Source of a dynamic body's mass.
@@ -46,18 +45,17 @@ const GYRATION: core::ops::RangeInclusive<Fx> = fx!(0.002)..=fx!(512);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MassSource {
-    /// Computed from the area and density of the shapes. If no shape has both, the body has no mass: only damping
-    /// changes its velocity, not gravity, forces, contacts or joints, and it pushes other bodies as a kinematic body
-    /// does.
+    /// Computed from the area and density of the shapes. If no shape has both, the body has no mass: gravity, forces,
+    /// contacts and joints do not change its velocity, and it pushes other bodies as a kinematic body does.
     #[default]
     Shapes,
-    /// Given explicitly; the shapes do not matter.
+    /// Given explicitly. The shapes do not matter.
     Given {
         /// Mass in kg, 1e-5 to 2^30.
         mass: Fx,
         /// Centre of mass in the body's frame, in metres, within ±128.
         centre: Vec2<Fx>,
-        /// Radius of gyration about the centre of mass in metres, 0.002 to 512: `sqrt(inertia / mass)`.
+        /// Radius of gyration about the centre of mass in metres, 0.002 to 512.
         gyration: Fx,
     },
 }
@@ -79,27 +77,26 @@ pub enum MassSource {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MassProperties {
-    /// Mass in kg; 0 for a fixed or kinematic body, and for a dynamic one without mass.
+    /// Mass in kg, 0 for a body without mass.
     pub(crate) mass: Fx,
-    /// Centre of mass in the body's frame.
     pub(crate) centre: Vec2<Fx>,
-    /// Radius of gyration in metres. An arbitrary positive length if the mass is 0.
+    /// In metres. Arbitrary but positive if the mass is 0.
     pub(crate) gyration: Fx,
-    /// `1 / gyration`; 0 if the rotation is locked.
+    /// `1 / gyration`, or 0 if the rotation is locked.
     pub(crate) inverse_gyration: Reciprocal,
 }
 
 impl MassProperties {
-    /// Properties of a dynamic body with these shapes, from their areas and densities.
+    /// Properties of a dynamic body from the areas and densities of its shapes.
     ///
     /// # Errors
-    /// [`WorldError::MassOutOfRange`] if the mass is not 1e-5 to 2^30 kg, for example 0 because no shape has both an
-    /// area and a density; [`WorldError::GyrationOutOfRange`] if the radius of gyration is not 0.002 to 512 m.
+    /// [`WorldError::MassOutOfRange`] if the mass is not 1e-5 to 2^30 kg, for example 0 because the shapes are lines;
+    /// [`WorldError::GyrationOutOfRange`] if the radius of gyration is not 0.002 to 512 m.
     pub fn of_shapes(shapes: &[ShapeDef]) -> Result<Self, WorldError> {
         Self::from_parts(shapes.iter().map(Part::of_shape))
     }
 
-    /// Mass in kg; 0 for a fixed or kinematic body, and for a dynamic one without mass.
+    /// Mass in kg.
     #[must_use]
     pub const fn mass(&self) -> Fx {
         self.mass
@@ -123,20 +120,18 @@ impl MassProperties {
         fx_mul(fx_mul(self.mass, self.gyration), self.gyration)
     }
 
-    /// Returns the properties with another mass but the same centre and radius of gyration, as for another density.
+    /// Returns the properties with another mass but the same centre and radius of gyration.
     #[must_use]
     pub const fn with_mass(self, mass: Fx) -> Self {
         MassProperties { mass, ..self }
     }
 
-    /// Properties of a body whose velocity no force changes: fixed, kinematic, or without mass. Its `k` is arbitrary: 4
-    /// m allows a rotation of 100 rad/s within a speed limit of 400 m/s, and keeps the ratio of the longest lever arm
-    /// to `k` below 91.
+    /// Properties of a body whose velocity forces do not change. `k` is arbitrary: 4 m allows 100 rad/s at a speed
+    /// limit of 400 m/s, and keeps the ratio of the longest lever arm to `k` below 91.
     pub(crate) fn immovable() -> Self {
         Self::new(Fx::ZERO, Vec2::ZERO, fx!(4))
     }
 
-    /// Properties of a dynamic body.
     pub(crate) fn dynamic<'a>(
         source: MassSource,
         shapes: impl Iterator<Item = &'a ShapeDef> + Clone,
@@ -165,7 +160,6 @@ impl MassProperties {
         Ok(properties)
     }
 
-    /// Returns the properties with rotation locked.
     pub(crate) fn without_rotation(self) -> Self {
         MassProperties { inverse_gyration: Reciprocal::ZERO, ..self }
     }
@@ -174,7 +168,6 @@ impl MassProperties {
         MassProperties { mass, centre, gyration, inverse_gyration: Reciprocal::of(gyration) }
     }
 
-    /// Sums the parts about their common centre (parallel axis theorem).
     fn from_parts(parts: impl Iterator<Item = Part> + Clone) -> Result<Self, WorldError> {
         let mass: i128 = parts.clone().map(|part| i128::from(part.mass.to_bits())).sum();
         let total = Fx::from_bits(saturate_wide(mass));
@@ -189,8 +182,7 @@ impl MassProperties {
             Fx::from_bits(saturate_wide(div_round(sum, mass)))
         };
         let centre = Vec2::new(weighted(|part| part.centre.x), weighted(|part| part.centre.y));
-        // Squares of lengths have 44 fraction bits. A mass has at most 63 bits and k² + d² at most 63, so that their
-        // products fit 128 bits.
+        // Squares of lengths have 44 fraction bits. A mass and k² + d² have at most 63 bits each.
         let moment: i128 = parts
             .map(|part| {
                 let arm = part.centre - centre;
@@ -213,7 +205,7 @@ impl From<MassProperties> for MassSource {
     }
 }
 
-/// Area of a shape in m²; 0 for lines.
+/// Area of a shape in m². 0 for lines.
 pub(crate) fn area_of(shape: &ShapeDef) -> Fx {
     Part::of_shape(&ShapeDef { density: Fx::ONE, ..*shape }).mass
 }
@@ -223,12 +215,11 @@ fn check_gyration(gyration: Fx) -> Result<(), WorldError> {
     if inside { Ok(()) } else { Err(WorldError::GyrationOutOfRange { value: gyration }) }
 }
 
-/// Contribution of one shape to a body's mass.
 struct Part {
     mass: Fx,
-    /// Centre of mass in the body's frame.
+    /// In the body's frame.
     centre: Vec2<Fx>,
-    /// Squared radius of gyration about the shape's centre of mass, in m², with 44 fraction bits.
+    /// About the shape's centre of mass, in m², with 44 fraction bits.
     gyration_squared: i128,
 }
 
@@ -251,7 +242,7 @@ impl Part {
         }
     }
 
-    /// A rectangle of `l` by `2 r`, and two half discs whose centres of mass are `4 r / (3 pi)` from its ends:
+    /// A rectangle of `l` by `2 r`, and two half discs with centres of mass `4 r / (3 pi)` from its ends:
     ///
     /// ```text
     /// A     = 2 r l + pi r^2
@@ -264,7 +255,7 @@ impl Part {
         let area = rectangle + disc;
         let of_rectangle = (ll + rr * 4) / 12;
         let of_disc = rr / 2 + ll / 4 + fx_mul(rl, fx!(0.424413181578));
-        // Areas and squares of lengths have 32 fraction bits each; the mean of the squares, weighted by area, has 44.
+        // Areas and squares of lengths have 32 fraction bits each, the quotient 44.
         let product = |weight: Fx, square: Fx| i128::from(weight.to_bits()) * i128::from(square.to_bits());
         let moment = product(rectangle, of_rectangle) + product(disc, of_disc);
         let gyration_squared = div_round(moment << 12, area.to_bits().max(1).into());

@@ -1,4 +1,4 @@
-//! Surface properties, and their combination for two touching shapes.
+//! Surface properties.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,8 +6,7 @@ use super::error::WorldError;
 use crate::fx;
 use crate::math::{Fx, fx_mul};
 
-/// Rule that combines the values of a surface property of two shapes. If the shapes have different rules, the rule that
-/// comes later in this list applies.
+/// Rule that combines a property of two shapes. If their rules differ, the later one in this list applies.
 ///
 /// ```
 /// use lockstep2d::{body::{Material, Mixing}, fx};
@@ -19,13 +18,13 @@ use crate::math::{Fx, fx_mul};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Mixing {
-    /// The mean, `(a + b) / 2`.
+    /// `(a + b) / 2`.
     Average,
-    /// The geometric mean, `sqrt(a b)`.
+    /// `sqrt(a b)`.
     GeometricMean,
     /// The smaller value.
     Minimum,
-    /// The product, `a b`.
+    /// `a b`.
     Product,
     /// The larger value.
     Maximum,
@@ -44,7 +43,7 @@ impl Mixing {
     }
 }
 
-/// `sqrt(a b)` of two non-negative values, rounded down. The product has 64 fraction bits, so its square root has 32.
+/// `sqrt(a b)` of non-negative values, rounded down.
 fn geometric_mean(a: Fx, b: Fx) -> Fx {
     let product = u128::from(a.to_bits().unsigned_abs()) * u128::from(b.to_bits().unsigned_abs());
     Fx::from_bits(i64::try_from(product.isqrt()).expect("the mean of two Fx is an Fx"))
@@ -63,32 +62,26 @@ pub struct Material {
     pub friction: Fx,
     /// Rule that combines the friction of two shapes.
     pub friction_mixing: Mixing,
-    /// Fraction of the approach speed that a bounce returns, 0 to 1.5. Above 1 a bounce adds energy, as with the
-    /// bumpers of a pinball machine; the combined value of a pair is clamped to 2, whatever its mixing rule. A velocity
-    /// component above 511 m/s after a bounce is clamped, which counts as a fault. Shapes that approach more slowly
-    /// than [`Material::restitution_threshold`] do not bounce. In a world with the default settings, a ball that falls
-    /// from a height `H` of 1.2 to 40 m onto level ground rebounds to `restitution^2 H`, within 0.4 mm.
+    /// Fraction of the approach speed that a bounce returns, 0 to 1.5. The combined value of a pair is clamped to 2.
+    /// Shapes that approach more slowly than [`Material::restitution_threshold`] do not bounce.
     pub restitution: Fx,
     /// Rule that combines the restitution of two shapes.
     pub restitution_mixing: Mixing,
-    /// Approach speed in m/s below which the shape does not bounce, 0 to 400. `None` means the threshold of the world,
-    /// [`SolverSettings::restitution_threshold`](crate::solver::SolverSettings::restitution_threshold). A pair uses the
-    /// smaller value of its two shapes, so that a ball with a threshold of 0 bounces on every shape at any speed. Such
-    /// a ball may take long to come to rest, and a pile of such balls does not come to rest.
+    /// Approach speed in m/s below which the shape does not bounce, 0 to 400. `None` means the world's
+    /// [`restitution_threshold`](crate::solver::SolverSettings::restitution_threshold). A pair uses the smaller value
+    /// of its two shapes. A ball with a threshold of 0 may take long to come to rest, and a pile of such balls may not.
     pub restitution_threshold: Option<Fx>,
     /// Rolling resistance of a round shape, 0 to 1: the offset of the ground reaction ahead of the axle, as a fraction
-    /// of the radius of the circle or capsule, or of the rounding radius of the polygon. A pair uses the larger value
-    /// and the larger radius of its two shapes. A wheel that rolls freely on level ground loses
+    /// of the radius. A pair uses the larger value and the larger radius. A wheel on level ground loses
     /// `rolling_resistance g / (1 + k^2 / r^2)` of speed per second.
     pub rolling_resistance: Fx,
-    /// Surface speed: the speed of the surface around the shape, clockwise, in m/s, ±400. The upper side of a conveyor
-    /// belt with a positive speed carries bodies to the right. A pair uses the sum of the speeds of its two shapes.
+    /// Surface speed in m/s, clockwise around the shape, ±400: the upper side of a conveyor belt with a positive speed
+    /// carries bodies to the right. A pair uses the sum of its two shapes.
     pub surface_speed: Fx,
 }
 
 impl Default for Material {
-    /// Friction 0.6 with the geometric mean, restitution 0 with the maximum and the threshold of the world, no rolling
-    /// resistance, and surface speed 0.
+    /// Friction 0.6 with the geometric mean, restitution 0 with the maximum, no rolling resistance or surface speed.
     fn default() -> Self {
         Material {
             friction: fx!(0.6),
@@ -121,7 +114,6 @@ impl Material {
         self.validate().is_ok()
     }
 
-    /// Checks the ranges of all properties.
     pub(crate) fn validate(&self) -> Result<(), WorldError> {
         let Material {
             friction,
@@ -159,8 +151,7 @@ impl Material {
         self.restitution_mixing.max(other.restitution_mixing).mix(self.restitution, other.restitution)
     }
 
-    /// Combined restitution threshold of two surfaces in a world with the threshold `world`: the smaller of the two
-    /// thresholds, where `None` means `world`.
+    /// Combined restitution threshold of two surfaces: the smaller of the two, where `None` means `world`.
     #[must_use]
     pub fn mixed_restitution_threshold(&self, other: &Material, world: Fx) -> Fx {
         let [a, b] = [self, other].map(|material| material.restitution_threshold.unwrap_or(world));

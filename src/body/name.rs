@@ -1,4 +1,4 @@
-//! Names of bodies, for people who read reports.
+//! Names of bodies in reports.
 
 use alloc::format;
 use alloc::string::String;
@@ -10,14 +10,11 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use super::arena::BodyId;
 use super::error::WorldError;
 
-/// Largest length of a name in bytes.
+/// In bytes.
 const LENGTH_MAX: usize = 16;
 
-/// Name of a body: 1 to 16 ASCII letters, digits, `-` and `_`. Reports, inspections, the viewer and pictures show it
-/// after the handle, as in `13v0 ball`.
-///
-/// The name is part of the state, so that reports from all machines contain it. No result of the simulation depends on
-/// it, and two bodies may have the same name.
+/// Name of a body: 1 to 16 ASCII letters, digits, `-` and `_`. Reports show it after the handle, as in `13v0 ball`. It
+/// is part of the state, so that reports from all machines contain it. Names need not be unique.
 ///
 /// ```
 /// use lockstep2d::{body::{BodyDef, Name}, world::World};
@@ -29,11 +26,10 @@ const LENGTH_MAX: usize = 16;
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Name {
-    /// The characters, then zeros.
+    /// Padded with zeros.
     bytes: [u8; LENGTH_MAX],
 }
 
-/// The text that names a body: its handle, and its name if it has one, as in `13v0 ball`.
 pub(crate) fn label(id: BodyId, name: Option<Name>) -> String {
     name.map_or_else(|| format!("{id}"), |name| format!("{id} {name}"))
 }
@@ -42,8 +38,7 @@ impl Name {
     /// Creates a name.
     ///
     /// # Errors
-    /// [`WorldError::NameInvalid`] if the text is empty, is longer than 16 bytes, or contains a character that is not
-    /// allowed.
+    /// [`WorldError::NameInvalid`] if the text is not 1 to 16 allowed characters.
     pub fn new(text: &str) -> Result<Self, WorldError> {
         let mut bytes = [0; LENGTH_MAX];
         let room = bytes.get_mut(..text.len()).ok_or(WorldError::NameInvalid)?;
@@ -60,7 +55,7 @@ impl Name {
         core::str::from_utf8(&self.bytes[..length]).unwrap_or_default()
     }
 
-    /// Checks a name, which may have been decoded from any bytes.
+    /// The bytes may have been decoded from any file.
     pub(crate) fn validate(&self) -> Result<(), WorldError> {
         let text = self.as_str().as_bytes();
         let is_allowed = |byte: &u8| byte.is_ascii_alphanumeric() || matches!(byte, b'-' | b'_');
@@ -82,7 +77,7 @@ impl fmt::Debug for Name {
     }
 }
 
-/// Serializes the name as text in a human-readable format, and as 16 bytes in a binary format.
+/// As text in human-readable formats, and as 16 bytes in binary formats.
 impl Serialize for Name {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         if serializer.is_human_readable() {

@@ -1,4 +1,4 @@
-//! Convex polygons of 3 to 8 vertices, optionally rounded.
+//! Convex polygons, optionally rounded.
 
 use alloc::vec::Vec;
 
@@ -11,17 +11,16 @@ use crate::math::{Angle, Fx, Length, Rot, Unit, Vec2};
 /// Largest number of vertices of a polygon.
 pub const POLYGON_VERTICES_MAX: usize = 8;
 
-/// Largest extent of a circle, capsule or polygon from the shape's centre on each axis of its own frame, radius
-/// included, in metres. Rotated by any angle, such a shape stays within 156 m. If the boxes of two such shapes are at
-/// most 15 m apart, a vertex of one is at most three times 156 m plus 15 m from the centre of the other on each axis,
-/// which is within the range of [`Length`].
+/// Largest extent in metres of a circle, capsule or polygon from its centre on each axis, radius included. If two such
+/// shapes are at most 15 m apart, a vertex of one is within 3 * 156 m + 15 m of the other's centre on each axis, which
+/// fits [`Length`].
 pub const SHAPE_EXTENT_MAX: Fx = crate::fx!(110);
 
-/// Smallest edge length in metres, about 2000 units of [`Length`]: a shorter edge has no reliable direction.
+/// In metres. A shorter edge has no reliable direction in units of [`Length`].
 const EDGE_MIN: Fx = crate::fx!(0.0005);
 
-/// A convex polygon, counter-clockwise, relative to its shape's centre. With a radius, its edges are moved outwards and
-/// its corners are round.
+/// A convex polygon, counter-clockwise, relative to its shape's centre. A radius moves its edges outwards and rounds
+/// its corners.
 ///
 /// ```
 /// use lockstep2d::{body::Polygon, fx, math::Vec2};
@@ -40,12 +39,12 @@ const EDGE_MIN: Fx = crate::fx!(0.0005);
 pub struct Polygon {
     count: u8,
     vertices: [Vec2<Length>; POLYGON_VERTICES_MAX],
-    /// `normals[i]` is the outward normal of the edge from vertex `i` to the next vertex.
+    /// `normals[i]` belongs to the edge from vertex `i` to the next vertex.
     normals: [Vec2<Unit>; POLYGON_VERTICES_MAX],
     radius: Length,
 }
 
-/// Serialized form of a polygon. Normals are recomputed from it, so that no file can contain wrong normals.
+/// Serialized form. Normals are recomputed, so that no file can contain wrong ones.
 #[derive(Serialize, Deserialize)]
 struct Repr {
     vertices: Vec<Vec2<Length>>,
@@ -68,9 +67,8 @@ impl TryFrom<Repr> for Polygon {
 impl Polygon {
     /// Creates a polygon from its vertices in counter-clockwise order, in metres from the shape's centre.
     ///
-    /// Avoid corners that are nearly flat and spikes that are nearly closed. If the lines of the two edges differ by
-    /// less than about 0.0001 rad, a point beside one edge may be classified as beside the other, over a range of some
-    /// centimetres.
+    /// Avoid corners within about 0.0001 rad of flat or closed: a point beside one edge may be classified as beside the
+    /// other.
     ///
     /// # Errors
     /// If there are not 3 to 8 vertices, or vertices are out of range, closer than 0.5 mm, clockwise, collinear or not
@@ -83,7 +81,7 @@ impl Polygon {
         Self::from_vertices(&narrow)
     }
 
-    /// Creates the convex hull of points. Points inside it or on its edges are left out.
+    /// Creates the convex hull of points.
     ///
     /// # Errors
     /// If a point is out of range, or the hull has no area, more than 8 vertices or an edge shorter than 0.5 mm.
@@ -97,7 +95,7 @@ impl Polygon {
         Self::from_vertices(&monotone_chain(&sorted))
     }
 
-    /// Creates a rectangle centred on the shape's centre from its half extents, in metres.
+    /// Creates a rectangle about the shape's centre from its half extents, in metres.
     ///
     /// # Errors
     /// If a half extent is not within 0.25 mm to 110 m.
@@ -109,7 +107,7 @@ impl Polygon {
         Self::new(&[corner(-x, -y), corner(x, -y), corner(x, y), corner(-x, y)])
     }
 
-    /// Creates a square centred on the shape's centre from its half extent, in metres.
+    /// Creates a square about the shape's centre from its half extent, in metres.
     ///
     /// # Errors
     /// If the half extent is not within 0.25 mm to 110 m.
@@ -144,7 +142,7 @@ impl Polygon {
     /// Returns the polygon rotated about the shape's centre.
     ///
     /// # Errors
-    /// If the outline leaves the range, or is not a valid polygon after its vertices have been rounded.
+    /// If the outline leaves the range, or is not valid after its vertices have been rounded.
     pub fn rotated(&self, angle: Angle) -> Result<Self, GeometryError> {
         let rotation = Rot::from_angle(angle);
         self.mapped(|vertex| rotation.apply_wide(vertex))
@@ -152,8 +150,7 @@ impl Polygon {
 
     /// Returns the polygon translated relative to the shape's centre, in metres.
     ///
-    /// # Errors
-    /// If the outline leaves the range.
+    /// # Errors If the outline leaves the range, or is not valid after its vertices have been rounded.
     pub fn translated(&self, by: Vec2<Fx>) -> Result<Self, GeometryError> {
         self.mapped(|vertex| vertex + by)
     }
@@ -166,7 +163,7 @@ impl Polygon {
     /// Returns the polygon with its outline moved outwards by `radius` metres.
     ///
     /// # Errors
-    /// If the radius is negative, or the outline extends further than 110 m on some axis.
+    /// If the radius is negative, or the outline leaves the range of ±110 m.
     pub fn rounded(mut self, radius: Fx) -> Result<Self, GeometryError> {
         let reach = self.vertices().iter().fold(Fx::ZERO, |reach, vertex| {
             let vertex = vertex.widen();
@@ -183,7 +180,7 @@ impl Polygon {
         &self.vertices[..usize::from(self.count)]
     }
 
-    /// Outward normals; `normals()[i]` belongs to the edge from vertex `i` to the next vertex.
+    /// Outward normals. `normals()[i]` belongs to the edge from vertex `i` to the next vertex.
     #[must_use]
     pub fn normals(&self) -> &[Vec2<Unit>] {
         &self.normals[..usize::from(self.count)]
@@ -209,9 +206,8 @@ impl Polygon {
             if edge.widen().length() < EDGE_MIN {
                 return Err(GeometryError::ShortEdge { vertex: i as u64 });
             }
-            // In a convex polygon every other vertex lies strictly to the left of this edge. Testing all vertices, not
-            // only the next one, also rejects star shapes that wind around twice. The two ends of the edge are excluded
-            // by index, so an outline that returns to the position of one of them is rejected too.
+            // Testing all other vertices also rejects stars that wind around twice. The ends of the edge are excluded
+            // by index, so another vertex at the same position is rejected too.
             let strictly_left = |(j, &other): (usize, &Vec2<Length>)| {
                 j == i || j == (i + 1) % count || wide_cross(edge, other - point) > 0
             };
@@ -233,7 +229,6 @@ fn check_vertex(vertex: Vec2<Fx>) -> Result<(), GeometryError> {
     })
 }
 
-/// Checks half the width or height of a rectangle.
 fn check_half(what: &'static str, value: Fx) -> Result<(), GeometryError> {
     if value > Fx::ZERO && value <= SHAPE_EXTENT_MAX {
         return Ok(());
@@ -241,7 +236,6 @@ fn check_half(what: &'static str, value: Fx) -> Result<(), GeometryError> {
     Err(GeometryError::SizeOutOfRange { what, value, min: EDGE_MIN / 2, max: SHAPE_EXTENT_MAX })
 }
 
-/// Whether an outline is convex and clockwise: every other vertex lies strictly to the right of each edge.
 fn is_clockwise(points: &[Vec2<Length>]) -> bool {
     let count = points.len();
     (0..count).all(|i| {
@@ -251,13 +245,12 @@ fn is_clockwise(points: &[Vec2<Length>]) -> bool {
     })
 }
 
-/// The exact cross product of two differences of vertices.
 fn wide_cross(a: Vec2<Length>, b: Vec2<Length>) -> i128 {
     i128::from(a.x.to_bits()) * i128::from(b.y.to_bits())
         - i128::from(a.y.to_bits()) * i128::from(b.x.to_bits())
 }
 
-/// Andrew's monotone chain: the hull of sorted, distinct points, counter-clockwise from the leftmost point.
+/// Andrew's monotone chain: the hull of sorted, distinct points, counter-clockwise from the leftmost.
 fn monotone_chain(sorted: &[Vec2<Length>]) -> Vec<Vec2<Length>> {
     let mut hull = half_hull(sorted.iter());
     let upper = half_hull(sorted.iter().rev());
@@ -313,7 +306,6 @@ mod tests {
         assert!(matches!(new(&[(0, 0), (121, 0), (0, 1)]), Err(GeometryError::SizeOutOfRange { .. })));
         assert!(Polygon::rectangle(fx!(0), fx!(1)).is_err());
         assert!(Polygon::rectangle(fx!(-1), fx!(1)).is_err());
-        // The bounds that the errors state are themselves valid.
         let bounds = [fx!(0.00025), SHAPE_EXTENT_MAX];
         assert!(bounds.map(Polygon::square).iter().all(Result::is_ok));
         assert!(

@@ -1,8 +1,8 @@
-//! Counter of the ticks for which a body has been at rest.
+//! Counter of ticks at rest.
 
 use serde::{Deserialize, Serialize};
 
-/// Counter of the ticks for which a body has been at rest; part of the state. Its meaning depends on the kind of body:
+/// Ticks for which a body has been at rest, depending on its kind:
 ///
 /// | kind | value |
 /// |---|---|
@@ -16,10 +16,8 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct RestTicks(u32);
 
 impl RestTicks {
-    /// No tick at rest has been counted, for example because the body is new, moving, fixed or asleep.
     pub(crate) const NONE: Self = RestTicks(0);
 
-    /// Returns the counter as stored in the state.
     pub(crate) const fn to_bits(self) -> u32 {
         self.0
     }
@@ -28,12 +26,11 @@ impl RestTicks {
         RestTicks(bits)
     }
 
-    /// Resets the counter to 0, for any kind of body.
     pub(crate) fn reset(&mut self) {
         self.0 = 0;
     }
 
-    /// Counts a tick in which a dynamic body was slow, up to `limit` ticks.
+    /// Counts a tick in which a dynamic body was slow.
     pub(crate) fn count(&mut self, limit: u32) {
         self.0 = self.0.saturating_add(1).min(limit);
     }

@@ -1,4 +1,4 @@
-//! Settings of a body apart from its pose, mass and shapes.
+//! Body settings.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,9 +8,8 @@ use crate::math::Fx;
 
 /// Locked degrees of freedom of a body.
 ///
-/// A locked rotation is exact: contacts and joints treat the body as unable to rotate. A locked axis is enforced by
-/// clearing the velocity along it in every sub-step, so a body that is pushed both along and across a locked axis
-/// settles over a few ticks.
+/// Contacts and joints treat a body with locked rotation as unable to rotate. A locked axis only clears the velocity
+/// along it in every sub-step, so a body that is pushed along and across it settles over a few ticks.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, BodySettings, MotionLocks, Polygon, ShapeDef}, fx, math::Vec2, world::World};
@@ -37,7 +36,7 @@ pub struct MotionLocks {
     pub rotation: bool,
 }
 
-/// Bodies that a body is swept against, so that it does not tunnel through them within a tick.
+/// Bodies that a body is swept against, so that it does not tunnel through them.
 ///
 /// ```
 /// use lockstep2d::body::{BodyDef, Continuous, Polygon, ShapeDef};
@@ -54,20 +53,19 @@ pub struct MotionLocks {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Continuous {
-    /// No bodies: the cheapest choice, for debris.
+    /// None: the cheapest choice, for debris.
     Off,
     /// Fixed bodies.
     #[default]
     Fixed,
-    /// All bodies that are not bullets themselves.
+    /// Bodies of all kinds, except bullets.
     Bullet,
-    /// Fixed bodies, and kinematic bodies relative to which the body is fast. A kinematic body that carries the body
-    /// along, such as a moving platform, does not stop it. The check has a small cost in every tick of a world with
-    /// kinematic bodies, even while the body is slow.
+    /// Fixed bodies, and kinematic ones relative to which the body is fast, unlike a platform that carries it. The
+    /// check has a small cost in every tick of a world with kinematic bodies.
     Kinematic,
 }
 
-/// Settings of a body. [`crate::world::World::set_body`] changes them later.
+/// Settings of a body: see [`crate::world::World::set_body`].
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, BodySettings, Polygon, ShapeDef}, fx, world::World};
@@ -93,13 +91,11 @@ pub struct BodySettings {
     pub locks: MotionLocks,
     /// Bodies that this body is swept against.
     pub continuous: Continuous,
-    /// Whether the body falls asleep by itself after a time at rest. [`World::sleep`](crate::world::World::sleep) does
-    /// not depend on it.
+    /// Whether the body falls asleep by itself. [`World::sleep`](crate::world::World::sleep) does not depend on it.
     pub may_sleep: bool,
-    /// Speed in m/s below which the body becomes ready to sleep, 0 to 400. The same limit applies to twice the angular
-    /// velocity times the radius of gyration, which is about the speed of the body's outline. A body falls asleep when
-    /// it and all dynamic bodies connected to it by contacts, joints or areas have been slower than their limits for
-    /// half a second: with the default of 0.05 m/s, an acceleration below 0.1 m/s² does not move a body from rest.
+    /// Speed in m/s below which the body becomes ready to sleep, 0 to 400. It also limits twice the angular velocity
+    /// times the radius of gyration, about the speed of the outline. A body falls asleep when it and the dynamic bodies
+    /// connected to it have been slower than their limits for half a second.
     pub sleep_speed: Fx,
 }
 

@@ -15,19 +15,17 @@ use super::shape_fields::ShapeFields;
 use crate::fx;
 use crate::math::{Aabb, Angle, Fx, Vec2};
 
-/// Largest world coordinate in metres, on each axis and in both directions: half of what [`Fx`] can store, so that the
-/// sum of a coordinate and a smaller length cannot overflow.
+/// Largest world coordinate in metres: half of what [`Fx`] can store, so that adding a smaller length cannot overflow.
 pub const WORLD_EXTENT_MAX: Fx = fx!(1073741824);
 
-/// Largest distance in metres of a shape or a joint anchor from the origin of a movable body, on each axis of the
-/// body's frame. The centre of mass is within the same range, so lever arms are at most 363 m long at any rotation of
-/// the body, and fit `Length`.
+/// Largest distance in metres of a shape, joint anchor or centre of mass from the origin of a movable body, on each
+/// axis of its frame. Lever arms are then at most 363 m long and fit `Length`.
 pub const REACH_MAX: Fx = fx!(128);
 
-/// Largest number of shapes of one body: the cost of a change to a body grows with its shapes.
+/// Largest number of shapes of one body. The cost of a change to a body grows with its shapes.
 pub const SHAPES_PER_BODY_MAX: u32 = 4096;
 
-/// The largest density in kg/m².
+/// Largest density in kg/m².
 pub const DENSITY_MAX: Fx = fx!(1048576);
 
 /// Definition of a shape to attach to a body.
@@ -46,34 +44,33 @@ pub const DENSITY_MAX: Fx = fx!(1048576);
 pub struct ShapeDef {
     /// Geometry about the shape's centre.
     pub geometry: Geometry,
-    /// Shape's centre in the body's frame, in metres from the body's origin.
+    /// Shape's centre in the body's frame, in metres.
     pub offset: Vec2<Fx>,
-    /// Mass per area, in kg/m², 0 to 2^20.
+    /// Mass per area in kg/m², 0 to 2^20.
     pub density: Fx,
     /// Friction, restitution, rolling resistance and surface speed.
     pub material: Material,
     /// Collision filter.
     pub filter: Filter,
-    /// Makes the shape a one-way platform: the direction in the body's frame in which other shapes pass through, 90
-    /// degrees for up. `None` for an ordinary shape.
+    /// Direction in the body's frame in which other shapes pass through, which makes the shape a one-way platform: 90
+    /// degrees for up.
     ///
-    /// A shape that touches the platform is stopped if the contact normal, from the platform to the other shape, is
-    /// within 60 degrees of the direction, and passes otherwise: from above the platform is solid, from below and from
-    /// the sides it is not. A passing pair continues to pass while the shapes overlap along the direction by more than
-    /// a quarter of the world's speculative distance or, for small shapes, a 32nd of the smaller shape's extent. A
-    /// shape that turns round half-way therefore falls back. A pair that passes does not touch.
+    /// The platform is solid if the contact normal, from the platform to the other shape, is within 60 degrees of the
+    /// direction. Otherwise the pair passes and does not touch, and continues to pass while the shapes overlap along
+    /// the direction by more than a quarter of the world's speculative distance or, for small shapes, a 32nd of the
+    /// smaller extent.
     pub one_way: Option<Angle>,
-    /// Whether the shape is a sensor, which detects overlaps and generates no contact response. It also detects shapes
-    /// that cross it within a tick: see [`SensorEvent`](crate::world::SensorEvent). A sensor detects other sensors only
-    /// with [`EventSwitches::detect_sensors`], and sensors of fixed bodies do not detect fixed bodies.
+    /// Whether the shape is a sensor, which does not collide but detects shapes that overlap or cross it: see
+    /// [`SensorEvent`](crate::world::SensorEvent). It detects other sensors with [`EventSwitches::detect_sensors`].
+    /// Sensors of fixed bodies do not detect fixed bodies.
     #[doc(alias = "trigger")]
     #[doc(alias = "is_trigger")]
     pub sensor: bool,
-    /// Effect of a sensor on the bodies in it; `None` for a sensor that only detects, and for solid shapes.
+    /// Effect of a sensor on the bodies in it.
     pub area: Option<Area>,
     /// Events in which the shape takes part.
     pub events: EventSwitches,
-    /// Number for the game's own use. The engine does not read it, but it is part of the state and its hash.
+    /// Number for the game's own use. It is part of the state and its hash.
     pub user_data: u64,
 }
 
@@ -102,8 +99,8 @@ impl ShapeDef {
         self
     }
 
-    /// Sets the density in kg/m², 0 to 2^20. A dynamic body whose mass is computed from shapes that all have density 0
-    /// has no mass: neither gravity nor forces change its velocity.
+    /// Sets the density in kg/m², 0 to 2^20. A body whose mass is computed from shapes of density 0 has no mass: see
+    /// [`MassSource::Shapes`](super::MassSource::Shapes).
     #[must_use]
     pub fn density(mut self, density: Fx) -> Self {
         self.density = density;
@@ -117,7 +114,7 @@ impl ShapeDef {
         self
     }
 
-    /// Sets the restitution, 0 to 1.5. It applies to approach speeds of at least [`Material::restitution_threshold`].
+    /// Sets the restitution, 0 to 1.5: see [`Material::restitution`].
     #[must_use]
     pub fn restitution(mut self, restitution: Fx) -> Self {
         self.material.restitution = restitution;
@@ -138,7 +135,7 @@ impl ShapeDef {
         self
     }
 
-    /// Sets the surface speed, clockwise, in m/s: see [`Material::surface_speed`].
+    /// Sets the surface speed in m/s, clockwise: see [`Material::surface_speed`].
     #[must_use]
     pub fn surface_speed(mut self, speed: Fx) -> Self {
         self.material.surface_speed = speed;
@@ -152,15 +149,14 @@ impl ShapeDef {
         self
     }
 
-    /// Makes the shape a one-way platform, with the direction in the body's frame: see
-    /// [`one_way`](field@Self::one_way).
+    /// Makes the shape a one-way platform: see [`one_way`](field@Self::one_way).
     #[must_use]
     pub fn one_way(mut self, direction: Angle) -> Self {
         self.one_way = Some(direction);
         self
     }
 
-    /// Makes the shape a sensor, which detects overlaps without pushing.
+    /// Makes the shape a sensor: see [`sensor`](field@Self::sensor).
     #[must_use]
     #[doc(alias = "trigger")]
     #[doc(alias = "is_trigger")]
@@ -169,7 +165,7 @@ impl ShapeDef {
         self
     }
 
-    /// Makes the shape a sensor that detects other sensors as well: see [`EventSwitches::detect_sensors`].
+    /// Makes the shape a sensor that also detects sensors: see [`EventSwitches::detect_sensors`].
     #[must_use]
     pub fn sensor_of_sensors(mut self) -> Self {
         self.sensor = true;
@@ -199,7 +195,7 @@ impl ShapeDef {
         self
     }
 
-    /// Validates the definition. `reach_max` depends on the kind of the body: see [`REACH_MAX`].
+    /// `reach_max` depends on the kind of the body: see [`REACH_MAX`].
     pub(crate) fn validate(&self, reach_max: Fx) -> Result<(), WorldError> {
         let ShapeDef {
             geometry,
@@ -227,7 +223,6 @@ impl ShapeDef {
     }
 }
 
-/// Checks that a shape is within `reach_max` of the body's origin on each axis.
 fn check_reach(geometry: &Geometry, offset: Vec2<Fx>, reach_max: Fx) -> Result<(), WorldError> {
     let bounds = geometry.local_bounds().translated(offset);
     let corners = [offset.x, offset.y, bounds.lower.x, bounds.lower.y, bounds.upper.x, bounds.upper.y];
@@ -258,11 +253,10 @@ fn check_reach(geometry: &Geometry, offset: Vec2<Fx>, reach_max: Fx) -> Result<(
 #[doc(alias = "Fixture")]
 pub struct Shape {
     pub(crate) body: BodyId,
-    /// Boxed, so that the fields that steps change lie close together. Saving them then reads less memory.
+    /// Boxed, so that the fields that steps change lie close together.
     pub(crate) def: Box<ShapeDef>,
-    /// Fat AABB used by the broad phase: the AABB of the shape plus a margin, so that it seldom changes. If it is
-    /// computed at the start of a tick, it also covers the predicted motion in that tick. Shapes of fixed bodies have
-    /// no margin. The fat AABB decides which pairs exist, so it is part of the state.
+    /// AABB with a margin and the predicted motion of a tick. Shapes of fixed bodies have no margin. It decides which
+    /// pairs exist, so it is part of the state.
     pub(crate) fat: Aabb,
 }
 
@@ -273,7 +267,7 @@ impl Shape {
         self.body
     }
 
-    /// Definition of the shape, with all later changes.
+    /// Definition of the shape, with later changes.
     #[must_use]
     pub const fn def(&self) -> &ShapeDef {
         &self.def
@@ -309,8 +303,7 @@ impl Shape {
         &self.def.filter
     }
 
-    /// Direction in the body's frame in which other shapes pass through a one-way platform; `None` for an ordinary
-    /// shape.
+    /// Direction in the body's frame in which other shapes pass through a one-way platform.
     #[must_use]
     pub const fn one_way(&self) -> Option<Angle> {
         self.def.one_way
@@ -330,12 +323,12 @@ impl Shape {
         self.def.area.as_ref()
     }
 
-    /// Whether the shape is an area that acts on another shape, provided that the body of the other shape is dynamic.
+    /// Whether the shape is an area that acts on another shape of a dynamic body.
     pub(crate) fn acts_on(&self, other: &Shape) -> bool {
         self.def.area.is_some() && !other.is_sensor() && self.detects(other)
     }
 
-    /// Whether the shape is a sensor, and the event switches of both shapes let it detect the other shape.
+    /// Whether the shape is a sensor that detects the other shape, according to the event switches of both.
     pub(crate) fn detects(&self, other: &Shape) -> bool {
         let (own, seen) = (&*self.def, &*other.def);
         own.sensor && seen.events.sensor && (!seen.sensor || own.events.detect_sensors)
@@ -347,7 +340,7 @@ impl Shape {
         self.def.user_data
     }
 
-    /// Fat AABB used by the broad phase, in world coordinates.
+    /// AABB of the broad phase, in world coordinates, with a margin.
     #[must_use]
     pub const fn fat_aabb(&self) -> Aabb {
         self.fat

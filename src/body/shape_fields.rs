@@ -1,7 +1,6 @@
-//! Encoding of a shape definition: its fields in order, with the sensor flag and the area combined into one field.
-//!
-//! In binary formats this field is a byte of flags, 1 for a sensor and 2 for an area, followed by the area if there is
-//! one. For a shape without an area the byte equals the encoding of a `bool`.
+//! Encoding of a shape definition, with the sensor flag and the area in one field. In binary formats this is a byte of
+//! flags, 1 for a sensor and 2 for an area, then the area if there is one. Without an area the byte equals the encoding
+//! of a `bool`.
 
 use core::fmt;
 
@@ -19,7 +18,6 @@ use crate::math::{Angle, Fx, Vec2};
 const SENSOR: u8 = 1;
 const AREA: u8 = 2;
 
-/// The fields of a [`ShapeDef`] as they are encoded.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "ShapeDef")]
 pub(super) struct ShapeFields {
@@ -34,13 +32,12 @@ pub(super) struct ShapeFields {
     user_data: u64,
 }
 
-/// Whether a shape is a sensor, and its area.
 struct Detection {
     sensor: bool,
     area: Option<Area>,
 }
 
-/// Form of a [`Detection`] in human-readable formats.
+/// In human-readable formats.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
 enum Readable {
@@ -148,7 +145,7 @@ mod tests {
         }
     }
 
-    /// Flags 2 and 3 announce an area, which is missing in these bytes. Greater flags are unknown.
+    /// Flags 2 and 3 announce an area, which is missing in these bytes.
     #[test]
     fn unknown_flags_are_refused() {
         let solid = encode(&shape());

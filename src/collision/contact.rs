@@ -1,4 +1,4 @@
-//! Contacts: the state of a pair of shapes that persists from tick to tick.
+//! Contacts: pairs of shapes that persist from tick to tick.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,32 +10,29 @@ use crate::math::{Fx, Length, Speed, Step, Vec2};
 /// A pair of shape slots, the smaller one first.
 pub(crate) type Pair = (u32, u32);
 
-/// A pair of shapes whose fat AABBs overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Contact {
     /// Shape slots, the smaller first. Contacts are sorted by this key.
     pub(crate) shapes: Pair,
-    /// Whether the shapes touched in the last tick or, if one is a sensor, overlapped at its end.
+    /// Whether the shapes touched in the last tick. With a sensor, whether they overlapped at its end.
     pub(crate) touching: bool,
-    /// Whether one shape is a one-way platform that lets the other pass: see `one_way.rs`.
+    /// Whether a one-way platform lets the other shape pass: see `one_way.rs`.
     pub(crate) passing: bool,
-    /// Number of points with stored impulses.
+    /// Points with stored impulses.
     pub(crate) count: u8,
     pub(crate) points: [PointImpulse; 2],
     pub(crate) kept: KeptManifold,
-    /// Accumulated angular impulse of rolling resistance, times `(mA + mB) / s`, with the inverse masses `mA` and `mB`
-    /// and the scale `s` of `solver/contact/rolling.rs`.
+    /// Accumulated angular impulse of rolling resistance times `(mA + mB) / s`: see `solver/contact/rolling.rs`.
     pub(crate) rolling: Speed,
 }
 
-/// Accumulated impulse of a contact point, for the warm start of the next tick.
+/// For the warm start of the next tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct PointImpulse {
     pub(crate) feature: u16,
-    /// Normal impulse times the sum of the inverse masses `mA + mB`: `p = L / D` of `solver/row.rs`. It does not depend
-    /// on the lever arms.
+    /// Normal impulse times the sum of the inverse masses `mA + mB`: `p = L / D` of `solver/row.rs`.
     pub(crate) normal: Speed,
-    /// Tangent impulse with the same scale: this point's share of the total friction of both points.
+    /// Tangent impulse with that factor: this point's share of the friction of both points.
     pub(crate) tangent: Speed,
 }
 
@@ -52,12 +49,10 @@ impl Contact {
         }
     }
 
-    /// Points with accumulated impulses.
     pub(crate) fn points(&self) -> &[PointImpulse] {
         &self.points[..usize::from(self.count.min(2))]
     }
 
-    /// Accumulated impulse of a feature, if the feature was in contact in the last tick.
     #[inline]
     pub(crate) fn impulse_of(&self, feature: Feature) -> Option<PointImpulse> {
         match self.points {
@@ -67,7 +62,6 @@ impl Contact {
         }
     }
 
-    /// Clears the accumulated impulses and the kept manifold.
     #[inline]
     pub(crate) fn clear_points(&mut self) {
         self.count = 0;
@@ -76,9 +70,8 @@ impl Contact {
         self.rolling = Speed::ZERO;
     }
 
-    /// Stores a manifold of the shapes for the next ticks. If the last manifold can be kept and has the same points,
-    /// each coordinate of its lever arms that has changed by at most the tolerance is kept. `tolerances` are in metres,
-    /// for A and B.
+    /// Stores a manifold for the next ticks. If the last manifold can be kept and has the same points, coordinates of
+    /// its lever arms that have changed by at most `tolerances` (in metres) are kept.
     #[inline]
     pub(crate) fn keep(&mut self, manifold: &Manifold, bodies: [&Body; 2], tolerances: [Length; 2]) {
         let last = self.kept;
@@ -89,7 +82,7 @@ impl Contact {
         }
     }
 
-    /// Returns the kept manifold with the given separations, and with its first point at `origin`.
+    /// Kept manifold with the given separations, and with its first point at `origin`.
     #[inline]
     pub(crate) fn kept_manifold(&self, origin: Vec2<Fx>, separations: [Step; 2]) -> Manifold {
         let point = |i: usize, anchor: Vec2<Length>| ManifoldPoint {
@@ -101,7 +94,6 @@ impl Contact {
         Manifold::of_points(self.kept.normal, origin, points, self.count)
     }
 
-    /// Stores the accumulated impulses of up to two points.
     #[inline]
     pub(crate) fn store_impulses(&mut self, points: [PointImpulse; 2], count: u8, rolling: Speed) {
         (self.points, self.count, self.rolling) = (points, count, rolling);

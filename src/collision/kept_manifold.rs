@@ -6,19 +6,16 @@ use super::manifold::Manifold;
 use crate::body::Pose;
 use crate::math::{Angle, Fx, Length, Step, TAU, Unit, Vec2, round_shift, saturate};
 
-/// The manifold of a contact, with the poses of the bodies for which it was computed.
+/// The manifold of a contact, and the poses of the bodies for which it was computed.
 ///
-/// The lever arms stay constant, in world axes, while the shapes hardly move relative to each other. With arms that
-/// follow every movement, a leaning stack leans further by itself: columns of more than 40 boxes fall. With constant
-/// arms, columns of 100 boxes stay upright (`docs/DESIGN.md`). The normal stays constant as well, and the separations
-/// follow from the poses, so that the narrow phase need not run again.
+/// The normal and the lever arms stay constant in world axes while the manifold is kept. With arms that follow every
+/// movement, a leaning stack leans further by itself: columns of more than 40 boxes fall, while columns of 100 boxes
+/// stand with constant arms (`docs/DESIGN.md`). The separations follow from the poses, without the narrow phase.
 ///
-/// Lengths wrap around at 1024 m, so that their differences are exact even if the centre of mass of one body is far
-/// from the contact. Such a body is fixed, and its arms do not matter.
+/// Lengths wrap around at 1024 m, so that differences are exact even if a fixed body's centre of mass is far away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct KeptManifold {
-    /// Contact normal; zero if there is no manifold, or if the manifold cannot be kept because it belongs to a time of
-    /// impact or because the shapes or the centre of mass of a body have changed.
+    /// Zero if there is no manifold or it cannot be kept, for example because it belongs to a time of impact.
     pub(crate) normal: Vec2<Unit>,
     /// Vector from A's centre of mass to the first point.
     pub(crate) arm_a: Vec2<Length>,
@@ -29,27 +26,24 @@ pub(crate) struct KeptManifold {
     /// Vector from A's centre of mass to B's at these poses.
     pub(crate) between: Vec2<Length>,
     pub(crate) angles: [Angle; 2],
-    /// Separations of the points at these poses. Unused ones are zero.
+    /// Unused ones are zero.
     pub(crate) separations: [Step; 2],
 }
 
-/// Largest rotation of a body, in units of 2^-32 turn, for which the movement of a point is computed: 0.1 rad.
+/// Largest rotation for which the movement of a point is computed, in units of 2^-32 turn: 0.1 rad.
 const TURN_MAX: i32 = 1 << 26;
 
-/// One of the two shapes of a contact, for [`KeptManifold::separations_at`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct KeptSide {
     pub(crate) pose: Pose,
-    /// Radius in metres of a circle about the middle of the shape that contains the shape. It is 0 for a disc about the
-    /// body's centre of mass, because rotation does not change such a disc.
+    /// Radius in metres of a circle about the middle of the shape that contains the shape. 0 for a disc about the
+    /// body's centre of mass, which rotation does not change.
     pub(crate) reach: Length,
 }
 
 impl KeptManifold {
-    /// Number of words that [`Self::to_words`] returns.
     pub(crate) const WORDS: usize = 14;
 
-    /// No manifold.
     pub(crate) const NONE: Self = KeptManifold {
         normal: Vec2::ZERO,
         arm_a: Vec2::ZERO,
@@ -60,13 +54,12 @@ impl KeptManifold {
         separations: [Step::ZERO; 2],
     };
 
-    /// The manifold of shapes whose bodies are at the given poses.
     pub(crate) fn new(manifold: &Manifold, poses: [Pose; 2]) -> Self {
         KeptManifold { normal: manifold.normal, ..Self::at_impact(manifold, poses, [Vec2::ZERO; 2]) }
     }
 
-    /// The manifold of a time of impact, which cannot be kept. `moved` are the displacements of the bodies from the
-    /// given poses to that time.
+    /// The manifold of a time of impact, which cannot be kept. `moved` are the displacements of the bodies up to that
+    /// time.
     pub(crate) fn at_impact(manifold: &Manifold, [a, b]: [Pose; 2], moved: [Vec2<Length>; 2]) -> Self {
         let [first, second] = manifold.both_points();
         let arm = |body: Pose, moved: Vec2<Length>| {
@@ -85,8 +78,8 @@ impl KeptManifold {
         }
     }
 
-    /// Takes over the lever arms of an earlier manifold with the same points: each coordinate that differs from the new
-    /// one by at most the tolerance of the body in metres.
+    /// Takes over coordinates of the lever arms of an earlier manifold with the same points, within the tolerances in
+    /// metres.
     pub(crate) fn keep_arms_of(&mut self, last: &Self, [tolerance_a, tolerance_b]: [Length; 2]) {
         let keep = |new: &mut Vec2<Length>, old: Vec2<Length>, tolerance: Length| {
             for (new, old) in [(&mut new.x, old.x), (&mut new.y, old.y)] {
@@ -100,7 +93,6 @@ impl KeptManifold {
         keep(&mut self.to_second, last.to_second, tolerance_a.min(tolerance_b));
     }
 
-    /// Returns the manifold as the words that are stored.
     pub(crate) fn to_words(self) -> [i32; Self::WORDS] {
         let KeptManifold { normal, arm_a, arm_b, to_second, between, angles, separations } = self;
         let [angle_a, angle_b] = angles.map(|angle| angle.to_bits().cast_signed());
@@ -111,7 +103,6 @@ impl KeptManifold {
         [n_x, n_y, a_x, a_y, b_x, b_y, x, y, between_x, between_y, angle_a, angle_b, s0, s1]
     }
 
-    /// Inverse of [`Self::to_words`].
     pub(crate) fn from_words(words: [i32; Self::WORDS]) -> Self {
         let [n_x, n_y, a_x, a_y, b_x, b_y, x, y, between_x, between_y, angle_a, angle_b, s0, s1] = words;
         let vector = |x: i32, y: i32| Vec2::new(Length::from_bits(x), Length::from_bits(y));
@@ -126,18 +117,16 @@ impl KeptManifold {
         }
     }
 
-    /// Whether the manifold can be kept.
     #[inline]
     pub(crate) fn can_be_kept(&self) -> bool {
         self.normal != Vec2::ZERO
     }
 
-    /// Prevents the manifold and its arms from being kept.
     pub(crate) fn end(&mut self) {
         self.normal = Vec2::ZERO;
     }
 
-    /// Whether the normal is zero or a unit vector, and everything beyond the first `count` points is zero.
+    /// Whether the normal is zero or a unit vector, and points beyond `count` are zero.
     pub(crate) fn is_valid(&self, count: u8) -> bool {
         /// Largest error of the square of a normal's length, in units of 2^-60.
         const ERROR_MAX: u64 = 1 << 34;
@@ -148,9 +137,8 @@ impl KeptManifold {
             && (count > 0 || *self == Self::NONE)
     }
 
-    /// The separations of the first `count` points when the bodies are at other poses, or `None` if the shapes have
-    /// moved relative to each other by more than `limit` metres or a body has rotated by more than [`TURN_MAX`]. To
-    /// first order in the rotations:
+    /// Separations of the first `count` points at other poses, to first order. `None` if the shapes have moved relative
+    /// to each other by more than `limit` metres or a body has rotated by more than [`TURN_MAX`].
     ///
     /// ```text
     /// d = change of between + thetaB x rB - thetaA x rA,   s' = s + n . d
@@ -168,8 +156,7 @@ impl KeptManifold {
         let (r_a, r_b, to_second) = (self.arm_a, self.arm_b, self.to_second);
         let turned = theta_a.abs() * wide(a.reach) + theta_b.abs() * wide(b.reach);
         let limit = wide(limit) - round_shift(turned, Unit::FRAC_NBITS);
-        // `d_x` and `d_y` have 52 fraction bits. A shift is below 2^31 and a rotation below 2^27, so that the sums are
-        // below 2^62.
+        // 52 fraction bits. A shift is below 2^31 and a rotation below 2^27, so that the sums are below 2^62.
         let mut d_x = (wide(shift.x) << Unit::FRAC_NBITS) - theta_b * wide(r_b.y) + theta_a * wide(r_a.y);
         let mut d_y = (wide(shift.y) << Unit::FRAC_NBITS) + theta_b * wide(r_b.x) - theta_a * wide(r_a.x);
         let mut separations = [Step::ZERO; 2];
@@ -190,8 +177,7 @@ impl KeptManifold {
 }
 
 impl KeptSide {
-    /// The rotation since an angle, in radians with 30 fraction bits, or `None` if it exceeds [`TURN_MAX`]. It counts
-    /// as 0 for a disc about the centre of mass.
+    /// In radians with 30 fraction bits. `None` if it exceeds [`TURN_MAX`]. 0 for a disc about the centre of mass.
     #[inline]
     fn rotation_since(&self, angle: Angle) -> Option<i64> {
         if self.reach == Length::ZERO {
@@ -237,15 +223,14 @@ mod tests {
     use crate::fx;
     use crate::math::{Rng, narrow};
 
-    /// Two bodies, each with a box at a distance from its centre of mass.
     struct Boxes {
         bodies: [Body; 2],
         shapes: [ShapeDef; 2],
     }
 
     impl Boxes {
-        /// Two boxes, one on top of the other and up to 5 mm deep in it. Each is up to 3 m from its body's centre of
-        /// mass on each axis.
+        /// One box on top of the other and up to 5 mm deep in it, each up to 3 m from its body's centre of mass on each
+        /// axis.
         fn random(rng: &mut Rng) -> Self {
             let square = ShapeDef::new(Polygon::square(fx!(0.5)).expect("valid"));
             let mut offset = || Vec2::new(rng.range(fx!(-3), fx!(3)), rng.range(fx!(-3), fx!(3)));
@@ -277,8 +262,6 @@ mod tests {
         }
     }
 
-    /// The separations follow the movements of both bodies like the separations of a new manifold, with an error of the
-    /// order of the squared rotation times the arm.
     #[test]
     fn separations_follow_the_bodies() {
         let mut rng = Rng::new(3);
@@ -335,15 +318,13 @@ mod tests {
                     "rotation should not change a circle"
                 );
             }
-            // Only movements relative to the other body count.
             let mut sides = boxes.sides(Length::ONE);
             sides.iter_mut().for_each(|side| side.pose.centre += Vec2::new(fx!(500), fx!(-700)));
             assert_eq!(kept.separations_at(sides, 2, limit), Some(kept.separations));
         }
     }
 
-    /// A fixed body may have its centre of mass far away, where its arm is out of range. The other body's arm and the
-    /// separations are still right.
+    /// A fixed body may have its centre of mass so far away that its arm is out of range.
     #[test]
     fn a_level_may_be_far_from_its_origin() {
         for far in [fx!(0), fx!(511.9), fx!(700), fx!(123456.789)] {

@@ -1,12 +1,10 @@
-//! Contact manifold of a pair of shapes: a normal and up to two points.
+//! Contact manifolds.
 
 use crate::math::{Fx, Length, Step, Unit, Vec2};
 
-/// Identifies a contact point across ticks, so that its accumulated impulse can be carried over: the pair of the
-/// vertices of A and B that meet at the point, independent of which shape has the reference edge and of the clipping.
-///
-/// Identifiers that also encoded the clipping would change while a pile settles. Every change would lose a warm start,
-/// and the pile would sink (`docs/DESIGN.md` has the figures).
+/// Identifies a contact point across ticks, to carry over its accumulated impulse: the vertices of A and B that meet
+/// there. Identifiers that also encoded the clipping would change while a pile settles, and with every lost warm start
+/// the pile would sink (`docs/DESIGN.md`).
 ///
 /// ```
 /// use lockstep2d::{body::Polygon, fx, math::Vec2, world::Probe};
@@ -24,7 +22,7 @@ use crate::math::{Fx, Length, Step, Unit, Vec2};
 pub struct Feature(pub(crate) u16);
 
 impl Feature {
-    /// Feature of the only point of a contact with a circle.
+    /// Feature of a circle's contact.
     pub(crate) const SINGLE: Feature = Feature(0);
 
     #[inline]
@@ -41,19 +39,17 @@ impl Feature {
 /// A point where two shapes touch or are about to touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ManifoldPoint {
-    /// Position half-way between the two surfaces, in metres from the manifold's origin, in world axes.
+    /// Position half-way between the surfaces, in metres from the manifold's origin, in world axes.
     pub anchor: Vec2<Length>,
-    /// Distance between the surfaces along the normal in metres; negative if they overlap.
+    /// Distance between the surfaces along the normal in metres. Negative if they overlap.
     pub separation: Step,
-    /// Features that meet at the point.
+    /// Vertices that meet at the point.
     pub feature: Feature,
 }
 
-/// Contact manifold of shape A and shape B at the start of the tick, or at the time of impact for shapes that approach
-/// fast and first touch later in the tick. The separations are always those at the start of the tick.
-///
-/// While shapes hardly move relative to each other, their contact keeps the normal and the points of an earlier tick.
-/// The points move with the bodies, and may be off by up to a 64th of the smaller shape's extent.
+/// Contact manifold of shapes A and B at the start of the tick, or at the time of impact for shapes that approach fast.
+/// Separations are those at the start of the tick. While the shapes hardly move relative to each other, the normal and
+/// the points may be those of an earlier tick, moved with the bodies.
 ///
 /// ```
 /// use lockstep2d::{body::Polygon, fx, math::Vec2, world::Probe};
@@ -74,8 +70,7 @@ pub struct ManifoldPoint {
 pub struct Manifold {
     /// Unit vector from A to B.
     pub normal: Vec2<Unit>,
-    /// World position that anchors are relative to: the centre of one of the shapes or, if the contact keeps the
-    /// manifold of an earlier tick, its first contact point.
+    /// World position that anchors are relative to.
     pub origin: Vec2<Fx>,
     points: [ManifoldPoint; 2],
     count: u8,
@@ -85,7 +80,6 @@ impl Manifold {
     const NO_POINT: ManifoldPoint =
         ManifoldPoint { anchor: Vec2::ZERO, separation: Step::ZERO, feature: Feature::SINGLE };
 
-    /// A manifold without points.
     pub(crate) const NONE: Self = Self::new(Vec2::Y);
 
     pub(crate) const fn new(normal: Vec2<Unit>) -> Self {
@@ -93,15 +87,13 @@ impl Manifold {
         Manifold { normal, origin, points: [Self::NO_POINT; 2], count: 0 }
     }
 
-    /// Creates a manifold with one point.
     pub(crate) fn single(normal: Vec2<Unit>, point: ManifoldPoint) -> Self {
         let mut manifold = Self::new(normal);
         manifold.push(point);
         manifold
     }
 
-    /// Creates a manifold with the first `count` of two points. Unused points must be zero, so that equal manifolds
-    /// compare as equal.
+    /// Unused points must be zero, so that equal manifolds compare as equal.
     #[inline]
     pub(crate) fn of_points(
         normal: Vec2<Unit>,
@@ -119,13 +111,12 @@ impl Manifold {
         &self.points[..usize::from(self.count.min(2))]
     }
 
-    /// Number of contact points.
     #[inline]
     pub(crate) fn count(&self) -> u8 {
         self.count.min(2)
     }
 
-    /// Both points; unused points are zero.
+    /// Both points. Unused ones are zero.
     #[inline]
     pub(crate) fn both_points(&self) -> &[ManifoldPoint; 2] {
         &self.points
@@ -137,7 +128,7 @@ impl Manifold {
         self.count += 1;
     }
 
-    /// Keeps the selected points and zeroes the others, so that equal manifolds compare as equal.
+    /// Zeroes the other points.
     #[inline]
     fn keep(&mut self, kept: [bool; 2]) {
         let [first, second] = self.points;
@@ -149,7 +140,6 @@ impl Manifold {
         };
     }
 
-    /// Keeps the points for which `keep` returns true.
     #[inline]
     pub(crate) fn retain(&mut self, mut keep: impl FnMut(&ManifoldPoint) -> bool) {
         let keeps = match self.points() {
@@ -157,27 +147,24 @@ impl Manifold {
             [only] => [keep(only), false],
             [first, second, ..] => [keep(first), keep(second)],
         };
-        // The common case, in which all points stay, writes nothing.
+        // Writes nothing in the common case that all points stay.
         if keeps.iter().filter(|&&kept| kept).count() < self.points().len() {
             self.keep(keeps);
         }
     }
 
-    /// Sets the separation of each point.
     pub(crate) fn separate(&mut self, separation_of: impl Fn(&ManifoldPoint) -> Step) {
         for point in &mut self.points[..usize::from(self.count.min(2))] {
             point.separation = separation_of(point);
         }
     }
 
-    /// Returns the manifold with the roles of the shapes exchanged.
     #[inline]
     pub(crate) fn swapped(mut self) -> Self {
         self.swap();
         self
     }
 
-    /// Exchanges the roles of the shapes.
     #[inline]
     pub(crate) fn swap(&mut self) {
         self.normal = -self.normal;
@@ -186,7 +173,6 @@ impl Manifold {
         }
     }
 
-    /// Translates the anchors.
     #[inline]
     pub(crate) fn translate(&mut self, by: Vec2<Length>) {
         for point in &mut self.points[..usize::from(self.count.min(2))] {

@@ -1,5 +1,4 @@
-//! Collision detection: broad phase, narrow phase, queries, and the persistent state of contacts. It reads bodies and
-//! never changes them.
+//! Collision detection: broad phase, narrow phase, queries, and contacts.
 
 mod broad_phase;
 mod contact;

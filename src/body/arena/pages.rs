@@ -1,9 +1,7 @@
-//! Arena pages that snapshots share. A page is copied once and then shared by all snapshots until a slot in it changes.
-//! While no slot of an arena changes, snapshots share the whole arena through one pointer.
+//! Arena pages that snapshots share. A page is copied once, and snapshots share the copy until a slot in it changes.
+//! While no slot of an arena changes, snapshots share one copy of the whole arena.
 //!
-//! A copied value leaves out the fields that every step changes, such as velocities and impulses. Snapshots store them
-//! separately. After its first snapshot, a world in which no value is inserted, removed or redefined therefore copies
-//! no page.
+//! The copies leave out the fields that every step changes, such as velocities. Snapshots store them separately.
 
 use alloc::boxed::Box;
 use alloc::sync::Arc;
@@ -15,17 +13,15 @@ use serde::Serialize;
 use super::{Arena, Slot};
 use crate::hash::StateHash;
 
-/// Slots per page: few, so that a change copies little, but enough to make the overhead of sharing negligible.
+/// Slots per page: few, so that a change copies little, but enough to make sharing cheap.
 const PAGE_SLOTS: usize = 32;
 
-/// Copies of the slots of one page, and their digest.
 #[derive(Debug, PartialEq)]
 struct Page<T> {
     slots: Vec<Slot<T>>,
     digest: StateHash,
 }
 
-/// Copy of the free list and of the number of retired slots, and their digest.
 #[derive(Debug, Default, PartialEq)]
 struct Vacancies {
     free: Vec<u32>,
@@ -33,27 +29,22 @@ struct Vacancies {
     digest: StateHash,
 }
 
-/// Copy of a whole arena, without the fields that snapshots do not share.
 #[derive(Debug, PartialEq)]
 struct Whole<T> {
     pages: Vec<Arc<Page<T>>>,
     vacancies: Arc<Vacancies>,
-    /// Digest of the vacancies, then the digest of each page. They are stored together, so that reading them does not
-    /// visit every page.
+    /// Digest of the vacancies, then of each page. Reading them does not visit the pages.
     digests: Vec<StateHash>,
 }
 
-/// Copies of the pages, of the vacancies and of the whole arena. A cell is empty if its part of the arena has changed
-/// since the last copy, or was never copied. A cache, not part of the state.
+/// Cached copies, not part of the state. A cell is empty if its part of the arena has changed since the last copy.
 #[derive(Debug)]
 pub(super) struct Kept<T> {
     pages: Vec<OnceBox<Arc<Page<T>>>>,
     vacancies: OnceBox<Arc<Vacancies>>,
-    /// Copy of the whole arena, assembled from `pages` and `vacancies`.
     whole: OnceBox<Arc<Whole<T>>>,
-    /// Revision number: see [`Arena::revision`].
     revision: u64,
-    /// Number of times the arena was restored from a shared copy.
+    /// See [`Arena::returns`].
     returns: u64,
 }
 
@@ -76,7 +67,6 @@ impl<T> Clone for Kept<T> {
     }
 }
 
-/// Always equal: caches do not make arenas different.
 impl<T> PartialEq for Kept<T> {
     fn eq(&self, _: &Self) -> bool {
         true
@@ -84,7 +74,6 @@ impl<T> PartialEq for Kept<T> {
 }
 
 impl<T> Kept<T> {
-    /// Invalidates the copy of the page that contains a slot.
     pub(super) fn changed(&mut self, slot: u32) {
         self.revision += 1;
         self.whole = OnceBox::new();
@@ -93,21 +82,19 @@ impl<T> Kept<T> {
         }
     }
 
-    /// Invalidates the copies of the vacancies and of the page that contains a slot. `slot_count` may have grown by
-    /// one.
+    /// Invalidates the copies of the vacancies and of a slot's page.
     pub(super) fn came_or_went(&mut self, slot: u32, slot_count: usize) {
         self.fit(slot_count);
         self.changed(slot);
         self.vacancies = OnceBox::new();
     }
 
-    /// Resizes the page cache for a number of slots.
     fn fit(&mut self, slot_count: usize) {
         self.pages.resize_with(slot_count.div_ceil(PAGE_SLOTS), OnceBox::new);
     }
 }
 
-/// Arena as stored in a snapshot: without the fields that every step changes.
+/// Arena as stored in a snapshot.
 #[derive(Debug, PartialEq)]
 pub(crate) struct SharedArena<T>(Arc<Whole<T>>);
 
@@ -125,12 +112,12 @@ impl<T> Clone for SharedArena<T> {
 }
 
 impl<T> SharedArena<T> {
-    /// Digest of the vacancies, then the digest of each page.
+    /// Digest of the vacancies, then of each page.
     pub(crate) fn digests(&self) -> impl Iterator<Item = StateHash> {
         self.0.digests.iter().copied()
     }
 
-    /// Number of pages that are shared, by pointer, with another snapshot.
+    /// Number of pages shared, by pointer, with another snapshot.
     #[cfg(test)]
     pub(crate) fn shared_with(&self, other: &Self) -> usize {
         self.0.pages.iter().zip(&other.0.pages).filter(|(a, b)| Arc::ptr_eq(a, b)).count()
@@ -138,13 +125,12 @@ impl<T> SharedArena<T> {
 }
 
 impl<T, H> Arena<T, H> {
-    /// Revision number, which changes when a value is inserted, removed or redefined, or when a restore changes a page.
-    /// Fields that every step changes do not count. A cache built at the same revision is still valid.
+    /// Changes when a value is inserted, removed or redefined, or when a restore changes a page.
     pub(crate) fn revision(&self) -> u64 {
         self.kept.revision
     }
 
-    /// Number of restores from shared copies. After each one the caller restores the fields that every step changes.
+    /// Number of restores. Each one leaves the fields that every step changes to the caller.
     pub(crate) fn returns(&self) -> u64 {
         self.kept.returns
     }
@@ -154,8 +140,7 @@ impl<T, H> Arena<T, H> {
         self.kept.fit(self.slots.len());
     }
 
-    /// Shares the arena with a snapshot. Copies, value by value, only the pages that have changed since they were last
-    /// shared.
+    /// Copies only the pages that have changed since they were last shared.
     pub(crate) fn share_into(&self, shared: &mut SharedArena<T>, copy: impl Fn(&T) -> T)
     where
         T: PartialEq + Serialize,
@@ -186,8 +171,8 @@ impl<T, H> Arena<T, H> {
         Whole { pages, vacancies, digests }
     }
 
-    /// Restores the arena from a shared copy, and calls `changed` with every slot that was removed or whose value may
-    /// differ. Restored values are the copies; the caller restores the fields that every step changes, in all values.
+    /// Restores the arena, except for the fields that every step changes. Calls `changed` with every slot that was
+    /// removed or whose value may differ.
     pub(crate) fn restore(&mut self, shared: &SharedArena<T>, mut changed: impl FnMut(u32))
     where
         T: Clone,

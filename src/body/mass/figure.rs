@@ -1,7 +1,6 @@
 //! Area, centre of mass and radius of gyration of a rounded convex polygon.
 //!
-//! For the core polygon about the origin, with `c_i = v_i x v_(i+1)` (D. Eberly, "Polyhedral Mass Properties", 2D
-//! case):
+//! For the core polygon about the origin, with `c_i = v_i x v_(i+1)` (D. Eberly, "Polyhedral Mass Properties"):
 //!
 //! ```text
 //! A            = 1/2 sum c_i
@@ -9,10 +8,10 @@
 //! A (k² + c.c) = 1/6 sum c_i (v_i.v_i + v_i.v_(i+1) + v_(i+1).v_(i+1)) / 2
 //! ```
 //!
-//! A rounding radius `r` adds a rectangle of width `r` to every edge and a circular sector to every vertex. Let `v_i`
-//! be relative to the core's centre, `l_i` the length of the edge from `v_i` to the next vertex, `a_i = r theta_i` the
-//! arc about `v_i`, `l = sum l_i` and `a = sum a_i`. The rounded polygon has the area `A'`, the centre `c'`, the radius
-//! of gyration `k'`, and the first and second moments `m` and `J` about the core's centre `c`:
+//! A rounding radius `r` adds a rectangle to every edge and a sector to every vertex. Let `v_i` be relative to the
+//! core's centre `c`, `l_i` the length of the edge from `v_i`, `a_i = r theta_i` the arc about `v_i`, `l = sum l_i` and
+//! `a = sum a_i`. `m` and `J` are the first and second moments about `c`. The rounded polygon has the area `A'`, the
+//! centre `c'` and the radius of gyration `k'`:
 //!
 //! ```text
 //! 2 A' = 2 A + r (2 l + a)
@@ -23,32 +22,28 @@
 //! k'²  = J / A' - |m / A'|²
 //! ```
 //!
-//! The first line is J. Steiner's formula (1840). No normals or bisectors remain, because their terms cancel around the
-//! outline. The first moment of a rectangle has the term `r² l_i n_i / 2` across its edge, where `l_i n_i` is the edge
-//! rotated by a quarter turn. The first moment of a sector about its vertex is `r³ (n_i - n_(i-1)) / 3`, rotated by a
-//! quarter turn. The mixed terms of the second moment are `r² c_i` and `2/3 r³ v_i x (n_i - n_(i-1))`, with the sums
-//! `2 r² A` and `2/3 r³ l`. The second sum and the rectangles' own `1/3 r³ l` add up to `r³ l`.
+//! The first line is J. Steiner's formula (1840). Terms along the normals cancel around the outline.
 
 use crate::math::{Angle, Fx, Length, Vec2, div_round, fx_mul, round_shift_wide};
 
 /// Moments of a region of uniform density.
 ///
-/// No sum overflows: a region extends at most 110 m, so `2 A` is below 2^17 m², `|v|` below 2^9 m and `2 J` below
-/// 2^30 m⁴, with 44, 32 and 88 fraction bits.
+/// At an extent of 110 m, `2 A` is below 2^17 m², `|v|` below 2^9 m and `2 J` below 2^30 m⁴, with 44, 32 and 88
+/// fraction bits, so that sums do not overflow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Figure {
-    /// Twice the area in m², with 44 fraction bits.
+    /// In m², with 44 fraction bits.
     doubled_area: i128,
-    /// Centre of mass in metres, with 32 fraction bits.
+    /// In metres, with 32 fraction bits.
     centre: (i128, i128),
-    /// Squared radius of gyration about the centre, in m², with 44 fraction bits.
+    /// In m², with 44 fraction bits.
     gyration_squared: i128,
 }
 
 impl Figure {
-    /// Moments of a counter-clockwise polygon. Sums are exact; each quotient is rounded once.
+    /// Moments of a counter-clockwise polygon.
     pub(super) fn of_polygon(vertices: &[Vec2<Length>]) -> Figure {
-        // Coordinates have 22 fraction bits, so the area has 44 and the moments have 66 and 88.
+        // Coordinates have 22 fraction bits, the area 44, and the moments 66 and 88.
         let (mut area, mut first_x, mut first_y, mut second) = (0i128, 0i128, 0i128, 0i128);
         for (i, start) in vertices.iter().enumerate() {
             let end = vertices[(i + 1) % vertices.len()];
@@ -67,11 +62,11 @@ impl Figure {
         Figure { doubled_area: area, centre: (x, y), gyration_squared }
     }
 
-    /// Returns the moments with the outline moved outwards by `radius`; bit for bit unchanged if `radius` is 0.
+    /// A `radius` of 0 changes no bit.
     pub(super) fn rounded(self, vertices: &[Vec2<Length>], radius: Length) -> Figure {
         let r = i128::from(Fx::from(radius).to_bits());
         let (mut edges, mut arcs) = (0i128, 0i128);
-        // First moments have 64 fraction bits and the second 76: lengths have 32, squares of lengths 44.
+        // First moments have 64 fraction bits and the second 76.
         let (mut first_x, mut first_y, mut second) = (0i128, 0i128, 0i128);
         for (i, &vertex) in vertices.iter().enumerate() {
             let before = vertices[(i + vertices.len() - 1) % vertices.len()];
@@ -103,17 +98,15 @@ impl Figure {
         }
     }
 
-    /// Area in m², with 32 fraction bits, rounded down.
+    /// In m², with 32 fraction bits, rounded down.
     pub(super) fn area(&self) -> i128 {
         self.doubled_area >> 13
     }
 
-    /// Centre of mass in metres, with 32 fraction bits.
     pub(super) fn centre(&self) -> (i128, i128) {
         self.centre
     }
 
-    /// Squared radius of gyration about the centre, in m², with 44 fraction bits.
     pub(super) fn gyration_squared(&self) -> i128 {
         self.gyration_squared
     }
@@ -124,8 +117,7 @@ impl Figure {
     }
 }
 
-/// Angle from one edge to the next, which equals the angle between their normals. Around an outline, these angles sum
-/// to one turn.
+/// Around an outline, these angles sum to one turn.
 fn turn_between(before: Vec2<Length>, after: Vec2<Length>) -> Angle {
     let product = |a: Length, b: Length| i64::from(a.to_bits()) * i64::from(b.to_bits());
     // Exact: edges are at most 220 m long on each axis, so a sum of two products has at most 61 bits.

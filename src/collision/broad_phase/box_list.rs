@@ -1,4 +1,4 @@
-//! Linear list of boxes by slot: the storage of sweep and prune, and the brute-force oracle of the faster structures.
+//! Linear list of boxes by slot, for sweep and prune and as the brute-force oracle.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -7,7 +7,6 @@ use super::search::Search;
 use crate::collision::contact::Pair;
 use crate::math::Aabb;
 
-/// An optional box for each slot.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BoxList {
     boxes: Vec<Option<Aabb>>,
@@ -41,7 +40,6 @@ impl BoxList {
         (0..).zip(&self.boxes).filter_map(|(slot, aabb)| aabb.map(|aabb| (slot, aabb)))
     }
 
-    /// Calls `found` with every overlapping pair, by testing each box against every other.
     pub(crate) fn each_pair(&self, mut found: impl FnMut(Pair)) {
         let mut rest = self.iter();
         while let Some((a, box_a)) = rest.next() {

@@ -1,5 +1,5 @@
-//! Broad phase: pairs of overlapping fat AABBs. Every implementation returns the same pairs in sorted order, so the
-//! data structure is a cache and not part of the state.
+//! Broad phase: pairs of overlapping fat AABBs. The implementations return the same pairs in sorted order, so the data
+//! structure is a cache, not state.
 
 mod box_list;
 mod search;
@@ -21,8 +21,7 @@ use trees::Trees;
 #[cfg(test)]
 mod tests;
 
-/// Data structure of the broad phase, for overlapping pairs in a tick and for queries. The choice changes the speed,
-/// never the result.
+/// Data structure of the broad phase. The choice changes the speed, not the result.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::World};
@@ -45,26 +44,23 @@ pub enum BroadPhaseKind {
     Tree,
     /// Incremental sweep and prune: fast if most boxes move by small distances. Queries visit every box.
     SweepAndPrune,
-    /// Tests every pair of boxes: the test oracle of the other kinds.
+    /// Tests every pair of boxes. Serves as a test oracle.
     BruteForce,
 }
 
-/// Boxes whose pairs are requested.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Moved<'a> {
-    /// Pairs of all boxes.
     All,
     /// Pairs with at least one box in these slots, which may repeat or be vacant.
     Slots(&'a [u32]),
 }
 
-/// The boxes, in the data structure of the chosen kind.
 #[derive(Clone, Debug)]
 pub(crate) struct BroadPhase {
     structure: Structure,
-    /// Boxes by slot, stored contiguously for the frequent lookups within a tick.
+    /// By slot, for lookups within a tick.
     boxes: Vec<Aabb>,
-    /// For each slot, whether its box belongs to a fixed body.
+    /// For each slot, whether its body is fixed.
     fixed: Vec<bool>,
     moved: MovedSet,
 }
@@ -95,12 +91,11 @@ impl BroadPhase {
         }
     }
 
-    /// Box of a slot; [`Aabb::NOWHERE`] if there is none.
+    /// Box of a slot. [`Aabb::NOWHERE`] if there is none.
     pub(crate) fn fat(&self, slot: u32) -> Aabb {
         self.boxes.get(slot as usize).copied().unwrap_or(Aabb::NOWHERE)
     }
 
-    /// Whether the box of a slot belongs to a fixed body.
     pub(crate) fn is_fixed(&self, slot: u32) -> bool {
         self.fixed.get(slot as usize).is_some_and(|&fixed| fixed)
     }
@@ -113,7 +108,7 @@ impl BroadPhase {
         self.boxes[slot as usize] = fat;
     }
 
-    /// Inserts or moves the box of a slot. `fixed` is true if its body is fixed.
+    /// Inserts or moves the box of a slot.
     pub(crate) fn put(&mut self, slot: u32, fat: Aabb, fixed: bool) {
         self.record_box(slot, fat);
         self.fixed[slot as usize] = fixed;
@@ -134,15 +129,13 @@ impl BroadPhase {
         }
     }
 
-    /// Sets the collision class of a slot that has a box. Pairs within one class never collide, and may be left out of
-    /// the results. A new box has no class.
+    /// Sets the class of a slot that has a box. Results may leave out pairs within one class.
     pub(crate) fn set_collision_class(&mut self, slot: u32, class: CollisionClass) {
         if let Structure::Trees(trees) = &mut self.structure {
             trees.set_collision_class(slot, class);
         }
     }
 
-    /// Moves the boxes of many slots.
     pub(crate) fn set_many(&mut self, boxes: &[(u32, Aabb)]) {
         boxes.iter().for_each(|&(slot, fat)| self.record_box(slot, fat));
         match &mut self.structure {
@@ -152,7 +145,6 @@ impl BroadPhase {
         }
     }
 
-    /// Removes the box of a slot, if there is one.
     pub(crate) fn remove(&mut self, slot: u32) {
         if let Some(fat) = self.boxes.get_mut(slot as usize) {
             *fat = Aabb::NOWHERE;
@@ -164,8 +156,8 @@ impl BroadPhase {
         }
     }
 
-    /// Replaces all boxes. The new boxes have no collision classes. For trees this is cheaper than a [`Self::put`] for
-    /// each box. An item is a slot, its box, and whether its body is fixed. If a slot repeats, its last box is kept.
+    /// Replaces all boxes, and clears their collision classes. An item is a slot, its box, and whether its body is
+    /// fixed. The last box of a repeated slot is kept.
     pub(crate) fn refill(&mut self, boxes: impl IntoIterator<Item = (u32, Aabb, bool)>) {
         *self = BroadPhase::new(self.kind());
         let boxes = boxes.into_iter();
@@ -184,9 +176,9 @@ impl BroadPhase {
         }
     }
 
-    /// Finds the overlapping pairs that have at least one moved box and for which `accept` returns true, in sorted
-    /// order. If there are more than `limit` pairs, keeps the smallest ones and returns true. `accept` must reject
-    /// every pair within one collision class, and every pair of fixed bodies.
+    /// Finds the overlapping pairs with at least one moved box and for which `accept` returns true, in sorted order.
+    /// Keeps the `limit` smallest pairs and returns whether there are more. `accept` must reject every pair within one
+    /// collision class, and every pair of fixed bodies.
     pub(crate) fn pairs(
         &mut self,
         moved: Moved<'_>,
@@ -216,7 +208,7 @@ impl BroadPhase {
                     }
                 };
                 match structure {
-                    // Marking more slots than half of the boxes that are not fixed costs more than it saves.
+                    // Marking more slots than half of the moving boxes costs more than it saves.
                     Structure::Trees(trees) if set.slots.len() < trees.moving_len() / 2 => {
                         trees.each_pair_of(&set.slots, found);
                     }
@@ -229,7 +221,7 @@ impl BroadPhase {
         smallest.finish()
     }
 
-    /// Boxes of the inner nodes of the trees, each with its depth. Empty for the other kinds.
+    /// Boxes of the trees' inner nodes with their depths. Empty for the other kinds.
     pub(crate) fn inner_boxes(&self) -> Vec<(Aabb, u32)> {
         match &self.structure {
             Structure::Trees(trees) => trees.inner_boxes(),
@@ -237,17 +229,17 @@ impl BroadPhase {
         }
     }
 
-    /// Whether a slot was in the set of the last [`BroadPhase::pairs`] call with [`Moved::Slots`].
+    /// Whether a slot was in the last [`Moved::Slots`].
     pub(crate) fn has_moved(&self, slot: u32) -> bool {
         self.moved.has(slot)
     }
 
-    /// Calls `visit` with every slot whose box overlaps the area, in no particular order, until `visit` breaks.
+    /// Visits every slot whose box overlaps the area, until `visit` breaks.
     pub(crate) fn each_overlap(&self, area: Aabb, visit: impl FnMut(u32) -> ControlFlow<()>) {
         self.search(Overlap { area, visit });
     }
 
-    /// Like [`BroadPhase::each_overlap`], for the boxes of fixed bodies.
+    /// [`BroadPhase::each_overlap`] for the boxes of fixed bodies.
     pub(crate) fn each_fixed_overlap(&self, area: Aabb, mut visit: impl FnMut(u32) -> ControlFlow<()>) {
         if let Structure::Trees(trees) = &self.structure {
             let _ended_early = trees.search_fixed(&mut Overlap { area, visit });
@@ -259,15 +251,15 @@ impl BroadPhase {
         );
     }
 
-    /// Calls `visit` with every slot whose box the area touches while it moves along the translation. Nearer boxes tend
-    /// to come first, and a box that the area just misses may be included. `visit` returns the largest fraction of the
-    /// translation that is still of interest; 0 ends the search.
+    /// Visits every slot whose box the area touches while it moves, and perhaps some that it just misses. Nearer boxes
+    /// tend to come first. `visit` returns the largest fraction of the translation that is still of interest, and 0
+    /// ends the search.
     pub(crate) fn each_along(&self, area: Aabb, translation: Vec2<Fx>, visit: impl FnMut(u32) -> Unit) {
         self.search(Along::new(area, translation, visit));
     }
 
-    /// Calls `visit` with every slot whose box is within the radius of the point. Nearer boxes tend to come first.
-    /// `visit` returns the radius that is still of interest; a negative radius ends the search.
+    /// Visits every slot whose box is within the radius of the point. Nearer boxes tend to come first. `visit` returns
+    /// the radius that is still of interest, and a negative radius ends the search.
     pub(crate) fn each_near(&self, point: Vec2<Fx>, radius: Fx, visit: impl FnMut(u32) -> Fx) {
         self.search(Near { point, radius, visit });
     }
@@ -281,7 +273,6 @@ impl BroadPhase {
     }
 }
 
-/// A set of slots, as a list without duplicates and as marks.
 #[derive(Clone, Debug, Default)]
 struct MovedSet {
     slots: Vec<u32>,
@@ -305,7 +296,7 @@ impl MovedSet {
     }
 }
 
-/// Keeps the smallest pairs in bounded memory; the result does not depend on the order in which pairs are found.
+/// Keeps the smallest pairs in bounded memory, whatever their order.
 struct SmallestPairs<'a> {
     pairs: &'a mut Vec<Pair>,
     limit: usize,
@@ -315,8 +306,7 @@ struct SmallestPairs<'a> {
 impl SmallestPairs<'_> {
     fn push(&mut self, pair: Pair) {
         self.pairs.push(pair);
-        // Trims at twice the limit, or at 64 pairs if that is more, so that the cost of a sort is amortised over many
-        // pushes.
+        // Trims rarely, so that the cost of a sort is amortised over many pushes.
         if self.pairs.len() >= self.limit.saturating_mul(2).max(64) {
             self.trim();
         }

@@ -1,28 +1,23 @@
-//! Searches over boxes: boxes that overlap an area, that a moving area may hit, or that are near a point. Each search
-//! states which boxes it reaches, so that a tree can skip whole subtrees, and the reach may shrink as results are
-//! found.
-//!
-//! A test may accept a box that is a few units of the last place too far away, but never rejects a box within reach.
+//! Searches over boxes. A tree skips subtrees that a search does not reach, and the reach may shrink as results are
+//! found. A test may accept a box that is a few units of the last place too far away, but does not reject one within
+//! reach.
 
 use core::ops::ControlFlow;
 
 use crate::math::{Aabb, Fx, Unit, Vec2, saturate_wide};
 
-/// A search over boxes, independent of their data structure.
 pub(crate) trait Search {
     /// Whether the box may contain a result.
     fn reaches(&self, aabb: Aabb) -> bool;
 
-    /// Whether `a` should be searched before `b`. Changes the speed, never the result.
+    /// Whether `a` should be searched before `b`. Affects the speed, not the result.
     fn prefers(&self, _a: Aabb, _b: Aabb) -> bool {
         true
     }
 
-    /// Visits a slot whose box is reached.
     fn visit(&mut self, slot: u32) -> ControlFlow<()>;
 }
 
-/// Search for boxes that overlap an area.
 pub(crate) struct Overlap<F> {
     pub(crate) area: Aabb,
     pub(crate) visit: F,
@@ -38,13 +33,11 @@ impl<F: FnMut(u32) -> ControlFlow<()>> Search for Overlap<F> {
     }
 }
 
-/// Search for boxes that an area touches while it moves along a translation.
 pub(crate) struct Along<F> {
     area: Aabb,
     translation: Vec2<Fx>,
     /// Fraction of the translation that is still of interest.
     fraction: Unit,
-    /// Box around the area's motion over that fraction.
     around: Aabb,
     visit: F,
 }
@@ -55,8 +48,8 @@ impl<F: FnMut(u32) -> Unit> Along<F> {
         Along { area, translation, fraction: Unit::ONE, around, visit }
     }
 
-    /// Separating axis test perpendicular to the translation `d`: the line `t d` meets the Minkowski difference of the
-    /// boxes unless `d x p` has the same sign for all corners `p` of the difference.
+    /// Separating axis test perpendicular to the translation `d`: `t d` meets the Minkowski difference of the boxes
+    /// unless `d x p` has one sign for all its corners `p`.
     fn strip_meets(&self, aabb: Aabb) -> bool {
         let (lower, upper) = (coarse(self.area.lower), coarse(self.area.upper));
         let (box_lower, box_upper) = (coarse(aabb.lower), coarse(aabb.upper));
@@ -76,7 +69,7 @@ impl<F: FnMut(u32) -> Unit> Search for Along<F> {
         self.around.overlaps(aabb) && self.strip_meets(aabb)
     }
 
-    /// Prefers the box that the area meets first on the axis of its larger displacement.
+    /// Prefers the first contact on the axis of the larger displacement.
     fn prefers(&self, a: Aabb, b: Aabb) -> bool {
         let Vec2 { x, y } = self.translation;
         match (x.unsigned_abs() >= y.unsigned_abs(), x >= Fx::ZERO, y >= Fx::ZERO) {
@@ -105,7 +98,7 @@ fn coarse(point: Vec2<Fx>) -> (i64, i64) {
     (point.x.to_bits() >> 2, point.y.to_bits() >> 2)
 }
 
-/// Box around the area's motion over a fraction of the translation, rounded outwards.
+/// Rounded outwards.
 fn area_around(area: Aabb, translation: Vec2<Fx>, fraction: Unit) -> Aabb {
     let floor = |way: Fx| (i128::from(way.to_bits()) * i128::from(fraction.to_bits())) >> Unit::FRAC_NBITS;
     let (x, y) = (floor(translation.x), floor(translation.y));
@@ -114,12 +107,10 @@ fn area_around(area: Aabb, translation: Vec2<Fx>, fraction: Unit) -> Aabb {
     Aabb::new(area.lower + vector(x.min(0), y.min(0)), area.upper + vector((x + 1).max(0), (y + 1).max(0)))
 }
 
-/// Search for boxes within a distance of a point. Nearer boxes tend to come first.
 pub(crate) struct Near<F> {
     pub(crate) point: Vec2<Fx>,
-    /// Radius in metres. A negative radius reaches no box; `Fx::MAX` reaches every box.
+    /// Radius in metres. A negative radius reaches no box, and `Fx::MAX` every box.
     pub(crate) radius: Fx,
-    /// Visits a slot and returns the radius that is still of interest.
     pub(crate) visit: F,
 }
 
@@ -136,8 +127,8 @@ impl<F: FnMut(u32) -> Fx> Search for Near<F> {
         let Ok(radius) = u64::try_from(self.radius.to_bits()) else { return false };
         let square = |x: u64| u128::from(x) * u128::from(x);
         let (x, y) = self.distances(aabb);
-        // `Fx::MAX` reaches every box, because the distances that `visit` returns are of type `Fx` and saturate at that
-        // value. With a smaller radius, each distance is below 2^63 when the squares are added, so that the sum fits.
+        // Distances saturate at `Fx::MAX`, so that radius reaches every box. With a smaller one, each distance is below
+        // 2^63 when the squares are added, so that the sum fits.
         self.radius == Fx::MAX || (x <= radius && y <= radius && square(x) + square(y) <= square(radius))
     }
 

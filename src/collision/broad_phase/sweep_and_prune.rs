@@ -1,6 +1,5 @@
-//! Incremental sweep and prune (D. Baraff, 1992). Boxes are sorted by their lower end on one axis and swept in that
-//! order; only boxes that overlap on this axis are compared on the other. Boxes move little in a tick, so the last
-//! order is nearly sorted, and an insertion sort restores it in nearly linear time.
+//! Incremental sweep and prune (D. Baraff, 1992). Boxes are swept in the order of their lower ends on one axis. Boxes
+//! move little in a tick, so an insertion sort of the last order takes nearly linear time.
 
 use alloc::vec::Vec;
 
@@ -15,18 +14,16 @@ enum Axis {
     Y,
 }
 
-/// Sweep and prune structure. The order of the last sweep is a cache.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SweepAndPrune {
     axis: Axis,
     boxes: BoxList,
-    /// Slots in the order that their boxes' lower ends had in the last sweep, followed by slots added since then.
+    /// Slots in the order of the last sweep, a cache, followed by slots added since then.
     order: Vec<u32>,
     /// For each slot, whether it is in `order`. A removed slot stays there until the next sweep.
     ordered: Vec<bool>,
-    /// Number of slots added since the last sweep.
+    /// Slots added since the last sweep.
     newcomers: usize,
-    /// The boxes in sorted order during a sweep.
     sorted: Vec<Interval>,
 }
 
@@ -62,8 +59,7 @@ impl SweepAndPrune {
         let axis = self.best_axis();
         let turned = core::mem::replace(&mut self.axis, axis) != axis;
         self.copy_boxes();
-        // After a change of axis, or with many new boxes at once, the order is not nearly sorted, and an insertion sort
-        // would be quadratic.
+        // After a change of axis or many insertions, an insertion sort would be quadratic.
         if turned || self.newcomers > 64 {
             self.sorted.sort_unstable_by_key(Interval::key);
         }
@@ -72,7 +68,6 @@ impl SweepAndPrune {
         self.sweep(found);
     }
 
-    /// Axis with the larger spread of boxes.
     fn best_axis(&self) -> Axis {
         let mean = |value: fn(Aabb) -> Fx| {
             let sum: i128 = self.boxes.iter().map(|(_, fat)| i128::from(value(fat).to_bits())).sum();
@@ -87,7 +82,6 @@ impl SweepAndPrune {
         if y > x { Axis::Y } else { Axis::X }
     }
 
-    /// Copies the boxes in the order of the last sweep, dropping removed slots.
     fn copy_boxes(&mut self) {
         self.sorted.clear();
         for &slot in &self.order {
@@ -145,7 +139,7 @@ impl Interval {
         }
     }
 
-    /// Sort key. The slot breaks ties, so that the order is total.
+    /// The slot breaks ties, so that the order is total.
     fn key(&self) -> (Fx, u32) {
         (self.lower, self.slot)
     }

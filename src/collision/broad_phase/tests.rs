@@ -1,5 +1,4 @@
-//! Compares all broad phase kinds with each other while boxes are inserted, removed and moved, and compares their
-//! queries with exact arithmetic on every box, in worlds of three sizes, the largest of which fills the number range.
+//! Compares the kinds with each other, and their queries with exact arithmetic.
 
 use super::*;
 use crate::body::Filter;
@@ -10,7 +9,7 @@ use alloc::vec;
 const KINDS: [BroadPhaseKind; 3] =
     [BroadPhaseKind::Tree, BroadPhaseKind::SweepAndPrune, BroadPhaseKind::BruteForce];
 
-/// A random coordinate on a grid of 2^16 units of the last place, so that the oracle's products fit 128 bits.
+/// On a grid of 2^16 units of the last place, so that the oracle's products fit 128 bits.
 fn random_fx(rng: &mut Rng, half: i64) -> Fx {
     let step = 1 << 16;
     let range = (Fx::from_bits(-(half / step)), Fx::from_bits(half / step));
@@ -31,8 +30,7 @@ fn random_box(rng: &mut Rng, world: i64) -> Aabb {
     Aabb::new(corner, corner).union(Aabb::new(corner, corner).translated(random_vector(rng, size)))
 }
 
-/// Half the size of each world in units of the last place: 8 m, 2^30 m, and 2^31 m, so that the last world fills the
-/// number range.
+/// Half the size of each world in units of the last place. The last world fills the number range.
 const WORLDS: [i64; 3] = [8 << 32, 1 << 62, i64::MAX];
 
 fn random_class(rng: &mut Rng, count: u32) -> CollisionClass {
@@ -40,7 +38,6 @@ fn random_class(rng: &mut Rng, count: u32) -> CollisionClass {
     Filter { group, ..Filter::default() }.collision_class()
 }
 
-/// Boxes by slot, and the three broad phase kinds, which must contain the same boxes.
 struct Crowd {
     boxes: Vec<Option<Aabb>>,
     class: Vec<CollisionClass>,
@@ -115,7 +112,6 @@ impl Crowd {
         self.occupied().filter(|&(_, fat)| wanted(fat)).map(|(slot, _)| slot).collect()
     }
 
-    /// Expected pairs, computed directly from the definition.
     fn pairs(&self, moved: Moved<'_>, accept: impl Fn(Pair) -> bool) -> Vec<Pair> {
         let has_moved = |slot| match moved {
             Moved::All => true,
@@ -148,16 +144,13 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
                     crowd.set(slot, fat.translated(random_vector(&mut rng, 1 << 32)));
                 }
                 (19, Some(fat)) if rng.below(4) == 0 => crowd.put(slot, fat, !crowd.fixed[slot]),
-                // Every round changes the class of a few slots. Every tenth round changes the class of about half of
-                // the slots.
                 (8, Some(_)) => crowd.set_collision_class(slot, random_class(&mut rng, 3)),
                 (9..19, Some(_)) if round % 10 == 0 => {
                     crowd.set_collision_class(slot, random_class(&mut rng, 1 + u32::from(round > 150)));
                 }
                 _ => {}
             }
-            // The tree marks the moved boxes if they are few. If they are many, it finds the pairs of all boxes and
-            // filters them.
+            // Few moved boxes, which the tree marks, or many.
             if rng.below(if round % 2 == 0 { 40 } else { 4 }) == 0 {
                 moved.extend([rng.below(150), rng.below(150)]);
                 moved.push(moved[0]);
@@ -166,7 +159,6 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
         if round % 50 == 49 {
             crowd.refill();
         }
-        // The share of moved boxes varies from none to seven eighths.
         let share = rng.below(8);
         let many: Vec<_> = crowd.occupied().filter(|_| rng.below(8) < share).collect();
         let shift = random_vector(&mut rng, 1 << 32);
@@ -197,7 +189,6 @@ fn all_kinds_find_the_same_pairs_while_boxes_move() {
     assert!(total > 3000, "expected over 3000 pairs, got {total}");
 }
 
-/// Coincident boxes have far more pairs than the limit; the list of pairs stays short.
 #[test]
 fn pairs_beyond_the_limit_take_no_memory() {
     let mut crowd = Crowd::new(400);
@@ -247,8 +238,8 @@ fn overlaps_are_those_of_every_box() {
     }
 }
 
-/// Time at which the moving area first touches the box, as a fraction `n / d` with `d > 0`. On each axis the times of
-/// contact form an interval. All values are in units of 2^-16 m, so that the product of two values fits 128 bits.
+/// Fraction `n / d` with `d > 0` at which the moving area first touches the box. Values are in units of 2^-16 m, so
+/// that the product of two fits 128 bits.
 fn first_touch(area: Aabb, translation: Vec2<Fx>, fat: Aabb) -> Option<(i128, i128)> {
     let bits = |x: Fx| i128::from(x.to_bits() >> 16);
     let mut start = (0, 1);
@@ -319,7 +310,7 @@ fn the_closest_hit_is_found_while_the_way_shrinks() {
         for _ in 0..200 {
             let area = Aabb::from_points([random_vector(&mut rng, world)]).expect("a point");
             let translation = random_vector(&mut rng, world);
-            // The fraction is rounded up to the next unit, so that no hit is cut off.
+            // Rounded up to the next unit, so that no hit is cut off.
             let fraction_of = |fat: Aabb| {
                 let (n, d) = first_touch(area, translation, fat)?;
                 let bits = (n << Unit::FRAC_NBITS).div_euclid(d) + 1;
@@ -356,8 +347,7 @@ fn what_is_near_is_found_while_the_radius_shrinks() {
         let nearest = point.max(fat.lower).min(fat.upper);
         let axis = |a: Fx, b: Fx| u128::from(a.to_bits().abs_diff(b.to_bits()) >> 1);
         let (x, y) = (axis(point.x, nearest.x), axis(point.y, nearest.y));
-        // The distance is computed in units of 2^-31 m and rounded up. In these units the square of every distance in
-        // the world fits 128 bits.
+        // In units of 2^-31 m, so that the square of a distance fits 128 bits, and rounded up.
         let root = (x * x + y * y).isqrt() + 1;
         Fx::from_bits(i64::try_from(root.saturating_mul(2)).unwrap_or(i64::MAX))
     };

@@ -1,14 +1,13 @@
-//! Dynamic AABB tree. Every box is a leaf, and an inner node has the box around its two children, so that a search
-//! skips every subtree whose box it does not reach.
+//! Dynamic AABB tree. Every box is a leaf, and an inner node has the box around its two children.
 //!
-//! The cost of a tree is the sum of the perimeters of its inner boxes; the number of nodes that a random search visits
-//! is proportional to it (J. Goldsmith, J. Salmon, 1987). A new leaf descends greedily to the place that adds the least
-//! cost. On the way back up, a child is exchanged with a child of its sibling if that reduces the perimeters, as in
-//! Box2D v3. Neither step bounds the height, and nested boxes would make a chain. The heights of siblings therefore
-//! differ by at most [`IMBALANCE_MAX`]: a relaxed AVL tree (G. Adelson-Velsky, E. Landis, 1962), in which an insertion
-//! or a removal changes heights by one, and one exchange on each level restores the balance.
+//! The cost of a tree is the sum of the perimeters of its inner boxes, because a random search visits a proportional
+//! number of nodes (J. Goldsmith, J. Salmon, 1987). A new leaf descends greedily to the place of least added cost. On
+//! the way back up, a child is exchanged with a child of its sibling if that reduces the perimeters, as in Box2D v3.
+//! Nested boxes would make a chain of nodes, so the heights of siblings differ by at most [`IMBALANCE_MAX`], as in a
+//! relaxed AVL tree (G. Adelson-Velsky, E. Landis, 1962): an insertion or removal changes heights by one, and one
+//! exchange on each level restores the balance.
 //!
-//! A box that moves a little only enlarges its ancestors. Moving many boxes refits or rebuilds the tree (`rebuild.rs`).
+//! A box that moves a little enlarges its ancestors. Moving many boxes refits or rebuilds the tree (`rebuild.rs`).
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -25,18 +24,15 @@ mod rebuild;
 #[cfg(test)]
 mod tests;
 
-/// Sentinel: the index of no node.
 const NONE: u32 = u32::MAX;
 
-/// Largest difference of the heights of two siblings. The value is large enough for a long ground box to stay near the
-/// root, where the sum of the perimeters is smallest. With a value of 4, finding the pairs of 10 000 boxes on some long
-/// ground boxes takes several times as long.
+/// Largest difference of the heights of two siblings. It lets a long ground box stay near the root. With 4, finding the
+/// pairs of 10 000 boxes on some long ground boxes takes several times as long.
 const IMBALANCE_MAX: u8 = 16;
 
-/// Stack size of a search: one waiting node per level, plus one. Enough for 2^31 boxes, as a test proves.
+/// Stack size of a search: one waiting node per level, plus one. Enough for 2^31 boxes.
 const STACK_LEN: usize = 192;
 
-/// AABB tree over slots: a cache, not part of the state.
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
     nodes: Vec<Node>,
@@ -46,11 +42,10 @@ pub(crate) struct Tree {
     /// Leaf of each slot, or [`NONE`].
     leaves: Vec<u32>,
     len: u32,
-    /// Number of leaves inserted or removed since the last rebuild, where a leaf that is relinked counts twice. While
-    /// it is 0, every node is in use and stored before its children.
+    /// Leaves inserted or removed since the last rebuild. While it is 0, every node is in use and stored before its
+    /// children.
     relinked: u32,
-    /// Number of moves since the last refit or rebuild that took a leaf out of its neighbourhood (see
-    /// [`Self::stays_near`]) and did not relink it.
+    /// Moves since the last refit or rebuild that took a leaf out of its neighbourhood without relinking it.
     strays: u32,
     rebuilt: Rebuilt,
 }
@@ -59,13 +54,13 @@ pub(crate) struct Tree {
 pub(super) struct Node {
     aabb: Aabb,
     parent: u32,
-    /// Height above the leaves; 0 for a leaf.
+    /// 0 for a leaf.
     height: u8,
-    /// Collision class of a leaf, or the common class of all leaves below.
+    /// Class of a leaf, or the common class of the leaves below.
     class: CollisionClass,
-    /// Whether the pairs of this leaf, or of a leaf below, are currently requested.
+    /// Whether pairs of this leaf, or of a leaf below, are requested.
     pub(super) marked: bool,
-    /// Children; for a leaf, its slot and [`NONE`].
+    /// Children. For a leaf, its slot and [`NONE`].
     children: [u32; 2],
 }
 
@@ -89,13 +84,11 @@ impl Tree {
         self.len as usize
     }
 
-    /// Inserts or moves a box.
     pub(crate) fn set(&mut self, slot: u32, fat: Aabb) {
         match self.leaf_of(slot) {
             Some(leaf) if self.at(leaf).aabb == fat => {}
             Some(leaf) if self.stays_near(leaf, fat) => self.enlarge(leaf, fat),
-            // A few leaves may stay misplaced until the next rebuild: relinking them would take the nodes out of the
-            // storage order that makes a refit fast.
+            // Relinking few misplaced leaves would take the nodes out of the storage order that makes a refit fast.
             Some(leaf) if self.strays < self.len / 8 => {
                 self.strays += 1;
                 self.enlarge(leaf, fat);
@@ -115,18 +108,15 @@ impl Tree {
         }
     }
 
-    /// Whether a slot has a box.
     #[inline]
     pub(crate) fn has(&self, slot: u32) -> bool {
         self.leaf_of(slot).is_some()
     }
 
-    /// The collision class of a slot that has a box.
     pub(crate) fn collision_class(&self, slot: u32) -> Option<CollisionClass> {
         self.leaf_of(slot).map(|leaf| self.at(leaf).class)
     }
 
-    /// Sets the collision class of a slot that has a box. The tree keeps its structure.
     pub(crate) fn set_collision_class(&mut self, slot: u32, class: CollisionClass) {
         if let Some(leaf) = self.leaf_of(slot).filter(|&leaf| self.at(leaf).class != class) {
             self.at_mut(leaf).class = class;
@@ -172,7 +162,7 @@ impl Tree {
         ControlFlow::Continue(())
     }
 
-    /// Boxes of inner nodes, each with its depth, parents first.
+    /// Boxes of inner nodes with their depths, parents first.
     pub(crate) fn inner_boxes(&self) -> Vec<(Aabb, u32)> {
         let mut boxes = Vec::new();
         let mut waiting = Vec::from_iter((self.root != NONE).then_some((self.root, 0)));
@@ -186,7 +176,7 @@ impl Tree {
         boxes
     }
 
-    /// Sets the box of a leaf in place. Ancestors only grow: they shrink in the next refit or rebuild.
+    /// Ancestors shrink in the next refit or rebuild.
     fn enlarge(&mut self, leaf: u32, fat: Aabb) {
         self.at_mut(leaf).aabb = fat;
         let mut at = self.at(leaf).parent;
@@ -197,7 +187,6 @@ impl Tree {
         }
     }
 
-    /// Inserts a leaf into the tree.
     fn link(&mut self, leaf: u32) {
         self.relinked = self.relinked.saturating_add(1);
         if self.root == NONE {
@@ -213,7 +202,7 @@ impl Tree {
         self.repair(parent);
     }
 
-    /// Removes a leaf from the tree: its sibling replaces their parent.
+    /// The sibling of the leaf replaces their parent.
     fn unlink(&mut self, leaf: u32) {
         self.relinked = self.relinked.saturating_add(1);
         let parent = self.at(leaf).parent;
@@ -230,9 +219,8 @@ impl Tree {
         self.repair(grandparent);
     }
 
-    /// Returns the best sibling for a new leaf: the node at which the new parent and the ancestors gain the least
-    /// perimeter. Descends to the child with the smaller lower bound of the cost, as long as that bound is at most the
-    /// best cost or the best node is too high to have a leaf as its sibling.
+    /// The node at which the new parent and the ancestors gain the least perimeter. Descends to the child with the
+    /// smaller lower bound, unless it exceeds the best cost and the best node is low enough for a leaf as its sibling.
     fn best_sibling(&self, fat: Aabb) -> u32 {
         let own = perimeter(fat);
         let mut at = self.root;
@@ -245,11 +233,11 @@ impl Tree {
                 let node = self.at(child);
                 let around = perimeter(node.aabb.union(fat));
                 let cost = grown.saturating_add(around);
-                // Any deeper sibling adds at least the perimeter of the leaf and the growth of the child.
+                // A deeper sibling adds at least the perimeter of the leaf and the growth of the child.
                 let bound = cost.saturating_sub(perimeter(node.aabb).saturating_sub(own));
                 (if node.is_leaf() { cost } else { bound }, node.height, child, around)
             });
-            // Ties go to the lower child, so that coincident boxes form a balanced tree and not a chain.
+            // Ties go to the lower child, so that coincident boxes do not form a chain.
             let (bound, _, child, child_around) = options[0].min(options[1]);
             if bound > best_cost && self.at(best).height <= IMBALANCE_MAX {
                 break;
@@ -263,17 +251,15 @@ impl Tree {
         best
     }
 
-    /// Whether a leaf may stay in place with a new box: the ancestor four levels above the leaf contains the box, so no
-    /// node higher up grows.
+    /// Whether a leaf may stay in place with a new box: no node above its fourth ancestor grows.
     fn stays_near(&self, leaf: u32, fat: Aabb) -> bool {
         let parent_of = |&at: &u32| Some(self.at(at).parent).filter(|&parent| parent != NONE);
-        // If a nearer ancestor had to contain the box, most moved boxes would be reinserted. If a higher ancestor were
-        // enough, the tree would degrade.
+        // With a nearer ancestor, most moved boxes would be reinserted. With a higher one, the tree would degrade.
         let neighbourhood = core::iter::successors(Some(leaf), parent_of).nth(4);
         neighbourhood.is_some_and(|at| self.at(at).aabb.contains(fat))
     }
 
-    /// Updates boxes, heights and collision classes from a node upwards, until a node does not change.
+    /// Updates ancestors until one does not change.
     fn repair(&mut self, mut at: u32) {
         while at != NONE {
             let Node { aabb, height, class, parent, .. } = *self.at(at);
@@ -288,7 +274,6 @@ impl Tree {
         }
     }
 
-    /// Computes box, height and collision class of an inner node from its children.
     fn refit(&mut self, at: u32) {
         let [a, b] = self.at(at).children.map(|child| *self.at(child));
         let node = self.at_mut(at);
@@ -297,7 +282,7 @@ impl Tree {
         node.class = a.class.common(b.class);
     }
 
-    /// Replaces a child of a node, or the root. The caller sets the parent of the new child.
+    /// The caller sets the parent of the new child.
     fn replace_child(&mut self, parent: u32, old: u32, new: u32) {
         if parent == NONE {
             self.root = new;
@@ -353,7 +338,7 @@ impl Node {
     }
 }
 
-/// Half the perimeter in units of 2^-30 m: the sum for two of the widest boxes still fits 64 bits.
+/// Half the perimeter in units of 2^-30 m. The sum for two of the widest boxes fits 64 bits.
 fn perimeter(aabb: Aabb) -> u64 {
     let Aabb { lower, upper } = aabb;
     (upper.x.to_bits().abs_diff(lower.x.to_bits()) >> 2)

@@ -1,5 +1,5 @@
-//! The boxes in two trees, one for fixed bodies and one for all others. Pairs of fixed bodies are not searched for. The
-//! tree of fixed bodies does not change while other bodies move, and the other tree stays small.
+//! Two trees, one for fixed bodies and one for others. The former stays unchanged while other bodies move, and pairs of
+//! fixed bodies are not searched for.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -18,12 +18,10 @@ pub(super) struct Trees {
 }
 
 impl Trees {
-    /// Number of boxes of bodies that are not fixed.
     pub(super) fn moving_len(&self) -> usize {
         self.moving.len()
     }
 
-    /// Inserts or moves a box, in the tree of fixed bodies if `fixed` is true and in the other tree if not.
     pub(super) fn put(&mut self, slot: u32, fat: Aabb, fixed: bool) {
         let (own, other) = match fixed {
             true => (&mut self.fixed, &mut self.moving),
@@ -37,7 +35,6 @@ impl Trees {
         }
     }
 
-    /// Moves the box of a slot that has one.
     pub(super) fn set(&mut self, slot: u32, fat: Aabb) {
         self.tree_of(slot).set(slot, fat);
     }
@@ -50,7 +47,6 @@ impl Trees {
         if self.fixed.has(slot) { &mut self.fixed } else { &mut self.moving }
     }
 
-    /// Moves the boxes of many slots.
     pub(super) fn set_many(&mut self, boxes: &[(u32, Aabb)]) {
         let Trees { moving, fixed, .. } = self;
         let fixed_count = boxes.iter().filter(|(slot, _)| fixed.has(*slot)).count();
@@ -68,7 +64,7 @@ impl Trees {
         self.fixed.remove(slot);
     }
 
-    /// Replaces all boxes. No slot occurs twice.
+    /// No slot occurs twice.
     pub(super) fn refill(&mut self, boxes: impl Iterator<Item = (u32, Aabb, bool)> + Clone) {
         let those = |wanted: bool| {
             let those = boxes.clone().filter(move |&(_, _, fixed)| fixed == wanted);
@@ -79,13 +75,12 @@ impl Trees {
         self.fixed.refill(those(true));
     }
 
-    /// Calls `found` once with every pair of overlapping boxes. Leaves out all pairs of fixed bodies and, because
-    /// subtrees of one collision class are not searched, most pairs within one class.
+    /// Finds each overlapping pair once, without pairs of fixed bodies and most pairs within one collision class.
     pub(super) fn each_pair(&mut self, found: impl FnMut(Pair)) {
         self.meet(|_| true, found);
     }
 
-    /// Like [`Trees::each_pair`], for the pairs that contain at least one of `slots`.
+    /// [`Trees::each_pair`] for pairs with at least one of `slots`.
     pub(super) fn each_pair_of(&mut self, slots: &[u32], found: impl FnMut(Pair)) {
         self.mark(slots, true);
         self.meet(|node| node.marked, found);
@@ -108,12 +103,10 @@ impl Trees {
         self.fixed.search(search)
     }
 
-    /// Searches the boxes of fixed bodies.
     pub(super) fn search_fixed(&self, search: &mut impl Search) -> ControlFlow<()> {
         self.fixed.search(search)
     }
 
-    /// Boxes of the inner nodes of both trees, each with its depth.
     pub(super) fn inner_boxes(&self) -> Vec<(Aabb, u32)> {
         [self.moving.inner_boxes(), self.fixed.inner_boxes()].concat()
     }

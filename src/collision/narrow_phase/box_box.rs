@@ -1,6 +1,6 @@
-//! Box against box, [`WIDTH`] pairs at a time with SIMD: in most worlds most shapes are boxes. Each manifold with points
-//! is bit for bit the one that [`hull_hull`](super::hull_hull) computes. The few pairs whose incident edge lies beside
-//! the reference face, or whose nearest features are two corners, are left to the scalar path.
+//! Box against box, [`WIDTH`] pairs at a time with SIMD. Manifolds with points equal those of
+//! [`hull_hull`](super::hull_hull) bit for bit. Pairs with the incident edge beside the reference face, or with two
+//! corners as nearest features, are left to the scalar path.
 
 mod kernel;
 #[cfg(test)]
@@ -18,31 +18,26 @@ use crate::math::{Fx, Length, Rot, Step, Unit, Vec2};
 use crate::simd::{Ints, Machine, Quad, WIDTH, prefetch};
 use crate::threads::split_at_ends;
 
-/// Largest distance in metres between the two centres along either axis for the SIMD path. A corner is at most 3 m from
-/// the centre of its box, so that no corner of one box is more than `5 sqrt(2) + 2 * 3 < 14` m from a corner of the
-/// other. This fits a `Step` (16 m).
+/// Largest distance in metres between the centres along either axis. Corners, at most 3 m from their box's centre, are
+/// then less than `5 sqrt(2) + 2 * 3 < 14` m apart, which fits a `Step` (16 m).
 const DISTANCE_MAX: Fx = fx!(5);
 
-/// Largest speculative margin in metres of a pair for the SIMD path.
+/// Largest speculative margin in metres.
 const MARGIN_MAX: Length = Length::lit("2");
 
-/// Compact copies of the boxes that the SIMD path takes, indexed by shape slot. Each copy takes half a cache line,
-/// where a [`PosedShape`] takes four lines.
+/// Compact copies of the boxes, by shape slot: half a cache line each, where a [`PosedShape`] takes four.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SmallBoxes {
-    /// Faces in world axes, by slot. The entry of a shape that is not a small box is not used.
     turned: Vec<Turned>,
-    /// Faces in the frame of the body, by slot, for boxes whose centre is their body's centre of mass.
+    /// In the frame of the body, for boxes whose centre is their body's centre of mass.
     centred: Vec<Option<Faces>>,
 }
 
-/// First two vertices and normals of a box; the other two are their opposites. Aligned, so that no entry straddles two
-/// cache lines.
+/// Aligned, so that no entry straddles two cache lines.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(32))]
 struct Turned([Quad; 2]);
 
-/// The boxes in a range of slots, by their index in the range.
 pub(crate) struct SmallBoxesRange<'a> {
     turned: &'a mut [Turned],
     centred: &'a [Option<Faces>],
@@ -59,7 +54,6 @@ impl Turned {
 }
 
 impl SmallBoxesRange<'_> {
-    /// Updates a shape that has been rotated.
     #[inline]
     pub(crate) fn renew(&mut self, index: usize, shape: &PosedShape) {
         if let Some(faces) = shape.as_small_box() {
@@ -67,7 +61,7 @@ impl SmallBoxesRange<'_> {
         }
     }
 
-    /// Rotates a centred box and returns its faces. Returns `None` for any other shape, which stays unchanged.
+    /// Rotates a centred box. `None` for any other shape, which stays unchanged.
     #[inline(always)]
     pub(crate) fn turn(&mut self, index: usize, rotation: &impl Deref<Target = Rot>) -> Option<Faces> {
         let faces = self.centred[index].as_ref()?.rotated(**rotation);
@@ -77,14 +71,12 @@ impl SmallBoxesRange<'_> {
 }
 
 impl SmallBoxes {
-    /// Resizes the arrays for a number of slots.
     pub(crate) fn resize(&mut self, slot_count: usize) {
         self.turned.resize(slot_count, Turned::default());
         self.centred.resize(slot_count, None);
     }
 
-    /// Stores a shape that is posed for the first time or was redefined. `centred` is the result of
-    /// [`PosedShape::as_centred_box`].
+    /// `centred` is the result of [`PosedShape::as_centred_box`].
     pub(crate) fn place(&mut self, slot: u32, shape: &PosedShape, centred: Option<Faces>) {
         self.centred[slot as usize] = centred;
         if let Some(faces) = shape.as_small_box() {
@@ -92,7 +84,7 @@ impl SmallBoxes {
         }
     }
 
-    /// Divides the boxes into ranges of slots, which end at the given slots.
+    /// Divides the boxes into ranges that end at the given slots.
     pub(crate) fn split(
         &mut self,
         ends: impl Iterator<Item = usize> + Clone,
@@ -103,24 +95,21 @@ impl SmallBoxes {
             .map(|(turned, centred)| SmallBoxesRange { turned, centred })
     }
 
-    /// Prefetches a box.
     #[inline]
     pub(crate) fn prefetch(&self, slot: u32) {
         prefetch(&self.turned[slot as usize]);
     }
 }
 
-/// Pairs of small boxes, and their manifolds.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BoxPairs {
     count: usize,
     batches: Vec<Batch>,
 }
 
-/// Up to [`WIDTH`] pairs. Unused lanes contain the boxes of the first pair.
+/// Unused lanes contain the boxes of the first pair.
 #[derive(Clone, Debug)]
 struct Batch {
-    /// Slots of the two boxes of each pair.
     at: [[u32; WIDTH]; 2],
     /// Vectors from the centres of A to the centres of B.
     d: [Ints<WIDTH>; 2],
@@ -129,31 +118,27 @@ struct Batch {
     manifolds: Manifolds,
 }
 
-/// Manifolds of the pairs of a batch.
 #[derive(Clone, Debug)]
 #[repr(C, align(32))]
 struct Manifolds {
     normal: [Ints<WIDTH>; 2],
-    /// Number of points of each pair.
     count: Ints<WIDTH>,
-    /// Contact points. Points beyond a pair's count are zero.
+    /// Points beyond a pair's count are zero.
     points: [Points; 2],
-    /// Bit mask of the pairs that are left to the scalar path.
+    /// Bit mask of the pairs left to the scalar path.
     open: u32,
 }
 
-/// One contact point of each pair: anchor (x, y), separation and feature.
+/// Anchor (x, y), separation and feature.
 #[derive(Clone, Debug)]
 struct Points([Ints<WIDTH>; 4]);
 
 impl BoxPairs {
-    /// Removes all pairs.
     pub(crate) fn clear(&mut self) {
         self.count = 0;
     }
 
-    /// Adds a pair of small boxes by slot, with the vector from the centre of the first box to the centre of the
-    /// second. Returns whether the pair is in the range of the SIMD path; if not, it is not added.
+    /// Adds a pair, with the vector `d` between the centres. Returns false, without adding, if it is out of range.
     #[inline]
     pub(crate) fn push(&mut self, (a, b): Pair, d: Vec2<Fx>, radii: [Length; 2], margin: Length) -> bool {
         if d.x.saturating_abs().max(d.y.saturating_abs()) > DISTANCE_MAX || margin > MARGIN_MAX {
@@ -179,7 +164,7 @@ impl BoxPairs {
         true
     }
 
-    /// Computes the manifolds of all pairs. `machine` must have vector instructions if pairs were added.
+    /// `machine` must have vector instructions if pairs were added.
     pub(crate) fn collide(&mut self, machine: Machine, boxes: &SmallBoxes) {
         let batches = &mut self.batches[..self.count.div_ceil(WIDTH)];
         if let (false, Some(vectors)) = (batches.is_empty(), machine.vectors()) {
@@ -187,8 +172,8 @@ impl BoxPairs {
         }
     }
 
-    /// Appends the manifold of a pair, with the centre of its first box as the origin. Returns false, without
-    /// appending, if the pair is left to the scalar path.
+    /// Appends the manifold of a pair, with the centre of its first box as the origin. Returns false if the pair is
+    /// left to the scalar path.
     #[inline(always)]
     pub(crate) fn append_to(&self, manifolds: &mut Vec<Manifold>, place: usize, origin: Vec2<Fx>) -> bool {
         let (batch, lane) = (&self.batches[place / WIDTH], place % WIDTH);

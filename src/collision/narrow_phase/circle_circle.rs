@@ -3,9 +3,9 @@
 use crate::collision::manifold::{Feature, Manifold, ManifoldPoint};
 use crate::math::{Length, Vec2, convert};
 
-/// Contact of two circles. `d` is the vector from the centre of A to the centre of B.
+/// `d` is the vector from the centre of A to the centre of B.
 pub(crate) fn collide(radius_a: Length, radius_b: Length, d: Vec2<Length>, margin: Length) -> Manifold {
-    // Concentric circles have no direction between them; the normal is then up.
+    // The normal of concentric circles is up.
     let (normal, distance) = d.normalized_with_length().unwrap_or((Vec2::Y, Length::ZERO));
     let separation = distance.saturating_sub(radius_a).saturating_sub(radius_b);
     if separation > margin {

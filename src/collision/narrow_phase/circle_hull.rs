@@ -1,17 +1,17 @@
-//! A circle against a convex outline: a polygon, or a segment or capsule as a two-sided polygon.
+//! A circle against a polygon, segment or capsule.
 //!
-//! The circle's centre is inside the outline, beside a face, or in the Voronoi region of a corner. If it is inside, the
-//! nearest face pushes the circle out, so that it is not pushed through to the other side.
+//! The circle's centre is inside the outline, beside a face, or in the Voronoi region of a corner. From inside, the
+//! nearest face pushes the circle out.
 
 use super::hull_hull::{self, FACE_BITS, Face};
 use crate::collision::manifold::{Feature, Manifold, ManifoldPoint};
 use crate::collision::shape::posed::Hull;
 use crate::math::{Length, Step, Unit, Vec2, convert, round_shift, saturate};
 
-/// Contact of a hull A and a circle B whose centre is at `centre` relative to the hull's centre.
+/// `centre` is the circle's centre relative to the hull's.
 pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin: Length) -> Manifold {
     let radii = step_bits(radius) + step_bits(hull.radius);
-    // These numbers are not saturated: for a large shape only the difference of the distance and the radii fits `Step`.
+    // Not saturated: for a large shape only the difference of the distance and the radii fits `Step`.
     let Face { edge, separation } = hull_hull::face_before(hull, centre);
     let face_distance = round_shift(separation, FACE_BITS - Step::FRAC_NBITS);
     if face_distance - radii > step_bits(margin) {
@@ -30,7 +30,7 @@ pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin:
         None
     };
     let (normal, distance) = match corner {
-        // On the line of a segment, beyond its end, the distance from both faces is 0, or slightly less by rounding.
+        // Beyond the end of a segment, the distance from both faces is 0, or slightly less by rounding.
         Some(vertex) if face_distance >= 0 || hull.is_line() => {
             let polar = (centre - vertex).normalized_with_length();
             let (normal, distance) = polar.unwrap_or((face_normal, Length::ZERO));
@@ -42,7 +42,7 @@ pub(crate) fn collide(hull: &Hull, radius: Length, centre: Vec2<Length>, margin:
         return Manifold::NONE;
     }
     let separation = Step::from_bits(saturate(distance - radii));
-    // The circle's surface is `radius` before its centre; the midpoint of the gap is half the separation further.
+    // The circle's surface is `radius` before its centre. The midpoint of the gap is half the separation further.
     let back: Length = radius.saturating_add(convert(separation / 2));
     let anchor = centre - normal.scale(back);
     Manifold::single(normal, ManifoldPoint { anchor, separation, feature: Feature::SINGLE })
@@ -57,7 +57,7 @@ pub(in crate::collision) fn distance_along(n: Vec2<Unit>, d: Vec2<Length>) -> i6
     )
 }
 
-/// A length in units of `Step`, not saturated.
+/// In units of `Step`, not saturated.
 pub(in crate::collision) fn step_bits(length: Length) -> i64 {
     i64::from(length.to_bits()) << (Step::FRAC_NBITS - Length::FRAC_NBITS)
 }

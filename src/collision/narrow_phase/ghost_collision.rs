@@ -1,16 +1,14 @@
 //! Ghost-collision filter: finds a direction in which two shapes stay apart while they move past each other.
 //!
-//! A contact is a plane that is fixed for a tick. The corner of the next block of a flush floor also gives such a
-//! plane. It would stop a sliding shape, although the shape would in fact slide over the block. Along a fixed axis `m`
-//! the separation of two shapes that do not rotate is linear in time,
+//! A contact is a plane that is fixed for a tick. The corner of the next block of a flush floor also gives a plane,
+//! which would stop a sliding shape. Along a fixed axis `m` the separation of two shapes that do not rotate is
 //!
 //! ```text
 //! s(t) = s(0) + m.v t
 //! ```
 //!
-//! so an axis that separates the shapes at the start and at the end of a tick separates them throughout (D. Eberly,
-//! "Intersection of Convex Objects: The Method of Separating Axes", 2001, for moving objects). The axes tried are the
-//! face normals of both shapes.
+//! so an axis that separates the shapes at both ends of a tick separates them throughout (D. Eberly, "Intersection of
+//! Convex Objects: The Method of Separating Axes", 2001). The face normals of both shapes are tried.
 
 use super::circle_hull::{distance_along, step_bits};
 use super::hull_hull::{FACE_BITS, face_separation};
@@ -18,14 +16,11 @@ use super::segment;
 use crate::collision::shape::posed::{Hull, Outline, PosedShape};
 use crate::math::{Fx, Length, Step, Unit, Vec2, round_shift};
 
-/// Cosine between a face normal and the contact normal above which the contact is on that face. Its difference from 1
-/// only allows for rounding.
+/// Cosine between a face normal and the contact normal above which the contact is on that face.
 const SAME: Unit = Unit::lit("0.999999");
-/// For a contact on a face: cosine between a face normal and the contact normal above which the face counts as the
-/// contact's own, 26 degrees.
+/// Cosine above which a face counts as the contact's own, if the contact is on a face: 26 degrees.
 const OWN: Unit = Unit::lit("0.9");
 
-/// Relative motion of two shapes in a tick, and the tolerances of the filter.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GhostFilter {
     /// Displacement of B relative to A, in metres.
@@ -38,13 +33,11 @@ pub(crate) struct GhostFilter {
     pub(crate) approach: Length,
     /// Contact normal, with either sign.
     pub(crate) normal: Vec2<Unit>,
-    /// Faces whose normals have a larger cosine than this with the contact normal are the contact's own. A shape does
-    /// not pass by the face on which it lies, whatever its rotation; a corner contact has no own face.
+    /// Faces with a larger cosine to the contact normal are the contact's own, which a shape does not pass by.
     own: Unit,
 }
 
 impl GhostFilter {
-    /// Creates the filter for a contact with this normal.
     pub(crate) fn new(
         shift: Vec2<Length>,
         turn: Length,
@@ -56,7 +49,7 @@ impl GhostFilter {
     }
 }
 
-/// Absolute value of the cosine between two unit vectors.
+/// Absolute value of the cosine.
 fn cosine(a: Vec2<Unit>, b: Vec2<Unit>) -> Unit {
     let cosine: Unit = a.dot(b);
     cosine.saturating_abs()
@@ -76,7 +69,7 @@ pub(crate) fn is_ghost(a: &PosedShape, b: &PosedShape, filter: &GhostFilter) -> 
     some_face_parts(hull_a, hull_b, d, filter) || some_face_parts(hull_b, hull_a, -d, &back)
 }
 
-/// Origin of the coordinates of [`hull_about`]: a segment's own centre may be far away.
+/// A segment's own centre may be far away.
 fn origin(shape: &PosedShape, other: &PosedShape) -> Vec2<Fx> {
     match shape.outline {
         Outline::Circle { .. } | Outline::Polygon(_) => shape.centre,
@@ -84,7 +77,7 @@ fn origin(shape: &PosedShape, other: &PosedShape) -> Vec2<Fx> {
     }
 }
 
-/// Outline of a shape as a hull. `room` provides storage if the outline is not a hull already.
+/// `room` provides storage if the outline is not a hull already.
 fn hull_about<'a>(shape: &'a PosedShape, other: &PosedShape, room: &'a mut Option<Hull>) -> Option<&'a Hull> {
     let from_other = shape.centre - other.centre;
     *room = match &shape.outline {
@@ -96,11 +89,9 @@ fn hull_about<'a>(shape: &'a PosedShape, other: &PosedShape, room: &'a mut Optio
     room.as_ref()
 }
 
-/// Whether a face of `a` separates the hulls. `d` is the vector from the origin of A's coordinates to the origin of
-/// B's.
+/// `d` is the vector between the origins of the coordinates.
 fn some_face_parts(a: &Hull, b: &Hull, d: Vec2<Length>, filter: &GhostFilter) -> bool {
     let radii = step_bits(a.radius) + step_bits(b.radius);
-    // The test that rejects most faces comes first.
     (0..a.faces()).any(|edge| {
         let normal = a.normals()[edge];
         let moved = distance_along(normal, filter.shift);
@@ -113,13 +104,13 @@ fn some_face_parts(a: &Hull, b: &Hull, d: Vec2<Length>, filter: &GhostFilter) ->
         if nearest < -step_bits(filter.slack) {
             return false;
         }
-        // If an outline is thin along this axis, the slack must not exceed a quarter of its width.
+        // The slack must not exceed a quarter of the width of a thin outline.
         let widths = [a, b].map(|hull| width(hull, normal) / 4).into_iter().filter(|&width| width > 0);
         nearest >= -widths.fold(step_bits(filter.slack), i64::min)
     })
 }
 
-/// Width of an outline along an axis, in units of `Step`: 0 for a line perpendicular to the axis.
+/// In units of `Step`. 0 for a line perpendicular to the axis.
 fn width(hull: &Hull, n: Vec2<Unit>) -> i64 {
     let along = |&vertex: &Vec2<Length>| distance_along(n, vertex);
     let (lower, upper) = hull

@@ -1,9 +1,8 @@
 //! Contact of two convex outlines: the separating axis test over the face normals of both, then clipping of the
 //! incident edge against the reference face (D. Gregorius, "Robust Contact Creation", GDC 2015).
 //!
-//! In two dimensions the axis of least overlap of two convex polygons is always a face normal. If the polygons do not
-//! overlap, the closest features may be two corners, which no face normal detects. That case has its own normal, so
-//! that a box falling past the corner of another box does not catch on it.
+//! If the outlines do not overlap, the closest features may be two corners, which no face normal detects. That case has
+//! its own normal, so that a box falling past the corner of another box does not catch on it.
 
 mod clip;
 
@@ -13,20 +12,18 @@ use crate::collision::manifold::Manifold;
 use crate::collision::shape::posed::{BoxFaces, Hull};
 use crate::math::{Length, Step, Unit, Vec2};
 
-/// Margin in metres by which the separation from B's best face must exceed that from A's, so that B's face becomes the
-/// reference face. 0.5 mm prevents the choice from flickering between two equal faces: accumulated impulses survive a
-/// flicker, since features do not depend on the choice, but anchors would jump. Polygons whose separation exceeds this
-/// margin count as disjoint.
+/// Margin in metres by which the separation from B's best face must exceed that from A's to make it the reference face:
+/// flickering between two equal faces would make anchors jump. Polygons with a larger separation count as disjoint.
 pub(in crate::collision) const TOLERANCE: Step = Step::lit("0.0005");
 
-/// Fraction bits of the product of a length and a unit vector, such as the separation from a face.
+/// Fraction bits of the product of a length and a unit vector.
 pub(in crate::collision) const FACE_BITS: u32 = Unit::FRAC_NBITS + Length::FRAC_NBITS;
 
 /// [`TOLERANCE`] with [`FACE_BITS`] fraction bits.
 pub(in crate::collision) const TOLERANCE_WIDE: i64 = (TOLERANCE.to_bits() as i64) << 25;
 
-/// Cached separating axis: the face that separated a pair in the last tick, if any. Testing it first changes no result,
-/// since any axis with a gap beyond the margin proves that there is no contact.
+/// The face that separated a pair in the last tick. Testing it first changes no result, because an axis with a gap
+/// beyond the margin proves that there is no contact.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) enum CachedAxis {
     #[default]
@@ -35,26 +32,24 @@ pub(crate) enum CachedAxis {
     OfB(u8),
 }
 
-/// Counts of separating axis tests that the cached axis avoided, and of full searches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct SatCounters {
     pub(crate) cached_axis_hits: u32,
     pub(crate) searches: u32,
 }
 
-/// Cosine of 2.6 degrees, the largest angle between two faces that count as parallel, as a product of two [`Unit`]
-/// numbers. Rounded shapes in contact have outlines that are apart without their radii. If the reference face
-/// alternated between two such outlines, columns of 50 to 100 rounded boxes would fall.
+/// Cosine of 2.6 degrees, up to which two faces count as parallel, as a product of two [`Unit`] numbers. If the
+/// reference face alternated between rounded outlines, columns of 50 to 100 rounded boxes would fall.
 pub(in crate::collision) const PARALLEL_WIDE: i64 = (Unit::lit("0.999").to_bits() as i64) << Unit::FRAC_NBITS;
 
 #[derive(Clone, Copy)]
 pub(in crate::collision) struct Face {
     pub(in crate::collision) edge: usize,
-    /// Separation of the other outline's vertices from the face, without radii, with 52 fraction bits.
+    /// From the other outline's vertices, without radii, with 52 fraction bits.
     pub(in crate::collision) separation: i64,
 }
 
-/// Contact of two hulls. `d` is the vector from the centre of A to the centre of B.
+/// `d` is the vector from the centre of A to the centre of B.
 pub(crate) fn collide(
     a: &Hull,
     b: &Hull,
@@ -66,7 +61,7 @@ pub(crate) fn collide(
     let radii = a.radius.saturating_add(b.radius);
     let reach = i64::from(margin.saturating_add(radii).to_bits()) << 30;
     let from_cache = match *cached_axis {
-        // The SIMD path has no cached axes; ignoring them here too keeps the counters equal on both paths.
+        // The SIMD path has none. Ignoring them here too keeps the counters equal.
         _ if a.is_small_box() && b.is_small_box() => i64::MIN,
         CachedAxis::OfA(edge) if usize::from(edge) < a.vertices().len() => {
             face_separation(a, edge.into(), b, d)
@@ -103,7 +98,6 @@ pub(crate) fn collide(
     }
 }
 
-/// Whether the reference face is B's best face, and not A's.
 #[inline]
 pub(in crate::collision) fn is_reference_of_b(
     a: &Hull,
@@ -112,9 +106,8 @@ pub(in crate::collision) fn is_reference_of_b(
     face_b: Face,
     apart: bool,
 ) -> bool {
-    // If the outlines are apart, the face with the larger separation is the reference face even if the difference is
-    // within the tolerance, because only that face is next to the nearest corner. Rounded outlines with parallel faces
-    // are an exception.
+    // If the outlines are apart, only the face with the larger separation is next to the nearest corner, so the
+    // tolerance does not apply. Rounded outlines with parallel faces are an exception.
     let is_rounded = a.radius.saturating_add(b.radius) > 0;
     let prefers_a = !apart || is_rounded && are_parallel(a.normals()[face_a.edge], b.normals()[face_b.edge]);
     face_b.separation > face_a.separation + if prefers_a { TOLERANCE_WIDE } else { 0 }
@@ -125,7 +118,7 @@ fn are_parallel(n: Vec2<Unit>, other: Vec2<Unit>) -> bool {
     (bits(n.x) * bits(other.x) + bits(n.y) * bits(other.y)).abs() > PARALLEL_WIDE
 }
 
-/// Whether two outlines without their radii are disjoint, given the best face of each.
+/// Whether two outlines without their radii are disjoint.
 #[inline]
 pub(in crate::collision) fn are_apart(
     a: &Hull,
@@ -139,8 +132,7 @@ pub(in crate::collision) fn are_apart(
         || (b.is_line() && beyond_an_end(b, a, -d))
 }
 
-/// Whether `b` lies beyond an end of `a`, which is a two-sided outline and has no face there. For two capsules end to
-/// end no face shows that they are apart.
+/// `a` is two-sided and has no face at its ends.
 fn beyond_an_end(a: &Hull, b: &Hull, d: Vec2<Length>) -> bool {
     let &[start, end] = a.vertices() else { return false };
     let t = a.normals()[0].perp();
@@ -155,17 +147,16 @@ fn small(edge: usize) -> u8 {
     edge as u8
 }
 
-/// Face of `a` with the largest separation from `b`; the first one in case of a tie.
+/// Face of `a` with the largest separation from `b`. The first wins a tie.
 #[inline(always)]
 pub(in crate::collision) fn best_face(a: &Hull, b: &Hull, d: Vec2<Length>) -> Face {
-    // Fast path: most shapes are boxes.
     match (a.as_box(), b.as_box()) {
         (Some(a), Some((others, _))) => furthest_of_box(a, others, d),
         _ => furthest(a, b, d),
     }
 }
 
-/// Face of a hull with the largest separation from a point; the first one in case of a tie.
+/// Face of a hull with the largest separation from a point. The first wins a tie.
 #[inline]
 pub(in crate::collision) fn face_before(hull: &Hull, point: Vec2<Length>) -> Face {
     match hull.as_box() {
@@ -207,8 +198,7 @@ fn furthest_over(a: &Hull, support: impl Fn(Vec2<Unit>) -> i64, d: Vec2<Length>)
     best
 }
 
-/// [`furthest`] for two boxes: the largest and smallest `n . v` over the vertices of a box differ only in sign, and so
-/// do the distances of its opposite faces from its centre.
+/// [`furthest`] for two boxes, in which opposite vertices and faces differ in sign.
 #[inline(always)]
 fn furthest_of_box((vertices, normals): BoxFaces, others: &[Vec2<Length>; 2], d: Vec2<Length>) -> Face {
     let further_of_opposite = |edge: usize, n: Vec2<Unit>, vertex: Vec2<Length>| {
@@ -218,29 +208,29 @@ fn furthest_of_box((vertices, normals): BoxFaces, others: &[Vec2<Length>; 2], d:
     };
     let a = further_of_opposite(0, normals[0], vertices[0]);
     let b = further_of_opposite(1, normals[1], vertices[1]);
-    // In case of a tie the lower edge index wins.
+    // The lower edge index wins a tie.
     if (b.separation, a.edge) > (a.separation, b.edge) { b } else { a }
 }
 
-/// Largest `n . v` over the vertices of a box, given by its first two; the smallest is the negative.
+/// Largest `n . v` over the vertices of a box, given by its first two.
 #[inline(always)]
 fn half_extent(n: Vec2<Unit>, &[a, b]: &[Vec2<Length>; 2]) -> i64 {
     product(n, a).abs().max(product(n, b).abs())
 }
 
-/// `n . v` with 52 fraction bits.
+/// With 52 fraction bits.
 #[inline]
 fn product(n: Vec2<Unit>, v: Vec2<Length>) -> i64 {
     i64::from(n.x.to_bits()) * i64::from(v.x.to_bits()) + i64::from(n.y.to_bits()) * i64::from(v.y.to_bits())
 }
 
-/// Smallest `n . v` over at least one vertex, with 52 fraction bits.
+/// With 52 fraction bits.
 #[inline]
 fn support(n: Vec2<Unit>, vertices: &[Vec2<Length>]) -> i64 {
     vertices.iter().fold(i64::MAX, |least, &vertex| least.min(product(n, vertex)))
 }
 
-/// Smallest distance of the vertices of `b` from a face of `a`, with 52 fraction bits.
+/// With 52 fraction bits.
 pub(in crate::collision) fn face_separation(a: &Hull, edge: usize, b: &Hull, d: Vec2<Length>) -> i64 {
     plane_separation(a.normals()[edge], a.vertices()[edge], b, d)
 }

@@ -1,8 +1,7 @@
 //! A chain link against a circle or a convex outline.
 //!
-//! A single link would push a shape that slides over its end back or up: a ghost collision. The neighbours of the link
-//! decide which normals the chain as a whole allows at a vertex (E. Catto, chain segments of Box2D 3, from the same
-//! Gauss map of the outline):
+//! A single link would push a shape that slides over its end back or up: a ghost collision. Its neighbours decide which
+//! normals the whole chain allows at a vertex (E. Catto, chain segments of Box2D 3):
 //!
 //! ```text
 //! convex vertex    normals between the normals of the two links; each link has the half nearer to its own normal
@@ -10,7 +9,7 @@
 //! free end         every direction
 //! ```
 //!
-//! Each point beside a chain therefore belongs to one link, except inside of a concave vertex, which both links bound.
+//! A point beside a chain belongs to one link, or to both inside a concave vertex.
 
 use super::circle_hull::{distance_along, step_bits};
 use super::hull_hull::{self, Face, TOLERANCE_WIDE};
@@ -21,22 +20,20 @@ use crate::collision::shape::link::Link;
 use crate::collision::shape::posed::Hull;
 use crate::math::{Fx, Length, Step, Unit, Vec2, convert, saturate};
 
-/// Smallest difference of two normals, as the sine of the angle between them. Convex vertices that turn by less than
-/// this (0.6 degrees) count as flat.
+/// Sine of the angle (0.6 degrees) below which convex vertices count as flat.
 const ANGLE_TOLERANCE: Unit = Unit::lit("0.01");
 
-/// Sine of the largest angle at which a face normal counts as the link's own. With a larger value a rounded box that
-/// slides along the chain would be pushed back slightly at every vertex.
+/// Sine of the largest angle at which a face normal counts as the link's own. A larger value would push rounded boxes
+/// that slide along the chain back at every vertex.
 const PARALLEL: Unit = Unit::lit("0.0002");
 
-/// End of a link: free, or joined to a neighbour.
 #[derive(Clone, Copy, Debug)]
 enum LinkEnd {
     Free,
     Joined { direction: Vec2<Unit>, turn: Turn },
 }
 
-/// Turn of the chain at a vertex, as seen from the side of the shape.
+/// As seen from the side of the shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Turn {
     Convex,
@@ -44,7 +41,6 @@ enum Turn {
     Concave,
 }
 
-/// Result of testing a normal against the chain.
 enum Verdict {
     /// The link pushes along the normal.
     Own,
@@ -56,9 +52,9 @@ enum Verdict {
     Snap,
 }
 
-/// A link relative to the centre of the shape that it meets, oriented so that the shape is on its right.
+/// A link relative to the centre of another shape, oriented so that the shape is on its right.
 pub(crate) struct Facing {
-    /// The link as a two-sided hull: edge 0 faces the shape.
+    /// Edge 0 faces the shape.
     hull: Hull,
     direction: Vec2<Unit>,
     normal: Vec2<Unit>,
@@ -68,8 +64,8 @@ pub(crate) struct Facing {
 }
 
 impl Facing {
-    /// Orients a link, given relative to the other shape's centre, towards the point `place` in that shape. Returns
-    /// `None` if the link is far away or not solid from this side.
+    /// Orients a link towards the point `place` in the other shape. `None` if it is far away or not solid from this
+    /// side.
     pub(crate) fn new(link: &Link, place: Vec2<Fx>) -> Option<Self> {
         let link = match (link.has_on_right(place), link.sides) {
             (true, _) => *link,
@@ -79,7 +75,7 @@ impl Facing {
         let (p, q) = clipped_to_window(link.a, link.b)?;
         let direction = link.directions.own?;
         let end = |neighbour: Option<Vec2<Unit>>, turn: fn(Vec2<Unit>, Vec2<Unit>) -> Turn| match neighbour {
-            // A chain that reverses its direction exactly counts as ending there.
+            // A chain that reverses exactly ends there.
             Some(other) if other != -direction => {
                 LinkEnd::Joined { direction: other, turn: turn(other, direction) }
             }
@@ -95,7 +91,7 @@ impl Facing {
         })
     }
 
-    /// Tests whether the chain allows `n`, the contact normal that the shape and the link alone would have.
+    /// Tests the normal that the shape and the link alone would have.
     fn judge(&self, n: Vec2<Unit>) -> Verdict {
         let own: Unit = self.normal.dot(n);
         let across: Unit = self.normal.cross(n);
@@ -125,8 +121,7 @@ impl Facing {
         }
     }
 
-    /// Largest separation of a hull about the origin from the neighbours' faces at convex vertices: the chain is solid
-    /// only behind both faces.
+    /// Largest separation from the neighbours' faces at convex vertices. The chain is solid behind both faces.
     fn neighbour_separation(&self, b: &Hull) -> i64 {
         let [start, end] = [(self.start, 0), (self.end, 1)].map(|(end, vertex)| match end {
             LinkEnd::Joined { turn: Turn::Convex, direction } => {
@@ -138,8 +133,7 @@ impl Facing {
         start.max(end)
     }
 
-    /// Contact with a circle about the origin, if its centre is beside the link, in the region of the vertex at which
-    /// the link starts, beyond a free end, or beyond a concave vertex within the margin.
+    /// The circle is about the origin.
     pub(crate) fn collide_circle(&self, radius: Length, margin: Length) -> Manifold {
         let (a, b) = (self.hull.vertices()[0], self.hull.vertices()[1]);
         let past = |vertex: Vec2<Length>, direction: Vec2<Unit>| -> Length { (-vertex).dot(direction) };
@@ -173,7 +167,6 @@ impl Facing {
         }
     }
 
-    /// Contact with a hull about the origin.
     pub(crate) fn collide_hull(&self, b: &Hull, margin: Length) -> Manifold {
         let a = &self.hull;
         let reach = i64::from(margin.saturating_add(b.radius).to_bits()) << 30;
@@ -189,12 +182,11 @@ impl Facing {
         }
     }
 
-    /// The face on the side of the shape, with its separation.
     fn face(&self, b: &Hull) -> Face {
         Face { edge: 0, separation: hull_hull::face_separation(&self.hull, 0, b, Vec2::ZERO) }
     }
 
-    /// Contact of the nearest features of separate outlines, if the chain allows their normal.
+    /// Nearest features of separate outlines, if the chain allows their normal.
     fn collide_apart(&self, b: &Hull, (face_a, face_b): (Face, Face), margin: Length) -> Manifold {
         let a = &self.hull;
         let found = if hull_hull::is_reference_of_b(a, b, face_a, face_b, true) {
@@ -213,23 +205,21 @@ impl Facing {
             Verdict::Neighbour | Verdict::Leave => Manifold::NONE,
             Verdict::Snap => {
                 let mut found = hull_hull::clip(a, b, Vec2::ZERO, self.face(b), false, margin);
-                // Beyond the end of the link, its line only limits the approach: points are kept there only if they are
-                // speculative.
+                // Beyond the end of the link, its line only limits the approach, by speculative points.
                 found.retain(|point| point.separation > 0 || self.is_beside(point.anchor, b.radius));
                 found
             }
         }
     }
 
-    /// Whether a point is beside the link, or beyond its ends by at most 1/64 of the radius
-    /// plus 0.5 mm, which is more than the gap at a vertex that counts as flat.
+    /// Whether a point is beside the link, with a slack for the gap at a vertex that counts as flat.
     fn is_beside(&self, place: Vec2<Length>, radius: Length) -> bool {
         let slack: Length = (radius / 64).saturating_add(Length::lit("0.0005"));
         let past = |vertex: Vec2<Length>| -> Length { (place - vertex).dot(self.direction) };
         past(self.hull.vertices()[0]) >= -slack && past(self.hull.vertices()[1]) <= slack
     }
 
-    /// Contact of overlapping outlines, on the face of least overlap among those that the chain allows.
+    /// Face of least overlap among those that the chain allows.
     fn collide_overlapping(&self, b: &Hull, margin: Length) -> Manifold {
         let a = &self.hull;
         let face = self.face(b);
@@ -256,7 +246,7 @@ impl Facing {
     }
 }
 
-/// Turn of a chain from one link to the next, as seen from its right.
+/// As seen from the right of the chain.
 fn turn(from: Vec2<Unit>, to: Vec2<Unit>) -> Turn {
     let sine: Unit = from.cross(to);
     let cosine: Unit = from.dot(to);
@@ -267,7 +257,7 @@ fn turn(from: Vec2<Unit>, to: Vec2<Unit>) -> Turn {
     }
 }
 
-/// Contact of a circle about the origin with a feature at a distance along a normal.
+/// Contact of a circle about the origin.
 fn single(normal: Vec2<Unit>, distance: i64, radius: Length, margin: Length) -> Manifold {
     let separation = distance - step_bits(radius);
     if separation > step_bits(margin) {

@@ -1,4 +1,4 @@
-//! Narrow phase: dispatch over all pairs of outlines.
+//! Narrow phase: dispatch over pairs of outlines.
 
 mod box_box;
 mod circle_circle;
@@ -22,28 +22,26 @@ use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
 use link::Facing;
 
-/// Slack of the early reject in metres: a pair is rejected if the distance of the bounding boxes exceeds the margin by
-/// more than this. The slack covers the rounding of vertices and the half millimetre by which nearly parallel edges
-/// count as nearer than they are, so that the early reject changes no result.
+/// Slack of the early reject in metres: covers the rounding of vertices and the half millimetre by which nearly
+/// parallel edges count as nearer than they are.
 const REJECT_SLACK: Fx = fx!(0.001);
 
 /// Largest speculative margin in metres, within the range of a separation (16 m).
 const MARGIN_MAX: Length = Length::lit("15");
 
-/// Speculative margin for two shapes that may approach each other by `closing` metres in the tick.
+/// `closing` is the possible approach in the tick in metres.
 #[inline]
 pub(crate) fn margin_for<A: LeEqU32>(speculative: Length, closing: FixedI32<A>) -> Length {
     speculative.saturating_add(convert(closing)).min(MARGIN_MAX)
 }
 
-/// Whether two boxes are so near that shapes in them may be at most `margin` metres apart.
+/// Whether shapes in two boxes may be at most `margin` metres apart.
 #[inline]
 pub(crate) fn may_meet(a: Aabb, b: Aabb, margin: Length) -> bool {
     a.expanded_nearby(widen(margin).wrapping_add(REJECT_SLACK)).overlaps(b)
 }
 
-/// Contact manifold of two posed shapes, without points if their surfaces are more than `margin` metres apart. Pairs
-/// whose bounding boxes are too far apart are rejected early.
+/// [`collide_near`] with an early reject by bounding boxes.
 pub(crate) fn collide(
     a: &PosedShape,
     b: &PosedShape,
@@ -58,7 +56,7 @@ pub(crate) fn collide(
     }
 }
 
-/// Contact manifold of two posed shapes, without points if their surfaces are more than `margin` metres apart.
+/// Contact manifold, without points if the surfaces are more than `margin` metres apart.
 pub(crate) fn collide_near(
     a: &PosedShape,
     b: &PosedShape,
@@ -68,8 +66,7 @@ pub(crate) fn collide_near(
 ) -> Manifold {
     use Outline::{Circle, Link, Polygon, Segment};
     let d: Vec2<Length> = (b.centre - a.centre).narrow();
-    // Anchors are relative to the centre of one shape: of the polygon for a circle and a polygon, of the other shape
-    // for a segment or link, and of A otherwise.
+    // Relative to the polygon for a circle and a polygon, and to the other shape for a segment or link.
     let mut origin = a.centre;
     let mut manifold = match (&a.outline, &b.outline) {
         (Circle { radius: radius_a }, Circle { radius: radius_b }) => {
@@ -119,21 +116,21 @@ pub(crate) fn collide_near(
             let Some(facing) = link_facing(b, a, hull_a.middle()) else { return Manifold::NONE };
             facing.collide_hull(hull_a, margin).swapped()
         }
-        // Two lines have no inside, so nothing determines on which side of the other a line should be.
+        // Nothing determines on which side of the other a line should be.
         (Segment { .. } | Link(_), Segment { .. } | Link(_)) => Manifold::NONE,
     };
     manifold.origin = origin;
     manifold
 }
 
-/// Outline of a segment relative to the centre of the other shape.
+/// Relative to the centre of the other shape.
 fn segment_about(segment: &PosedShape, other: &PosedShape) -> Option<Hull> {
     let Outline::Segment { a, b } = segment.outline else { return None };
     let from_other = segment.centre - other.centre;
     segment::near_hull(from_other + a, from_other + b)
 }
 
-/// A link relative to the centre of the other shape, oriented towards a point in that shape.
+/// Relative to the centre of the other shape, oriented towards a point in it.
 fn link_facing(link: &PosedShape, other: &PosedShape, place: Vec2<Fx>) -> Option<Facing> {
     let Outline::Link(posed) = link.outline else { return None };
     let from_other = link.centre - other.centre;
@@ -190,8 +187,6 @@ mod tests {
             let margin = narrow(rng.range(fx!(0.005), fx!(0.2)));
             let mut cached_axis = CachedAxis::default();
             let plain = collide_near(&a, &b, margin, &mut cached_axis, &mut SatCounters::default());
-            // In the first round, `cached_axis` contains the separating axis of the pair, if there is one. In the
-            // second round it contains the separating axis of another pair.
             for _ in 0..2 {
                 let found = collide(&a, &b, margin, &mut cached_axis, &mut counters);
                 assert_eq!(found.points(), plain.points());
@@ -220,7 +215,6 @@ mod tests {
         }
     }
 
-    /// Vertices of an outline in the world, and its radius.
     fn corners(shape: &PosedShape) -> (Vec<Vec2<Fx>>, Fx) {
         match &shape.outline {
             Outline::Circle { radius } => (alloc::vec![shape.centre], widen(*radius)),
@@ -234,7 +228,6 @@ mod tests {
         }
     }
 
-    /// Smallest distance between a vertex of either outline and an edge of the other.
     fn distance(a: &[Vec2<Fx>], b: &[Vec2<Fx>]) -> Fx {
         let from = |points: &[Vec2<Fx>], outline: &[Vec2<Fx>]| {
             let edges = outline.iter().zip(outline.iter().cycle().skip(1));
@@ -248,8 +241,7 @@ mod tests {
         from(a, b).min(from(b, a))
     }
 
-    /// Compares the separation of disjoint outlines with the distance between vertices and edges, by brute force in 64
-    /// bits. Skips pairs of segments, and pairs whose outlines cross or are within 0.5 mm of each other.
+    /// Compared with brute force in 64 bits. Skips outlines that cross or are within 0.5 mm of each other.
     #[test]
     fn separation_is_the_distance_of_outlines_that_are_apart() {
         let mut rng = Rng::new(2);
@@ -269,11 +261,10 @@ mod tests {
                     none += 1;
                     assert!(expected > fx!(0.04999), "missed a contact at {expected} m: {a:?} {b:?}");
                 }
-                // Sharp corners that nearly touch are treated as faces: below the tolerance of 0.5 mm the separation
-                // along a face is less than the distance.
+                // Sharp corners that nearly touch are treated as faces.
                 Some(found) if found + radius_a + radius_b > fx!(0.0005) => {
                     compared += 1;
-                    // Edges that are nearly parallel are treated as faces, with an error up to the same tolerance.
+                    // Nearly parallel edges are treated as faces, with an error up to the tolerance of 0.5 mm.
                     let error = found - expected;
                     assert!(error.abs() < fx!(0.000502), "expected {expected} m, got {found} m: {a:?} {b:?}");
                 }
@@ -286,8 +277,7 @@ mod tests {
         );
     }
 
-    /// For capsules and circles on one line no face is a separating axis; only the distance of their ends shows the
-    /// gap.
+    /// No face is a separating axis.
     #[test]
     fn shapes_in_line_are_apart_and_pushed_along_the_line() {
         let pill =
@@ -314,7 +304,6 @@ mod tests {
         }
     }
 
-    /// Exchanging the shapes exchanges their roles and changes nothing else, unless a tie is broken by order.
     #[test]
     fn exchanged_shapes_give_the_opposite_normal() {
         let mut rng = Rng::new(3);

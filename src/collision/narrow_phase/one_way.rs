@@ -1,4 +1,4 @@
-//! One-way platforms: decides whether a shape in contact passes through.
+//! One-way platforms.
 //!
 //! Let `p` be the pass direction, `m` the contact normal from the platform to the other shape, and `s` the separation
 //! of the two along `p`. The other shape
@@ -9,14 +9,14 @@
 //! else passes
 //! ```
 //!
-//! A decision therefore persists during an overlap: a shape that turns round half-way falls back, and a shape that has
-//! come through is supported as soon as it is out. The slack lets a shape slide from one platform to the next.
+//! A shape that turns round half-way falls back, and one that has come through is supported as soon as it is out. The
+//! slack lets a shape slide from one platform to the next.
 
 use crate::collision::manifold::Manifold;
 use crate::collision::shape::posed::{Outline, PosedShape};
 use crate::math::{Fx, Unit, Vec2, widen};
 
-/// A one-way platform with its pass direction in world axes.
+/// The direction is in world axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OneWay<'a> {
     pub(crate) shape: &'a PosedShape,
@@ -24,7 +24,7 @@ pub(crate) struct OneWay<'a> {
 }
 
 impl OneWay<'_> {
-    /// Whether `other` passes. The manifold's normal points from the platform to `other`.
+    /// The manifold's normal points to `other`.
     pub(crate) fn lets_pass(
         &self,
         other: &PosedShape,
@@ -44,8 +44,7 @@ impl OneWay<'_> {
         upright < Unit::lit("0.5")
     }
 
-    /// Separation of the other shape from the platform along the pass direction; negative until the other shape is
-    /// fully through.
+    /// Along the pass direction. Negative until the other shape is fully through.
     fn separation_from(&self, other: &PosedShape) -> Fx {
         let direction = self.direction.widen();
         let between = (other.centre - self.shape.centre).dot(direction);

@@ -1,27 +1,26 @@
-//! Segments, which may be as long as the world. Before it meets a shape, a segment is clipped in 64 bits to a window
-//! around that shape, and becomes a two-sided outline in 32-bit coordinates relative to the shape's centre.
+//! Segments as long as the world are clipped in 64 bits to a window around the other shape, and become two-sided
+//! outlines in 32-bit coordinates relative to its centre.
 
 use crate::collision::shape::posed::Hull;
 use crate::fx;
 use crate::math::{Fx, Vec2, div_round, saturate_wide};
 
-/// Half the side of the window in metres. Larger than the extent of any shape plus the largest margin (together 171 m),
-/// and small enough that coordinates relative to the shape's centre, and the edge itself, fit `Length`.
+/// Half the side of the window in metres: more than the extent of any shape plus the largest margin (171 m), and little
+/// enough that relative coordinates, and the edge itself, fit `Length`.
 const WINDOW: Fx = fx!(200);
 
-/// Outline of the segment from `a` to `b`, both relative to the other shape's centre; `None` if it misses the window.
+/// Relative to the other shape's centre. `None` if the segment misses the window.
 pub(crate) fn near_hull(a: Vec2<Fx>, b: Vec2<Fx>) -> Option<Hull> {
     let direction = (b - a).normalized()?;
     let (p, q) = clipped_to_window(a, b)?;
     Some(Hull::segment(p.narrow(), q.narrow(), direction))
 }
 
-/// Part of a segment inside the window.
 pub(crate) fn clipped_to_window(a: Vec2<Fx>, b: Vec2<Fx>) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
     clip(a, b, WINDOW)
 }
 
-/// Part of a segment inside a square about the origin; `None` if there is none.
+/// The square is about the origin.
 pub(in crate::collision) fn clip(a: Vec2<Fx>, b: Vec2<Fx>, half_side: Fx) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
     let (mut p, mut q) = (a, b);
     let is_inside = |v: Vec2<Fx>| v.x.unsigned_abs().max(v.y.unsigned_abs()) <= half_side.unsigned_abs();
@@ -38,7 +37,7 @@ pub(in crate::collision) fn clip(a: Vec2<Fx>, b: Vec2<Fx>, half_side: Fx) -> Opt
     Some((p, q))
 }
 
-/// Part of a segment where `outside` is not positive. `outside` must be linear.
+/// Part where the linear function `outside` is not positive.
 fn clip_to_half_plane(
     p: Vec2<Fx>,
     q: Vec2<Fx>,
@@ -53,9 +52,9 @@ fn clip_to_half_plane(
     }
 }
 
-/// Point at which a linear function crosses zero on the segment from `p` to `q`, with `at_p > 0 >= at_q`.
+/// Zero of a linear function, with `at_p > 0 >= at_q`.
 fn crossing(p: Vec2<Fx>, q: Vec2<Fx>, at_p: i128, at_q: i128) -> Vec2<Fx> {
-    // Coordinates, and differences within the world, are below 2^63: the product has at most 127 bits.
+    // Differences within the world are below 2^63, so that the product has at most 127 bits.
     let part = |p: Fx, q: Fx| {
         let moved = div_round((i128::from(q.to_bits()) - i128::from(p.to_bits())) * at_p, at_p - at_q);
         Fx::from_bits(saturate_wide(i128::from(p.to_bits()) + moved))

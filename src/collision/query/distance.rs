@@ -1,10 +1,9 @@
-//! Distance of two cores, which are shapes without their radii: the point of the Minkowski difference `B - A` nearest
-//! to the origin, by the algorithm of E. Gilbert, D. Johnson and S. Keerthi ("A Fast Procedure for Computing the
-//! Distance Between Complex Objects", 1988).
+//! Distance of two cores, which are shapes without their radii: the point of `B - A` nearest to the origin, by GJK (E.
+//! Gilbert, D. Johnson, S. Keerthi, "A Fast Procedure for Computing the Distance Between Complex Objects", 1988).
 //!
-//! In two dimensions a search direction is a vertex of `B - A` or the perpendicular of an edge, which needs no
-//! rounding. With exact signs each step comes strictly nearer, so the search ends without a tolerance and cannot cycle.
-//! Overlapping cores are handled by the separating axis test, which gives the depth.
+//! In two dimensions a search direction is a vertex or the perpendicular of an edge, which needs no rounding. With
+//! exact signs each step comes strictly nearer, so the search ends without a tolerance and cannot cycle. The separating
+//! axis test gives the depth of overlapping cores.
 
 use crate::collision::shape::support::{
     Fraction, Grid, SupportShape, cross, direction, edges, height, length, scaled, scaled_along,
@@ -12,23 +11,19 @@ use crate::collision::shape::support::{
 use crate::collision::shape::support::{dot, from_grid, to_fx};
 use crate::math::{Fx, Unit, Vec2};
 
-/// Distance of two shapes, with the nearest points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Distance {
-    /// Distance between the surfaces in metres. For overlapping shapes it is the negative depth, where the depth is the
-    /// length of the shortest translation that separates them. The error is at most 20 nm for separate cores and 1e-9
-    /// of the size for overlapping cores.
+    /// Distance between the surfaces in metres, or the negative length of the shortest translation that separates them.
+    /// The error is up to 20 nm for separate cores and 1e-9 of the size for overlapping ones.
     pub(crate) distance: Fx,
-    /// Nearest point on the surface of A, or the deepest point of A inside B; relative to the origin of the support
-    /// shapes.
+    /// Nearest point of A, or its deepest point inside B, relative to the origin of the support shapes.
     pub(crate) point_a: Vec2<Fx>,
-    /// Nearest point on the surface of B, or the deepest point of B inside A.
+    /// The corresponding point of B.
     pub(crate) point_b: Vec2<Fx>,
-    /// Unit vector from A to B. Translating B by `-distance` along it makes overlapping shapes touch.
+    /// Unit vector from A to B.
     pub(crate) normal: Vec2<Unit>,
 }
 
-/// Computes the distance of two shapes.
 pub(crate) fn distance(a: &SupportShape, b: &SupportShape) -> Distance {
     let Axis { separation, normal, point_a, point_b } = axis(a, b);
     let (point_a, point_b) = (point_a + scaled(normal, a.radius), point_b - scaled(normal, b.radius));
@@ -48,7 +43,7 @@ pub(crate) fn overlap(a: &SupportShape, b: &SupportShape) -> bool {
     }
 }
 
-/// Axis of largest separation, or of least overlap, of two support shapes without their radii.
+/// Axis of largest separation or least overlap of two cores.
 struct Axis {
     separation: Grid,
     normal: Vec2<Unit>,
@@ -60,7 +55,6 @@ fn axis(a: &SupportShape, b: &SupportShape) -> Axis {
     nearest(a, b).unwrap_or_else(|| deepest(a, b))
 }
 
-/// A vertex of `B - A`, and the two points whose difference it is.
 #[derive(Clone, Copy)]
 struct Vertex {
     a: Vec2<Grid>,
@@ -70,7 +64,7 @@ struct Vertex {
 }
 
 impl Vertex {
-    /// Vertex of `B - A` furthest along a direction; the first one in case of a tie.
+    /// Vertex of `B - A` furthest along a direction. The first one wins a tie.
     fn support(a: &SupportShape, b: &SupportShape, d: Vec2<Grid>) -> Self {
         let (a, b) = (furthest(a.points(), -d), furthest(b.points(), d));
         Vertex { a, b, w: b - a }
@@ -88,15 +82,14 @@ fn furthest(points: &[Vec2<Grid>], d: Vec2<Grid>) -> Vec2<Grid> {
     best
 }
 
-/// The simplex: the part of `B - A` that is nearest to the origin so far.
 #[derive(Clone, Copy)]
 enum Nearest {
     Vertex(Vertex),
-    /// An edge; the origin projects strictly between its ends.
+    /// The origin projects strictly between the ends.
     Edge(Vertex, Vertex),
 }
 
-/// Nearest points of the cores of two support shapes; `None` if the cores share a point.
+/// `None` if the cores share a point.
 fn nearest(a: &SupportShape, b: &SupportShape) -> Option<Axis> {
     let (first_a, first_b) = (a.points()[0], b.points()[0]);
     let mut found = Nearest::Vertex(Vertex { a: first_a, b: first_b, w: first_b - first_a });
@@ -130,11 +123,11 @@ fn nearest(a: &SupportShape, b: &SupportShape) -> Option<Axis> {
     }
 }
 
-/// Nearest part of a triangle whose vertex `s` is on the origin's side of the edge `p q`, where the origin projects
-/// onto the interior of that edge. `None` if the origin is inside the triangle.
+/// The vertex `s` is on the origin's side of the edge `p q`, onto whose interior the origin projects. `None` if the
+/// origin is inside the triangle.
 fn nearest_of_triangle(p: Vertex, q: Vertex, s: Vertex) -> Option<Nearest> {
     let winding = cross(q.w - p.w, s.w - p.w).signum();
-    // Whether the origin is beyond an edge, as seen from the triangle's third vertex.
+    // As seen from the triangle's third vertex.
     let beyond_ps = cross(p.w - s.w, -s.w) * winding < 0;
     let beyond_sq = cross(s.w - q.w, -q.w) * winding < 0;
     match (beyond_ps, beyond_sq) {
@@ -145,7 +138,7 @@ fn nearest_of_triangle(p: Vertex, q: Vertex, s: Vertex) -> Option<Nearest> {
     }
 }
 
-/// Whether the line through `s` perpendicular to the edge `s p` has the origin on the side of `p`.
+/// Whether the origin is on the side of `p` of the line through `s` perpendicular to `s p`.
 fn projects_inside(s: Vertex, p: Vertex) -> bool {
     dot(p.w - s.w, -s.w) > 0
 }
@@ -160,12 +153,12 @@ fn on_edge(p: Vertex, q: Vertex, to_origin: Vec2<Grid>) -> Axis {
     let fraction = Fraction::ratio(-dot(p.w, edge), dot(edge, edge));
     let point_a = p.a + fraction.of(q.a - p.a);
     let point_b = p.b + fraction.of(q.b - p.b);
-    // The normal comes from the exact edge direction; the difference of the points is rounded, but accurate in length.
+    // From the exact edge direction, because the difference of the points is rounded.
     let normal = direction(-to_origin).unwrap_or(Vec2::Y);
     Axis { separation: length(point_b - point_a), normal, point_a, point_b }
 }
 
-/// Face of least depth of two support shapes that overlap or touch even without their radii.
+/// Face of least depth of two cores that share a point.
 fn deepest(a: &SupportShape, b: &SupportShape) -> Axis {
     let shared = a.points()[0];
     let mut best: Option<Axis> = None;
@@ -185,7 +178,7 @@ fn deepest(a: &SupportShape, b: &SupportShape) -> Axis {
     best.unwrap_or(Axis { separation: Grid::ZERO, normal: Vec2::Y, point_a: shared, point_b: shared })
 }
 
-/// For each face of a core: its normal, the separation of the other core from it, and the other core's nearest point.
+/// Normal of each face, separation of the other core, and its nearest point.
 fn faces(
     support_shape: &SupportShape,
     other: &SupportShape,
@@ -201,14 +194,14 @@ fn faces(
 
 #[cfg(test)]
 mod tests {
-    //! Distances are compared with brute force over all pairs of a vertex and an edge, with the predicates of `math`.
+    //! Compared with brute force.
 
     use super::*;
     use crate::collision::shape::support::{samples, to_grid};
     use crate::fx;
     use crate::math::{Rng, Rot, closest_point_on_segment, point_in_polygon, segment_intersection};
 
-    /// Distance of two support shapes without their radii; `None` if they share a point.
+    /// `None` if the cores share a point.
     fn naive(a: &SupportShape, b: &SupportShape) -> Option<Fx> {
         let (a, b) = (samples::world_points(a), samples::world_points(b));
         if point_in_polygon(&a, b[0]) || point_in_polygon(&b, a[0]) {
@@ -248,7 +241,6 @@ mod tests {
             apart += 1;
             worst = worst.max((found.distance - (expected - radii)).abs());
             assert_eq!(overlap(&a, &b), found.distance <= 0, "{a:?} {b:?}");
-            // The distance between the points, along the normal, must equal the reported distance.
             let between = found.point_b - found.point_a;
             let error = between - found.normal.widen().scale(found.distance);
             assert!(error.length() < fx!(0.000001), "{error:?} {found:?} {a:?} {b:?}");
@@ -257,8 +249,7 @@ mod tests {
         assert!(worst < fx!(0.00000002), "the largest error should be below 20 nm, not {worst} m");
     }
 
-    /// If one shape is moved by the depth along the normal, the shapes touch. If it is moved by less in any direction,
-    /// they still overlap.
+    /// Moving by the depth along the normal makes the shapes touch. Less in any direction leaves an overlap.
     #[test]
     fn depth_is_the_shortest_way_out() {
         let mut rng = Rng::new(2);
@@ -292,7 +283,6 @@ mod tests {
             [(-1, -2), (2, -2), (2, 1)].map(|(x, y)| Vec2::new(Fx::from_num(x), Fx::from_num(y))),
             Fx::ZERO,
         );
-        // The nearest vertices are 1 / sqrt 2 below the line; after the move they are as far above it.
         assert!((distance(&floor, &deep).distance - fx!(0.7071067811865)).abs() < fx!(0.00000001));
         let deep = deep.moved(to_grid(Vec2::new(fx!(-1), fx!(1))));
         assert!((distance(&floor, &deep).distance + fx!(0.7071067811865)).abs() < fx!(0.00000001));

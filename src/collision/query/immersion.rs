@@ -1,12 +1,11 @@
 //! The part of a convex shape that is inside another one: its area and its centre of area.
 //!
-//! Shapes are convex rings of points, counter-clockwise, and a line is a ring of two points. A ring is cut by each edge
-//! of the other one in turn (I. Sutherland, G. Hodgman, 1974). The fraction at which a cut divides an edge is rounded
-//! to 2^-32; areas and centres are exact sums over the cut ring, each rounded once.
+//! Shapes are convex rings of points, counter-clockwise, and a line is a ring of two points. Each edge of the other
+//! ring cuts a ring in turn (I. Sutherland, G. Hodgman, 1974). The fraction at which a cut divides an edge is rounded
+//! to 2^-32. Areas and centres are exact sums, each rounded once.
 //!
-//! Rounded outlines become rings with a corner in each of 32 directions. The corners are so far out that the ring of a
-//! disc has the area of the disc. The outline of the ring is off by at most 0.4 % of the radius for a disc, and by at
-//! most 1.7 % along a straight edge.
+//! Rounded outlines have a corner in each of 32 directions, so far out that a disc keeps its area. They are off by up
+//! to 0.4 % of the radius for a disc, and 1.7 % along a straight edge.
 
 use smallvec::SmallVec;
 
@@ -14,36 +13,31 @@ use crate::body::{Geometry, ShapeDef};
 use crate::fx;
 use crate::math::{Angle, Fx, Rot, Unit, Vec2, div_round, fx_div, fx_mul, saturate_wide};
 
-/// Number of corners of the ring of a disc.
 const CORNERS: u32 = 32;
-/// Radius of a regular polygon of [`CORNERS`] corners with the area of a disc of radius 1: `sqrt(t / sin t)` for an
-/// angle `t` between corners.
+/// Circumradius of a polygon with the area of a disc of radius 1: `sqrt(t / sin t)` for an angle `t` between corners.
 const CORNER_RADIUS: Fx = fx!(1.003222080);
-/// Largest number of points of a cut ring: each edge of the other ring adds at most one.
+/// Each edge of the other ring adds at most one point.
 const POINTS: usize = 2 * CORNERS as usize;
 
-/// The pose of a body relative to the origin of the rings of its shapes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RelativePose {
-    /// Centre of mass from the origin of the rings, in metres.
+    /// From the origin of the rings, in metres.
     pub(crate) centre: Vec2<Fx>,
     pub(crate) rotation: Rot,
-    /// Centre of mass in the body's frame, in metres.
+    /// In the body's frame, in metres.
     pub(crate) local_centre: Vec2<Fx>,
 }
 
 impl RelativePose {
-    /// Converts a point of the body's frame to one relative to the origin of the rings.
+    /// Converts a point from the body's frame.
     pub(crate) fn point(&self, local: Vec2<Fx>) -> Vec2<Fx> {
         self.centre + self.rotation.apply_wide(local - self.local_centre)
     }
 }
 
-/// A convex outline.
 #[derive(Clone, Debug)]
 pub(crate) struct Ring(SmallVec<[Vec2<Fx>; POINTS]>);
 
-/// The size of a ring and the centre of its area or length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Extent {
     /// Area in m², or length in m of a line.
@@ -52,7 +46,6 @@ pub(crate) struct Extent {
 }
 
 impl Ring {
-    /// The outline of a shape of a body.
     pub(crate) fn of(shape: &ShapeDef, pose: &RelativePose) -> Self {
         let point = |vertex: Vec2<Fx>| pose.point(shape.offset + vertex);
         match &shape.geometry {
@@ -70,22 +63,19 @@ impl Ring {
         }
     }
 
-    /// The outline at a distance `radius` from the hull of the points. The corners are in fixed world directions, so
-    /// that the ring of a disc does not rotate.
+    /// Corners are in fixed world directions, so that the ring of a disc does not rotate.
     fn rounded(points: &[Vec2<Fx>], radius: Fx) -> Self {
         let radius = fx_mul(radius, CORNER_RADIUS);
         let corner = |index: u32| {
             let (sin, cos) = Angle::from_bits(index * (u32::MAX / CORNERS + 1)).sin_cos();
             let direction: Vec2<Unit> = Vec2::new(cos, sin);
             let along = |point: &Vec2<Fx>| point.dot(direction.widen());
-            // If several points are furthest, the choice among them does not matter.
             let support = points.iter().copied().reduce(|a, b| if along(&b) > along(&a) { b } else { a });
             support.map(|support| support + direction.widen().scale(radius))
         };
         Ring((0..CORNERS).filter_map(corner).collect())
     }
 
-    /// The part of the outline that is inside another one.
     pub(crate) fn inside(mut self, other: &Ring) -> Self {
         let Ring(corners) = other;
         for (index, &start) in corners.iter().enumerate() {
@@ -103,7 +93,7 @@ impl Ring {
             return;
         }
         let mut left = SmallVec::new();
-        // The edge from the last point to the first one closes a ring, but not a line.
+        // The edge back to the first point closes a ring, but not a line.
         let is_line = points.len() == 2;
         for (index, &point) in points.iter().enumerate() {
             let next = points[(index + 1) % points.len()];
@@ -119,7 +109,7 @@ impl Ring {
         *points = left;
     }
 
-    /// The area or length, and its centre. `None` if nothing is left.
+    /// `None` if nothing is left.
     pub(crate) fn extent(&self) -> Option<Extent> {
         let Ring(points) = self;
         let (&first, rest) = points.split_first()?;
@@ -128,7 +118,7 @@ impl Ring {
             return Some(Extent { size: first.distance(*last), centre: middle }).filter(|line| line.size > 0);
         }
         // Twice the area and six times its first moments, with 64 and 96 fraction bits. Points are within a few hundred
-        // metres of each other, so that the sums fit 128 bits.
+        // metres, so that the sums fit.
         let (mut double, mut moment) = (0i128, [0i128; 2]);
         for pair in rest.windows(2) {
             let [a, b] = [pair[0], pair[1]].map(|point| {
@@ -181,8 +171,7 @@ mod tests {
         assert_eq!(above.extent(), None);
     }
 
-    /// Area of the part of a disc below a surface, with the centre `h` above the surface:
-    /// `r^2 (acos(h / r) - h / r sqrt(1 - (h / r)^2))`.
+    /// With the centre `h` above the surface: `r^2 (acos(h / r) - h / r sqrt(1 - (h / r)^2))`.
     #[test]
     fn a_disc_is_cut_as_theory_says() {
         let sea = Ring::of(&square(fx!(50)), &pose(fx!(0), fx!(-50), Angle::ZERO));
@@ -209,8 +198,6 @@ mod tests {
         close(cut.centre.y, fx!(-0.5), fx!(0.000001));
     }
 
-    /// The parts of a shape that are in two adjacent areas add up to the whole shape, in size and centre, for every
-    /// kind of shape that has an area.
     #[test]
     fn neighbouring_areas_divide_a_shape() {
         let mut rng = Rng::new(7);

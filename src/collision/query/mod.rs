@@ -1,4 +1,4 @@
-//! Distances, casts, times of impact and overlaps of two shapes, for queries, continuous collision and areas.
+//! Distances, casts, times of impact and overlaps of two shapes.
 
 mod distance;
 mod immersion;

@@ -1,10 +1,10 @@
 //! Ray cast against a shape: `o + t d` for the smallest `t` from 0 to 1.
 //!
-//! The outline of a convex core with a radius `r` consists of its edges, moved outwards by `r`, and of circles about
-//! its vertices. For an edge vector `e` from `p`, a ray crosses the moved line where `e x (o + t d - p) = -r |e|`; it
-//! enters a circle about `p` half a chord before the ray's nearest point to `p`. Each `t` is a quotient of exact
-//! products. The only approximations are `|e|` and `|d|`, with a relative error of 1.5e-9, and they only affect lengths
-//! up to the radius. Rays and segments may therefore be as long as the world.
+//! The outline of a core with a radius `r` consists of its edges, moved outwards by `r`, and of circles about its
+//! vertices. For an edge vector `e` from `p`, a ray crosses the moved line where `e x (o + t d - p) = -r |e|`. It
+//! enters a circle about `p` half a chord before its nearest point to `p`. Products are exact, and `|e|` and `|d|`,
+//! with a relative error of 1.5e-9, affect lengths up to the radius, so that rays and segments may be as long as the
+//! world.
 
 use super::distance::overlap;
 use crate::collision::shape::support::{
@@ -13,21 +13,19 @@ use crate::collision::shape::support::{
 use crate::collision::shape::support::{scaled_along, to_grid};
 use crate::math::{Fx, Unit, Vec2};
 
-/// Hit of a ray on a shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct RayHit {
-    /// Fraction of the ray's translation, 0 to 1, rounded down to 2^-32: for a ray of 2^30 m that is 0.25 m.
+    /// Fraction of the translation, 0 to 1, rounded down to 2^-32. For a ray of 2^30 m that is 0.25 m.
     pub(crate) fraction: Fx,
-    /// The fraction with more bits, enough to order two hits.
+    /// The fraction with more bits, to order two hits.
     pub(crate) order: Fraction,
-    /// Hit point relative to the origin of the support shape: within 1 µm of the surface at any length of the ray.
+    /// Hit point relative to the origin of the support shape, within 1 µm of the surface.
     pub(crate) point: Vec2<Fx>,
     /// Outward surface normal. Zero if the ray starts inside the shape or on its border.
     pub(crate) normal: Vec2<Unit>,
 }
 
-/// First hit of the ray from `origin` to `origin + translation` on a shape. Segments are hit from both sides, and at
-/// their end if the ray runs along them.
+/// First hit of a ray. Segments are hit from both sides, and at their end if the ray runs along them.
 pub(crate) fn cast_ray(shape: &SupportShape, origin: Vec2<Fx>, translation: Vec2<Fx>) -> Option<RayHit> {
     if contains_point(shape, origin) {
         let (fraction, order) = (Fx::ZERO, Fraction::ZERO);
@@ -42,12 +40,12 @@ pub(crate) fn cast_ray(shape: &SupportShape, origin: Vec2<Fx>, translation: Vec2
     Some(RayHit { fraction: fraction.to_fx(), order: fraction, point, normal })
 }
 
-/// Whether a point is inside a shape or on its border.
+/// Whether a point is in a shape, borders included.
 pub(crate) fn contains_point(shape: &SupportShape, point: Vec2<Fx>) -> bool {
     overlap(shape, &SupportShape::point(point))
 }
 
-/// Fraction and normal at which a ray from outside enters the set of points within `radius` of the hull of `points`.
+/// Fraction and normal at which a ray from outside comes within `radius` of the hull of `points`.
 pub(in crate::collision) fn entry(
     points: &[Vec2<Grid>],
     radius: Grid,
@@ -55,12 +53,11 @@ pub(in crate::collision) fn entry(
     d: Vec2<Grid>,
 ) -> Option<(Fraction, Vec2<Unit>)> {
     let forward = direction(d)?;
-    // A ray enters a convex shape at one point, so a face that it hits is the entry.
+    // A face that is hit is the entry, because the shape is convex.
     if let Some(found) = edges(points).find_map(|(p, q)| enter_face(p, q, radius, o, d)) {
         return Some(found);
     }
-    // Without a radius there are no circles, but a ray along a segment hits the segment's end, and a ray towards a
-    // point hits the point.
+    // Without a radius there are no circles, but a ray may hit a point, or a segment's end along the segment.
     if radius == 0 && points.len() > 2 {
         return None;
     }
@@ -91,10 +88,9 @@ fn enter_face(
     }
     let fraction = Fraction::ratio(way, inwards);
     let on_face = if radius == 0 {
-        // This test is exact, so that no ray slips through a corner.
+        // Exact, so that no ray slips through a corner.
         (0..=inwards).contains(&cross(o - p, d))
     } else {
-        // Near its ends the face and the circle about the end agree.
         (0..=dot(e, e)).contains(&dot(e, o + fraction.of(d) - p))
     };
     on_face.then_some((fraction, -tangent.perp()))
@@ -117,7 +113,7 @@ fn enter_circle(
     let half_chord = (i128::from(r - h) * i128::from(r + h)).max(0).isqrt();
     let way = before - ((half_chord * (scaled_along(forward, d) >> 8)) >> (Unit::FRAC_NBITS - 8));
     let whole = dot(d, d);
-    // If the ray starts inside by a rounding error, `way` is negative.
+    // Negative if the ray starts inside by a rounding error.
     (way <= whole).then(|| Fraction::ratio(way.max(0), whole))
 }
 
@@ -126,16 +122,14 @@ fn times_length(radius: Grid, v: Vec2<Grid>, direction: Vec2<Unit>) -> i128 {
     ((scaled_along(direction, v) >> 8) * i128::from(radius.to_bits())) >> (Unit::FRAC_NBITS - 8)
 }
 
-/// Distance in metres by which `translation` approaches a surface with the given outward normal; negative if it moves
-/// away.
+/// Approach in metres to a surface with this outward normal.
 pub(in crate::collision) fn approach(normal: Vec2<Unit>, translation: Vec2<Grid>) -> Grid {
     -along(normal, translation)
 }
 
 #[cfg(test)]
 mod tests {
-    //! The first test compares rays with sphere tracing: a point that repeatedly advances by its distance from the
-    //! shape never passes the surface.
+    //! The first test compares rays with sphere tracing.
 
     use super::*;
     use crate::collision::query::distance::distance;
@@ -143,7 +137,7 @@ mod tests {
     use crate::fx;
     use crate::math::{Rng, fx_div, fx_mul};
 
-    /// Distance along a ray to the surface, as of [`samples::march`].
+    /// Distance along a ray to the surface: see [`samples::march`].
     fn trace(shape: &SupportShape, origin: Vec2<Fx>, translation: Vec2<Fx>) -> Result<Option<Fx>, ()> {
         let length = translation.length();
         samples::march(length, |way| {
@@ -191,7 +185,7 @@ mod tests {
         );
     }
 
-    /// A ray into a shape hits it, also through corners and along edges.
+    /// Rays aim through corners and along edges.
     #[test]
     fn no_ray_slips_into_a_shape() {
         let mut rng = Rng::new(3);

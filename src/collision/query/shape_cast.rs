@@ -1,11 +1,9 @@
-//! Shape cast: how far a shape can move without rotating until it touches another. B moved by `t v` touches A if the
-//! ray `t v` from the origin meets the Minkowski difference `A - B`, whose outline consists of the edges of both in
-//! order of their angle. A shape cast is therefore an exact ray cast without iteration.
+//! Shape cast: B moved by `t v` touches A if the ray `t v` from the origin meets the Minkowski difference `A - B`. A
+//! shape cast is therefore a ray cast, without iteration.
 //!
-//! A moving shape stops at a distance of [`SKIN`] before contact. Its next move starts there, and must not be stopped
-//! by a surface that it slides along or leaves: if it starts within the skin, or overlapping, only a movement against
-//! the normal is a hit. A movement without a hit never deepens the initial overlap, because the separation of convex
-//! shapes along the normal does not shrink.
+//! A moving shape stops at a distance of [`SKIN`] before contact. Its next move must not be stopped by a surface that
+//! it slides along or leaves. If it starts within the skin, or overlapping, only a movement against the normal is a
+//! hit. Other movements do not deepen the overlap, because the separation along the normal does not shrink.
 
 use super::distance::{Distance, distance};
 use super::ray::{approach, entry};
@@ -17,21 +15,19 @@ use crate::math::{Fx, Unit, Vec2};
 /// Distance in metres that a moving shape keeps from others.
 pub(crate) const SKIN: Fx = fx!(0.0001);
 
-/// Distance beyond the skin within which a shape is still in contact: more than the rounding error of a hit, 0.2 µm.
+/// Distance in metres beyond the skin that still counts as contact: more than the rounding error of a hit, 0.2 µm.
 pub(crate) const TOLERANCE: Fx = fx!(0.000002);
 
-/// Right shift that gives the tolerance for sliding: an approach of 2^-24 m per metre of movement, plus 2^-24 m, counts
-/// as a rounding error.
+/// Right shift for the tolerance of sliding: an approach of 2^-24 m per metre of movement, plus 2^-24 m.
 const SLIDING: u32 = 24;
 
-/// Hit of a moving shape on another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ShapeHit {
     /// Fraction of the translation, 0 to 1, rounded down to 2^-32.
     pub(crate) fraction: Fx,
-    /// The fraction with more bits, enough to order two hits.
+    /// The fraction with more bits, to order two hits.
     pub(crate) order: Fraction,
-    /// Displacement up to the hit. For a long translation it is more exact than the fraction.
+    /// Displacement up to the hit, more exact than the fraction for a long translation.
     pub(crate) travelled: Vec2<Fx>,
     /// Nearest point on the surface of A, relative to the origin of the support shapes.
     pub(crate) point: Vec2<Fx>,
@@ -40,7 +36,6 @@ pub(crate) struct ShapeHit {
 }
 
 impl ShapeHit {
-    /// The hit of a cast that ends where it starts.
     pub(crate) fn at_start(start: &Distance) -> Self {
         let (fraction, order, travelled) = (Fx::ZERO, Fraction::ZERO, Vec2::ZERO);
         ShapeHit { fraction, order, travelled, point: start.point_a, normal: start.normal }
@@ -55,9 +50,8 @@ pub(crate) fn goes_against(normal: Vec2<Unit>, translation: Vec2<Fx>) -> bool {
     approach(normal, translation) > sliding
 }
 
-/// Casts B along `translation` until it is within [`SKIN`] of A; `None` if it never is. If B starts within the skin or
-/// overlapping, a movement against the normal is a hit with the fraction 0, and any other movement has no hit. The
-/// normal is then the direction of the shortest way out.
+/// Casts B along `translation` until it is within [`SKIN`] of A. If B starts within the skin or overlapping, a movement
+/// against the normal is a hit with the fraction 0, and any other movement has no hit.
 pub(crate) fn cast_shape(a: &SupportShape, b: &SupportShape, translation: Vec2<Fx>) -> Option<ShapeHit> {
     let start = distance(a, b);
     if start.distance <= SKIN + TOLERANCE {
@@ -78,8 +72,7 @@ pub(crate) fn cast_shape(a: &SupportShape, b: &SupportShape, translation: Vec2<F
     })
 }
 
-/// Minkowski difference `A - B` of two outlines, counter-clockwise: the edges of A and of `-B` (the reversed edges of
-/// B), merged by angle, starting from the lowest vertex.
+/// Minkowski difference `A - B`, counter-clockwise: the edges of A and of `-B`, merged by angle.
 fn difference(a: &[Vec2<Grid>], b: &[Vec2<Grid>]) -> ([Vec2<Grid>; 2 * POLYGON_VERTICES_MAX], usize) {
     let lowest = |points: &[Vec2<Grid>], sign: i64| {
         let key = |i: &usize| (points[*i].y * sign, points[*i].x * sign);
@@ -116,7 +109,7 @@ fn difference(a: &[Vec2<Grid>], b: &[Vec2<Grid>]) -> ([Vec2<Grid>; 2 * POLYGON_V
     (merged, count.max(1))
 }
 
-/// Whether the angle of `u`, from 0 to below a full turn, is less than the angle of `v`.
+/// Compares angles from 0 to below a full turn.
 fn is_before(u: Vec2<Grid>, v: Vec2<Grid>) -> bool {
     let lower_half = |v: Vec2<Grid>| v.y < 0 || (v.y == 0 && v.x < 0);
     match (lower_half(u), lower_half(v)) {
@@ -128,14 +121,12 @@ fn is_before(u: Vec2<Grid>, v: Vec2<Grid>) -> bool {
 
 #[cfg(test)]
 mod tests {
-    //! The first test compares casts with repeated advances by the distance, which never pass a contact.
 
     use super::*;
     use crate::collision::shape::support::samples;
     use crate::math::{Rng, fx_div, fx_mul};
 
-    /// Distance that B travels until it reaches the skin of A, within a micrometre, found by repeated advances by the
-    /// remaining gap. `None` if B does not reach the skin, `Err` if undecided.
+    /// Distance that B travels to the skin of A. `Err` if undecided.
     fn stepped(a: &SupportShape, b: &SupportShape, translation: Vec2<Fx>) -> Result<Option<Fx>, ()> {
         let length = translation.length();
         samples::march(length, |way| {
@@ -172,7 +163,6 @@ mod tests {
         assert!(hits > 1_500 && misses > 8_000 && grazing < 500, "{hits} {misses} {grazing}");
     }
 
-    /// A shape that was stopped can move away and slide freely from there, but cannot advance further.
     #[test]
     fn a_stopped_shape_leaves_and_slides_but_does_not_go_on() {
         let mut rng = Rng::new(2);
@@ -196,7 +186,6 @@ mod tests {
         assert!(stopped > 2_000, "expected over 2000 hits, got {stopped}");
     }
 
-    /// A movement from contact without a hit does not deepen the overlap.
     #[test]
     fn movement_that_starts_in_contact_never_deepens_it() {
         let mut rng = Rng::new(3);

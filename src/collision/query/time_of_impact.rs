@@ -1,19 +1,18 @@
 //! Time of impact: when two moving, rotating shapes first come within a distance of each other.
 //!
 //! Conservative advancement (B. Mirtich, "Impulse-based Dynamic Simulation of Rigid Body Systems", 1996) along the axis
-//! of the current separation. With the axis `n` fixed, a vertex at `r` from its body's centre moves by
+//! `n` of the current separation. A vertex at `r` from its body's centre moves by
 //!
 //! ```text
 //! n . (p(h) - p(0)) >= (n . d + theta n . perp(r)) h - theta^2 |r| h^2 / 2
 //! ```
 //!
 //! in the fraction `h` of the tick, for a displacement `d` and a rotation by `theta`. The separation along any axis is
-//! a lower bound of the true separation, so while these parabolas stay above the target no contact has been passed. The
-//! linear term lets a body that slides, rolls or spins beside a surface advance freely, where the usual bound on the
-//! speed of its points would stop it repeatedly. Root finding on separating axes (E. Catto, "Continuous Collision", GDC
-//! 2013) takes as few steps but proves nothing between them.
+//! a lower bound of the true one, so no contact has been passed while these parabolas stay above the target. The linear
+//! term lets a body that slides, rolls or spins beside a surface advance freely. Root finding on separating axes (E.
+//! Catto, "Continuous Collision", GDC 2013) takes as few steps but proves nothing between them.
 //!
-//! Separation is signed: after contact it is the negative depth, which changes no faster than the shapes move.
+//! Separation is signed: after contact it is the negative depth.
 
 use super::distance::{Distance, distance};
 use crate::collision::narrow_phase::segment::clip;
@@ -24,39 +23,34 @@ use crate::math::{Angle, Fx, Rot, TAU, Unit, Vec2, fx_mul, round_shift_wide, sat
 /// Largest distance in metres from the target at which a contact counts as found.
 pub(crate) const TOLERANCE: Fx = fx!(0.00005);
 
-/// Largest number of steps before the search gives up; nine of ten searches take at most 5. More are needed only for
-/// faces that stay near the target while they rotate by a large part of a turn: in about one of a thousand random
-/// set-ups in contact.
+/// Largest number of steps. Faces that stay near the target while they rotate by a large part of a turn would need more
+/// steps.
 const STEPS_MAX: u32 = 48;
 
-/// Largest number of steps of a query, which has a policy other than [`StartPolicy::Protect`]. Queries are rare, so the
-/// limit can be higher.
+/// Largest number of steps of queries, which are rare: policies other than [`StartPolicy::Protect`].
 const QUERY_STEPS_MAX: u32 = 512;
 
-/// Largest rotation in radians of a shape that is not a disc about its body's centre. With this limit and
-/// [`REACH_MAX`], `theta^2 |r|` fits its type.
+/// Largest rotation in radians. With this limit and [`REACH_MAX`], `theta^2 |r|` fits its type.
 const TURN_MAX: Fx = fx!(1024);
 /// Largest reach in metres of a rotating shape.
 const REACH_MAX: Fx = fx!(1024);
 
-/// Motion of a body in a tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sweep {
-    /// Centre of mass at the start, in the world.
+    /// Centre of mass in the world.
     pub(crate) start: Vec2<Fx>,
-    /// Centre of mass at the end, in the world.
+    /// Centre of mass in the world.
     pub(crate) end: Vec2<Fx>,
-    /// Rotation over the tick, in units of 2^-32 turn, counter-clockwise. May exceed a turn.
+    /// Rotation in units of 2^-32 turn, counter-clockwise. May exceed a turn.
     pub(crate) turn: i64,
 }
 
 impl Sweep {
-    /// Sweep of a body that does not move.
     pub(crate) fn fixed(at: Vec2<Fx>) -> Self {
         Sweep { start: at, end: at, turn: 0 }
     }
 
-    /// Displacement of the centre and rotation from the start to a fraction of the tick.
+    /// Displacement and rotation from the start to a fraction of the tick.
     pub(crate) fn at(&self, fraction: Fx) -> (Vec2<Fx>, Rot) {
         let turned = round_shift_wide(i128::from(self.turn) * i128::from(fraction.to_bits()), Fx::FRAC_NBITS);
         let rotation = Rot::from_angle(Angle::from_turns(Fx::from_bits(saturate_wide(turned))));
@@ -64,26 +58,24 @@ impl Sweep {
     }
 }
 
-/// Result of a time of impact search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TimeOfImpact {
-    /// The shapes never come within the target.
+    /// The shapes do not come within the target.
     Separated,
     /// The shapes first come within the target after this fraction of the tick.
     Hit { fraction: Fx },
-    /// The shapes overlap at the start, so deeply that no direction of separation is reliable. With
-    /// [`StartPolicy::Report`], an overlap of any depth gives this result. With [`StartPolicy::Protect`], a contact
-    /// at the start of two shapes without an inner radius gives it as well.
+    /// The shapes overlap at the start, too deeply for a reliable direction of separation. With
+    /// [`StartPolicy::Report`], any overlap. With [`StartPolicy::Protect`], also any contact of two shapes without an
+    /// inner radius.
     Overlapped,
-    /// The search gave up: the shapes do not come within the target before this fraction of the tick.
+    /// The search gave up. The shapes do not come within the target before this fraction of the tick.
     Failed { fraction: Fx },
 }
 
 /// Treatment of shapes that start within the target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StartPolicy {
-    /// Continuous collision: the shapes may come closer and overlap more deeply, but not pass through each other. See
-    /// [`time_of_impact`].
+    /// Continuous collision: the shapes may overlap more deeply, but not pass through each other.
     Protect,
     /// The shapes may slide, roll and separate, but come closer by at most twice [`TOLERANCE`].
     Resist,
@@ -91,16 +83,15 @@ pub(crate) enum StartPolicy {
     Report,
 }
 
-/// Time at which the surfaces of two shapes first come within `target` metres; a negative target is a depth. The
-/// support shapes are posed as at the start, each relative to its own body's centre of mass. B is the shape to protect.
+/// Time at which the surfaces of two shapes first come within `target` metres. A negative target is a depth. The
+/// support shapes are posed as at the start, each relative to its own body's centre of mass.
 ///
 /// With a target of 0 or more, a body that slides over the seam of two flush floors stops there. A depth such as a
 /// quarter of B's inner radius lets the body pass, and leaves the rest to the solver.
 ///
-/// Shapes that start within the target, in contact, may slide, roll, separate, or sink deeper, but not pass through.
-/// Their target is half-way from the initial separation (0 if it is positive) to a depth of three quarters of the inner
-/// radius of B (of A if B has none), so that the centre of B does not pass the surface of A. A deeper start gives
-/// [`TimeOfImpact::Overlapped`].
+/// Shapes that start within the target get another target: half-way from the initial separation, at most 0, to a depth
+/// of three quarters of the inner radius of B, or of A if B has none. The centre of B then does not pass the surface of
+/// A.
 pub(crate) fn time_of_impact(
     a: &SupportShape,
     sweep_a: &Sweep,
@@ -111,7 +102,7 @@ pub(crate) fn time_of_impact(
     first_impact((a, sweep_a), (b, sweep_b), target, StartPolicy::Protect)
 }
 
-/// [`time_of_impact`] with a choice of what to do with shapes that start in contact.
+/// [`time_of_impact`] with a choice of policy.
 pub(crate) fn first_impact(
     (a, sweep_a): (&SupportShape, &Sweep),
     (b, sweep_b): (&SupportShape, &Sweep),
@@ -125,13 +116,11 @@ pub(crate) fn first_impact(
     }
 }
 
-/// Largest number of steps of a search for the first overlap. Few searches need more than 48.
 const OVERLAP_STEPS_MAX: u32 = 256;
 
-/// Fraction of the tick after which two shapes first overlap, to within 0.05 mm of depth; 0 if they overlap at the
-/// start. `None` if they do not overlap within the tick, or only by less than 0.05 mm, or if a shape rotates too far or
-/// the search takes too many steps. Arguments as for [`time_of_impact`], but neither shape is protected. Two segments,
-/// which have no depth unless they cross, count as overlapping when they come within 0.05 mm of each other.
+/// Fraction of the tick after which two shapes first overlap, to within 0.05 mm of depth. `None` also if a shape
+/// rotates too far or the search takes too many steps. Two segments, which have no depth unless they cross, overlap
+/// when they come within 0.05 mm.
 pub(crate) fn first_overlap(
     a: &SupportShape,
     sweep_a: &Sweep,
@@ -160,15 +149,14 @@ pub(crate) fn first_overlap(
     None
 }
 
-/// Reason why the motion of two shapes is not followed.
 enum Unswept {
     /// The shapes do not come near each other.
     Apart,
-    /// One of the shapes rotates too far.
+    /// A shape rotates too far.
     TooFast,
 }
 
-/// Returns the moving shapes, relative to B's centre at the start, if they may come within `target` metres.
+/// Relative to B's centre at the start.
 fn swept_pair(
     a: &SupportShape,
     sweep_a: &Sweep,
@@ -234,7 +222,7 @@ fn radii(a: &SupportShape, b: &SupportShape) -> Fx {
     to_fx(a.radius + b.radius)
 }
 
-/// Target for shapes that start in contact: see [`time_of_impact`]. `None` if they overlap too deeply already.
+/// For shapes that start in contact. `None` if they overlap too deeply.
 fn target_of_contact(a: &SupportShape, b: &SupportShape, separation: Fx) -> Option<Fx> {
     let inner = Some(b.inner_radius()).filter(|&inner| inner > 0).unwrap_or_else(|| a.inner_radius());
     let deepest = fx_mul(inner, fx!(-0.75));
@@ -242,8 +230,7 @@ fn target_of_contact(a: &SupportShape, b: &SupportShape, separation: Fx) -> Opti
     (start > deepest).then(|| (start + deepest) / 2)
 }
 
-/// Clips a long segment A to the part that B, at `b`, may meet. A unit normal has too few bits to measure distances at
-/// the far ends of a long segment.
+/// Clips a long segment A to the part that B, at `b`, may meet. A unit normal has too few bits for its far ends.
 fn near(a: &SupportShape, sweep: &Sweep, b: Vec2<Fx>, window: Fx) -> Option<SupportShape> {
     match *a.points() {
         [p, q] if sweep.turn == 0 => {
@@ -254,28 +241,26 @@ fn near(a: &SupportShape, sweep: &Sweep, b: Vec2<Fx>, window: Fx) -> Option<Supp
     }
 }
 
-/// A moving shape.
 struct SweptShape {
     support: SupportShape,
     sweep: Sweep,
-    /// Centre of its body at the start, relative to the centre of B's body.
+    /// At the start, relative to the centre of B's body.
     centre: Vec2<Fx>,
     displacement: Vec2<Fx>,
-    /// Rotation in radians; 0 for a disc that rotates about its centre.
+    /// Rotation in radians. 0 for a disc that rotates about its centre.
     theta: Fx,
     /// `theta^2 |r| / 2` of the furthest vertex.
     curvature: Fx,
 }
 
-/// The support shape at some time, relative to B's centre at the start.
+/// Relative to B's centre at the start.
 struct Posed {
     support: SupportShape,
     centre: Vec2<Grid>,
 }
 
 impl SweptShape {
-    /// Creates a swept shape from a support shape whose furthest point is `reach` from its body's centre. `None` if it
-    /// rotates too far.
+    /// `reach` is the distance of the furthest point from the body's centre. `None` if the shape rotates too far.
     fn new(support: SupportShape, reach: Fx, sweep: &Sweep, centre: Vec2<Fx>) -> Option<Self> {
         let turn = i128::from(sweep.turn) * i128::from(TAU.to_bits());
         let theta = Fx::from_bits(saturate_wide(round_shift_wide(turn, Fx::FRAC_NBITS)));
@@ -302,8 +287,8 @@ impl SweptShape {
         Posed { support: support.moved(centre), centre }
     }
 
-    /// Positions and speeds of the vertices along an axis, both negated if `sign` is -1. If the shape does not rotate,
-    /// its vertices have equal speeds, and the one nearest to the other shape represents them all.
+    /// Positions and speeds of the vertices along an axis, times `sign`. Without rotation the vertex nearest to the
+    /// other shape is enough.
     fn tracks(&self, posed: &Posed, normal: Vec2<Unit>, sign: i64) -> Tracks {
         let wide = normal.widen();
         let speed = wide.dot(self.displacement);
@@ -323,15 +308,15 @@ impl SweptShape {
     }
 }
 
-/// Vertices of a shape along an axis: each is at `x + v h`, or behind that by at most `curvature h^2`.
+/// Each vertex is at `x + v h`, or behind that by at most `curvature h^2`.
 struct Tracks {
     count: usize,
     vertices: [(Fx, Fx); 8],
     curvature: Fx,
 }
 
-/// Largest fraction of the tick, at most `left`, until which no vertex of B comes nearer than `offset` to a vertex of A
-/// along the axis of the tracks. The axis points to B. The tracks of A are negated, so that distances are sums.
+/// Largest fraction, up to `left`, until which no vertex of B comes nearer than `offset` to a vertex of A. The tracks
+/// of A are negated, so that distances are sums.
 fn free_part(a: &Tracks, b: &Tracks, offset: Fx, left: Fx) -> Fx {
     let curvature = a.curvature.saturating_add(b.curvature);
     let mut free = left;
@@ -344,15 +329,13 @@ fn free_part(a: &Tracks, b: &Tracks, offset: Fx, left: Fx) -> Fx {
     free
 }
 
-/// Largest fraction `t` up to `end` such that `gap + speed h - curvature h^2` is not negative for `0 <= h <= t`,
-/// rounded down.
+/// Largest fraction `t` up to `end` such that `gap + speed h - curvature h^2 >= 0` for `0 <= h <= t`, rounded down.
 fn positive_part(gap: Fx, speed: Fx, curvature: Fx, end: Fx) -> Fx {
     if gap <= 0 {
         return Fx::ZERO;
     }
     let at_end = gap.saturating_add(fx_mul(speed.saturating_sub(fx_mul(curvature, end)), end));
-    // The function is concave, so it is positive between two points where it is positive. A few units cover the
-    // rounding.
+    // The function is concave, so it is positive between two points where it is. A few units cover the rounding.
     if at_end > Fx::DELTA * 4 {
         return end;
     }

@@ -1,9 +1,9 @@
-//! A link of a chain with its neighbours, and which side of the chain a point is on.
+//! Links of chains.
 
 use crate::body::Sides;
 use crate::math::{Fx, Orientation, Unit, Vec2, orientation};
 
-/// A link in world axes, relative to the centre of its own shape or of the shape that it meets.
+/// Relative to the centre of its own shape or of the shape that it meets, in world axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Link {
     pub(crate) a: Vec2<Fx>,
@@ -14,8 +14,7 @@ pub(crate) struct Link {
     pub(crate) directions: Directions,
 }
 
-/// Directions of a link and of its neighbours, which do not change while the chain is translated. A direction is `None`
-/// if there is no such link or the link has no length.
+/// `None` if there is no such link or it has no length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Directions {
     pub(crate) before: Option<Vec2<Unit>>,
@@ -24,8 +23,7 @@ pub(crate) struct Directions {
 }
 
 impl Link {
-    /// Creates the link from `a` to `b`. `before` is the far end of the neighbour that ends at `a`, and `after` the far
-    /// end of the neighbour that starts at `b`.
+    /// `before` is the far end of the neighbour at `a`, `after` that of the neighbour at `b`.
     pub(crate) fn new([a, b]: [Vec2<Fx>; 2], [before, after]: [Option<Vec2<Fx>>; 2], sides: Sides) -> Self {
         let directions = Directions {
             before: before.and_then(|before| (a - before).normalized()),
@@ -52,17 +50,17 @@ impl Link {
         Link { a: b, b: a, before: after, after: before, sides, directions }
     }
 
-    /// Whether the link is solid for a shape whose centre is at `place`: always, or only on the right if one-sided.
+    /// Whether the link is solid for a shape whose centre is at `place`.
     pub(crate) fn is_solid_from(&self, place: Vec2<Fx>) -> bool {
         self.sides == Sides::Both || self.has_on_right(place)
     }
 
-    /// Whether a point is on the right of the chain, judged by this link and its neighbours only.
+    /// Whether a point is on the right of the chain, judged by this link and its neighbours.
     pub(crate) fn has_on_right(&self, place: Vec2<Fx>) -> bool {
         let Link { a, b, before, after, .. } = *self;
         let own = right_of(a, b, place);
         let direction = b - a;
-        // Only signs matter, and a saturated product keeps its sign.
+        // The signs decide, and a saturated product keeps its sign.
         let (corner, neighbour) = if (place - a).dot(direction) < 0 {
             (before.map(|before| [before, a, b]), before.map(|before| (before, a)))
         } else if (place - b).dot(direction) > 0 {
@@ -75,14 +73,14 @@ impl Link {
         if orientation(p, q, r) == Orientation::CounterClockwise {
             return own || other;
         }
-        // Beyond the ends of the neighbour, its line does not decide on which side of the chain a point is.
+        // The line of the neighbour does not decide beyond the neighbour's ends.
         let stretch = to - from;
         let beside = (place - from).dot(stretch) >= 0 && (place - to).dot(stretch) <= 0;
         own && (other || !beside)
     }
 }
 
-/// Whether a point is on the right of the line from `a` to `b`, or on it: exact.
+/// Whether a point is on the right of the line from `a` to `b`, or on it. Exact.
 fn right_of(a: Vec2<Fx>, b: Vec2<Fx>, place: Vec2<Fx>) -> bool {
     orientation(a, b, place) != Orientation::CounterClockwise
 }

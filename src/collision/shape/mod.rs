@@ -1,4 +1,4 @@
-//! Shapes in world axes: representations for the narrow phase and for queries.
+//! Shapes in world axes, for the narrow phase and for queries.
 
 pub(in crate::collision) mod link;
 pub(in crate::collision) mod posed;

@@ -1,4 +1,4 @@
-//! Posed shapes: each shape is rotated to world axes once per tick, and its pairs only translate it.
+//! Posed shapes: rotated to world axes once per tick.
 
 use core::ops::Deref;
 
@@ -7,16 +7,13 @@ use crate::body::{Body, Geometry, POLYGON_VERTICES_MAX, Polygon, ShapeDef};
 use crate::collision::shape::link::Link;
 use crate::math::{Aabb, Fx, Length, Rot, Unit, Vec2, narrow, widen};
 
-/// Largest distance in metres of a box corner from the box centre, radius included, for the SIMD path.
+/// Largest distance in metres of a corner from the centre, radius included, for the SIMD path.
 const BOX_REACH_MAX: Length = Length::lit("3");
 
-/// A shape posed in the world: its outline in world axes relative to its own centre.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(crate) struct PosedShape {
-    /// Centre of the shape in the world.
     pub(crate) centre: Vec2<Fx>,
-    /// Smallest AABB of the shape, in the world.
     pub(crate) bounds: Aabb,
     pub(crate) outline: Outline,
 }
@@ -31,7 +28,7 @@ pub(crate) enum Outline {
 }
 
 impl Outline {
-    /// Distance of the surface from the vertices, in metres: 0 if corners are sharp.
+    /// Distance in metres of the surface from the vertices.
     pub(crate) fn radius(&self) -> Fx {
         match self {
             Outline::Circle { radius } => widen(*radius),
@@ -41,10 +38,10 @@ impl Outline {
     }
 }
 
-/// First two vertices and face normals of a box; the other two are their opposites.
+/// First two vertices and normals. The other two are their opposites.
 pub(crate) type BoxFaces<'a> = (&'a [Vec2<Length>; 2], &'a [Vec2<Unit>; 2]);
 
-/// First two vertices and face normals of a box, by value.
+/// [`BoxFaces`] by value.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Faces {
     pub(in crate::collision) vertices: [Vec2<Length>; 2],
@@ -52,7 +49,6 @@ pub(crate) struct Faces {
 }
 
 impl Faces {
-    /// Takes the first two vertices and normals of a box.
     fn of(vertices: &[Vec2<Length>], normals: &[Vec2<Unit>]) -> Option<Self> {
         Some(Faces { vertices: *vertices.first_chunk()?, normals: *normals.first_chunk()? })
     }
@@ -66,7 +62,6 @@ impl Faces {
         }
     }
 
-    /// Smallest AABB of the box about its centre, with rounded corners.
     #[inline(always)]
     fn bounds(&self, radius: Length) -> Aabb {
         let [a, b] = self.vertices;
@@ -76,8 +71,7 @@ impl Faces {
     }
 }
 
-/// A convex outline in 32-bit coordinates: a polygon, a segment or capsule as a two-sided polygon, or a circle as a
-/// single point.
+/// A convex outline in 32-bit coordinates. A segment or capsule is a two-sided polygon, and a circle a single point.
 #[derive(Clone, Debug)]
 pub(crate) struct Hull {
     count: usize,
@@ -86,9 +80,9 @@ pub(crate) struct Hull {
     pub(crate) radius: Length,
     /// Direction of a capsule in its own frame.
     direction: Vec2<Unit>,
-    /// Whether the outline has four sides and is point-symmetric about its centre.
+    /// Whether the outline is four-sided and point-symmetric about the centre.
     is_box: bool,
-    /// Whether the outline is a box with nearly right angles that is small enough for the SIMD path.
+    /// Whether it is a box with nearly right angles, small enough for the SIMD path.
     is_small_box: bool,
 }
 
@@ -98,7 +92,7 @@ impl Hull {
         &self.vertices[..self.count]
     }
 
-    /// `normals()[i]` is the outward normal of the edge from vertex `i` to the next vertex.
+    /// `normals()[i]` belongs to the edge from vertex `i` to the next vertex.
     #[inline]
     pub(crate) fn normals(&self) -> &[Vec2<Unit>] {
         &self.normals[..self.count]
@@ -114,13 +108,11 @@ impl Hull {
         self.normals[i % POLYGON_VERTICES_MAX]
     }
 
-    /// Whether the outline is a segment or a capsule: two sides, without faces at the ends.
     #[inline]
     pub(crate) fn is_line(&self) -> bool {
         self.count == 2
     }
 
-    /// First two vertices and normals of a box; 2 and 3 are the exact opposites of 0 and 1.
     #[inline]
     pub(crate) fn as_box(&self) -> Option<BoxFaces<'_>> {
         if !self.is_box {
@@ -129,58 +121,53 @@ impl Hull {
         self.vertices.first_chunk().zip(self.normals.first_chunk())
     }
 
-    /// Whether the outline qualifies for [`SmallBoxes`](crate::collision::SmallBoxes).
     #[inline]
     pub(crate) fn is_small_box(&self) -> bool {
         self.is_small_box
     }
 
-    /// Index of the vertex after `i`, counter-clockwise.
+    /// Counter-clockwise.
     #[inline]
     pub(crate) fn next(&self, i: usize) -> usize {
         if i + 1 == self.count { 0 } else { i + 1 }
     }
 
-    /// Index of the vertex before `i`.
     #[inline]
     pub(crate) fn previous(&self, i: usize) -> usize {
         if i == 0 { self.count.saturating_sub(1) } else { i - 1 }
     }
 
-    /// Creates the hull of a circle: one point with a radius, without faces.
+    /// A circle.
     pub(crate) fn point(radius: Length) -> Self {
         Hull { count: 1, radius, ..Self::empty() }
     }
 
-    /// Number of faces.
     pub(crate) fn faces(&self) -> usize {
         if self.count < 2 { 0 } else { self.count }
     }
 
-    /// Mean of the vertices, a point inside, relative to the shape's centre.
+    /// Mean of the vertices, relative to the shape's centre.
     pub(crate) fn middle(&self) -> Vec2<Fx> {
         let sum = self.vertices().iter().fold(Vec2::ZERO, |sum, vertex| sum + vertex.widen());
         let count = i64::try_from(self.count).expect("at most 8 vertices");
         Vec2::new(sum.x / count, sum.y / count)
     }
 
-    /// Creates the hull of a segment: one edge in each direction, with opposite normals.
+    /// One edge in each direction, with opposite normals.
     pub(crate) fn segment(a: Vec2<Length>, b: Vec2<Length>, direction: Vec2<Unit>) -> Self {
         let mut hull = Hull { count: 2, ..Self::empty() };
         hull.place_ends(a, b, direction);
         hull
     }
 
-    /// Creates the hull of a capsule: a segment with a radius.
     fn capsule(a: Vec2<Fx>, b: Vec2<Fx>, radius: Length, rotation: Rot) -> Self {
-        // A valid capsule is long enough to have a direction.
         let direction = (b - a).normalized().unwrap_or(Vec2::X);
         let mut hull = Hull { count: 2, radius, direction, ..Self::empty() };
         hull.turn_capsule(a, b, rotation);
         hull
     }
 
-    /// Rotates a capsule, whose ends are given in its own frame.
+    /// The ends are given in the capsule's own frame.
     fn turn_capsule(&mut self, a: Vec2<Fx>, b: Vec2<Fx>, rotation: Rot) {
         let [a, b] = [a, b].map(|end| rotation.apply(end.narrow()));
         self.place_ends(a, b, rotation.apply(self.direction));
@@ -203,7 +190,7 @@ impl Hull {
         hull
     }
 
-    /// Whether a box at any rotation is within the size limit of the SIMD path, and has nearly right angles.
+    /// Whether a box is small enough for the SIMD path, with nearly right angles.
     fn fits_lanes(&self) -> bool {
         let reach = |vertex: &Vec2<Length>| vertex.length().saturating_add(self.radius);
         let cosine: Unit = self.normals[0].dot(self.normals[1]);
@@ -211,7 +198,6 @@ impl Hull {
             && cosine.saturating_abs() < Unit::lit("0.1")
     }
 
-    /// Sets the vertices and normals to the rotated vertices and normals of a polygon.
     #[inline(always)]
     fn rotate(&mut self, polygon: &Polygon, rotation: Rot) {
         if let (true, Some(faces)) = (self.is_box, Faces::of(polygon.vertices(), polygon.normals())) {
@@ -226,11 +212,10 @@ impl Hull {
         }
     }
 
-    /// Sets the faces of a box.
     #[inline(always)]
     fn set_faces(&mut self, Faces { vertices: [v0, v1], normals: [n0, n1] }: &Faces) {
         let (vertices, normals) = (&mut self.vertices, &mut self.normals);
-        // Opposites are negated after rounding, so that they stay exact opposites.
+        // Negated after rounding, so that they stay exact opposites.
         [vertices[0], vertices[1], vertices[2], vertices[3]] = [*v0, *v1, -*v0, -*v1];
         [normals[0], normals[1], normals[2], normals[3]] = [*n0, *n1, -*n0, -*n1];
     }
@@ -260,13 +245,12 @@ impl Hull {
 }
 
 impl PosedShape {
-    /// Poses a shape of `body`. `rotation` is the rotation of the body, computed once for all of its shapes.
+    /// `rotation` is that of the body, computed once for all of its shapes.
     pub(crate) fn new(shape: &ShapeDef, body: &Body, rotation: Rot) -> Self {
         Self::of_geometry(&shape.geometry, centre_of(shape, body, || rotation), rotation)
     }
 
-    /// Poses the same shape again after its body has moved. Of circles, polygons and capsules it writes only the fields
-    /// that change. `rotation` is evaluated lazily, only if the shape depends on it.
+    /// Poses the shape again after its body has moved. Evaluates `rotation` only if the shape depends on it.
     #[inline(always)]
     pub(crate) fn renew(&mut self, shape: &ShapeDef, body: &Body, rotation: &impl Deref<Target = Rot>) {
         let centre = centre_of(shape, body, || **rotation);
@@ -288,7 +272,6 @@ impl PosedShape {
         }
     }
 
-    /// Sets the faces of a box and moves its centre.
     #[inline(always)]
     pub(crate) fn turn_box(&mut self, faces: &Faces, centre: Vec2<Fx>) {
         if let Outline::Polygon(hull) = &mut self.outline {
@@ -298,18 +281,17 @@ impl PosedShape {
         }
     }
 
-    /// Translates the shape; the result equals posing it again after its body was translated.
+    /// The result equals posing the shape again after a translation of its body.
     pub(crate) fn shift(&mut self, by: Vec2<Fx>) {
         self.centre += by;
         self.bounds = self.bounds.translated(by);
     }
 
-    /// Radius of a disc inside a geometry, at any rotation; 0 for a segment or link.
+    /// Radius of a disc inside a geometry. 0 for a segment or link.
     pub(crate) fn inner_radius(geometry: &Geometry) -> Fx {
         SupportShape::of(&Self::of_geometry(geometry, Vec2::ZERO, Rot::IDENTITY), Vec2::ZERO).inner_radius()
     }
 
-    /// Faces of the shape, if it qualifies for [`SmallBoxes`](crate::collision::SmallBoxes).
     #[inline]
     pub(crate) fn as_small_box(&self) -> Option<Faces> {
         match &self.outline {
@@ -318,8 +300,8 @@ impl PosedShape {
         }
     }
 
-    /// Faces of a small box in the shape's frame, if the shape's centre is its body's centre of mass. The faces and the
-    /// body's pose are then enough to pose the shape.
+    /// Faces of a small box in its own frame, if its centre is its body's centre of mass: enough to pose it with the
+    /// body.
     pub(crate) fn as_centred_box(&self, shape: &ShapeDef, body: &Body) -> Option<Faces> {
         let Geometry::Polygon(polygon) = &shape.geometry else { return None };
         self.as_small_box()?;
@@ -327,7 +309,7 @@ impl PosedShape {
         Faces::of(polygon.vertices(), polygon.normals()).filter(|_| is_centred)
     }
 
-    /// Whether the shape is solid for another shape at a world point: false on the open side of a one-sided link.
+    /// Whether the shape is solid from a place: false on the open side of a one-sided link.
     pub(crate) fn is_solid_from(&self, place: Vec2<Fx>) -> bool {
         match &self.outline {
             Outline::Link(link) => link.is_solid_from(place - self.centre),
@@ -335,7 +317,6 @@ impl PosedShape {
         }
     }
 
-    /// Poses a geometry with its centre at a world position.
     pub(crate) fn of_geometry(geometry: &Geometry, centre: Vec2<Fx>, rotation: Rot) -> Self {
         let (outline, bounds) = match geometry {
             Geometry::Circle { radius } => {
@@ -367,15 +348,13 @@ impl PosedShape {
     }
 }
 
-/// World position of the centre of a shape.
 fn centre_of(shape: &ShapeDef, body: &Body, rotation: impl FnOnce() -> Rot) -> Vec2<Fx> {
     let arm = arm_of(shape, body);
-    // Most bodies have one shape, centred on the centre of mass.
     let turned = if arm == Vec2::ZERO { arm } else { rotation().apply_wide(arm) };
     body.centre_of_mass() + turned
 }
 
-/// Vector from the centre of mass of a body to the centre of one of its shapes, in the body's frame.
+/// Vector from the body's centre of mass to the shape's centre, in the body's frame.
 pub(crate) fn arm_of(shape: &ShapeDef, body: &Body) -> Vec2<Fx> {
     shape.offset - body.local_centre_of_mass()
 }

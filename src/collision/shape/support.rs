@@ -1,11 +1,7 @@
 //! Support shape for queries: a convex *core* of 1 to 8 points, widened by a radius.
 //!
-//! A circle is one point with a radius, a segment two points without a radius, a capsule two points with a radius, and
-//! a polygon its vertices, with a radius if it is rounded.
-//!
-//! Points are on a grid of 2^-28 m (3.7 nm). The grid is coarser than world coordinates so that the sign of every
-//! product of two differences is exact in 128 bits, for points anywhere in the world: coordinates have at most 2^60
-//! units, differences of differences 2^62, and a sum of two products 2^125.
+//! Points are on a grid of 2^-28 m (3.7 nm), so that sums of two products of differences are exact in 128 bits anywhere
+//! in the world: coordinates have at most 2^60 units, differences of differences 2^62, and a sum of two products 2^125.
 
 use fixed::FixedI64;
 use fixed::types::extra::U28;
@@ -16,14 +12,13 @@ use crate::collision::shape::link::Link;
 use crate::fx;
 use crate::math::{Fx, Rot, Unit, Vec2, div_round, round_shift, round_shift_wide, saturate_wide};
 
-/// A coordinate in metres with 28 fraction bits.
+/// In metres.
 pub(crate) type Grid = FixedI64<U28>;
 
-/// Largest radius of a support shape in metres, larger than the radius of any shape. The products of a radius and a
-/// length in `query/ray.rs` fit 128 bits.
+/// Larger than any radius in metres. Products of a radius and a length in `query/ray.rs` fit 128 bits.
 pub(crate) const RADIUS_MAX: Fx = fx!(512);
 
-/// Number of fraction bits of a world coordinate beyond those of the grid.
+/// Fraction bits of a world coordinate beyond those of the grid.
 const FINER: u32 = Fx::FRAC_NBITS - Grid::FRAC_NBITS;
 
 /// All points within `radius` of the convex hull of up to 8 points.
@@ -35,8 +30,7 @@ pub(crate) struct SupportShape {
 }
 
 impl SupportShape {
-    /// Creates the support shape of a shape in world axes relative to `origin`. A query needs two support shapes with
-    /// the same origin; an origin near both is best.
+    /// In world axes relative to `origin`, which the support shapes of a query share.
     pub(crate) fn of(shape: &PosedShape, origin: Vec2<Fx>) -> Self {
         let place = |offset| place(shape.centre, offset, origin);
         match &shape.outline {
@@ -53,7 +47,6 @@ impl SupportShape {
         }
     }
 
-    /// Creates a support shape of a single point, for queries such as the distance from a point.
     pub(crate) fn point(at: Vec2<Fx>) -> Self {
         SupportShape::disc(at, Fx::ZERO)
     }
@@ -62,8 +55,7 @@ impl SupportShape {
         SupportShape::from_points([centre], radius)
     }
 
-    /// Creates a support shape from the vertices of a convex outline, counter-clockwise: 1 to 8; further vertices are
-    /// ignored. The radius is clamped to 0 to [`RADIUS_MAX`].
+    /// From 1 to 8 vertices, counter-clockwise. Clamps the radius to 0 to [`RADIUS_MAX`].
     pub(crate) fn from_points(points: impl IntoIterator<Item = Vec2<Fx>>, radius: Fx) -> Self {
         SupportShape::from_grid_points(points.into_iter().map(to_grid), radius)
     }
@@ -82,12 +74,11 @@ impl SupportShape {
         &self.points[..self.count]
     }
 
-    /// Returns the support shape translated by a vector.
     pub(crate) fn moved(&self, by: Vec2<Grid>) -> Self {
         self.mapped(|point| point + by)
     }
 
-    /// Returns the support shape rotated about its origin.
+    /// Rotates about the origin.
     pub(crate) fn rotated(&self, rotation: Rot) -> Self {
         self.mapped(|point| from_raw(rotation.apply_wide(raw(point))))
     }
@@ -99,9 +90,9 @@ impl SupportShape {
         self
     }
 
-    /// Largest distance of a point of the hull from the origin, without the radius.
+    /// Largest distance of a point of the core from the origin.
     pub(crate) fn reach(&self) -> Grid {
-        // The longest vector also has the largest rounded length, so one square root is enough.
+        // The longest vector also has the largest rounded length.
         let furthest = self.points().iter().max_by_key(|&&point| dot(point, point));
         furthest.map_or(Grid::ZERO, |&point| length(point))
     }
@@ -111,7 +102,7 @@ impl SupportShape {
         to_fx(self.reach().saturating_add(self.radius))
     }
 
-    /// Mean of the vertices, a point inside the hull.
+    /// Mean of the vertices.
     pub(crate) fn middle(&self) -> Vec2<Fx> {
         from_grid(self.mean())
     }
@@ -119,18 +110,18 @@ impl SupportShape {
     fn mean(&self) -> Vec2<Grid> {
         let points = self.points();
         let count = i64::try_from(points.len()).unwrap_or(1);
-        // Each term is divided before the sum: the sum of 8 coordinates may exceed the grid's range.
+        // Divided before the sum, because the sum of 8 coordinates may exceed the grid's range.
         points.iter().fold(Vec2::ZERO, |sum, &point| sum + Vec2::new(point.x / count, point.y / count))
     }
 
-    /// Extent of the shape along a direction, in metres.
+    /// In metres.
     pub(crate) fn extent(&self, direction: Vec2<Unit>) -> Fx {
         let along = self.points().iter().map(|&point| along(direction, point));
         let (least, most) = along.fold((Grid::MAX, Grid::MIN), |(a, b), x| (a.min(x), b.max(x)));
         to_fx(most.saturating_sub(least).saturating_add(self.radius + self.radius))
     }
 
-    /// Radius of a disc inside the shape, centred on the mean of the vertices; 0 for a segment.
+    /// Radius in metres of a disc inside the shape, about the mean of the vertices. 0 for a segment.
     pub(crate) fn inner_radius(&self) -> Fx {
         let points = self.points();
         let mean = self.mean();
@@ -143,13 +134,13 @@ impl SupportShape {
     }
 }
 
-/// Edges of an outline, counter-clockwise. Two points have one edge in each direction; a single point has none.
+/// Counter-clockwise. Two points have one edge in each direction.
 pub(in crate::collision) fn edges(points: &[Vec2<Grid>]) -> impl Iterator<Item = (Vec2<Grid>, Vec2<Grid>)> {
     let next = points.iter().cycle().skip(1);
     points.iter().zip(next).filter(|_| points.len() > 1).map(|(&p, &q)| (p, q))
 }
 
-/// `centre + offset - origin`, rounded to nearest on the grid. Only the result saturates, whatever the origin.
+/// `centre + offset - origin`, rounded to nearest on the grid. Intermediate sums do not saturate.
 fn place(centre: Vec2<Fx>, offset: Vec2<Fx>, origin: Vec2<Fx>) -> Vec2<Grid> {
     let component = |centre: Fx, offset: Fx, origin: Fx| {
         let sum = i128::from(centre.to_bits()) + i128::from(offset.to_bits()) - i128::from(origin.to_bits());
@@ -158,23 +149,23 @@ fn place(centre: Vec2<Fx>, offset: Vec2<Fx>, origin: Vec2<Fx>) -> Vec2<Grid> {
     Vec2::new(component(centre.x, offset.x, origin.x), component(centre.y, offset.y, origin.y))
 }
 
-/// Converts a world vector to the grid, rounded to nearest.
+/// Rounds to nearest.
 pub(crate) fn to_grid(v: Vec2<Fx>) -> Vec2<Grid> {
     let component = |x: Fx| Grid::from_bits(round_shift(x.to_bits(), FINER));
     Vec2::new(component(v.x), component(v.y))
 }
 
-/// Converts a grid vector to a world vector: exact, saturated.
+/// Exact, saturated.
 pub(crate) fn from_grid(v: Vec2<Grid>) -> Vec2<Fx> {
     Vec2::new(to_fx(v.x), to_fx(v.y))
 }
 
-/// Converts a grid length to a world length: exact, saturated.
+/// Exact, saturated.
 pub(crate) fn to_fx(x: Grid) -> Fx {
     Fx::from_bits(saturate_wide(i128::from(x.to_bits()) << FINER))
 }
 
-/// Reinterprets the bits as a world vector, for operations that do not depend on the unit.
+/// Reinterprets the bits, for operations that do not depend on the unit.
 fn raw(v: Vec2<Grid>) -> Vec2<Fx> {
     Vec2::new(Fx::from_bits(v.x.to_bits()), Fx::from_bits(v.y.to_bits()))
 }
@@ -197,12 +188,12 @@ fn product(a: Grid, b: Grid) -> i128 {
     i128::from(a.to_bits()) * i128::from(b.to_bits())
 }
 
-/// Length of a vector, rounded to nearest.
+/// Rounded to nearest.
 pub(in crate::collision) fn length(v: Vec2<Grid>) -> Grid {
     Grid::from_bits(raw(v).length().to_bits())
 }
 
-/// Unit vector in the direction of a vector; `None` for zero.
+/// Unit vector in the direction of a vector. `None` for zero.
 pub(in crate::collision) fn direction(v: Vec2<Grid>) -> Option<Vec2<Unit>> {
     raw(v).normalized()
 }
@@ -212,7 +203,7 @@ pub(in crate::collision) fn along(n: Vec2<Unit>, v: Vec2<Grid>) -> Grid {
     Grid::from_bits(saturate_wide(round_shift_wide(scaled_along(n, v), Unit::FRAC_NBITS)))
 }
 
-/// `n . v` in units of 2^-58 m. If `n` is the direction of `v`, this is its length, with a relative error of 1.5e-9.
+/// `n . v` in units of 2^-58 m: the length of `v` if `n` is its direction, with a relative error of 1.5e-9.
 pub(in crate::collision) fn scaled_along(n: Vec2<Unit>, v: Vec2<Grid>) -> i128 {
     let product = |n: Unit, x: Grid| i128::from(n.to_bits()) * i128::from(x.to_bits());
     product(n.x, v.x) + product(n.y, v.y)
@@ -227,10 +218,10 @@ pub(in crate::collision) fn scaled(n: Vec2<Unit>, s: Grid) -> Vec2<Grid> {
     Vec2::new(part(n.x), part(n.y))
 }
 
-/// `cross / scaled_length`: the distance of a point from a line, from the cross product with a vector along the line
-/// and the length of that vector, as computed by [`scaled_along`].
+/// Distance of a point from a line, from the cross product with a vector along the line and that vector's length from
+/// [`scaled_along`].
 pub(in crate::collision) fn height(cross: i128, scaled_length: i128) -> Grid {
-    // If `cross` is 2^97 or more, the height exceeds any distance of interest, and losing a few bits is harmless.
+    // Above 2^97 the height exceeds any distance of interest, and losing a few bits is harmless.
     let bits = if cross.unsigned_abs() >> 97 == 0 {
         div_round(cross << Unit::FRAC_NBITS, scaled_length)
     } else {
@@ -239,7 +230,7 @@ pub(in crate::collision) fn height(cross: i128, scaled_length: i128) -> Grid {
     Grid::from_bits(saturate_wide(bits))
 }
 
-/// A fraction from 0 to 1 in units of 2^-62: fine enough to locate a point on a line across the world.
+/// From 0 to 1 in units of 2^-62, fine enough to locate a point on a line across the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Fraction(i64);
 
@@ -248,15 +239,14 @@ impl Fraction {
     const FRAC_NBITS: u32 = 62;
     const ONE: i64 = 1 << Self::FRAC_NBITS;
 
-    /// `numerator / denominator`, rounded down, for `0 <= numerator <= denominator != 0`. If the denominator has more
-    /// than 64 bits, the excess lowest bits of both are dropped first.
+    /// Rounded down, for `0 <= numerator <= denominator != 0`. Bits of the denominator beyond 64 are dropped from both.
     pub(in crate::collision) fn ratio(numerator: i128, denominator: i128) -> Self {
         let excess = (i128::BITS - denominator.leading_zeros()).saturating_sub(u64::BITS);
         let quotient = ((numerator >> excess) << Self::FRAC_NBITS) / (denominator >> excess).max(1);
         Fraction(saturate_wide(quotient).clamp(0, Self::ONE))
     }
 
-    /// Returns `v` times the fraction, rounded to nearest.
+    /// Rounded to nearest.
     pub(in crate::collision) fn of(self, v: Vec2<Grid>) -> Vec2<Grid> {
         let part = |x: Grid| {
             let product = i128::from(x.to_bits()) * i128::from(self.0);
@@ -265,7 +255,7 @@ impl Fraction {
         Vec2::new(part(v.x), part(v.y))
     }
 
-    /// Converts to 32 fraction bits, rounded down.
+    /// Rounds down.
     pub(in crate::collision) fn to_fx(self) -> Fx {
         Fx::from_bits(self.0 >> (Self::FRAC_NBITS - Fx::FRAC_NBITS))
     }

@@ -1,5 +1,4 @@
-//! Tests of the area, centre and radius of gyration of rounded polygons. Most expected values come from formulas in
-//! exact rational numbers, from polygons of thousands of vertices along the same outline, or from counted grid points.
+//! Expected values come from formulas, from polygons with thousands of vertices, or from counted grid points.
 
 use alloc::vec::Vec;
 
@@ -8,7 +7,6 @@ use crate::body::Polygon;
 use crate::fx;
 use crate::math::{PI, Rng, Rot};
 
-/// The number 1 as an area or as the square of a length: 44 fraction bits.
 const ONE: i128 = 1 << 44;
 
 fn figure(polygon: &Polygon) -> Figure {
@@ -30,7 +28,6 @@ fn vertex(x: Fx, y: Fx) -> Vec2<Fx> {
     Vec2::new(x, y)
 }
 
-/// The rounded convex hull of random points.
 fn random_rounded_hull(rng: &mut Rng, extent: Fx) -> Option<Polygon> {
     let points: Vec<_> = (0..rng.below(6) + 3)
         .map(|_| vertex(rng.range(-extent, extent), rng.range(-extent, extent)))
@@ -39,13 +36,11 @@ fn random_rounded_hull(rng: &mut Rng, extent: Fx) -> Option<Polygon> {
 }
 
 /// Twice the area and the squared radius of gyration, in m² with 44 fraction bits, of a rectangle rounded by `r`. Its
-/// half extents `a` and `b`, and `r`, are in units of `unit`. The shape consists of the rectangle, four rectangles on
-/// its sides, and four quarter discs.
+/// half extents `a` and `b`, and `r`, are in units of `unit`.
 fn rounded_rectangle(a: i128, b: i128, r: i128, unit: Fx) -> (i128, i128) {
-    /// A convergent of pi, correct to 17 decimal places.
     const PI_NUMERATOR: i128 = 1_068_966_896;
     const PI_DENOMINATOR: i128 = 340_262_731;
-    // Everything is multiplied by 12 and by the denominator of pi.
+    // Multiplied by 12 and by the denominator of pi.
     let (over, pi) = (12 * PI_DENOMINATOR, 12 * PI_NUMERATOR);
     let area = over * (4 * a * b + 4 * (a + b) * r) + pi * r * r;
     let core = over / 3 * 4 * a * b * (a * a + b * b);
@@ -129,14 +124,12 @@ fn symmetric_shapes_keep_their_centre() {
         assert_eq!(moved.doubled_area, figure(&square).doubled_area);
         assert_eq!(moved.gyration_squared, figure(&square).gyration_squared);
     }
-    // A triangle that is symmetric about the diagonal.
     let points = [vertex(fx!(0), fx!(0)), vertex(fx!(2), fx!(0)), vertex(fx!(0), fx!(2))];
     let (x, y) = figure(&Polygon::new(&points).unwrap().rounded(fx!(0.3)).unwrap()).centre;
     assert!((x - y).abs() <= 1, "the coordinates of the centre should be equal: {x} {y}");
 }
 
-/// The outline with at least 4096 chords per turn. The relative error of its sectors is at most 4e-7. Its points are
-/// rounded to 2.4e-7 m.
+/// The outline with at least 4096 chords per turn, a relative error of its sectors of at most 4e-7.
 fn fine_outline(polygon: &Polygon) -> Vec<Vec2<Length>> {
     let (vertices, normals) = (polygon.vertices(), polygon.normals());
     let count = vertices.len();
@@ -171,7 +164,7 @@ fn a_polygon_along_the_outline_has_the_same_mass() {
     assert!(compared > 250, "expected over 250 hulls, got {compared}");
 }
 
-/// Whether a point lies in the rounded polygon. All lengths are in units of 2^-22 m.
+/// Lengths are in units of 2^-22 m.
 fn contains(polygon: &Polygon, (x, y): (i128, i128)) -> bool {
     let vertices = polygon.vertices();
     let r = i128::from(polygon.radius().to_bits());

@@ -1,10 +1,9 @@
-//! Exchanges of neighbouring nodes that keep the tree low and its boxes small.
+//! Exchanges of neighbouring nodes.
 
 use super::{IMBALANCE_MAX, Tree, perimeter};
 
 impl Tree {
-    /// Restores the balance of a node: if one child is too high, the higher of its children is exchanged with the other
-    /// child of the node.
+    /// Exchanges a child that is too low with the higher child of its sibling.
     pub(super) fn balance(&mut self, at: u32) {
         let [a, b] = self.at(at).children;
         let (low, high) = if self.at(a).height < self.at(b).height { (a, b) } else { (b, a) };
@@ -15,8 +14,8 @@ impl Tree {
         }
     }
 
-    /// Exchanges a child with a child of its sibling if that shrinks the sibling; the box of the node itself stays the
-    /// same. The height may differ by one from `height_before`, which the ancestors can compensate.
+    /// Exchanges a child with a child of its sibling if that shrinks the sibling. Ancestors can compensate a difference
+    /// of one from `height_before`.
     pub(super) fn tighten(&mut self, at: u32, height_before: u8) {
         let [a, b] = self.at(at).children;
         let (mut best_gain, mut best) = (0, None);
@@ -48,7 +47,6 @@ impl Tree {
             && height.abs_diff(height_before) <= 1
     }
 
-    /// Exchanges `child`, a child of the node `at`, with `up`, a child of `sibling`.
     fn swap(&mut self, at: u32, child: u32, sibling: u32, up: u32) {
         self.replace_child(at, child, up);
         self.replace_child(sibling, up, child);

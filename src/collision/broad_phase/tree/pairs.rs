@@ -6,11 +6,11 @@ use super::{NONE, Node, Tree};
 use crate::body::CollisionClass;
 use crate::collision::contact::Pair;
 
-/// Number of found pairs that are buffered before they are reported.
+/// Pairs that are buffered.
 const FOUND_MAX: usize = 256;
 
-/// List of pairs with a branch-free push. Whether two boxes overlap is nearly random, and a mispredicted branch costs
-/// more than an unnecessary store. A pair is therefore always written, and counted only if it is wanted.
+/// List with a branch-free push: overlaps are nearly random, and a mispredicted branch costs more than an unnecessary
+/// store. A pair is always written, but counted only if it is wanted.
 #[derive(Clone, Debug, Default)]
 struct PairList {
     pairs: Vec<Pair>,
@@ -45,17 +45,16 @@ impl PairList {
     }
 }
 
-/// Stack of node pairs to visit, and buffer of slot pairs found.
 #[derive(Clone, Debug, Default)]
 pub(in crate::collision::broad_phase) struct Meetings {
-    /// Pairs of overlapping nodes with at least one inner node, and inner nodes paired with themselves.
+    /// Overlapping pairs with at least one inner node, and inner nodes paired with themselves.
     waiting: PairList,
     found: PairList,
 }
 
 impl Meetings {
-    /// Calls `found` once with every pair of overlapping boxes of a tree. Subtrees of one collision class are not
-    /// searched, which leaves out most pairs within one class. Skips a pair of nodes if `wanted` holds for neither.
+    /// Finds each pair of overlapping boxes of a tree once, except within subtrees of one collision class. Skips a pair
+    /// of nodes if `wanted` holds for neither.
     pub(in crate::collision::broad_phase) fn within(
         &mut self,
         tree: &Tree,
@@ -80,7 +79,7 @@ impl Meetings {
         self.found.tell(&mut found);
     }
 
-    /// Like [`Meetings::within`], for pairs of a box of one tree and a box of another.
+    /// [`Meetings::within`] for a box of one tree and a box of another.
     pub(in crate::collision::broad_phase) fn between(
         &mut self,
         tree: &Tree,
@@ -99,8 +98,7 @@ impl Meetings {
         self.found.tell(&mut found);
     }
 
-    /// Visits a pair of overlapping nodes: tests the children of both against each other, or the children of one
-    /// against the other node if that is a leaf.
+    /// Tests the children of two overlapping nodes against each other.
     #[inline(always)]
     fn visit(
         &mut self,
@@ -124,8 +122,6 @@ impl Meetings {
         }
     }
 
-    /// Selects the pairs of nodes that overlap and include a wanted node. Pairs of leaves are added to `found`, and all
-    /// others to `waiting`.
     #[inline(always)]
     fn meet<const N: usize>(&mut self, pairs: [[(u32, &Node); 2]; N], wanted: &impl Fn(&Node) -> bool) {
         let (mut found, mut waiting) = ([((NONE, NONE), false); N], [((NONE, NONE), false); N]);
@@ -150,7 +146,7 @@ impl Meetings {
 }
 
 impl Tree {
-    /// Sets or clears the mark of a slot's leaf and its ancestors, if the slot has a box.
+    /// Sets or clears the mark of a slot's leaf and its ancestors.
     pub(in crate::collision::broad_phase) fn mark(&mut self, slot: u32, marked: bool) {
         let mut at = self.leaf_of(slot).unwrap_or(NONE);
         while at != NONE && self.at(at).marked != marked {
@@ -159,7 +155,6 @@ impl Tree {
         }
     }
 
-    /// The children of an inner node.
     #[inline(always)]
     fn children_of(&self, node: u32) -> [(u32, &Node); 2] {
         self.at(node).children.map(|child| (child, self.at(child)))

@@ -1,28 +1,24 @@
-//! Refit and rebuild of whole trees, when many boxes have moved. A refit recomputes the boxes of the nodes from the
-//! leaves up. If the tree is then too costly, or if many leaves have been inserted or removed, the tree is rebuilt from
-//! the top: the boxes are split repeatedly at the median of their centres, so that the height is the logarithm of their
-//! number. Nodes are stored in depth-first order.
+//! Refit and rebuild of whole trees. A refit recomputes the boxes from the leaves up. If the tree is then too costly,
+//! or many leaves have been inserted or removed, it is rebuilt from the top, by splits at the median of the centres.
+//! The height is then the logarithm of the number of boxes. Nodes are stored in depth-first order.
 
 use alloc::vec::Vec;
 
 use super::{NONE, Node, Tree, perimeter};
 use crate::math::Aabb;
 
-/// Cost of the tree after the last rebuild, and reused buffers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rebuilt {
-    /// Cost of the tree after the last rebuild.
     cost: u64,
-    /// Old nodes: each rebuild swaps them with the new ones.
+    /// Old nodes, which each rebuild swaps with the new ones.
     nodes: Vec<Node>,
     loose: Vec<Loose>,
     waiting: Vec<Part>,
-    /// All nodes, parents before their children.
+    /// Parents before their children.
     below: Vec<u32>,
 }
 
-/// A leaf that is not in the tree yet: its centre on a grid of up to 2^32 cells per side around the centres of all
-/// leaves, and its node.
+/// A leaf with its centre on a grid of up to 2^32 cells per side.
 #[derive(Clone, Copy, Debug)]
 struct Loose {
     x: u32,
@@ -39,12 +35,11 @@ struct Part {
 }
 
 impl Tree {
-    /// Replaces all boxes.
     pub(crate) fn refill(&mut self, boxes: impl IntoIterator<Item = (u32, Aabb)>) {
         self.nodes.clear();
         self.leaves.clear();
         self.vacant = NONE;
-        // Duplicate slots are resolved first: the last box of a slot is kept.
+        // The last box of a repeated slot is kept.
         for (slot, fat) in boxes {
             self.leaves.resize(self.leaves.len().max(slot as usize + 1), NONE);
             match self.leaf_of(slot) {
@@ -55,7 +50,6 @@ impl Tree {
         self.rebuild();
     }
 
-    /// Sets the boxes of many slots.
     pub(crate) fn set_many(&mut self, boxes: impl ExactSizeIterator<Item = (u32, Aabb)>) {
         if boxes.len() + (self.strays as usize) < self.len() / 16 {
             boxes.for_each(|(slot, fat)| self.set(slot, fat));
@@ -67,15 +61,14 @@ impl Tree {
                 None => self.set(slot, fat),
             }
         }
-        // Rebuilds the tree if the insertions and removals since the last rebuild outnumber a quarter of its leaves, or
-        // if its cost has grown by a quarter.
+        // After many relinks, or if the cost has grown by a quarter.
         if self.relinked > self.len / 4 || self.refit_all() / 5 > self.rebuilt.cost / 4 {
             self.rebuild();
         }
         self.strays = 0;
     }
 
-    /// Refits all inner nodes, and returns the cost of the tree.
+    /// Returns the cost of the tree.
     fn refit_all(&mut self) -> u64 {
         if self.relinked == 0 {
             let count = u32::try_from(self.nodes.len()).expect("fewer than 2^32 nodes");
@@ -97,7 +90,7 @@ impl Tree {
         cost
     }
 
-    /// Refits the inner nodes among the given nodes, children before their parents, and returns their cost.
+    /// Takes children before their parents, and returns the cost of the inner nodes.
     fn refit_each(&mut self, nodes: impl Iterator<Item = u32>) -> u64 {
         let mut cost = 0_u64;
         for index in nodes {
@@ -109,7 +102,6 @@ impl Tree {
         cost
     }
 
-    /// Rebuilds the tree from its leaves.
     pub(super) fn rebuild(&mut self) {
         let mut rebuilt = core::mem::take(&mut self.rebuilt);
         core::mem::swap(&mut self.nodes, &mut rebuilt.nodes);
@@ -125,11 +117,11 @@ impl Tree {
         self.rebuilt = rebuilt;
     }
 
-    /// Stores the nodes. The boxes and heights of inner nodes are placeholders, which the next refit replaces.
+    /// Boxes and heights of inner nodes are placeholders until the next refit.
     fn build(&mut self, Rebuilt { nodes, loose, waiting, .. }: &mut Rebuilt) {
         waiting.clear();
         waiting.push(Part { start: 0, end: loose.len(), parent: NONE });
-        // Depth first: the second half waits until the first is done.
+        // Depth first.
         while let Some(Part { start, end, parent }) = waiting.pop() {
             let node = match loose[start..end] {
                 [] => continue,
@@ -150,7 +142,6 @@ impl Tree {
 }
 
 impl Rebuilt {
-    /// Collects the leaves of the old nodes.
     fn collect(&mut self, leaves: &[u32]) {
         let Rebuilt { nodes, loose, .. } = self;
         let present = || leaves.iter().filter(|&&leaf| leaf != NONE);
@@ -174,8 +165,7 @@ impl Rebuilt {
     }
 }
 
-/// Splits a range at the median along the axis on which the centres are spread further. Returns the start of the second
-/// half.
+/// Splits at the median along the axis of larger spread. Returns the start of the second half.
 fn halve(part: &mut [Loose]) -> usize {
     let middle = part.len() / 2;
     let least_most = (u32::MAX, u32::MIN);

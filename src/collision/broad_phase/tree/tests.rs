@@ -1,4 +1,4 @@
-//! Tests that the tree stays valid and finds its pairs while boxes change, and how high it becomes.
+//! Tests of the tree.
 
 use super::*;
 use crate::body::Filter;
@@ -11,7 +11,7 @@ impl Tree {
         self.nodes.iter().filter(|node| !node.is_leaf()).map(|node| perimeter(node.aabb) >> 16).sum()
     }
 
-    /// Panics unless links, boxes, heights, classes, marks and the list of vacant nodes are valid. Returns the height.
+    /// Panics unless the tree is valid. Returns the height.
     fn validate(&self) -> u8 {
         let mut reached = 0;
         let mut stack = Vec::new();
@@ -58,7 +58,6 @@ impl Tree {
         if self.root == NONE { 0 } else { self.at(self.root).height }
     }
 
-    /// Expected pairs of some slots, computed from the definition.
     fn pairs_of(&self, slots: &[u32]) -> Vec<Pair> {
         let present = || (0u32..).zip(&self.leaves).filter(|&(_, &leaf)| leaf != NONE);
         let boxes = || present().map(|(slot, &leaf)| (slot, self.at(leaf).aabb));
@@ -80,7 +79,7 @@ fn square(x: Fx, y: Fx, half: Fx) -> Aabb {
     Aabb::new(corner, corner).expanded(half)
 }
 
-/// Computes the smallest number of boxes in a tree of some height: one child is as high as possible, the other as low.
+/// The smallest tree of a height has one child that is as high as possible, and the other as low.
 #[test]
 fn the_stack_holds_a_search_of_the_highest_tree() {
     let imbalance = IMBALANCE_MAX as usize;
@@ -174,7 +173,7 @@ fn orders_that_could_make_a_chain_do_not() {
     }
 }
 
-/// Boxes spread over an area in random order: the smallest possible height is 14.
+/// In random order. The smallest possible height is 14.
 #[test]
 fn ordinary_boxes_make_a_low_tree() {
     let mut rng = Rng::new(2);
@@ -186,7 +185,6 @@ fn ordinary_boxes_make_a_low_tree() {
     assert!(height <= 24, "the height should be at most 24, not {height}");
 }
 
-/// Boxes that move together keep the tree's quality; boxes that change places degrade it, and cause a rebuild.
 #[test]
 fn many_boxes_at_once_keep_the_tree_sound_and_tight() {
     let mut rng = Rng::new(3);
@@ -203,7 +201,7 @@ fn many_boxes_at_once_keep_the_tree_sound_and_tight() {
         tree.set_many(boxes[..some].iter().copied());
         (0..30).for_each(|_| tree.set_collision_class(rng.below(1000), random_class(&mut rng)));
         tree.validate();
-        // Strays may raise the cost until the next refit, which rebuilds the tree if the cost is too high.
+        // Strays may raise the cost until the next refit.
         assert!(
             tree.strays > 0 || tree.cost() < fresh * 3 / 2,
             "round {round}: cost {} of {fresh}",

@@ -1,14 +1,13 @@
-//! SIMD kernel of [`hull_hull`](crate::collision::narrow_phase::hull_hull) for boxes: separating axis test and clipping
-//! of several pairs at a time.
+//! SIMD kernel of [`hull_hull`](crate::collision::narrow_phase::hull_hull) for boxes.
 //!
-//! Let `n` be a face normal of a box, `v` a vertex on that face, `d` the vector from the centre of the box to the
-//! centre of another box, and `w` the vertices of the other box. Then
+//! With a face normal `n` of a box, a vertex `v` on that face, the vector `d` to the centre of another box and that
+//! box's vertices `w`,
 //!
 //! ```text
 //! separation = |n . d| - n . v - max |n . w|
 //! ```
 //!
-//! is the separation of the other box from the face or from the opposite face, whichever faces the other box.
+//! is the separation from the nearer of the face and the opposite face.
 
 use super::vector::{Vector, dot, minus, negated, plus, select_vector};
 use super::{Batch, Manifolds, Turned};
@@ -23,7 +22,7 @@ const CLIP: i32 = shift(CLIP_BITS);
 
 pub(super) struct Collide<'a> {
     pub(super) batches: &'a mut [Batch],
-    /// Faces of all boxes, by slot.
+    /// By slot.
     pub(super) boxes: &'a [Turned],
 }
 
@@ -34,7 +33,7 @@ struct Corners<T> {
     v: [Vector<T>; 2],
 }
 
-/// One of the four edges of a box: the edge with index `second + 2 opposite`.
+/// The edge of a box with index `second + 2 opposite`.
 #[derive(Clone, Copy)]
 struct Choice<M> {
     second: M,
@@ -48,27 +47,25 @@ struct Edge<T> {
     end: Vector<T>,
 }
 
-/// End of the incident edge: its position along the reference edge from the start of that edge, in units of `Length`,
-/// and its height above the reference edge, in units of `Step`.
+/// Position along the reference edge from its start in units of `Length`, and height above it in units of `Step`.
 #[derive(Clone, Copy)]
 struct ClipPoint<T> {
     along: T,
     above: T,
 }
 
-/// Reference edge, in the form that contact points need. Radii and margin are in units of `Step`.
+/// Radii and margin are in units of `Step`.
 struct Reference<T> {
     n: Vector<T>,
-    /// Start of the edge, from the centre of A.
+    /// From the centre of A.
     start: Vector<T>,
-    /// Sum of both radii.
     radii: T,
-    /// Radius of the reference box minus radius of the incident box.
+    /// Radius of the reference box minus that of the incident box.
     difference: T,
     margin: T,
 }
 
-/// Contact point: anchor, separation and feature, and whether the point is beyond the margin.
+/// Anchor, separation and feature. `gone` if the point is beyond the margin.
 struct Point<T, M> {
     gone: M,
     numbers: [T; 4],
@@ -96,9 +93,7 @@ fn collide<L: Lanes<WIDTH>>(batch: &mut Batch, boxes: &[Turned]) {
     let further = L::max_wide(separation_a, separation_b);
     let is_far = L::greater_wide(further, reach);
     let zero = L::splat(0);
-    // If the boxes are apart, the face with the larger separation is the reference face even if the difference is
-    // within the tolerance, because only that face is next to the nearest corner. Rounded boxes with parallel faces are
-    // an exception.
+    // The tolerance applies as in `hull_hull::is_reference_of_b`.
     let (tolerance, as_product) = (L::splat(TOLERANCE.to_bits()), L::splat(1 << TO_STEP));
     let is_apart = L::greater_wide(further, L::mul(tolerance, as_product));
     let is_flush = L::both(L::greater(radii, zero), are_parallel::<L>(&a, face_a, &b, face_b));
@@ -143,7 +138,6 @@ fn collide<L: Lanes<WIDTH>>(batch: &mut Batch, boxes: &[Turned]) {
         margin: as_step::<L>(margin),
     };
     let (edge, opposed) = (index::<L>(reference_face), index::<L>(incident_face));
-    // The incident edge runs against the reference edge.
     let features =
         [feature::<L>(swapped, edge, next::<L>(opposed)), feature::<L>(swapped, next::<L>(edge), opposed)];
     let first = point::<L>(&reference, low, features[0], is_far);
@@ -154,7 +148,6 @@ fn collide<L: Lanes<WIDTH>>(batch: &mut Batch, boxes: &[Turned]) {
     L::store(normal[1], &mut manifolds.normal[1]);
 }
 
-/// Contact point at an end of the incident edge.
 #[inline(always)]
 fn point<L: Lanes<WIDTH>>(
     reference: &Reference<L::Int>,
@@ -182,7 +175,7 @@ fn feature<L: Lanes<WIDTH>>(swapped: L::Mask, of_reference: L::Int, of_incident:
     L::add(L::low(L::mul(of_a, L::splat(1 << 8))), of_b)
 }
 
-/// Stores the valid points of each pair, in order, at the front.
+/// Stores the valid points of each pair at the front, in order.
 #[inline(always)]
 fn store<L: Lanes<WIDTH>>(
     first: &Point<L::Int, L::Mask>,
@@ -213,7 +206,7 @@ fn corners<L: Lanes<WIDTH>>(boxes: &[Turned], at: &[u32; WIDTH]) -> Corners<L::I
     Corners { n: [[n0x, n0y], [n1x, n1y]], v: [[v0x, v0y], [v1x, v1y]] }
 }
 
-/// Face of `a` with the largest separation from `b`, and that separation. Ties go to the face with the lower index.
+/// Face of `a` with the largest separation from `b`. Ties go to the face with the lower index.
 #[inline(always)]
 fn best_face<L: Lanes<WIDTH>>(
     a: &Corners<L::Int>,
@@ -222,8 +215,7 @@ fn best_face<L: Lanes<WIDTH>>(
 ) -> (Choice<L::Mask>, L::Wide) {
     let (opposite_0, separation_0) = further_of_opposite::<L>(a.n[0], a.v[0], b, d);
     let (opposite_1, separation_1) = further_of_opposite::<L>(a.n[1], a.v[1], b, d);
-    // On a tie the second candidate wins only if its index is lower, that is, if it is face 1 and the first candidate
-    // is face 2.
+    // On a tie the second candidate wins if it is face 1 and the first one is face 2.
     let ahead = L::greater(L::to_int(opposite_1), L::to_int(opposite_0));
     let advantage = L::mul(L::to_int(ahead), L::splat(-1));
     let second = L::greater_wide(L::add_wide(separation_1, advantage), separation_0);
@@ -231,8 +223,7 @@ fn best_face<L: Lanes<WIDTH>>(
     (Choice { second, opposite }, L::max_wide(separation_0, separation_1))
 }
 
-/// Whether `b` is on the side of the opposite face, and the separation of `b` from whichever of the two faces is on the
-/// side of `b`.
+/// Whether `b` is on the side of the opposite face, and its separation from the nearer of the two faces.
 #[inline(always)]
 fn further_of_opposite<L: Lanes<WIDTH>>(
     n: Vector<L::Int>,
@@ -246,7 +237,6 @@ fn further_of_opposite<L: Lanes<WIDTH>>(
     (L::greater_wide(nothing::<L>(), towards), separation)
 }
 
-/// Whether two faces are parallel.
 #[inline(always)]
 fn are_parallel<L: Lanes<WIDTH>>(
     a: &Corners<L::Int>,
@@ -282,7 +272,6 @@ fn edge<L: Lanes<WIDTH>>(of: &Corners<L::Int>, Choice { second, opposite }: Choi
     }
 }
 
-/// Index of the next of the four edges.
 #[inline(always)]
 fn next<L: Lanes<WIDTH>>(edge: L::Int) -> L::Int {
     L::select(L::greater(edge, L::splat(2)), L::splat(0), L::add(edge, L::splat(1)))
@@ -295,7 +284,7 @@ fn index<L: Lanes<WIDTH>>(Choice { second, opposite }: Choice<L::Mask>) -> L::In
     L::sub(L::sub(L::sub(L::splat(0), second), opposite), opposite)
 }
 
-/// Coordinates of a position that is relative to the start of the reference edge.
+/// `place` is relative to the start of the reference edge.
 #[inline(always)]
 fn end<L: Lanes<WIDTH>>(n: Vector<L::Int>, place: Vector<L::Int>) -> ClipPoint<L::Int> {
     ClipPoint { along: along::<L>(n, place), above: L::narrow::<TO_STEP>(dot::<L>(n, place)) }
@@ -307,8 +296,8 @@ fn along<L: Lanes<WIDTH>>(n: Vector<L::Int>, p: Vector<L::Int>) -> L::Int {
     L::narrow::<UNIT>(L::sub_wide(L::mul(n[0], p[1]), L::mul(n[1], p[0])))
 }
 
-/// Whether a corner of the incident box and an end of the reference edge are nearest to each other: each lies beyond
-/// the end of the other edge. The incident edge runs from `corner` to `other`.
+/// Whether a corner and an end of the reference edge are nearest to each other: each lies beyond the end of the other
+/// edge. The incident edge runs from `corner` to `other`.
 #[inline(always)]
 fn nearest_at_corner<L: Lanes<WIDTH>>(
     length: L::Int,
@@ -325,8 +314,8 @@ fn nearest_at_corner<L: Lanes<WIDTH>>(
     L::either(before, behind)
 }
 
-/// Height of an end above the reference edge, after the end has been clipped by `past` if `past` is positive. `past`
-/// and `span`, the extent of the incident edge, are measured along the reference edge.
+/// Height of an end after clipping by a positive `past`, which is measured along the reference edge, like the extent
+/// `span` of the incident edge.
 #[inline(always)]
 fn clipped<L: Lanes<WIDTH>>(
     end: ClipPoint<L::Int>,
@@ -346,20 +335,19 @@ fn clipped<L: Lanes<WIDTH>>(
     L::add(end.above, L::narrow::<CLIP>(way))
 }
 
-/// `past / span` for positive operands. The result does not matter in lanes that are left to the scalar path.
+/// `past / span` for positive operands. Lanes left to the scalar path do not use the result.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 1")]
 fn part(past: i32, span: i32) -> i32 {
     (((past as u64) << CLIP) / span.max(1) as u64) as i32
 }
 
-/// Converts a length to the fraction bits of a step.
 #[inline(always)]
 fn as_step<L: Lanes<WIDTH>>(length: L::Int) -> L::Int {
     L::low(L::mul(length, L::splat(1 << FINER)))
 }
 
-/// Converts a step to the fraction bits of a length, rounded down.
+/// Converts a step to a length, rounded down.
 #[inline(always)]
 fn as_length<L: Lanes<WIDTH>>(step: L::Int) -> L::Int {
     let half = L::splat(1 << (FINER - 1));

@@ -1,5 +1,4 @@
-//! Tests of the SIMD path: manifolds are compared with those of the scalar narrow phase, and rotated boxes with boxes
-//! that are posed from scratch.
+//! Tests of the SIMD path.
 
 use super::*;
 use crate::body::{Body, BodyDef, MassProperties, Polygon, ShapeDef};
@@ -10,13 +9,12 @@ use crate::simd::Backend;
 use alloc::format;
 use alloc::vec::Vec;
 
-/// A random box within the size limit of the SIMD path, some with round corners, some slanted; and its half extents.
+/// A box within the size limit of the SIMD path, and its half extents.
 fn random_box(rng: &mut Rng) -> (Polygon, Vec2<Fx>) {
-    // Sizes are whole multiples of 1/1024 m, so that opposite corners are exactly opposite.
+    // Whole multiples of 1/1024 m, so that opposite corners are exactly opposite.
     let size_max = [1850, 1850, 500, 250][rng.below(4) as usize];
     let mut size = || i64::from(50 + rng.below(size_max - 50));
     let (width, height) = (size(), size());
-    // Some boxes are nearly as long as the limit allows.
     let (width, height) = if rng.below(8) == 0 { (2750, 50) } else { (width, height) };
     let slant = if rng.below(4) == 0 { height / 20 } else { 0 };
     let corner = |x: i64, y: i64| Vec2::new(fx!(1) * x / 1024, fx!(1) * y / 1024);
@@ -27,8 +25,7 @@ fn random_box(rng: &mut Rng) -> (Polygon, Vec2<Fx>) {
     (polygon.rounded(radius).expect("valid"), Vec2::new(width + radius, height + radius))
 }
 
-/// Two boxes that touch or nearly touch. As in piles, most are rotated relative to each other by nearly zero or by
-/// right angles.
+/// Two boxes that touch or nearly touch, most of them at nearly right angles as in piles.
 fn random_pair(rng: &mut Rng) -> (PosedShape, PosedShape) {
     let ((a, reach_a), (b, reach_b)) = (random_box(rng), random_box(rng));
     let turned = match rng.below(4) {
@@ -64,14 +61,12 @@ fn lanes_find_what_is_found_one_by_one() {
     let machines =
         || Backend::available().filter_map(Machine::new).filter(|machine| machine.vectors().is_some());
     if machines().next().is_none() {
-        // Without vectors, no pairs are collided in lanes.
         return;
     }
     let mut rng = Rng::new(5);
     let (mut pairs_seen, mut points, mut left) = (0, [0; 3], 0);
     let mut batch = BoxPairs::default();
     for _ in 0..20_000 {
-        // One to ten pairs: up to two batches.
         let pairs: Vec<_> = (0..=rng.below(10)).map(|_| random_pair(&mut rng)).collect();
         let widest = if rng.below(16) == 0 { fx!(2) } else { fx!(0.2) };
         let margins: Vec<_> = pairs.iter().map(|_| narrow(rng.range(fx!(0.005), widest))).collect();
@@ -79,7 +74,6 @@ fn lanes_find_what_is_found_one_by_one() {
             collide_near(a, b, margin, &mut CachedAxis::default(), &mut SatCounters::default())
         });
         let expected: Vec<_> = expected.collect();
-        // Slots are in a different order from the pairs.
         let slots_of = |place: usize| (63 - 3 * u32::try_from(place).unwrap(), u32::try_from(place).unwrap());
         let mut boxes = SmallBoxes::default();
         boxes.resize(64);
@@ -108,8 +102,7 @@ fn lanes_find_what_is_found_one_by_one() {
                     continue;
                 }
                 let [found] = manifolds[..] else { panic!("expected one manifold, got {manifolds:?}") };
-                // Manifolds without points may differ in their other fields. With points all fields count, because
-                // contacts may be compared as a whole.
+                // Manifolds without points may differ in their other fields.
                 let same = found == *expected || found.points().is_empty() && expected.points().is_empty();
                 assert!(same, "{backend:?}: expected {expected:?}, got {found:?}: {:?}", pairs[i]);
                 points[found.points().len()] += 1;
@@ -127,12 +120,10 @@ fn lanes_find_what_is_found_one_by_one() {
     );
 }
 
-/// A body whose centre of mass is its origin.
 fn body_at_rest() -> Body {
     Body::new(&BodyDef::dynamic(), MassProperties::immovable())
 }
 
-/// Rotating a box gives the same faces as posing it at that rotation from scratch.
 #[test]
 fn a_box_that_is_turned_is_posed_as_if_anew() {
     let mut rng = Rng::new(8);
@@ -160,7 +151,6 @@ fn a_box_that_is_turned_is_posed_as_if_anew() {
             assert_eq!(format!("{:?}", boxes.turned), format!("{:?}", fresh.turned));
         }
     }
-    // `turn` leaves out a box that is not centred on its body's centre of mass: `renew` updates such a box.
     let shape = ShapeDef::new(Polygon::square(fx!(1)).expect("valid")).offset((fx!(1), fx!(0)));
     let posed = PosedShape::of_geometry(&shape.geometry, Vec2::ZERO, Rot::IDENTITY);
     boxes.place(0, &posed, posed.as_centred_box(&shape, &body_at_rest()));

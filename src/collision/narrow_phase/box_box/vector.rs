@@ -2,7 +2,6 @@
 
 use crate::simd::{Lanes, WIDTH};
 
-/// A position or direction in each lane.
 pub(super) type Vector<T> = [T; 2];
 
 #[inline(always)]

@@ -1,7 +1,6 @@
 //! Clipping of the incident edge of one outline against the reference face of another.
 //!
-//! Everything is computed in the frame of the face: the position of a vertex along the face, and its height above the
-//! face. A contact point is half-way between the surfaces, at the clipped position:
+//! Positions are along the face and above it:
 //!
 //! ```text
 //! anchor = v1 + t along + n (above + rA - rB) / 2,    separation = above - rA - rB
@@ -13,11 +12,10 @@ use crate::collision::narrow_phase::circle_hull::step_bits;
 use crate::collision::shape::posed::Hull;
 use crate::math::{Length, Step, Unit, Vec2, round_shift, saturate};
 
-/// Number of fraction bits of a step beyond those of a length.
+/// Fraction bits of a step beyond those of a length.
 pub(in crate::collision) const FINER: u32 = Step::FRAC_NBITS - Length::FRAC_NBITS;
 
-/// Fraction bits of the clip fraction: edges are at most 570 m long, and the product of an edge and the fraction has 63
-/// bits.
+/// Fraction bits of the clip fraction, whose product with an edge of at most 570 m has 63 bits.
 pub(in crate::collision) const CLIP_BITS: u32 = 26;
 
 /// End of an edge relative to the start of the reference edge, not saturated: `along` in units of `Length`, and `above`
@@ -29,7 +27,7 @@ struct ClipPoint {
     above: i64,
 }
 
-/// Clips the incident edge of `b` against a face of `a`. Anchors are relative to the centre of `a`.
+/// Anchors are relative to the centre of `a`.
 pub(in crate::collision) fn clip(
     a: &Hull,
     b: &Hull,
@@ -44,8 +42,7 @@ pub(in crate::collision) fn clip(
         ClipPoint { vertex: face.edge, along: 0, above: 0 },
         ClipPoint { vertex: next, along: along(normal, between(v1, a.vertex(next))), above: 0 },
     );
-    // Both outlines run counter-clockwise, so the incident edge runs against the reference edge: its second vertex is
-    // the lower end.
+    // Both outlines run counter-clockwise, so the second vertex of the incident edge is the lower end.
     let to_b = between(v1, d);
     let end_of_b = |vertex: usize| {
         let position = b.vertex(vertex);
@@ -55,9 +52,8 @@ pub(in crate::collision) fn clip(
     let edge_of_b = |edge: usize| (end_of_b(edge), end_of_b(b.next(edge)));
     let mut incident = incident_edge(b, normal);
     let (mut upper, mut lower) = edge_of_b(incident);
-    // On an outline with small bends the edge most opposed to the face may lie beside the face, with a neighbouring
-    // edge in front of it. For separate outlines the nearest corner is an end of the most opposed edge, so no neighbour
-    // is tried.
+    // On an outline with small bends the edge most opposed to the face may lie beside the face, with a neighbour in
+    // front of it. For separate outlines the nearest corner is an end of the most opposed edge.
     let neighbours = if apart { 0 } else { b.faces() };
     for _ in 0..neighbours {
         let neighbour = if upper.along < first.along {
@@ -88,9 +84,8 @@ pub(in crate::collision) fn clip(
     let low = if lower.along < first.along { clipped(lower, upper, first.along) } else { lower };
     let high = if upper.along > last.along { clipped(upper, lower, last.along) } else { upper };
     if let Some((vertex_a, vertex_b)) = corners {
-        // The nearest points of nearly parallel rounded edges are corners too, but such edges need a contact point at
-        // each end. They are recognised by two differences that are within the tolerance: the distance of the corners
-        // is not much less than that of the clipped edge, and not much more than the separation from the face.
+        // Nearly parallel rounded edges also have two corners as nearest points, but need a contact point at each end.
+        // Their corners are not much nearer than the clipped edge, and not much further than the face.
         let gap = Gap::between(&context, vertex_a, vertex_b);
         let distance = step_bits(gap.distance);
         let nearer = low.above.min(high.above);
@@ -102,8 +97,7 @@ pub(in crate::collision) fn clip(
     context.face([(first.vertex, low), (last.vertex, high)])
 }
 
-/// The two corners that are nearest to each other, if they are the nearest features of two separate edges: each corner
-/// lies beyond the end of the other edge.
+/// The two corners that are nearest features of two separate edges: each lies beyond the end of the other edge.
 fn nearest_corners(
     first: ClipPoint,
     last: ClipPoint,
@@ -127,7 +121,7 @@ fn nearest_corners(
     })
 }
 
-/// Edge whose normal is most opposed to `normal`. Ties go to the first edge, in a box to edge 0 or 2.
+/// Edge whose normal is most opposed to `normal`. The first edge wins a tie, in a box edge 0 or 2.
 #[inline]
 fn incident_edge(b: &Hull, normal: Vec2<Unit>) -> usize {
     let cosine = |n: Vec2<Unit>| dot(n, normal);
@@ -141,41 +135,40 @@ fn incident_edge(b: &Hull, normal: Vec2<Unit>) -> usize {
     b.normals().iter().map(|&n| cosine(n)).enumerate().reduce(nearer).map_or(0, |(edge, _)| edge)
 }
 
-/// Whether an outline turns by less than an eighth of a turn from an edge to its neighbour. If it turns by more, and
-/// the edge lies beside the reference face by more than a millimetre, the neighbour's face wins the separating axis
-/// test.
+/// Whether an outline turns by less than an eighth of a turn from an edge to its neighbour. With a larger turn, the
+/// neighbour's face usually wins the separating axis test.
 fn bends_little(b: &Hull, edge: usize, neighbour: usize) -> bool {
     const COS_EIGHTH: i64 = (Unit::lit("0.70711").to_bits() as i64) << Unit::FRAC_NBITS;
     dot(b.normal(edge), b.normal(neighbour)) > COS_EIGHTH
 }
 
-/// `a . b` with 60 fraction bits.
+/// With 60 fraction bits.
 #[inline]
 fn dot(a: Vec2<Unit>, b: Vec2<Unit>) -> i64 {
     i64::from(a.x.to_bits()) * i64::from(b.x.to_bits()) + i64::from(a.y.to_bits()) * i64::from(b.y.to_bits())
 }
 
-/// Vector from one position to another, in units of `Length`: one bit more than a `Length` can store.
+/// In units of `Length`, with one bit more than a `Length`.
 #[inline]
 fn between(from: Vec2<Length>, to: Vec2<Length>) -> (i64, i64) {
     let apart = |from: Length, to: Length| i64::from(to.to_bits()) - i64::from(from.to_bits());
     (apart(from.x, to.x), apart(from.y, to.y))
 }
 
-/// Position along the face with a normal, in units of `Length`: `t . p`, for `t` the normal rotated by a quarter turn.
+/// `t . p` in units of `Length`, for `t` the normal rotated by a quarter turn.
 #[inline]
 fn along(n: Vec2<Unit>, p: (i64, i64)) -> i64 {
     round_shift(i64::from(n.x.to_bits()) * p.1 - i64::from(n.y.to_bits()) * p.0, Unit::FRAC_NBITS)
 }
 
-/// Height above the face with a normal, in units of `Step`: `n . p`.
+/// `n . p` in units of `Step`.
 #[inline]
 fn above(n: Vec2<Unit>, p: (i64, i64)) -> i64 {
     let above = i64::from(n.x.to_bits()) * p.0 + i64::from(n.y.to_bits()) * p.1;
     round_shift(above, FACE_BITS - Step::FRAC_NBITS)
 }
 
-/// Moves an end along its edge to a limit, which lies between it and the other end.
+/// Moves an end along its edge to a limit between the two ends.
 #[inline]
 fn clipped(end: ClipPoint, other: ClipPoint, limit: i64) -> ClipPoint {
     let fraction = ((limit - end.along) << CLIP_BITS) / (other.along - end.along);
@@ -195,7 +188,6 @@ struct Clip<'a> {
     margin: Length,
 }
 
-/// Gap between two corners.
 struct Gap {
     vertices: (usize, usize),
     normal: Vec2<Unit>,
@@ -212,7 +204,7 @@ impl Gap {
 }
 
 impl Clip<'_> {
-    /// Contact points of clipped incident ends, each with the vertex of A that it is paired with.
+    /// Each end has the vertex of A that it is paired with.
     #[inline(always)]
     fn face<const N: usize>(&self, ends: [(usize, ClipPoint); N]) -> Manifold {
         let (normal, start) = (self.a.normal(self.face), self.a.vertex(self.face));
@@ -223,7 +215,7 @@ impl Clip<'_> {
         manifold
     }
 
-    /// Contact point between two corners, along the line that joins them.
+    /// Contact point on the line that joins two corners.
     fn corner(&self, gap: &Gap) -> Manifold {
         let mut manifold = Manifold::new(gap.normal);
         let end = ClipPoint { vertex: gap.vertices.1, along: 0, above: step_bits(gap.distance) };
@@ -231,8 +223,7 @@ impl Clip<'_> {
         manifold
     }
 
-    /// Adds the contact point at an end of B if it is within the margin. The end is relative to `start`, a point on A's
-    /// outline without radii.
+    /// Adds the contact point at an end of B if it is within the margin.
     #[inline(always)]
     fn push(&self, manifold: &mut Manifold, start: Vec2<Length>, vertex: usize, end: ClipPoint) {
         let (radius_a, radius_b) = (step_bits(self.a.radius), step_bits(self.b.radius));

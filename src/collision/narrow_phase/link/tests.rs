@@ -1,5 +1,4 @@
-//! Tests of chains: their distances are those of a polyline, a flat chain pushes along its normal, and a single link
-//! collides like a segment.
+//! Tests of chains.
 
 use alloc::vec::Vec;
 
@@ -46,7 +45,6 @@ fn random_mover(rng: &mut Rng) -> Geometry {
     }
 }
 
-/// Vertices of a circle or hull in the world, and its radius.
 fn corners(shape: &PosedShape) -> (Vec<Vec2<Fx>>, Fx) {
     match &shape.outline {
         Outline::Circle { radius } => (alloc::vec![shape.centre], widen(*radius)),
@@ -58,7 +56,7 @@ fn corners(shape: &PosedShape) -> (Vec<Vec2<Fx>>, Fx) {
     }
 }
 
-/// Smallest distance between an outline and a polyline, over all pairs of a vertex and an edge.
+/// Smallest distance over all pairs of a vertex and an edge.
 fn distance(outline: &[Vec2<Fx>], line: &[Vec2<Fx>]) -> Fx {
     let from_line = outline.iter().flat_map(|&corner| {
         line.windows(2).map(move |link| closest_point_on_segment(corner, link[0], link[1]).distance(corner))
@@ -77,7 +75,7 @@ fn crosses(outline: &[Vec2<Fx>], line: &[Vec2<Fx>]) -> bool {
     })
 }
 
-/// A random polyline that turns by less than a right angle at each point, so that it does not return to itself.
+/// A polyline that turns by less than a right angle at each point, so that it does not return to itself.
 fn random_line(rng: &mut Rng) -> Vec<Vec2<Fx>> {
     let mut heading = rng.angle();
     let mut points = alloc::vec![Vec2::new(rng.range(fx!(-1), fx!(1)), rng.range(fx!(-1), fx!(1)))];
@@ -90,8 +88,6 @@ fn random_line(rng: &mut Rng) -> Vec<Vec2<Fx>> {
     points
 }
 
-/// If a shape is near a chain and does not cross it, some link has a contact whose separation does not exceed the
-/// distance of the chain. If a circle overlaps the chain, its deepest contact has the depth of the overlap.
 #[test]
 fn a_chain_has_no_holes() {
     let mut rng = Rng::new(1);
@@ -129,7 +125,6 @@ fn a_chain_has_no_holes() {
     assert!(near > 3_000 && far > 10_000, "both cases should be frequent: {near} near, {far} far");
 }
 
-/// On a flat chain every contact normal is the chain's own, from either side and wherever the shape is along the chain.
 #[test]
 fn a_flat_chain_only_pushes_straight() {
     let mut rng = Rng::new(2);
@@ -159,7 +154,6 @@ fn a_flat_chain_only_pushes_straight() {
     assert!(contacts > 10_000, "expected over 10000 contacts, got {contacts}");
 }
 
-/// A link without neighbours collides like a segment.
 #[test]
 fn a_single_link_is_a_segment() {
     let mut rng = Rng::new(3);

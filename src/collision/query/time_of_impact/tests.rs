@@ -1,4 +1,4 @@
-//! Tests of the time of impact. Random motions are checked by the separation at many moments of the tick.
+//! Tests by separations at many moments of the tick.
 
 use super::*;
 use crate::collision::shape::support::samples;
@@ -84,8 +84,7 @@ fn no_contact_is_passed_and_none_is_invented() {
     );
 }
 
-/// After a start in contact, a shape B with an inner radius overlaps A by at most three quarters of that radius within
-/// the fraction that is reported as free.
+/// B overlaps A by at most three quarters of B's inner radius.
 #[test]
 fn contact_is_left_or_deepened_but_not_passed() {
     let mut rng = Rng::new(2);
@@ -94,7 +93,6 @@ fn contact_is_left_or_deepened_but_not_passed() {
         let (a, b) = (samples::support(&mut rng), samples::support(&mut rng));
         let (sweep_a, sweep_b) = (random_sweep(&mut rng), random_sweep(&mut rng));
         let start = distance(&a, &b.moved(to_grid(sweep_b.start - sweep_a.start)));
-        // Moves B so that the shapes start near contact.
         let shift = start.normal.widen().scale(rng.range(fx!(-0.02), fx!(0.005)) - start.distance);
         let sweep_b = Sweep { start: sweep_b.start + shift, end: sweep_b.end + shift, ..sweep_b };
         let first = separation(&a, &sweep_a, &b, &sweep_b, Fx::ZERO);
@@ -153,7 +151,7 @@ fn a_bullet_and_a_thin_rod_do_not_pass_a_wall() {
     let spin = Sweep { turn: turn(fx!(0.83)), ..Sweep::fixed(ORIGIN) };
     let pinned = Sweep::fixed(at(fx!(0.9), fx!(0.4)));
     let hit = time_of_impact(&pin, &pinned, &rod, &spin, Fx::ZERO);
-    // The pin is at 0.418 rad; its radius and the half thickness of the rod take up 0.02 / 0.985 rad.
+    // The pin is at 0.418 rad. Its radius and the half thickness of the rod take up 0.02 / 0.985 rad.
     assert!(
         matches!(hit, TimeOfImpact::Hit { fraction } if (fraction - fx!(0.479)).abs() < fx!(0.001)),
         "{hit:?}"
@@ -184,7 +182,6 @@ fn what_rests_or_slides_or_rolls_on_a_floor_is_free() {
             let ball = SupportShape::disc(ORIGIN, fx!(0.25));
             let roll = time_of_impact(&floor, &still, &ball, &along(start, turn(fx!(27))), fx!(0.005));
             assert_eq!(roll, TimeOfImpact::Separated, "{sunk} {speed}");
-            // A second floor begins flush with the first one.
             let next =
                 SupportShape::from_points([at(fx!(1236), Fx::ZERO), at(fx!(1240), Fx::ZERO)], Fx::ZERO);
             let next = next.rotated(rotation);

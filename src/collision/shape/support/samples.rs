@@ -9,7 +9,6 @@ pub(in crate::collision) fn vector(rng: &mut Rng, size: Fx) -> Vec2<Fx> {
     Vec2::new(rng.range(-size, size), rng.range(-size, size))
 }
 
-/// A random point, disc, segment, capsule or polygon near the origin, with or without a radius.
 pub(in crate::collision) fn support(rng: &mut Rng) -> SupportShape {
     loop {
         let points: Vec<_> = (0..7).map(|_| vector(rng, fx!(1))).collect();
@@ -33,21 +32,20 @@ pub(in crate::collision) fn support(rng: &mut Rng) -> SupportShape {
     }
 }
 
-/// A random support shape of about the largest size: points up to 107 m from the centre, and a radius of up to 30 m.
+/// Points up to 107 m from the centre, and a radius of up to 30 m.
 pub(in crate::collision) fn large(rng: &mut Rng) -> SupportShape {
     let support = support(rng);
     let points: Vec<_> = world_points(&support).into_iter().map(|point| point.scale(fx!(75))).collect();
     SupportShape::from_points(points, to_fx(support.radius) * 75)
 }
 
-/// A random support shape with a random offset.
 pub(in crate::collision) fn placed(rng: &mut Rng, spread: Fx) -> SupportShape {
     support(rng).moved(to_grid(vector(rng, spread)))
 }
 
-/// Sphere tracing: the distance in metres along a path of `length` metres at which it reaches a surface, within
-/// 2e-7 m; `None` if it does not. `gap_at` returns the distance from the surface at a position on the path. A path
-/// that passes within 2e-6 m of the surface without reaching it, or takes more than 2000 steps, is undecided: `Err`.
+/// Sphere tracing: distance in metres along a path of `length` metres at which it reaches a surface, within 2e-7 m.
+/// `gap_at` returns the distance from the surface. `Err` if the path passes within 2e-6 m of the surface without
+/// reaching it, or takes more than 2000 steps.
 pub(in crate::collision) fn march(length: Fx, mut gap_at: impl FnMut(Fx) -> Fx) -> Result<Option<Fx>, ()> {
     let (mut travelled, mut nearest) = (Fx::ZERO, Fx::MAX);
     for _ in 0..2000 {
@@ -64,13 +62,12 @@ pub(in crate::collision) fn march(length: Fx, mut gap_at: impl FnMut(Fx) -> Fx) 
     Err(())
 }
 
-/// Points whose coordinates are at a bound of the world or of the format.
+/// Points at bounds of the world or of the format.
 pub(in crate::collision) fn extremes() -> impl Iterator<Item = Vec2<Fx>> {
     let ends = [Fx::MIN, fx!(-1073741824), fx!(1073741824), Fx::MAX];
     ends.into_iter().flat_map(move |x| ends.map(|y| Vec2::new(x, y)))
 }
 
-/// Points of a support shape as world vectors.
 pub(in crate::collision) fn world_points(support: &SupportShape) -> Vec<Vec2<Fx>> {
     support.points().iter().map(|&point| from_grid(point)).collect()
 }
