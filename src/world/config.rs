@@ -7,16 +7,14 @@ use crate::fx;
 use crate::math::{Aabb, Fx, Vec2, fx_div, fx_mul, sqrt};
 use crate::solver::{ContactTuning, RATE_MAX, SUB_STEPS_MAX, SolverSettings, check_count, check_setting};
 
-/// Settings of a world. [`World::set_config`](crate::world::World::set_config) changes them at run time, except for the
-/// limits.
+/// Settings of a world. [`World::set_config`](crate::world::World::set_config) changes them, except for the limits.
 ///
 /// # Small bodies
 ///
-/// Soft contacts are springs. A contact yields in proportion to `g / hertz^2` for each body that it carries, whatever
-/// the size of that body. With the default 30 Hz a stack of 8 boxes on the ground sinks by 19.6 mm: 2 % of a box of
-/// 1 m, but 20 % of one of 10 cm, and a stack of boxes of 1 cm collapses. The stiffness in Hz is at most an eighth of
-/// the sub-step rate, so that smaller bodies need more sub-steps. [`Config::for_smallest`] sets both. With 60 ticks per
-/// second and 10 m/s² it gives:
+/// Soft contacts are springs that yield in proportion to `g / hertz^2`, whatever the size of the bodies. With the
+/// default 30 Hz a stack of 8 boxes on the ground sinks by 19.6 mm: 2 % of a box of 1 m, but 20 % of one of 10 cm. The
+/// stiffness in Hz is at most an eighth of the sub-step rate. With 60 ticks per second and 10 m/s²,
+/// [`Config::for_smallest`] gives:
 ///
 /// | smallest box | sub-steps | contact stiffness | speculative distance | 8 boxes sink by |
 /// |---|---|---|---|---|
@@ -27,13 +25,10 @@ use crate::solver::{ContactTuning, RATE_MAX, SUB_STEPS_MAX, SolverSettings, chec
 /// | 1 cm | 37 | 277.5 Hz | 1 mm | 2.4 % |
 /// | 5 mm | 52 | 390 Hz | 1 mm | 2.4 % |
 ///
-/// The table depends on gravity divided by size: boxes of 10 cm under 1 m/s² need the same settings as boxes of 1 m
-/// under 10 m/s². Another unit of length than the metre changes nothing, because it scales gravity and sizes by the
-/// same factor. A dynamic body with mass needs a radius of gyration of at least 2 mm, such as that of a square of 5 mm
-/// or of a ball with a radius of 3 mm, and a mass of at least 10 mg. Speeds in settings are not adapted and may have to
-/// be lowered as well: a box of 1 cm that falls by its own height lands with 0.45 m/s, less than the 1 m/s below which
-/// bodies [do not bounce](SolverSettings::restitution_threshold), and the 0.05 m/s below which they
-/// [sleep](crate::body::BodySettings::sleep_speed) are five of its widths per second.
+/// The table depends on gravity divided by size: boxes of 10 cm under 1 m/s² need the settings of boxes of 1 m under 10
+/// m/s². A dynamic body with mass needs a radius of gyration of at least 2 mm and a mass of at least 10 mg. Small
+/// bodies may also need a lower [`SolverSettings::restitution_threshold`] and
+/// [`sleep_speed`](crate::body::BodySettings::sleep_speed).
 ///
 /// ```
 /// use lockstep2d::{fx, math::Vec2, world::{Config, World}};
@@ -49,12 +44,11 @@ pub struct Config {
     pub gravity: Vec2<Fx>,
     /// Settings of the solver.
     pub solver: SolverSettings,
-    /// Distance in metres at which shapes get contact points before they touch, 0.001 to 1. Pairs that approach each
-    /// other get a larger margin, which follows from their speeds at the start of the tick.
+    /// Distance in metres at which shapes get contact points before they touch, 0.001 to 1. Approaching pairs get more.
     pub speculative_distance: Fx,
-    /// Largest margin of fat boxes in metres, 0.001 to 10. The fat box of a shape, which the broad phase uses, contains
-    /// the AABB that the shape sweeps in a tick. On a body that can move, it is larger by a margin of at most a 32nd of
-    /// the larger side of the shape's AABB. With larger margins, fat boxes change less often, but more of them overlap.
+    /// Largest margin of fat boxes in metres, 0.001 to 10. On a body that can move, the margin is a 32nd of the larger
+    /// side of the shape's AABB, limited to this value. With larger margins, fat boxes change less often, but more of
+    /// them overlap.
     pub fat_margin: Fx,
     /// Whether bodies at rest fall asleep.
     pub sleeping: bool,
@@ -70,9 +64,8 @@ pub struct Config {
     /// Largest number of joints, at most 2^20.
     pub joint_limit: u32,
     /// Largest number of pairs of shapes in a tick, at most 2^20: see
-    /// [`World::pair_count`](crate::world::World::pair_count). If there are more, those in the smallest slots are
-    /// processed, and the tick counts as a fault. The limit bounds time and memory for untrusted worlds, in which every
-    /// shape may overlap every other one.
+    /// [`World::pair_count`](crate::world::World::pair_count). Further pairs, in the largest slots, are left out, and
+    /// the tick counts as a fault. The limit bounds time and memory for untrusted worlds.
     pub pair_limit: u32,
 }
 
@@ -97,9 +90,8 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Distance in metres within which shapes begin to touch: a quarter of the speculative distance. They cease to
-    /// touch beyond the speculative distance. The difference keeps a contact that wobbles from beginning and ending
-    /// repeatedly.
+    /// Distance in metres within which shapes begin to touch: a quarter of the speculative distance, beyond which they
+    /// cease to touch. The difference keeps a wobbling contact from beginning and ending repeatedly.
     #[must_use]
     pub fn touching_distance(&self) -> Fx {
         self.speculative_distance / 4
@@ -112,19 +104,19 @@ impl Config {
         (half.x.max(half.y) / 16).min(self.fat_margin)
     }
 
-    /// Number of ticks for which a body has to be slow before it may fall asleep: half a second, rounded up.
+    /// Number of ticks for which a body has to be slow before it may sleep: half a second, rounded up.
     #[must_use]
     pub const fn ticks_to_sleep(&self) -> u32 {
         self.tick_rate.div_ceil(2)
     }
 
     /// Returns these settings with enough sub-steps and contact stiffness for a stack of 8 boxes of `size` metres to
-    /// sink by less than 2.5 % of a box; see [`Config`] for a table. Call it after gravity and the tick rate are set.
-    /// Also reduces the speculative distance to a fiftieth of `size`, but not below 1 mm. Settings that are sufficient
-    /// stay as they are. The stiffness is only set if contacts are [soft](ContactTuning::Soft). The method sets at most
-    /// 64 sub-steps per tick and 4000 per second. With 60 ticks per second and 10 m/s², that is sufficient for the
-    /// smallest boxes that the engine accepts, 5 mm. At 30 ticks per second it is sufficient down to about 13 mm; the
-    /// needed number of sub-steps per second is `sqrt(4800 g / size)`.
+    /// sink by less than 2.5 % of a box; see [`Config`]. Also reduces the speculative distance to a fiftieth of `size`,
+    /// but not below 1 mm. Sufficient settings stay as they are. Call it after gravity and the tick rate are set.
+    ///
+    /// The needed number of sub-steps per second is `sqrt(4800 g / size)`. At most 64 per tick and 4000 per second are
+    /// set, which is enough for boxes of 5 mm at 60 ticks per second and 10 m/s². Only [soft](ContactTuning::Soft)
+    /// contacts get another stiffness.
     ///
     /// ```
     /// use lockstep2d::{fx, world::{Config, World}};
@@ -149,7 +141,7 @@ impl Config {
                 *hertz = Fx::from_num(self.tick_rate.saturating_mul(solver.sub_steps).min(RATE_MAX)) / 8;
             }
         }
-        // The default distance, 2 cm, is a fiftieth of the size of boxes of 1 m.
+        // The default of 2 cm is a fiftieth of a box of 1 m.
         self.speculative_distance = self.speculative_distance.min((size / 50).max(SPECULATIVE_DISTANCE_MIN));
         self
     }
@@ -168,7 +160,7 @@ impl Config {
     /// Checks every setting.
     ///
     /// # Errors
-    /// [`WorldError::Setting`] or [`WorldError::CountSetting`] with the name of the first setting that is out of range.
+    /// [`WorldError::Setting`] or [`WorldError::CountSetting`] for the first setting that is out of range.
     pub fn validate(&self) -> Result<(), WorldError> {
         let Config {
             tick_rate,
@@ -197,10 +189,9 @@ impl Config {
     }
 }
 
-/// Smallest speculative distance in metres.
+/// In metres.
 const SPECULATIVE_DISTANCE_MIN: Fx = fx!(0.001);
 
-/// Checks a gravity in m/s².
 pub(crate) fn check_gravity(gravity: Vec2<Fx>) -> Result<(), WorldError> {
     [gravity.x, gravity.y]
         .into_iter()

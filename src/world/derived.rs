@@ -1,5 +1,3 @@
-//! Values that follow from definitions: masses, fat boxes, limits of offsets.
-
 use super::config::Config;
 use crate::body::{
     Body, BodyKind, BodySettings, MassProperties, MassSource, REACH_MAX, ShapeDef, WORLD_EXTENT_MAX,
@@ -8,11 +6,11 @@ use crate::body::{
 use crate::collision::PosedShape;
 use crate::math::{Aabb, Fx};
 
-/// Number of low bits of an [`Fx`] that are 0 in the corners of fat boxes: their grid is 2^-22 m.
+/// Low bits of an [`Fx`] that are 0 in the corners of fat boxes: their grid is 2^-22 m.
 pub(crate) const FAT_GRID_SHIFT: u32 = 10;
 
-/// Largest distance of a shape from its body's origin on each axis, in metres. On bodies that can move, these distances
-/// become lever arms, which have a smaller range than positions.
+/// Largest distance of a shape from its body's origin on each axis, in metres. On bodies that move, it is a lever arm,
+/// which has a smaller range than positions.
 pub(crate) fn offset_max(kind: BodyKind) -> Fx {
     match kind {
         BodyKind::Fixed => WORLD_EXTENT_MAX,
@@ -20,11 +18,10 @@ pub(crate) fn offset_max(kind: BodyKind) -> Fx {
     }
 }
 
-/// Mass properties of a body with the given shapes.
+/// Mass properties of a body.
 ///
 /// # Errors
-/// [`WorldError`] if the mass or the radius of gyration of a dynamic body is out of range, or if a given mass, radius
-/// of gyration or centre of mass is.
+/// [`WorldError`] if a mass, a radius of gyration or a centre of mass is out of range.
 pub(crate) fn mass_of<'a>(
     kind: BodyKind,
     source: MassSource,
@@ -34,7 +31,7 @@ pub(crate) fn mass_of<'a>(
     let mass = match kind {
         BodyKind::Dynamic => MassProperties::dynamic(source, shapes)?,
         BodyKind::Fixed | BodyKind::Kinematic => {
-            // A given mass is only used once the body becomes dynamic, but it has to be valid from the start.
+            // A given mass has to be valid before the body becomes dynamic.
             if matches!(source, MassSource::Given { .. }) {
                 MassProperties::dynamic(source, shapes)?;
             }
@@ -44,8 +41,7 @@ pub(crate) fn mass_of<'a>(
     Ok(if settings.locks.rotation { mass.without_rotation() } else { mass })
 }
 
-/// The fat box of a shape that was added or moved by an edit. Shapes of fixed bodies get no margin, because no tick
-/// moves them.
+/// The fat box of a shape after an edit. On fixed bodies, which no tick moves, it has no margin.
 pub(crate) fn fat_box(shape: &ShapeDef, body: &Body, config: &Config) -> Aabb {
     let bounds = PosedShape::new(shape, body, body.rotation()).bounds;
     match body.kind() {
@@ -54,8 +50,8 @@ pub(crate) fn fat_box(shape: &ShapeDef, body: &Body, config: &Config) -> Aabb {
     }
 }
 
-/// The fat box around `bounds` with a margin in metres. The coordinates of its corners are multiples of 2^-22 m, so
-/// that a snapshot can store coordinates near the body's centre as 32-bit offsets from it.
+/// The margin is in metres. Corners are multiples of 2^-22 m, so that a snapshot can store those near the body's centre
+/// as 32-bit offsets.
 pub(crate) fn fattened(bounds: Aabb, margin: Fx) -> Aabb {
     bounds.expanded(margin).rounded_out(FAT_GRID_SHIFT)
 }

@@ -1,4 +1,4 @@
-//! Events of a tick. They are not part of the state: simulating a tick again gives the same events again.
+//! Events of a tick. They are not part of the state.
 
 use alloc::vec::Vec;
 
@@ -30,14 +30,14 @@ use crate::math::{Angle, Fx, Unit, Vec2};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct ContactEvent {
-    /// The shape in the smaller slot. Its handle is stale if the contact ended because this shape was removed.
+    /// The shape in the smaller slot. Its handle is stale if the shape was removed.
     pub shape_a: ShapeId,
-    /// The shape in the larger slot. Its handle is stale if the contact ended because this shape was removed.
+    /// The shape in the larger slot. Its handle is stale if the shape was removed.
     pub shape_b: ShapeId,
 }
 
 impl ContactEvent {
-    /// Both shapes. [`World::body_of`](super::World::body_of) returns the body of a shape.
+    /// Both shapes.
     #[must_use]
     pub const fn shapes(&self) -> [ShapeId; 2] {
         [self.shape_a, self.shape_b]
@@ -78,15 +78,14 @@ pub struct HitEvent {
     pub normal: Vec2<Unit>,
     /// Approach speed along the normal at the start of the tick, in m/s.
     pub approach_speed: Fx,
-    /// Impulse along the normal in N s: the sum over all points and the whole tick, including restitution. It changes
-    /// the velocity of a free body by `impulse / mass`. An impact that takes several ticks, such as one into a soft
-    /// pile, continues in the [forces](super::ContactView::forces) of the following ticks.
-    /// The largest impulse is 1024 m/s times the reduced mass of the two bodies.
+    /// Impulse along the normal in N s: the sum over all points and the whole tick, including restitution, at most 1024
+    /// m/s times the reduced mass. An impact that takes several ticks continues in the
+    /// [forces](super::ContactView::forces) of the following ticks.
     pub impulse: Fx,
 }
 
 impl HitEvent {
-    /// Both shapes. [`World::body_of`](super::World::body_of) returns the body of a shape.
+    /// Both shapes.
     #[must_use]
     pub const fn shapes(&self) -> [ShapeId; 2] {
         [self.shape_a, self.shape_b]
@@ -95,12 +94,9 @@ impl HitEvent {
 
 /// A sensor that began or ceased to overlap a shape.
 ///
-/// The overlaps of a sensor are those at the end of the tick. A shape that crosses a sensor within a tick has both
-/// events in that tick, each with its fraction, at any speed and with any [`Continuous`](crate::body::Continuous)
-/// setting. Within a tick a body is taken to move on a straight line from its old pose to its new one and to rotate
-/// evenly. Therefore a ball that hits a wall and returns within the tick has no events with the sensors that it met
-/// only on the way to the wall, and a shape that leaves a sensor and returns within the tick has no events. An overlap
-/// of less than 0.05 mm that begins and ends within a tick may be missed.
+/// Overlaps are those at the end of the tick. A shape that crosses a sensor within a tick has both events in that tick,
+/// with any [`Continuous`](crate::body::Continuous) setting, if the overlap exceeds 0.05 mm. Bodies are taken to move
+/// straight and to rotate evenly within a tick. A shape that leaves a sensor and returns within the tick has no events.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::World};
@@ -122,8 +118,7 @@ impl HitEvent {
 #[doc(alias = "trigger")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct SensorEvent {
-    /// Fraction of the tick at which the overlap began or ended, 0 to 1. Sorting the events of both lists by
-    /// this fraction gives the order of the crossings. 0 if the cause is a change between ticks.
+    /// Fraction of the tick at which the overlap began or ended, 0 to 1. 0 if the cause is a change between ticks.
     pub fraction: Fx,
     /// The sensor. Its handle may be stale in an end event.
     pub sensor: ShapeId,
@@ -156,7 +151,7 @@ pub struct MoveEvent {
     pub position: Vec2<Fx>,
     /// Rotation after the tick.
     pub angle: Angle,
-    /// Whether the body fell asleep. A sleeping body does not move until something wakes it.
+    /// Whether the body fell asleep.
     pub fell_asleep: bool,
 }
 
@@ -223,23 +218,21 @@ pub struct JointEvent {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Events {
-    /// Bodies that moved within the tick or fell asleep, in slot order. Bodies that only an edit has moved are not
-    /// listed.
+    /// Bodies that the tick moved or put to sleep, in slot order.
     pub moved: Vec<MoveEvent>,
-    /// Pairs that began to touch: solid shapes that were within [`super::Config::touching_distance`] at the start of
-    /// the tick, or pushed each other in the tick. A pair is reported if either shape enables contact events. Sorted by
-    /// shape A, then by shape B, like `contact_end` and `hits`.
+    /// Pairs of solid shapes that began to touch: they were within [`super::Config::touching_distance`] at the start of
+    /// the tick, or pushed each other in it. One of them has to enable contact events. Sorted by shape A, then by shape
+    /// B.
     pub contact_begin: Vec<ContactEvent>,
-    /// Pairs that moved further apart than [`super::Config::speculative_distance`], and pairs that an edit has ended,
-    /// for example by removing or disabling one of the shapes.
+    /// Pairs that moved further apart than [`super::Config::speculative_distance`], and pairs that an edit has ended.
+    /// Sorted like `contact_begin`.
     pub contact_end: Vec<ContactEvent>,
-    /// Pairs that pushed each other after an approach at [`super::Config::hit_speed`] or faster. A pair is reported if
-    /// either shape enables hit events.
+    /// Pairs that pushed each other after an approach at [`super::Config::hit_speed`] or faster. One of them has to
+    /// enable hit events. Sorted like `contact_begin`.
     pub hits: Vec<HitEvent>,
-    /// Shapes that began to overlap a sensor within the tick. Sorted by fraction, then by sensor, then by visitor.
+    /// Shapes that began to overlap a sensor. Sorted by fraction, then by sensor, then by visitor.
     pub sensor_begin: Vec<SensorEvent>,
-    /// Shapes that ceased to overlap a sensor, and pairs that an edit has ended, for example by removing or disabling
-    /// the sensor or the shape. Sorted by fraction, then by sensor, then by visitor.
+    /// Shapes that ceased to overlap a sensor, and pairs that an edit has ended. Sorted like `sensor_begin`.
     pub sensor_end: Vec<SensorEvent>,
     /// Joints above their threshold, in slot order.
     pub joints: Vec<JointEvent>,
@@ -275,8 +268,8 @@ pub enum SensorChange {
 }
 
 impl Events {
-    /// Returns the sensor events of the tick in the order in which they happened: ends by changes between ticks, then
-    /// beginnings and ends by their fraction of the tick, with beginnings first at equal fractions.
+    /// Returns the sensor events of the tick in order: ends by changes between ticks, then beginnings and ends by their
+    /// fraction of the tick, with beginnings first at equal fractions.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, world::{SensorChange, World}};
@@ -304,7 +297,6 @@ impl Events {
         })
     }
 
-    /// Empties all lists and keeps their memory.
     pub(crate) fn clear(&mut self) {
         let Events { moved, contact_begin, contact_end, hits, sensor_begin, sensor_end, joints } = self;
         moved.clear();

@@ -1,4 +1,4 @@
-//! The world: bodies, shapes and joints that advance together, tick by tick.
+//! The world: bodies, shapes and joints that advance tick by tick.
 //!
 //! | folder | content |
 //! |---|---|
@@ -57,8 +57,8 @@ use state::State;
 
 /// A physics world.
 ///
-/// Its state contains everything that influences the future, and is covered by [`World::state_hash`], [`World::save`]
-/// and [`World::to_bytes`]. The same edits in the same order give the same hash after every tick on every machine.
+/// [`World::state_hash`], [`World::save`] and [`World::to_bytes`] cover everything that influences the future. The same
+/// edits in the same order give the same hash after every tick on every machine.
 ///
 /// ```
 /// use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, world::{Config, World}};
@@ -80,7 +80,7 @@ use state::State;
 pub struct World {
     state: HashedState,
     scratch: Scratch,
-    /// Digests after each phase, if they are recorded.
+    /// Digests after each phase, if recorded.
     phases: Option<PhaseLog>,
 }
 
@@ -101,7 +101,7 @@ impl World {
         Ok(World::of(State::new(config), BroadPhaseKind::default()))
     }
 
-    /// A world with a valid state and new caches.
+    /// The state must be valid.
     fn of(mut state: State, broad_phase: BroadPhaseKind) -> Self {
         state.keep_pages();
         let scratch = Scratch::new(broad_phase, &state);
@@ -131,8 +131,7 @@ impl World {
     }
 
     /// Number of results of the solver that were clamped to their range since the world was created, plus one for every
-    /// tick in which [`Config::pair_limit`] left pairs out. A body that reaches
-    /// [`speed_max`](crate::solver::SolverSettings::speed_max) is not a fault.
+    /// tick in which [`Config::pair_limit`] left pairs out.
     #[must_use]
     pub const fn faults(&self) -> u64 {
         self.state.get().faults
@@ -197,17 +196,16 @@ impl World {
         self.state.joints.len()
     }
 
-    /// Number of enabled bodies that are kinematic, or dynamic and awake: those that a tick simulates.
+    /// Number of bodies that a tick simulates: enabled bodies that are kinematic, or dynamic and awake.
     #[must_use]
     pub fn awake_body_count(&self) -> usize {
         let is_simulated = |body: &Body| body.enabled && body.kind() != BodyKind::Fixed && !body.is_asleep();
         self.state.bodies.iter().filter(|(_, body)| is_simulated(body)).count()
     }
 
-    /// Number of pairs of shapes with overlapping fat boxes that may collide, or of which one is a sensor that detects
-    /// the other. At least one shape of each pair is on an active body: a dynamic body that is awake, or a kinematic
-    /// body that has not been at rest for a whole tick. The next tick adds the pairs of new and moved shapes.
-    /// [`World::work`] returns a bound on the cost of that tick.
+    /// Number of pairs of shapes with overlapping fat boxes that may collide, or of which a sensor detects the other.
+    /// One of the two bodies is a dynamic body that is awake, or a kinematic body that has not been at rest for a whole
+    /// tick. The next tick adds the pairs of new and moved shapes.
     #[must_use]
     pub fn pair_count(&self) -> usize {
         self.state.contacts.len()
@@ -225,26 +223,25 @@ impl World {
         &self.scratch.results.stats
     }
 
-    /// The world's random number generator. It is part of the state, so that a rollback restores it.
+    /// The world's random number generator, which is part of the state.
     pub fn rng(&mut self) -> &mut Rng {
         &mut self.state.rng
     }
 
-    /// Returns the inner boxes of the broad phase, each with its depth in the tree, for tools. The tree is a cache that
-    /// depends on the history, so that a copy of this world may have other boxes. Only [`BroadPhaseKind::Tree`] has
-    /// inner boxes.
+    /// Returns the inner boxes of the broad phase, each with its depth in the tree, for tools. Empty unless the broad
+    /// phase is a [`BroadPhaseKind::Tree`].
     #[must_use]
     pub fn broad_phase_boxes(&self) -> Vec<(Aabb, u32)> {
         self.scratch.shapes.broad_phase().inner_boxes()
     }
 
-    /// Drops and rebuilds every cache. Does not change any hash, but the next tick takes longer, and until then
-    /// [`World::events`], [`World::contacts`] and [`World::stats`] are empty.
+    /// Rebuilds every cache without changing any hash. [`World::events`], [`World::contacts`] and [`World::stats`] are
+    /// empty until the next tick.
     pub fn clear_scratch(&mut self) {
         self.set_broad_phase(self.scratch.shapes.broad_phase().kind());
     }
 
-    /// Sets the algorithm that finds overlapping fat boxes, and rebuilds every cache: see [`World::clear_scratch`].
+    /// Sets the algorithm that finds overlapping fat boxes, and calls [`World::clear_scratch`].
     pub fn set_broad_phase(&mut self, kind: BroadPhaseKind) {
         self.scratch.rebuild(kind, &self.state);
     }
@@ -256,21 +253,18 @@ impl World {
     }
 
     /// Sets the largest number of threads that share a tick; 0 counts as 1. Does not change any hash. Returns whether
-    /// the threads could be created; if not, nothing changes.
+    /// the threads could be created; if not, nothing changes. Needs the feature `parallel`.
     ///
-    /// The threads share a tick only if they make it shorter, which takes thousands of bodies and idle processors. The
-    /// world compares the times of ticks with all threads and with the calling thread alone, and uses the faster way,
-    /// except in a few trial ticks. It starts with all threads. A tick uses the calling thread alone if the tick before
-    /// it simulated fewer than 256 bodies. Threads keep their processors busy until the tick is over, even while only
-    /// one of them has work. Clones of the world share its threads: a tick that runs during a tick of another clone
-    /// uses its calling thread alone. Needs the feature `parallel`.
+    /// The world compares the times of ticks with all threads and with the calling thread alone, and prefers the faster
+    /// way. Threads keep their processors busy during a tick. A tick uses the calling thread alone if the previous tick
+    /// simulated fewer than 256 bodies, or if a clone of the world is using the shared threads.
     #[cfg(feature = "parallel")]
     pub fn set_threads(&mut self, count: usize) -> bool {
         self.start_threads(count, Sharing::Adaptive)
     }
 
-    /// Like [`World::set_threads`], but the threads share every tick that follows a tick with 256 simulated bodies or
-    /// more, also if that takes longer. For tests and measurements. Needs the feature `parallel`.
+    /// Like [`World::set_threads`], but without comparing times. For tests and measurements. Needs the feature
+    /// `parallel`.
     #[cfg(feature = "parallel")]
     pub fn force_threads(&mut self, count: usize) -> bool {
         self.start_threads(count, Sharing::Always)
@@ -282,15 +276,14 @@ impl World {
         threads.map(|threads| self.scratch.solver.threads = threads).is_some()
     }
 
-    /// The instruction set that the solver uses: the best one of this machine, unless [`World::set_backend`] chose
-    /// another.
+    /// The instruction set that the solver uses: the best one of this machine, or that of [`World::set_backend`].
     #[must_use]
     pub fn backend(&self) -> Backend {
         self.scratch.solver.machine.backend()
     }
 
-    /// Sets the instruction set that the solver uses. Does not change any hash. Returns whether this machine has it; if
-    /// not, nothing changes.
+    /// Sets the instruction set that the solver uses. Does not change any hash. Returns false and changes nothing if
+    /// this machine does not have it.
     #[doc(alias = "SIMD")]
     pub fn set_backend(&mut self, backend: Backend) -> bool {
         let machine = Machine::new(backend);

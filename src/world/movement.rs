@@ -1,11 +1,9 @@
-//! Moving a body together with its shapes and their fat boxes.
-
 use super::cache::Scratch;
 use super::derived::fattened;
 use super::state::State;
 use crate::body::{Handle, Pose};
 
-/// Moves a body to a pose. Shapes that leave their fat box get a new one.
+/// Moves a body and its shapes to a pose. Shapes that leave their fat box get a new one.
 pub(crate) fn move_body(state: &mut State, scratch: &mut Scratch, slot: u32, pose: Pose) {
     let State { bodies, shapes, .. } = &mut *state;
     if !scratch.shapes.whole().move_body(bodies.at_mut(slot), pose, shapes) {

@@ -1,5 +1,3 @@
-//! The state of a world: everything that influences the future.
-
 use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
@@ -13,14 +11,14 @@ use crate::fx;
 use crate::math::{Fx, Rng, fx_div};
 use crate::solver::Joint;
 
-/// A sleeping island: bodies that fell asleep together and wake together.
+/// Bodies that sleep and wake together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Island {
     /// Slots of the bodies, sorted.
     pub(crate) bodies: Vec<u32>,
 }
 
-/// A pair of shapes, named by handles as in the events.
+/// A pair of shapes as in the events.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Reported {
     pub(crate) shapes: ContactEvent,
@@ -28,7 +26,7 @@ pub(crate) struct Reported {
     pub(crate) sensor: Option<Side>,
 }
 
-/// One of the two shapes of a pair, or both: two sensors may detect each other.
+/// Sensors of a pair. Two sensors may detect each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Side {
     A,
@@ -36,20 +34,16 @@ pub(crate) enum Side {
     Both,
 }
 
-/// Everything that influences the future, and the names and numbers that games store. Serde derives its encoding in
-/// files. Snapshots and hashes take the state apart field by field, so that a new field does not compile until they
-/// contain it.
+/// Everything that influences the future, and the names and numbers that games store. Snapshots and hashes take it
+/// apart field by field, so that a new field does not compile until they contain it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
     pub(crate) config: Config,
-    /// Number of ticks since the world was created.
     pub(crate) tick: u64,
-    /// Number of faults since the world was created: see [`super::World::faults`].
     pub(crate) faults: u64,
     pub(crate) bodies: Arena<Body, BodyId>,
     pub(crate) shapes: Arena<Shape, ShapeId>,
     pub(crate) joints: Arena<Joint, JointId>,
-    /// Sleeping islands.
     pub(crate) islands: Arena<Island, IslandId>,
     /// Contacts with an active body, sorted by pair.
     pub(crate) contacts: Vec<Contact>,
@@ -57,8 +51,7 @@ pub(crate) struct State {
     pub(crate) sleeping_contacts: SleepingContacts,
     /// Whether there were more pairs than [`Config::pair_limit`] at the last pair update.
     pub(crate) pairs_left_out: bool,
-    /// Contacts that ended since the last tick because a shape was removed, changed or disabled, for the events of the
-    /// next tick.
+    /// Contacts that an edit has ended since the last tick, for the events of the next tick.
     pub(crate) removed_contacts: Vec<Reported>,
     pub(crate) rng: Rng,
 }
@@ -81,7 +74,7 @@ impl State {
         }
     }
 
-    /// Sizes the caches of the pages that snapshots share. Called once for a new or decoded state.
+    /// Called once for a new or decoded state.
     pub(crate) fn keep_pages(&mut self) {
         self.bodies.keep_pages();
         self.shapes.keep_pages();
@@ -89,13 +82,12 @@ impl State {
         self.islands.keep_pages();
     }
 
-    /// The bodies of two shapes in occupied slots.
+    /// The slots must be occupied.
     pub(crate) fn bodies_of(&self, (a, b): Pair) -> (&Body, &Body) {
         (self.body_of(a), self.body_of(b))
     }
 
-    /// Drops the manifolds of a body's contacts, because its shapes or its centre of mass change. The next tick
-    /// collides these shapes again.
+    /// Drops the manifolds of a body whose shapes or centre of mass change.
     pub(crate) fn end_manifolds(&mut self, body: u32) {
         let shapes = &self.shapes;
         let is_own = |shape: u32| shapes.get_slot(shape).is_some_and(|shape| shape.body().slot() == body);
@@ -104,13 +96,13 @@ impl State {
             contacts.iter_mut().filter(|contact| has_own(contact)).for_each(|contact| contact.kept.end());
         };
         end(&mut self.contacts);
-        // The contacts of a body that has just been woken are still in this list. Mutable access drops its packed form.
+        // The contacts of a body just woken are still in this list. Mutable access drops its packed form.
         if self.sleeping_contacts.iter().any(has_own) {
             end(&mut self.sleeping_contacts);
         }
     }
 
-    /// The mass that a force between the bodies of two shapes accelerates: `mA mB / (mA + mB)` in kg.
+    /// The mass that a force between two bodies accelerates: `mA mB / (mA + mB)` in kg.
     pub(crate) fn reduced_mass(&self, shapes: Pair) -> Fx {
         let (a, b) = self.bodies_of(shapes);
         match (a.has_mass(), b.has_mass()) {
@@ -125,13 +117,12 @@ impl State {
         }
     }
 
-    /// The body of the shape in an occupied slot.
+    /// The slot must be occupied.
     pub(crate) fn body_of(&self, shape: u32) -> &Body {
         self.bodies.at(self.shapes.at(shape).body().slot())
     }
 
-    /// The sensors of a pair that may touch: its only sensor or, if both shapes are sensors, those that detect the
-    /// other one. `None` if neither shape is a sensor.
+    /// The only sensor of a pair that may touch, or of two sensors those that detect the other one.
     pub(crate) fn sensor_of(&self, (a, b): Pair) -> Option<Side> {
         let (a, b) = (self.shapes.at(a), self.shapes.at(b));
         match (a.is_sensor(), b.is_sensor()) {
@@ -152,7 +143,7 @@ impl State {
         a.acts_on(b) || b.acts_on(a)
     }
 
-    /// The pair of a contact as events name it; `None` if it has neither a sensor nor a shape with contact events.
+    /// The pair for the events; `None` if it has neither a sensor nor a shape with contact events.
     pub(crate) fn reported(&self, contact: &Contact) -> Option<Reported> {
         let (a, b) = contact.shapes;
         let sensor = self.sensor_of(contact.shapes);
@@ -161,7 +152,6 @@ impl State {
         has_events.then(|| Reported { shapes: self.contact_event(contact), sensor })
     }
 
-    /// The event of a contact between two occupied shape slots.
     pub(crate) fn contact_event(&self, contact: &Contact) -> ContactEvent {
         let (a, b) = contact.shapes;
         ContactEvent { shape_a: self.shapes.handle_at(a), shape_b: self.shapes.handle_at(b) }

@@ -1,5 +1,3 @@
-//! Phases of a tick, and statistics for tuning and tests. Statistics are not part of the state.
-
 /// The phases of a tick, in order; see [`super::World::step_observed`].
 ///
 /// ```
@@ -70,16 +68,13 @@ pub struct StepStats {
     pub contacts: u32,
     /// Number of contact points.
     pub points: u32,
-    /// Number of contact points that were warm-started: each continues a point of the previous tick, with its impulse.
+    /// Number of contact points that continue a point of the previous tick with its impulse.
     pub points_kept: u32,
-    /// Number of contact points that had an impulse in the previous tick and are lost although their shapes still
-    /// touch.
+    /// Number of contact points lost since the previous tick, with an impulse, although their shapes still touch.
     pub points_lost: u32,
-    /// Number of pairs of polygons, capsules and segments that the separating axis of an earlier tick, which is cached,
-    /// still separates. Pairs of boxes whose corners are within 3 m of their centres do not use the cache.
+    /// Number of pairs of shapes that a cached separating axis of an earlier tick still separates.
     pub axis_hits: u32,
-    /// Number of full separating axis tests. A fast pair that first touches within the tick may be tested several
-    /// times.
+    /// Number of full separating axis tests.
     pub axis_searches: u32,
     /// Number of fast bodies that continuous collision has stopped; see [`crate::body::Continuous`].
     pub impacts: u32,

@@ -1,5 +1,3 @@
-//! Tests of parts of the engine in whole worlds.
-
 use alloc::vec::Vec;
 
 use crate::body::{BodyDef, BodyId, Geometry, Handle, Polygon, ShapeDef};
@@ -13,7 +11,6 @@ fn rectangle(half_width: Fx, half_height: Fx) -> ShapeDef {
     ShapeDef::new(Polygon::rectangle(half_width, half_height).unwrap())
 }
 
-/// A floor of 24 m with a wall at each end.
 fn pit() -> World {
     let mut world = World::default();
     let parts = [
@@ -72,7 +69,7 @@ impl Near {
         Near { shapes: posed.collect(), pairs }
     }
 
-    /// Number of contact points, computed with the box reject and a cached separating axis for every pair.
+    /// Number of contact points with the box reject and cached separating axes.
     #[inline(never)]
     fn with_reject_and_axis(
         &self,
@@ -88,7 +85,7 @@ impl Near {
         points.sum()
     }
 
-    /// Number of contact points, computed without the box reject and without cached axes.
+    /// Number of contact points without the box reject and without cached axes.
     #[inline(never)]
     fn without(&self, margin: Length) -> usize {
         let points = self.pairs.iter().map(|&(a, b)| {
@@ -101,8 +98,7 @@ impl Near {
     }
 }
 
-/// Measures how many axis searches the cached axis and the box reject save on the pairs of the hundred polygons. The
-/// instruction counts of the two functions of [`Near`] can be measured with `valgrind --tool=callgrind`.
+/// Use `valgrind --tool=callgrind` to count the instructions of both functions of [`Near`].
 #[test]
 fn reject_and_axis_spare_a_hundred_polygons_most_searches() {
     let mut world = hundred_polygons();
@@ -120,14 +116,13 @@ fn reject_and_axis_spare_a_hundred_polygons_most_searches() {
     let plain: usize = ticks.iter().map(|near| near.without(margin)).sum();
     assert_eq!(fast, plain, "the box reject and the cached axis do not change the result");
     let pairs: usize = ticks.iter().map(|near| near.pairs.len()).sum();
-    // A pair has at most two points. Most searches of pairs without contact must be saved.
+    // A pair has at most two points.
     let (searches, touching) = (counters.searches as usize, fast.div_ceil(2));
     let spared = fast > 10_000 && (searches - touching) * 2 < pairs - touching;
     assert!(spared, "{fast} points, {pairs} pairs, {counters:?}");
 }
 
-/// A pyramid of boxes, balls with rolling resistance on their way to it, and three chains of planks, each with a motor
-/// at its first hinge.
+/// A pyramid of boxes, rolling balls, and three chains of planks with a motor at the first hinge.
 fn boxes_balls_and_hinges() -> World {
     let (mut world, half) = (pit(), fx!(0.5));
     for (row, column) in (0..6).flat_map(|row| (row..6).map(move |column| (row, column))) {
@@ -157,7 +152,6 @@ fn boxes_balls_and_hinges() -> World {
     world
 }
 
-/// The accumulated velocity change of the contacts equals the sum of their impulses, except for rounding.
 #[test]
 fn contact_velocities_are_what_the_impulses_amount_to() {
     for (name, mut world) in [("mixed", boxes_balls_and_hinges()), ("polygons", hundred_polygons())] {
@@ -172,8 +166,7 @@ fn contact_velocities_are_what_the_impulses_amount_to() {
     }
 }
 
-/// A ball hits a box that is locked along x. The velocity that the lock removes again must not count as a missing
-/// velocity change.
+/// The velocity that a lock removes must not count as a missing velocity change.
 #[test]
 fn contact_velocities_are_known_of_what_is_locked() {
     let mut world = World::default();
@@ -196,8 +189,7 @@ fn contact_velocities_are_known_of_what_is_locked() {
     );
 }
 
-/// A tick that ends before joints are solved, because its budget does not cover them, has no effect on a world that is
-/// restored afterwards.
+/// A tick whose budget does not cover the joints has no effect on a world that is restored afterwards.
 #[test]
 fn a_world_is_restored_after_a_tick_without_the_budget_for_its_joints() {
     let mut world = pit();

@@ -1,7 +1,6 @@
 //! Fixed time steps from real time (G. Fiedler, "Fix Your Timestep!", 2004).
 
-/// Converts elapsed real time to whole ticks. The game passes the time in, in nanoseconds, because the simulation reads
-/// no clock.
+/// Converts elapsed real time in nanoseconds, which the game measures, to whole ticks.
 ///
 /// ```
 /// use lockstep2d::world::FixedTimestep;
@@ -13,12 +12,11 @@
 pub struct FixedTimestep {
     tick_rate: u32,
     ticks_max: u32,
-    /// Time not yet simulated in nanoseconds times the tick rate: an integer, so that nothing is rounded.
+    /// Time not yet simulated in nanoseconds times the tick rate, so that nothing is rounded.
     remainder: u64,
 }
 
-/// One tick in the unit of `remainder`: a tick lasts `10^9 / tick_rate` nanoseconds, and the remainder is in
-/// nanoseconds times the tick rate.
+/// One tick in the unit of `remainder`.
 const TICK: u64 = 1_000_000_000;
 
 impl FixedTimestep {
@@ -32,9 +30,8 @@ impl FixedTimestep {
         FixedTimestep { tick_rate, ticks_max: Self::DEFAULT_TICKS_MAX, remainder: 0 }
     }
 
-    /// Sets the largest number of ticks that one call of [`FixedTimestep::advance`] returns. Ticks beyond this number
-    /// are dropped, so that the game slows down on a machine that is too slow for real time, instead of falling behind
-    /// without limit.
+    /// Sets the largest number of ticks that one call of [`FixedTimestep::advance`] returns. Further ticks are dropped,
+    /// so that a slow machine does not fall behind without limit.
     #[must_use]
     pub const fn ticks_max(mut self, ticks: u32) -> Self {
         self.ticks_max = ticks;
@@ -49,7 +46,7 @@ impl FixedTimestep {
         u32::try_from(ticks).unwrap_or(self.ticks_max)
     }
 
-    /// Returns the time since the last tick in billionths of a tick, for drawing poses interpolated between two ticks.
+    /// Returns the time since the last tick in billionths of a tick, for interpolated drawing.
     #[must_use]
     pub const fn interpolation_billionths(&self) -> u32 {
         #[expect(clippy::cast_possible_truncation, reason = "the remainder is below 10^9")]
@@ -65,7 +62,6 @@ mod tests {
     #[test]
     fn no_time_is_lost_between_calls() {
         let mut timestep = FixedTimestep::new(60);
-        // 1000 frames of 7 ms are 420 ticks, although no frame is a whole number of ticks.
         let ticks: u32 = (0..1000).map(|_| timestep.advance(7_000_000)).sum();
         assert_eq!(ticks, 420);
         assert_eq!(timestep.interpolation_billionths(), 0);

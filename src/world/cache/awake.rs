@@ -9,29 +9,25 @@ use crate::body::{Body, BodyKind, Handle};
 use crate::threads::part_of;
 use crate::world::state::State;
 
-/// Slots of the bodies and joints that a tick simulates, in ascending order. A cache of the state.
+/// Slots of the bodies and joints that a tick simulates, in ascending order.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct AwakeSet {
     /// Enabled bodies that are kinematic, or dynamic and awake.
     bodies: Vec<u32>,
-    /// Enabled joints, other than filter joints, between enabled bodies, at least one of which is dynamic and awake and
-    /// has mass.
+    /// Enabled joints, except filter joints, between enabled bodies, one of them dynamic and awake, with mass.
     joints: Vec<u32>,
-    /// Slots of the joints in `joints` that have a force or torque threshold.
     with_threshold: Vec<u32>,
-    /// For each body slot, whether a joint in `joints` holds the body.
+    /// For each body slot, whether one of `joints` holds the body.
     held: Vec<bool>,
     is_current: bool,
-    /// Whether the world may have kinematic bodies. Never false while there is one.
+    /// Not false while there is a kinematic body.
     may_have_kinematic: bool,
 }
 
-/// The awake bodies of one thread.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SlotShare<'a> {
-    /// Slots of the bodies.
     pub(crate) bodies: &'a [u32],
-    /// Exclusive ends of the thread's slot ranges: body slots, shape slots.
+    /// Exclusive ends of the ranges of body slots and shape slots.
     pub(crate) ends: [u32; 2],
 }
 
@@ -42,23 +38,20 @@ impl AwakeSet {
         set
     }
 
-    /// Marks the set as outdated: a body or joint was added, removed, changed, woken or put to sleep.
+    /// Called when a body or joint was added, removed, changed, woken or put to sleep.
     pub(crate) fn invalidate(&mut self) {
         self.is_current = false;
     }
 
-    /// Marks the set as outdated after a body was added or changed.
     pub(crate) fn body_changed(&mut self, body: &Body) {
         self.may_have_kinematic |= body.kind() == BodyKind::Kinematic;
         self.invalidate();
     }
 
-    /// Searches the state for kinematic bodies.
     pub(crate) fn look_for_kinematic(&mut self, state: &State) {
         self.may_have_kinematic = state.bodies.iter().any(|(_, body)| body.kind() == BodyKind::Kinematic);
     }
 
-    /// Rebuilds the lists if they are outdated.
     pub(crate) fn refresh(&mut self, state: &State) {
         if core::mem::replace(&mut self.is_current, true) {
             return;
@@ -86,13 +79,11 @@ impl AwakeSet {
         }
     }
 
-    /// Slots of the bodies.
     pub(crate) fn bodies(&self) -> &[u32] {
         &self.bodies
     }
 
-    /// Divides the bodies among `count` threads, each with a range of slots of bodies and of shapes. The shapes of a
-    /// body may be outside of the range of its thread.
+    /// Divides the bodies among threads. The shapes of a body may be outside of the range of its thread.
     pub(crate) fn shares(&self, state: &State, count: usize) -> SmallVec<[SlotShare<'_>; 1]> {
         let mut shape_end = 0;
         let mut share = |number: usize| {
@@ -106,33 +97,27 @@ impl AwakeSet {
         (0..count).map(&mut share).collect()
     }
 
-    /// Slots of the joints.
     pub(crate) fn joints(&self) -> &[u32] {
         &self.joints
     }
 
-    /// Slots of the joints that have a force or torque threshold.
     pub(crate) fn joints_with_threshold(&self) -> &[u32] {
         &self.with_threshold
     }
 
-    /// Whether one of the joints holds the body in a slot.
     pub(crate) fn is_held(&self, body: u32) -> bool {
         self.held[body as usize]
     }
 
-    /// Whether the world may have kinematic bodies.
     pub(crate) fn may_have_kinematic(&self) -> bool {
         self.may_have_kinematic
     }
 }
 
-/// Whether a tick simulates a body.
 fn is_simulated(body: &Body) -> bool {
     body.enabled && body.kind() != BodyKind::Fixed && !body.is_asleep()
 }
 
-/// Whether a body is dynamic, enabled and awake.
 pub(crate) fn is_awake(body: &Body) -> bool {
     body.is_dynamic() && body.enabled && !body.is_asleep()
 }

@@ -1,5 +1,3 @@
-//! Output of the narrow phase, and its data that is kept from tick to tick.
-
 use alloc::vec::Vec;
 
 use crate::collision::{BoxPairs, CachedAxis, Contact, Manifold, SatCounters};
@@ -8,54 +6,46 @@ use crate::solver::ActiveContact;
 use crate::threads::Threads;
 use crate::world::events::HitEvent;
 
-/// Cache of the narrow phase. Manifolds and axes refer to contacts by their index in the state, and become invalid when
-/// contacts are reordered.
+/// Cache of the narrow phase. Manifolds and axes refer to contacts by index, and become invalid when contacts are
+/// reordered.
 #[derive(Clone, Debug)]
 pub(crate) struct ContactCache {
-    /// Output of the last narrow phase.
     output: NarrowPhaseOutput,
-    /// Output of each thread of a narrow phase.
     parts: Vec<NarrowPhaseOutput>,
-    /// For each contact of the state, the cached separating axis of its shapes. May be shorter or longer than the list
-    /// of contacts: contacts without an entry have no cached axis.
+    /// For each contact, the cached separating axis. May be shorter or longer than the list of contacts.
     axes: Vec<CachedAxis>,
-    /// The touching pairs of the last tick, sorted by pair. Most of them still touch and have the same surface.
+    /// The touching pairs of the last tick, sorted by pair.
     touched: Vec<ActiveContact>,
-    /// Whether surfaces may differ from those of the last tick.
     surfaces_changed: bool,
 }
 
-/// The buffers of one narrow phase.
 pub(crate) struct NarrowPhaseBuffers<'a> {
-    /// For each contact, the cached separating axis of its shapes.
     pub(crate) axes: &'a mut [CachedAxis],
-    /// An empty output for each thread.
     pub(crate) parts: &'a mut [NarrowPhaseOutput],
-    /// The touching pairs of the last tick whose surfaces are still valid, sorted by pair.
+    /// The touching pairs of the last tick with valid surfaces, sorted by pair.
     pub(crate) touched: &'a [ActiveContact],
 }
 
-/// Output of the narrow phase, or of one of its threads, in the order of contacts. Aligned, so that no two threads
-/// write the same cache line.
+/// Output of a narrow phase or of a thread, in the order of contacts. Aligned, so that no two threads write the same
+/// cache line.
 #[derive(Clone, Debug, Default)]
 #[repr(align(128))]
 pub(crate) struct NarrowPhaseOutput {
-    /// Manifolds with at least one point.
     pub(crate) manifolds: Vec<Manifold>,
-    /// For each manifold, the index of its contact in the state.
+    /// For each manifold, the index of its contact.
     pub(crate) contacts: Vec<u32>,
-    /// Contacts with a manifold that the solver has to solve.
+    /// Contacts that the solver has to solve.
     pub(crate) touching: Vec<ActiveContact>,
-    /// Fast approaches, which become hit events if the shapes push each other in this tick.
+    /// Possible hit events: the shapes must also push each other in this tick.
     pub(crate) approaches: Vec<PendingHit>,
     pub(crate) sat: SatCounters,
     /// Buffer: box pairs of the current block.
     pub(crate) boxes: BoxPairs,
-    /// Buffer: the contacts of the current block that keep their manifold.
+    /// Buffer: contacts of the current block that keep their manifold.
     pub(crate) recycled: Vec<Recycled>,
 }
 
-/// Origin and separations of a kept manifold at the current poses of the bodies.
+/// A kept manifold at the current poses of the bodies.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Recycled {
     /// Position of the first point.
@@ -63,10 +53,9 @@ pub(crate) struct Recycled {
     pub(crate) separations: [Step; 2],
 }
 
-/// A contact whose shapes approach fast enough for a hit event.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PendingHit {
-    /// Index of the contact in the state.
+    /// Index in the state.
     pub(crate) contact: u32,
     pub(crate) event: HitEvent,
 }
@@ -82,36 +71,33 @@ impl ContactCache {
         }
     }
 
-    /// Output of the last narrow phase. Empty after contacts were invalidated.
+    /// Empty after contacts were invalidated.
     pub(crate) fn output(&self) -> &NarrowPhaseOutput {
         &self.output
     }
 
-    /// Drops everything that is indexed by contact, because contacts have been reordered.
+    /// Drops data indexed by contact, because contacts have been reordered.
     pub(crate) fn invalidate(&mut self) {
         self.output.clear();
         self.axes.clear();
     }
 
-    /// Marks the cached surfaces as outdated, because materials or shapes may have changed. The next narrow phase drops
-    /// them.
+    /// Called when materials or shapes may have changed. The next narrow phase drops the surfaces.
     pub(crate) fn invalidate_surfaces(&mut self) {
         self.surfaces_changed = true;
     }
 
-    /// Drops the cached surfaces of pairs for which `is_removed` holds: another shape may get the same slot before the
-    /// next tick.
+    /// Drops the surfaces of removed shapes, whose slots may be reused before the next tick.
     pub(crate) fn remove_surfaces(&mut self, is_removed: impl Fn(&ActiveContact) -> bool) {
         self.output.touching.retain(|pair| !is_removed(pair));
     }
 
-    /// The separating axis of each of `count` contacts, for an operation that reorders the contacts.
+    /// The separating axes, for an operation that reorders the contacts.
     pub(crate) fn axes(&mut self, count: usize) -> &mut Vec<CachedAxis> {
         self.axes.resize(count, CachedAxis::default());
         &mut self.axes
     }
 
-    /// Starts a narrow phase over `contact_count` contacts in `part_count` parts, at least one.
     pub(crate) fn begin(&mut self, contact_count: usize, part_count: usize) -> NarrowPhaseBuffers<'_> {
         let ContactCache { output, parts, axes, touched, surfaces_changed } = self;
         axes.resize(contact_count, CachedAxis::default());
@@ -127,7 +113,6 @@ impl ContactCache {
         NarrowPhaseBuffers { axes, parts, touched }
     }
 
-    /// Joins the outputs of the parts in order.
     pub(crate) fn finish(&mut self, threads: &Threads) {
         let ContactCache { output, parts, .. } = self;
         match &mut **parts {
@@ -136,7 +121,7 @@ impl ContactCache {
         }
     }
 
-    /// Makes room for a contact without a manifold that is inserted into the list of contacts at `index`.
+    /// Makes room for a contact without a manifold.
     pub(crate) fn insert(&mut self, index: usize) {
         let NarrowPhaseOutput { contacts, touching, .. } = &mut self.output;
         let later = contacts.partition_point(|&contact| (contact as usize) < index);
@@ -148,8 +133,7 @@ impl ContactCache {
         }
     }
 
-    /// Moves the contacts for which `stays` is false from `contacts` to `removed`, with order preserved. Removes their
-    /// manifolds and axes.
+    /// Moves the contacts for which `stays` is false to `removed`, in order.
     pub(crate) fn split_off(
         &mut self,
         contacts: &mut Vec<Contact>,
@@ -186,7 +170,6 @@ impl ContactCache {
 }
 
 impl NarrowPhaseOutput {
-    /// Empties all lists and keeps their memory.
     fn clear(&mut self) {
         self.manifolds.clear();
         self.contacts.clear();
@@ -197,7 +180,7 @@ impl NarrowPhaseOutput {
         self.sat = SatCounters::default();
     }
 
-    /// Joins the outputs of several parts in order. Each thread copies the output that it has written.
+    /// Joins the outputs of the parts. Each thread copies the output that it has written.
     fn join(&mut self, parts: &[Self], threads: &Threads) {
         let NarrowPhaseOutput { manifolds, contacts, touching, approaches, sat, boxes: _, recycled: _ } =
             self;
@@ -230,7 +213,6 @@ impl NarrowPhaseOutput {
     }
 }
 
-/// The output of a part, and its place in the output of the narrow phase.
 struct Copy<'a> {
     part: &'a NarrowPhaseOutput,
     first_manifold: u32,
@@ -249,7 +231,6 @@ impl Copy<'_> {
     }
 }
 
-/// Resizes a list to the total length of all parts.
 fn make_room<'a, T: Clone + 'a>(list: &mut Vec<T>, parts: impl Iterator<Item = &'a [T]> + Clone) {
     match parts.clone().find_map(<[T]>::first) {
         None => list.clear(),
@@ -257,7 +238,6 @@ fn make_room<'a, T: Clone + 'a>(list: &mut Vec<T>, parts: impl Iterator<Item = &
     }
 }
 
-/// Removes the first elements of a slice and returns them.
 fn split_off<'a, T>(rest: &mut &'a mut [T], len: usize) -> &'a mut [T] {
     let (first, others) = core::mem::take(rest).split_at_mut(len);
     *rest = others;

@@ -1,33 +1,26 @@
-//! The joints of each body, as doubly linked lists in two arrays: adding or removing a joint takes constant time, and
-//! no list has memory of its own.
-//!
-//! A cache of the state. The order within a list depends on the history of the world and is not visible outside.
+//! The joints of each body, as doubly linked lists in two arrays. Adding or removing a joint takes constant time. The
+//! order within a list depends on history and is not visible outside.
 
 use alloc::vec::Vec;
 
 use crate::body::{BodyId, Handle, JointId};
 use crate::world::state::State;
 
-/// Sentinel slot at the ends of a list.
 const NONE: u32 = u32::MAX;
 
-/// The joints of each body.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct JointLinks {
-    /// For each body slot, the slot of the body's first joint, or [`NONE`].
+    /// For each body slot, the slot of its first joint, or [`NONE`].
     first: Vec<u32>,
     /// For each joint slot, its places in the lists of its two bodies.
     links: Vec<[Link; 2]>,
 }
 
-/// The place of a joint in the list of one of its bodies.
+/// The place of a joint in the list of a body.
 #[derive(Clone, Copy, Debug)]
 struct Link {
-    /// Slot of the body.
     body: u32,
-    /// Slot of the next joint, or [`NONE`].
     next: u32,
-    /// Slot of the previous joint, or [`NONE`].
     previous: u32,
 }
 
@@ -44,7 +37,7 @@ impl JointLinks {
         links
     }
 
-    /// Adds a joint of two different bodies.
+    /// The bodies must differ.
     pub(crate) fn add(&mut self, joint: JointId, (a, b): (BodyId, BodyId)) {
         let (joint, a, b) = (joint.slot(), a.slot(), b.slot());
         debug_assert_ne!(a, b, "a joint is in two lists");
@@ -59,7 +52,6 @@ impl JointLinks {
         }
     }
 
-    /// Removes a joint of two bodies, in constant time.
     pub(crate) fn remove(&mut self, joint: JointId, (a, b): (BodyId, BodyId)) {
         for body in [a.slot(), b.slot()] {
             let Link { next, previous, .. } = *self.link_mut(joint.slot(), body);
@@ -83,13 +75,11 @@ impl JointLinks {
         joints.into_iter().map(|slot| state.joints.handle_at(slot)).collect()
     }
 
-    /// The slot of the joint that follows `joint` in the list of a body.
     fn after(&self, joint: u32, body: u32) -> u32 {
         let [a, b] = self.links[joint as usize];
         if a.body == body { a.next } else { b.next }
     }
 
-    /// The place of a joint in the list of a body.
     fn link_mut(&mut self, joint: u32, body: u32) -> &mut Link {
         let [a, b] = &mut self.links[joint as usize];
         if a.body == body { a } else { b }

@@ -1,23 +1,19 @@
-//! Work units: [`WorkMeter`] counts work whose amount is known only when it is done, and compares it with a
-//! budget.
+//! Work units: [`WorkMeter`] counts work whose amount is known only when it is done.
 
-/// Number of pairs per body up to which all pairs are assumed to be solved in full SIMD batches.
+/// Number of pairs per body that are assumed to fit into full SIMD batches.
 const PAIRS_PER_BODY: u64 = 32;
 
-/// Additional cost of a pair beyond [`PAIRS_PER_BODY`], in ordinary pairs: measured on a thousand squares at the same
-/// position.
+/// Additional cost of further pairs, in ordinary pairs: measured on a thousand squares in one place.
 const CROWDED_WORK: u64 = 64;
 
-/// Work units of comparing the shapes of a pair in a tick, independent of the solver settings: measured on shapes of
-/// extreme sizes.
+/// Work units of comparing the shapes of a pair in a tick: measured on shapes of extreme sizes.
 pub(crate) const NARROW_PHASE_WORK: u64 = 4;
 
-/// Additional work units of a new pair, whose separating axis is not cached yet: measured on a hundred octagons at the
-/// same position.
+/// Additional work units of a pair without a cached separating axis: measured on a hundred octagons in one place.
 pub(crate) const NEW_PAIR_WORK: u64 = 8;
 
-/// Counts work units against a budget. Work beyond the budget may be skipped. The meter is not part of the state. The
-/// state of a world whose meter is exhausted may be wrong, and the caller that set the budget must discard it.
+/// Counts work units against a budget. Work beyond the budget may be skipped: the caller that set the budget must
+/// discard the state of a world whose meter is exhausted. The meter is not part of the state.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WorkMeter {
     spent: u64,
@@ -25,37 +21,33 @@ pub(crate) struct WorkMeter {
 }
 
 impl Default for WorkMeter {
-    /// A meter without a bound.
     fn default() -> Self {
         WorkMeter { spent: 0, max: u64::MAX }
     }
 }
 
 impl WorkMeter {
-    /// Creates a meter that starts at 0, with a budget in work units.
     pub(crate) fn start(max: u64) -> Self {
         WorkMeter { spent: 0, max }
     }
 
-    /// Counts units. Returns whether the budget covers them; if it does not, the caller may skip the work.
+    /// Counts units. Returns false if the budget does not cover them: the caller may skip the work.
     #[inline]
     pub(crate) fn spend(&mut self, units: u64) -> bool {
         self.spent = self.spent.saturating_add(units);
         self.spent <= self.max
     }
 
-    /// Whether more than the budget was spent.
     pub(crate) fn is_exhausted(&self) -> bool {
         self.spent > self.max
     }
 
-    /// Units that were counted since the start.
     pub(crate) fn spent(&self) -> u64 {
         self.spent
     }
 }
 
-/// Work units of one pass of the solver over `pairs` pairs of shapes on `bodies` bodies.
+/// Work units of one pass of the solver.
 pub(crate) fn pair_work(pairs: u64, bodies: u64) -> u64 {
     // In a heap of overlapping bodies, many contacts find no free place in a SIMD batch.
     let crowded = pairs.saturating_sub(bodies.saturating_mul(PAIRS_PER_BODY));

@@ -1,8 +1,6 @@
-//! Working memory of a world: caches, buffers and the results of the last tick. Dropping all of it before any tick
-//! changes no hash.
+//! Working memory of a world: caches, buffers and the results of the last tick. Dropping it changes no hash.
 //!
-//! [`Scratch`] is a list of owners. An owner whose content can become invalid keeps its fields private, and its methods
-//! invalidate the content. Structs with public fields only group owners, buffers or results.
+//! An owner whose content can become invalid keeps its fields private, and invalidates the content in its methods.
 //!
 //! | owner | content | invalid when |
 //! |---|---|---|
@@ -47,7 +45,6 @@ use super::state::State;
 use crate::collision::BroadPhaseKind;
 use crate::solver::Solver;
 
-/// Caches, buffers and results of the last tick.
 #[derive(Clone, Debug)]
 pub(crate) struct Scratch {
     pub(crate) shapes: ShapeCache,
@@ -55,24 +52,18 @@ pub(crate) struct Scratch {
     pub(crate) joint_links: JointLinks,
     pub(crate) pairs: PairCache,
     pub(crate) contacts: ContactCache,
-    /// Buffer for finding islands.
     pub(crate) union: UnionFind,
-    /// Buffer for the shapes in areas: slots of the body, the area and the shape.
+    /// Slots of the body, the area and the shape in the area.
     pub(crate) area_visitors: Vec<[u32; 3]>,
-    /// Buffers of the threads that predict motion.
     pub(crate) predicted: Vec<Predicted>,
-    /// Buffers of the threads that move bodies.
     pub(crate) finalised: Vec<Finalised>,
-    /// Buffers for continuous collision and for sensors.
     pub(crate) sweeps: Sweeps,
     pub(crate) solver: Solver,
     pub(crate) results: TickResults,
-    /// Meter of work whose amount is known only when it is done.
     pub(crate) meter: WorkMeter,
 }
 
 impl Scratch {
-    /// Builds the caches of a state. Manifolds, events and statistics are empty until the next tick.
     pub(crate) fn new(kind: BroadPhaseKind, state: &State) -> Self {
         Scratch {
             shapes: ShapeCache::new(kind, state),
@@ -97,7 +88,7 @@ impl Scratch {
         *self = Scratch { solver, meter: self.meter, ..Scratch::new(kind, state) };
     }
 
-    /// Drops the results of the last tick, after the state was replaced by the state of another tick.
+    /// Drops the results of the last tick after the state was replaced.
     pub(crate) fn clear_results(&mut self) {
         self.contacts.invalidate();
         self.contacts.invalidate_surfaces();
@@ -105,8 +96,7 @@ impl Scratch {
         self.results.clear();
     }
 
-    /// Updates the caches of shapes, pairs and awake bodies after a body was added, enabled, redefined or moved by an
-    /// edit.
+    /// Updates the caches after an edit has added, enabled, redefined or moved a body.
     pub(crate) fn update_body(&mut self, state: &State, slot: u32) {
         let body = state.bodies.at(slot);
         self.shapes.update_body(state, slot);

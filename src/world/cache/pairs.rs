@@ -1,5 +1,3 @@
-//! Data that the pair update keeps from tick to tick, and its buffers.
-
 use alloc::vec::Vec;
 
 use super::changes::Changes;
@@ -8,13 +6,11 @@ use crate::collision::{CachedAxis, Contact, Pair};
 use crate::solver::Joint;
 use crate::world::state::State;
 
-/// Cache of the pair update.
 #[derive(Clone, Debug)]
 pub(crate) struct PairCache {
-    /// Record of changes since the last update that may affect pairs.
     pub(crate) changes: Changes,
     pub(crate) non_colliding: NonCollidingPairs,
-    /// Contacts whose pair has ended since the events of the last tick were reported.
+    /// Contacts that have ended since the last events.
     pub(crate) ended: Vec<Contact>,
     pub(crate) buffers: PairBuffers,
 }
@@ -33,7 +29,6 @@ impl PairCache {
 /// Lists that are filled and read within one operation.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairBuffers {
-    /// Pairs that the broad phase has found.
     pub(crate) pairs: Vec<Pair>,
     /// Contacts to add to the active ones.
     pub(crate) fresh: Vec<Contact>,
@@ -42,7 +37,6 @@ pub(crate) struct PairBuffers {
     pub(crate) merged: MergedContacts,
 }
 
-/// Contacts and the cached separating axis of each.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MergedContacts {
     pub(crate) contacts: Vec<Contact>,
@@ -61,7 +55,7 @@ impl MergedContacts {
     }
 }
 
-/// Merges contacts into a list. Both are sorted by pair and have no pair in common.
+/// Merges two lists that are sorted by pair and have no pair in common.
 pub(crate) fn merge_sorted(contacts: &mut Vec<Contact>, new: &[Contact], buffer: &mut Vec<Contact>) {
     if new.is_empty() {
         return;
@@ -79,7 +73,7 @@ pub(crate) fn merge_sorted(contacts: &mut Vec<Contact>, new: &[Contact], buffer:
     core::mem::swap(contacts, buffer);
 }
 
-/// Pairs of bodies that a joint keeps from colliding. A cache of the joints.
+/// Pairs of bodies that a joint keeps from colliding.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NonCollidingPairs {
     /// Body slots, the smaller one first, sorted.
@@ -88,12 +82,11 @@ pub(crate) struct NonCollidingPairs {
 }
 
 impl NonCollidingPairs {
-    /// Marks the list as outdated: a joint was added, removed or redefined.
+    /// Called when a joint was added, removed or redefined.
     pub(crate) fn invalidate(&mut self) {
         self.is_current = false;
     }
 
-    /// Rebuilds the list if it is outdated.
     pub(crate) fn refresh(&mut self, state: &State) {
         if core::mem::replace(&mut self.is_current, true) {
             return;
@@ -108,9 +101,9 @@ impl NonCollidingPairs {
         self.pairs.sort_unstable();
     }
 
-    /// Whether two shapes may ever have a contact. They need different, enabled bodies and filters that accept each
-    /// other. If one of them is a sensor, one must detect the other, and not both bodies may be fixed. If neither is,
-    /// one body must have mass, and no joint may keep the bodies from colliding.
+    /// Whether two shapes may have a contact. They need different, enabled bodies and filters that accept each other.
+    /// With a sensor, one shape must detect the other, and not both bodies may be fixed. Without one, a body must have
+    /// mass, and no joint may keep the bodies from colliding.
     pub(crate) fn may_touch(&self, state: &State, (a, b): Pair) -> bool {
         let (shape_a, shape_b) = (state.shapes.at(a), state.shapes.at(b));
         let (slot_a, slot_b) = (shape_a.body().slot(), shape_b.body().slot());

@@ -1,5 +1,3 @@
-//! The shapes in world axes that one thread moves.
-
 use core::cell::LazyCell;
 
 use super::motion::ShapeMotion;
@@ -7,9 +5,8 @@ use crate::body::{Arena, Body, Handle, Pose, Shape, ShapeId};
 use crate::collision::{PosedShape, SmallBoxesRange};
 use crate::math::{Aabb, Fx, Vec2};
 
-/// The shapes in a range of slots.
+/// The shapes of a thread.
 pub(crate) struct PoseRange<'a> {
-    /// The first slot.
     pub(super) first: u32,
     pub(super) shapes: &'a mut [Option<PosedShape>],
     pub(super) motion: &'a mut [ShapeMotion],
@@ -17,7 +14,6 @@ pub(crate) struct PoseRange<'a> {
 }
 
 impl PoseRange<'_> {
-    /// Whether all shapes of a body are in the range.
     pub(crate) fn holds(&self, body: &Body) -> bool {
         let is_held = |slot: u32| slot >= self.first && self.index(slot) < self.shapes.len();
         body.shapes().iter().all(|id| is_held(id.slot()))
@@ -27,12 +23,11 @@ impl PoseRange<'_> {
         (slot - self.first) as usize
     }
 
-    /// The AABB of a shape of the range.
     pub(crate) fn bounds(&self, slot: u32) -> Aabb {
         self.motion[self.index(slot)].bounds
     }
 
-    /// Moves a body with its shapes to a pose. Returns whether it has moved.
+    /// Moves a body with its shapes. Returns whether it has moved.
     #[inline]
     pub(crate) fn move_body(&mut self, body: &mut Body, pose: Pose, shapes: &Arena<Shape, ShapeId>) -> bool {
         let (by, is_rotated) = (pose.centre - body.centre, pose.angle != body.angle);
@@ -45,7 +40,7 @@ impl PoseRange<'_> {
         is_rotated || by != Vec2::ZERO
     }
 
-    /// Poses the shapes of a body again after it was translated but not rotated.
+    /// Poses the shapes of a body that was translated but not rotated.
     pub(super) fn shift_body(&mut self, body: &Body, by: Vec2<Fx>) {
         for &id in body.shapes() {
             let index = self.index(id.slot());
@@ -55,7 +50,7 @@ impl PoseRange<'_> {
         }
     }
 
-    /// Poses the shapes of a body again after it was rotated, and possibly translated.
+    /// Poses the shapes of a body that was rotated, and possibly translated.
     pub(super) fn renew_body(&mut self, shapes: &Arena<Shape, ShapeId>, body: &Body) {
         let rotation = LazyCell::new(|| body.rotation());
         for &id in body.shapes() {
@@ -64,7 +59,7 @@ impl PoseRange<'_> {
             if let Some(faces) = self.boxes.turn(index, &rotation) {
                 posed.turn_box(&faces, body.centre);
             } else if self.motion[index].disc {
-                // Avoids a read of the shape's definition, which is a random access.
+                // Spares the random access to the shape's definition.
                 posed.shift(body.centre.wrapping_sub(posed.centre));
             } else {
                 posed.renew(&shapes.at(id.slot()).def, body, &rotation);

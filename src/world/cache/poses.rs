@@ -1,5 +1,3 @@
-//! The shapes of the world in world axes.
-
 use alloc::vec::Vec;
 
 use super::motion::MotionCache;
@@ -12,25 +10,23 @@ use crate::simd::prefetch;
 use crate::threads::split_at_ends;
 use crate::world::state::State;
 
-/// Shapes in world axes, by shape slot. A cache of the state.
+/// Shapes in world axes, by slot.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Poses {
     shapes: Vec<Option<PosedShape>>,
-    /// Bounds and predicted motion of the same shapes.
     motion: MotionCache,
-    /// The small boxes among the shapes, in the layout of the SIMD kernel.
+    /// Small boxes in the layout of the SIMD kernel.
     boxes: SmallBoxes,
     /// Extents of the shapes of each body, by body slot.
     extents: Vec<Extents>,
 }
 
-/// Bounds of the shapes of a body about its centre of mass, in metres, which hold at every rotation of the body.
+/// Bounds of the shapes of a body about its centre of mass, in metres, at any rotation of the body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extents {
-    /// Radius of a disc inside the thinnest solid shape of the body; [`Fx::MAX`] if the body has no solid shape.
+    /// Radius of a disc inside the thinnest solid shape; [`Fx::MAX`] without a solid shape.
     pub(crate) core: Fx,
-    /// Upper bound of the distance of the points that move when the body rotates. For a disc only its centre counts,
-    /// because the disc covers the same area when it rotates about its centre.
+    /// Upper bound of the distance of points that move when the body rotates. Of a disc only the centre counts.
     pub(crate) reach: Fx,
     /// Upper bound of the distance of all points.
     pub(crate) radius: Fx,
@@ -60,7 +56,7 @@ impl Extents {
 }
 
 impl Poses {
-    /// Poses the shapes of a body that was added, changed, or moved by an edit.
+    /// Poses the shapes of a body after an edit.
     pub(crate) fn pose_body(&mut self, state: &State, slot: u32) {
         self.shapes.resize_with(state.shapes.slot_count(), || None);
         self.boxes.resize(state.shapes.slot_count());
@@ -77,8 +73,7 @@ impl Poses {
         self.extents[slot as usize] = Extents::of(state, body);
     }
 
-    /// Divides the shapes into ranges of slots, which end at the given slots. Returns the extents of all bodies as
-    /// well.
+    /// Divides the shapes into ranges that end at the given slots. Returns the extents of all bodies as well.
     pub(crate) fn split(
         &mut self,
         ends: impl Iterator<Item = u32> + Clone,
@@ -91,22 +86,18 @@ impl Poses {
         (parts.map(|((first, (shapes, motion)), boxes)| PoseRange { first, shapes, motion, boxes }), extents)
     }
 
-    /// All shapes.
     pub(crate) fn whole(&mut self) -> PoseRange<'_> {
         self.split(core::iter::once(u32::MAX)).0.next().expect("a part for each end")
     }
 
-    /// Whether a shape has been posed.
     pub(crate) fn has(&self, shape: u32) -> bool {
         self.shapes.get(shape as usize).is_some_and(Option::is_some)
     }
 
-    /// The extents of the body in an occupied slot.
     pub(crate) fn extents(&self, body: u32) -> Extents {
         self.extents[body as usize]
     }
 
-    /// Bounds and predicted motion.
     #[inline]
     pub(crate) fn motion(&self) -> &MotionCache {
         &self.motion
@@ -116,24 +107,20 @@ impl Poses {
         &mut self.motion
     }
 
-    /// The motion of bodies and shapes, and the extents of bodies by slot.
     pub(super) fn motion_and_extents(&mut self) -> (&mut MotionCache, &[Extents]) {
         (&mut self.motion, &self.extents)
     }
 
-    /// The small boxes in the layout of the SIMD kernel.
     #[inline]
     pub(crate) fn boxes(&self) -> &SmallBoxes {
         &self.boxes
     }
 
-    /// Prefetches a shape.
     #[inline]
     pub(crate) fn prefetch(&self, shape: u32) {
         prefetch(&self.shapes[shape as usize]);
     }
 
-    /// The shape in an occupied slot.
     #[inline]
     pub(crate) fn at(&self, shape: u32) -> &PosedShape {
         self.shapes[shape as usize].as_ref().expect("every shape is posed when it is added")

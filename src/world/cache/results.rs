@@ -1,6 +1,3 @@
-//! Events and statistics of a tick, the buffers of the threads that predict and move bodies, and those of continuous
-//! collision.
-
 use alloc::vec::Vec;
 
 use crate::body::Pose;
@@ -9,7 +6,6 @@ use crate::math::Aabb;
 use crate::world::events::Events;
 use crate::world::stats::StepStats;
 
-/// Events and statistics of the last tick.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct TickResults {
     pub(crate) events: Events,
@@ -23,15 +19,14 @@ impl TickResults {
     }
 }
 
-/// The output of a thread that predicts the motion of its bodies. Aligned, so that no two threads write the same cache
-/// line.
+/// Output of a thread that predicts motion. Aligned, so that no two threads write the same cache line.
 #[derive(Clone, Debug, Default)]
 #[repr(align(128))]
 pub(crate) struct Predicted {
-    /// Slots of the shapes whose motion was predicted. They are kept until the next tick.
+    /// Slots of the shapes that move, kept until the next tick.
     pub(crate) moving: Vec<u32>,
     pub(crate) outgrown: Vec<Outgrown>,
-    /// Slots of the bodies with a shape in the range of another thread.
+    /// Slots of bodies with a shape in the range of another thread.
     pub(crate) others: Vec<u32>,
 }
 
@@ -44,17 +39,14 @@ impl Predicted {
     }
 }
 
-/// A shape that needs a new fat box.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outgrown {
-    /// Slot of the shape.
     pub(crate) shape: u32,
     pub(crate) fat: Aabb,
-    /// Whether its body is active.
     pub(crate) is_active: bool,
 }
 
-/// The output of a thread that moves its bodies to the poses of the solver. Aligned like [`Predicted`].
+/// Output of a thread that moves bodies. Aligned like [`Predicted`].
 #[derive(Clone, Debug, Default)]
 #[repr(align(128))]
 pub(crate) struct Finalised {
@@ -64,15 +56,14 @@ pub(crate) struct Finalised {
     pub(crate) left_boxes: Vec<u32>,
     /// Fast bodies that only fixed bodies can stop.
     pub(crate) swept: Vec<SweptBody>,
-    /// Poses of the bodies of `swept` after their sweep.
+    /// Poses of `swept` after their sweep.
     pub(crate) moved: Vec<(u32, Pose)>,
-    /// Number of the bodies of `swept` that an impact has stopped.
+    /// Number of impacts in `swept`.
     pub(crate) impacts: u32,
     /// Bodies that may be fast relative to kinematic bodies.
     pub(crate) relative: Vec<SweptBody>,
-    /// Fast bullets.
     pub(crate) bullets: Vec<SweptBody>,
-    /// Bodies with a shape in the range of another thread, and their poses. They have not been moved.
+    /// Bodies with a shape in the range of another thread, not yet moved.
     pub(crate) others: Vec<(u32, Pose)>,
 }
 
@@ -90,16 +81,16 @@ impl Finalised {
     }
 }
 
-/// Buffers for continuous collision and for sensors. Their contents are only valid within a tick.
+/// Buffers for continuous collision and sensors, valid within a tick.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sweeps {
-    /// Poses of the bodies of the awake set at the start of the tick, in the order of the set.
+    /// Poses at the start of the tick, in the order of the awake set.
     pub(crate) starts: Vec<Pose>,
-    /// Bodies that are swept against kinematic bodies, and wait until these have been moved.
+    /// Bodies to be swept against kinematic bodies.
     pub(crate) relative: Vec<SweptBody>,
-    /// Bullets that wait until all other bodies have been moved.
+    /// Bullets are swept after all other bodies have been moved.
     pub(crate) bullets: Vec<SweptBody>,
-    /// Shapes that have left their fat box within the tick, if there may be sensors.
+    /// Shapes that have left their fat box, if there may be sensors.
     pub(crate) left_boxes: Vec<u32>,
 }
 
@@ -108,9 +99,8 @@ pub(crate) struct Sweeps {
 pub(crate) struct SweptBody {
     pub(crate) slot: u32,
     pub(crate) sweep: Sweep,
-    /// The pose to which the solver has moved the body.
+    /// The pose that the solver has computed.
     pub(crate) end: Pose,
-    /// Whether the body's displacement and rotation make it fast. If not, it may still be fast relative to a kinematic
-    /// body.
+    /// Whether the body's own motion makes it fast. If not, it may be fast relative to a kinematic body.
     pub(crate) is_fast: bool,
 }

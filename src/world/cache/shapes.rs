@@ -1,5 +1,3 @@
-//! Broad phase and poses of all shapes. One owner updates both, so that they cannot become inconsistent.
-
 use alloc::vec::Vec;
 
 use super::motion::MotionCache;
@@ -10,10 +8,10 @@ use crate::collision::{BroadPhase, BroadPhaseKind, Moved, Pair};
 use crate::math::{Aabb, Fx, Vec2};
 use crate::world::state::State;
 
-/// Broad phase and poses of all shapes. A cache of the state.
+/// Broad phase and poses of all shapes. One owner updates both, so that they stay consistent.
 #[derive(Clone, Debug)]
 pub(crate) struct ShapeCache {
-    /// Fat boxes of the shapes of all enabled bodies.
+    /// Fat boxes of the shapes of enabled bodies.
     broad_phase: BroadPhase,
     poses: Poses,
     /// Fat boxes that wait for [`ShapeCache::apply_refits`].
@@ -38,25 +36,22 @@ impl ShapeCache {
         cache
     }
 
-    /// The fat boxes of the shapes of all enabled bodies.
     #[inline]
     pub(crate) fn broad_phase(&self) -> &BroadPhase {
         &self.broad_phase
     }
 
-    /// The shapes in world axes.
     #[inline]
     pub(crate) fn poses(&self) -> &Poses {
         &self.poses
     }
 
-    /// Bounds and predicted motion of shapes.
     #[inline]
     pub(crate) fn motion(&self) -> &MotionCache {
         self.poses.motion()
     }
 
-    /// Lists the pairs of overlapping fat boxes; see [`BroadPhase::pairs`].
+    /// See [`BroadPhase::pairs`].
     pub(crate) fn find_pairs(
         &mut self,
         moved: Moved<'_>,
@@ -67,26 +62,24 @@ impl ShapeCache {
         self.broad_phase.pairs(moved, accept, limit, pairs)
     }
 
-    /// Starts the prediction of motion for a tick. Until its motion is set, a body does not move. Drops queued fat
-    /// boxes. `last_moving` lists the shapes whose motion was predicted for the last tick.
+    /// Starts the prediction of motion, and drops queued fat boxes. `last_moving` lists shapes that moved in the last
+    /// tick.
     pub(crate) fn begin_prediction(&mut self, body_slots: usize, last_moving: impl Iterator<Item = u32>) {
         self.refits.clear();
         self.poses.motion_mut().begin(body_slots, last_moving);
     }
 
-    /// The data for predicting motion: the motion cache, which is written, and the extents and the broad phase, which
-    /// are read.
     pub(crate) fn prediction(&mut self) -> (&mut MotionCache, &[Extents], &BroadPhase) {
         let (motion, extents) = self.poses.motion_and_extents();
         (motion, extents, &self.broad_phase)
     }
 
-    /// Records the bodies whose motion has been predicted: see [`MotionCache::bodies_move`].
+    /// See [`MotionCache::bodies_move`].
     pub(crate) fn bodies_move(&mut self, bodies: &[u32]) {
         self.poses.motion_mut().bodies_move(bodies);
     }
 
-    /// Divides the shapes into ranges of slots: see [`Poses::split`].
+    /// See [`Poses::split`].
     pub(crate) fn split(
         &mut self,
         ends: impl Iterator<Item = u32> + Clone,
@@ -95,29 +88,24 @@ impl ShapeCache {
         (parts, extents, &self.broad_phase)
     }
 
-    /// Queues a new fat box for a shape.
     #[inline]
     pub(crate) fn queue_refit(&mut self, shape: u32, fat: Aabb) {
         self.refits.push((shape, fat));
     }
 
-    /// Puts the queued fat boxes into the broad phase.
     pub(crate) fn apply_refits(&mut self) {
         self.broad_phase.set_many(&self.refits);
     }
 
-    /// Puts a new fat box into the broad phase at once.
     pub(crate) fn refit(&mut self, shape: u32, fat: Aabb) {
         self.broad_phase.set(shape, fat);
     }
 
-    /// All shapes in world axes.
     pub(crate) fn whole(&mut self) -> PoseRange<'_> {
         self.poses.whole()
     }
 
-    /// Poses the shapes of a body that was added, changed or moved by an edit, and puts their fat boxes into the broad
-    /// phase.
+    /// Poses the shapes of a body after an edit, and puts their fat boxes into the broad phase.
     pub(crate) fn update_body(&mut self, state: &State, slot: u32) {
         self.poses.pose_body(state, slot);
         let body = state.bodies.at(slot);
@@ -128,7 +116,6 @@ impl ShapeCache {
         }
     }
 
-    /// Removes a shape from the broad phase.
     pub(crate) fn remove(&mut self, shape: u32) {
         self.broad_phase.remove(shape);
     }
@@ -140,9 +127,8 @@ impl ShapeCache {
         refits
     }
 
-    /// Updates poses after a restore. `shifted` lists the bodies that were only translated, `moved` those that were
-    /// rotated, and `redefined` those that may have been added or removed, or whose definition or shapes may have
-    /// changed.
+    /// Updates poses after a restore. `shifted` lists bodies that were only translated, `moved` rotated ones, and
+    /// `redefined` those that may have been added, removed or changed otherwise.
     pub(crate) fn restore_poses(
         &mut self,
         state: &State,
@@ -169,8 +155,8 @@ impl ShapeCache {
         }
     }
 
-    /// Updates the broad phase after a restore. `changed` lists fat boxes that differ, and `redefined` the slots of
-    /// shapes that may have been added or removed, or whose bodies were redefined.
+    /// Updates the broad phase after a restore. `changed` lists fat boxes that differ, `redefined` shapes that may have
+    /// been added or removed, or whose bodies were redefined.
     pub(crate) fn restore_boxes(&mut self, state: &State, changed: Vec<(u32, Aabb)>, redefined: &[u32]) {
         self.refits = changed;
         let ShapeCache { broad_phase, refits, .. } = self;
@@ -188,7 +174,7 @@ impl ShapeCache {
                 None => broad_phase.remove(slot),
             }
         }
-        // The state also has the fat boxes of disabled bodies, which are not in the broad phase.
+        // The state also has the fat boxes of disabled bodies.
         refits.retain(|&(slot, _)| broad_phase.fat(slot) != Aabb::NOWHERE);
         broad_phase.set_many(refits);
     }

@@ -1,18 +1,15 @@
-//! Disjoint sets of bodies.
-
 use alloc::vec::Vec;
 
 /// Disjoint sets of body slots (R. Tarjan, "Efficiency of a Good But Not Linear Set Union Algorithm", 1975). The root
-/// of a set is its smallest slot, so that the result does not depend on the order of unions.
+/// is the smallest slot, so that the result does not depend on the order of unions.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct UnionFind {
     parents: Vec<u32>,
-    /// For each root, whether a body of the set has to stay awake.
     stays_awake: Vec<bool>,
 }
 
 impl UnionFind {
-    /// Puts each of the given slots into a set of its own. Every slot is below `slot_count`.
+    /// Makes a set of each slot. Slots are below `slot_count`.
     pub(crate) fn reset(&mut self, slots: &[u32], slot_count: usize) {
         self.parents.resize(slot_count, 0);
         self.stays_awake.resize(slot_count, false);
@@ -22,7 +19,7 @@ impl UnionFind {
         }
     }
 
-    /// Returns the smallest slot of a slot's set. Halves the path on the way.
+    /// The smallest slot of a set. Halves the path on the way.
     pub(crate) fn root(&mut self, mut slot: u32) -> u32 {
         while self.parents[slot as usize] != slot {
             let grandparent = self.parents[self.parents[slot as usize] as usize];
@@ -32,19 +29,16 @@ impl UnionFind {
         slot
     }
 
-    /// Merges the sets of two slots.
     pub(crate) fn unite(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
         self.parents[a.max(b) as usize] = a.min(b);
     }
 
-    /// Marks the set of a slot as one that stays awake.
     pub(crate) fn keep_awake(&mut self, slot: u32) {
         let root = self.root(slot);
         self.stays_awake[root as usize] = true;
     }
 
-    /// Whether the set with a given root stays awake.
     pub(crate) fn stays_awake(&self, root: u32) -> bool {
         self.stays_awake[root as usize]
     }

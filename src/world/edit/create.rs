@@ -1,5 +1,3 @@
-//! Adding bodies, shapes and joints.
-
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
@@ -42,8 +40,8 @@ impl World {
     /// Adds a body with its shapes.
     ///
     /// # Errors
-    /// [`WorldError`] if a value, including the mass of a dynamic body, is out of range, the body's name or the area of
-    /// a shape is not valid, the world is full, or there are more than [`SHAPES_PER_BODY_MAX`] shapes.
+    /// [`WorldError`] if a value or the mass of a dynamic body is out of range, the name or an area is not valid, the
+    /// world is full, or there are more than [`SHAPES_PER_BODY_MAX`] shapes.
     #[doc(alias = "create_body")]
     #[doc(alias = "rigid body")]
     pub fn spawn(&mut self, body: &BodyDef, shapes: &[ShapeDef]) -> Result<BodyId, WorldError> {
@@ -77,8 +75,7 @@ impl World {
         Ok(id)
     }
 
-    /// Adds one body for each pose, all with the same definition. A recording stores the definition once instead of
-    /// once per pose.
+    /// Adds one body for each pose. A recording stores their definition once.
     ///
     /// # Errors
     /// The errors of [`World::spawn`]. No body is then added.
@@ -95,18 +92,18 @@ impl World {
         for pose in poses {
             check_position(pose.position)?;
         }
-        // All other errors come from the definitions, so that they occur with the first body, before any body is added.
+        // All other errors come from the definitions and therefore occur before any body is added.
         poses
             .iter()
             .map(|pose| self.spawn(&BodyDef { position: pose.position, angle: pose.angle, ..*body }, shapes))
             .collect()
     }
 
-    /// Attaches a shape to a body. Unless the body's mass was given, the mass is recomputed from all shapes.
+    /// Attaches a shape to a body. Recomputes the body's mass from all shapes, unless the mass was given.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, a value is out of range, an area is not valid, the body rotates too fast
-    /// for its new mass, the world is full, or the body has [`SHAPES_PER_BODY_MAX`] shapes already.
+    /// for its new mass, the world is full, or the body has [`SHAPES_PER_BODY_MAX`] shapes.
     #[doc(alias = "collider")]
     #[doc(alias = "fixture")]
     pub fn add_shape(&mut self, body: BodyId, shape: &ShapeDef) -> Result<ShapeId, WorldError> {
@@ -121,13 +118,13 @@ impl World {
         self.prepare_mass(body, &mass);
         self.replace_mass(body.slot(), mass);
         let id = self.insert_shape(body, shape);
-        // The centre of mass may have moved, which changes the rounding of the positions of all other shapes.
+        // A moved centre of mass changes the rounding of the positions of the other shapes.
         self.scratch.update_body(&self.state, body.slot());
         wake_overlapping_shape(&mut self.state, &mut self.scratch, id.slot());
         Ok(id)
     }
 
-    /// Connects two bodies by a joint. The joint has no effect while neither body is dynamic.
+    /// Connects two bodies by a joint, which has no effect while neither body is dynamic.
     ///
     /// # Errors
     /// [`WorldError`] if a handle is stale, both bodies are the same, a value is out of range, a lower limit is above
@@ -140,8 +137,7 @@ impl World {
         Ok(self.insert_joint(*def))
     }
 
-    /// Adds one joint for each given pair of bodies, all with the same definition. A recording stores the definition
-    /// once instead of once per pair.
+    /// Adds one joint for each pair of bodies. A recording stores their definition once.
     ///
     /// # Errors
     /// The errors of [`World::add_joint`]. No joint is then added.
@@ -164,7 +160,7 @@ impl World {
         def.validate([kind(a)?, kind(b)?])
     }
 
-    /// Adds a joint whose definition has been checked.
+    /// The definition must be valid.
     fn insert_joint(&mut self, def: JointDef) -> JointId {
         let (a, b) = def.bodies();
         let id = self.state.joints.insert(Joint::new(def));
@@ -173,7 +169,7 @@ impl World {
         id
     }
 
-    /// Adds a shape whose definition has been checked. The caller has to update the caches of its body.
+    /// The definition must be valid, and the caller has to update the caches of the body.
     fn insert_shape(&mut self, body: BodyId, def: &ShapeDef) -> ShapeId {
         let State { bodies, shapes, config, .. } = &mut *self.state;
         let owner = bodies.redefine(body.slot());
@@ -188,7 +184,6 @@ fn check_shapes_of_body(count: usize) -> Result<(), WorldError> {
     check_room(count, 0, SHAPES_PER_BODY_MAX, "shapes of one body")
 }
 
-/// Checks that `more` values can be added to `count` existing ones.
 fn check_room(count: usize, more: usize, limit: u32, what: &'static str) -> Result<(), WorldError> {
     if count.saturating_add(more) > limit as usize { Err(WorldError::Full { what, limit }) } else { Ok(()) }
 }

@@ -1,5 +1,3 @@
-//! Removing bodies, shapes and joints.
-
 use alloc::vec::Vec;
 
 use crate::body::{BodyId, Handle, JointId, ShapeId, WorldError};
@@ -28,11 +26,11 @@ impl World {
         Ok(())
     }
 
-    /// Removes a shape. Unless the body's mass was given, the mass is recomputed from the remaining shapes.
+    /// Removes a shape. Recomputes the body's mass from the remaining shapes, unless the mass was given.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, the mass of a dynamic body would be out of range, or the body rotates too
-    /// fast for its new mass.
+    /// [`WorldError`] if the handle is stale, the mass of a dynamic body would be out of range, or the body would
+    /// rotate too fast.
     pub fn remove_shape(&mut self, id: ShapeId) -> Result<(), WorldError> {
         let shape = self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?;
         let body = shape.body();
@@ -47,7 +45,7 @@ impl World {
         let owner = self.state.bodies.redefine(body.slot());
         owner.shapes.retain(|other| *other != id);
         self.replace_mass(body.slot(), mass);
-        // The centre of mass may have moved, which changes the rounding of the positions of all other shapes.
+        // A moved centre of mass changes the rounding of the positions of the other shapes.
         self.scratch.update_body(&self.state, body.slot());
         Ok(())
     }
@@ -65,7 +63,7 @@ impl World {
         Ok(())
     }
 
-    /// Removes shapes from the state and the caches, but not from the list of their body.
+    /// Removes shapes, but not from the list of their body.
     fn delete_shapes(&mut self, ids: &[ShapeId]) {
         self.end_contacts(ids);
         for &id in ids {
@@ -94,7 +92,7 @@ impl World {
         }
         self.state.sleeping_contacts.retain(|contact| !ends(contact.shapes));
         if is_listed {
-            // The manifolds of all other contacts stay, so that `World::contacts` still returns them.
+            // Other contacts keep their manifolds for `World::contacts`.
             let contacts = &mut self.state.contacts;
             self.scratch.contacts.split_off(contacts, &mut Vec::new(), |contact| !ends(contact.shapes));
         }

@@ -7,8 +7,8 @@
 //!                   n  unit vector away from the centre of the explosion
 //! ```
 //!
-//! This follows Box2D's `b2World_Explode`. The impulse acts at the shape's point nearest to the centre, or at the
-//! shape's middle if the shape contains the centre.
+//! This follows Box2D's `b2World_Explode`. The impulse acts at the point of the shape nearest to the centre, or at the
+//! middle of a shape that contains the centre.
 
 use alloc::vec::Vec;
 
@@ -18,20 +18,18 @@ use crate::fx;
 use crate::math::{Fx, Unit, Vec2, fx_div, fx_mul};
 use crate::world::World;
 
-/// Margin in metres on the search radius, larger than the rounding of distances, so that no shape in reach is missed.
+/// Margin in metres on the search radius, larger than the rounding of distances.
 const SLACK: Fx = fx!(0.000001);
 
-/// Work units of an explosion for each shape in reach.
+/// Work units for each shape in reach.
 const SHAPE_WORK: u64 = 2;
 
 impl World {
-    /// Applies an impulse away from the explosion's centre to every dynamic body in reach, shape by shape in slot
-    /// order, and wakes the body. Sensors, shapes outside of the explosion's mask and disabled bodies are left out. The
-    /// next tick limits speeds: see [`speed_max`](crate::solver::SolverSettings::speed_max).
+    /// Applies an impulse away from the explosion's centre to the dynamic bodies in reach, shape by shape in slot
+    /// order, and wakes them. Leaves out sensors, shapes outside of the mask and disabled bodies.
     ///
     /// # Errors
-    /// [`WorldError::ExplosionOutOfRange`] if a value of the explosion is out of range,
-    /// [`WorldError::PositionOutOfRange`] if its centre is.
+    /// [`WorldError::ExplosionOutOfRange`] or [`WorldError::PositionOutOfRange`] if a value is out of range.
     #[doc(alias = "blast")]
     pub fn explode(&mut self, explosion: &Explosion) -> Result<(), WorldError> {
         explosion.validate()?;
@@ -71,11 +69,10 @@ impl World {
     }
 }
 
-/// The impulse of an explosion on a shape.
 struct Push {
     /// Impulse in N s.
     impulse: Vec2<Fx>,
-    /// Point of application in the world, in metres.
+    /// Point in the world, in metres.
     point: Vec2<Fx>,
 }
 
@@ -124,14 +121,14 @@ impl Explosion {
         !shape.is_sensor() && shape.filter().category & self.mask != 0
     }
 
-    /// The impulse on a shape that is given relative to the explosion's centre; `None` if it is out of reach.
+    /// The impulse on a shape relative to the explosion's centre; `None` if it is out of reach.
     fn on(&self, shape: &SupportShape) -> Option<Push> {
         let found = distance(shape, &SupportShape::point(Vec2::ZERO));
         let strength = self.at_distance(found.distance);
         if strength == Fx::ZERO {
             return None;
         }
-        // If the centre is inside the shape, the nearest surface point does not give the direction: use the middle.
+        // If the centre is inside the shape, the nearest surface point gives no direction: use the middle.
         let inside = contains_point(shape, Vec2::ZERO);
         let point = if inside { shape.middle() } else { found.point_a };
         let away = if inside { point.normalized() } else { Some(-found.normal) };

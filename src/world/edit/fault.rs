@@ -1,5 +1,3 @@
-//! Fault injection: flips one bit of a body, to test the detection of divergence.
-
 use crate::body::{BodyId, Handle, Pose, SPEED_MAX, WORLD_EXTENT_MAX, WorldError};
 use crate::math::{Angle, Fx, Speed};
 use crate::world::World;
@@ -22,17 +20,17 @@ use crate::world::movement::move_body;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BodyField {
-    /// The horizontal velocity of the body's centre of mass.
+    /// Horizontal velocity of the body's centre of mass.
     VelocityX,
-    /// The vertical velocity of the body's centre of mass.
+    /// Vertical velocity of the body's centre of mass.
     VelocityY,
-    /// The spin: radius of gyration times angular velocity.
+    /// Radius of gyration times angular velocity.
     Spin,
-    /// The x coordinate of the body's centre of mass.
+    /// X coordinate of the body's centre of mass.
     CentreX,
-    /// The y coordinate of the body's centre of mass.
+    /// Y coordinate of the body's centre of mass.
     CentreY,
-    /// The rotation of the body.
+    /// Rotation of the body.
     Angle,
 }
 
@@ -50,7 +48,7 @@ impl BodyField {
     /// The three speeds.
     pub const SPEEDS: [BodyField; 3] = [BodyField::VelocityX, BodyField::VelocityY, BodyField::Spin];
 
-    /// Returns the name of the field in the readable form of a snapshot.
+    /// Returns the name of the field in the view of a snapshot.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -63,7 +61,7 @@ impl BodyField {
         }
     }
 
-    /// Returns the number of bits of the field.
+    /// Returns the size of the field in bits.
     #[must_use]
     pub fn bits(self) -> u32 {
         match self {
@@ -74,13 +72,12 @@ impl BodyField {
 }
 
 impl World {
-    /// Flips one bit of a field of an awake dynamic body, as a memory error would, to test the detection of divergence.
-    /// The lowest bit is 2^-21 m/s for a speed, 2^-32 m for a coordinate and 2^-32 turns for the angle; see
-    /// [`BodyField::bits`].
+    /// Flips one bit of a field of an awake dynamic body, to test the detection of divergence. The lowest bit is 2^-21
+    /// m/s for a speed, 2^-32 m for a coordinate and 2^-32 turns for the angle.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the body is disabled, asleep or not dynamic, the bit does not exist, the
-    /// axis or the rotation is locked, or the result is out of range. The world is then unchanged.
+    /// axis or the rotation is locked, or the result is out of range.
     pub fn flip_bit(&mut self, id: BodyId, field: BodyField, bit: u32) -> Result<(), WorldError> {
         let body = self.state.get().bodies.get(id).ok_or(WorldError::StaleBody(id))?;
         let locks = body.settings.locks;

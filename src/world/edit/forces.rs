@@ -1,4 +1,4 @@
-//! Forces, impulses, velocities and poses of bodies. Each of these changes wakes the body.
+//! Forces, impulses, velocities and poses of bodies. Each change wakes the body.
 
 use alloc::boxed::Box;
 
@@ -8,11 +8,10 @@ use crate::world::World;
 use crate::world::islands::{wake_body, wake_joined, wake_overlapping};
 
 impl World {
-    /// Applies a force in N to a dynamic body at a world point, in metres, for the next tick. Forces add up, and are
-    /// cleared by the tick.
+    /// Applies a force in N at a world point, in metres, to a dynamic body for the next tick. Forces add up.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, or the body is not dynamic or is disabled.
+    /// [`WorldError`] if the handle is stale, or the body is disabled or not dynamic.
     pub fn apply_force(
         &mut self,
         id: BodyId,
@@ -24,10 +23,10 @@ impl World {
         Ok(())
     }
 
-    /// Applies a force in N to a dynamic body at its centre of mass for the next tick.
+    /// Like [`World::apply_force`], at the body's centre of mass.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, or the body is not dynamic or is disabled.
+    /// The errors of [`World::apply_force`].
     pub fn apply_force_to_centre(
         &mut self,
         id: BodyId,
@@ -39,21 +38,21 @@ impl World {
         Ok(())
     }
 
-    /// Applies a torque in N m to a dynamic body for the next tick. Torques add up, and are cleared by the tick.
+    /// Applies a torque in N m to a dynamic body for the next tick. Torques add up.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, or the body is not dynamic or is disabled.
+    /// The errors of [`World::apply_force`].
     pub fn apply_torque(&mut self, id: BodyId, torque: Fx) -> Result<(), WorldError> {
         let body = self.dynamic_body(id)?;
         body.torque = body.torque.saturating_add(torque);
         Ok(())
     }
 
-    /// Changes the velocity of a dynamic body at once by an impulse in N s at a world point, in metres. The next tick
-    /// limits the speed: see [`crate::solver::SolverSettings::speed_max`].
+    /// Changes the velocity of a dynamic body by an impulse in N s at a world point, in metres. The next tick limits
+    /// the speed: see [`crate::solver::SolverSettings::speed_max`].
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, or the body is not dynamic or is disabled.
+    /// The errors of [`World::apply_force`].
     pub fn apply_impulse(
         &mut self,
         id: BodyId,
@@ -65,11 +64,10 @@ impl World {
         Ok(())
     }
 
-    /// Changes the velocity of a dynamic body at once by an impulse in N s at its centre of mass. The next tick limits
-    /// the speed: see [`crate::solver::SolverSettings::speed_max`].
+    /// Like [`World::apply_impulse`], at the body's centre of mass.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, or the body is not dynamic or is disabled.
+    /// The errors of [`World::apply_impulse`].
     pub fn apply_impulse_to_centre(
         &mut self,
         id: BodyId,
@@ -81,10 +79,10 @@ impl World {
         Ok(())
     }
 
-    /// Changes the angular velocity of a dynamic body at once by an angular impulse in N m s.
+    /// Changes the angular velocity of a dynamic body by an angular impulse in N m s.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, or the body is not dynamic or is disabled.
+    /// The errors of [`World::apply_force`].
     pub fn apply_angular_impulse(&mut self, id: BodyId, impulse: Fx) -> Result<(), WorldError> {
         self.dynamic_body(id)?.apply_angular_impulse(impulse);
         Ok(())
@@ -93,8 +91,8 @@ impl World {
     /// Sets the velocity of a body's centre of mass in m/s and its angular velocity in rad/s.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, the body is fixed, or a speed exceeds the speed limit: see
-    /// [`crate::solver::SolverSettings::speed_max`].
+    /// [`WorldError`] if the handle is stale, the body is fixed, or a speed exceeds the limit: see
+    /// [`speed_max`](crate::solver::SolverSettings::speed_max).
     pub fn set_velocity(
         &mut self,
         id: BodyId,
@@ -120,13 +118,13 @@ impl World {
         Ok(())
     }
 
-    /// Sets the pose that a kinematic body has after the next tick: the position of its origin in metres, and its
-    /// rotation. The body gets the velocity that takes it there, and pushes dynamic bodies on its way. It stops at the
-    /// target unless it is given another one. It rotates in the direction of the smaller angle.
+    /// Sets the pose of a kinematic body after the next tick: the position of its origin in metres, and its rotation.
+    /// The body pushes dynamic bodies on its way, and stops at the target unless it gets another one. It rotates in the
+    /// direction of the smaller angle.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, the body is not kinematic, the position is out of range, or the pose
-    /// cannot be reached within a tick at the speed limit: see [`crate::solver::SolverSettings::speed_max`].
+    /// [`WorldError`] if the handle is stale, the body is not kinematic, the position is out of range, or the pose is
+    /// out of reach at the speed limit: see [`speed_max`](crate::solver::SolverSettings::speed_max).
     #[doc(alias = "set_target_transform")]
     #[doc(alias = "move_kinematic")]
     pub fn move_to(
@@ -156,8 +154,8 @@ impl World {
         Ok(())
     }
 
-    /// Moves a body's origin at once to a position in metres, with a rotation, regardless of shapes in between.
-    /// Contacts and joints that persist keep their impulses.
+    /// Moves a body's origin at once to a position in metres, with a rotation. Contacts and joints that persist keep
+    /// their impulses.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale or the position is out of range.

@@ -1,7 +1,7 @@
 //! Changing joints.
 //!
-//! Setting a value that a joint already has changes nothing and does not wake its bodies. A machine whose motors are
-//! set in every tick can therefore fall asleep once it stops.
+//! Setting a value that a joint already has does not wake its bodies, so that a machine whose motors are set in every
+//! tick can fall asleep.
 
 use crate::body::{BodyId, JointId, WorldError};
 use crate::math::{Angle, Fx, Vec2};
@@ -10,8 +10,8 @@ use crate::world::World;
 use crate::world::islands::{joint_retuned, joints_changed};
 
 impl World {
-    /// The definition of a joint at a point of the world, in metres: both anchors are there, and the angle of the joint
-    /// is 0 at the current poses. Change it as needed and pass it to [`World::add_joint`].
+    /// The definition of a joint with both anchors at a world point, in metres, and the angle 0 at the current poses.
+    /// Pass it to [`World::add_joint`].
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, solver::Revolute, world::World};
@@ -38,8 +38,8 @@ impl World {
         self.joint_along(a, b, kind, anchor, Vec2::new(Fx::ONE, Fx::ZERO))
     }
 
-    /// Like [`World::joint_at`], with the axis of a prismatic or wheel joint as a direction in the world. Its length
-    /// does not matter; the zero vector is the x axis.
+    /// Like [`World::joint_at`], with the axis of a prismatic or wheel joint in world coordinates. Its length does not
+    /// matter. The zero vector is the x axis.
     ///
     /// # Errors
     /// [`WorldError::StaleBody`] if a body is not in the world.
@@ -61,9 +61,8 @@ impl World {
         Ok(JointDef { frame_a, frame_b, ..JointDef::new(a, b, kind) })
     }
 
-    /// Returns the definition of a gear, rack or pulley adjusted to the current poses of its bodies, so that its
-    /// position error is 0. Changes the angle of a gear's frame on A, the anchor of a rack on B, or the length of a
-    /// pulley's rope. Returns definitions of other kinds as they are.
+    /// Returns the definition of a gear, rack or pulley without a position error at the current poses. Changes the
+    /// angle of a gear's frame on A, the anchor of a rack on B, or the length of a pulley's rope.
     ///
     /// # Errors
     /// [`WorldError::StaleBody`] if a body is not in the world.
@@ -73,13 +72,12 @@ impl World {
         Ok(def.fitted(body(a)?, body(b)?))
     }
 
-    /// Replaces the definition of a joint except for its bodies: read [`crate::solver::Joint::def`], change a copy, and
-    /// pass it here. The joint keeps its impulses if its kind stays the same and the new definition is enabled. Wakes
-    /// its bodies, unless the definition is the same.
+    /// Replaces the definition of a joint except for its bodies: change a copy of [`crate::solver::Joint::def`]. The
+    /// joint keeps its impulses if its kind stays the same and it is enabled. A different definition wakes its bodies.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, the bodies are different ones, a value is out of range, or a lower limit
-    /// is above the upper one.
+    /// [`WorldError`] if the handle is stale, the bodies are different, a value is out of range, or a lower limit is
+    /// above the upper one.
     #[doc(alias = "motor")]
     #[doc(alias = "spring")]
     #[doc(alias = "limit")]
@@ -106,8 +104,7 @@ impl World {
         Ok(())
     }
 
-    /// Enables a disabled joint and wakes its bodies. Does nothing if the joint is enabled already. The joint starts
-    /// without impulses, and with the number of full turns that brings its angle nearest to the last one.
+    /// Enables a disabled joint, which starts without impulses, and wakes its bodies.
     ///
     /// # Errors
     /// [`WorldError::StaleJoint`] if it is not in the world.
@@ -118,9 +115,7 @@ impl World {
         })
     }
 
-    /// Takes a joint out of the simulation until [`World::enable_joint`], and wakes its bodies. The joint keeps its
-    /// handle, exerts no force, and lets its bodies collide and sleep as if it were absent. Does nothing if the joint
-    /// is disabled already.
+    /// Takes a joint out of the simulation until [`World::enable_joint`], and wakes its bodies.
     ///
     /// # Errors
     /// [`WorldError::StaleJoint`] if it is not in the world.
@@ -131,8 +126,8 @@ impl World {
         })
     }
 
-    /// Sets the target speed of a joint's motor in rad/s or m/s. For a motor joint this is the angular motor. Wakes the
-    /// bodies of the joint, unless the speed is the same.
+    /// Sets the target speed in rad/s or m/s of a joint's motor; a motor joint has an angular one. A change wakes the
+    /// bodies.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the joint has no motor, or the speed is out of range.
@@ -144,8 +139,8 @@ impl World {
         })
     }
 
-    /// Sets the largest force in N or torque in N m of a joint's motor. For a motor joint this is the angular motor.
-    /// Wakes the bodies of the joint, unless the value is the same.
+    /// Sets the largest force in N or torque in N m of a joint's motor; a motor joint has an angular one. A change
+    /// wakes the bodies.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the joint has no motor, or the value is negative.
@@ -157,8 +152,7 @@ impl World {
         })
     }
 
-    /// Sets the target velocity of a motor joint in m/s, along the axes of the world. Wakes its bodies, unless the
-    /// velocity is the same.
+    /// Sets the target velocity of a motor joint in m/s, along the world axes. A change wakes the bodies.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the joint has no linear motor, or the velocity is out of range.
@@ -177,7 +171,7 @@ impl World {
         })
     }
 
-    /// Sets the target of a joint's spring in rad or m. Wakes the bodies of the joint, unless the target is the same.
+    /// Sets the target of a joint's spring in rad or m. A change wakes the bodies.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the joint has no spring with a target, or the target is out of range.
@@ -190,8 +184,8 @@ impl World {
         })
     }
 
-    /// Sets the range of a joint's angle, translation or length in rad or m; `None` for no limit. Wakes the bodies of
-    /// the joint, unless the range is the same.
+    /// Sets the range of a joint's angle, translation or length in rad or m; `None` for no limit. A change wakes the
+    /// bodies.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the kind of joint has no limit, or the limit is not valid.
@@ -203,7 +197,6 @@ impl World {
         })
     }
 
-    /// Replaces the definition of a joint by a changed copy.
     fn change_joint(
         &mut self,
         id: JointId,

@@ -22,12 +22,11 @@ use crate::body::{Body, Handle, MassProperties, ShapeDef, WorldError};
 use crate::math::{Fx, Vec2, fx_mul};
 
 impl World {
-    /// The definitions of a body's shapes.
     fn shape_defs<'a>(&'a self, body: &'a Body) -> impl Iterator<Item = &'a ShapeDef> + Clone {
         body.shapes.iter().map(|id| self.state.shapes.at(id.slot()).def())
     }
 
-    /// Checks a velocity in m/s and an angular velocity in rad/s of a body with a radius of gyration in metres.
+    /// Checks speeds in m/s and rad/s against the limit. The radius of gyration is in metres.
     fn check_velocity(&self, velocity: Vec2<Fx>, angular: Fx, gyration: Fx) -> Result<(), WorldError> {
         let max = self.state.config.solver.speed_limit(self.state.config.tick_rate);
         for value in [velocity.length(), fx_mul(angular.saturating_abs(), gyration)] {
@@ -38,18 +37,17 @@ impl World {
         Ok(())
     }
 
-    /// Checks that a body may keep its angular velocity with a new mass.
     fn check_spin(&self, body: &Body, mass: &MassProperties) -> Result<(), WorldError> {
         self.check_velocity(Vec2::ZERO, body.angular_velocity(), mass.gyration)
     }
 
-    /// Gives new fat boxes to the shapes of a body that an edit has moved or redefined, and updates the caches.
+    /// Gives new fat boxes to the shapes of a body after an edit, and updates the caches.
     fn refit_body(&mut self, slot: u32) {
         let State { bodies, shapes, config, .. } = &mut *self.state;
         let body = bodies.at(slot);
         for shape in &body.shapes {
-            // `redefine`, not `at_mut`: snapshots store the fat box of a fixed body in its page, and this body may have
-            // been fixed until now.
+            // `redefine`, not `at_mut`: the body may have been fixed until now, and snapshots store its fat box in a
+            // page.
             let shape = shapes.redefine(shape.slot());
             shape.fat = fat_box(&shape.def, body, config);
         }

@@ -13,8 +13,7 @@ use crate::world::derived::{mass_of, offset_max};
 use crate::world::islands::{put_to_sleep, wake_body, wake_joined, wake_overlapping, wake_touching};
 
 impl World {
-    /// Replaces the settings of a body: read [`crate::body::Body::settings`], change a copy, and pass it here. Wakes
-    /// the body.
+    /// Replaces the settings of a body: change a copy of [`crate::body::Body::settings`]. Wakes the body.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale or a value is out of range.
@@ -33,7 +32,7 @@ impl World {
         Ok(())
     }
 
-    /// Replaces the number that the game stores with a body. No result of the simulation depends on it.
+    /// Replaces the number that the game stores with a body. It does not affect the simulation.
     ///
     /// # Errors
     /// [`WorldError::StaleBody`] if it is not in the world.
@@ -42,19 +41,17 @@ impl World {
         Ok(())
     }
 
-    /// Sets or removes the name of a body, which is shown in reports. No result of the simulation depends on it.
+    /// Sets or removes the name of a body, which is shown in reports. It does not affect the simulation.
     ///
     /// # Errors
-    /// [`WorldError::StaleBody`] if the body is not in the world, [`WorldError::NameInvalid`] if the name was decoded
-    /// from bytes and is not a valid one.
+    /// [`WorldError`] if the handle is stale or a decoded name is not valid.
     pub fn set_name(&mut self, id: BodyId, name: Option<Name>) -> Result<(), WorldError> {
         name.map_or(Ok(()), |name| name.validate())?;
         self.state.bodies.get_mut(id).ok_or(WorldError::StaleBody(id))?.name = name.map(Box::new);
         Ok(())
     }
 
-    /// Replaces the source of a body's mass. Keeps the pose, the angular velocity and the velocity of every material
-    /// point of the body. Wakes the body.
+    /// Replaces the source of a body's mass. Keeps the pose and the motion of the body, and wakes it.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, the mass is out of range, or the body rotates too fast for the new mass.
@@ -72,12 +69,12 @@ impl World {
         Ok(())
     }
 
-    /// Makes a body fixed, kinematic or dynamic. A body that becomes fixed stops, any other keeps its velocity. Its
-    /// joints stay, but have no effect while neither of their bodies is dynamic.
+    /// Makes a body fixed, kinematic or dynamic. A body that becomes fixed stops. Its joints stay, but have no effect
+    /// while neither of their bodies is dynamic.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, the mass of a dynamic body would be out of range, a shape or the anchor
-    /// of a joint is too far from the origin of a body that moves, or the body rotates too fast for its mass.
+    /// [`WorldError`] if the handle is stale, the mass is out of range, a shape or the anchor of a joint is too far
+    /// from the origin of a body that moves, or the body rotates too fast for its mass.
     #[doc(alias = "static")]
     #[doc(alias = "body type")]
     pub fn set_kind(&mut self, id: BodyId, kind: BodyKind) -> Result<(), WorldError> {
@@ -116,14 +113,13 @@ impl World {
         if kind == BodyKind::Fixed {
             body.stop();
         }
-        // The fat boxes of fixed shapes have no margin.
         self.refit_body(id.slot());
         self.scratch.pairs.changes.rules_changed();
         wake_overlapping(&mut self.state, &mut self.scratch, id.slot());
         Ok(())
     }
 
-    /// Takes a body out of the simulation until [`World::enable`]. It keeps its pose and its velocity, but loses its
+    /// Takes a body out of the simulation until [`World::enable`]. It keeps its pose and velocity, but loses its
     /// applied forces and its target. It has no contacts, its joints are not solved, and no query finds it.
     ///
     /// # Errors
@@ -163,8 +159,8 @@ impl World {
         Ok(())
     }
 
-    /// Wakes a body with all bodies of its island. For a fixed or kinematic body, which does not sleep, wakes the
-    /// bodies that touch it, are joined to it or are in one of its areas.
+    /// Wakes a body with its island. For a fixed or kinematic body, wakes the bodies that touch it, are joined to it or
+    /// are in one of its areas.
     ///
     /// # Errors
     /// [`WorldError::StaleBody`] if it is not in the world.
@@ -179,8 +175,8 @@ impl World {
         Ok(())
     }
 
-    /// Puts a dynamic body to sleep at any velocity, with all dynamic bodies that contacts, joints and areas connect it
-    /// to. Does nothing if [`crate::world::Config::sleeping`] is off.
+    /// Puts a dynamic body to sleep at any velocity, with the dynamic bodies that contacts, joints and areas connect to
+    /// it. Does nothing if [`crate::world::Config::sleeping`] is off.
     ///
     /// # Errors
     /// [`WorldError`] if the handle is stale, or the body is disabled or not dynamic.
@@ -195,14 +191,13 @@ impl World {
         Ok(())
     }
 
-    /// Replaces the definition of a shape: read [`crate::body::Shape::def`], change a copy, and pass it here. Unless
-    /// the body's mass was given, the mass is recomputed from its shapes. If the change makes the shape a sensor or a
-    /// solid shape, or switches its contact events or, on a sensor, a switch for sensor events, its contacts end.
-    /// Otherwise a contact lasts as long as its shapes touch and may collide.
+    /// Replaces the definition of a shape: change a copy of [`crate::body::Shape::def`]. Recomputes the body's mass
+    /// from its shapes, unless the mass was given. A change of `sensor` or of the event switches may end the contacts
+    /// of the shape.
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, a value, including the mass of a dynamic body, is out of range, an area
-    /// is not valid, or the body rotates too fast for its new mass.
+    /// [`WorldError`] if the handle is stale, a value or the mass of a dynamic body is out of range, an area is not
+    /// valid, or the body rotates too fast for its new mass.
     #[doc(alias = "sensor")]
     #[doc(alias = "trigger")]
     pub fn set_shape(&mut self, id: ShapeId, def: &ShapeDef) -> Result<(), WorldError> {
@@ -216,7 +211,7 @@ impl World {
             .map(|other| if *other == id { def } else { &self.state.shapes.at(other.slot()).def });
         let mass = mass_of(owner.kind(), *owner.mass_source, &owner.settings, with)?;
         self.check_spin(owner, &mass)?;
-        // Every contact whose beginning was reported must have its end reported.
+        // A reported beginning of a contact needs a reported end.
         let roles = |def: &ShapeDef| {
             let EventSwitches { contact, hit: _, sensor, detect_sensors } = def.events;
             (def.sensor, contact, def.sensor && sensor, def.sensor && detect_sensors)
@@ -236,7 +231,7 @@ impl World {
         Ok(())
     }
 
-    /// Replaces the geometry of a shape; see [`World::set_shape`].
+    /// Replaces the geometry of a shape: see [`World::set_shape`].
     ///
     /// # Errors
     /// The errors of [`World::set_shape`].
@@ -260,9 +255,8 @@ impl World {
         self.change_shape(id, |def| def.filter = filter)
     }
 
-    /// Replaces the effect of a sensor on the bodies in it, such as a wind that turns or a tide that rises; `None` for
-    /// a sensor that only detects. Wakes the bodies in the area, unless the effect is the same, so that a game may set
-    /// it in every tick.
+    /// Replaces the effect of a sensor on the bodies in it; `None` for a sensor that only detects. Wakes the bodies in
+    /// the area, unless the effect is the same.
     ///
     /// ```
     /// use lockstep2d::{body::{Area, BodyDef, Polygon, ShapeDef}, fx, world::World};
@@ -279,17 +273,16 @@ impl World {
     /// ```
     ///
     /// # Errors
-    /// [`WorldError`] if the handle is stale, or a value is out of range; with an area, also if the shape is not a
-    /// sensor or has no interior.
+    /// [`WorldError`] if the handle is stale, a value is out of range, or the shape of an area is not a sensor or has
+    /// no interior.
     #[doc(alias = "wind")]
     pub fn set_area(&mut self, id: ShapeId, area: Option<Area>) -> Result<(), WorldError> {
         let shape = self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?;
         if shape.def.area == area { Ok(()) } else { self.change_shape(id, |def| def.area = area) }
     }
 
-    /// Prepares for a change of the mass between 0 and a positive value: wakes the bodies that overlap or are joined to
-    /// the body, and makes the next pair update check all pairs. Two bodies without mass have no contact and no joint
-    /// that acts.
+    /// Prepares for a change of the mass between 0 and a positive value: two bodies without mass have no contact and no
+    /// acting joint. Wakes overlapping and joined bodies, and makes the next pair update check all pairs.
     pub(super) fn prepare_mass(&mut self, id: BodyId, mass: &MassProperties) {
         if self.state.bodies.at(id.slot()).has_mass() != (mass.mass > 0) {
             wake_overlapping(&mut self.state, &mut self.scratch, id.slot());
@@ -306,7 +299,6 @@ impl World {
         self.state.bodies.redefine(body).set_mass(mass);
     }
 
-    /// Replaces the definition of a shape by a changed copy.
     fn change_shape(&mut self, id: ShapeId, change: impl FnOnce(&mut ShapeDef)) -> Result<(), WorldError> {
         let mut def = *self.state.shapes.get(id).ok_or(WorldError::StaleShape(id))?.def;
         change(&mut def);

@@ -1,5 +1,3 @@
-//! Changing the settings of a world at run time.
-
 use alloc::vec::Vec;
 
 use crate::body::{IslandId, WorldError};
@@ -10,16 +8,14 @@ use crate::world::config::{Config, check_gravity};
 use crate::world::islands::wake_island;
 
 impl World {
-    /// Replaces the settings of the world: read [`World::config`], change a copy, and pass it here. The limits of
-    /// bodies, shapes, joints and pairs cannot be changed.
+    /// Replaces the settings of the world: change a copy of [`World::config`]. The limits of bodies, shapes, joints and
+    /// pairs cannot be changed.
     ///
     /// Wakes all bodies if a setting that affects the balance of forces changes: gravity, the tick rate, sub-steps,
-    /// iterations, the tuning of contacts and joints, and [`Config::sleeping`] when it is switched off. Impulses that
-    /// contacts and joints keep for the next tick are converted to the new length of a sub-step, so that bodies at rest
-    /// stay at rest. If the speed limit is lowered, the next tick slows down the dynamic bodies that exceed it. A
-    /// kinematic body with a target still reaches it in the next tick, with the velocity that it was given.
+    /// iterations, the tuning of contacts and joints, or [`Config::sleeping`] when it is switched off. Stored impulses
+    /// of contacts and joints are converted to the new length of a sub-step, so that bodies at rest stay at rest.
     ///
-    /// In a match over a network and in a recording the tick rate must stay the same.
+    /// The tick rate must stay the same in a networked match and in a recording.
     ///
     /// ```
     /// use lockstep2d::{fx, world::{Config, World}};
@@ -34,7 +30,7 @@ impl World {
     ///
     /// # Errors
     /// [`WorldError::Setting`] or [`WorldError::CountSetting`] if a setting is out of range,
-    /// [`WorldError::FixedSetting`] if a limit differs from that of the world.
+    /// [`WorldError::FixedSetting`] if a limit changes.
     #[doc(alias = "sub_steps")]
     #[doc(alias = "integration parameters")]
     pub fn set_config(&mut self, config: &Config) -> Result<(), WorldError> {
@@ -77,8 +73,7 @@ impl World {
         }
     }
 
-    /// Converts impulses to another length of the sub-steps, so that the forces stay the same. The rates are in
-    /// sub-steps per second.
+    /// Converts impulses to another rate, in sub-steps per second, so that the forces stay the same.
     fn convert_impulses(&mut self, old_rate: u32, new_rate: u32) {
         if old_rate == new_rate {
             return;
@@ -104,7 +99,7 @@ impl World {
 
 /// Whether bodies at rest may move with the new settings.
 fn is_disturbed(old: &Config, new: &Config) -> bool {
-    // Destructured without `..`: whoever adds a setting has to decide here whether it wakes bodies.
+    // Destructured without `..`, so that a new setting has to be classified here.
     let Config {
         tick_rate,
         gravity,

@@ -1,5 +1,3 @@
-//! Finding islands and putting them to sleep.
-
 use alloc::vec::Vec;
 
 use crate::body::Handle;
@@ -8,11 +6,11 @@ use crate::math::{Fx, Vec2};
 use crate::world::cache::{Scratch, UnionFind, is_awake, merge_sorted};
 use crate::world::state::{Island, State};
 
-/// Puts a body to sleep with every awake body that contacts, joints or areas connect it to.
+/// Puts a body to sleep with the awake bodies connected to it.
 pub(crate) fn put_to_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) {
     scratch.awake.refresh(state);
     unite_connected(state, scratch);
-    // Bodies that were woken since the last tick still have their contacts in the list of sleeping contacts.
+    // Bodies woken since the last tick have contacts in the list of sleeping contacts.
     unite_touching(state, &mut scratch.union, &state.sleeping_contacts);
     let Scratch { awake, union, .. } = &mut *scratch;
     let root = union.root(slot);
@@ -24,7 +22,6 @@ pub(crate) fn put_to_sleep(state: &mut State, scratch: &mut Scratch, slot: u32) 
     put_sleepy_sets_to_sleep(state, scratch);
 }
 
-/// Unites the bodies of the awake set that contacts, joints and areas connect.
 pub(crate) fn unite_connected(state: &State, scratch: &mut Scratch) {
     let Scratch { awake, union, .. } = scratch;
     union.reset(awake.bodies(), state.bodies.slot_count());
@@ -35,8 +32,7 @@ pub(crate) fn unite_connected(state: &State, scratch: &mut Scratch) {
     unite_touching(state, union, &state.contacts);
 }
 
-/// Unites the bodies of every contact that has points, and the body of every area with the bodies in it: a body in an
-/// area of a moving body is not at rest.
+/// Unites the bodies of contacts with points, and the bodies of areas with those in them.
 pub(crate) fn unite_touching(state: &State, union: &mut UnionFind, contacts: &[Contact]) {
     let connects =
         |contact: &&Contact| contact.count > 0 || (contact.touching && state.has_area(contact.shapes));
@@ -46,14 +42,13 @@ pub(crate) fn unite_touching(state: &State, union: &mut UnionFind, contacts: &[C
     }
 }
 
-/// Unites two bodies if both are dynamic and awake.
 pub(crate) fn unite(state: &State, union: &mut UnionFind, a: u32, b: u32) {
     if is_awake(state.bodies.at(a)) && is_awake(state.bodies.at(b)) {
         union.unite(a, b);
     }
 }
 
-/// Turns every set of bodies in the awake set that is not marked to stay awake into a sleeping island.
+/// Puts the sets to sleep that are not marked to stay awake.
 pub(crate) fn put_sleepy_sets_to_sleep(state: &mut State, scratch: &mut Scratch) {
     let Scratch { awake, union, .. } = &mut *scratch;
     let mut any = false;
@@ -62,8 +57,7 @@ pub(crate) fn put_sleepy_sets_to_sleep(state: &mut State, scratch: &mut Scratch)
         if union.stays_awake(root) {
             continue;
         }
-        // Slots are visited in order. The root is the smallest slot of its set, so that it gets its island before all
-        // other bodies of the set.
+        // Slots are visited in order, so that the root, the smallest slot of its set, gets its island first.
         let island = match state.bodies.at(root).island {
             Some(island) => island,
             None => state.islands.insert(Island { bodies: Vec::new() }),
@@ -84,7 +78,7 @@ pub(crate) fn put_sleepy_sets_to_sleep(state: &mut State, scratch: &mut Scratch)
     }
 }
 
-/// Moves the contacts without an active body to the sleeping ones, and drops their manifolds.
+/// Moves contacts without an active body to the sleeping ones, without their manifolds.
 fn put_contacts_to_sleep(state: &mut State, scratch: &mut Scratch) {
     let buffers = &mut scratch.pairs.buffers;
     buffers.sleeping_contacts.clear();

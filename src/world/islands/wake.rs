@@ -1,5 +1,3 @@
-//! Waking bodies and islands.
-
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
@@ -8,10 +6,10 @@ use crate::collision::{Contact, Pair};
 use crate::world::cache::Scratch;
 use crate::world::state::State;
 
-/// Number of visited boxes that cost one work unit.
+/// Visited boxes that cost one work unit.
 const VISITS_PER_WORK: u64 = 4;
 
-/// Wakes an island. Its sleeping contacts become active at the next pair update.
+/// Wakes an island, whose sleeping contacts become active at the next pair update.
 pub(crate) fn wake_island(state: &mut State, scratch: &mut Scratch, island: IslandId) {
     let Some(island) = state.islands.remove(island) else { return };
     for slot in island.bodies {
@@ -39,8 +37,8 @@ pub(crate) fn wake_body(state: &mut State, scratch: &mut Scratch, slot: u32) {
     }
 }
 
-/// Restarts the count of ticks at rest of the dynamic bodies of two shapes that no longer touch. A body that the other
-/// one supported, and that has been slow for long, would otherwise fall asleep before it has begun to move.
+/// Restarts the counts of ticks at rest of two bodies that have parted. A slow body that the other one supported would
+/// otherwise fall asleep before it begins to move.
 pub(crate) fn contact_ended(state: &mut State, (a, b): Pair) {
     for shape in [a, b] {
         let slot = state.shapes.at(shape).body().slot();
@@ -50,8 +48,7 @@ pub(crate) fn contact_ended(state: &mut State, (a, b): Pair) {
     }
 }
 
-/// Wakes a body and every body with a shape whose fat box overlaps one of its own. An edit that replaces the body's fat
-/// boxes calls it before and after the change.
+/// Wakes a body and the bodies whose fat boxes overlap its own. Called before and after a change of fat boxes.
 pub(crate) fn wake_overlapping(state: &mut State, scratch: &mut Scratch, slot: u32) {
     wake_body(state, scratch, slot);
     for index in 0..state.bodies.at(slot).shapes().len() {
@@ -60,10 +57,8 @@ pub(crate) fn wake_overlapping(state: &mut State, scratch: &mut Scratch, slot: u
     }
 }
 
-/// Wakes every body with a shape whose fat box overlaps that of a shape.
 pub(crate) fn wake_overlapping_shape(state: &mut State, scratch: &mut Scratch, shape: u32) {
-    // Only sleeping bodies and kinematic bodies at rest can be woken. A world that is being set up mostly has neither,
-    // but may have many overlapping shapes.
+    // Only sleeping bodies and resting kinematic bodies can be woken. Most worlds that are being set up have neither.
     if state.islands.len() == 0 && !scratch.awake.may_have_kinematic() {
         return;
     }
@@ -100,7 +95,6 @@ pub(crate) fn wake_touching(state: &mut State, scratch: &mut Scratch, slot: u32)
     }
 }
 
-/// Wakes the bodies that are joined to a body.
 pub(crate) fn wake_joined(state: &mut State, scratch: &mut Scratch, id: BodyId) {
     if state.islands.len() == 0 {
         return;
@@ -113,7 +107,7 @@ pub(crate) fn wake_joined(state: &mut State, scratch: &mut Scratch, id: BodyId) 
     }
 }
 
-/// Wakes two bodies after a change of their joint that does not change whether they may collide.
+/// Wakes two bodies after a change of their joint that does not affect whether they may collide.
 pub(crate) fn joint_retuned(state: &mut State, scratch: &mut Scratch, bodies: [BodyId; 2]) {
     for id in bodies {
         wake_body(state, scratch, id.slot());
@@ -121,8 +115,7 @@ pub(crate) fn joint_retuned(state: &mut State, scratch: &mut Scratch, bodies: [B
     scratch.awake.invalidate();
 }
 
-/// Wakes two bodies between which a joint was added, removed or redefined, and lets the next pair update check whether
-/// their shapes may collide.
+/// Wakes two bodies after a change of their joint that may affect whether they collide.
 pub(crate) fn joints_changed(state: &mut State, scratch: &mut Scratch, bodies: [BodyId; 2]) {
     for id in bodies {
         wake_body(state, scratch, id.slot());

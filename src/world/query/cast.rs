@@ -1,5 +1,3 @@
-//! Rays and shape casts.
-
 use core::cell::LazyCell;
 
 use alloc::vec::Vec;
@@ -72,7 +70,7 @@ pub struct CastHit {
 
 impl World {
     /// Returns the first shape that a ray meets, from a point along a translation in metres. Chain links that are solid
-    /// from one side let rays from the other side pass. One-way platforms stop rays from every side.
+    /// from one side let rays from the other side pass.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, math::Vec2, world::World};
@@ -103,7 +101,7 @@ impl World {
         closest.map(|found| found.hit)
     }
 
-    /// Returns every shape that a ray meets, in order along the ray.
+    /// Returns the shapes that a ray meets, in order along the ray.
     #[must_use]
     #[doc(alias = "raycast")]
     pub fn cast_ray_all(
@@ -142,10 +140,11 @@ impl World {
     }
 
     /// Returns the first shape that a probe meets as it moves along a translation in metres without rotation. The probe
-    /// stops 0.1 mm before it touches. A shape that the probe touches at the start stops the probe only if it moves
-    /// into that shape, so that probes slide along chains and flush tiles. [`QueryFilter::initial_overlap`] selects
-    /// another treatment of shapes that the probe overlaps at the start. [`World::cast_turning`] also rotates the
-    /// probe. A chain link that is solid from one side is met only by probes whose middle is on that side.
+    /// stops 0.1 mm before it touches.
+    ///
+    /// A shape that the probe touches at the start stops it only if it moves into that shape, so that probes slide
+    /// along chains and flush tiles. [`QueryFilter::initial_overlap`] selects another treatment of overlaps at the
+    /// start. A chain link that is solid from one side is met only by probes whose middle is on that side.
     #[must_use]
     #[doc(alias = "shapecast")]
     #[doc(alias = "sweep test")]
@@ -159,9 +158,8 @@ impl World {
         self.first_along(probe, translation, filter, Rest::CAST, |_, _, _| true)
     }
 
-    /// Returns the first shape that a probe meets among those for which `accept` holds. `accept` gets the shape, the
-    /// normal of the hit, and the support shapes of the shape and of the probe at the start of the cast, both relative
-    /// to the probe's position.
+    /// Considers shapes for which `accept` holds. `accept` gets the shape, the normal of the hit, and the support
+    /// shapes of the shape and of the probe at the start, relative to the probe's position.
     pub(super) fn first_along(
         &self,
         probe: &Probe,
@@ -175,7 +173,7 @@ impl World {
         let moving = SupportShape::of(&posed, origin);
         let middle = origin + moving.middle();
         let area = posed.bounds.expanded(fx!(0.001));
-        // Evaluated lazily, because most casts meet nothing.
+        // Lazy, because most casts meet nothing.
         let resting = LazyCell::new(|| self.resting(probe, translation, filter, rest, &accept));
         let mut closest: Option<Ordered<CastHit>> = None;
         let mut interest = Unit::ONE;
@@ -201,8 +199,7 @@ impl World {
         closest.map(|found| found.hit)
     }
 
-    /// Calls `visit` with every hit of a ray, in no defined order. `visit` returns the fraction of the ray up to which
-    /// further hits are of interest.
+    /// Visits hits in no defined order. `visit` returns the fraction up to which further hits are of interest.
     fn each_hit(
         &self,
         origin: Vec2<Fx>,
@@ -231,7 +228,7 @@ impl World {
     }
 }
 
-/// The first touch of a moving shape B with a shape A. `None` also if A is only a seam of the surfaces that B rests on.
+/// First touch of a moving shape B with a shape A. `None` also if A is only a seam.
 fn first_touch<'r>(
     [a, b]: [&SupportShape; 2],
     resting: impl FnOnce() -> Option<&'r Resting>,
@@ -251,14 +248,14 @@ fn first_touch<'r>(
     }
 }
 
-/// A hit with its exact fraction, which has more digits than the public one.
+/// A hit with its fraction before rounding.
 #[derive(Clone, Copy)]
 struct Ordered<H> {
     order: Fraction,
     hit: H,
 }
 
-/// Returns the earlier of two hits. If they are simultaneous, returns the one on the shape in the smaller slot.
+/// The earlier of two hits or, if they are simultaneous, the one in the smaller slot.
 fn earlier<H: Copy>(
     best: Option<Ordered<H>>,
     found: Ordered<H>,
@@ -268,7 +265,7 @@ fn earlier<H: Copy>(
     best.filter(|best| (best.order, shape_of(&best.hit)) <= (found.order, shape)).unwrap_or(found)
 }
 
-/// Converts a fraction to the format of the broad phase, rounded up so that no hit at the same fraction is missed.
+/// Rounded up, so that no hit at the same fraction is missed.
 fn rounded_up(fraction: Fx) -> Unit {
     Unit::from_bits(saturate((fraction.to_bits() >> 2) + 1)).min(Unit::ONE)
 }

@@ -1,19 +1,17 @@
-//! Characters: shapes that a game moves by its own rules instead of forces, and that slide along the surfaces they
-//! meet.
+//! Characters: shapes that a game moves by its own rules, and that slide along the surfaces they meet.
 //!
-//! A move is a cast. At a hit the rest of the translation is deflected along the surface and cast again, until nothing
-//! is left. Casts are exact and stop 0.1 mm before they touch, so that walking does not move a character into a shape.
-//! Planes, as in Box2D's `b2SolvePlanes`, push the character out of shapes that have moved over it. They do not replace
-//! the casts of a walk: sliding along planes would stop the character at corners that it just misses.
+//! A move is a cast. At a hit the rest of the translation is deflected along the surface and cast again. Casts stop 0.1
+//! mm before they touch, so that walking does not move a character into a shape. Planes, as in Box2D's `b2SolvePlanes`,
+//! push the character out of shapes that have moved over it. Sliding along planes instead of casts would stop the
+//! character at corners that it just misses.
 //!
-//! Only the slope distinguishes ground from walls. On ground a character stands without sliding, and walks at the same
-//! speed as on level ground. Along any other surface it slides, but is not deflected upwards. The rest of a walk into a
-//! wall is dropped.
+//! The slope distinguishes ground from walls. On ground a character stands without sliding, and walks at the same speed
+//! at any slope. Along other surfaces it slides without being deflected upwards. The rest of a walk into a wall is
+//! dropped.
 //!
-//! Ground carries the character. A character stores the pose that the body of its ground had at its last move. The next
-//! move starts with the displacement of the point under its feet since then: exact for lifts, turning platforms and
-//! bodies on joints, whatever moves them. The velocity of the body would not be sufficient: it is 0 after a tick for a
-//! body moved by [`World::move_to`], and does not give the displacement of a platform that turns or stops.
+//! A character stores the pose that the body of its ground had at its last move. The next move starts with the
+//! displacement of the point under its feet since then. The velocity of the body would not be sufficient: it is 0 after
+//! [`World::move_to`], and does not give the displacement of a platform that turns or stops.
 
 use alloc::vec::Vec;
 
@@ -66,8 +64,7 @@ pub struct Mover {
 }
 
 impl Mover {
-    /// A character that stands on slopes up to 45 degrees, climbs no steps, and follows ground that falls by up to 0.1
-    /// m in a tick.
+    /// A character that stands on slopes up to 45 degrees, climbs no steps, and follows ground down by 0.1 m in a tick.
     ///
     /// # Errors
     /// [`GeometryError`] if the size of the geometry is out of range.
@@ -86,9 +83,7 @@ impl Mover {
         self
     }
 
-    /// Sets the largest height in metres of steps that the character climbs without a jump, clamped to 0 to 100. A step
-    /// needs room for the character above it. A character with upright sides rises in each tick by at most its
-    /// displacement in that tick, until it is above the step, and then moves onto the step.
+    /// Sets the largest height in metres of steps that the character climbs without a jump, clamped to 0 to 100.
     #[must_use]
     pub fn step_height(mut self, height: Fx) -> Self {
         self.step_height = height.clamp(Fx::ZERO, HEIGHT_MAX);
@@ -97,14 +92,14 @@ impl Mover {
 
     /// Sets the distance in metres by which the ground may fall within a tick while the character still follows it,
     /// clamped to 0 to 100. It should be at least the distance per tick times the tangent of the steepest slope, and at
-    /// least the height of the steps that the character walks down.
+    /// least the height of steps to walk down.
     #[must_use]
     pub fn snap_distance(mut self, distance: Fx) -> Self {
         self.snap_distance = distance.clamp(Fx::ZERO, HEIGHT_MAX);
         self
     }
 
-    /// Returns the geometry at a position in the world, in metres, as a probe for queries.
+    /// Returns the geometry at a position in the world, in metres.
     #[must_use]
     pub fn probe(&self, position: impl Into<Vec2<Fx>>) -> Probe {
         let position = position.into();
@@ -124,7 +119,7 @@ impl Mover {
     }
 }
 
-/// Position, velocity and ground of a character: data that the game stores, saves and hashes.
+/// State of a character, which the game stores, saves and hashes.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, world::World};
@@ -151,9 +146,9 @@ pub struct MoverState {
     /// Position of the centre of the character's geometry in the world, in metres.
     pub position: Vec2<Fx>,
     /// Velocity in m/s: relative to the ground while the character stands on ground, otherwise in the world. A
-    /// character that leaves the ground, by a jump or at an edge, takes the velocity of the ground with it.
+    /// character that leaves the ground takes the velocity of the ground with it.
     pub velocity: Vec2<Fx>,
-    /// The ground that the character stands on, if any, with the body and the surface velocity of that ground.
+    /// The ground that the character stands on, if any.
     pub ground: Option<MoverPlane>,
 }
 
@@ -190,16 +185,15 @@ impl MoverState {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Moved {
-    /// The new state. Its velocity is the old one without the components that the surfaces stop; ground stops only the
-    /// fall. It is relative to the ground or to the world: see [`MoverState::velocity`].
+    /// The new state.
     pub state: MoverState,
     /// The surfaces that the character has met, in order.
     pub met: Vec<MoverPlane>,
 }
 
 impl Moved {
-    /// Whether the character hangs between two slopes that are both too steep to stand on, as in a V. It is then not on
-    /// ground, however long it stays there: a game that allows jumps from ground should allow them here too.
+    /// Whether the character hangs between two slopes that are both too steep to stand on. It is then not on ground,
+    /// but a game should allow it to jump.
     #[must_use]
     pub fn is_wedged(&self) -> bool {
         let leans = |left: bool| {
@@ -211,15 +205,13 @@ impl Moved {
 }
 
 impl World {
-    /// Moves a character for one tick at its velocity, among the shapes that a filter sees at their current poses. The
-    /// world does not change. To let the character push bodies or be seen by queries, give it a kinematic body, leave
-    /// that body out by [`QueryFilter::except`], and let it follow by [`World::move_to`].
+    /// Moves a character for one tick at its velocity, among the shapes that a filter sees. The world does not change.
+    /// To let the character push bodies or be seen by queries, give it a kinematic body, leave that body out by
+    /// [`QueryFilter::except`], and let it follow by [`World::move_to`].
     ///
-    /// The game adds gravity. Moving ground carries the character without further code: by the movement of the ground's
-    /// body since the character's last move, and by the surface speed of a belt. Move characters after [`World::step`]:
-    /// a character that is moved before the step is one tick behind its lift.
-    ///
-    /// Between slopes that are both too steep a character rests without ground: see [`Moved::is_wedged`].
+    /// The game adds gravity. The ground carries the character by the movement of its body since the last move, and by
+    /// the surface speed of a belt. Call this after [`World::step`]: otherwise the character is one tick behind its
+    /// lift.
     ///
     /// ```
     /// use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};

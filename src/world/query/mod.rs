@@ -1,11 +1,8 @@
-//! Queries that find shapes of a world between ticks. A query changes nothing, sees enabled bodies at their current
-//! poses, and allocates nothing except its list of results. Casts that start in contact with more than 3 shapes, and
-//! moves of characters, may allocate temporary lists as well.
+//! Queries that find shapes of a world between ticks. They see enabled bodies at their current poses.
 //!
-//! The order of results is part of the contract. Along a ray or a cast without rotation, results are ordered by their
-//! exact fraction before rounding, so that the nearer of two hits comes first on a ray of any length, and then by slot.
-//! Along a cast that turns, they are ordered by their rounded fraction and then by slot. Lists of shapes and of planes
-//! near a place are in slot order.
+//! The order of results is part of the contract. Hits of rays and of casts without rotation are ordered by their exact
+//! fraction before rounding, then by slot. Casts that turn use the rounded fraction. Lists of shapes and planes near a
+//! place are in slot order.
 
 mod cast;
 mod character;
@@ -30,10 +27,10 @@ use crate::body::{BodyId, Handle, ShapeId};
 use crate::fx;
 use crate::math::Fx;
 
-/// Margin in metres by which queries enlarge the area that they search, because they round positions to a grid.
+/// Margin in metres of the searched area, because positions are rounded to a grid.
 const SLACK: Fx = fx!(0.000001);
 
-/// Selects the shapes that a query sees. The collision filters of the shape and of the query must accept each other.
+/// Selects the shapes that a query sees. The collision filters of shape and query must accept each other.
 ///
 /// ```
 /// use lockstep2d::world::QueryFilter;
@@ -48,16 +45,15 @@ pub struct QueryFilter {
     pub mask: u64,
     /// Whether the query sees sensors.
     pub sensors: bool,
-    /// A body that the query does not see, usually the one for which the query is made.
+    /// A body that the query does not see, usually its own.
     pub except: Option<BodyId>,
-    /// Further bodies that the query does not see, such as the parts of a vehicle.
+    /// Further bodies that the query does not see.
     pub except_also: [Option<BodyId>; Self::EXCEPT_ALSO_MAX],
     /// Treatment of shapes that contain or overlap the start of a ray or cast.
     pub initial_overlap: InitialOverlap,
 }
 
-/// Treatment of shapes that contain or overlap the start of a ray or cast. The field `starts_inside` of a hit marks
-/// such a shape.
+/// Treatment of shapes that contain or overlap the start of a ray or cast. Hits mark them by `starts_inside`.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
@@ -75,13 +71,12 @@ pub struct QueryFilter {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum InitialOverlap {
-    /// A ray reports such shapes, at fraction 0. A cast reports only those into which it would move deeper, so that a
-    /// probe that overlaps a shape slightly can leave it.
+    /// A ray reports such shapes, at fraction 0. A cast reports those into which it would move deeper.
     #[default]
     Resist,
     /// Rays and casts report such shapes, at fraction 0.
     Report,
-    /// Rays and casts do not see such shapes. This includes a floor into which a resting body has sunk by a millimetre.
+    /// Rays and casts do not see such shapes, such as a floor into which a body has sunk slightly.
     Ignore,
 }
 
@@ -103,8 +98,7 @@ impl QueryFilter {
     /// Largest number of bodies in [`QueryFilter::except_also`].
     pub const EXCEPT_ALSO_MAX: usize = 8;
 
-    /// Replaces [`QueryFilter::except_also`] by the bodies of a list. `None` if there are more than
-    /// [`QueryFilter::EXCEPT_ALSO_MAX`]: leave out a ragdoll of many bodies by its category.
+    /// Replaces [`QueryFilter::except_also`]. `None` if there are more than [`QueryFilter::EXCEPT_ALSO_MAX`] bodies.
     #[must_use]
     pub fn except_all(mut self, bodies: &[BodyId]) -> Option<Self> {
         self.except_also = [None; Self::EXCEPT_ALSO_MAX];
@@ -121,7 +115,6 @@ impl QueryFilter {
         self
     }
 
-    /// Whether the query leaves out a body.
     fn leaves_out(&self, body: BodyId) -> bool {
         self.except == Some(body) || self.except_also.contains(&Some(body))
     }
@@ -135,12 +128,11 @@ impl QueryFilter {
 }
 
 impl World {
-    /// Whether a shape is in the world, on an enabled body.
     fn is_present(&self, id: ShapeId) -> bool {
         self.state.shapes.get(id).is_some() && self.state.body_of(id.slot()).enabled
     }
 
-    /// Returns the handle of the shape in a slot if the query sees it.
+    /// The handle of the shape in a slot if the query sees it.
     fn seen(&self, slot: u32, filter: QueryFilter) -> Option<ShapeId> {
         let shape = self.state.shapes.at(slot);
         let accepted =

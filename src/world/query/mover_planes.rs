@@ -1,13 +1,12 @@
-//! Movement of a shape by the game: the surfaces near the shape as half-planes, and the translation that they allow.
+//! Surfaces near a shape as half-planes, and the translation that they allow.
 //!
 //! ```text
 //! minimise |x - target|²   subject to   s_i + n_i . x >= 0
 //! ```
 //!
 //! for planes with separations `s_i` and normals `n_i`. A plane with a limited push is soft: the mover may enter it. If
-//! there are soft planes, or no point is outside of all planes, the planes push along their normals in turn until the
-//! pushes hardly change, or for 64 rounds. A later push of a plane may reduce its accumulated push, but not below 0 (C.
-//! Hildreth, "A Quadratic Programming Procedure", 1957), as in Box2D v3's `b2SolvePlanes`.
+//! there are soft planes, or no point is outside of all planes, the planes push along their normals in turn for at most
+//! 64 rounds (C. Hildreth, "A Quadratic Programming Procedure", 1957), as in Box2D v3's `b2SolvePlanes`.
 
 use alloc::vec::Vec;
 
@@ -21,10 +20,9 @@ use crate::fx;
 use crate::math::{Angle, Fx, Unit, Vec2, fx_div};
 use crate::world::World;
 
-/// Largest number of rounds in which planes push in turn.
 const ITERATIONS_MAX: u32 = 64;
 
-/// Convergence threshold: total change of the pushes in a round, in metres, below which the planes count as solved.
+/// Total change of the pushes in a round, in metres, at which the planes count as solved.
 const TOLERANCE: Fx = fx!(0.000001);
 
 /// Sine of the angle between two planes below which they count as parallel.
@@ -53,13 +51,12 @@ pub struct MoverPlane {
     pub shape: ShapeId,
     /// The body of that shape.
     pub body: BodyId,
-    /// Position of the body's origin at the time of the query, in the world, in metres. Together with `body_angle` it
-    /// gives the displacement of the surface since then.
+    /// Position of the body's origin at the time of the query, in the world, in metres.
     pub body_position: Vec2<Fx>,
     /// Rotation of the body at the time of the query.
     pub body_angle: Angle,
-    /// Velocity of the surface at `point` in m/s: the velocity of the body there plus the surface speed of the shape. A
-    /// body that was moved by [`World::move_to`] has no velocity after the tick.
+    /// Velocity of the surface at `point` in m/s, including its surface speed. A body that was moved by
+    /// [`World::move_to`] has no velocity after the tick.
     pub velocity: Vec2<Fx>,
     /// Outward normal, towards the mover.
     pub normal: Vec2<Unit>,
@@ -69,13 +66,13 @@ pub struct MoverPlane {
     pub point: Vec2<Fx>,
     /// Largest push in metres: [`Fx::MAX`] if the plane is rigid.
     pub push_limit: Fx,
-    /// Push along the normal in metres, a result of [`solve_planes`]: 0 if the plane does not limit the translation.
+    /// Push along the normal in metres, set by [`solve_planes`].
     pub push: Fx,
 }
 
 impl World {
-    /// Returns a plane for every shape within a distance in metres of a probe, in slot order. Chain links that are
-    /// solid from one side are left out if the probe's middle is on the other side. Empty if the distance is negative.
+    /// Returns a plane for every shape within a distance in metres of a probe, in slot order. Leaves out chain links
+    /// that are solid from one side if the probe's middle is on the other side.
     ///
     /// ```
     /// use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
@@ -114,7 +111,6 @@ impl World {
         planes
     }
 
-    /// A rigid plane on the surface of a shape of the world.
     pub(super) fn mover_plane(
         &self,
         shape: ShapeId,
@@ -140,7 +136,7 @@ impl World {
     }
 }
 
-/// A length or speed along a surface, clockwise about its shape: to the right on ground.
+/// A length or speed along a surface, to the right on ground.
 pub(super) fn along_surface(normal: Vec2<Unit>, length: Fx) -> Vec2<Fx> {
     Vec2::new(normal.y, -normal.x).widen().scale(length)
 }
@@ -148,10 +144,9 @@ pub(super) fn along_surface(normal: Vec2<Unit>, length: Fx) -> Vec2<Fx> {
 /// Returns the translation in metres that is nearest to a wanted one and stays outside of all planes. Sets each plane's
 /// `push`.
 ///
-/// If all planes are rigid and some point is outside of all of them, the result is exact except for rounding. Otherwise
-/// the planes push in turn. A round multiplies the error of two planes with normals `n` and `m` by `(n . m)²`, so that
-/// 64 rounds are enough if the angle between their normals is 25 to 155 degrees. In a flatter or sharper corner, or
-/// between two walls, the result may lie inside a plane: follow it with a cast, as [`World::move_character`] does.
+/// The result is exact except for rounding if all planes are rigid and some point is outside of all of them. If not,
+/// the planes push in turn, which converges if two normals differ by 25 to 155 degrees. At other angles, or between two
+/// walls, the result may lie inside a plane: follow it with a cast.
 #[must_use]
 pub fn solve_planes(wanted: Vec2<Fx>, planes: &mut [MoverPlane]) -> Vec2<Fx> {
     match nearest_outside(wanted, planes) {
@@ -169,7 +164,6 @@ pub fn solve_planes(wanted: Vec2<Fx>, planes: &mut [MoverPlane]) -> Vec2<Fx> {
 }
 
 impl MoverPlane {
-    /// The separation in metres after a translation.
     fn height(&self, translation: Vec2<Fx>) -> Fx {
         self.separation.saturating_add(self.normal.widen().dot(translation))
     }
@@ -233,18 +227,18 @@ fn pushed_in_turn(wanted: Vec2<Fx>, planes: &mut [MoverPlane]) -> Vec2<Fx> {
     translation
 }
 
-/// Returns the velocity nearest to a given one that does not enter any rigid plane that has pushed. Unlike Box2D's
-/// `b2ClipVector` it does not depend on the order of the planes.
+/// Returns the velocity nearest to a given one that enters no rigid plane that has pushed. Unlike that of Box2D's
+/// `b2ClipVector`, the result does not depend on the order of the planes.
 #[must_use]
 pub fn clip_velocity(velocity: Vec2<Fx>, planes: &[MoverPlane]) -> Vec2<Fx> {
     let rigid = planes.iter().filter(|plane| plane.push > Fx::ZERO && plane.push_limit == Fx::MAX);
     clipped(velocity, rigid.map(|plane| plane.normal))
 }
 
-/// The vector nearest to `v` with no component against any of the normals. Such vectors form a cone, so that the result
-/// is `v` itself, its projection on one of the cone's two borders, or zero.
+/// The vector nearest to `v` with no component against the normals. Such vectors form a cone: the result is `v`, its
+/// projection on a border of the cone, or zero.
 pub(super) fn clipped(v: Vec2<Fx>, normals: impl Iterator<Item = Vec2<Unit>> + Clone) -> Vec2<Fx> {
-    // A projected vector keeps a component along the normal, because the normal is rounded.
+    // The normal is rounded, so that a projected vector keeps a component along it.
     let size = v.x.saturating_abs().max(v.y.saturating_abs());
     let rounding = (size >> 26_u32) + Fx::DELTA * 4;
     let is_free = |w: Vec2<Fx>| normals.clone().all(|n| n.widen().dot(w) >= -rounding);
@@ -276,8 +270,7 @@ mod tests {
         }
     }
 
-    /// Oracle: the nearest point outside of all planes is the target, its projection on one plane, or the intersection
-    /// of two.
+    /// Oracle: the nearest point is the target, its projection on one plane, or the intersection of two.
     fn nearest(target: Vec2<Fx>, planes: &[MoverPlane], slack: Fx) -> Option<Vec2<Fx>> {
         let height = |plane: &MoverPlane, x: Vec2<Fx>| plane.separation + plane.normal.widen().dot(x);
         let mut candidates = alloc::vec![target];
@@ -319,14 +312,13 @@ mod tests {
             let found = solve_planes(target, &mut planes);
             let least = planes.iter().map(|plane| plane.height(found)).min().expect("planes");
             assert!(least > fx!(-0.0000001), "{least} {target:?} {planes:?}");
-            // The oracle's slack displaces the intersection of nearly parallel planes by more than the slack.
+            // The oracle's slack displaces the intersection of nearly parallel planes.
             let expected = nearest(target, &planes, fx!(0.00000001)).expect("the planes leave room");
             worst = worst.max(found.distance(target) - expected.distance(target));
             assert!(worst < fx!(0.000001), "{found:?} {expected:?} {target:?} {planes:?}");
         }
     }
 
-    /// Compares rigid planes with the same planes under a limit that no push reaches.
     #[test]
     fn planes_that_push_in_turn_get_there_too() {
         let mut rng = Rng::new(2);

@@ -1,5 +1,3 @@
-//! Overlaps, nearest shapes and distances.
-
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
@@ -25,8 +23,8 @@ use crate::world::World;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClosestPoints {
-    /// Distance between the surfaces in metres. If the shapes overlap, it is negative: the length of the shortest
-    /// displacement that separates them, negated.
+    /// Distance between the surfaces in metres; for overlapping shapes, the negated length of the shortest separating
+    /// displacement.
     pub distance: Fx,
     /// Point on the first surface, in the world, in metres.
     pub point_a: Vec2<Fx>,
@@ -37,7 +35,7 @@ pub struct ClosestPoints {
 }
 
 impl World {
-    /// Returns every shape that overlaps a box, borders included. Empty if the box is not valid.
+    /// Returns the shapes that overlap a box, borders included. Empty if the box is not valid.
     #[must_use]
     #[doc(alias = "overlap_aabb")]
     pub fn overlap_box(&self, area: Aabb, filter: QueryFilter) -> Vec<ShapeId> {
@@ -51,7 +49,7 @@ impl World {
         self.overlapping(area, filter, |posed| overlap(&SupportShape::of(posed, origin), &support))
     }
 
-    /// Returns every shape that overlaps a probe, borders included.
+    /// Returns the shapes that overlap a probe, borders included.
     #[must_use]
     pub fn overlap_shape(&self, probe: &Probe, filter: QueryFilter) -> Vec<ShapeId> {
         let posed = probe.posed();
@@ -60,7 +58,7 @@ impl World {
         self.overlapping(posed.bounds, filter, |other| overlap(&SupportShape::of(other, origin), &support))
     }
 
-    /// Returns every shape that contains a point in the world, in metres, borders included.
+    /// Returns the shapes that contain a point in the world, in metres, borders included.
     #[must_use]
     #[doc(alias = "point test")]
     #[doc(alias = "pick")]
@@ -72,8 +70,7 @@ impl World {
     }
 
     /// Returns the shape nearest to a point, at most `within` metres away, and the nearest points: A is the point of
-    /// the query, B is on the shape. A point inside a shape has a negative distance from it. `None` if `within` is
-    /// negative. With [`Fx::MAX`] no shape is too far away.
+    /// the query, B is on the shape. A point inside a shape has a negative distance.
     #[must_use]
     #[doc(alias = "nearest")]
     pub fn closest(
@@ -98,14 +95,13 @@ impl World {
                     closest = Some((shape, found));
                 }
             }
-            // After a negative distance the search continues at radius 0: the point may be deeper inside another shape.
+            // After a negative distance the search goes on: the point may be deeper inside another shape.
             closest.map_or(within, |(_, best)| best.distance.max(Fx::ZERO)).saturating_add(SLACK)
         });
         closest
     }
 
-    /// Returns the distance between two shapes and their nearest points. `None` if one of them was removed or its body
-    /// is disabled.
+    /// Returns the distance between two shapes and their nearest points. `None` if one was removed or disabled.
     #[must_use]
     pub fn distance(&self, a: ShapeId, b: ShapeId) -> Option<ClosestPoints> {
         (self.is_present(a) && self.is_present(b)).then_some(())?;
@@ -116,7 +112,7 @@ impl World {
     }
 
     /// Returns the distance between a probe and a shape and their nearest points, A on the probe and B on the shape.
-    /// `None` if the shape was removed or its body is disabled.
+    /// `None` if the shape was removed or disabled.
     #[must_use]
     pub fn probe_distance(&self, probe: &Probe, shape: ShapeId) -> Option<ClosestPoints> {
         self.is_present(shape).then_some(())?;
@@ -142,7 +138,7 @@ impl World {
         found
     }
 
-    /// Calls `visit` with every shape whose box overlaps an area, and possibly with some others, in no defined order.
+    /// Visits the shapes whose boxes overlap an area, and possibly others, in no defined order.
     pub(super) fn each_overlapping(
         &self,
         area: Aabb,
@@ -158,7 +154,7 @@ impl World {
     }
 }
 
-/// The nearest points, in world coordinates, of two shapes that are given relative to an origin.
+/// Nearest points in the world of two shapes that are relative to an origin.
 pub(super) fn proximity(a: &SupportShape, b: &SupportShape, origin: Vec2<Fx>) -> ClosestPoints {
     let found = distance(a, b);
     ClosestPoints {

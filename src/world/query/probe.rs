@@ -1,5 +1,3 @@
-//! Probes: shapes that are not in the world, for queries.
-
 use crate::body::{Geometry, GeometryError};
 use crate::collision::PosedShape;
 use crate::math::{Angle, Fx, Rot, Vec2};
@@ -31,12 +29,11 @@ impl Probe {
         Ok(Probe { position, geometry, rotation: Rot::IDENTITY })
     }
 
-    /// A probe with a geometry that has been validated.
+    /// The geometry must be valid.
     pub(super) const fn of(geometry: Geometry, position: Vec2<Fx>) -> Self {
         Probe { position, geometry, rotation: Rot::IDENTITY }
     }
 
-    /// A probe at the pose of a shape of the world.
     pub(super) const fn posed_at(geometry: Geometry, position: Vec2<Fx>, rotation: Rot) -> Self {
         Probe { position, geometry, rotation }
     }
@@ -56,7 +53,7 @@ impl Probe {
         self
     }
 
-    /// The position of the probe's centre in the world, in metres.
+    /// Position of the probe's centre in the world, in metres.
     #[must_use]
     pub const fn position(&self) -> Vec2<Fx> {
         self.position

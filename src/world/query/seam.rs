@@ -1,12 +1,11 @@
-//! Casts along a floor of many shapes do not stop at the seams.
+//! Seams: casts along a floor of many shapes do not stop where two shapes meet.
 //!
 //! A body at rest lies a little lower than the surface, so that a cast along the floor would meet the side of the next
-//! tile, or the end of the next link of a chain. A hit of a cast that starts in contact is therefore confirmed by a
-//! second cast, which starts where the shape just rests on the surfaces that it touches. An obstacle that the second
-//! cast does not meet is a seam.
+//! tile or chain link. A hit of a cast that starts in contact is therefore confirmed by a second cast, from where the
+//! shape just rests on the touched surfaces. An obstacle that the second cast does not meet is a seam.
 //!
-//! Contacts that the cast leaves or slides along lift the shape. A contact that the cast moves into stops it. A shape
-//! between a floor and a ceiling cannot be lifted off both, so that there is also a second cast for each surface alone.
+//! Contacts that the cast leaves or slides along lift the shape. A contact that it moves into stops it. Between a floor
+//! and a ceiling the shape cannot be lifted off both, so that there is also a second cast for each surface alone.
 
 use smallvec::SmallVec;
 
@@ -20,17 +19,15 @@ use crate::fx;
 use crate::math::{Fx, Unit, Vec2};
 use crate::world::World;
 
-/// Tolerances of the position in which a shape rests on the surfaces that it touches.
+/// Tolerances of the position in which a shape rests.
 #[derive(Clone, Copy)]
 pub(super) struct Rest {
-    /// Largest distance in metres at which a surface counts as touched. A cast along the surface may stop at this
-    /// distance.
+    /// Largest distance in metres at which a surface counts as touched.
     touching: Fx,
-    /// Distance in metres from the surfaces at which the second cast starts. It is 5 µm larger than the gap at which
-    /// the first cast stops, so that ledges of up to 5 µm count as seams: tiles of a ramp are flush to within a
-    /// micrometre.
+    /// Distance in metres from the surfaces at which the second cast starts. It exceeds the gap at which the first cast
+    /// stops by 5 µm, so that ledges of up to 5 µm count as seams.
     gap: Fx,
-    /// Largest distance in metres by which the cast may approach a surface that it slides along.
+    /// Largest approach in metres of a cast to a surface that it slides along.
     approach_max: Fx,
 }
 
@@ -38,21 +35,20 @@ impl Rest {
     pub(super) const CAST: Rest =
         Rest { touching: Self::SKIN_MAX, gap: fx!(0.000105), approach_max: fx!(0.001) };
 
-    /// Tolerances of casts that turn, whose gap is up to 0.15 mm.
+    /// For casts that turn, whose gap is up to 0.15 mm.
     pub(super) const TURNING: Rest =
         Rest { touching: fx!(0.000155), gap: fx!(0.000155), approach_max: fx!(0.001) };
 
-    /// Tolerances of characters. No approach is allowed, because each move would bring a character closer to the
-    /// surface.
+    /// For characters. Each approach would bring a character closer to the surface.
     pub(super) const CHARACTER: Rest =
         Rest { touching: Self::SKIN_MAX, gap: fx!(0.000105), approach_max: Fx::ZERO };
 
     const SKIN_MAX: Fx = SKIN.saturating_add(SKIN_TOLERANCE);
 
     /// Distance in metres by which a cast along a translation approaches a surface, or `None` if it moves into the
-    /// surface. A cast slides along a surface that it approaches by at most half a millimetre per metre and at most
-    /// `approach_max`: the bodies of a pile are parallel to within 0.1 mm per metre. The distance includes 1 µm per
-    /// metre for the next tile, because the sides of rotated tiles are parallel to within 0.5 µm per metre.
+    /// surface. Sliding allows half a millimetre per metre, because the bodies of a pile are parallel to within 0.1 mm
+    /// per metre. A margin of 1 µm per metre covers the sides of rotated tiles, which are parallel to within 0.5 µm per
+    /// metre.
     fn approach(self, normal: Vec2<Unit>, translation: Vec2<Fx>) -> Option<Fx> {
         let length = translation.length();
         let approach = normal.widen().dot(translation).saturating_neg().max(Fx::ZERO);
@@ -65,19 +61,19 @@ impl Rest {
 /// Depth in metres up to which an overlap counts as a contact.
 const DEPTH_MAX: Fx = fx!(0.02);
 
-/// The second casts, from the positions where the shape just rests on the surfaces that it touches.
+/// The second casts.
 pub(super) struct Resting {
     /// The shape at the start of the first cast, relative to the position of the probe.
     moving: SupportShape,
-    /// Displacements in metres from the start of the first cast: to where the shape rests on all surfaces that it
-    /// touches and, if there are several, to where it rests on each one that it has to move away from.
+    /// Displacements in metres to where the shape rests on all touched surfaces and, if there are several, to where it
+    /// rests on each one that it has to move away from.
     pub(super) lifts: SmallVec<[Vec2<Fx>; 4]>,
     pub(super) translation: Vec2<Fx>,
 }
 
 impl Resting {
-    /// Confirms a hit on a shape; `None` if the hit is a seam. Takes the normal and the point from the first of the
-    /// second casts, because the first cast may have met a corner below the surface.
+    /// Confirms a hit; `None` if it is a seam. Takes the normal and the point from a second cast, because the first may
+    /// have met a corner below the surface.
     pub(super) fn confirm(&self, other: &SupportShape, hit: ShapeHit) -> Option<ShapeHit> {
         let mut confirmed = None;
         for &lift in &self.lifts {
@@ -89,8 +85,7 @@ impl Resting {
 }
 
 impl World {
-    /// The second casts of a probe along a translation, from the positions where the probe rests on the shapes that it
-    /// touches. `None` if it touches nothing.
+    /// The second casts of a probe. `None` if it touches nothing.
     pub(super) fn resting(
         &self,
         probe: &Probe,
@@ -121,7 +116,7 @@ impl World {
                 planes.push(self.mover_plane(shape, start.normal, separation, origin));
             }
         });
-        // The broad phase finds the shapes in no defined order.
+        // The broad phase finds shapes in no defined order.
         planes.sort_unstable_by_key(|plane| plane.shape);
         let out = solve_planes(Vec2::ZERO, &mut planes);
         let overlapping = planes.iter().filter(|plane| plane.separation < Fx::ZERO);
@@ -129,8 +124,7 @@ impl World {
         let others =
             if planes.len() > 1 { overlapping.map(off).collect() } else { SmallVec::<[_; 4]>::new() };
         let lifts: SmallVec<[Vec2<Fx>; 4]> = core::iter::once(out).chain(others).collect();
-        // From a resting position an obstacle may be further away, so the casts are longer by twice the largest
-        // displacement.
+        // From a resting position an obstacle may be further away by twice the largest displacement.
         let forwards = translation.normalized().unwrap_or(Vec2::ZERO).widen();
         let furthest = lifts.iter().map(|lift| lift.length()).max().unwrap_or(Fx::ZERO);
         let beyond = forwards.scale(furthest * 2);

@@ -1,5 +1,4 @@
-//! Queries of one or two shapes without a world: rays, points, distances, manifolds and times of impact. A [`Probe`] is
-//! a shape outside of a world, with a pose; [`World::probe_of`] copies a shape of the world to one.
+//! Queries of one or two shapes without a world.
 
 use super::Probe;
 use super::overlap::{ClosestPoints, proximity};
@@ -33,7 +32,7 @@ pub struct ProbeHit {
     pub starts_inside: bool,
 }
 
-/// Motion of a shape for [`Probe::time_of_impact`]: a translation and a rotation, both at constant speed.
+/// Motion of a shape for [`Probe::time_of_impact`]: a translation and a rotation at constant speed.
 ///
 /// ```
 /// use lockstep2d::{body::{Geometry, Polygon}, fx, math::Vec2};
@@ -63,8 +62,8 @@ pub struct Displacement {
 pub enum TimeOfImpact {
     /// The shapes do not touch.
     Separated,
-    /// The shapes first come within 0.15 mm of each other at this fraction of their displacements. The fraction is 0 if
-    /// they touch at the start without overlapping.
+    /// The shapes first come within 0.15 mm of each other at this fraction of their displacements, 0 if they touch at
+    /// the start without overlapping.
     Hit {
         /// Fraction, 0 to 1.
         fraction: Fx,
@@ -79,8 +78,7 @@ pub enum TimeOfImpact {
 }
 
 impl World {
-    /// Returns a shape of the world as a probe at its current pose, for queries of that shape alone. `None` if it was
-    /// removed or its body is disabled.
+    /// Returns a shape of the world as a probe at its current pose. `None` if it was removed or its body is disabled.
     ///
     /// ```
     /// use lockstep2d::body::{BodyDef, Geometry, Polygon, ShapeDef};
@@ -106,7 +104,7 @@ impl World {
 }
 
 impl Probe {
-    /// Whether the shape contains a point in the world, in metres, its border included.
+    /// Whether the shape contains a point in the world, in metres, border included.
     #[must_use]
     #[doc(alias = "point test")]
     pub fn contains_point(&self, point: impl Into<Vec2<Fx>>) -> bool {
@@ -137,8 +135,7 @@ impl Probe {
         })
     }
 
-    /// Returns where this shape meets another as it moves along a translation in metres without rotation. It stops as
-    /// in [`World::cast_shape`].
+    /// Returns where this shape meets another as it moves along a translation in metres, as in [`World::cast_shape`].
     #[must_use]
     #[doc(alias = "shapecast")]
     pub fn cast(&self, translation: impl Into<Vec2<Fx>>, other: &Probe) -> Option<ProbeHit> {
@@ -155,7 +152,7 @@ impl Probe {
         })
     }
 
-    /// Returns the distance from another shape and the nearest points, A on this shape and B on the other one.
+    /// Returns the distance from another shape and the nearest points, A on this shape and B on the other.
     #[must_use]
     #[doc(alias = "gjk")]
     pub fn distance(&self, other: &Probe) -> ClosestPoints {
@@ -170,9 +167,8 @@ impl Probe {
         overlap(&self.support(origin), &other.support(origin))
     }
 
-    /// Returns the contact manifold with another shape, as the solver gets it for two shapes that are at rest. It is
-    /// empty if the surfaces are more than `margin` metres apart, 0 to 15, and for two shapes that are segments or
-    /// links.
+    /// Returns the contact manifold with another shape, as the solver gets it for shapes at rest. Empty if the surfaces
+    /// are more than `margin` metres apart, 0 to 15, or if both shapes are segments or links.
     #[must_use]
     #[doc(alias = "collide")]
     pub fn manifold(&self, other: &Probe, margin: Fx) -> Manifold {
@@ -211,7 +207,6 @@ impl Probe {
         }
     }
 
-    /// The shape relative to an origin.
     fn support(&self, origin: Vec2<Fx>) -> SupportShape {
         SupportShape::of(&self.posed(), origin)
     }

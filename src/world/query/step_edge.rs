@@ -1,5 +1,3 @@
-//! Kinds of surfaces that a character meets, and the edges of steps that it climbs.
-
 use super::character::SLOPE_ROUNDING;
 use super::mover_planes::MoverPlane;
 use super::walk::Walk;
@@ -10,7 +8,6 @@ use crate::math::{Fx, Vec2};
 /// Distance in metres behind the edge of a step at which there has to be ground.
 const STEP_DEPTH: Fx = fx!(0.02);
 
-/// Kind of a surface for a character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Surface {
     Ground,
@@ -50,10 +47,10 @@ impl Walk<'_> {
         if self.world.cast_ray_any(here, above - here, self.filter) {
             return false;
         }
-        // An edge that the character only just leaves may be below its feet, by no more than the gap of a cast.
+        // An edge that the character is just leaving may be below its feet by the gap of a cast.
         let down = Vec2::new(Fx::ZERO, -(SKIN + SKIN) - self.mover.step_max());
         let found = self.world.cast_ray(above, down, self.filter);
-        // Ground below the surface is the floor under something that hangs over it, such as a table.
+        // Ground below the surface may be the floor under a table.
         let is_edge = |ground: Vec2<Fx>| plane.point.y <= ground.y.saturating_add(STEP_DEPTH);
         found.is_some_and(|hit| {
             self.mover.is_ground(hit.normal)

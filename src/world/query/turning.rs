@@ -1,4 +1,4 @@
-//! Casts that turn: a translation and a rotation at the same time, by conservative advancement.
+//! Casts that turn: translation and rotation at once, by conservative advancement.
 
 use super::cast::CastHit;
 use super::overlap::proximity;
@@ -11,7 +11,6 @@ use crate::collision::{
 use crate::math::{Aabb, Fx, Unit, Vec2, saturate, saturate_wide};
 use crate::world::World;
 
-/// A probe in motion.
 struct Turning {
     support: SupportShape,
     sweep: Sweep,
@@ -21,10 +20,9 @@ impl World {
     /// Returns the first shape that a probe meets as it moves along a translation in metres while it turns about its
     /// position, both at constant speed. The rotation is in turns, counter-clockwise, and may exceed a turn.
     ///
-    /// The probe stops 0.1 to 0.15 mm before it touches. A shape that the probe touches at the start stops it once the
-    /// probe has moved 0.05 to 0.1 mm deeper. A probe other than a circle that turns by 163 turns or more, or that
-    /// turns and reaches further than 1024 m from its position, is stopped as soon as the box around the disc in which
-    /// it turns may reach the box around a shape.
+    /// The probe stops 0.1 to 0.15 mm before it touches. A shape that it touches at the start stops it once it has
+    /// moved up to 0.1 mm deeper. For 163 turns or more, or a probe that reaches further than 1024 m from its position,
+    /// hits may be early.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, math::Vec2, world::{Probe, World}};
@@ -64,8 +62,8 @@ impl World {
                 return interest;
             };
             if let Some(fraction) = turning.first_touch(posed, resting.as_ref(), filter.initial_overlap) {
-                // A search that gives up may report a shape before the probe reaches it. Without the lower bound
-                // `entry`, the order of the visits would then decide which shape is the first.
+                // A search that gives up may report a shape early. Without the lower bound `entry`, the order of visits
+                // would then decide which shape is the first.
                 let found = (fraction.max(entry(area, translation, posed.bounds)), shape);
                 let best = closest.map_or(found, |best| best.min(found));
                 closest = Some(best);
@@ -80,7 +78,7 @@ impl World {
 }
 
 impl Turning {
-    /// Fraction at which the probe first touches a shape that is not a seam of the surfaces that it rests on.
+    /// Fraction of the first touch with a shape that is not a seam.
     fn first_touch(
         &self,
         other: &PosedShape,
@@ -105,8 +103,8 @@ impl Turning {
         Some(fraction)
     }
 
-    /// Fraction at which the probe touches a shape on its way. A search that does not end counts as a hit where it
-    /// gives up, so that the probe passes through no shape.
+    /// Fraction of the first touch. A search that does not end counts as a hit where it gives up, so that the probe
+    /// passes through no shape.
     fn touch(&self, other: &SupportShape, centre: Vec2<Fx>, sweep: &Sweep) -> Option<Fx> {
         let still = Sweep::fixed(centre);
         match first_impact((other, &still), (&self.support, sweep), SKIN, StartPolicy::Resist) {
@@ -116,7 +114,6 @@ impl Turning {
         }
     }
 
-    /// The hit on a shape at a fraction of the motion.
     fn hit(&self, other: &PosedShape, shape: ShapeId, fraction: Fx) -> CastHit {
         let origin = self.sweep.start;
         let start = distance(&SupportShape::of(other, origin), &self.support);
@@ -128,7 +125,7 @@ impl Turning {
     }
 }
 
-/// Fraction of a translation before which an area does not reach a box, rounded down.
+/// Fraction of a translation up to which an area does not reach a box, rounded down.
 fn entry(area: Aabb, translation: Vec2<Fx>, aabb: Aabb) -> Fx {
     let on_axis = |[lower, upper]: [Fx; 2], [box_lower, box_upper]: [Fx; 2], way: Fx| {
         let bits = |at: Fx| i128::from(at.to_bits());

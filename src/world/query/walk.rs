@@ -1,5 +1,5 @@
-//! A character's move in a tick: it is carried by its ground, pushed out of shapes that have moved over it, moved along
-//! its velocity, and put down on the ground.
+//! A character's move in a tick: it is carried by its ground, pushed out of shapes, moved along its velocity, and put
+//! down on the ground.
 
 use alloc::vec::Vec;
 
@@ -14,35 +14,32 @@ use crate::fx;
 use crate::math::{Fx, Rot, Unit, Vec2};
 use crate::world::World;
 
-/// Largest number of casts in a slide or on the way down to the ground, and of attempts to push a character out of
-/// overlaps.
+/// Largest number of casts in a slide or a snap, and of attempts to push a character out.
 const TURNS_MAX: u32 = 8;
 
 /// Length in metres below which the rest of a translation is dropped.
 const LEFT_OVER: Fx = fx!(0.000001);
 
-/// Largest distance in metres from a surface on which a character stands: the gap of casts and its rounding.
+/// Largest distance in metres from ground on which a character stands: the gap of casts and its rounding.
 const STANDING: Fx = fx!(0.000105);
 
-/// Treatment of shapes that overlap the character, in a cast.
+/// Effect of shapes that overlap the character on a cast.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Overlaps {
     /// They stop a cast that goes deeper.
     Stop,
-    /// Only shapes of fixed bodies stop a cast that goes deeper. All others have moved over the character in this tick,
-    /// such as the other platforms of a train, and do not stop the cast. After the character has been carried, it is
-    /// pushed out of them.
+    /// Shapes of fixed bodies stop a cast that goes deeper. Others, such as the platforms of a train, have moved over
+    /// the character and push it out after it has been carried.
     Pass,
 }
 
-/// A body that has carried the character, and its velocity under the feet in m/s.
+/// A body that carries the character, and its velocity under the feet in m/s.
 #[derive(Clone, Copy)]
 pub(super) struct Carrier {
     body: BodyId,
     velocity: Vec2<Fx>,
 }
 
-/// A move in progress.
 pub(super) struct Walk<'a> {
     pub(super) world: &'a World,
     pub(super) mover: &'a Mover,
@@ -53,7 +50,7 @@ pub(super) struct Walk<'a> {
     pub(super) on_ground: bool,
     /// Normal of the ground that the character walks along.
     along: Option<Vec2<Unit>>,
-    /// Height in metres that the character has gained by walking along ground.
+    /// Height in metres gained by walking.
     climbed: Fx,
     /// Upward speed in m/s at which ground has pushed the character.
     lifted: Fx,
@@ -84,8 +81,7 @@ impl<'a> Walk<'a> {
         self.surfaces.into_iter().map(|(_, plane)| plane).collect()
     }
 
-    /// Moves the character by the displacement of the point under its feet since its last move, or until it meets a
-    /// shape of a body other than its ground.
+    /// Moves the character with the point under its feet, or until it meets a shape of another body.
     pub(super) fn carry(&mut self, ground: &MoverPlane) -> Option<Carrier> {
         let body = self.world.body(ground.body).filter(|body| body.is_enabled())?;
         let turned = body.angle() - ground.body_angle;
@@ -106,7 +102,7 @@ impl<'a> Walk<'a> {
         Some(Carrier { body: ground.body, velocity })
     }
 
-    /// Moves the character out of shapes that overlap it, or until it meets another shape on the way out.
+    /// Moves the character out of overlapping shapes, or until it meets another shape.
     pub(super) fn push_out(&mut self) {
         let rate = i64::from(self.world.state.config.tick_rate);
         for _ in 0..TURNS_MAX {
@@ -133,7 +129,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Moves the character at its own velocity plus the speed of a belt: along the ground that it walks on, or freely.
+    /// Moves the character at its own velocity plus that of a belt: along the ground, or freely.
     pub(super) fn walk(&mut self) {
         let translation = in_tick(self.world, self.from.velocity);
         let Some(ground) = self.from.ground else { return self.slide(translation) };
@@ -148,8 +144,8 @@ impl<'a> Walk<'a> {
         self.climbed = (self.position().y - start).max(Fx::ZERO);
     }
 
-    /// Finds the ground below the character, if it was on ground or has met ground, and moves the character down to the
-    /// ground. A character that has walked off the ground falls.
+    /// Moves a character that was on ground or has met ground down to the ground. A character that has walked off the
+    /// ground falls.
     pub(super) fn ground(&mut self, carrier: Option<Carrier>) -> Option<MoverPlane> {
         let walked = self.along.is_some();
         let found = self.find_ground().filter(|plane| !self.leaves(plane));
@@ -165,7 +161,7 @@ impl<'a> Walk<'a> {
         })
     }
 
-    /// The part of the velocity that the surfaces do not stop: relative to the ground if there is one.
+    /// The part of the velocity that surfaces do not stop, relative to the ground if there is one.
     pub(super) fn velocity_left(&self, ground: Option<&MoverPlane>, carrier: Option<Carrier>) -> Vec2<Fx> {
         let left = clipped(self.stopped_by_steep(self.from.velocity), self.limits(false));
         match (&self.from.ground, ground) {
@@ -179,18 +175,16 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Whether the character jumps off its ground, or flies upwards.
     fn rises(&self) -> bool {
         self.from.velocity.y > Fx::ZERO
     }
 
-    /// Whether the character moves away from a surface.
     fn leaves(&self, plane: &MoverPlane) -> bool {
         let ground = if self.from.is_on_ground() { Fx::ZERO } else { plane.velocity.y.max(self.lifted) };
         self.from.velocity.y > ground
     }
 
-    /// Surface speed of the shape of a plane in m/s; 0 if it was removed.
+    /// Surface speed of a plane in m/s; 0 if the shape was removed.
     fn belt(&self, plane: &MoverPlane) -> Fx {
         self.world.shape(plane.shape).map_or(Fx::ZERO, |shape| shape.material().surface_speed)
     }
@@ -212,14 +206,14 @@ impl<'a> Walk<'a> {
                 Surface::Ground | Surface::Step => {
                     self.on_ground = true;
                     if !self.rises() {
-                        // Walking along ground keeps the length of the translation at any slope.
+                        // Walking keeps the length of the translation at any slope.
                         let length =
                             self.along.map_or(left.x, |normal| along_surface(normal, Fx::ONE).dot(left));
                         left = along_surface(n, length);
                         self.along = Some(n);
                     }
                 }
-                // A wall does not turn the rest of a walk upwards.
+                // A wall does not turn a walk upwards.
                 Surface::Steep | Surface::Wall if self.on_ground && !self.rises() => {
                     if (n.x < 0) == (left.x > 0) && n.x != 0 {
                         left = Vec2::new(Fx::ZERO, left.y.min(Fx::ZERO));
@@ -231,8 +225,8 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Removes the horizontal component of a vector that points into a slope that is too steep, so that it is not
-    /// deflected upwards.
+    /// Removes the horizontal component of a vector that points into a steep slope, so that it is not deflected
+    /// upwards.
     fn stopped_by_steep(&self, v: Vec2<Fx>) -> Vec2<Fx> {
         let against = |(surface, plane): &(Surface, MoverPlane)| {
             *surface == Surface::Steep && (plane.normal.x < 0) != (v.x < 0) && plane.normal.x != 0
@@ -240,8 +234,8 @@ impl<'a> Walk<'a> {
         if self.surfaces.iter().any(against) { Vec2::new(Fx::ZERO, v.y) } else { v }
     }
 
-    /// Normals of the surfaces that limit a translation (with ground) or a velocity (without ground). A walking
-    /// character is limited by only one ground, the one that it walks along.
+    /// Normals that limit a translation (with ground) or a velocity (without ground). A walking character is limited
+    /// only by the ground that it walks along.
     fn limits(&self, ground_too: bool) -> impl Iterator<Item = Vec2<Unit>> + Clone {
         let all_ground = ground_too && self.along.is_none();
         let walls = self.surfaces.iter().flat_map(move |(surface, plane)| {
@@ -256,7 +250,6 @@ impl<'a> Walk<'a> {
         walls.chain(self.along.filter(|_| ground_too))
     }
 
-    /// The ground that the character stands on, or that is within reach below it.
     fn find_ground(&mut self) -> Option<MoverPlane> {
         if !self.on_ground || self.from.is_on_ground() && self.rises() {
             return None;
@@ -276,9 +269,8 @@ impl<'a> Walk<'a> {
         most_level.or_else(|| of_kind(Surface::Step).next()).copied()
     }
 
-    /// Moves down to ground within the snap distance, sliding along other surfaces in the way. The distance is
-    /// increased by the height that the character has climbed in this walk. Without ground the character stays where it
-    /// is.
+    /// Moves down to ground within the snap distance plus the height climbed in this walk, sliding along other
+    /// surfaces. Without ground the character stays where it is.
     fn snap(&mut self) -> Option<MoverPlane> {
         let start = self.probe;
         let reach = self.mover.snap_max().saturating_add(self.climbed).max(SKIN + SKIN);
@@ -300,12 +292,11 @@ impl<'a> Walk<'a> {
         None
     }
 
-    /// Casts the character along a translation. Returns the displacement up to the first hit, and the surface there.
+    /// Casts the character. Returns the displacement up to the first hit, and the surface there.
     fn cast(&self, translation: Vec2<Fx>) -> Option<(Vec2<Fx>, MoverPlane)> {
         self.cast_among(&self.probe, translation, Overlaps::Stop, None)
     }
 
-    /// [`Self::cast`] from another position.
     pub(super) fn cast_from(&self, probe: &Probe, translation: Vec2<Fx>) -> Option<(Vec2<Fx>, MoverPlane)> {
         self.cast_among(probe, translation, Overlaps::Stop, None)
     }
@@ -333,8 +324,8 @@ impl<'a> Walk<'a> {
         self.probe = self.probe.at(self.probe.position() + by);
     }
 
-    /// Whether the character passes through a shape that is solid from one side only: it is on the other side, or still
-    /// overlaps the shape.
+    /// Whether the character passes through a shape that is solid from one side: it is on the other side, or still
+    /// overlaps it.
     fn passes(&self, id: ShapeId, normal: Vec2<Unit>, overlaps: bool) -> bool {
         let Some(shape) = self.world.shape(id) else { return true };
         let one_sided = matches!(shape.geometry(), Geometry::Link { sides: Sides::Right, .. });
@@ -346,9 +337,9 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Horizontal velocity of a character that lands, relative to the ground: the difference of both velocities, limited to
-/// between 0 and the character's own. A character that drops straight down on a conveyor belt is carried along by it at
-/// once; one that jumped straight up in a moving train stands still in the train.
+/// Horizontal velocity relative to the ground of a character that lands: the difference of both velocities, limited to
+/// between 0 and the character's own. A belt carries a character that drops straight down on it at once. A character
+/// that jumps straight up in a moving train stands still in the train.
 fn taken_along(velocity: Fx, ground: Fx) -> Fx {
     velocity.saturating_sub(ground).clamp(velocity.min(Fx::ZERO), velocity.max(Fx::ZERO))
 }

@@ -1,13 +1,12 @@
-//! Packed bodies and fat boxes: the parts of bodies and shapes that a tick changes.
+//! Packed bodies and fat boxes.
 //!
 //! Each body takes 36 bytes: centre (2 x i64), angle (u32), velocity (2 x i32), spin (i32), rest ticks (u32). After all
-//! bodies, a record follows for each body that has a force, sleeps or has a target: the slot (u32), flags for which of
-//! the following parts it has (u8), and these parts: force and torque (3 x i64), island (2 x u32), target (2 x i64,
-//! u32).
+//! bodies, a record follows for each body with a force, an island or a target: the slot (u32), flags for the parts that
+//! follow (u8), and these parts: force and torque (3 x i64), island (2 x u32), target (2 x i64, u32).
 //!
 //! Each shape of a body that is not fixed takes 16 bytes: the corners of its fat box relative to the body's centre in
-//! units of 2^-22 m (4 x i32). A box that is off this grid or too far away has `i32::MIN` as its first coordinate, and
-//! follows in full (4 x i64) after all others.
+//! units of 2^-22 m (4 x i32). A box off this grid or too far away has `i32::MIN` as its first coordinate, and follows
+//! in full (4 x i64) after all others.
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -19,19 +18,14 @@ use crate::math::{Aabb, Angle, Fx, Speed, Vec2};
 use crate::world::derived::FAT_GRID_SHIFT;
 use crate::world::state::State;
 
-/// Flag of a body with a force or torque.
 const FORCE: u8 = 1;
-/// Flag of a body in a sleeping island.
 const ISLAND: u8 = 2;
-/// Flag of a body with a target.
 const TARGET: u8 = 4;
 
 const BODY_BYTES: usize = 36;
-/// Largest size of a record of optional parts.
 const OPTIONAL_BYTES: usize = 5 + 24 + 8 + 20;
 const BOX_BYTES: usize = 16;
-/// Number of bodies in a block. The boxes of a block's shapes are packed right after its bodies, because packing a box
-/// reads the centre of its body, which is then still in the cache.
+/// Number of bodies in a block. The boxes of a block are packed right after its bodies, whose centres are then cached.
 const BLOCK: usize = 32;
 /// Marker in place of the first coordinate of a box that follows in full.
 const NOT_NEAR: i32 = i32::MIN;
@@ -47,7 +41,7 @@ pub(super) fn lasting_body(body: &Body) -> Body {
     body
 }
 
-/// A copy of a shape without the part that a tick changes: the fat box, unless the body is fixed.
+/// A copy of a shape without its fat box, unless the body is fixed.
 pub(super) fn lasting_shape(shape: &Shape, bodies: &Bodies) -> Shape {
     let fat = if is_fixed(shape, bodies) { shape.fat } else { Aabb::default() };
     Shape { fat, ..shape.clone() }
@@ -57,7 +51,7 @@ fn is_fixed(shape: &Shape, bodies: &Bodies) -> bool {
     bodies.get(shape.body).is_some_and(|body| body.kind == BodyKind::Fixed)
 }
 
-/// Packed bodies and fat boxes, each as bytes or as the digest of these bytes.
+/// Packed bodies and fat boxes, as bytes or as the digests of these bytes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct PackedBodies<T = Vec<u8>> {
     pub(super) bodies: T,
@@ -65,8 +59,7 @@ pub(super) struct PackedBodies<T = Vec<u8>> {
 }
 
 impl PackedBodies {
-    /// Packs all bodies and fat boxes into the existing memory. The boxes of a block of bodies are packed right after
-    /// these bodies, if shapes are in the order of their bodies.
+    /// Packs bodies and fat boxes into the existing memory.
     pub(super) fn pack(&mut self, state: &State) {
         let State { bodies, shapes, .. } = state;
         let PackedBodies { bodies: motions, boxes } = self;
@@ -109,7 +102,7 @@ fn pack_motion(body: &Body, mut record: Record<'_, BODY_BYTES>) {
     record.put(body.rest_ticks.to_bits());
 }
 
-/// The flags of the optional parts that a body has, computed without branches.
+/// The flags of a body's record, computed without branches.
 #[inline(always)]
 fn optional_parts(body: &Body) -> u8 {
     let force = body.force.x.to_bits() | body.force.y.to_bits() | body.torque.to_bits();
@@ -119,7 +112,6 @@ fn optional_parts(body: &Body) -> u8 {
         | flag_if(body.target.is_some(), TARGET)
 }
 
-/// Appends the record of a body's optional parts.
 fn pack_optional(slot: u32, body: &Body, bytes: &mut Vec<u8>) {
     let (parts, mut record) = (optional_parts(body), [0; OPTIONAL_BYTES]);
     let mut record = Record::new(&mut record);
@@ -147,8 +139,8 @@ fn put_place<const N: usize>(record: &mut Record<'_, N>, centre: Vec2<Fx>, angle
     record.put(angle.to_bits());
 }
 
-/// Restores the packed parts of the bodies. Calls `moved` with the slot of each body whose pose changes: with `None` if
-/// its rotation changes, otherwise with its displacement.
+/// Restores bodies. Calls `moved` with the slot of each body whose pose changes: with `None` if its rotation changes,
+/// otherwise with its displacement.
 pub(super) fn unpack_bodies(bodies: &mut Bodies, bytes: &[u8], mut moved: impl FnMut(u32, Option<Vec2<Fx>>)) {
     let mut reader = Reader(bytes);
     let mut motions = reader.part(bodies.len() * BODY_BYTES);
@@ -201,7 +193,6 @@ fn take_point<const N: usize>(fields: &mut Fields<'_, N>) -> Vec2<Fx> {
     Vec2::new(Fx::from_bits(fields.take()), Fx::from_bits(fields.take()))
 }
 
-/// Packs fat boxes in the order of shape slots.
 struct BoxWriter<'a> {
     bytes: &'a mut Vec<u8>,
     count: usize,
@@ -209,7 +200,6 @@ struct BoxWriter<'a> {
 }
 
 impl<'a> BoxWriter<'a> {
-    /// Reserves room for a box of every shape.
     fn new(bytes: &'a mut Vec<u8>, shapes: &Shapes) -> Self {
         bytes.resize(shapes.len() * BOX_BYTES, 0);
         BoxWriter { bytes, count: 0, far: Vec::new() }
@@ -242,28 +232,26 @@ fn corners(fat: Aabb) -> [Fx; 4] {
     [fat.lower.x, fat.lower.y, fat.upper.x, fat.upper.y]
 }
 
-/// The corners of a box in grid steps from a point in the world, if they are on the grid and near enough.
+/// The corners of a box in grid steps from a world point, if they are on the grid and near enough.
 #[inline(always)]
 fn about(fat: Aabb, centre: Vec2<Fx>) -> Option<[i32; 4]> {
     const GRID: i64 = 1 << FAT_GRID_SHIFT;
-    /// Offset of the lowest coordinate that can be packed.
     const LOWEST: i64 = (i32::MIN as i64) << FAT_GRID_SHIFT;
     /// Mask of the bits that may be set in the difference of a packable coordinate and the lowest one.
     const NEAR: i64 = (u32::MAX as i64) << FAT_GRID_SHIFT;
     let lowest = |centre: Fx| (centre.to_bits() & -GRID) + LOWEST;
     let (x, y) = (lowest(centre.x), lowest(centre.y));
     let [left, bottom, right, top] = corners(fat).map(Fx::to_bits);
-    // A difference that wraps around is still out of range, because the point is within the world extent, far from the
-    // end of the range of numbers.
+    // A wrapped difference is still out of range, because the point is within the world extent.
     let above = |bits: i64, lowest: i64| bits.wrapping_sub(lowest);
     let above = [above(left, x), above(bottom, y), above(right, x), above(top, y)];
     let [a, b, c, d] = above;
-    // The lowest value of the first coordinate is the marker `NOT_NEAR`, and therefore cannot be packed.
+    // The lowest value of the first coordinate is the marker `NOT_NEAR`.
     let bits = a | a.wrapping_sub(GRID) | b | c | d;
     (bits & !NEAR == 0).then(|| above.map(|above| low_half(above >> FAT_GRID_SHIFT) ^ i32::MIN))
 }
 
-/// Restores the packed boxes of the shapes. Calls `changed` with the slot and the box of each shape whose box changes.
+/// Restores fat boxes. Calls `changed` with the slot and the box of each changed box.
 pub(super) fn unpack_boxes(
     shapes: &mut Shapes,
     bodies: &Bodies,

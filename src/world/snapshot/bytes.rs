@@ -1,5 +1,3 @@
-//! Worlds as bytes, for files and networks.
-
 use alloc::vec::Vec;
 use core::fmt;
 
@@ -10,9 +8,7 @@ use crate::hash::{Envelope, EnvelopeError};
 use crate::world::World;
 use crate::world::state::State;
 
-/// The first bytes of every world.
 const MAGIC: [u8; 8] = *b"LS2DWRLD";
-/// Version of the layout.
 const FORMAT: u32 = 4;
 const ENVELOPE: Envelope = Envelope { magic: MAGIC, format: FORMAT };
 
@@ -37,7 +33,7 @@ pub enum SnapshotError {
         /// The version found.
         found: u32,
     },
-    /// The bytes were made by an engine with other semantics, so that the world would not continue bit-identically.
+    /// The bytes were made by an engine with other semantics, in which the world would continue differently.
     Semantics {
         /// The semantics id found.
         found: u32,
@@ -99,12 +95,11 @@ impl World {
         state_to_bytes(self.state.get())
     }
 
-    /// Returns the world that [`World::to_bytes`] has written. Safe for untrusted bytes: the memory used is limited,
-    /// and a state that breaks an invariant is refused.
+    /// Returns the world that [`World::to_bytes`] has written. Safe for untrusted bytes: the memory used is limited.
     ///
     /// # Errors
-    /// [`SnapshotError`] if the bytes are not those of a world, are damaged, were made by an engine with another format
-    /// or other semantics, or contain a state that breaks an invariant.
+    /// [`SnapshotError`] if the bytes are damaged, were made by an engine with another format or other semantics, or
+    /// contain a state that breaks an invariant.
     #[doc(alias = "deserialize")]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, SnapshotError> {
         let opened = ENVELOPE.open(bytes)?;
@@ -117,7 +112,6 @@ impl World {
     }
 }
 
-/// [`World::to_bytes`] of a state.
 pub(super) fn state_to_bytes(state: &State) -> Vec<u8> {
     ENVELOPE.seal(SEMANTICS, state)
 }

@@ -1,11 +1,11 @@
-//! Packed contacts and joints: the parts of them that a tick changes.
+//! Packed contacts and joints.
 //!
-//! Each contact takes 8 bytes, its head: shape A (30 bits), shape B (29 bits), touching, passing, number of points (2
+//! Each contact has a head of 8 bytes: shape A (30 bits), shape B (29 bits), touching, passing, number of points (2
 //! bits), whether it has impulses. A second buffer has 80 bytes for each contact with impulses: normal and tangential
 //! impulse of both points and the rolling impulse (5 x i32), features (2 x u16), the kept manifold (14 x i32).
 //!
 //! Each joint takes one byte of flags, then its impulses that are not 0 (i32 each) and its turns (i32 or i64). The
-//! flags mark which of the six impulses are not 0, and whether the turns take 8 bytes.
+//! flags mark the impulses that are not 0, and turns of 8 bytes.
 
 use alloc::vec::Vec;
 
@@ -17,14 +17,10 @@ use crate::solver::Joint;
 
 const HEAD_BYTES: usize = 8;
 const IMPULSES_BYTES: usize = 24 + 4 * KeptManifold::WORDS;
-/// Largest size of a joint.
 const JOINT_BYTES: usize = 1 + 6 * 4 + 8;
-/// Flag for turns of 8 bytes.
 const MANY_TURNS: u8 = 1 << 6;
-/// Number of impulses of a joint.
 const JOINT_IMPULSES: u8 = 6;
 
-/// Replaces the content of the two buffers by packed contacts.
 pub(super) fn pack_contacts(contacts: &[Contact], heads: &mut Vec<u8>, impulses: &mut Vec<u8>) {
     let mut impulses = Writer::new(impulses, contacts.len() * IMPULSES_BYTES);
     put_records(heads, contacts.len(), contacts, |contact, record: &mut Record<'_, HEAD_BYTES>| {
@@ -47,7 +43,7 @@ fn has_impulses(contact: &Contact) -> bool {
     contact.count != 0 || contact.rolling != 0
 }
 
-/// The head of a contact. Slots are below 2^21, so that they fit.
+/// Packs the head of a contact. Slots are below 2^21, so that they fit.
 fn head(contact: &Contact) -> u64 {
     let (a, b) = contact.shapes;
     u64::from(a) << 34
@@ -58,7 +54,6 @@ fn head(contact: &Contact) -> u64 {
         | u64::from(has_impulses(contact))
 }
 
-/// Replaces a list by the packed contacts.
 pub(super) fn unpack_contacts(contacts: &mut Vec<Contact>, heads: &[u8], impulses: &[u8]) {
     let (mut heads, mut impulses) = (Reader(heads), Reader(impulses));
     contacts.clear();
@@ -95,7 +90,6 @@ pub(super) fn lasting_joint(joint: &Joint) -> Joint {
     Joint::new(*joint.def)
 }
 
-/// Replaces the content of a buffer by packed joints.
 pub(super) fn pack_joints(joints: &Arena<Joint, JointId>, bytes: &mut Vec<u8>) {
     let mut writer = Writer::new(bytes, joints.len() * JOINT_BYTES);
     for (_, joint) in joints.iter() {
@@ -124,12 +118,10 @@ pub(super) fn pack_joints(joints: &Arena<Joint, JointId>, bytes: &mut Vec<u8>) {
     }
 }
 
-/// The low and the high 32 bits.
 fn halves(turns: i64) -> [i32; 2] {
     [low_half(turns), low_half(turns >> u32::BITS)]
 }
 
-/// Restores the packed parts of the joints.
 pub(super) fn unpack_joints(joints: &mut Arena<Joint, JointId>, bytes: &[u8]) {
     let mut reader = Reader(bytes);
     for (_, joint) in joints.iter_mut() {

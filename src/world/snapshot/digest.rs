@@ -1,5 +1,3 @@
-//! The digests that the state hash is made of.
-
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::fmt;
@@ -33,8 +31,8 @@ pub enum Section {
     Shapes,
     /// Joints, their impulses and their free list.
     Joints,
-    /// Active and sleeping contacts and their impulses, the contacts that edits have ended since the last tick, and
-    /// whether pairs were left out at the limit.
+    /// Active and sleeping contacts and their impulses, contacts that edits have ended since the last tick, and whether
+    /// pairs were left out at the limit.
     Contacts,
     /// Sleeping islands.
     Islands,
@@ -56,8 +54,7 @@ impl fmt::Display for Section {
     }
 }
 
-/// The digests of a world's sections, in order. Two worlds that differ have a section whose digests differ, except for
-/// collisions of the hash function.
+/// The digests of a world's sections, in order. Sections with equal digests are equal, except for hash collisions.
 ///
 /// ```
 /// use lockstep2d::world::{World, WorldDigest};
@@ -68,12 +65,11 @@ impl fmt::Display for Section {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WorldDigest {
-    /// The digest of each section.
+    /// Digest of each section.
     pub sections: [(Section, StateHash); 7],
 }
 
 impl WorldDigest {
-    /// Placeholder for digests that have not been computed yet.
     pub(super) const NONE: Self = WorldDigest {
         sections: [
             (Section::World, StateHash(0)),
@@ -117,12 +113,10 @@ impl HashedState {
         &self.state
     }
 
-    /// The digest, if it was computed since the last change.
     pub(super) fn digest(&self) -> Option<&WorldDigest> {
         self.digest.get()
     }
 
-    /// Caches the digest of the current state.
     pub(super) fn set_digest(&self, digest: WorldDigest) {
         self.digest.get_or_init(|| Box::new(digest));
     }

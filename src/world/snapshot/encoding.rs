@@ -1,5 +1,3 @@
-//! Snapshots in serde formats: the bytes of the world in a binary format, a readable view in a human-readable one.
-
 use alloc::vec::Vec;
 use core::fmt;
 
@@ -28,8 +26,7 @@ impl Snapshot {
 }
 
 /// Writes the bytes of [`World::to_bytes`] in a binary format. In a human-readable format such as JSON, writes a view
-/// of the state with the names of the API, in which bodies, shapes, joints and islands are named by their handles, as
-/// in `body 12v1`. The view cannot be read back.
+/// of the state that names objects by their handles, as in `body 12v1`. The view cannot be read back.
 impl Serialize for Snapshot {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let state = self.state();
@@ -41,7 +38,7 @@ impl Serialize for Snapshot {
     }
 }
 
-/// Reads the bytes of [`World::to_bytes`] from a binary format, with all checks of [`World::from_bytes`].
+/// Reads the bytes of [`World::to_bytes`] from a binary format, with the checks of [`World::from_bytes`].
 impl<'de> Deserialize<'de> for Snapshot {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         if deserializer.is_human_readable() {

@@ -1,12 +1,9 @@
-//! Copies of the state: in memory for rollback, as bytes for files and networks, as digests for comparison, and as a
-//! readable view for reports.
+//! Copies of the state: in memory for rollback, as bytes for files and networks, as digests, and as a readable view.
 //!
-//! Data that every tick changes (poses, velocities, fat boxes, impulses) is packed into buffers, whose layout is
-//! described at the top of `bodies.rs` and `constraints.rs`. The other data of bodies, shapes, joints and islands is
-//! copied in pages of 32 slots, which snapshots share as long as nothing in them changes (`body/arena/pages.rs`).
-//! Sleeping contacts are packed and shared as a whole (`sleeping_contacts.rs`). A snapshot stores its digests. Those of
-//! the buffers are computed when the buffers are written, those of pages and sleeping contacts once for all snapshots
-//! that share them.
+//! Data that ticks change (poses, velocities, fat boxes, impulses) is packed into buffers: see `bodies.rs` and
+//! `constraints.rs`. The other data of bodies, shapes, joints and islands is copied in pages of 32 slots, which
+//! snapshots share until they change (`body/arena/pages.rs`). Sleeping contacts are shared as a whole
+//! (`sleeping_contacts.rs`). Buffers are hashed when they are written, shared data once for all snapshots.
 
 mod bodies;
 mod bytes;

@@ -2,11 +2,10 @@
 
 use alloc::vec::Vec;
 
-/// An integer of a fixed number of bytes.
 pub(super) trait Integer: Copy {
     type Bytes: AsRef<[u8]>;
     fn to_bytes(self) -> Self::Bytes;
-    /// Returns the integer with these bytes. Their number must be the size of the integer.
+    /// The number of bytes must be the size of the integer.
     fn of_slice(bytes: &[u8]) -> Self;
 }
 
@@ -28,14 +27,13 @@ macro_rules! integers {
 
 integers!(u8 u16 u32 u64 i16 i32 i64);
 
-/// The low 32 bits.
 #[expect(clippy::cast_possible_truncation, reason = "the caller checks or keeps the high half")]
 #[inline(always)]
 pub(super) fn low_half(integer: i64) -> i32 {
     integer as i32
 }
 
-/// A record of `N` bytes that is being written.
+/// A record being written.
 pub(super) struct Record<'a, const N: usize> {
     bytes: &'a mut [u8; N],
     len: usize,
@@ -54,20 +52,17 @@ impl<'a, const N: usize> Record<'a, N> {
         self.len += bytes.len();
     }
 
-    /// The bytes written so far.
     pub(super) fn written(&self) -> &[u8] {
         &self.bytes[..self.len]
     }
 
-    /// Drops all bytes after the first `len`.
     #[inline(always)]
     pub(super) fn truncate(&mut self, len: usize) {
         self.len = self.len.min(len);
     }
 }
 
-/// Replaces the content of a buffer by a record for each of `count` things. This is faster than a [`Writer`], because
-/// the number of records is given in advance.
+/// Replaces the content by `count` records. Faster than a [`Writer`], because the size is known.
 #[inline(always)]
 pub(super) fn put_records<T, const N: usize>(
     bytes: &mut Vec<u8>,
@@ -81,21 +76,21 @@ pub(super) fn put_records<T, const N: usize>(
     }
 }
 
-/// Writes an unknown number of records into a buffer. The old content is overwritten instead of cleared, so that
-/// reusing a buffer costs only what is written.
+/// Writes an unknown number of records. The old content is overwritten, not cleared, so that reuse costs only what is
+/// written.
 pub(super) struct Writer<'a> {
     bytes: &'a mut Vec<u8>,
     len: usize,
 }
 
 impl<'a> Writer<'a> {
-    /// Replaces the content of a buffer. Reserves memory for `size` bytes.
+    /// Reserves memory for `size` bytes.
     pub(super) fn new(bytes: &'a mut Vec<u8>, size: usize) -> Self {
         bytes.reserve(size.saturating_sub(bytes.len()));
         Writer { bytes, len: 0 }
     }
 
-    /// Appends a record of at most `N` bytes: those that `write` puts into it.
+    /// Appends the part of a record of `N` bytes that `write` fills.
     #[inline(always)]
     pub(super) fn record<const N: usize>(&mut self, write: impl FnOnce(&mut Record<'_, N>)) {
         if self.bytes.len() < self.len + N {
@@ -119,13 +114,11 @@ impl Drop for Writer<'_> {
     }
 }
 
-/// The rest of a buffer that is being read. Reading past the end gives zeros; it does not happen with buffers that this
-/// module has written.
+/// The rest of a buffer. Reading past the end is a bug, and gives zeros.
 #[derive(Clone, Copy)]
 pub(super) struct Reader<'a>(pub(super) &'a [u8]);
 
 impl<'a> Reader<'a> {
-    /// Returns the next record.
     #[inline(always)]
     pub(super) fn record<const N: usize>(&mut self) -> Fields<'a, N> {
         let Some((bytes, rest)) = self.0.split_first_chunk() else {
@@ -136,7 +129,6 @@ impl<'a> Reader<'a> {
         Fields { bytes, len: 0 }
     }
 
-    /// Splits off the next `length` bytes.
     pub(super) fn part(&mut self, length: usize) -> Reader<'a> {
         let (part, rest) = self.0.split_at(length.min(self.0.len()));
         self.0 = rest;
@@ -148,7 +140,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// A record of `N` bytes that is being read.
+/// A record being read.
 pub(super) struct Fields<'a, const N: usize> {
     bytes: &'a [u8; N],
     len: usize,

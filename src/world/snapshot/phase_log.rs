@@ -1,13 +1,10 @@
-//! Digests after each phase of a tick: they show not only the tick in which two runs diverge, but also the phase.
-
 use alloc::vec::Vec;
 
 use super::rollback::Snapshot;
 use crate::hash::StateHash;
 use crate::world::stats::Phase;
 
-/// Digest after a phase of a tick. Two runs that were equal before a tick diverge in the first phase whose digests
-/// differ.
+/// Digest after a phase of a tick. Two runs diverge in the first phase whose digests differ.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, fx, world::{BodyField, World}};
@@ -30,11 +27,11 @@ pub struct PhaseDigest {
     /// The phase, or `None` for the beginning of the tick.
     pub phase: Option<Phase>,
     /// Digest of the state; after [`Phase::NarrowPhase`] also of the manifolds, after [`Phase::Prepare`] and
-    /// [`Phase::Solve`] also of the velocities and displacements in the solver.
+    /// [`Phase::Solve`] also of velocities and displacements in the solver.
     pub digest: StateHash,
 }
 
-/// Recorded digests of a world since [`World::log_phases`](crate::world::World::log_phases).
+/// Digests since [`World::log_phases`](crate::world::World::log_phases).
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PhaseLog {
     pub(crate) digests: Vec<PhaseDigest>,

@@ -1,5 +1,3 @@
-//! Restoring a snapshot: the state, and those parts of the caches that differ from it.
-
 use alloc::vec::Vec;
 
 use super::bodies::{self, PackedBodies};
@@ -11,7 +9,7 @@ use crate::world::World;
 use crate::world::cache::{JointLinks, Scratch};
 use crate::world::state::State;
 
-/// Slots whose caches do not match the restored state, in any order, possibly repeated.
+/// Slots with outdated caches, unsorted and possibly repeated.
 #[derive(Default)]
 pub(super) struct Stale {
     /// Bodies with another rotation.
@@ -20,22 +18,18 @@ pub(super) struct Stale {
     shifted: Vec<(u32, Vec2<Fx>)>,
     /// Shapes with another fat box, and that box.
     boxes: Vec<(u32, Aabb)>,
-    /// Bodies that may have been added, removed or redefined: those of every page that differs.
+    /// Bodies in pages that differ.
     redefined_bodies: Vec<u32>,
-    /// Shapes that may have been added, removed or redefined.
+    /// Shapes in pages that differ.
     redefined_shapes: Vec<u32>,
-    /// Whether a joint may have been added, removed or redefined.
+    /// Whether a page of joints differs.
     any_joint: bool,
 }
 
 impl World {
-    /// Restores a saved state, also one of another world. With the same edits, the following ticks are bit-identical to
+    /// Restores a saved state, also of another world. With the same edits, the following ticks are bit-identical to
     /// those that followed the save. [`World::contacts`], [`World::events`] and [`World::stats`] are empty until the
     /// next tick.
-    ///
-    /// Costs a fraction of a tick. Data that every tick changes is copied, and the world coordinates of shapes that
-    /// have moved since the save are computed again. Definitions that have changed since the save are copied in pages
-    /// of 32 slots.
     #[doc(alias = "rollback")]
     #[doc(alias = "load")]
     pub fn restore(&mut self, snapshot: &Snapshot) {
@@ -50,7 +44,7 @@ impl World {
     }
 }
 
-/// Replaces a state by the state of a snapshot, and lists the slots that differ.
+/// Replaces a state by that of a snapshot, and lists the slots that differ.
 pub(super) fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut Stale) {
     let Snapshot { rest, bodies, shapes, joints, islands, sleeping_contacts, packed, digest: _, changes: _ } =
         snapshot;
@@ -75,7 +69,6 @@ pub(super) fn restore_state(state: &mut State, snapshot: &Snapshot, stale: &mut 
     state.sleeping_contacts.restore(sleeping_contacts);
 }
 
-/// Updates the caches of a restored state.
 fn refresh(state: &State, scratch: &mut Scratch, stale: Stale) {
     let Stale { rotated, shifted, boxes, redefined_bodies, redefined_shapes, any_joint } = stale;
     if !redefined_bodies.is_empty() {

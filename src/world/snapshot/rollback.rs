@@ -1,5 +1,3 @@
-//! Snapshots in memory, cheap enough to save every tick.
-
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
@@ -18,9 +16,8 @@ use crate::world::state::{Island, Reported, State};
 /// A copy of a world's state, for [`World::restore`](crate::world::World::restore).
 ///
 /// It shares unchanged data with the world and with other snapshots. Its own memory is mainly 36 bytes for each body,
-/// 16 for each shape of a body that is not fixed, 8 for each pair that
-/// [`World::pair_count`](crate::world::World::pair_count) counts, and 80 more for each pair with impulses: see
-/// [`Snapshot::rollback_bytes`]. It stores its [`Snapshot::state_hash`].
+/// 16 for each shape of a body that is not fixed, and 8 for each pair, or 88 for each pair with contact points: see
+/// [`Snapshot::rollback_bytes`].
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
@@ -44,12 +41,11 @@ pub struct Snapshot {
     pub(super) packed: Packed,
     /// Digest of all other fields except `changes`.
     pub(super) digest: WorldDigest,
-    /// Record of changes since the last pair update that may affect pairs. It is not part of the state. With it, the
-    /// next pair update of a restored world need not check every pair.
+    /// Changes since the last pair update. They are not part of the state, but spare the next pair update of a restored
+    /// world a check of every pair.
     pub(super) changes: Changes,
 }
 
-/// The part of a state that is neither in an arena nor a contact.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Rest {
     pub(super) config: Config,
@@ -60,7 +56,7 @@ pub(super) struct Rest {
     pub(super) rng: Rng,
 }
 
-/// The data that every tick changes. Each kind of data is stored as packed bytes, or as the digest of these bytes.
+/// Data that ticks change, as packed bytes or as the digests of these bytes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Packed<T = Vec<u8>> {
     pub(super) bodies: PackedBodies<T>,
@@ -81,21 +77,19 @@ impl PartialEq for Snapshot {
 }
 
 impl Snapshot {
-    /// Returns [`World::state_hash`](crate::world::World::state_hash) of the saved world, which was computed when it
-    /// was saved.
+    /// Returns the stored [`World::state_hash`](crate::world::World::state_hash) of the saved world.
     #[must_use]
     pub fn state_hash(&self) -> StateHash {
         self.digest.state_hash()
     }
 
-    /// Returns [`World::digest`](crate::world::World::digest) of the saved world, which was computed when it was saved.
+    /// Returns the stored [`World::digest`](crate::world::World::digest) of the saved world.
     #[must_use]
     pub fn digest(&self) -> WorldDigest {
         self.digest
     }
 
-    /// Returns the size of the snapshot in memory in bytes, without data that it shares with the world and other
-    /// snapshots.
+    /// Returns the size of the snapshot in bytes without shared data.
     #[must_use]
     pub fn rollback_bytes(&self) -> usize {
         let Snapshot {
@@ -115,7 +109,6 @@ impl Snapshot {
         size_of::<Self>() + packed + lists
     }
 
-    /// A snapshot with the [`Rest`] of a state, without the data of arenas and contacts.
     pub(super) fn empty(state: &State) -> Self {
         Snapshot {
             rest: Rest::of(state),
@@ -130,13 +123,12 @@ impl Snapshot {
         }
     }
 
-    /// The buffers that are not shared.
     pub(super) fn buffers(&mut self) -> [&mut Vec<u8>; 5] {
         let Packed { bodies: PackedBodies { bodies, boxes }, joints, contacts, impulses } = &mut self.packed;
         [bodies, boxes, joints, contacts, impulses]
     }
 
-    /// Replaces the snapshot by a copy of a state. Reuses its memory and keeps the pages that have not changed.
+    /// Replaces the snapshot by a copy of a state. Reuses the memory and the unchanged pages.
     pub(super) fn take(&mut self, state: &State, changes: &Changes) {
         // Destructured, so that a new field does not compile until it is saved.
         let State {
@@ -158,7 +150,7 @@ impl Snapshot {
         shapes.share_into(&mut self.shapes, |shape| lasting_shape(shape, bodies));
         joints.share_into(&mut self.joints, lasting_joint);
         islands.share_into(&mut self.islands, Island::clone);
-        // Each buffer is hashed right after it is written, while it is in the cache.
+        // Each buffer is hashed while it is cached.
         let Packed { bodies: packed_bodies, joints: packed_joints, contacts: heads, impulses } =
             &mut self.packed;
         packed_bodies.pack(state);
@@ -172,7 +164,6 @@ impl Snapshot {
         self.digest = self.digest_with(&Packed { bodies, joints, contacts, impulses });
     }
 
-    /// The digest of the snapshot, given the digests of its packed buffers.
     fn digest_with(&self, packed: &Packed<StateHash>) -> WorldDigest {
         let Snapshot {
             rest,

@@ -1,5 +1,3 @@
-//! Saving and hashing a world.
-
 use alloc::vec::Vec;
 
 use super::digest::WorldDigest;
@@ -9,7 +7,7 @@ use crate::hash::StateHash;
 use crate::world::World;
 
 impl World {
-    /// Returns a copy of the state. For rollback use [`World::save_into`], which avoids the allocations.
+    /// Returns a copy of the state. [`World::save_into`] reuses memory.
     #[must_use]
     #[doc(alias = "snapshot")]
     pub fn save(&self) -> Snapshot {
@@ -19,9 +17,8 @@ impl World {
         snapshot
     }
 
-    /// Replaces a snapshot of this or another world by a copy of the state, and computes its state hash. Costs a few
-    /// per cent of a tick. Data that every tick changes is copied. All other data is shared, and copied only where it
-    /// has changed since it was last saved or hashed.
+    /// Replaces a snapshot of this or another world by a copy of the state and its hash. Copies data that ticks change,
+    /// and other data that has changed since it was last saved or hashed.
     ///
     /// ```
     /// # use lockstep2d::world::{Snapshot, World};
@@ -41,8 +38,7 @@ impl World {
         self.state.set_digest(snapshot.digest());
     }
 
-    /// Returns the hash of the state, which contains everything that influences the future. Costs about as much as
-    /// [`World::save`], or nothing if the world has not changed since it was last hashed or saved.
+    /// Returns the hash of the state, which is cached until the world changes. Costs about as much as [`World::save`].
     #[must_use]
     #[doc(alias = "checksum")]
     pub fn state_hash(&self) -> StateHash {

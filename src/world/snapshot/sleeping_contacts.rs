@@ -12,8 +12,7 @@ use super::constraints::{pack_contacts, unpack_contacts};
 use crate::collision::Contact;
 use crate::hash::StateHash;
 
-/// The contacts without an active body, sorted by pair, and their cached packed form. Mutable access drops the packed
-/// form.
+/// Contacts without an active body, sorted by pair, and their cached packed form. Mutable access drops the latter.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct SleepingContacts {
@@ -22,7 +21,6 @@ pub(crate) struct SleepingContacts {
     packed: OnceBox<Arc<PackedContacts>>,
 }
 
-/// Packed contacts and their digest.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct PackedContacts {
     heads: Vec<u8>,
@@ -40,7 +38,6 @@ impl PackedContacts {
 }
 
 impl SleepingContacts {
-    /// Returns the packed contacts, and packs them if they have changed.
     pub(super) fn share(&self) -> Arc<PackedContacts> {
         let pack = || PackedContacts::of(&self.contacts);
         let packed = self.packed.get_or_init(|| Box::new(Arc::new(pack())));
@@ -48,7 +45,6 @@ impl SleepingContacts {
         packed.clone()
     }
 
-    /// Restores the contacts of a snapshot, unless they are already the same.
     pub(super) fn restore(&mut self, packed: &Arc<PackedContacts>) {
         if !self.packed.get().is_some_and(|known| Arc::ptr_eq(known, packed)) {
             unpack_contacts(&mut self.contacts, &packed.heads, &packed.impulses);

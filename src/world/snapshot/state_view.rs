@@ -1,5 +1,3 @@
-//! Readable view of a state: the same values as in its bytes, with names for reports.
-
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -13,8 +11,7 @@ use crate::math::{Fx, Rng};
 use crate::world::config::Config;
 use crate::world::state::{Reported, State};
 
-/// Serialises everything in a state for human readers. Bodies, shapes, joints and islands are named by their handles,
-/// contacts by the handles of their shapes.
+/// A state for human readers. Objects are named by their handles, contacts by the handles of their shapes.
 pub(super) struct StateView<'a>(pub(super) &'a State);
 
 impl Serialize for StateView<'_> {
@@ -88,7 +85,7 @@ struct Sections<'a, B, S, J, C, R, I> {
     vacant: VacantSlots,
 }
 
-/// Serialises the items of an iterator as a map, in their order.
+/// Items as a map, in their order.
 struct Entries<F>(F);
 
 impl<F, I, V> Serialize for Entries<F>
@@ -102,7 +99,7 @@ where
     }
 }
 
-/// A body, with its angular velocity in rad/s in addition to its spin.
+/// A body, with its angular velocity in rad/s.
 #[derive(Serialize)]
 struct BodyView<'a> {
     #[serde(flatten)]
@@ -116,7 +113,6 @@ impl<'a> BodyView<'a> {
     }
 }
 
-/// The vacant slots of each arena.
 #[derive(Serialize)]
 struct VacantSlots {
     bodies: Vacant,
@@ -125,7 +121,6 @@ struct VacantSlots {
     islands: Vacant,
 }
 
-/// The vacant slots of an arena.
 #[derive(Serialize)]
 struct Vacant {
     /// Handles that the next added values get, in reverse order.

@@ -1,5 +1,3 @@
-//! Snapshots: every kind of value survives a save and a restore, and pages are shared.
-
 use alloc::vec::Vec;
 
 use crate::body::{BodyDef, BodyId, Geometry, Handle, ShapeDef};
@@ -10,7 +8,6 @@ use crate::solver::{JointDef, Revolute};
 use crate::world::World;
 use crate::world::state::State;
 
-/// Balls in a row, each joined to the next one.
 fn chain(count: u32) -> (World, Vec<BodyId>) {
     let mut world = World::default();
     let ball = ShapeDef::new(Geometry::circle(fx!(0.4)).expect("valid"));
@@ -30,7 +27,6 @@ fn state_of(world: &World) -> State {
     world.state.get().clone()
 }
 
-/// Saves the world, changes it by three ticks, and restores it.
 fn there_and_back(world: &mut World) {
     let (before, snapshot) = (state_of(world), world.save());
     (0..3).for_each(|_| world.step());
@@ -111,7 +107,6 @@ fn ball() -> ShapeDef {
     ShapeDef::new(Geometry::circle(fx!(0.4)).expect("valid"))
 }
 
-/// A tick changes no page, so that snapshots before and after it share all pages.
 #[test]
 fn snapshots_share_what_does_not_change() {
     let (mut world, bodies) = chain(200);
@@ -127,7 +122,6 @@ fn snapshots_share_what_does_not_change() {
     assert_eq!(world.save().bodies.shared_with(&first.bodies), 7, "the restored world shares its pages");
 }
 
-/// A reused snapshot is equal to a new one, and does not change while the world advances.
 #[test]
 fn reused_snapshots_equal_new_ones() {
     let (mut world, bodies) = chain(40);

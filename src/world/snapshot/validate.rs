@@ -1,4 +1,4 @@
-//! The invariants of the state. They are checked for every state that is decoded from bytes, and by tests.
+//! The invariants of the state, checked for decoded states and in tests.
 
 use alloc::format;
 use alloc::string::String;
@@ -46,7 +46,7 @@ impl World {
     /// Checks the invariants of the state.
     ///
     /// # Errors
-    /// The first [`Violation`] found. A world that was changed only through its methods has none.
+    /// The first [`Violation`] found.
     pub fn validate(&self) -> Result<(), Violation> {
         self.state.validate()
     }
@@ -92,8 +92,7 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
         let range = -WORLD_EXTENT_MAX..=WORLD_EXTENT_MAX;
         range.contains(&v.x) && range.contains(&v.y)
     };
-    // Edits keep the origin within the world extent, and ticks the centre of mass. After an edit the centre may be
-    // outside by its distance from the origin, which is less than the tolerance.
+    // Edits keep the origin within the world extent, ticks the centre of mass. The tolerance covers their distance.
     let reach = Vec2::new(crate::body::REACH_MAX * 8, crate::body::REACH_MAX * 8);
     check(inside(body.centre.max(-body.centre) - reach), || at("outside the world"))?;
     let speed = -SPEED_MAX..=SPEED_MAX;
@@ -112,8 +111,7 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
     check(body.rest_ticks.to_bits() <= sleepiest, || {
         at("more ticks at rest than a body of its kind can have")
     })?;
-    // A kinematic body that stops has to be active for one more tick, which requires that it has not settled while it
-    // moved.
+    // A kinematic body that stops has to be active for one more tick. Therefore a moving one must not have settled.
     let rests = body.kind == BodyKind::Kinematic && body.rest_ticks.has_settled();
     check(!(rests && body.is_moving()), || at("settled with a velocity"))?;
     let name = body.name().map_or(Ok(()), |name| name.validate());
@@ -131,8 +129,7 @@ fn check_body(state: &State, id: BodyId, body: &Body) -> Result<(), Violation> {
     check(mass == body.mass, || at("its mass does not follow from its shapes"))
 }
 
-/// Checks that every shape is valid and listed once by its body. Runs before the check of bodies, whose masses depend
-/// on valid shapes.
+/// Checks shapes before bodies, whose masses depend on valid shapes.
 fn check_shapes(state: &State) -> Result<(), Violation> {
     let mut listed = alloc::vec![false; state.shapes.slot_count()];
     for (id, body) in state.bodies.iter() {
@@ -159,7 +156,6 @@ fn check_shapes(state: &State) -> Result<(), Violation> {
     Ok(())
 }
 
-/// Checks that every sleeping body is at rest and listed by its island, and that islands list no other body.
 fn check_islands(state: &State) -> Result<(), Violation> {
     check(state.islands.is_consistent(), || "the free list of islands is inconsistent".into())?;
     let mut listed = 0;

@@ -1,10 +1,9 @@
-//! Areas: the effects of sensors with an [`Area`] on the bodies in them, for one tick.
+//! Areas: the effects of sensors with an [`Area`] on the bodies in them.
 //!
-//! Forces are computed once per tick. With `s` sub-steps, the mean of the times at which the sub-steps begin is a
-//! fraction `(s - 1) / (2 s)` of the tick after its start. Forces are computed at the poses that the velocities predict
-//! for that time. With forces at the poses at the start of a tick of `h` seconds, a spring of angular frequency
-//! `omega`, such as a floating box, would gain `h^2 omega^2 (s - 1) / (2 s)` of its energy in each tick, because the
-//! sub-steps move it by less than the symplectic Euler method does.
+//! Forces are computed once per tick, at the poses that the velocities predict for a fraction `(s - 1) / (2 s)` of the
+//! tick: the mean of the times at which `s` sub-steps begin. With the poses at the start of a tick of `h` seconds, a
+//! spring of angular frequency `omega`, such as a floating box, would gain `h^2 omega^2 (s - 1) / (2 s)` of its energy
+//! in each tick.
 
 use crate::body::{Area, Attraction, Body, Falloff, Geometry, Handle, Shape, area_of};
 use crate::collision::{Pair, RelativePose, Ring, SupportShape, overlap};
@@ -13,11 +12,10 @@ use crate::solver::{AreaEffect, Tuning};
 use crate::world::cache::{Scratch, is_awake};
 use crate::world::state::State;
 
-/// A shape that may be in an area: the slots of its body, of the area and of the shape. Sorted visitors give the order
-/// in which effects are summed.
+/// Slots of a body, an area and a shape of the body. Effects are summed in sorted order.
 type Visitor = [u32; 3];
 
-/// Lets every area act on the awake bodies with mass in it, once the solver has their velocities.
+/// Lets areas act on awake bodies with mass, once the solver has their velocities.
 pub(super) fn apply_areas(state: &mut State, scratch: &mut Scratch, tuning: &Tuning) {
     if !scratch.shapes.motion().may_have_sensors() {
         return;
@@ -52,7 +50,7 @@ pub(super) fn apply_areas(state: &mut State, scratch: &mut Scratch, tuning: &Tun
     scratch.area_visitors = visitors;
 }
 
-/// Whether an area of an active body overlaps a shape of a sleeping body and acts on it.
+/// Whether an area of an active body acts on a shape of a sleeping body.
 pub(super) fn wakes(state: &State, scratch: &Scratch, pair: Pair) -> bool {
     let is_acted_on = |area: u32, shape: u32| {
         state.shapes.at(area).acts_on(state.shapes.at(shape)) && state.body_of(shape).is_asleep()
@@ -67,26 +65,26 @@ pub(super) fn wakes(state: &State, scratch: &Scratch, pair: Pair) -> bool {
         && overlap(&SupportShape::of(posed_a, origin), &SupportShape::of(posed_b, origin))
 }
 
-/// The time in seconds for which poses are predicted.
+/// Time in seconds for which poses are predicted.
 fn time_ahead(state: &State) -> Fx {
     let sub_steps = i64::from(state.config.solver.sub_steps);
     let doubled = 2 * sub_steps * i64::from(state.config.tick_rate);
     crate::math::ratio(sub_steps - 1, doubled)
 }
 
-/// The sum of the effects of areas on one body.
+/// The sum of the effects on one body.
 struct Sum<'a> {
     state: &'a State,
     body: &'a Body,
-    /// Pose of the body relative to its own centre.
+    /// Pose relative to the body's own centre.
     pose: RelativePose,
-    /// Centre of mass of the body in the world.
+    /// Predicted centre of mass in the world.
     centre: Vec2<Fx>,
     ahead: Fx,
-    /// Area of all solid shapes of the body in m², or the length of its lines in m if the body has no area.
+    /// Area of all solid shapes in m², or the length of lines in m if the body has no area.
     size: Fx,
     has_area: bool,
-    /// Mass in kg of the medium that the body displaces.
+    /// Mass of the displaced medium in kg.
     displaced: Fx,
     /// First moment of the displaced mass about the body's centre.
     moment: Vec2<Fx>,
@@ -122,7 +120,6 @@ impl<'a> Sum<'a> {
         }
     }
 
-    /// Adds the effect of one area on some shapes of the body.
     fn add_area(&mut self, shapes: &[Visitor]) {
         let [_, area, _] = shapes[0];
         let area_shape = self.state.shapes.at(area);
@@ -145,8 +142,7 @@ impl<'a> Sum<'a> {
                         part.size
                     }
                 }
-                // A rounded outline is measured as a polygon. The share of the polygon that is inside scales the true
-                // area.
+                // A rounded outline is measured as a polygon, whose share that is inside scales the true area.
                 _ => fx_mul(area_of(shape.def()), fx_div(part.size, all.size).unwrap_or(Fx::ZERO)),
             };
             inside = inside.saturating_add(size);
@@ -160,7 +156,7 @@ impl<'a> Sum<'a> {
         }
     }
 
-    /// Adds the forces on a part of the body of `size` m² whose centre is at `arm` from the body's centre.
+    /// Adds the forces on a part of `size` m² whose centre is at `arm` from the body's centre.
     fn add_forces(&mut self, area: &Area, pose: &RelativePose, size: Fx, arm: Vec2<Fx>) {
         let mass = fx_mul(area.density, size);
         self.displaced = self.displaced.saturating_add(mass);
@@ -170,7 +166,7 @@ impl<'a> Sum<'a> {
         self.effect.torque = self.effect.torque.saturating_add(arm.cross(force));
     }
 
-    /// Adds the effects on the body as a whole, scaled by the share of the body that is in the area.
+    /// Adds the effects on the whole body, scaled by the share of it that is in the area.
     fn add_share(&mut self, area: &Area, shape: &Shape, medium: &Body, pose: &RelativePose, share: Fx) {
         let mut field = pose.rotation.apply_wide(area.acceleration);
         if let Some(attraction) = &area.attraction {
@@ -211,7 +207,7 @@ fn pose_of(body: &Body, centre: Vec2<Fx>, ahead: Fx) -> RelativePose {
     }
 }
 
-/// Acceleration towards the point `to`, given relative to the body.
+/// Acceleration towards the point `to`, which is relative to the body.
 fn pull(attraction: &Attraction, to: Vec2<Fx>) -> Vec2<Fx> {
     let Attraction { acceleration, radius, falloff } = *attraction;
     let Some((direction, distance)) = to.normalized_with_length() else { return Vec2::ZERO };

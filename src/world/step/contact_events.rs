@@ -1,6 +1,5 @@
-//! Contact and hit events, and the ends of sensor overlaps whose contact an edit or the pair update has ended. They are
-//! reported after the sub-steps, before the bodies are moved. All other sensor events are reported when the bodies have
-//! been moved (`sensor_events.rs`).
+//! Contact and hit events, and ends of sensor overlaps by edits and the pair update. They are reported before the
+//! bodies are moved. Other sensor events follow in `sensor_events.rs`.
 
 use super::sensor_events::push_sensor_events;
 use crate::collision::{Contact, Manifold};
@@ -11,9 +10,8 @@ use crate::world::events::{Events, HitEvent};
 use crate::world::islands::contact_ended;
 use crate::world::state::{Reported, State};
 
-/// Updates whether each contact touches, and reports the changes as events. A pair touches if it is near at the start
-/// of the tick, or if the solver has pushed it apart within the tick, because a fast bounce may begin and end within
-/// the tick.
+/// Reports pairs that begin or cease to touch. A pair touches if it is near at the start of the tick, or if the solver
+/// has pushed it apart, because a fast bounce may begin and end within the tick.
 pub(super) fn report_contacts(state: &mut State, scratch: &mut Scratch) {
     let Scratch { results, pairs, shapes, contacts: cache, solver, .. } = scratch;
     let (events, motion, output) = (&mut results.events, shapes.motion(), cache.output());
@@ -67,7 +65,7 @@ fn is_with_sensor(motion: &MotionCache, contact: &Contact) -> bool {
     motion.shape(contact.shapes.0).sensor || motion.shape(contact.shapes.1).sensor
 }
 
-/// Like [`State::reported`], but reads the motion cache instead of the shapes if both are solid.
+/// Like [`State::reported`], but does not read solid shapes.
 fn reported(state: &State, motion: &MotionCache, contact: &Contact) -> Option<Reported> {
     if is_with_sensor(motion, contact) {
         return state.reported(contact);
@@ -80,7 +78,7 @@ fn reported(state: &State, motion: &MotionCache, contact: &Contact) -> Option<Re
 }
 
 fn begin(pair: Option<Reported>, events: &mut Events) {
-    // Called for solid shapes only: `sensor_events.rs` reports the beginnings of overlaps with sensors.
+    // Only for solid shapes: `sensor_events.rs` reports sensors.
     events.contact_begin.extend(pair.map(|pair| pair.shapes));
 }
 

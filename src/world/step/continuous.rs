@@ -1,14 +1,12 @@
 //! Continuous collision: fast bodies are swept from their old pose to the one that the solver has computed. They stop
 //! where they first overlap too deeply with a shape that they might otherwise pass through.
 //!
-//! Speculative contacts already stop most fast bodies. The sweep catches what they cannot predict, such as rotating
-//! rods and speed gained within the tick. A body that is stopped loses the rest of its displacement in this tick. It
-//! keeps its velocity and continues in the next tick, in which the contact exists from the start.
+//! Speculative contacts stop most fast bodies. The sweep catches what they cannot predict, such as rotating rods and
+//! speed gained within the tick. A stopped body keeps its velocity and continues in the next tick.
 //!
 //! Bodies with [`Continuous::Kinematic`] are also swept against kinematic bodies, once these have been moved. Whether
-//! such a body is fast is judged relative to each kinematic body: by its displacement from the position to which the
-//! kinematic body would have carried it. A body that lies on a platform or in a drum is therefore not held back. A body
-//! that is stopped by a kinematic body is carried by it for the rest of the tick.
+//! such a body is fast is judged relative to the kinematic body, so that a body on a platform or in a drum is not held
+//! back. A kinematic body that stops a body carries it for the rest of the tick.
 
 use core::ops::ControlFlow;
 
@@ -20,19 +18,17 @@ use crate::world::cache::{Extents, Scratch, SweptBody, WorkMeter};
 use crate::world::movement::move_body;
 use crate::world::state::State;
 
-/// Distance in metres: a body none of whose points moves further than this in a tick is not swept, however thin it is.
-/// Against a kinematic body, the movement relative to that body counts.
+/// Movement of points in a tick, in metres, up to which a body is not fast, however thin it is.
 const SWEPT_MIN: Fx = fx!(0.0005);
 
-/// Work units of computing a time of impact, which takes some 2 µs, and up to 10 µs for long thin shapes that rotate.
+/// Work units of a time of impact: some 2 µs, up to 10 µs for long thin shapes that rotate.
 const IMPACT_WORK: u64 = 16;
 
-/// Number of shapes near a sweep that cost one work unit.
+/// Shapes near a sweep that cost one work unit.
 const VISITS_PER_WORK: u64 = 8;
 
-/// Returns the sweep of a body that is fast, or that may be fast relative to a kinematic body. A body is fast if it may
-/// pass through a shape: if any of its points may move further than half of the inner radius of the body's thinnest
-/// solid shape, and further than [`SWEPT_MIN`]. `turn` is the body's rotation in units of 2^-32 turns.
+/// The sweep of a body that may be fast. A body is fast if one of its points may move further than [`SWEPT_MIN`] and
+/// half of the inner radius of its thinnest solid shape. `turn` is in units of 2^-32 turns.
 pub(super) fn swept_body(
     slot: u32,
     body: &Body,
@@ -60,8 +56,6 @@ pub(super) fn swept_body(
     })
 }
 
-/// Whether a body moves so far from the position to which a kinematic body would have carried it that it may pass
-/// through a shape of the kinematic body.
 fn is_fast_relative(scratch: &Scratch, swept: &SweptBody, obstacle: &Sweep) -> bool {
     let extents = scratch.shapes.poses().extents(swept.slot);
     let limit = SWEPT_MIN.max(extents.core / 2);
@@ -71,7 +65,7 @@ fn is_fast_relative(scratch: &Scratch, swept: &SweptBody, obstacle: &Sweep) -> b
     shift.is_longer_than(limit.saturating_sub(fx_mul(turned, extents.reach)))
 }
 
-/// Position at the end of the tick of a world point that a body carries along from a fraction of the tick on.
+/// Position at the end of the tick of a point that a body carries from a fraction of the tick on.
 fn carried(sweep: &Sweep, point: Vec2<Fx>, fraction: Fx) -> Vec2<Fx> {
     let (before, turned_before) = sweep.at(fraction);
     let (after, turned_after) = sweep.at(Fx::ONE);
@@ -79,7 +73,6 @@ fn carried(sweep: &Sweep, point: Vec2<Fx>, fraction: Fx) -> Vec2<Fx> {
     sweep.start + after + turned_after.apply_wide(local)
 }
 
-/// Moves a fast body along its sweep to the end or to the first impact.
 pub(super) fn sweep(state: &mut State, scratch: &mut Scratch, swept: &SweptBody) {
     let mut meter = scratch.meter;
     let (pose, is_impact) = swept_pose(state, scratch, swept, &mut meter);
@@ -88,7 +81,7 @@ pub(super) fn sweep(state: &mut State, scratch: &mut Scratch, swept: &SweptBody)
     move_body(state, scratch, swept.slot, pose);
 }
 
-/// The pose of a fast body at the end of its sweep or after the first impact, and whether there is an impact.
+/// The pose after the sweep, and whether there is an impact.
 pub(super) fn swept_pose(
     state: &State,
     scratch: &Scratch,
@@ -99,17 +92,15 @@ pub(super) fn swept_pose(
     (impact.map_or(swept.end, |impact| pose_after(state, scratch, swept, impact)), impact.is_some())
 }
 
-/// An obstacle that stops a body. The order is by fraction, then by slot.
+/// An obstacle, ordered by fraction, then by slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Impact {
-    /// Fraction of the tick, 0 to 1.
     fraction: Fx,
-    /// Slot of the shape that is met.
     obstacle: u32,
 }
 
-/// The pose of a body after an impact. It is the pose at the impact. A kinematic obstacle continues its own movement,
-/// and the body moves along with it for the rest of the tick. The body does not move along with a dynamic obstacle.
+/// The pose of a body after an impact. A kinematic obstacle carries it for the rest of the tick, a dynamic one does
+/// not.
 fn pose_after(state: &State, scratch: &Scratch, swept: &SweptBody, impact: Impact) -> Pose {
     let Sweep { start, end, turn } = swept.sweep;
     let body = state.bodies.at(swept.slot);
@@ -129,7 +120,7 @@ fn pose_after(state: &State, scratch: &Scratch, swept: &SweptBody, impact: Impac
     Pose { centre: centre.max(-edge).min(edge), angle }
 }
 
-/// The first obstacle that stops a body on its sweep, if there is one. An exhausted meter ends the search early.
+/// The first obstacle on a sweep. An exhausted meter ends the search early.
 fn first_impact(
     state: &State,
     scratch: &Scratch,
@@ -152,7 +143,7 @@ fn first_impact(
             continue;
         }
         let posed = shapes.poses().at(id.slot());
-        // Computed only when a first obstacle is found, because most fast bodies are far from all obstacles.
+        // Lazy, because most fast bodies are far from all obstacles.
         let mut support_and_target = None;
         let start = if swept.sweep.turn == 0 { posed.bounds } else { disc };
         let area = start.swept(swept.sweep.end - swept.sweep.start);
@@ -175,7 +166,7 @@ fn first_impact(
                 }
                 let &mut (support, target) = support_and_target.get_or_insert_with(|| {
                     let support = SupportShape::of(posed, body.centre);
-                    // A quarter of the depth at which the shape's centre would be on the surface, and at most 5 mm.
+                    // A quarter of the depth at which the shape's centre would be on the surface, at most 5 mm.
                     (support, -(support.inner_radius() / 4).min(fx!(0.005)))
                 });
                 if !meter.spend(IMPACT_WORK) {
@@ -183,7 +174,7 @@ fn first_impact(
                 }
                 let fraction = match time_of_impact(&there, &movement, &support, &swept.sweep, target) {
                     TimeOfImpact::Hit { fraction } => Some(fraction),
-                    // The fraction reached is safe. At 0 it is ignored, so that the body does not get stuck.
+                    // The fraction is safe. At 0 it is ignored, so that the body does not get stuck.
                     TimeOfImpact::Failed { fraction } => Some(fraction).filter(|&fraction| fraction > 0),
                     TimeOfImpact::Separated | TimeOfImpact::Overlapped => None,
                 };
@@ -192,20 +183,18 @@ fn first_impact(
             }
             ControlFlow::Continue(())
         };
-        // Bodies that see no moving obstacle are swept against fixed ones only.
         if sees_moving {
             shapes.broad_phase().each_overlap(area, visit);
         } else {
             shapes.broad_phase().each_fixed_overlap(area, visit);
         }
-        // Counted after the search for this shape. An exhausted meter need not end that search, because the budget
-        // already covers comparing all shapes of the world.
+        // An exhausted meter need not end the search for a shape: the budget covers comparing all shapes of the world.
         meter.spend(1 + visited / VISITS_PER_WORK);
     }
     first
 }
 
-/// A shape relative to its body's centre at the start of the tick, and the movement of the body within the tick.
+/// A shape relative to its body's centre at the start of the tick, and its movement within the tick.
 fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (SupportShape, Sweep) {
     let body = state.body_of(shape);
     let support = SupportShape::of(scratch.shapes.poses().at(shape), body.centre);
@@ -216,14 +205,12 @@ fn obstacle_of(state: &State, scratch: &Scratch, shape: u32) -> (SupportShape, S
     let slot = state.shapes.at(shape).body().slot();
     let Ok(index) = scratch.awake.bodies().binary_search(&slot) else { return stands };
     let start = scratch.sweeps.starts[index];
-    // The smaller of the possible rotations. Obstacles that rotate by more than half a turn in a tick are swept the
-    // shorter way.
+    // The smaller of the possible rotations.
     let turn = (body.angle - start.angle).to_turns().to_bits();
     let support = support.rotated(Rot::from_angle(start.angle - body.angle));
     (support, Sweep { start: start.centre, end: body.centre, turn })
 }
 
-/// Whether a body is swept against an obstacle.
 fn stops(body: &Body, obstacle: &Body) -> bool {
     match obstacle.kind() {
         BodyKind::Fixed => true,
@@ -232,17 +219,15 @@ fn stops(body: &Body, obstacle: &Body) -> bool {
     }
 }
 
-/// Whether a body is swept against kinematic bodies relative to which it is fast.
 pub(super) fn sees_kinematic(body: &Body) -> bool {
     body.settings.continuous == Continuous::Kinematic
 }
 
-/// Whether a body is a bullet, which is swept against all bodies that are not bullets.
+/// Bullets are also swept against moving bodies that are not bullets.
 pub(super) fn is_bullet(body: &Body) -> bool {
     body.settings.continuous == Continuous::Bullet
 }
 
-/// Whether shape `b` may stop shape `a`.
 fn may_stop(state: &State, scratch: &Scratch, a: u32, b: u32) -> bool {
     let pair = (a.min(b), a.max(b));
     // Whether a one-way shape lets the other one pass was decided at the start of the tick.

@@ -1,5 +1,3 @@
-//! Copies the solver's velocities and poses to the state.
-
 use super::continuous;
 use crate::body::{Arena, ArenaRange, Body, BodyKind, Handle, Pose, Shape, ShapeId, WORLD_EXTENT_MAX};
 use crate::collision::BroadPhase;
@@ -10,7 +8,7 @@ use crate::world::cache::{Extents, Finalised, PoseRange, Scratch, SweptBody};
 use crate::world::movement::{cover_shape, move_body};
 use crate::world::state::State;
 
-/// Moves the awake bodies to the poses that the solver has computed, and fast bodies up to their first impact.
+/// Moves the awake bodies, fast ones up to their first impact.
 pub(super) fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
     scratch.results.stats.impacts = 0;
     scratch.sweeps.relative.clear();
@@ -31,14 +29,13 @@ pub(super) fn finalise_poses(state: &mut State, scratch: &mut Scratch) {
         let body = scratch.sweeps.relative[index];
         continuous::sweep(state, scratch, &body);
     }
-    // Bullets are swept in slot order once all other bodies have been moved.
+    // Bullets are swept in slot order after all other bodies.
     for index in 0..scratch.sweeps.bullets.len() {
         let bullet = scratch.sweeps.bullets[index];
         continuous::sweep(state, scratch, &bullet);
     }
 }
 
-/// Lets each thread work on its bodies and shapes. Returns the sum of the results.
 fn run_shares(
     state: &mut State,
     scratch: &mut Scratch,
@@ -64,8 +61,7 @@ fn run_shares(
     })
 }
 
-/// Sweeps the fast bodies that only fixed bodies can stop. Each thread sweeps its own bodies, which need not wait for
-/// other bodies to be moved.
+/// Sweeps the fast bodies that only fixed bodies can stop: they need not wait for other bodies.
 fn sweep_bodies(state: &State, scratch: &mut Scratch) {
     let mut finalised = core::mem::take(&mut scratch.finalised);
     if finalised.iter().any(|finalised| !finalised.swept.is_empty()) {
@@ -85,28 +81,26 @@ fn sweep_bodies(state: &State, scratch: &mut Scratch) {
     scratch.finalised = finalised;
 }
 
-/// Data that all threads read.
 struct Sources<'a> {
     shapes: &'a Arena<Shape, ShapeId>,
     solver: &'a Solver,
-    /// Extents of the bodies, by slot.
+    /// Extents by body slot.
     extents: &'a [Extents],
     broad_phase: &'a BroadPhase,
     is_continuous: bool,
     may_have_kinematic: bool,
 }
 
-/// The bodies and shapes that a thread moves.
 struct FinaliseShare<'a> {
     bodies: ArenaRange<'a, Body>,
     poses: PoseRange<'a>,
-    /// The pose of each of the awake bodies at the start of the tick.
+    /// Poses at the start of the tick, in the order of the awake bodies.
     starts: &'a mut [Pose],
     finalised: &'a mut Finalised,
 }
 
 impl FinaliseShare<'_> {
-    /// Copies the velocities of bodies from the solver, and moves those that are not fast. Returns the faults.
+    /// Copies velocities from the solver, and moves the bodies that are not fast.
     fn finalise_bodies(&mut self, slots: &[u32], sources: &Sources<'_>) -> Faults {
         self.finalised.clear();
         let mut faults = 0;
@@ -128,7 +122,6 @@ impl FinaliseShare<'_> {
         faults
     }
 
-    /// Moves the bodies that have been swept.
     fn move_stopped(&mut self, sources: &Sources<'_>) -> Faults {
         for index in 0..self.finalised.moved.len() {
             let (slot, pose) = self.finalised.moved[index];
@@ -151,7 +144,6 @@ impl FinaliseShare<'_> {
 }
 
 impl Sources<'_> {
-    /// The sweep of a body that may be fast.
     fn swept_body(&self, slot: u32, body: &Body, end: &FinalPose) -> Option<SweptBody> {
         if !self.is_continuous {
             return None;
@@ -161,7 +153,7 @@ impl Sources<'_> {
     }
 }
 
-/// Completes the work that a thread has left over because its order matters.
+/// Completes the work whose order matters.
 fn complete(state: &mut State, scratch: &mut Scratch, finalised: &Finalised) {
     for &slot in &finalised.settled {
         scratch.pairs.changes.body_changed(state.bodies.at(slot));
@@ -170,22 +162,21 @@ fn complete(state: &mut State, scratch: &mut Scratch, finalised: &Finalised) {
     for &(slot, pose) in &finalised.others {
         move_body(state, scratch, slot, pose);
     }
-    // `swept` is empty if several threads have swept its bodies. A single thread sweeps and moves each body at once,
-    // while it is in the cache.
+    // With several threads, `swept` is empty here. A single thread sweeps and moves each body at once, while it is
+    // cached.
     finalised.swept.iter().for_each(|swept| continuous::sweep(state, scratch, swept));
     scratch.results.stats.impacts += finalised.impacts;
     scratch.sweeps.relative.extend_from_slice(&finalised.relative);
     scratch.sweeps.bullets.extend_from_slice(&finalised.bullets);
 }
 
-/// The end of a body's motion in the tick, as computed by the solver.
 struct FinalPose {
     pose: Pose,
-    /// Rotation in units of 2^-32 turns, with whole turns, which the angle of the pose does not contain.
+    /// Rotation in units of 2^-32 turns, including whole turns.
     turn: i64,
 }
 
-/// Copies the velocity of a body from the solver, clears its forces, and returns the pose to which it has to be moved.
+/// Copies velocities from the solver. Returns the pose to which the body has to be moved.
 fn finalise_body(body: &mut Body, solved: &SolverBody, faults: &mut Faults) -> FinalPose {
     let SolverBody { velocity, spin, shift, turn, .. } = *solved;
     body.velocity = velocity;

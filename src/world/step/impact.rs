@@ -1,10 +1,10 @@
 //! Contacts at the time of impact: the manifold of shapes that first touch later in the tick.
 //!
 //! A manifold at the start of the tick describes shapes that are still apart. The normal between two balls that do not
-//! meet head-on rotates until they touch, and the ends of a rotating rod move along arcs. An impact that is solved with
-//! the normal and the lever arms at the start changes the angular momentum and the energy of the bodies. The shapes are
-//! therefore advanced, at their initial velocities, to the time at which they touch, and collided there. The
-//! separations are then converted back to the start of the tick, along the constraint rows of the new manifold:
+//! meet head-on rotates until they touch, and the ends of a rotating rod move along arcs. With the normal and the lever
+//! arms at the start, an impact would change angular momentum and energy. The shapes are therefore advanced, at their
+//! initial velocities, to the time at which they touch, and collided there. The separations are then converted back to
+//! the start of the tick, along the constraint rows of the new manifold:
 //!
 //! ```text
 //! s(0) = s(f) + f (approach in the tick)
@@ -20,13 +20,11 @@ use crate::math::{
 };
 use crate::world::cache::{MotionCache, PredictedMotion, Travel};
 
-/// Largest number of trial times at which the shapes are collided.
 const ROUNDS_MAX: u32 = 4;
 
-/// Largest distance in metres at which shapes count as touching.
+/// Distance in metres at which shapes count as touching.
 const TOLERANCE: Step = Step::lit("0.001");
 
-/// A shape and the motion of its body in the tick.
 struct MovingShape<'a> {
     side: Side<'a>,
     motion: &'a PredictedMotion,
@@ -34,7 +32,6 @@ struct MovingShape<'a> {
 }
 
 impl MovingShape<'_> {
-    /// The shape at a fraction of the tick.
     fn at(&self, fraction: Unit) -> PosedShape {
         let MovingShape { side: Side { shape, body, posed }, motion, disc } = *self;
         let moved = motion.shift_until(fraction);
@@ -51,16 +48,14 @@ impl MovingShape<'_> {
 }
 
 impl SpeculativePair<'_> {
-    /// Whether the shapes are apart and may approach each other so fast that the manifold at the time of impact
-    /// differs.
+    /// Whether the shapes are apart, but may approach so fast that the manifold at the time of impact differs.
     #[inline]
     pub(super) fn may_impact(&self, manifold: &Manifold) -> bool {
         self.closing.is_longer_than(self.margins.touching)
             && manifold.points().iter().all(|point| point.separation > self.margins.touching)
     }
 
-    /// Replaces the manifold at the start of the tick by the manifold at the time of impact, if the shapes touch within
-    /// the tick. Returns the displacements of the bodies until then.
+    /// Replaces the manifold if the shapes touch within the tick. Returns the displacements of the bodies until then.
     #[cold]
     pub(super) fn move_to_impact(
         &self,
@@ -105,20 +100,19 @@ impl SpeculativePair<'_> {
     }
 }
 
-/// A contact point that closes: its separation, and its approach in a whole tick.
+/// A contact point that closes, and its approach in a whole tick.
 struct ClosingPoint {
     separation: Step,
     distance: i64,
 }
 
-/// The point of a manifold that closes first.
 fn soonest([a, b]: [&PredictedMotion; 2], manifold: &Manifold) -> Option<ClosingPoint> {
     let closing_at = approach(a, b, manifold);
     let points = manifold
         .points()
         .iter()
         .map(|point| ClosingPoint { separation: point.separation, distance: closing_at(point) });
-    // Compares the times s1 / d1 and s2 / d2 of two points by cross-multiplication, which needs positive distances d.
+    // Compares the times s1 / d1 and s2 / d2 by cross-multiplication, which needs positive distances d.
     points.filter(|point| point.distance > 0).reduce(|first, point| {
         let time = |point: &ClosingPoint, other: &ClosingPoint| {
             i128::from(point.separation.to_bits()) * i128::from(other.distance)
@@ -127,8 +121,8 @@ fn soonest([a, b]: [&PredictedMotion; 2], manifold: &Manifold) -> Option<Closing
     })
 }
 
-/// The fraction of the tick at which a point closes, as the bits of a [`Unit`]; `from` is the fraction at which its
-/// separation was measured. `None` if it does not close within the tick.
+/// The fraction of the tick at which a point closes, as the bits of a [`Unit`], given the fraction `from` of its
+/// separation. `None` if it does not close within the tick.
 fn time_of_touch(point: &ClosingPoint, from: i64) -> Option<i64> {
     let rest = (i64::from(point.separation.to_bits()) << Unit::FRAC_NBITS) / point.distance;
     let time = from.saturating_add(rest);

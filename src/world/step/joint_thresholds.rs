@@ -1,5 +1,3 @@
-//! Joints whose force or torque exceeds their threshold: they are reported, and removed if they break.
-
 use alloc::vec::Vec;
 
 use crate::body::Handle;
@@ -10,7 +8,7 @@ use crate::world::events::JointEvent;
 use crate::world::islands::joints_changed;
 use crate::world::state::State;
 
-/// Compares the force and torque of each joint in the last sub-step with its threshold.
+/// Reports joints that exceeded their threshold in the last sub-step, and removes those that break.
 pub(super) fn report_joints(state: &mut State, scratch: &mut Scratch, tuning: &Tuning) {
     let Scratch { awake, results, solver, .. } = scratch;
     // Joints break so rarely that this list is not kept in the scratch memory.
@@ -36,7 +34,7 @@ pub(super) fn report_joints(state: &mut State, scratch: &mut Scratch, tuning: &T
     scratch.awake.refresh(state);
 }
 
-/// Returns the force in N and the torque in N m of a joint if one of them is above its threshold.
+/// Force in N and torque in N m of a joint that exceeds its threshold.
 fn excess(state: &State, solver: &mut Solver, joint: &Joint, tuning: &Tuning) -> Option<(Vec2<Fx>, Fx)> {
     let Threshold { force: force_max, torque: torque_max, action: _ } = joint.def().threshold;
     let (a, b) = joint.def().bodies();

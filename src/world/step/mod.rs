@@ -1,5 +1,3 @@
-//! One tick: [`World::step`] and its stages, one file each.
-
 mod areas;
 mod contact_events;
 mod continuous;
@@ -35,8 +33,8 @@ impl World {
         }
     }
 
-    /// [`World::step`] with an observer that is called at the beginning of each phase, for profiles. The caller reads
-    /// the clock. Such a tick adds nothing to [`World::phase_digests`].
+    /// [`World::step`] with an observer that is called at the beginning of each phase. Such a tick adds nothing to
+    /// [`World::phase_digests`].
     ///
     /// ```
     /// # use lockstep2d::world::World;
@@ -55,8 +53,7 @@ impl World {
         threads.run_tick(bodies, |parts| self.run_phases(parts, begin));
     }
 
-    /// The algorithm of a tick. `parts` is the number of threads that share it. `begin` is called at the beginning of
-    /// each phase with a view of the results of all earlier phases.
+    /// `parts` is the number of threads that share the tick. `begin` gets a view of the results of earlier phases.
     fn run_phases(&mut self, parts: usize, mut begin: impl FnMut(Phase, PhaseView<'_>)) {
         let World { state, scratch, phases: _ } = self;
         let state = &mut **state;
@@ -70,7 +67,6 @@ impl World {
         refit::refit_boxes(state, scratch);
         pair_update::update_pairs(state, scratch);
         if wake::wake_touched(state, scratch) {
-            // Adds the contacts of the bodies that have woken.
             pair_update::update_pairs(state, scratch);
         }
         scratch.awake.refresh(state);
@@ -94,7 +90,7 @@ impl World {
         begin(Phase::Solve, PhaseView::of(state, scratch));
         let Scratch { solver, .. } = scratch;
         let first_sub_step = state.tick.wrapping_mul(settings.sub_steps.into());
-        // If the budget does not cover the sub-steps, they are skipped, and the caller discards the result.
+        // Without the budget for the sub-steps, they are skipped, and the caller discards the result.
         let sub_steps = if can_solve { settings.sub_steps } else { 0 };
         solver.sub_steps(first_sub_step, sub_steps, &tuning, &mut state.contacts);
         solver.store_joints(&mut state.joints);
@@ -111,7 +107,7 @@ impl World {
         begin(Phase::Report, PhaseView::of(state, scratch));
         report::report_moves(state, scratch);
         report::count(state, scratch);
-        // A snapshot from outside may have any tick, so that the count may wrap around.
+        // A snapshot from outside may have any tick.
         state.tick = state.tick.wrapping_add(1);
     }
 }

@@ -1,5 +1,4 @@
-//! Narrow phase: a manifold for every contact whose shapes may meet within the tick. SIMD backends collide several
-//! pairs of small boxes at a time.
+//! Narrow phase: a manifold for every contact whose shapes may meet within the tick.
 
 use core::ops::Range;
 
@@ -17,18 +16,16 @@ use crate::world::cache::{
 use crate::world::events::{ContactEvent, HitEvent};
 use crate::world::state::State;
 
-/// Smallest number of contacts for a thread. The last thread may have fewer.
+/// Smallest number of contacts for a thread, except the last one.
 const CONTACTS_MIN: usize = 512;
 
-/// Number of contacts in a block. Their bounds are tested before the pairs of small boxes among them are collided.
-/// The number is large enough that few SIMD lanes stay empty, and small enough that a block's data stays in the cache.
+/// Number of contacts in a block: large enough that few SIMD lanes stay empty, small enough for the cache.
 const BLOCK: usize = 64;
 
-/// Prefetch distance in contacts. Prefetching helps because the data of shape B is accessed in random order.
+/// Prefetch distance in contacts. The data of shape B is accessed in random order.
 const CONTACTS_AHEAD: usize = 8;
 
-/// Finds the manifolds of all contacts, and lists the pairs that the solver has to solve. Each thread has a part of the
-/// contacts. Their outputs are joined in order, so that the result does not depend on the number of threads.
+/// Finds the manifolds of all contacts. The result does not depend on the number of threads.
 pub(super) fn find_manifolds(state: &mut State, scratch: &mut Scratch) {
     let Scratch { shapes, contacts: cache, awake, solver, .. } = scratch;
     let mut contacts = core::mem::take(&mut state.contacts);
@@ -47,46 +44,37 @@ pub(super) fn find_manifolds(state: &mut State, scratch: &mut Scratch) {
     state.contacts = contacts;
 }
 
-/// Data that all threads read.
 struct NarrowPhase<'a> {
     state: &'a State,
     poses: &'a Poses,
     awake: &'a AwakeSet,
-    /// The touching pairs of the last tick, sorted by pair.
     touched: &'a [ActiveContact],
     margins: Margins,
     machine: Machine,
 }
 
-/// The contacts of a thread.
 struct Job<'a> {
     contacts: &'a mut [Contact],
-    /// For each of the contacts, the cached separating axis of its shapes.
     axes: &'a mut [CachedAxis],
-    /// Index of the first of the contacts in the state.
+    /// Index in the state of the first contact.
     first: u32,
 }
 
-/// The contacts of a block whose shapes may meet within the tick, one bit each.
+/// The near contacts of a block, one bit each.
 #[derive(Clone, Copy)]
 struct NearContacts {
-    /// Index of the first contact of the block among those of the job.
+    /// Index in the job of the first contact.
     start: usize,
     near: u64,
-    /// The near contacts that are pairs of small boxes.
     box_pairs: u64,
-    /// The near contacts that keep their manifold.
     kept: u64,
 }
 
-/// Source of the manifold of a near contact.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum ManifoldSource {
-    /// The contact keeps its manifold.
     Kept,
-    /// The pair was collided together with the other box pairs of its block.
+    /// The pair was collided with the other box pairs of the block.
     BoxPair,
-    /// The shapes have to be collided.
     Shapes,
 }
 
@@ -101,7 +89,6 @@ impl NearContacts {
         self.kept |= u64::from(source == ManifoldSource::Kept) << bit;
     }
 
-    /// The indices in the job, and the source of each manifold.
     #[inline]
     fn iter(self) -> impl Iterator<Item = (usize, ManifoldSource)> {
         let (mut near, NearContacts { start, box_pairs, kept, .. }) = (self.near, self);
@@ -119,7 +106,7 @@ impl NearContacts {
 }
 
 impl NarrowPhase<'_> {
-    /// Whether joints change the motion of a body in the tick, so that the place of its impact is not known in advance.
+    /// Whether joints change the motion of a body in the tick, so that the place of its impact is not known.
     fn is_held(&self, side: &Side<'_>) -> bool {
         side.body.is_dynamic() && self.awake.is_held(side.shape.body().slot())
     }
@@ -134,8 +121,7 @@ impl NarrowPhase<'_> {
         }
     }
 
-    /// Finds the contacts of a block whose shapes may meet: contacts that keep their manifold, pairs of small boxes,
-    /// and others. Collides the pairs of small boxes.
+    /// Finds the near contacts of a block, and collides the pairs of small boxes among them.
     fn find_near(
         &self,
         job: &mut Job<'_>,
@@ -184,8 +170,8 @@ impl NarrowPhase<'_> {
         near
     }
 
-    /// Completes the manifolds of the near contacts of a block, keeps those that have points, and lists the touching
-    /// pairs. `touched` lists touching pairs of the last tick, sorted by pair. Returns its rest, for the next block.
+    /// Completes the manifolds of near contacts, keeps those with points, and lists the touching pairs. `touched` lists
+    /// touching pairs of the last tick, sorted by pair. Returns its rest, for the next block.
     fn find_touching<'t>(
         &self,
         job: &mut Job<'_>,
@@ -201,7 +187,7 @@ impl NarrowPhase<'_> {
             let (contact, axis) = (&mut job.contacts[index], &mut job.axes[index]);
             let (shape_a, shape_b) = (motion.shape(contact.shapes.0), motion.shape(contact.shapes.1));
             if shape_a.sensor || shape_b.sensor {
-                // Sensors have no manifolds: `sensor_events.rs` follows them at the end of the tick.
+                // Sensors have no manifolds: see `sensor_events.rs`.
                 continue;
             }
             let closing = ClosingBound::of(margins, shape_a, shape_b);
@@ -265,7 +251,7 @@ impl NarrowPhase<'_> {
     }
 }
 
-/// Whether two shapes touch, or come so near within the tick that the solver has to solve their contact.
+/// Whether the solver has to solve the contact of two shapes.
 pub(super) fn will_touch(state: &State, poses: &Poses, shapes: Pair) -> bool {
     let found = state.contacts.binary_search_by_key(&shapes, |contact| contact.shapes);
     let mut contact = found.map_or(Contact::new(shapes), |index| state.contacts[index]);
@@ -281,7 +267,6 @@ pub(super) fn will_touch(state: &State, poses: &Poses, shapes: Pair) -> bool {
     }
 }
 
-/// The manifold of two solid shapes that may meet.
 #[inline(always)]
 fn manifold_of(
     poses: &Poses,
@@ -294,8 +279,7 @@ fn manifold_of(
     collide_near(posed_a, posed_b, pair.closing.margin, axis, counters)
 }
 
-/// Removes the points of two shapes that pass by each other, or one of which is a one-way shape that lets the other
-/// pass.
+/// Removes the points of shapes that pass by each other or through a one-way shape.
 #[inline(always)]
 fn keep_reachable(
     state: &State,
@@ -321,7 +305,6 @@ fn keep_reachable(
     pair.keep_reachable(manifold, poses.motion(), || [poses.at(a), poses.at(b)]);
 }
 
-/// The common surface of two shapes.
 fn surface_of(state: &State, poses: &Poses, (a, b): Pair) -> Surface {
     let side = |slot: u32| SurfaceSide {
         material: state.shapes.at(slot).material(),
@@ -330,8 +313,7 @@ fn surface_of(state: &State, poses: &Poses, (a, b): Pair) -> Surface {
     Surface::between(side(a), side(b), state.config.solver.restitution_threshold)
 }
 
-/// Returns the hit event of a contact whose shapes approach at the hit speed or faster. It is reported only if they
-/// push each other in this tick.
+/// The hit event of a fast approach. It is reported if the shapes push each other.
 fn fast_approach(
     state: &State,
     motion: &MotionCache,
@@ -352,7 +334,6 @@ fn fast_approach(
     let point = manifold.origin + point.anchor.widen();
     let ContactEvent { shape_a, shape_b } = state.contact_event(contact);
     let normal = manifold.normal;
-    // The solver finds the impulse.
     let event = HitEvent { shape_a, shape_b, point, normal, approach_speed, impulse: Fx::ZERO };
     Some(PendingHit { contact: index, event })
 }

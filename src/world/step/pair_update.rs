@@ -1,18 +1,16 @@
 //! Pair update: adds and removes contacts so that they match the overlaps of fat boxes.
 //!
 //! `State::contacts` has a contact for every pair of shapes whose fat boxes overlap, of which at least one is on an
-//! active body, and which [`NonCollidingPairs::may_touch`] accepts, up to the pair limit. A contact that no longer has
-//! an active body moves to `State::sleeping_contacts`, and moves back when one of its bodies becomes active. The result
-//! is a function of the state: [`Changes`](crate::world::cache::Changes) only records where contacts may have to be
-//! added or removed.
+//! active body, and which [`NonCollidingPairs::may_touch`] accepts, up to the pair limit. A contact without an active
+//! body is in `State::sleeping_contacts`. The result is a function of the state:
+//! [`Changes`](crate::world::cache::Changes) only records where contacts may have to be added or removed.
 
 use crate::collision::{Contact, Moved, Pair};
 use crate::world::cache::{Changes, MergedContacts, NonCollidingPairs, Scratch, ShapeCache, merge_sorted};
 use crate::world::state::State;
 
-/// Updates the contacts. Contacts whose pair has ended are added to the `ended` list of the pair cache.
 pub(super) fn update_pairs(state: &mut State, scratch: &mut Scratch) {
-    // Pairs that were left out at the limit are added as soon as there is room, even if nothing else has changed.
+    // Pairs that were left out at the limit are added as soon as there is room.
     if !(scratch.pairs.changes.any() || state.pairs_left_out) {
         return;
     }
@@ -28,9 +26,8 @@ pub(super) fn update_pairs(state: &mut State, scratch: &mut Scratch) {
     pairs.changes.clear(shapes.broad_phase(), state.shapes.slot_count());
 }
 
-/// Moves the sleeping contacts with a body that has become active to the fresh contacts. Ends sleeping contacts whose
-/// boxes no longer overlap or whose shapes are no longer allowed to collide, for example after an edit has moved a
-/// kinematic body with a sensor.
+/// Moves sleeping contacts with an active body to the fresh contacts. Ends those that may no longer collide, for
+/// example after an edit has moved a kinematic body with a sensor.
 fn activate_sleeping_contacts(state: &mut State, scratch: &mut Scratch) {
     let pairs = &mut scratch.pairs;
     pairs.buffers.fresh.clear();
@@ -54,7 +51,7 @@ fn activate_sleeping_contacts(state: &mut State, scratch: &mut Scratch) {
     state.sleeping_contacts = sleeping_contacts;
 }
 
-/// Adds a contact to the fresh ones for every pair that may be new. Returns whether pairs were left out at the limit.
+/// Finds pairs that may be new. Returns whether pairs were left out at the limit.
 fn find_new(state: &State, scratch: &mut Scratch) -> bool {
     let limit = state.config.pair_limit as usize;
     let Scratch { shapes, pairs: cache, .. } = scratch;
@@ -80,12 +77,11 @@ fn find_new(state: &State, scratch: &mut Scratch) -> bool {
     left_out
 }
 
-/// Action of the pair update on an active contact.
 enum PairChange {
     Stays,
-    /// The fat boxes of its shapes no longer overlap, or the shapes are no longer allowed to collide.
+    /// Its fat boxes do not overlap, or its shapes may not collide.
     Ends,
-    /// Neither of its bodies is active any more.
+    /// Neither of its bodies is active.
     Rests,
 }
 
@@ -108,7 +104,6 @@ impl PairChange {
             return PairChange::Ends;
         }
         if !(anywhere || changes.is_new(a) || changes.is_new(b)) {
-            // Only fat boxes have changed.
             return PairChange::Stays;
         }
         let (body_a, body_b) = state.bodies_of(pair);
@@ -116,8 +111,8 @@ impl PairChange {
     }
 }
 
-/// Merges the fresh contacts into the active contacts, and removes contacts that end or fall asleep. The contacts
-/// between two changes are copied as one block together with their cached axes.
+/// Adds the fresh contacts, and removes contacts that end or fall asleep. Copies the contacts between two changes as
+/// one block, with their cached axes.
 fn merge_contacts(state: &mut State, scratch: &mut Scratch) {
     let Scratch { shapes, pairs, contacts: cache, .. } = scratch;
     let axes = cache.axes(state.contacts.len());
@@ -158,7 +153,7 @@ fn merge_contacts(state: &mut State, scratch: &mut Scratch) {
     }
 }
 
-/// Ends the contacts beyond the limit: those in the largest slots.
+/// Ends the contacts beyond the limit, in the largest slots.
 fn keep_to_limit(state: &mut State, scratch: &mut Scratch, left_out: bool) {
     let limit = state.config.pair_limit as usize;
     state.pairs_left_out = left_out || state.contacts.len() > limit;

@@ -1,5 +1,3 @@
-//! Recording of a digest after each phase of a tick.
-
 use alloc::vec::Vec;
 
 use crate::hash::StateHash;
@@ -11,19 +9,19 @@ use crate::world::state::State;
 use crate::world::stats::Phase;
 
 impl World {
-    /// Starts to record a digest after every phase of every [`World::step`], and discards digests recorded earlier. A
-    /// tick then takes several times as long. Recording does not change the simulation.
+    /// Starts to record a digest after every phase of every [`World::step`], and discards earlier digests. Does not
+    /// change the simulation, but ticks take several times as long.
     pub fn log_phases(&mut self) {
         self.phases = Some(PhaseLog::default());
     }
 
-    /// Ends the recording that [`World::log_phases`] has started, and clears it.
+    /// Ends the recording of [`World::log_phases`], and clears it.
     pub fn stop_logging_phases(&mut self) {
         self.phases = None;
     }
 
     /// Returns the digests of every [`World::step`] since [`World::log_phases`], in order: eight for each tick, the
-    /// first one at the beginning of the tick. Empty if nothing is recorded.
+    /// first at its beginning.
     ///
     /// ```
     /// # use lockstep2d::world::{Phase, World};
@@ -39,8 +37,7 @@ impl World {
         self.phases.as_ref().map_or(&[], |log| &log.digests)
     }
 
-    /// Returns the state at the start of the last [`World::step`] since [`World::log_phases`], with all edits before
-    /// that tick. `None` before the first such tick, and if nothing is recorded.
+    /// Returns the state at the start of the last recorded [`World::step`].
     #[must_use]
     pub fn step_start(&self) -> Option<&Snapshot> {
         self.phases.as_ref()?.start.as_ref()
@@ -60,7 +57,6 @@ impl World {
     }
 }
 
-/// View of a world for an observer between two phases.
 pub(super) struct PhaseView<'a> {
     pub(super) state: &'a State,
     pub(super) solver: &'a Solver,
@@ -74,7 +70,6 @@ impl<'a> PhaseView<'a> {
         PhaseView { state, solver, awake, output: contacts.output() }
     }
 
-    /// Digest of the state and of the intermediate results of a phase, without results of an earlier tick.
     fn digest_after(&self, phase: Option<Phase>) -> StateHash {
         let intermediate = match phase {
             Some(Phase::NarrowPhase) => self.manifolds(),

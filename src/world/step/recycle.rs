@@ -1,4 +1,4 @@
-//! Contact recycling: how far shapes may move before their contact gets a new manifold.
+//! Contact recycling: the movement up to which a contact keeps its manifold.
 
 use crate::body::{Body, BodyKind};
 use crate::collision::{Contact, KeptManifold, KeptSide, Manifold};
@@ -6,31 +6,30 @@ use crate::math::{Length, Vec2};
 use crate::world::cache::{ClosingBound, Margins, Recycled, ShapeMotion};
 use crate::world::state::State;
 
-/// The shapes of a contact, and the limits within which it keeps its manifold and its lever arms.
+/// The shapes of a contact, and the limits within which it keeps its manifold and lever arms.
 pub(super) struct Recycling<'a> {
     bodies: [&'a Body; 2],
     shapes: [&'a ShapeMotion; 2],
     extents: [Length; 2],
     /// Whether a round shape may roll on a body that is not dynamic.
     rolls: bool,
-    /// Largest change of a lever arm, in metres, at which the contact keeps the arm.
+    /// Change of a lever arm, in metres, up to which the contact keeps the arm.
     arm_tolerance: Length,
-    /// Largest relative movement of the shapes since their manifold was computed, in metres, at which the contact keeps
-    /// the manifold for another tick. Negative if the shapes move too fast.
+    /// Movement of the shapes since their manifold was computed, in metres, up to which the contact keeps it. Negative
+    /// if the shapes move too fast.
     movement_max: Length,
 }
 
 impl<'a> Recycling<'a> {
-    /// The limits of two shapes that touch at `count` points. An arm is kept while it changes by at most a 64th of the
-    /// smaller shape's extent. A manifold is kept while the relative movement, including the movement in this tick, is
-    /// at most that 64th and at most a quarter of the speculative distance.
+    /// An arm is kept while it changes by at most a 64th of the smaller shape's extent. A manifold is kept while the
+    /// relative movement, including that in this tick, is at most that 64th and a quarter of the speculative distance.
     ///
-    /// If a round shape may roll on a body that is not dynamic, arms and manifolds are kept only up to a 256th of that
-    /// 64th: an outdated normal stops a slow ball at a seam between two blocks, and lets a roly-poly toy lean. Between
-    /// two dynamic bodies the limits are not reduced, because plates on rollers are stable only with kept arms.
+    /// If a round shape may roll on a body that is not dynamic, both limits are a 256th of that 64th: an outdated
+    /// normal stops a slow ball at a seam between two blocks, and lets a roly-poly toy lean. Between dynamic bodies
+    /// they are not reduced, because plates on rollers are stable only with kept arms.
     ///
-    /// Nothing is kept on a kinematic body that turns. The arms would lag behind the rotation, so that the velocity at
-    /// the contact would be wrong: a crate of 4 m x 2 m would creep by 35 mm/s at 1 rad/s.
+    /// Nothing is kept on a kinematic body that turns, because arms that lag behind give the wrong velocity at the
+    /// contact: a crate of 4 m x 2 m would creep by 35 mm/s at 1 rad/s.
     #[inline]
     pub(super) fn new(
         state: &'a State,
@@ -52,7 +51,7 @@ impl<'a> Recycling<'a> {
         Recycling { bodies, shapes, extents, rolls, arm_tolerance, movement_max: closing.rest_of(most) }
     }
 
-    /// The current origin and separations of a contact's kept manifold, or `None` if the shapes have to be collided.
+    /// The kept manifold at the current poses. `None` if the shapes have to be collided.
     #[inline]
     pub(super) fn recycle(&self, contact: &Contact) -> Option<Recycled> {
         let [a, b] = self.shapes;
@@ -65,13 +64,12 @@ impl<'a> Recycling<'a> {
         };
         let kept = &contact.kept;
         let separations = kept.separations_at([side(0), side(1)], contact.count, self.movement_max)?;
-        // The point is placed by the arm of a dynamic body: the arm of a fixed body may be out of range.
+        // The arm of a fixed body may be out of range.
         let [a, b] = self.bodies;
         let (centre, arm) = if b.is_dynamic() { (b.centre, kept.arm_b) } else { (a.centre, kept.arm_a) };
         Some(Recycled { origin: centre.wrapping_add(arm.widen()), separations })
     }
 
-    /// Stores a new manifold in a contact.
     #[inline]
     pub(super) fn keep(&self, contact: &mut Contact, manifold: &Manifold) {
         let tolerance = |shape: &ShapeMotion| match shape.disc || self.rolls {
@@ -82,7 +80,7 @@ impl<'a> Recycling<'a> {
         contact.keep(manifold, self.bodies, self.shapes.map(tolerance));
     }
 
-    /// Stores a manifold at the time of impact in a contact. `moved` has the displacements of the bodies until then.
+    /// Keeps a manifold at the time of impact. `moved` has the displacements of the bodies until then.
     pub(super) fn keep_impact(&self, contact: &mut Contact, manifold: &Manifold, moved: [Vec2<Length>; 2]) {
         contact.kept = KeptManifold::at_impact(manifold, self.bodies.map(Body::pose), moved);
     }

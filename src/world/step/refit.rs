@@ -1,7 +1,7 @@
-//! Fat boxes for the tick: every shape that may leave its fat box at its current velocity gets a new one.
+//! Fat boxes: every shape that may leave its fat box in the tick at its current velocity gets a new one.
 //!
-//! The swept AABB of a shape is its box, extended by the translation of its body, by the largest movement that the
-//! body's rotation can cause, and by the speculative distance.
+//! The swept AABB of a shape is its AABB, extended by the translation of its body, by the largest movement through
+//! rotation, and by the speculative distance.
 
 use alloc::vec::Vec;
 
@@ -17,12 +17,11 @@ use crate::world::cache::{
 use crate::world::derived::fattened;
 use crate::world::state::State;
 
-/// Largest distance, in margins, between a fat box and the swept AABB on each side. Without this limit, a shape that
-/// was fast would keep a large fat box with many pairs for ever.
+/// Largest distance, in margins, between a fat box and the swept AABB. Without this limit, a shape that was fast would
+/// keep a large fat box with many pairs.
 const MARGINS_MAX: i64 = 4;
 
-/// Predicts the motion of all awake bodies and their shapes. Gives a new fat box to every shape that may leave its own
-/// within the tick, or whose fat box has become too large.
+/// Predicts motion, and gives new fat boxes to the shapes that need them.
 pub(super) fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
     let Scratch { awake, shapes: cache, pairs, solver, predicted, .. } = scratch;
     let last_moving = predicted.iter_mut().flat_map(|predicted| predicted.moving.drain(..));
@@ -41,7 +40,6 @@ pub(super) fn refit_boxes(state: &mut State, scratch: &mut Scratch) {
     cache.apply_refits();
 }
 
-/// Predicts the motion of the bodies; each thread takes its share.
 fn predict(
     state: &State,
     cache: &mut ShapeCache,
@@ -73,7 +71,6 @@ fn predict(
     }
 }
 
-/// Data that all threads read.
 struct Prediction<'a> {
     state: &'a State,
     extents: &'a [Extents],
@@ -82,7 +79,6 @@ struct Prediction<'a> {
 }
 
 impl Prediction<'_> {
-    /// Predicts the motion of the body in a slot.
     #[inline]
     fn predict(&self, slot: u32, range: &mut MotionRange<'_>, predicted: &mut Predicted) {
         let Prediction { state, extents, broad_phase, per_second } = self;
@@ -109,14 +105,14 @@ impl Prediction<'_> {
     }
 }
 
-/// Extension of the AABB of a shape to its swept AABB, the same for all shapes of a body. Positions are within the
-/// world extent and displacements below 52 m, so that no sum overflows.
+/// Extension of AABBs to swept AABBs. Positions are within the world extent and displacements below 52 m, so that no
+/// sum overflows.
 struct SweptAabb {
-    /// Displacement of the lower and of the upper corner, including the speculative distance.
+    /// Displacements of the lower and upper corner, including the speculative distance.
     corners: [Vec2<Fx>; 2],
-    /// Largest distance by which rotation moves a point, in metres, on both axes.
+    /// Largest movement by rotation, in metres, on both axes.
     turned: Vec2<Fx>,
-    /// Box around the disc that contains the body's shapes at every rotation.
+    /// Box around the body's shapes at every rotation.
     disc: Aabb,
 }
 
@@ -131,7 +127,6 @@ impl SweptAabb {
         }
     }
 
-    /// The swept AABB of a shape with the given AABB.
     fn around(&self, bounds: Aabb) -> Aabb {
         let lower = bounds.lower.wrapping_sub(self.turned).max(self.disc.lower);
         let upper = bounds.upper.wrapping_add(self.turned).min(self.disc.upper);

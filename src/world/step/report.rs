@@ -1,12 +1,10 @@
-//! Move events and statistics of a tick.
-
 use crate::math::Vec2;
 use crate::world::cache::Scratch;
 use crate::world::events::MoveEvent;
 use crate::world::state::State;
 use crate::world::stats::StepStats;
 
-/// Lists the bodies that have moved in the tick or fallen asleep at its end, in slot order.
+/// Lists the moved bodies in slot order.
 pub(super) fn report_moves(state: &State, scratch: &mut Scratch) {
     let Scratch { awake, solver, results, .. } = scratch;
     for &slot in awake.bodies() {
@@ -20,7 +18,6 @@ pub(super) fn report_moves(state: &State, scratch: &mut Scratch) {
     }
 }
 
-/// Fills in the statistics of the tick, and adds its faults to those of the world.
 pub(super) fn count(state: &mut State, scratch: &mut Scratch) {
     let Scratch { solver, results, contacts, awake, .. } = scratch;
     let (stats, output) = (&mut results.stats, contacts.output());

@@ -1,10 +1,8 @@
-//! Sensor events: the shapes that overlap a sensor at the end of the tick, and those that crossed a sensor during the
-//! tick.
+//! Sensor events: shapes that overlap a sensor at the end of the tick, or that crossed it during the tick.
 //!
-//! Every pair with a sensor is followed from the poses at the start of the tick to the poses at its end. The pairs are
-//! those of overlapping fat boxes, which cover the motion that the velocities at the start of the tick predict. A shape
-//! that has left its fat box, because it was deflected or accelerated within the tick, is also compared with all shapes
-//! along its path.
+//! Every pair with a sensor is followed from the poses at the start of the tick to those at its end. The pairs are
+//! those of overlapping fat boxes, which cover the predicted motion. A shape that has left its fat box is also compared
+//! with all shapes along its path.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -17,13 +15,13 @@ use crate::world::cache::Scratch;
 use crate::world::events::{Events, SensorEvent};
 use crate::world::state::{Side, State};
 
-/// Work units of following a pair that is not among the contacts.
+/// Work units of following a pair without a contact.
 const UNFORESEEN_WORK: u64 = 16;
 
-/// Number of comparisons of shapes outside of their fat boxes that cost one work unit.
+/// Comparisons of shapes outside of their fat boxes that cost one work unit.
 const COMPARED_PER_WORK: u64 = 16;
 
-/// Reports the beginnings and ends of overlaps with sensors, once all bodies have been moved.
+/// Reports overlaps with sensors, once all bodies have been moved.
 pub(super) fn report_sensors(state: &mut State, scratch: &mut Scratch) {
     if !scratch.shapes.motion().may_have_sensors() {
         return;
@@ -43,8 +41,7 @@ pub(super) fn report_sensors(state: &mut State, scratch: &mut Scratch) {
     events.sensor_end.sort_unstable();
 }
 
-/// Adds the events of an overlap that begins or ends at a fraction of the tick: one for each sensor of the pair that
-/// detects the other shape.
+/// Adds an event for each sensor of the pair that detects the other shape.
 pub(super) fn push_sensor_events(
     list: &mut Vec<SensorEvent>,
     (a, b): (ShapeId, ShapeId),
@@ -64,13 +61,11 @@ fn is_with_sensor(scratch: &Scratch, (a, b): Pair) -> bool {
     motion.shape(a).sensor || motion.shape(b).sensor
 }
 
-/// The overlap of a pair within a tick.
 struct Visit {
-    /// Fraction of the tick at which it began, if it did.
+    /// Fraction of the tick at which the overlap began.
     begin: Option<Fx>,
-    /// Fraction of the tick at which it ended, if it did.
+    /// Fraction of the tick at which the overlap ended.
     end: Option<Fx>,
-    /// Whether the shapes overlap at the end of the tick.
     is_inside: bool,
 }
 
@@ -94,12 +89,11 @@ impl Visit {
         let (begin, end) = match (was_inside, is_inside) {
             (true, true) => (None, None),
             (false, true) => (Some(first().unwrap_or(Fx::ONE)), None),
-            // If there is no overlap during the tick, an edit before the tick has moved one of the bodies.
+            // Without an overlap during the tick, an edit has moved one of the bodies.
             (true, false) => (None, Some(last().unwrap_or(Fx::ZERO))),
             (false, false) => {
                 let begin = first();
-                // The end has a fraction above 0: a fraction of 0 marks a change between ticks, which is sorted before
-                // the beginnings of the tick.
+                // A fraction of 0 marks a change between ticks, which is sorted before the beginnings of the tick.
                 (begin, begin.map(|begin| last().unwrap_or(begin).max(begin).max(Fx::DELTA)))
             }
         };
@@ -124,7 +118,7 @@ enum Direction {
     Backwards,
 }
 
-/// A shape, and the motion of its body from the start of the tick to its end.
+/// A shape, and the motion of its body in the tick.
 struct MovedShape {
     shape: u32,
     body: u32,
@@ -161,15 +155,14 @@ impl MovedShape {
         at_end.swept(start - end)
     }
 
-    /// Fraction of the tick until two shapes first overlap, forwards from its start or backwards from its end.
+    /// Fraction of the tick until the first overlap, from its start or backwards from its end.
     fn first_overlap(&self, other: &MovedShape, scratch: &Scratch, direction: Direction) -> Option<Fx> {
         let (a, sweep_a) = self.sweep_in(scratch, direction);
         let (b, sweep_b) = other.sweep_in(scratch, direction);
         first_overlap(&a, &sweep_a, &b, &sweep_b)
     }
 
-    /// The motion of the shape forwards or backwards in time: the shape at the first pose, relative to its body's
-    /// centre, and the sweep of the body.
+    /// The motion in a direction of time: the shape at the first pose, relative to its body's centre, and the sweep.
     fn sweep_in(&self, scratch: &Scratch, direction: Direction) -> (SupportShape, Sweep) {
         let Sweep { start, end, turn } = self.sweep;
         let at_end = SupportShape::of(scratch.shapes.poses().at(self.shape), end);
@@ -184,15 +177,14 @@ impl MovedShape {
     }
 }
 
-/// Reports the crossings between shapes that have left their fat box in this tick and shapes with which they have no
-/// contact yet. A pair that overlaps at the end of the tick becomes a contact at once, or is left out if the world is
-/// at its pair limit.
+/// Reports crossings between shapes that have left their fat box and shapes without a contact with them. A pair that
+/// overlaps at the end of the tick becomes a contact, or is left out at the pair limit.
 fn report_unforeseen(state: &mut State, scratch: &mut Scratch) {
     if scratch.sweeps.left_boxes.is_empty() {
         return;
     }
     let left = u64::try_from(scratch.sweeps.left_boxes.len()).unwrap_or(u64::MAX);
-    // The broad phase is searched for each of these shapes, and in the worst case each is compared with every other.
+    // In the worst case each shape is compared with every other.
     if !scratch.meter.spend(left.saturating_mul(1 + left / COMPARED_PER_WORK)) {
         return;
     }
@@ -219,7 +211,7 @@ fn report_unforeseen(state: &mut State, scratch: &mut Scratch) {
     scratch.pairs.buffers.pairs = pairs;
 }
 
-/// Lists, in order, the sensor pairs that are not contacts yet and have a shape that has left its fat box.
+/// Lists, in order, the sensor pairs without a contact that have a shape outside of its fat box.
 fn list_unforeseen(state: &State, scratch: &Scratch, pairs: &mut Vec<Pair>) {
     pairs.clear();
     let left = &scratch.sweeps.left_boxes;
@@ -238,7 +230,7 @@ fn list_unforeseen(state: &State, scratch: &Scratch, pairs: &mut Vec<Pair>) {
             ControlFlow::Continue(())
         });
     }
-    // The new fat box of a shape need not cover its path, on which it may have met another shape that has left its box.
+    // A new fat box need not cover the path, on which the shape may have met another one that has left its box.
     let is_sensor = |shape: &&u32| scratch.shapes.motion().shape(**shape).sensor;
     for &sensor in left.iter().filter(is_sensor) {
         left.iter().for_each(|&shape| consider(sensor, shape));

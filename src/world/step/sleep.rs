@@ -1,5 +1,3 @@
-//! Falling asleep: counts the ticks for which bodies have been at rest, and puts islands of sleepy bodies to sleep.
-
 use crate::body::{Body, BodyKind, Handle};
 use crate::math::{Shift, Speed, Vec2, narrow};
 use crate::solver::SolverBody;
@@ -7,8 +5,6 @@ use crate::world::cache::Scratch;
 use crate::world::islands::{put_sleepy_sets_to_sleep, unite_connected};
 use crate::world::state::State;
 
-/// Updates the ticks at rest of all awake bodies, and puts islands to sleep if all of their bodies have been at rest
-/// long enough.
 pub(super) fn fall_asleep(state: &mut State, scratch: &mut Scratch) {
     if !state.config.sleeping {
         return;
@@ -43,12 +39,10 @@ pub(super) fn fall_asleep(state: &mut State, scratch: &mut Scratch) {
     }
 }
 
-/// Whether a body may fall asleep: it is dynamic and has been at rest for `limit` ticks.
 fn is_sleepy(body: &Body, limit: u32) -> bool {
     body.is_dynamic() && body.rest_ticks.has_reached(limit)
 }
 
-/// Resets the ticks at rest of bodies that touch a moving kinematic body.
 fn keep_awake_on_moving_ground(state: &mut State, scratch: &Scratch) {
     for pair in &scratch.contacts.output().touching {
         let (a, b) = pair.bodies;
@@ -57,7 +51,6 @@ fn keep_awake_on_moving_ground(state: &mut State, scratch: &Scratch) {
     }
 }
 
-/// Resets the ticks at rest of bodies that are joined to a moving kinematic body.
 fn keep_awake_on_moving_anchors(state: &mut State, scratch: &Scratch) {
     for &joint in scratch.awake.joints() {
         let (a, b) = state.joints.at(joint).def().bodies();
@@ -66,10 +59,9 @@ fn keep_awake_on_moving_anchors(state: &mut State, scratch: &Scratch) {
     }
 }
 
-/// Resets the ticks at rest of a body if `ground` is kinematic and has moved in this tick.
 #[inline(always)]
 fn keep_awake_on(state: &mut State, scratch: &Scratch, ground: u32, other: u32) {
-    // The velocity in the state is already 0 if the body has reached its target.
+    // The velocity in the state is 0 after the body has reached its target.
     let has_moved = || {
         let solved = scratch.solver.body(ground);
         solved.velocity != Vec2::ZERO || solved.spin != 0
@@ -79,8 +71,8 @@ fn keep_awake_on(state: &mut State, scratch: &Scratch, ground: u32, other: u32) 
     }
 }
 
-/// Whether a body was slow in this tick. Both its velocity and its displacement count, because overlap is pushed out
-/// without leaving a velocity.
+/// Whether a body was slow in this tick. Displacement counts too, because overlap is pushed out without leaving a
+/// velocity.
 fn is_slow(body: &Body, solved: &SolverBody, tick_rate: u32) -> bool {
     let square = |x: i32| i64::from(x) * i64::from(x);
     // Twice the speed at the radius of gyration is about the speed of the outline. Displacements may have saturated.

@@ -1,4 +1,4 @@
-//! Work of the solver that is known only within the tick: pairs that begin in it, and joints that are solved in blocks.
+//! Work of the solver that is known only within the tick.
 
 use crate::world::cache::{NARROW_PHASE_WORK, NEW_PAIR_WORK, Scratch, pair_work};
 use crate::world::state::State;
@@ -7,13 +7,12 @@ use crate::world::state::State;
 /// for the relax pass, in several rounds if it has limits or motors.
 const BLOCKED_JOINT_WORK: u64 = 96;
 
-/// Number of active and sleeping contacts.
+/// Active and sleeping contacts.
 pub(super) fn pairs(state: &State) -> u64 {
     count(state.contacts.len() + state.sleeping_contacts.len())
 }
 
-/// Counts the work of new pairs and of joints in blocks. `pairs_before` is the number of pairs before the tick. Returns
-/// whether the budget covers the work.
+/// Counts the work of new pairs and of joints in blocks. Returns whether the budget covers it.
 pub(super) fn spend(state: &State, scratch: &mut Scratch, pairs_before: u64) -> bool {
     let (sub_steps, iterations) = (state.config.solver.sub_steps, state.config.solver.iterations);
     let (bodies, pairs) = (count(state.bodies.len()), pairs(state));

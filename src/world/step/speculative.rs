@@ -1,4 +1,4 @@
-//! Speculative contacts: selects the contact points that bodies can reach within the tick at their initial velocities.
+//! Speculative contacts: selects the points that bodies can reach within the tick at their initial velocities.
 
 use crate::body::{Body, Shape};
 use crate::collision::{GhostFilter, Manifold, ManifoldPoint, OneWay, PosedShape, is_ghost};
@@ -10,16 +10,16 @@ use crate::world::state::State;
 use fixed::FixedI32;
 use fixed::types::extra::{LeEqU32, U27};
 
-/// Returns a function that computes the approach of two bodies in a tick at a point of their contact, along the normal.
-/// With `x` the translation, `t` the rotation and `r` the lever arm of each body,
+/// Returns the approach of two bodies in a tick at a point of their contact, along the normal. With `x` the
+/// translation, `t` the rotation and `r` the lever arm of each body,
 ///
 /// ```text
 /// n.(xA - xB) + tA (rA x n) - tB (rB x n)
 /// ```
 ///
 /// The lever arm is the vector from the body's centre to the manifold's origin, plus the anchor of the point. The first
-/// part is the same for all points; each point adds only `(tA - tB) (anchor x n)`. The result is in units of `Step` and
-/// does not saturate.
+/// part is common to all points; each point adds `(tA - tB) (anchor x n)`. The result is in units of `Step` and does
+/// not saturate.
 #[inline(always)]
 pub(super) fn approach(
     a: &PredictedMotion,
@@ -45,15 +45,13 @@ pub(super) fn approach(
     move |point| common + turned(turn, lever(point.anchor))
 }
 
-/// The bits of a number, widened for products.
 fn raw<A: LeEqU32>(x: FixedI32<A>) -> i64 {
     i64::from(x.to_bits())
 }
 
-/// Fraction bits that the product of a rotation and a lever arm has in excess of a step.
+/// Excess of fraction bits of a rotation times a lever arm over a step.
 const TURN_BITS: u32 = Travel::FRAC_NBITS + Length::FRAC_NBITS - Step::FRAC_NBITS;
 
-/// Two shapes that may meet within the tick.
 pub(super) struct SpeculativePair<'a> {
     pub(super) margins: &'a Margins,
     pub(super) a: &'a ShapeMotion,
@@ -61,7 +59,6 @@ pub(super) struct SpeculativePair<'a> {
     pub(super) closing: ClosingBound,
 }
 
-/// One shape of a pair, its body, and its outline in the world.
 #[derive(Clone, Copy)]
 pub(super) struct Side<'a> {
     pub(super) shape: &'a Shape,
@@ -74,7 +71,6 @@ impl<'a> Side<'a> {
         Side { shape: state.shapes.at(slot), body: state.body_of(slot), posed: poses.at(slot) }
     }
 
-    /// The shape with its direction in world axes, if it is a one-way shape.
     fn one_way(&self) -> Option<OneWay<'a>> {
         let angle = self.shape.one_way()?;
         let direction = Rot::from_angle(self.body.angle() + angle).apply(Vec2::X);
@@ -83,13 +79,13 @@ impl<'a> Side<'a> {
 }
 
 impl SpeculativePair<'_> {
-    /// Largest overlap in metres at which the shapes may still pass by each other.
+    /// Overlap in metres up to which the shapes may pass by each other.
     fn slack(&self) -> Step {
         self.margins.touching.min(self.a.slack).min(self.b.slack)
     }
 
-    /// Removes the points that the bodies do not reach within the tick at their current velocities. Otherwise
-    /// speculative contacts would deflect shapes that pass by each other at high speed.
+    /// Removes points that are not reached within the tick. Speculative contacts would otherwise deflect shapes that
+    /// pass by each other at high speed.
     #[inline(always)]
     pub(super) fn keep_reachable<'p>(
         &self,
@@ -114,8 +110,8 @@ impl SpeculativePair<'_> {
         let motions = [motion.motion(self.a), motion.motion(self.b)];
         let closing_at = approach(motions[0], motions[1], manifold);
         let (speculative, slack) = (raw::<U27>(convert(self.margins.speculative)), raw(self.slack()));
-        // Largest approach at a point that acts within the tick. Points deeper than the slack are left out, because
-        // shapes that overlap so deeply do not pass by each other.
+        // Largest approach at a point that acts within the tick. Shapes that overlap more deeply do not pass by each
+        // other.
         let mut fastest = 0;
         manifold.retain(|point| {
             let separation = raw(point.separation);
@@ -124,7 +120,7 @@ impl SpeculativePair<'_> {
             }
             let closing = closing_at(point);
             let is_reached = separation <= speculative.max(closing + speculative);
-            // The closing distance is increased by a quarter, because a gap that almost closes acts as well.
+            // The approach is increased by a quarter, because a gap that almost closes acts as well.
             if is_reached && closing + closing / 4 > separation {
                 fastest = fastest.max(closing);
             }
@@ -136,7 +132,6 @@ impl SpeculativePair<'_> {
         }
     }
 
-    /// Whether one of the shapes is a one-way shape that lets the other one pass.
     pub(super) fn lets_pass(&self, [a, b]: [Side; 2], manifold: &Manifold, was_passing: bool) -> bool {
         let slack = widen(self.slack());
         a.one_way().is_some_and(|one_way| one_way.lets_pass(b.posed, manifold, was_passing, slack))
@@ -144,8 +139,7 @@ impl SpeculativePair<'_> {
                 .is_some_and(|one_way| one_way.lets_pass(a.posed, &manifold.swapped(), was_passing, slack))
     }
 
-    /// Whether the contact is a ghost collision: the shapes pass by each other, with an overlap of at most the slack,
-    /// although a contact point closes by `closing` metres in the tick.
+    /// Whether the shapes pass by each other although a contact point closes by `closing` metres in the tick.
     fn is_ghost_collision(
         &self,
         [motion_a, motion_b]: [&PredictedMotion; 2],

@@ -1,5 +1,3 @@
-//! Waking by contact: islands that active bodies have come into contact with.
-
 use alloc::vec::Vec;
 
 use super::areas;
@@ -10,7 +8,7 @@ use crate::world::islands::wake_island;
 use crate::world::state::State;
 
 /// Wakes the islands that active bodies touch, then the islands that those touch, and so on. Each round after the first
-/// checks only the pairs of bodies that the previous round has woken. Returns whether any body has woken.
+/// checks only pairs of bodies woken in the previous round.
 pub(super) fn wake_touched(state: &mut State, scratch: &mut Scratch) -> bool {
     if state.islands.len() == 0 {
         return false;
@@ -21,7 +19,7 @@ pub(super) fn wake_touched(state: &mut State, scratch: &mut Scratch) -> bool {
     while !pairs.is_empty() {
         let first_change = scratch.pairs.changes.shapes().len();
         for &pair in &pairs {
-            // Another pair of this round may have woken the island already.
+            // Another pair may have woken the island already.
             let (a, b) = state.bodies_of(pair);
             let Some(island) = a.island.or(b.island) else { continue };
             let wakes = match state.sensor_of(pair) {
@@ -52,8 +50,7 @@ fn list_pairs_with_sleepers(state: &State, scratch: &Scratch, pairs: &mut Vec<Pa
     pairs.extend(state.contacts.iter().filter(has_sleeper).map(|contact| contact.shapes));
 }
 
-/// Finds the pairs of solid shapes or areas between the bodies that have woken since change number `first_change` and
-/// sleeping bodies.
+/// Finds the pairs of solid shapes or areas between sleeping bodies and those woken since change `first_change`.
 fn find_pairs_of_woken(state: &State, scratch: &mut Scratch, first_change: usize, pairs: &mut Vec<Pair>) {
     let Scratch { shapes, pairs: cache, .. } = scratch;
     let woken = Moved::Slots(&cache.changes.shapes()[first_change..]);

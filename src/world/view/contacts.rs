@@ -1,5 +1,3 @@
-//! Views of the contacts of the last tick.
-
 use core::fmt;
 
 use crate::body::ShapeId;
@@ -38,7 +36,6 @@ pub struct ContactView<'a> {
     contact: &'a Contact,
 }
 
-/// Formats the public fields, with the normal and the points of the manifold.
 impl fmt::Debug for ContactView<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("ContactView")
@@ -77,9 +74,9 @@ pub struct ContactForce {
 }
 
 impl World {
-    /// Returns the contacts of the last tick that had points, sorted by pair, as the narrow phase found them at the
-    /// start of the tick. Sensors have no manifolds. Contacts between bodies that have fallen asleep, and contacts that
-    /// an edit ends, are left out. After a restore the result is empty until the next tick.
+    /// Returns the contacts of the last tick that had points, sorted by pair, as found at the start of the tick.
+    /// Contacts that an edit has ended and those of bodies that have fallen asleep are left out. Empty after a restore
+    /// until the next tick.
     #[doc(alias = "manifold")]
     pub fn contacts(&self) -> impl Iterator<Item = ContactView<'_>> {
         let output = self.scratch.contacts.output();
@@ -91,8 +88,7 @@ impl World {
         })
     }
 
-    /// Returns the depth in metres of the deepest point of all [contacts](World::contacts): 0 if nothing overlaps.
-    /// Sensors are meant to overlap and do not count.
+    /// Returns the depth in metres of the deepest point of the [contacts](World::contacts): 0 if nothing overlaps.
     #[doc(alias = "penetration")]
     #[must_use]
     pub fn deepest_overlap(&self) -> Fx {
@@ -102,8 +98,7 @@ impl World {
 }
 
 impl ContactView<'_> {
-    /// Returns the force of each of the manifold's points in the last sub-step of the tick: 0 if the point did not
-    /// push. Between resting bodies the force is the constant load.
+    /// Returns the force at each point of the manifold in the last sub-step of the tick.
     pub fn forces(&self) -> impl Iterator<Item = (&ManifoldPoint, ContactForce)> {
         let mass = self.reduced_mass();
         self.accelerations().map(move |(point, [normal, friction])| {
@@ -111,7 +106,7 @@ impl ContactView<'_> {
         })
     }
 
-    /// The forces per kilogram of the reduced mass, in m/s²: normal and friction.
+    /// Normal and friction per kilogram of the reduced mass, in m/s².
     pub(crate) fn accelerations(&self) -> impl Iterator<Item = (&ManifoldPoint, [Fx; 2])> {
         let config = self.world.config();
         let rate = config.tick_rate.saturating_mul(config.solver.sub_steps);
@@ -123,19 +118,17 @@ impl ContactView<'_> {
         })
     }
 
-    /// The colour of the solver's graph colouring that the contact had in the last tick. `None` if it was not solved.
+    /// Colour of the contact in the solver's graph colouring. `None` if it was not solved.
     #[must_use]
     pub fn solver_colour(&self) -> Option<SolverColour> {
         let touching = &self.world.scratch.contacts.output().touching;
         let place = touching.binary_search_by_key(&self.contact.shapes, |pair| pair.shapes).ok()?;
-        // Every manifold of the tick belonged to a touching pair, so that the index of the manifold is also the index
-        // of the pair in the solver's list. The place in `touching` may differ: pairs may have been removed from it
-        // since.
+        // Manifolds are in the solver's order. Pairs may have been removed from `touching` since.
         self.world.scratch.solver.contact_colour(touching.get(place)?.manifold as usize)
     }
 
-    /// The mass that a force between the two bodies accelerates: `mA mB / (mA + mB)` in kg. A body that is not
-    /// dynamic, or has no mass, counts as infinitely heavy. 0 if both do.
+    /// The mass that a force between the bodies accelerates: `mA mB / (mA + mB)` in kg. Bodies that are not dynamic or
+    /// have no mass count as infinitely heavy. 0 if both do.
     #[must_use]
     pub fn reduced_mass(&self) -> Fx {
         self.world.state.reduced_mass(self.contact.shapes)

@@ -1,5 +1,3 @@
-//! Views of islands. The state stores sleeping islands only. Islands of awake bodies are found on demand.
-
 use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 
@@ -10,10 +8,8 @@ use crate::world::islands::{unite, unite_touching};
 
 impl World {
     /// Returns the sets of enabled dynamic bodies that fall asleep and wake together: those connected by joints, by
-    /// contacts of the last tick or by areas, and sleeping islands. The bodies of a set are in slot order, and the sets
-    /// are ordered by their first body.
-    ///
-    /// For tools: every call computes the sets again.
+    /// contacts of the last tick or by areas, and sleeping islands. Bodies are in slot order, sets in the order of
+    /// their first bodies. For tools: each call computes the sets.
     #[must_use]
     pub fn islands(&self) -> Vec<Vec<BodyId>> {
         let state = &self.state;

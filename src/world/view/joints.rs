@@ -1,5 +1,3 @@
-//! Views of joints, measured at the current poses of their bodies.
-
 use crate::body::{Body, JointId};
 use crate::math::{Fx, Vec2};
 use crate::solver::{Joint, JointKind, JointPart, Tuning, Weld};
@@ -7,7 +5,7 @@ use crate::world::World;
 
 impl World {
     /// Returns the anchors of a joint on body A and on body B, in the world, in metres. `None` if the joint is not in
-    /// the world, as with all methods for a single joint.
+    /// the world, as with the other methods for one joint.
     #[must_use]
     pub fn joint_anchors(&self, id: JointId) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
         let (joint, a, b) = self.joint_and_bodies(id)?;
@@ -15,8 +13,7 @@ impl World {
         Some((a.transform().apply(def.frame_a.anchor), b.transform().apply(def.frame_b.anchor)))
     }
 
-    /// Returns the angle of B's frame in A's frame in radians, counter-clockwise. It counts full turns: the angle of a
-    /// wheel grows as it rolls.
+    /// Returns the angle of B's frame in A's frame in radians, counter-clockwise, including full turns.
     #[must_use]
     pub fn joint_angle(&self, id: JointId) -> Option<Fx> {
         let (joint, a, b) = self.joint_and_bodies(id)?;
@@ -30,7 +27,7 @@ impl World {
         Some(b.angular_velocity().saturating_sub(a.angular_velocity()))
     }
 
-    /// Returns the position of B's anchor in A's frame of the joint, in metres: `x` is the translation of prismatic and
+    /// Returns the position of B's anchor in A's frame of the joint, in metres. `x` is the translation of prismatic and
     /// wheel joints.
     #[must_use]
     pub fn joint_translation(&self, id: JointId) -> Option<Vec2<Fx>> {
@@ -53,12 +50,13 @@ impl World {
         self.joint_anchors(id).map(|(a, b)| a.distance(b))
     }
 
-    /// Returns the distance in metres by which the anchors violate the joint: the distance of the anchors of a revolute
-    /// joint or of a weld with rigid anchors, the offset across the axis of a prismatic or wheel joint, the deviation
-    /// from the rod or the limits of a distance joint, the distance of the teeth of a gear or rack along the pitch
-    /// line, the length by which the rope of a pulley is too short. The error of a gear without a pitch point is an
-    /// angle in radians, in which one tooth is a full turn. Springs, motors and the limits of other kinds do not count.
-    /// `None` for motor and filter joints.
+    /// Returns the distance in metres by which the anchors violate the joint. `None` for motor and filter joints.
+    ///
+    /// The error is the distance of the anchors for a revolute joint or a weld with rigid anchors, the offset across
+    /// the axis for a prismatic or wheel joint, the deviation from the allowed lengths for a distance joint, the
+    /// distance of the teeth along the pitch line for a gear or rack, and the missing length of the rope for a pulley.
+    /// For a gear without a pitch point it is an angle in radians. Springs, motors and the limits of other kinds do not
+    /// count.
     #[doc(alias = "separation")]
     #[must_use]
     pub fn joint_error(&self, id: JointId) -> Option<Fx> {
@@ -80,8 +78,7 @@ impl World {
         }
     }
 
-    /// Returns the largest [error](World::joint_error) of all enabled joints, in metres; 0 without joints. The error of
-    /// a gear without a pitch point, in radians, is compared as if it were in metres.
+    /// Returns the largest [error](World::joint_error) of enabled joints, in metres or radians; 0 without joints.
     #[must_use]
     pub fn widest_joint_gap(&self) -> Fx {
         let enabled = self.joints().filter(|(_, joint)| joint.def().enabled);
@@ -99,9 +96,8 @@ impl World {
         Some(joint.reaction(a, b, &tuning))
     }
 
-    /// Returns the part of [`World::joint_force`] that the joint's motor, limits or springs have exerted: for example
-    /// the torque of a motor that lifts a bridge, without the force that holds the hinge together. 0 if the joint has
-    /// no such part.
+    /// Returns the part of [`World::joint_force`] that the joint's motor, limits or springs have exerted, or 0. For
+    /// example, the torque of a motor without the force that holds the hinge together.
     #[doc(alias = "motor torque")]
     #[must_use]
     pub fn joint_part_force(&self, id: JointId, part: JointPart) -> Option<(Vec2<Fx>, Fx)> {

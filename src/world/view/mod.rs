@@ -1,5 +1,4 @@
-//! Read-only views of a world for games and tools: contacts, joints, islands, the surroundings of a body, and the cost
-//! of a tick.
+//! Read-only views of a world for games and tools.
 
 mod contacts;
 mod islands;

@@ -1,5 +1,3 @@
-//! Views of the surroundings of one body or shape: its shapes, joints, contacts, and the overlaps of a sensor.
-
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -9,7 +7,7 @@ use crate::body::{Body, BodyId, Handle, JointId, ShapeId, label};
 use crate::world::World;
 
 impl World {
-    /// Returns the text that names a body in reports: its handle, and its name if it has one, as in `13v0 ball`.
+    /// Returns the handle of a body, and its name if it has one, as in `13v0 ball`.
     #[must_use]
     pub fn body_label(&self, id: BodyId) -> String {
         label(id, self.body(id).and_then(Body::name))
@@ -40,8 +38,7 @@ impl World {
         }
     }
 
-    /// Returns the [`World::contacts`] in which a shape of a body takes part, as shape A or as shape B, with their
-    /// [forces](ContactView::forces). Searches all contacts. Empty if the body is not in the world.
+    /// Returns the [`World::contacts`] of a body's shapes, after a search of all contacts.
     pub fn contacts_of(&self, id: BodyId) -> impl Iterator<Item = ContactView<'_>> {
         let is_there = self.body(id).is_some();
         let is_own = move |shape: ShapeId| self.shape(shape).is_some_and(|shape| shape.body() == id);
@@ -49,10 +46,8 @@ impl World {
         contacts.filter(move |contact| is_own(contact.shape_a) || is_own(contact.shape_b))
     }
 
-    /// Returns the shapes that a sensor overlapped at the end of the last tick, in slot order: those whose overlap was
-    /// begun by a [`SensorEvent`](crate::world::SensorEvent) and has not ended. Empty if the shape is no sensor or is
-    /// not in the world, or if its body is disabled. The result follows from the state, so that it is the same after a
-    /// restore.
+    /// Returns the shapes that a sensor overlapped at the end of the last tick, in slot order. Empty if the shape is no
+    /// sensor or is not in the world, or if its body is disabled. A restore preserves the result.
     ///
     /// ```
     /// use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, world::World};
@@ -72,7 +67,6 @@ impl World {
         if !sensor.is_sensor() || !self.state.body_of(id.slot()).enabled {
             return found;
         }
-        // If two shapes overlap, so do their fat boxes.
         self.scratch.shapes.broad_phase().each_overlap(sensor.fat, |other| {
             let pair = (other.min(id.slot()), other.max(id.slot()));
             let is_inside = [&self.state.contacts, &*self.state.sleeping_contacts].iter().any(|list| {

@@ -1,4 +1,4 @@
-//! The cost of a tick, for limits on the computing time of untrusted input.
+//! The cost of a tick, to limit the computing time of untrusted input.
 
 use crate::solver::SolverSettings;
 use crate::world::World;
@@ -7,7 +7,6 @@ use crate::world::cache::{NARROW_PHASE_WORK, WorkMeter, pair_work};
 /// Work units of a tick of an empty world, which takes some microseconds.
 const TICK_WORK: u64 = 8;
 
-/// Numbers of bodies, shapes and joints that the commands of a tick add to a world.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct AddedWork {
     pub(crate) bodies: u64,
@@ -17,12 +16,12 @@ pub(crate) struct AddedWork {
 
 impl World {
     /// Returns an upper bound of the cost of the next tick in work units, as far as it is known before the tick.
-    /// `bodies` and `shapes` are the largest numbers of bodies and shapes that are added before it.
-    /// [`Game::work`](crate::lockstep::Game::work) can be based on the result. The bound is the number of bodies,
-    /// shapes, pairs and joints, times the solver's sub-steps and iterations, plus 4 for each pair and 8 for the tick.
-    /// Each solved pair beyond 32 per body counts as 65. Because shapes may be added on top of each other, the bound
-    /// also assumes that as many pairs begin as the world allows, and that every shape is compared with every other to
-    /// find them. The work of solving these pairs is known only in the tick, and verification counts it there.
+    /// `bodies` and `shapes` are the largest numbers of bodies and shapes added before it.
+    /// [`Game::work`](crate::lockstep::Game::work) can be based on the result.
+    ///
+    /// The bound is the number of bodies, shapes, pairs and joints, times the solver's sub-steps and iterations, plus 4
+    /// for each pair and 8 for the tick. Each pair beyond 32 per body counts as 65 when it is solved. The bound
+    /// includes finding as many new pairs as the world allows, but not solving them, which is counted within the tick.
     ///
     /// ```
     /// # use lockstep2d::world::World;
@@ -37,7 +36,7 @@ impl World {
         self.work_in_rounds(added, u64::from(sub_steps) * u64::from(iterations))
     }
 
-    /// [`World::work`] with a number of passes of the solver in a tick: sub-steps times iterations.
+    /// `rounds` is the number of passes of the solver in a tick: sub-steps times iterations.
     pub(crate) fn work_in_rounds(&self, added: AddedWork, rounds: u64) -> u64 {
         let AddedWork { bodies, shapes, joints } = added;
         let count = |n: usize| u64::try_from(n).unwrap_or(u64::MAX);
@@ -54,15 +53,13 @@ impl World {
         [solved, found, narrow_phase].into_iter().fold(TICK_WORK, u64::saturating_add)
     }
 
-    /// Starts to count work whose amount is known only when it is done: sweeps of fast bodies, pairs that begin in a
-    /// tick, joints in blocks, shapes in reach of an explosion or of an edit that wakes bodies, and shapes that cross a
-    /// sensor outside of their fat boxes. Work beyond `max` units may be skipped, so that the state may be wrong from
-    /// then on. As long as the budget covers the work, no result changes. Without a call there is no bound.
+    /// Starts to count work whose amount is known only when it is done, such as sweeps of fast bodies, new pairs,
+    /// joints in blocks, and shapes in reach of an explosion. Work beyond `max` units may be skipped, so that the state
+    /// may be wrong from then on.
     pub(crate) fn start_work_meter(&mut self, max: u64) {
         self.scratch.meter = WorkMeter::start(max);
     }
 
-    /// The work units that were counted since the last call of [`World::start_work_meter`].
     pub(crate) fn metered_work(&self) -> u64 {
         self.scratch.meter.spent()
     }
