@@ -1,11 +1,11 @@
-//! Axis-aligned bounding boxes. Comparisons and unions are exact; sums saturate at the limits of the number format.
+//! Axis-aligned bounding boxes.
 
 use serde::{Deserialize, Serialize};
 
 use super::formats::Fx;
 use super::vec2::Vec2;
 
-/// An axis-aligned bounding box in metres. The border belongs to the box: boxes that touch overlap.
+/// An axis-aligned bounding box in metres. The border belongs to the box.
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Aabb, Vec2}};
@@ -24,11 +24,11 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// An invalid box that overlaps no box within the world.
+    /// A box that overlaps no box within the world.
     pub(crate) const NOWHERE: Self =
         Aabb { lower: Vec2::new(Fx::MAX, Fx::MAX), upper: Vec2::new(Fx::MIN, Fx::MIN) };
 
-    /// Creates a box from its lower and upper corner, without a check: see [`is_valid`](Self::is_valid).
+    /// Creates a box from its corners, without the check [`is_valid`](Self::is_valid).
     #[inline]
     #[must_use]
     pub const fn new(lower: Vec2<Fx>, upper: Vec2<Fx>) -> Self {
@@ -41,14 +41,14 @@ impl Aabb {
         points.into_iter().map(|point| Aabb::new(point, point)).reduce(Self::union)
     }
 
-    /// Whether the lower corner is at most the upper corner in both coordinates. The other methods require valid boxes.
+    /// Whether the lower corner is at most the upper corner on both axes, as other methods require.
     #[inline]
     #[must_use]
     pub fn is_valid(self) -> bool {
         self.lower.x <= self.upper.x && self.lower.y <= self.upper.y
     }
 
-    /// Smallest box around this one whose corners are multiples of `2^shift` units of the format.
+    /// Smallest box around this one with corners at multiples of `2^shift` units.
     #[inline]
     #[must_use]
     pub(crate) fn rounded_out(self, shift: u32) -> Self {
@@ -94,8 +94,7 @@ impl Aabb {
         Aabb::new(self.lower.min(other.lower), self.upper.max(other.upper))
     }
 
-    /// Returns the box grown by a margin in metres on all sides, saturated. A negative margin shrinks the box, and can
-    /// make it invalid.
+    /// Grows the box by a margin in metres on all sides, saturated. A negative margin may make it invalid.
     #[inline]
     #[must_use]
     pub fn expanded(self, margin: Fx) -> Self {
@@ -103,8 +102,7 @@ impl Aabb {
         Aabb::new(self.lower - margin, self.upper + margin)
     }
 
-    /// Like [`Aabb::expanded`], but not saturated: for a box within the world and a margin that is so much smaller than
-    /// the world that their sum cannot overflow.
+    /// [`Aabb::expanded`] without saturation, for a box and a margin whose sums do not overflow.
     #[inline]
     #[must_use]
     pub(crate) fn expanded_nearby(self, margin: Fx) -> Self {
@@ -112,14 +110,14 @@ impl Aabb {
         Aabb::new(self.lower.wrapping_sub(margin), self.upper.wrapping_add(margin))
     }
 
-    /// Returns the box translated by an offset in metres, saturated.
+    /// Moves the box by an offset in metres, saturated.
     #[inline]
     #[must_use]
     pub fn translated(self, offset: Vec2<Fx>) -> Self {
         Aabb::new(self.lower + offset, self.upper + offset)
     }
 
-    /// Swept AABB: the smallest box around the box at both ends of a displacement in metres, saturated.
+    /// The smallest box around the box before and after a displacement in metres, saturated.
     #[inline]
     #[must_use]
     pub fn swept(self, displacement: Vec2<Fx>) -> Self {
@@ -136,7 +134,7 @@ impl Aabb {
         Vec2::new(midpoint(self.lower.x, self.upper.x), midpoint(self.lower.y, self.upper.y))
     }
 
-    /// Half the width and height in metres, rounded up, so that centre and extents cover the box; saturated.
+    /// Half the width and height in metres, rounded up, saturated.
     #[inline]
     #[must_use]
     pub fn extents(self) -> Vec2<Fx> {
@@ -153,7 +151,7 @@ const fn midpoint(a: Fx, b: Fx) -> Fx {
 
 #[cfg(test)]
 mod tests {
-    //! The relations between boxes are compared with the points of a small grid that lie in them.
+    //! Boxes are compared with the points of a small grid in them.
 
     use super::*;
     use crate::fx;

@@ -1,11 +1,7 @@
 //! Angles as a fraction of a turn.
 //!
-//! `turns = bits / 2^32`. Addition wraps as the circle does, so a rotation never drifts out of range and needs no
-//! renormalisation, and the angle between two bodies is a subtraction. A rotation stored as a complex number would need
-//! an `atan2` per joint.
-//!
-//! The resolution is 2^-32 turn = 1.46e-9 rad. Sine and cosine are within 0.8 units of 2^-30, and the direction of a
-//! vector is within 0.7 units of 2^-32 turn.
+//! `turns = bits / 2^32`, a resolution of 1.46e-9 rad. Addition wraps as the circle does. The angle between two bodies
+//! is a subtraction, while rotations stored as complex numbers would need an `atan2` per joint.
 
 use core::ops::{Add, AddAssign, Neg, Sub, SubAssign};
 
@@ -15,11 +11,11 @@ use super::formats::{Fx, Unit, round_shift_wide};
 use super::trig::{arc_tangent, signed, sine};
 use super::vec2::Vec2;
 
-/// Pi, 3.14159265...
+/// Pi.
 pub const PI: Fx = Fx::from_bits(13_493_037_705);
-/// 2 pi: radians in a turn.
+/// 2 pi.
 pub const TAU: Fx = Fx::from_bits(26_986_075_409);
-/// Radians in a degree. A product with it multiplies the constant's rounding error: prefer [`Angle::from_degrees`].
+/// Radians in a degree. Products multiply its rounding error: prefer [`Angle::from_degrees`].
 pub const DEGREE: Fx = Fx::from_bits(74_961_321);
 
 /// An angle, counter-clockwise, as a fraction of a turn. Sums and differences wrap.
@@ -48,22 +44,21 @@ impl Angle {
     /// 180 degrees.
     pub const HALF: Self = Angle(1 << 31);
 
-    /// Creates an angle from units of 2^-32 turn.
+    /// Angle from units of 2^-32 turn.
     #[inline]
     #[must_use]
     pub const fn from_bits(bits: u32) -> Self {
         Angle(bits)
     }
 
-    /// Returns the angle in units of 2^-32 turn.
+    /// Angle in units of 2^-32 turn.
     #[inline]
     #[must_use]
     pub const fn to_bits(self) -> u32 {
         self.0
     }
 
-    /// Creates an angle from `fraction` times a rotation of `turns` units of 2^-32 turn. The rotation may exceed a full
-    /// turn.
+    /// `fraction` times a rotation of `turns` units of 2^-32 turn, which may exceed a turn.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "angles wrap")]
     pub(crate) const fn from_wide_turns(turns: i64, fraction: Fx) -> Self {
         let part = super::formats::round_shift_wide(turns as i128 * fraction.to_bits() as i128, 32);
@@ -75,24 +70,24 @@ impl Angle {
         super::formats::fx_mul(Fx::from_bits(turns), TAU)
     }
 
-    /// Creates an angle from turns: exact, whole turns are dropped.
+    /// Angle from turns: exact, without whole turns.
     #[inline]
     #[must_use]
     pub const fn from_turns(turns: Fx) -> Self {
         Angle(low_bits(turns.to_bits()))
     }
 
-    /// Creates an angle from radians: rounded to nearest, whole turns are dropped.
+    /// Angle from radians: rounded to nearest, without whole turns.
     #[inline]
     #[must_use]
     #[expect(clippy::cast_possible_truncation, reason = "a 127-bit product shifted by 66")]
     pub const fn from_radians(radians: Fx) -> Self {
-        /// 1 / (2 pi) in units of 2^-66. Its error is below 1/16 of a result unit even for 2^31 rad.
+        /// 1 / (2 pi) in units of 2^-66, with an error below 1/16 of a result unit even for 2^31 rad.
         const TURNS: i128 = 11_743_562_013_128_004_906;
         Angle(low_bits(round_shift_wide(radians.to_bits() as i128 * TURNS, 66) as i64))
     }
 
-    /// Creates an angle from degrees: rounded to nearest (halves away from zero), whole turns are dropped.
+    /// Angle from degrees: rounded to nearest (halves away from zero), without whole turns.
     #[inline]
     #[must_use]
     pub const fn from_degrees(degrees: Fx) -> Self {
@@ -132,14 +127,14 @@ impl Angle {
         Fx::from_bits(self.signed())
     }
 
-    /// Sine, within 0.8 units of 2^-30. It is an odd function, and exact at the quarter turns.
+    /// Sine, within 0.8 units of 2^-30. It is odd, and exact at the quarter turns.
     #[inline]
     #[must_use]
     pub const fn sin(self) -> Unit {
         Unit::from_bits(sine(self.0))
     }
 
-    /// Cosine, computed as the sine of the angle plus a quarter turn.
+    /// Cosine: the sine of the angle plus a quarter turn.
     #[inline]
     #[must_use]
     pub const fn cos(self) -> Unit {
@@ -153,7 +148,7 @@ impl Angle {
         (self.sin(), self.cos())
     }
 
-    /// Unit vector that points in this direction: `(cos, sin)`.
+    /// Unit vector in this direction: `(cos, sin)`.
     ///
     /// ```
     /// use lockstep2d::{fx, math::{Angle, Vec2}};
@@ -165,22 +160,20 @@ impl Angle {
         Vec2::new(self.cos(), self.sin())
     }
 
-    /// Direction of a vector, within 0.7 units of 2^-32 turn; exact on the axes and the diagonals. The direction of the
-    /// zero vector is [`Angle::ZERO`].
+    /// Direction of a vector, within 0.7 units of 2^-32 turn; [`Angle::ZERO`] for zero. Exact on axes and diagonals.
     #[inline]
     #[must_use]
     pub const fn of(vector: Vec2<Fx>) -> Self {
         Angle(arc_tangent(vector.x.to_bits(), vector.y.to_bits()))
     }
 
-    /// Angle in units of 2^-32 turn, above minus one half turn and up to plus one half turn.
+    /// In units of 2^-32 turn, above minus and up to plus one half turn.
     const fn signed(self) -> i64 {
         let bits = signed(self.0) as i64;
         if self.0 == Self::HALF.0 { -bits } else { bits }
     }
 }
 
-/// Drops whole turns, which are multiples of 2^32.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "angles wrap by definition")]
 const fn low_bits(bits: i64) -> u32 {
     bits as u32
@@ -242,8 +235,7 @@ mod tests {
         assert_eq!(Angle::from_bits((1 << 31) + 1).to_turns(), fx!(-0.5) + Fx::DELTA);
         assert!((DEGREE * 180 - PI).abs().to_bits() <= 90 && (PI * 2 - TAU).abs().to_bits() <= 1);
 
-        // One unit of an angle is 360 * 2^-32 degrees: 179 * 2^-32 degrees round to 0, and 180 * 2^-32 degrees round
-        // away from zero.
+        // One unit of an angle is 360 * 2^-32 degrees. Half a unit rounds away from zero.
         let units = |degrees: i64| Angle::from_degrees(Fx::from_bits(degrees)).to_bits();
         assert_eq!([179, 180, -179, -180].map(units), [0, 1, 0, u32::MAX]);
 
@@ -272,9 +264,8 @@ mod tests {
             let angle = rng.angle();
             let (sin, cos) = angle.sin_cos();
             let apart = (Angle::of(Vec2::new(cos, sin).widen()) - angle).to_turns();
-            // Perpendicular to the direction, the error of sine and cosine is at most 0.79 sqrt 2 units of 2^-30, which
-            // is 0.71 units of 2^-32 turn. The error of `Angle::of` is at most 0.68. The sum is below 2, and the
-            // difference is an integer, so it is at most 1.
+            // The error of sine and cosine across the direction is at most 0.71 units of 2^-32 turn. With 0.68 for
+            // `Angle::of`, the sum is below 2, and the difference is an integer.
             assert!(apart.abs().to_bits() <= 1, "{angle:?} {apart}");
         }
     }

@@ -1,42 +1,37 @@
-//! Number formats, one alias per quantity, and the operations that convert between them.
+//! Number formats, one alias per quantity, and conversions between them.
 //!
-//! The operations round at most once, to nearest (ties towards +infinity; away from zero in divisions), and saturate
-//! instead of wrapping. The binary point of the result is inferred from its type, so the compiler checks the scales:
-//! `let s: Step = mul(length, unit);` cannot be off by a shift.
-//!
-//! The ranges were chosen from the values that occur when a floating-point version of the solver simulates large and
-//! heavily loaded scenes. `docs/DESIGN.md` lists the scenes and the largest values.
+//! Operations round at most once, to nearest (ties towards +infinity; away from zero in divisions), and saturate. The
+//! binary point of the result is inferred from its type. Ranges come from the values in large and heavily loaded scenes
+//! (`docs/DESIGN.md`).
 
 use fixed::types::extra::{LeEqU32, U18, U20, U21, U22, U24, U26, U27, U30, U32};
 use fixed::{FixedI32, FixedI64};
 
-/// World position in metres, and most scalars of the public interface: ±2.1e9, resolution 0.23 nm.
+/// World position in metres, and most public scalars: ±2.1e9, resolution 0.23 nm.
 pub type Fx = FixedI64<U32>;
 /// A vertex relative to its shape's centre, or a lever arm, in metres: ±512, resolution 0.24 µm.
 pub type Length = FixedI32<U22>;
-/// A speed in m/s: ±1024, resolution 4.8e-7. Used for linear velocity, for angular velocity times the radius of
-/// gyration, `u = k w`, and for the impulse of a row divided by its effective mass.
+/// A speed in m/s: ±1024, resolution 4.8e-7. Also angular velocity times the radius of gyration, and the impulse of a
+/// row over its effective mass.
 pub type Speed = FixedI32<U21>;
 /// Separation of a contact, or gap of a joint, in metres: ±16, resolution 7.5 nm.
 pub type Step = FixedI32<U27>;
-/// Displacement of a body within a tick, in metres: ±32, resolution 15 nm. Values are kept within ±16, so that the
-/// difference of two displacements fits.
+/// Displacement of a body within a tick, in metres: ±32, resolution 15 nm. Kept within ±16, so that differences fit.
 pub type Shift = FixedI32<U26>;
 /// Component of a unit vector, sine, cosine, mass fraction or gain: ±2, resolution 9.3e-10.
 pub type Unit = FixedI32<U30>;
-/// Lever ratio `e = c / k`, a lever arm divided by a radius of gyration: ±128, resolution 6e-8.
+/// Lever arm over a radius of gyration: ±128, resolution 6e-8.
 pub type Ratio = FixedI32<U24>;
-/// Rate at which a constraint error is turned into speed, in 1/s: ±8192, resolution 3.8e-6.
+/// Rate that turns a constraint error into speed, in 1/s: ±8192, resolution 3.8e-6.
 pub type Rate = FixedI32<U18>;
 /// Friction limit of a tangent row per unit of the normal impulse: ±2048, resolution 9.5e-7.
 pub type FrictionRatio = FixedI32<U20>;
 
-/// `x / 2^shift`, rounded to nearest, ties towards +infinity. `shift` may be 0.
+/// `x / 2^shift`, rounded to nearest, ties towards +infinity.
 #[inline]
 #[must_use]
 pub const fn round_shift(x: i64, shift: u32) -> i64 {
-    // All bits to be dropped except the highest are shifted out before one half is added, so that the sum can overflow
-    // only for a shift of 1.
+    // Dropping all but one bit first cannot overflow unless the shift is 1.
     if shift == 0 { x } else { ((x >> (shift - 1)) + 1) >> 1 }
 }
 
@@ -94,7 +89,7 @@ pub const fn div_round(n: i128, d: i128) -> i128 {
     }
 }
 
-/// `a b` in a result format of the caller's choice, rounded once, saturated.
+/// `a b` in the format of the result, rounded once, saturated.
 #[inline]
 #[must_use]
 pub fn mul<A: LeEqU32, B: LeEqU32, C: LeEqU32>(a: FixedI32<A>, b: FixedI32<B>) -> FixedI32<C> {
@@ -118,14 +113,14 @@ pub fn mul_add<A: LeEqU32, B: LeEqU32, C: LeEqU32>(
     FixedI32::from_bits(saturate(round_shift(ax.saturating_add(by), const { shift::<A, B, C>() })))
 }
 
-/// Number of bits to drop from a product of formats `A` and `B` to reach format `C`.
+/// Bits to drop from a product to reach format `C`.
 const fn shift<A: LeEqU32, B: LeEqU32, C: LeEqU32>() -> u32 {
     let product = A::U32 + B::U32;
     assert!(product >= C::U32, "a product should have at least as many fraction bits as the result");
     product - C::U32
 }
 
-/// Converts to another 32-bit format: rounded to nearest, saturated.
+/// Converts to another 32-bit format, rounded to nearest, saturated.
 #[inline]
 #[must_use]
 pub fn convert<A: LeEqU32, B: LeEqU32>(a: FixedI32<A>) -> FixedI32<B> {
@@ -137,14 +132,14 @@ pub fn convert<A: LeEqU32, B: LeEqU32>(a: FixedI32<A>) -> FixedI32<B> {
     }))
 }
 
-/// Converts a world quantity to a 32-bit format: rounded to nearest, saturated.
+/// Converts to a 32-bit format, rounded to nearest, saturated.
 #[inline]
 #[must_use]
 pub fn narrow<A: LeEqU32>(a: Fx) -> FixedI32<A> {
     FixedI32::from_bits(saturate(round_shift(a.to_bits(), 32 - A::U32)))
 }
 
-/// Converts a 32-bit quantity to a world quantity: exact.
+/// Converts to world format: exact.
 #[inline]
 #[must_use]
 pub fn widen<A: LeEqU32>(a: FixedI32<A>) -> Fx {
@@ -158,11 +153,11 @@ pub const fn fx_mul(a: Fx, b: Fx) -> Fx {
     Fx::from_bits(round_product(a.to_bits() as i128 * b.to_bits() as i128))
 }
 
-/// Converts a sum of products of world quantities to a world quantity: rounded to nearest, saturated.
+/// Converts a sum of products, rounded to nearest, saturated.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "the truncated bits are compared")]
 pub(super) const fn round_product(x: i128) -> i64 {
-    // `halves` is in units of half the resolution. It nearly always fits 64 bits, where rounding is fast.
+    // In units of half the resolution. It nearly always fits 64 bits, where rounding is fast.
     let halves = x >> 31;
     let low = halves as i64;
     if low as i128 == halves { (low >> 1) + (low & 1) } else { saturate_wide(round_shift_wide(x, 32)) }
@@ -178,7 +173,7 @@ pub const fn fx_div(a: Fx, b: Fx) -> Option<Fx> {
     Some(Fx::from_bits(saturate_wide(div_round((a.to_bits() as i128) << 32, b.to_bits() as i128))))
 }
 
-/// `numerator / denominator` as a world quantity, rounded to nearest. The denominator must not be 0.
+/// `numerator / denominator`, rounded to nearest. The denominator must not be 0.
 #[inline]
 #[must_use]
 pub const fn ratio(numerator: i64, denominator: i64) -> Fx {
@@ -186,7 +181,7 @@ pub const fn ratio(numerator: i64, denominator: i64) -> Fx {
     Fx::from_bits(saturate_wide(div_round((numerator as i128) << 32, denominator as i128)))
 }
 
-/// Creates a fixed-point constant from a decimal literal or a fraction, evaluated at compile time without floats.
+/// A fixed-point constant from a literal or a fraction, at compile time without floats.
 ///
 /// ```
 /// use lockstep2d::{fx, math::Fx};

@@ -1,9 +1,8 @@
 //! Exact planar predicates: orientation, point in polygon, segment intersection.
 //!
-//! Every predicate uses the signs of cross products of differences, such as `(b - a) x (c - a)`. They are computed
-//! without rounding for any world coordinates, so results for neighbouring inputs never contradict each other. J. R.
-//! Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997, describes how
-//! rounded predicates fail. Only returned points are rounded: once, to nearest, ties towards +infinity.
+//! Predicates use the signs of cross products without rounding, so results for neighbouring inputs do not contradict
+//! each other (J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates",
+//! 1997). Returned points are rounded once, to nearest, ties towards +infinity.
 
 use super::formats::Fx;
 use super::vec2::Vec2;
@@ -46,11 +45,9 @@ pub fn orientation(a: Vec2<Fx>, b: Vec2<Fx>, c: Vec2<Fx>) -> Orientation {
     }
 }
 
-/// Whether a point lies in a simple polygon, convex or not, of either winding: exact. The border and the corners belong
-/// to the polygon. Fewer than three corners are a segment, a point or the empty set.
+/// Whether a point lies in a simple polygon, convex or not, of either winding: exact.
 ///
-/// Counts the edges that a ray to the right crosses. An edge includes its lower end and not its upper one, so a corner
-/// on the ray counts once where the border crosses the ray, and twice or not at all where the border turns back.
+/// The border belongs to the polygon. Fewer than three corners are a segment, a point or the empty set.
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Vec2, point_in_polygon}};
@@ -72,6 +69,7 @@ pub fn point_in_polygon(corners: &[Vec2<Fx>], point: Vec2<Fx>) -> bool {
         if point.y < lower.y || upper.y < point.y {
             continue;
         }
+        // An edge includes its lower end only, so a corner counts once where the border crosses the ray.
         match orientation(lower, upper, point) {
             Orientation::Collinear if in_box(point, lower, upper) => return true,
             Orientation::CounterClockwise if point.y < upper.y => inside = !inside,
@@ -81,7 +79,8 @@ pub fn point_in_polygon(corners: &[Vec2<Fx>], point: Vec2<Fx>) -> bool {
     inside
 }
 
-/// Intersection of two segments, ends included: `None` exactly if they share no point. The point is rounded to nearest.
+/// Intersection of two segments, ends included, rounded to nearest: `None` exactly if they share no point.
+///
 /// If the segments overlap along a line, the result is the shared point nearest to `a0`. Otherwise the result does not
 /// depend on the order of the segments or of their ends.
 ///
@@ -106,19 +105,19 @@ pub fn segment_intersection(a0: Vec2<Fx>, a1: Vec2<Fx>, b0: Vec2<Fx>, b1: Vec2<F
     point_at(b0, b, between.cross(a), determinant).map(|_| on_a)
 }
 
-/// Intersection of segments on parallel lines, or of zero length.
+/// For segments that are parallel or of zero length.
 fn parallel_intersection(a0: Vec2<Fx>, a1: Vec2<Fx>, b0: Vec2<Fx>, b1: Vec2<Fx>) -> Option<Vec2<Fx>> {
     if on_segment(a0, b0, b1) {
         return Some(a0);
     }
-    // `a0` is not on segment b, so a shared part begins at the end of b that is nearer to `a0`.
+    // A shared part begins at the end of b nearer to `a0`.
     [b0, b1]
         .into_iter()
         .filter(|&end| on_segment(end, a0, a1))
         .min_by_key(|&end| Difference::new(a0, end).manhattan())
 }
 
-/// Point of a segment, ends included, that is nearest to `point`: the exact point, rounded to nearest.
+/// Nearest point of a segment, ends included, rounded to nearest.
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Vec2, closest_point_on_segment}};
@@ -136,12 +135,10 @@ pub fn closest_point_on_segment(point: Vec2<Fx>, a: Vec2<Fx>, b: Vec2<Fx>) -> Ve
     point_at(a, along, projection, along.dot(along)).unwrap_or(b)
 }
 
-/// Whether a point lies on a segment: exact.
 fn on_segment(point: Vec2<Fx>, a: Vec2<Fx>, b: Vec2<Fx>) -> bool {
     in_box(point, a, b) && orientation(a, b, point) == Orientation::Collinear
 }
 
-/// Whether a point lies in the box between two opposite corners.
 fn in_box(point: Vec2<Fx>, a: Vec2<Fx>, b: Vec2<Fx>) -> bool {
     let (lower, upper) = (a.min(b), a.max(b));
     lower.x <= point.x && point.x <= upper.x && lower.y <= point.y && point.y <= upper.y

@@ -1,4 +1,4 @@
-//! 2x2 matrices: `(M v)_i = sum_j a_ij v_j`, where each component is an exact sum of two products, rounded once.
+//! 2x2 matrices: `(M v)_i = sum_j a_ij v_j`, rounded once per component.
 
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::formats::{Fx, div_round, mul_add, saturate_wide};
 use super::vec2::Vec2;
 
-/// A 2x2 matrix over any of the formats. The digits in an entry's name are its row and its column.
+/// A 2x2 matrix.
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Mat2, Vec2}};
@@ -29,7 +29,7 @@ pub struct Mat2<T> {
 }
 
 impl<T> Mat2<T> {
-    /// Creates a matrix from its rows.
+    /// Matrix from its rows.
     #[inline]
     pub const fn new(a11: T, a12: T, a21: T, a22: T) -> Self {
         Mat2 { a11, a12, a21, a22 }
@@ -44,14 +44,14 @@ impl<T> Mat2<T> {
 }
 
 impl<A: LeEqU32> Mat2<FixedI32<A>> {
-    /// `M v`, rounded once into the format of the result, saturated.
+    /// `M v`, rounded once, saturated.
     #[inline]
     #[must_use]
     pub fn apply<B: LeEqU32, C: LeEqU32>(self, v: Vec2<FixedI32<B>>) -> Vec2<FixedI32<C>> {
         Vec2::new(mul_add(self.a11, v.x, self.a12, v.y), mul_add(self.a21, v.x, self.a22, v.y))
     }
 
-    /// `a11 a22 - a12 a21`, rounded once into the format of the result, saturated.
+    /// `a11 a22 - a12 a21`, rounded once, saturated.
     #[inline]
     #[must_use]
     pub fn determinant<C: LeEqU32>(self) -> FixedI32<C> {
@@ -77,14 +77,13 @@ impl Mat2<Fx> {
         Vec2::new(self.a11, self.a12).cross(Vec2::new(self.a21, self.a22))
     }
 
-    /// `M^-1`, with each entry divided by the exact determinant and rounded once, saturated; `None` if the determinant
-    /// is exactly 0.
+    /// `M^-1`, from the exact determinant, rounded once, saturated; `None` if that is 0.
     #[must_use]
     pub const fn inverse(self) -> Option<Self> {
         let Mat2 { a11, a12, a21, a22 } = self;
         let plus = a11.to_bits() as i128 * a22.to_bits() as i128;
         let minus = a12.to_bits() as i128 * a21.to_bits() as i128;
-        // The determinant in units of 2^-64. Its magnitude is at most 2^127 - 2^63, so that it always fits.
+        // In units of 2^-64. Its magnitude is at most 2^127 - 2^63, so that it fits.
         let determinant = plus.saturating_sub(minus);
         if determinant == 0 {
             return None;
@@ -98,7 +97,7 @@ impl Mat2<Fx> {
     }
 }
 
-/// Quotient of an entry in units of 2^-32 and a determinant in units of 2^-64.
+/// An entry in units of 2^-32 over a determinant in units of 2^-64.
 const fn quotient(entry: i128, determinant: i128) -> Fx {
     Fx::from_bits(saturate_wide(div_round(entry.saturating_mul(1 << 64), determinant)))
 }
@@ -120,8 +119,7 @@ mod tests {
             if m.determinant().abs() < fx!(0.5) {
                 continue;
             }
-            // An error of half a unit in each entry of the inverse is multiplied by |M v| <= 128; half a unit in M v is
-            // multiplied by entries <= 16.
+            // Half a unit in the inverse is multiplied by |M v| <= 128, and half a unit in M v by entries <= 16.
             let there = m.inverse().unwrap().apply(m.apply(v)) - v;
             assert!(
                 there.x.abs().to_bits() <= 145 && there.y.abs().to_bits() <= 145,
@@ -154,8 +152,7 @@ mod tests {
             let v: Vec2<Unit> = Vec2::new(entry(), entry());
             let wide =
                 Mat2::new(Fx::from_num(m.a11), Fx::from_num(m.a12), Fx::from_num(m.a21), Fx::from_num(m.a22));
-            // In units of `Fx`, the narrow result is within 2 of the exact value, and the wide result within 0.5. Their
-            // difference is an integer, so it is at most 2.
+            // In units of `Fx`, the errors are at most 2 and 0.5, and the difference is an integer.
             let apart = m.apply::<_, U30>(v).widen() - wide.apply(v.widen());
             assert!(apart.x.abs().to_bits() <= 2 && apart.y.abs().to_bits() <= 2, "{apart:?}");
             let determinant: Unit = m.determinant();

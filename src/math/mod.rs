@@ -1,7 +1,6 @@
 //! Fixed-point mathematics: number formats, vectors, angles, roots, planar geometry and random numbers.
 //!
-//! Everything here is integer arithmetic with documented rounding, so a game can use it for its own rules and stay
-//! bit-identical on every machine.
+//! Everything is integer arithmetic with documented rounding, for use in deterministic game rules as well.
 
 mod aabb;
 mod angle;

@@ -1,8 +1,7 @@
 //! `1 / x` with 31 significant bits, for `x` from 2^-30 to below 2^30.
 //!
-//! In the format of [`Ratio`](super::formats::Ratio), the reciprocal of a radius of 500 m would have 16 significant
-//! bits, and the reciprocal of a radius of 2 mm would overflow. A mantissa and a shift cover both, and a multiplication
-//! by them is one widening 32-bit product on any machine.
+//! In the format of [`Ratio`](super::formats::Ratio), the reciprocal of 500 m would have 16 significant bits, and that
+//! of 2 mm would overflow. A multiplication is one widening 32-bit product.
 
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
@@ -22,28 +21,27 @@ use super::formats::{Fx, div_round, round_shift, round_shift_wide, saturate, sat
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reciprocal {
-    /// Mantissa: 0, or 2^30 to 2^31 - 1.
+    /// 0, or 2^30 to 2^31 - 1.
     mantissa: i32,
-    /// Shift: 0 to 60.
+    /// 0 to 60.
     shift: u32,
 }
 
 impl Reciprocal {
-    /// Reciprocal of an infinite length, the radius of gyration of a body that does not rotate.
+    /// Reciprocal of infinity: a body that does not rotate.
     pub const ZERO: Self = Reciprocal { mantissa: 0, shift: 0 };
 
-    /// `1 / x`, with a relative error of at most 2^-31. `x` must be at least 2^-30 and below 2^30.
+    /// `1 / x`, with a relative error of at most 2^-31.
     ///
     /// # Panics
-    /// If `x` is not in that range.
+    /// If `x` is not from 2^-30 to below 2^30.
     #[must_use]
     pub const fn of(x: Fx) -> Self {
         let bits = x.to_bits();
         assert!(bits >= 4 && bits < 1 << 62, "a reciprocal needs a number from 2^-30 to below 2^30");
-        // 2^(width-1) <= bits < 2^width, so 2^(width+30) / bits is above 2^30 and at most 2^31.
+        // The quotient is above 2^30 and at most 2^31.
         let width = 64 - bits.leading_zeros();
         let quotient = div_round(1 << (width + 30), bits as i128);
-        // For a power of two the quotient is 2^31, which saturates to 2^31 - 1.
         let mantissa = saturate(super::formats::saturate_wide(quotient));
         Reciprocal { mantissa, shift: width + 30 - 32 }
     }
@@ -70,7 +68,7 @@ impl Reciprocal {
         })
     }
 
-    /// `a / x` for a world quantity, rounded once, saturated.
+    /// `a / x`, rounded once, saturated.
     #[inline]
     pub(crate) fn times_wide(self, a: Fx) -> Fx {
         let product = i128::from(a.to_bits()) * i128::from(self.mantissa);
@@ -78,14 +76,13 @@ impl Reciprocal {
         Fx::from_bits(saturate_wide(rounded))
     }
 
-    /// Returns the mantissa, 0 or 2^30 to 2^31 - 1, and the shift, 0 to 60: the reciprocal is `mantissa / 2^shift`.
     #[inline]
     #[expect(clippy::cast_possible_wrap, reason = "at most 63")]
     pub(crate) const fn parts(self) -> (i32, i32) {
         (self.mantissa, self.shift as i32)
     }
 
-    /// Exact product of `a` and the reciprocal, and its number of fraction bits beyond those of `a`.
+    /// The exact product, and its number of fraction bits beyond those of `a`.
     #[inline]
     pub(crate) fn times_exact<A: LeEqU32>(self, a: FixedI32<A>) -> (i64, u32) {
         (i64::from(a.to_bits()) * i64::from(self.mantissa), self.shift)
@@ -117,8 +114,7 @@ mod tests {
             for bits in [(1i64 << exponent) - 1, 1 << exponent, (1 << exponent) + 1] {
                 let Reciprocal { mantissa, shift } = Reciprocal::of(Fx::from_bits(bits));
                 assert!(mantissa >= 1 << 30, "{bits}");
-                // mantissa / 2^shift = 2^32 / bits, so the product is 2^(shift+32) with a relative error of at most
-                // 2^-30.
+                // 2^(shift+32) with a relative error of at most 2^-30.
                 let product = i128::from(mantissa) * i128::from(bits);
                 let error = (product - (1i128 << (shift + 32))).abs();
                 assert!(error <= product >> 30, "{bits}: {error}");

@@ -1,19 +1,18 @@
 //! Pseudo-random numbers that are part of the simulated state.
 //!
 //! PCG-XSH-RR 64/32 (M. O'Neill, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for Random
-//! Number Generation", 2014): `s <- 6364136223846793005 s + i`, with an output permutation of the old `s`. It has 16
-//! bytes of state, period 2^64, and 2^63 independent streams. It was chosen over xoshiro256** because it has half the
-//! state to snapshot and hash. It is not cryptographically secure.
+//! Number Generation", 2014): `s <- 6364136223846793005 s + i`, with an output permutation of the old `s`. The state
+//! has 16 bytes, half that of xoshiro256**, and the period is 2^64. Not cryptographically secure.
 //!
-//! Bounded numbers are unbiased (D. Lemire, "Fast Random Integer Generation in an Interval", 2019), so a bounded number
-//! may take several draws. The number of draws depends only on the state and the bound.
+//! Bounded numbers are unbiased (D. Lemire, "Fast Random Integer Generation in an Interval", 2019). They may take
+//! several draws, which depend only on the state and the bound.
 
 use serde::{Deserialize, Serialize};
 
 use super::angle::Angle;
 use super::formats::Fx;
 
-/// A random number generator. It belongs in the game state, so that it is rolled back and hashed with the state.
+/// A random number generator. It belongs in the game state, to be rolled back and hashed with it.
 ///
 /// ```
 /// use lockstep2d::{fx, math::Rng};
@@ -31,13 +30,13 @@ pub struct Rng {
 }
 
 impl Rng {
-    /// Creates a generator on the default stream of the reference implementation.
+    /// A generator on the default stream of the reference implementation.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self::with_stream(seed, 721_347_520_444_481_703)
     }
 
-    /// Creates one of 2^63 independent generators per seed. The top bit of `stream` is ignored.
+    /// A generator on one of 2^63 streams. The top bit of `stream` is ignored.
     #[must_use]
     pub const fn with_stream(seed: u64, stream: u64) -> Self {
         let mut rng = Rng { state: 0, increment: (stream << 1) | 1 };
@@ -47,29 +46,27 @@ impl Rng {
         rng
     }
 
-    /// Draws a uniform 32-bit number.
+    /// A uniform 32-bit number.
     #[inline]
     pub const fn next_u32(&mut self) -> u32 {
         let state = self.state;
         self.step();
-        // The top five bits are the rotation count for 32 of the other bits.
         low_half(((state >> 18) ^ state) >> 27).rotate_right((state >> 59) as u32)
     }
 
-    /// Draws a uniform 64-bit number from two 32-bit draws. The first draw is the upper half.
+    /// A uniform 64-bit number from two 32-bit draws, the upper half first.
     #[inline]
     pub const fn next_u64(&mut self) -> u64 {
         let high = self.next_u32() as u64;
         high << 32 | self.next_u32() as u64
     }
 
-    /// Draws a uniform number from 0 to below `bound`; 0 for the bound 0.
+    /// A uniform number from 0 to below `bound`; 0 for the bound 0.
     #[inline]
     pub const fn below(&mut self, bound: u32) -> u32 {
         let mut product = self.next_u32() as u64 * bound as u64;
         if low_half(product) < bound {
-            // Rejects the `2^32 mod bound` lowest values of the lower half, which would make some results likelier than
-            // others.
+            // Rejects the `2^32 mod bound` lowest values, which would make some results likelier.
             let unfair = bound.wrapping_neg() % bound;
             while low_half(product) < unfair {
                 product = self.next_u32() as u64 * bound as u64;
@@ -92,38 +89,38 @@ impl Rng {
         (product >> 64) as u64
     }
 
-    /// Draws a uniform number from `low` to below `high`, in steps of 2^-32; `low` if the range is empty.
+    /// A uniform number from `low` to below `high`, in steps of 2^-32; `low` if the range is empty.
     #[inline]
     pub const fn range(&mut self, low: Fx, high: Fx) -> Fx {
         let (low, high) = (low.to_bits(), high.to_bits());
         let span = if low < high { low.abs_diff(high) } else { 0 };
-        // The sum stays below `high`; intermediate values wrap only if the span exceeds half the range of `Fx`.
+        // Intermediate values wrap if the span exceeds half the range of `Fx`.
         Fx::from_bits(low.wrapping_add_unsigned(self.below_u64(span)))
     }
 
-    /// Draws a uniform angle.
+    /// A uniform angle.
     #[inline]
     pub const fn angle(&mut self) -> Angle {
         Angle::from_bits(self.next_u32())
     }
 
-    /// Returns true with probability `numerator / denominator`; never for a denominator of 0.
+    /// True with probability `numerator / denominator`; false for a denominator of 0.
     #[inline]
     pub const fn chance(&mut self, numerator: u32, denominator: u32) -> bool {
         self.below(denominator) < numerator && denominator != 0
     }
 
-    /// Shuffles the items, with each order equally likely (Fisher and Yates).
+    /// Shuffles the items (Fisher and Yates).
     #[expect(clippy::cast_possible_truncation, reason = "below an index, hence an index")]
     pub fn shuffle<T>(&mut self, items: &mut [T]) {
         for last in (1..items.len()).rev() {
-            // Always 64 bits, so that the draws do not depend on the pointer width.
+            // 64 bits, so that the draws do not depend on the pointer width.
             let chosen = self.below_u64(last as u64 + 1) as usize;
             items.swap(last, chosen);
         }
     }
 
-    /// Advances the state. A deserialized increment may be even, which would shorten the period, so bit 0 is set here.
+    /// Bit 0 is set, because an even deserialized increment would shorten the period.
     #[inline]
     const fn step(&mut self) {
         self.state = self.state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(self.increment | 1);
@@ -153,8 +150,7 @@ mod tests {
     #[test]
     fn every_remainder_is_equally_likely() {
         let mut rng = Rng::new(1);
-        // The first bound rejects a quarter of the draws. Without rejection, every third number would be twice as
-        // likely as the others. Counting the numbers by their remainder modulo 3 shows this.
+        // The first bound rejects a quarter of the draws, without which every third number would be twice as likely.
         for (bound, buckets) in [(3 << 30, 3), (6, 6), (1000, 10)] {
             let mut counts = [0_i64; 10];
             for _ in 0..60_000 {
@@ -162,7 +158,6 @@ mod tests {
             }
             let expected = 60_000 / i64::from(buckets);
             let counts = &counts[..buckets as usize];
-            // Five standard deviations of a bucket are below 5 sqrt(expected).
             assert!(
                 counts.iter().all(|n| (n - expected).pow(2) < 25 * expected),
                 "bound {bound} is biased: {counts:?}"
@@ -210,7 +205,7 @@ mod tests {
         );
     }
 
-    /// The expected values come from a second implementation in Python. Changing any of these numbers breaks replays.
+    /// From a second implementation in Python. Changing these numbers breaks replays.
     #[test]
     fn golden() {
         let mut rng = Rng::new(5);

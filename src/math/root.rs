@@ -1,9 +1,8 @@
 //! Square roots, lengths and unit vectors.
 //!
-//! A length is the integer square root of an exact sum of squares, rounded to nearest, so its error is at most half a
-//! unit. A unit vector is `v y` with `y = 1 / |v|` from Newton's iteration `y <- y (3 - n y^2) / 2` with `n = |v|^2`,
-//! which needs no division. Each component is within 0.76 units of 2^-30 for any length of `v`, and vectors along an
-//! axis are exact.
+//! A length is the integer square root of an exact sum of squares. A unit vector is `v y` with `y = 1 / |v|` from
+//! Newton's iteration `y <- y (3 - n y^2) / 2` with `n = |v|^2`, which needs no division. Vectors along an axis are
+//! exact.
 
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
@@ -34,7 +33,7 @@ pub const fn sqrt(x: Fx) -> Option<Fx> {
 /// ```
 #[must_use]
 pub const fn hypot(x: Fx, y: Fx) -> Fx {
-    // Fast path for zero vectors and vectors along an axis, which are frequent.
+    // Frequent cases.
     if x.to_bits() == 0 {
         return y.saturating_abs();
     }
@@ -52,7 +51,7 @@ impl Vec2<Fx> {
         hypot(self.x, self.y)
     }
 
-    /// Whether the length exceeds a limit. Most vectors are far longer or far shorter than the limit, and need no root.
+    /// Whether the length exceeds a limit. Most vectors are far from the limit and need no root.
     #[inline]
     pub(crate) fn is_longer_than(self, limit: Fx) -> bool {
         let (x, y) = (self.x.saturating_abs(), self.y.saturating_abs());
@@ -71,7 +70,7 @@ impl Vec2<Fx> {
     pub const fn distance(self, other: Self) -> Fx {
         let x = self.x.to_bits().abs_diff(other.x.to_bits());
         let y = self.y.to_bits().abs_diff(other.y.to_bits());
-        // A difference of 2^63 or more saturates the distance by itself; smaller differences have squares that fit.
+        // A difference of 2^63 or more saturates. Smaller ones have squares that fit.
         if (x | y) >> 63 != 0 { Fx::MAX } else { saturated(sqrt_rounded_wide(sum_of_squares_wide(x, y))) }
     }
 
@@ -80,7 +79,7 @@ impl Vec2<Fx> {
     #[must_use]
     pub const fn normalized(self) -> Option<Vec2<Unit>> {
         let (x, y) = (self.x.to_bits(), self.y.to_bits());
-        // For a vector that fits 32 bits, the 32-bit computation gives the same bits, because all shifts are exact.
+        // The bits are the same, because all shifts are exact.
         if let (Some(x), Some(y)) = (narrowed(x), narrowed(y)) {
             return match polar(x, y) {
                 Some((direction, _)) => Some(direction),
@@ -91,8 +90,7 @@ impl Vec2<Fx> {
         if sum == 0 {
             return None;
         }
-        // An even shift normalises the sum to 127 or 128 bits, so that its root has 64 bits, and each component at most
-        // 64.
+        // The sum is normalised to 127 or 128 bits, so that its root and each component have at most 64.
         let shift = sum.leading_zeros() & !1;
         let scale = inverse_root(high_half(sum << shift)) as u128;
         let x_part = high_half(((x.unsigned_abs() << (shift / 2)) as u128 * scale) << 32);
@@ -100,7 +98,7 @@ impl Vec2<Fx> {
         Some(Vec2::new(unit(x_part, x < 0), unit(y_part, y < 0)))
     }
 
-    /// Returns [`normalized`](Self::normalized) and [`length`](Self::length); `None` for zero.
+    /// Direction and [`length`](Self::length); `None` for zero.
     #[inline]
     #[must_use]
     pub const fn normalized_with_length(self) -> Option<(Vec2<Unit>, Fx)> {
@@ -129,8 +127,7 @@ impl<A: LeEqU32> Vec2<FixedI32<A>> {
         self.normalized_with_length().map(|(direction, _)| direction)
     }
 
-    /// Returns [`normalized`](Self::normalized) and [`length`](Self::length) at little more than the cost of
-    /// `normalized`; `None` for zero.
+    /// Direction and [`length`](Self::length), at little more cost than the direction; `None` for zero.
     #[inline]
     #[must_use]
     pub fn normalized_with_length(self) -> Option<(Vec2<Unit>, FixedI32<A>)> {
@@ -139,14 +136,14 @@ impl<A: LeEqU32> Vec2<FixedI32<A>> {
     }
 }
 
-/// `(x, y) / |(x, y)|` and `|(x, y)|`, computed with 64-bit products only.
+/// Direction and length, with 64-bit products only.
 #[inline]
 const fn polar(x: i32, y: i32) -> Option<(Vec2<Unit>, i32)> {
     let sum = sum_of_squares(x, y);
     if sum == 0 {
         return None;
     }
-    // An even shift normalises the sum to 63 or 64 bits, so that its root has 32 bits, and each component at most 32.
+    // The sum is normalised to 63 or 64 bits, so that its root and each component have at most 32.
     let shift = sum.leading_zeros() & !1;
     let scale = inverse_root(sum << shift);
     let x_part = ((x.unsigned_abs() as u64) << (shift / 2)) * scale;
@@ -160,19 +157,16 @@ const fn polar(x: i32, y: i32) -> Option<(Vec2<Unit>, i32)> {
 /// `sqrt(n)`, rounded to nearest. `inverse` is `2^63 / sqrt(n 2^shift)` with an error of at most 0.51.
 #[inline]
 const fn root_from_inverse(n: u64, shift: u32, inverse: u64) -> u64 {
-    // Computes m / sqrt(m) for m = n 2^shift. The error of the inverse contributes at most 0.51, rounding another half,
-    // so the nearest root is at most one away.
+    // m / sqrt(m) for m = n 2^shift. Errors of 0.51 and one half leave the nearest root at most one away.
     let m = n << shift;
     let product = (m >> 32) * inverse + (((m & 0xffff_ffff) * inverse) >> 32); // sqrt(m) in units of 2^-31
     let drop = 31 + shift / 2;
     let root = (product + (1 << (drop - 1))) >> drop;
-    // n is an integer, so `root` is nearest to its square root if (root - 1/2)^2 < n < (root + 1/2)^2, where the
-    // quarters can be dropped.
+    // `root` is nearest if (root - 1/2)^2 < n < (root + 1/2)^2. For an integer n the quarters can be dropped.
     let root = if root * root - root >= n { root - 1 } else { root };
     if root * root + root < n { root + 1 } else { root }
 }
 
-/// Returns the number in 32 bits if it fits.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "compared with the original")]
 const fn narrowed(x: i64) -> Option<i32> {
@@ -180,7 +174,7 @@ const fn narrowed(x: i64) -> Option<i32> {
     if low as i64 == x { Some(low) } else { None }
 }
 
-/// Component from its magnitude in units of 2^-63, which is at most 1 plus an error far below the final rounding.
+/// From a magnitude in units of 2^-63, which may exceed 1 by far less than the rounding.
 #[inline]
 const fn unit(magnitude: u64, negative: bool) -> Unit {
     let rounded = ((magnitude + (1 << 32)) >> 33) as i32;
@@ -189,8 +183,8 @@ const fn unit(magnitude: u64, negative: bool) -> Unit {
 
 /// `2^63 / sqrt(n)` with an error of at most 0.51, for `n >= 2^62`.
 ///
-/// With `m = n / 2^64`, the result is `1 / sqrt(m)` in units of 2^-31, between 1 and 2. The initial parabola has a
-/// relative error of 2.4e-2; each step turns an error `e` into `1.5 e^2`: 8.7e-4, 1.2e-6, 2e-12.
+/// With `m = n / 2^64`, this is `1 / sqrt(m)` in units of 2^-31, between 1 and 2. The initial parabola has a relative
+/// error of 2.4e-2. Each step turns an error `e` into `1.5 e^2`: 8.7e-4, 1.2e-6, 2e-12.
 #[inline]
 #[expect(
     clippy::cast_possible_wrap,
@@ -205,8 +199,7 @@ const fn inverse_root(n: u64) -> u64 {
     y = (y * ((3 << 30) - ((((y * y) >> 30) * m) >> 32))) >> 31;
     y = (y * ((3 << 30) - ((((y * y) >> 30) * m) >> 32))) >> 31;
 
-    // The last step uses the residual `1 - m y^2`, which is small and therefore exact modulo 2^64. The term 1 is 2^76,
-    // which is 0 modulo 2^64.
+    // The residual `1 - m y^2` is small and therefore exact modulo 2^64, where the term 1, 2^76, is 0.
     let root = m * y + (((n & 0xffff_ffff) * y) >> 32); // m y in units of 2^-62
     let residual = (root >> 16).wrapping_mul(y).wrapping_neg() as i64; // units of 2^-76
     let correction = (y as i64 * (residual >> 32) + (1 << 43)) >> 44; // y residual / 2 in units of 2^-31
@@ -230,7 +223,7 @@ const fn sum_of_squares_wide(x: u64, y: u64) -> u128 {
 #[inline]
 const fn sqrt_rounded(n: u64) -> u64 {
     let root = n.isqrt();
-    // n is an integer, so it exceeds (root + 1/2)^2 = root^2 + root + 1/4 exactly if it exceeds the first two terms.
+    // Exactly if n exceeds (root + 1/2)^2 = root^2 + root + 1/4.
     if n - root * root > root { root + 1 } else { root }
 }
 
@@ -241,15 +234,15 @@ const fn sqrt_rounded_wide(n: u128) -> u128 {
     if n - root * root > root { root + 1 } else { root }
 }
 
-/// `sqrt(n)`, rounded down, for `n <= 2^127`. Avoids the divisions of `u128::isqrt`, which take most of its time.
+/// `sqrt(n)`, rounded down, for `n <= 2^127`, without the slow divisions of `u128::isqrt`.
 #[inline]
 #[expect(clippy::cast_possible_wrap, clippy::cast_sign_loss, reason = "the residual is taken modulo 2^128")]
 const fn root_wide(n: u128) -> u128 {
     if n == 0 {
         return 0;
     }
-    // `m` is the upper half of `n 2^shift`. `m / sqrt(m)` gives 32 bits of the root `r`, and the correction
-    // `(n - r^2) / (2 sqrt(n))` extends them to 63. The two loops correct the last unit by comparing exact squares.
+    // `m / sqrt(m)` gives 32 bits of the root `r`, `(n - r^2) / (2 sqrt(n))` extends them to 63, and the loops correct
+    // the last unit.
     let shift = n.leading_zeros() & !1;
     let m = high_half(n << shift);
     let inverse = inverse_root(m); // 2^63 / sqrt(m)
@@ -265,20 +258,17 @@ const fn root_wide(n: u128) -> u128 {
     root
 }
 
-/// Saturates a magnitude in world units to a world quantity.
 #[expect(clippy::cast_possible_truncation, reason = "compared with the largest value first")]
 const fn saturated(bits: u128) -> Fx {
     if bits > i64::MAX as u128 { Fx::MAX } else { Fx::from_bits(bits as i64) }
 }
 
-/// Saturates a magnitude to `i32`.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "compared with the largest value first")]
 const fn saturated_narrow(bits: u64) -> i32 {
     if bits > i32::MAX as u64 { i32::MAX } else { bits as i32 }
 }
 
-/// The upper 64 bits.
 const fn high_half(x: u128) -> u64 {
     (x >> 64) as u64
 }

@@ -1,8 +1,7 @@
-//! A rotation as the cosine and sine of its angle: `R v = (c x - s y, s x + c y)`.
+//! A rotation as cosine and sine: `R v = (c x - s y, s x + c y)`.
 //!
-//! A rotation is derived from an [`Angle`] and never integrated. The state is the angle, so the length of `(c, s)` is 1
-//! within two units of 2^-30 and does not drift. Each component of a result is a sum of two exact products, rounded
-//! once.
+//! It is derived from an [`Angle`] and not integrated, so that the length of `(c, s)`, 1 within two units of 2^-30,
+//! does not drift.
 
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
@@ -40,7 +39,7 @@ impl Rot {
         Rot { cos, sin }
     }
 
-    /// Creates the rotations by several angles. Inlined into the caller, the loop is vectorised.
+    /// The loop is vectorised when inlined.
     #[inline(always)]
     pub(crate) fn from_angles<const N: usize>(angles: &[Angle; N]) -> [Self; N] {
         let mut rotations = [Rot::IDENTITY; N];
@@ -50,14 +49,14 @@ impl Rot {
         rotations
     }
 
-    /// Inverse rotation: exact.
+    /// Inverse rotation.
     #[inline]
     #[must_use]
     pub const fn inverse(self) -> Self {
         Rot { cos: self.cos, sin: self.sin.saturating_neg() }
     }
 
-    /// Rotates a vector; each component is rounded once, saturated.
+    /// Rotates a vector, rounded once, saturated.
     #[inline]
     #[must_use]
     pub fn apply<F: LeEqU32>(self, v: Vec2<FixedI32<F>>) -> Vec2<FixedI32<F>> {
@@ -65,28 +64,28 @@ impl Rot {
         Vec2::new(mul_add(self.cos, v.x, minus_sin, v.y), mul_add(self.sin, v.x, self.cos, v.y))
     }
 
-    /// Rotates a vector by the inverse; each component is rounded once, saturated.
+    /// Rotates by the inverse, rounded once, saturated.
     #[inline]
     #[must_use]
     pub fn apply_inverse<F: LeEqU32>(self, v: Vec2<FixedI32<F>>) -> Vec2<FixedI32<F>> {
         self.inverse().apply(v)
     }
 
-    /// Rotates a vector in world format; each component is rounded once, saturated.
+    /// Rotates a vector in world format, rounded once, saturated.
     #[inline]
     #[must_use]
     pub const fn apply_wide(self, v: Vec2<Fx>) -> Vec2<Fx> {
         self.apply_and_move(v, Vec2::new(Fx::ZERO, Fx::ZERO))
     }
 
-    /// Rotates a vector in world format by the inverse; each component is rounded once, saturated.
+    /// Rotates by the inverse in world format, rounded once, saturated.
     #[inline]
     #[must_use]
     pub const fn apply_inverse_wide(self, v: Vec2<Fx>) -> Vec2<Fx> {
         self.inverse().apply_wide(v)
     }
 
-    /// Returns this rotation followed by another, which adds the angles; each component is rounded once.
+    /// This rotation followed by another, rounded once.
     #[inline]
     #[must_use]
     pub fn then(self, other: Self) -> Self {
@@ -94,7 +93,7 @@ impl Rot {
         Rot { cos, sin }
     }
 
-    /// `R v + offset`; each component is rounded once and saturated once.
+    /// `R v + offset`, rounded once and saturated once.
     #[inline]
     pub(super) const fn apply_and_move(self, v: Vec2<Fx>, offset: Vec2<Fx>) -> Vec2<Fx> {
         let (cos, sin) = (self.cos.to_bits() as i128, self.sin.to_bits() as i128);
@@ -141,18 +140,16 @@ mod tests {
             let turn = Rot::from_angle(rng.angle());
             let v: Vec2<Length> = draw(&mut rng, fx!(300)).narrow();
             let wide = turn.apply_wide(v.widen());
-            // Rounding twice can differ from rounding once by a unit, and only at a tie.
+            // Rounding twice can differ by a unit from rounding once.
             let apart = wide.narrow() - turn.apply(v);
             assert!(apart.x.abs() <= Length::DELTA && apart.y.abs() <= Length::DELTA, "{turn:?} {v:?}");
             assert!((wide.x - Fx::from_num(turn.apply(v).x)).abs() <= narrow_half());
             let back = turn.apply_inverse(turn.apply(v)) - v;
-            // Rounding contributes at most 1.3 units. The error of cos^2 + sin^2 is at most 2.24 units of 2^-30, which
-            // are less than 2.7 units of `Length` for 300 m.
+            // Rounding contributes at most 1.3 units, and the error of cos^2 + sin^2 less than 2.7 units for 300 m.
             assert!(back.x.abs().to_bits() <= 4 && back.y.abs().to_bits() <= 4, "{turn:?} {v:?} {back:?}");
         }
     }
 
-    /// Half a unit of `Length`.
     fn narrow_half() -> Fx {
         Fx::from_bits(1 << 9)
     }

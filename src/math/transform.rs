@@ -1,12 +1,10 @@
-//! A pose: `T p = R p + position`, and its inverse `R^-1 (p - position)`.
-
 use serde::{Deserialize, Serialize};
 
 use super::formats::Fx;
 use super::rot::Rot;
 use super::vec2::Vec2;
 
-/// A rotation followed by a translation, from body to world coordinates.
+/// A rotation followed by a translation, `R p + position`, from body to world coordinates.
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Angle, Rot, Transform, Vec2}};
@@ -34,15 +32,14 @@ impl Transform {
         Transform { position, rotation }
     }
 
-    /// Transforms a point from body to world coordinates; each component is rounded once, saturated.
+    /// Transforms from body to world coordinates, rounded once, saturated.
     #[inline]
     #[must_use]
     pub const fn apply(self, point: Vec2<Fx>) -> Vec2<Fx> {
         self.rotation.apply_and_move(point, self.position)
     }
 
-    /// Transforms a point from world to body coordinates; each component is rounded once. The difference from the
-    /// position saturates first, which only affects points more than 2.1e9 m away.
+    /// Transforms from world to body coordinates, rounded once. The difference from the position saturates at 2.1e9 m.
     #[inline]
     #[must_use]
     pub fn apply_inverse(self, point: Vec2<Fx>) -> Vec2<Fx> {

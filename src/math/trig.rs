@@ -1,14 +1,13 @@
 //! Sine, cosine and arc tangent in integer arithmetic.
 //!
-//! `sin(pi x / 2) = x (c0 - c1 z + c2 z^2 - ... - c5 z^5)` with `z = x^2`, for `x` from 0 to 1 quarter turn. The whole
-//! turn is folded to this quarter by symmetry: the sine is exactly odd, the cosine exactly even, and both are exact at
-//! the quarter turns. `atan(t) = t (c0 - c1 z + ... + c6 z^6)` with `z = t^2`, for `|t| <= tan(1/16 turn)`. The plane
-//! is folded at the diagonal and by `atan t = pi/4 - atan((1 - t) / (1 + t))`.
+//! `sin(pi x / 2) = x (c0 - c1 z + c2 z^2 - ... - c5 z^5)` with `z = x^2`, for `x` from 0 to 1 quarter turn, to which
+//! the turn is folded by symmetry. The sine is odd, the cosine even, and both are exact at the quarter turns.
+//! `atan(t) = t (c0 - c1 z + ... + c6 z^6)` with `z = t^2`, for `|t| <= tan(1/16 turn)`. The plane is folded at the
+//! diagonal and by `atan t = pi/4 - atan((1 - t) / (1 + t))`.
 //!
-//! The coefficients are minimax, from a Remez exchange with 50 digits that is weighted by the absolute error of the
-//! result. The sine is constrained to 1 at the quarter turn. Each coefficient is then rounded to the scale given at its
-//! table. The two leading coefficients of the sine were moved by one unit where a sweep showed a smaller error. A table
-//! with interpolation would need 130 KiB for the same error; CORDIC takes 30 iterations.
+//! The coefficients are minimax, from a Remez exchange with 50 digits weighted by absolute error, with the sine
+//! constrained to 1 at the quarter turn. The two leading coefficients of the sine were moved by one unit, which a sweep
+//! showed to be better. An interpolated table would need 130 KiB for the same error, and CORDIC 30 iterations.
 //!
 //! Largest error: 0.79 units of 2^-30 for sine and cosine (over all 2^32 angles), 0.68 units of 2^-32 turn for the arc
 //! tangent (over 2e8 random vectors).
@@ -16,8 +15,7 @@
 /// A quarter turn in units of 2^-32 turn.
 const QUARTER: u32 = 1 << 30;
 
-/// Sine of `angle` (in units of 2^-32 turn) in units of 2^-30. Branch-free: angles of bodies are arbitrary, so branches
-/// would be unpredictable.
+/// Sine in units of 2^-30 of `angle` in units of 2^-32 turn. Branch-free, because branches would be unpredictable.
 #[inline]
 pub(super) const fn sine(angle: u32) -> i32 {
     let angle = signed(angle);
@@ -27,12 +25,11 @@ pub(super) const fn sine(angle: u32) -> i32 {
     (sine_of_quarter_turn(folded) ^ minus) - minus
 }
 
-/// Sine of an angle from 0 to one quarter turn, `0 <= angle <= 2^30`, in units of 2^-30.
+/// Sine of `0 <= angle <= 2^30`, in units of 2^-30.
 #[inline]
 const fn sine_of_quarter_turn(angle: u32) -> i32 {
-    /// Coefficients in units of 2^-33, 2^-32, 2^-35, 2^-39, 2^-44 and 2^-48. With these units, each product below just
-    /// fits 64 bits. All but the last coefficient contain the rounding constant of one half, so that dropping bits
-    /// rounds to nearest.
+    /// In units of 2^-33, 2^-32, 2^-35, 2^-39, 2^-44 and 2^-48, with which each product fits 64 bits. All but the last
+    /// contain one half, so that dropping bits rounds to nearest.
     const C: [u64; 6] =
         [13_493_037_702, 2_774_394_650, 2_738_216_371, 2_573_744_741, 2_818_456_289, 961_408_605];
     let x = angle as u64;
@@ -45,8 +42,7 @@ const fn sine_of_quarter_turn(angle: u32) -> i32 {
     ((x * sum + (1 << 32)) >> 33) as i32
 }
 
-/// Direction of `(x, y)` in units of 2^-32 turn, counter-clockwise from the x axis; 0 for the zero vector. Exact on the
-/// axes and the diagonals.
+/// Direction in units of 2^-32 turn; 0 for the zero vector. Exact on the axes and the diagonals.
 pub(super) const fn arc_tangent(x: i64, y: i64) -> u32 {
     let (width, height) = (x.unsigned_abs(), y.unsigned_abs());
     let steep = height > width;
@@ -72,7 +68,7 @@ const fn eighth_turn(short: u64, long: u64) -> u32 {
     let from_diagonal = short > (long >> 7) * 53;
     let (numerator, denominator) = if from_diagonal { (long - short, long + short) } else { (short, long) };
 
-    // One 64-bit division gives 32 bits of quotient: the quotient is below one half, so the doubled numerator fits.
+    // The quotient is below one half, so the doubled numerator fits, and one division gives 32 bits.
     let spare = denominator.leading_zeros();
     let divisor = (denominator << spare) >> 31;
     let t = (((numerator << spare) << 1) + divisor / 2) / divisor;
@@ -88,7 +84,6 @@ const fn eighth_turn(short: u64, long: u64) -> u32 {
     if from_diagonal { QUARTER / 2 - angle } else { angle }
 }
 
-/// Converts an angle to the range between minus and plus one half turn.
 #[inline]
 #[expect(clippy::cast_possible_wrap, reason = "angles wrap by definition")]
 pub(super) const fn signed(angle: u32) -> i32 {
@@ -97,7 +92,7 @@ pub(super) const fn signed(angle: u32) -> i32 {
 
 #[cfg(test)]
 mod tests {
-    //! Errors are measured against Taylor series in 128-bit integers in units of 2^-60, with an error below 2^-54.
+    //! Taylor series in units of 2^-60, with an error below 2^-54, are the reference.
 
     use super::*;
     use crate::math::Rng;
@@ -122,7 +117,7 @@ mod tests {
         (sin, cos)
     }
 
-    /// Angles with a constant stride over the whole turn, and all angles near each multiple of an eighth of a turn.
+    /// A constant stride over the turn, and all angles near each multiple of an eighth of a turn.
     fn angles() -> impl Iterator<Item = u32> {
         let all = (0..60_000_u32).map(|i| i.wrapping_mul(71_583));
         let borders = (0..8_u32)
@@ -137,8 +132,7 @@ mod tests {
             let (sin, _) = slow_sin_cos(angle);
             largest = largest.max((i128::from(sine(angle)) * (1 << 30) - sin).abs());
         }
-        // The error in thousandths of 2^-30. The limit is just below the documented 0.79 units, because this sweep is
-        // not exhaustive.
+        // Thousandths of 2^-30. The limit is below 0.79 units, because this sweep is not exhaustive.
         let thousandths = (largest * 1000) >> 30;
         assert!(
             (500..=789).contains(&thousandths),
@@ -170,10 +164,10 @@ mod tests {
         }
     }
 
-    /// Error of `arc_tangent` in thousandths of 2^-32 turn.
+    /// In thousandths of 2^-32 turn.
     fn arc_tangent_error(x: i64, y: i64) -> i128 {
         let (sin, cos) = slow_sin_cos(arc_tangent(x, y));
-        // The vector is scaled up, so that the integer root below has at least 62 bits.
+        // Scaled up, so that the length has at least 62 bits.
         let shift = (x.unsigned_abs() | y.unsigned_abs()).leading_zeros().saturating_sub(1);
         let (x, y) = (i128::from(x) << shift, i128::from(y) << shift);
         let length = (x.unsigned_abs().pow(2) + y.unsigned_abs().pow(2)).isqrt();
@@ -199,7 +193,7 @@ mod tests {
                 largest = largest.max(arc_tangent_error(x, y));
             }
         }
-        // The borders of the range reduction: tan(1/16 turn) is 0.41421, and the formula changes at 53/128.
+        // Borders of the range reduction: tan(1/16 turn) is 0.41421, and the formula changes at 53/128.
         for long in [128_i64, 1 << 31, 1 << 40, i64::MAX] {
             for near in -200..200 {
                 for short in [long / 128 * 53 + near, long + near.min(0), near] {

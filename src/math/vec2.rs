@@ -1,4 +1,4 @@
-//! 2D vectors over any of the formats.
+//! 2D vectors.
 
 use core::fmt::{self, Display, Formatter};
 use core::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
@@ -14,8 +14,8 @@ use super::formats::{
 
 /// A vector or a point. Sums and differences saturate.
 ///
-/// Pairs and arrays convert to vectors. Most functions that take a position or a velocity accept `impl Into<Vec2<Fx>>`,
-/// so that it may be a vector or a pair: `BodyDef::dynamic().position((fx!(0), fx!(10)))`.
+/// Functions that accept `impl Into<Vec2<Fx>>` take a vector, a pair or an array:
+/// `BodyDef::dynamic().position((fx!(0), fx!(10)))`.
 ///
 /// ```
 /// use lockstep2d::{fx, math::Vec2};
@@ -34,7 +34,7 @@ pub struct Vec2<T> {
 }
 
 impl<T> Vec2<T> {
-    /// Creates a vector from its components.
+    /// Vector from its components.
     #[inline]
     pub const fn new(x: T, y: T) -> Self {
         Vec2 { x, y }
@@ -104,7 +104,7 @@ impl<T: Fixed> SubAssign for Vec2<T> {
     }
 }
 
-/// Multiplication by a factor, like [`Vec2::scale`]: rounded to nearest, saturated.
+/// Multiplication by a factor, rounded to nearest, saturated.
 ///
 /// ```
 /// # use lockstep2d::{fx, math::Vec2};
@@ -122,7 +122,7 @@ impl<T: Fixed> Vec2<T> {
     /// The zero vector.
     pub const ZERO: Self = Vec2::new(T::ZERO, T::ZERO);
 
-    /// Vector rotated by a quarter turn counter-clockwise: `(-y, x)`.
+    /// The vector rotated by a quarter turn counter-clockwise: `(-y, x)`.
     #[inline]
     #[must_use]
     pub fn perp(self) -> Self {
@@ -145,28 +145,28 @@ impl<T: Fixed> Vec2<T> {
 }
 
 impl<A: LeEqU32> Vec2<FixedI32<A>> {
-    /// `self . other`, rounded once into the format of the result.
+    /// `self . other`, rounded once, saturated.
     #[inline]
     #[must_use]
     pub fn dot<B: LeEqU32, C: LeEqU32>(self, other: Vec2<FixedI32<B>>) -> FixedI32<C> {
         mul_add(self.x, other.x, self.y, other.y)
     }
 
-    /// `self x other = x1 y2 - y1 x2`, rounded once into the format of the result.
+    /// `self x other = x1 y2 - y1 x2`, rounded once, saturated.
     #[inline]
     #[must_use]
     pub fn cross<B: LeEqU32, C: LeEqU32>(self, other: Vec2<FixedI32<B>>) -> FixedI32<C> {
         mul_add(self.x, other.y, self.y.saturating_neg(), other.x)
     }
 
-    /// `self s`, rounded once into the format of the result.
+    /// `self s`, rounded once, saturated.
     #[inline]
     #[must_use]
     pub fn scale<B: LeEqU32, C: LeEqU32>(self, s: FixedI32<B>) -> Vec2<FixedI32<C>> {
         Vec2::new(mul(self.x, s), mul(self.y, s))
     }
 
-    /// Converts to another 32-bit format: rounded to nearest, saturated.
+    /// Converts to another 32-bit format, rounded to nearest, saturated.
     #[inline]
     #[must_use]
     pub fn convert<B: LeEqU32>(self) -> Vec2<FixedI32<B>> {
@@ -182,21 +182,19 @@ impl<A: LeEqU32> Vec2<FixedI32<A>> {
 }
 
 impl Vec2<Fx> {
-    /// Sum without the cost of saturation, for operands whose sum does not overflow. An overflow wraps, in every build
-    /// profile.
+    /// Sum without the cost of saturation. An overflow wraps.
     #[inline]
     pub(crate) fn wrapping_add(self, other: Self) -> Self {
         Vec2::new(self.x.wrapping_add(other.x), self.y.wrapping_add(other.y))
     }
 
-    /// Difference without the cost of saturation, for operands whose difference does not overflow. An overflow wraps,
-    /// in every build profile.
+    /// Difference without the cost of saturation. An overflow wraps.
     #[inline]
     pub(crate) fn wrapping_sub(self, other: Self) -> Self {
         Vec2::new(self.x.wrapping_sub(other.x), self.y.wrapping_sub(other.y))
     }
 
-    /// Converts to a 32-bit format: rounded to nearest, saturated.
+    /// Converts to a 32-bit format, rounded to nearest, saturated.
     #[inline]
     #[must_use]
     pub fn narrow<A: LeEqU32>(self) -> Vec2<FixedI32<A>> {
@@ -224,7 +222,7 @@ impl Vec2<Fx> {
         Vec2::new(fx_mul(self.x, s), fx_mul(self.y, s))
     }
 
-    /// `self + (other - self) t`, rounded once, saturated. Extrapolates for `t` outside of 0 to 1.
+    /// `self + (other - self) t`, rounded once, saturated. Extrapolates outside of 0 to 1.
     #[inline]
     #[must_use]
     pub const fn lerp(self, other: Self, t: Unit) -> Self {
@@ -236,19 +234,17 @@ impl Vec2<Fx> {
 const fn sum_of_products(a: Fx, x: Fx, b: Fx, y: Fx, sign: i128) -> Fx {
     let ax = a.to_bits() as i128 * x.to_bits() as i128;
     let by = b.to_bits() as i128 * y.to_bits() as i128;
-    // The sum of two products of 64-bit numbers fits an `i128`, unless all four numbers are `i64::MIN`.
+    // The sum fits an `i128`, unless all four numbers are `i64::MIN`.
     Fx::from_bits(round_product(ax.saturating_add(sign * by)))
 }
 
-/// `a (1 - t) + b t`, rounded once, saturated. The 128-bit sum of products avoids the difference `b - a`, which could
-/// overflow.
+/// `a (1 - t) + b t`, rounded once, saturated. `b - a` could overflow.
 const fn interpolate(a: Fx, b: Fx, t: Unit) -> Fx {
     let t = t.to_bits() as i128;
     let sum = a.to_bits() as i128 * ((1 << Unit::FRAC_NBITS) - t) + b.to_bits() as i128 * t;
     Fx::from_bits(saturate_wide(round_shift_wide(sum, Unit::FRAC_NBITS)))
 }
 
-/// Unit vectors along the axes.
 impl Vec2<Unit> {
     /// `(1, 0)`.
     pub const X: Self = Vec2::new(Unit::ONE, Unit::ZERO);

@@ -1,16 +1,14 @@
 //! Exact wide integers for geometric predicates.
 //!
 //! The difference of two coordinates has 65 bits, a cross product of differences 130, and a point along a segment needs
-//! the product of a difference and a cross product. This module computes with such numbers exactly, so that no
-//! predicate has to round. It has only the operations that the predicates need. Sign and magnitude are separate, so
-//! that a difference fits a `u64` and a product of two differences a `u128`.
+//! the product of both. With separate signs, a difference fits a `u64` and a product of two a `u128`.
 
 use core::cmp::Ordering;
 
 use super::formats::Fx;
 use super::vec2::Vec2;
 
-/// A 256-bit unsigned integer, `2^128 high + low`. The derived order is numeric.
+/// `2^128 high + low`. The derived order is numeric.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Wide {
     high: u128,
@@ -20,20 +18,20 @@ pub(super) struct Wide {
 impl Wide {
     const ZERO: Self = Wide { high: 0, low: 0 };
 
-    /// Sum, which must fit.
+    /// The sum must fit.
     fn plus(self, other: Self) -> Self {
         let (low, carry) = self.low.overflowing_add(other.low);
         Wide { high: self.high + other.high + u128::from(carry), low }
     }
 
-    /// Difference, which must not be negative.
+    /// The difference must not be negative.
     fn minus(self, other: Self) -> Self {
         let (low, borrow) = self.low.overflowing_sub(other.low);
         Wide { high: self.high - other.high - u128::from(borrow), low }
     }
 }
 
-/// An integer as sign and magnitude. Zero is never negative.
+/// Sign and magnitude. Zero is not negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Signed {
     negative: bool,
@@ -41,7 +39,6 @@ pub(super) struct Signed {
 }
 
 impl Signed {
-    /// Comparison of the number with zero.
     pub(super) fn sign(self) -> Ordering {
         match (self.magnitude == Wide::ZERO, self.negative) {
             (true, _) => Ordering::Equal,
@@ -58,7 +55,6 @@ pub(super) struct Difference {
     y: Part,
 }
 
-/// One component of a difference: 65 bits as sign and magnitude.
 #[derive(Clone, Copy, Debug)]
 struct Part {
     negative: bool,
@@ -84,7 +80,7 @@ impl Difference {
         sum_of_products(self.x, other.x, self.y, other.y)
     }
 
-    /// `|x| + |y|`, which grows monotonically along any line from the origin.
+    /// `|x| + |y|`, which grows along any line from the origin.
     pub(super) fn manhattan(self) -> u128 {
         u128::from(self.x.magnitude) + u128::from(self.y.magnitude)
     }
@@ -107,8 +103,8 @@ fn sum_of_products(a: Part, x: Part, b: Part, y: Part) -> Signed {
     Signed { negative: larger.negative && magnitude != Wide::ZERO, magnitude }
 }
 
-/// `origin + along numerator / denominator`, each component rounded to nearest, ties towards +infinity, so that the
-/// point does not depend on which end of the segment is the origin. `None` if the fraction is not between 0 and 1.
+/// `origin + along numerator / denominator`, rounded to nearest, ties towards +infinity, so that the point does not
+/// depend on which end of the segment is the origin. `None` if the fraction is not between 0 and 1.
 pub(super) fn point_at(
     origin: Vec2<Fx>,
     along: Difference,
@@ -129,7 +125,7 @@ pub(super) fn point_at(
             Ordering::Greater => floor + 1,
         };
         let bits = origin.to_bits();
-        // The point lies between two other points, so the result is in range even if the offset has 64 bits.
+        // The result is between two points, and in range even if the offset has 64 bits.
         Fx::from_bits(if part.negative {
             bits.wrapping_sub_unsigned(forward)
         } else {
@@ -139,10 +135,10 @@ pub(super) fn point_at(
     Some(Vec2::new(component(origin.x, along.x), component(origin.y, along.y)))
 }
 
-/// `floor(x numerator / denominator)` for a fraction of at most 1, and the comparison of the remainder with one half.
+/// `floor(x numerator / denominator)` for a fraction of at most 1, and the remainder compared with one half.
 #[expect(clippy::cast_possible_truncation, reason = "at most x")]
 fn scaled(x: u64, numerator: Wide, denominator: Wide) -> (u64, Ordering) {
-    // Fast path, taken for points less than a kilometre apart.
+    // Fast path for points less than a kilometre apart.
     if numerator.high == 0
         && denominator.high == 0
         && let Some(product) = numerator.low.checked_mul(u128::from(x))
@@ -151,7 +147,7 @@ fn scaled(x: u64, numerator: Wide, denominator: Wide) -> (u64, Ordering) {
         let rest = product - quotient * denominator.low;
         return (quotient as u64, rest.cmp(&(denominator.low - rest)));
     }
-    // Multiplies and divides bit by bit, from the top of x: `rest < denominator < 2^130` throughout.
+    // Multiplies and divides bit by bit, from the top of x: `rest < denominator < 2^130`.
     let (mut quotient, mut rest) = (0_u64, Wide::ZERO);
     for bit in (0..64).rev() {
         quotient <<= 1;
@@ -185,8 +181,7 @@ mod tests {
         assert!(sum > top);
     }
 
-    /// Compares both branches of [`scaled`] on the same fractions: a common factor of 2^64 leads to the slow branch,
-    /// unless `x numerator` is below 2^64.
+    /// A common factor of 2^64 leads to the slow branch, unless `x numerator` is below 2^64.
     #[test]
     fn long_division_agrees_with_the_short_one() {
         let mut rng = Rng::new(1);

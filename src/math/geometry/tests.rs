@@ -1,16 +1,15 @@
-//! Tests the predicates against integer and rational arithmetic on a small grid, where touching, crossing at corners
-//! and overlapping are common. Most figures are then scaled or moved, up to the size and the edge of the number range,
-//! where a cross product has up to 128 bits.
+//! Predicates against integer and rational arithmetic on a small grid, where touching, crossing at corners and
+//! overlapping are common, scaled up to the edge of the number range.
 
 use super::*;
 use crate::fx;
 use crate::math::Rng;
 use alloc::vec::Vec;
 
-/// A grid point: coordinates from -6 to 6.
+/// Coordinates from -6 to 6.
 type Grid = (i128, i128);
 
-/// Placements of a figure: `grid * scale + offset`, in units of 2^-32 m.
+/// `grid * scale + offset`, in units of 2^-32 m.
 const PLACES: [(i128, i128); 5] =
     [(1, 0), (3, i64::MIN as i128 + 18), (1 << 33, 7), ((1 << 60) + 1, 5), ((1 << 60) - 77, 1 << 60)];
 
@@ -20,7 +19,7 @@ fn place((x, y): Grid, (scale, offset): (i128, i128)) -> Vec2<Fx> {
     Vec2::new(bits(x), bits(y))
 }
 
-/// Point at the fraction `n / d` of the way between two grid points, rounded to nearest, ties up.
+/// At the fraction `n / d` of the way, rounded to nearest, ties up.
 fn point_between(from: Grid, to: Grid, n: i128, d: i128, placed: (i128, i128)) -> Vec2<Fx> {
     let (n, d) = (n * d.signum(), d.abs());
     let part = |from: i128, to: i128| {
@@ -53,7 +52,7 @@ fn orientation_is_the_sign_of_the_exact_area() {
         let at = PLACES[round % PLACES.len()];
         assert_eq!(orientation(place(a, at), place(b, at), place(c, at)), expected, "{a:?} {b:?} {c:?}");
     }
-    // A point one unit above a line across the whole world, and a point on the line.
+    // A point one unit above a line across the whole world, and a point on it.
     let (low, high) = (Vec2::new(Fx::MIN, Fx::MIN), Vec2::new(Fx::MAX, Fx::MAX));
     let above = Vec2::new(Fx::ZERO, Fx::DELTA);
     assert_eq!(orientation(low, high, above), Orientation::CounterClockwise);
@@ -61,7 +60,7 @@ fn orientation_is_the_sign_of_the_exact_area() {
     assert_eq!(orientation(low, high, Vec2::new(Fx::ZERO, Fx::ZERO)), Orientation::Collinear);
 }
 
-/// First shared point of two grid segments, as a fraction along the first segment.
+/// As a fraction along the first segment.
 fn shared(a0: Grid, a1: Grid, b0: Grid, b1: Grid) -> Option<(i128, i128)> {
     let (a, b) = ((a1.0 - a0.0, a1.1 - a0.1), (b1.0 - b0.0, b1.1 - b0.1));
     let determinant = a.0 * b.1 - a.1 * b.0;
@@ -90,7 +89,7 @@ fn segments_meet_where_rational_arithmetic_says() {
     let mut rng = Rng::new(2);
     let (mut hits, mut parallel) = (0, 0);
     for round in 0..20_000 {
-        // Every other figure is on a smaller grid, where segments often touch at their ends or overlap.
+        // On the smaller grid of every other figure, segments often touch at their ends or overlap.
         let part = |v: i128| if round % 2 == 0 { v } else { v / 3 };
         let [a0, a1, b0, b1] = [(); 4].map(|()| draw(&mut rng)).map(|(x, y)| (part(x), part(y)));
         let at = PLACES[round % PLACES.len()];

@@ -1,17 +1,15 @@
-//! Tests of square roots, lengths and unit vectors. Most roots are compared with the neighbouring squares, and unit
-//! vectors with a long division and an integer root that have 33 more bits.
+//! Roots are compared with the neighbouring squares, and unit vectors with a long division.
 
 use super::*;
 use crate::fx;
 use crate::math::{Length, Rng, Speed, Step};
 
-/// A random number of any magnitude and sign.
 fn draw(rng: &mut Rng) -> i64 {
     let shift = rng.below(64);
     i64::from_ne_bytes(rng.next_u64().to_ne_bytes()) >> shift
 }
 
-/// Whether `root` is the integer nearest to `sqrt(n)`: `(root - 1/2)^2 < n < (root + 1/2)^2`.
+/// `(root - 1/2)^2 < n < (root + 1/2)^2`.
 fn is_nearest_root(root: u128, n: u128) -> bool {
     (root == 0 || root * root - root < n) && n <= root * root + root
 }
@@ -59,7 +57,7 @@ fn lengths_are_nearest_or_saturated() {
     assert_eq!(corner.length_squared(), Fx::MAX);
 }
 
-/// `|part| / sqrt(sum)` in units of 2^-63, by long division of the squares.
+/// `|part| / sqrt(sum)` in units of 2^-63, by long division.
 fn slow_component(part: u64, sum: u128) -> u128 {
     let square = u128::from(part).pow(2);
     if square == sum {
@@ -77,7 +75,7 @@ fn slow_component(part: u64, sum: u128) -> u128 {
     quotient.isqrt()
 }
 
-/// Larger error of the two components, in thousandths of 2^-30.
+/// In thousandths of 2^-30.
 fn unit_error(x: i64, y: i64, unit: Vec2<Unit>) -> u128 {
     let sum = u128::from(x.unsigned_abs()).pow(2) + u128::from(y.unsigned_abs()).pow(2);
     let error = |part: i64, result: Unit| {
@@ -126,8 +124,7 @@ fn the_inverse_root_is_within_its_bound() {
         // 2^63 / sqrt(n) = sqrt(2^126 / n); both sides are multiplied by 100 and squared.
         let y = u128::from(inverse_root(n)) * 100;
         let squared = |y: u128| (y * y) >> 6;
-        // (100 y)^2 n is 10^4 2^126, about 2^139: dropping 22 bits of each side (6 of the square and 16 of n) makes it
-        // fit.
+        // Both sides are about 2^139, and fit without their last 22 bits (6 of the square and 16 of n).
         let target = 10_000_u128 << 104;
         let n = u128::from(n >> 16);
         assert!(squared(y - 51) * n < target && target < squared(y + 51) * n, "{n}");
@@ -139,7 +136,7 @@ fn the_root_from_the_inverse_is_nearest_where_rounding_turns() {
     let mut rng = Rng::new(6);
     for _ in 0..50_000 {
         let root = (rng.next_u64() >> (33 + rng.below(31))).max(1);
-        // root^2 + root still rounds down to root, and the next integer rounds up.
+        // root^2 + root rounds down to root, and the next integer rounds up.
         for n in [root * root, root * root + root, root * root + root + 1] {
             let shift = n.leading_zeros() & !1;
             let found = root_from_inverse(n, shift, inverse_root(n << shift));
@@ -209,7 +206,6 @@ fn what_is_longer_than_a_limit_has_a_greater_length() {
     let mut undecided = 0;
     for _ in 0..20_000 {
         let v = Vec2::new(rng.range(fx!(-3), fx!(3)), rng.range(fx!(-3), fx!(3)));
-        // The length itself, its neighbours, and a random limit.
         for limit in [v.length(), v.length() - Fx::DELTA, v.length() + Fx::DELTA, rng.range(fx!(-1), fx!(5))]
         {
             assert_eq!(v.is_longer_than(limit), v.length() > limit, "{v:?} {limit}");

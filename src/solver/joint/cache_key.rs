@@ -1,38 +1,32 @@
-//! Cache key of the arrangement of joints for the solver. In most ticks the key is the same as in the last tick.
+//! Cache key of the arrangement of joints, which rarely changes from tick to tick.
 
 use alloc::vec::Vec;
 
 use super::super::settings::Tuning;
 use crate::simd::Machine;
 
-/// Everything that the arrangement of joints depends on. The arrangement is the order in which joints are solved, the
-/// kind of constraint of each joint, and the masses.
+/// Everything that the arrangement of joints depends on: their order, their kinds of constraint, and the masses.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CacheKey {
     /// `None` before the first tick.
     definitions: Option<Definitions>,
     /// Number of times that joints have been restored.
     returns: u64,
-    /// The slots of the joints of the tick.
     joints: Vec<u32>,
-    /// The slots of the bodies of the tick.
     bodies: Vec<u32>,
 }
 
-/// The parts of the last arrangement that are still valid.
+/// Parts of the last arrangement that are still valid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Validity {
-    /// The whole arrangement.
     All,
-    /// The arrangement except impulses and angles, which have been restored.
+    /// Everything except impulses and angles, which have been restored.
     Arrangement,
     Nothing,
 }
 
-/// The revisions of joints and bodies, the settings, the number of threads and the backend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Definitions {
-    /// The revisions of joints and of bodies.
     pub(super) revisions: [u64; 2],
     pub(super) tuning: Tuning,
     /// Number of threads that solve the joints.
@@ -41,7 +35,7 @@ pub(super) struct Definitions {
 }
 
 impl CacheKey {
-    /// Replaces the key by that of a new tick. Returns the parts of the arrangement that are still valid.
+    /// Replaces the key and returns what is still valid.
     pub(super) fn renew(
         &mut self,
         definitions: Definitions,

@@ -20,64 +20,54 @@ use crate::body::{Arena, Body, BodyId, JointId};
 use crate::simd::{Machine, Quad};
 use crate::threads::TeamLock;
 
-/// All joints, for one tick.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct JointSet {
     cache_key: CacheKey,
     anchors: Vec<Anchor>,
-    /// For each body of the tick, its place in `bodies`, counted from 1; 0 if the body has no joint.
+    /// For each body of the tick, its place in `bodies` plus 1; 0 if it has no joint.
     places: Vec<u32>,
-    /// The properties of bodies that the arrangement of their joints depends on.
     bodies: Vec<HingeBody>,
-    /// The rotation coefficients of `bodies`, stored separately because every sub-step reads them. While the
-    /// arrangement is reused, only their angles change from tick to tick.
+    /// Rotation coefficients of `bodies`, stored separately because every sub-step reads them.
     turning: Vec<Turning>,
-    /// The rotations of bodies with joints, by the index of the body.
     body_rotations: Vec<BodyRotation>,
     quads: Vec<Quad>,
-    /// For each joint in the order of the state, its input as a hinge, or its slot.
+    /// In the order of the state.
     entries: Vec<Entry>,
     hinges: HingeSet,
-    /// The coloured hinges of each thread.
     parts: Vec<HingeShare>,
     /// The bodies of anchored hinges.
     anchored: Vec<u32>,
-    /// The slots of all joints that are not hinges, in the order in which they are solved, and whether they are in a
-    /// block.
+    /// Slots of joints that are not hinges, in the order of solving, and whether they are in a block.
     others: Vec<(u32, bool)>,
     list: JointList,
-    /// For each joint in the order of the state, the properties on which the choice of blocks depends.
+    /// In the order of the state.
     candidates: Vec<Candidate>,
-    /// For each joint in the order of the state, whether it is solved in a block. Empty if there are no blocks.
+    /// In the order of the state. Empty if there are no blocks.
     is_blocked: Vec<bool>,
     blocks: Blocks,
-    /// The rows and points in blocks of joints that are not hinges, by slot.
+    /// Rows and points in blocks, by slot.
     blocked_parts: Vec<(u32, BlockedPart)>,
 }
 
-/// The joints of a tick, before they are arranged.
 pub(in crate::solver) struct JointSource<'a> {
     pub(in crate::solver) joints: &'a Arena<Joint, JointId>,
-    /// The slots of the joints that are solved.
     pub(in crate::solver) slots: &'a [u32],
     pub(in crate::solver) bodies: &'a Arena<Body, BodyId>,
     pub(in crate::solver) tuning: &'a Tuning,
 }
 
-/// A body that has joints but is not among the active bodies of the tick, or a far anchor: an anchor on a fixed body
-/// that is too far from the body's origin for a lever arm (see [`JointFrame::is_far`]).
+/// A body with joints that is not among the active bodies, or a far anchor ([`JointFrame::is_far`]).
 #[derive(Clone, Copy, Debug)]
 struct Anchor {
     slot: u32,
-    /// The frame of a far anchor.
     far: Option<JointFrame>,
 }
 
 #[derive(Clone, Copy, Debug)]
 enum Entry {
-    /// A hinge, with the index of its input.
+    /// Index of its input.
     Hinge(u32),
-    /// Any other joint, with its slot.
+    /// Slot of any other joint.
     Other(u32),
 }
 
@@ -129,8 +119,7 @@ impl JointSet {
         blocked_parts.clear();
     }
 
-    /// Makes the constraints of all joints that are solved, in the order in which they are solved, for `parts` threads.
-    /// Also chooses the joints that are solved in blocks. [`Self::prepare_blocks`] prepares the blocks.
+    /// Makes the constraints of all joints, for `parts` threads, and chooses the joints in blocks.
     pub(in crate::solver) fn prepare(
         &mut self,
         source: &JointSource<'_>,
@@ -159,7 +148,6 @@ impl JointSet {
         self.prepare_others(source, list);
     }
 
-    /// Reuses the hinges of the last tick, with the bodies at their current poses.
     fn resume(&mut self, bodies: &Arena<Body, BodyId>, list: &mut BodyList) {
         for &Anchor { slot, far } in &self.anchors {
             match far {
@@ -174,7 +162,6 @@ impl JointSet {
         self.parts.iter_mut().for_each(|part| part.resume(list.poses()));
     }
 
-    /// Lists the joints and their bodies.
     fn arrange(&mut self, source: &JointSource<'_>, list: &mut BodyList, colouring: &mut Colouring) {
         let &JointSource { joints, slots, bodies, tuning } = source;
         colouring.begin();
@@ -204,8 +191,8 @@ impl JointSet {
         self.quads.resize(list.len(), Quad::default());
     }
 
-    /// Returns the index of a body in `self.bodies`, and adds the body if it is missing. A far anchor of a hinge is a
-    /// body of its own, without mass.
+    /// Returns the index of a body in `self.bodies`, after adding it if necessary. A far anchor of a hinge is added as
+    /// a body without mass.
     fn index_of_body(
         &mut self,
         slot: u32,
@@ -241,7 +228,6 @@ impl JointSet {
         *place as usize - 1
     }
 
-    /// Sorts the joints into colours.
     fn sort(&mut self, colouring: &mut Colouring) {
         let JointSet {
             entries,
@@ -278,7 +264,6 @@ impl JointSet {
         }));
     }
 
-    /// Lists the joints that are not hinges, with their rows and points.
     fn prepare_others(&mut self, source: &JointSource<'_>, indices: &BodyList) {
         self.list.clear();
         for &(slot, is_blocked) in &self.others {
@@ -296,12 +281,11 @@ impl JointSet {
         }
     }
 
-    /// Number of joints that are solved in blocks in this tick.
     pub(crate) fn blocked_count(&self) -> usize {
         self.blocks.chosen().len()
     }
 
-    /// Prepares the joints in blocks, after [`Self::prepare`].
+    /// Must be called after [`Self::prepare`].
     pub(in crate::solver) fn prepare_blocks(&mut self) {
         if !self.blocks.is_arranged() {
             self.arrange_blocks();
@@ -321,18 +305,16 @@ impl JointSet {
         blocks.arrange(hinges, blocked_parts, candidates, &numbers);
     }
 
-    /// Whether a body of the tick has a joint, by its index.
+    /// Whether the body with this index has a joint.
     pub(in crate::solver) fn holds(&self, index: u32) -> bool {
         self.places.get(index as usize).is_some_and(|&place| place != 0)
     }
 
-    /// Computes arms, gains and gaps at the current poses, with one thread. Hinges are refreshed by the next operation
-    /// on them.
+    /// Computes arms, gains and gaps with one thread. Hinges are refreshed by their next operation.
     pub(in crate::solver) fn refresh(&mut self, context: &StepContext<'_>) {
         self.split().shares().for_each(|mut share| share.refresh(context));
     }
 
-    /// Divides the joints among the threads of the sub-steps.
     pub(in crate::solver) fn split(&mut self) -> JointSplit<'_> {
         let JointSet { turning, body_rotations, quads, hinges, parts, list, blocks, .. } = self;
         JointSplit {
@@ -343,7 +325,6 @@ impl JointSet {
         }
     }
 
-    /// Stores impulses and angles for the next tick.
     pub(in crate::solver) fn store(&mut self, joints: &mut Arena<Joint, JointId>) {
         self.blocks.return_impulses(&mut self.hinges, &mut self.list);
         self.hinges.store(joints, &self.body_rotations);

@@ -13,19 +13,17 @@ use crate::body::Body;
 use crate::fx;
 use crate::math::{Angle, Fx, Length, Reciprocal, Rot, Unit, Vec2, fx_div, fx_mul, narrow, widen};
 
-/// Smallest distance in metres between the anchors of a gear that has a pitch point. Nearer wheels count as coaxial:
-/// the gear then couples angles only, and the ground takes up its reaction torque.
+/// Smallest distance in metres between the anchors of a gear that has a pitch point. Nearer wheels are coupled in their
+/// angles only, and do not conserve angular momentum.
 const DISTANCE_MIN: Fx = fx!(0.001);
 
 /// Largest length of a direction, so that it fits [`Unit`].
 const LONGEST: Fx = fx!(1.98);
 
-/// The constants of a joint that couples two bodies, within a tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Coupling {
     Gear {
         gear: Gear,
-        /// The angles of the frames in their bodies.
         frames: [Angle; 2],
         /// `|N| / k` of each wheel: the magnitude of its number of teeth over its radius of gyration.
         inverse: [Reciprocal; 2],
@@ -37,13 +35,12 @@ pub(super) enum Coupling {
     },
     Pulley {
         pulley: Pulley,
-        /// Vectors from the wheels to the centres of mass at the start of the tick.
+        /// From the wheels to the centres of mass at the start of the tick.
         centres: [Vec2<Fx>; 2],
     },
 }
 
 impl Coupling {
-    /// The coupling of a joint between two bodies; `None` for other kinds of joints.
     pub(super) fn prepare(joint: &Joint, bodies: [&Body; 2]) -> Option<Self> {
         let JointDef { frame_a, frame_b, kind, .. } = &*joint.def;
         Some(match *kind {
@@ -67,7 +64,6 @@ impl Coupling {
         })
     }
 
-    /// Measures the coupling at the current pose.
     pub(super) fn measure(
         &self,
         ends: &Ends,
@@ -97,8 +93,7 @@ impl Coupling {
 }
 
 impl JointDef {
-    /// The definition, changed so that a gear, rack or pulley holds at the poses of its bodies. Other kinds stay as
-    /// they are.
+    /// The definition, changed so that a gear, rack or pulley holds at the poses of its bodies.
     pub(crate) fn fitted(mut self, a: &Body, b: &Body) -> Self {
         match self.kind {
             JointKind::Gear(gear) => {
@@ -121,7 +116,6 @@ impl JointDef {
         self
     }
 
-    /// Vector from A's anchor to B's in the world.
     fn gap(&self, a: &Body, b: &Body) -> Vec2<Fx> {
         b.transform().apply(self.frame_b.anchor) - a.transform().apply(self.frame_a.anchor)
     }
@@ -135,8 +129,8 @@ impl JointDef {
 }
 
 impl Joint {
-    /// The position error of a gear, rack or pulley in metres, along the pitch line or the rope. For a gear without a
-    /// pitch point, the error is in radians, where one tooth is a full turn. `None` for other kinds.
+    /// The position error of a gear, rack or pulley in metres, along the pitch line or the rope. Without a pitch point
+    /// it is in radians, with 2 pi per tooth. `None` for other kinds.
     pub(crate) fn coupling_error(&self, a: &Body, b: &Body) -> Option<Fx> {
         let def = &*self.def;
         Some(match &def.kind {
@@ -159,13 +153,11 @@ impl Joint {
     }
 }
 
-/// The error of the mesh of two wheels, up to whole teeth. One tooth is a full turn of the returned angle.
+/// The error of the mesh, up to whole teeth. One tooth is a full turn.
 fn teeth_apart(gear: &Gear, [a, b]: [Angle; 2], gap: Vec2<Fx>) -> Angle {
     let line = Angle::of(gap).to_bits();
-    let teeth = |teeth: i32, angle: Angle| {
-        // Whole turns of a wheel are whole numbers of teeth, and drop out.
-        angle.to_bits().wrapping_sub(line).wrapping_mul(teeth.cast_unsigned())
-    };
+    let teeth =
+        |teeth: i32, angle: Angle| angle.to_bits().wrapping_sub(line).wrapping_mul(teeth.cast_unsigned());
     Angle::from_bits(teeth(gear.teeth_a, a).wrapping_add(teeth(gear.teeth_b, b)))
 }
 
@@ -176,9 +168,9 @@ fn pitch_per_tooth(gear: &Gear, gap: Vec2<Fx>) -> Option<Fx> {
     (teeth != 0 && distance >= DISTANCE_MIN).then(|| distance / teeth.abs())
 }
 
-/// Measures a gear. The position of the row is `s` metres per unit of `NA a + NB b` (see `gear.rs`), so that the
-/// direction of the row has the length `(NA + NB) s / distance` along the tangent. `s` is the smaller of two scales:
-/// that of the pitch line, and that of a row on an angle. With a larger `s` the row would hardly move the wheels.
+/// Measures a gear, with a position of `s` metres per unit of `NA a + NB b` (see `gear.rs`). The direction of the row
+/// has the length `(NA + NB) s / distance`. `s` is that of the pitch line, or that of a row on an angle if smaller,
+/// because with a larger `s` the row would hardly move the wheels.
 fn gear_measure(gear: &Gear, angles: [Angle; 2], inverse: [Reciprocal; 2], pose: &JointPose) -> Measure {
     let Gear { teeth_a, teeth_b } = *gear;
     let turning = widen(angular_scale(inverse, pose.fractions));
@@ -204,7 +196,7 @@ fn gear_measure(gear: &Gear, angles: [Angle; 2], inverse: [Reciprocal; 2], pose:
     measured([n, n], arms, pose, -fx_mul(scale, apart), Fx::ONE)
 }
 
-/// Measures a rack. `rolled` is the radius times the angle of the rack relative to the wheel.
+/// `rolled` is the radius times the angle of the rack relative to the wheel.
 fn rack_measure(radius: Fx, along: Vec2<Unit>, rolled: Fx, pose: &JointPose) -> Measure {
     let direction = along.widen();
     let across = |arm: Vec2<Fx>| arm.cross(direction);
@@ -215,11 +207,11 @@ fn rack_measure(radius: Fx, along: Vec2<Unit>, rolled: Fx, pose: &JointPose) -> 
     measured([along, along], arms, pose, position, Fx::ONE)
 }
 
-/// Measures a pulley. `ropes` lead from the wheels to the anchors. Both directions are scaled by one factor of at most
-/// 1, so that the direction on B, which is `ratio` times as long, fits [`Unit`].
+/// `ropes` lead from the wheels to the anchors. One factor of at most 1 scales both directions, so that the direction
+/// on B, `ratio` times as long, fits [`Unit`].
 fn pulley_measure(ratio: Fx, ropes: [Vec2<Fx>; 2], pose: &JointPose) -> Measure {
     let [(to_a, length_a), (to_b, length_b)] = ropes
-        // If an anchor coincides with its wheel, the rope counts as hanging down.
+        // An anchor at its wheel counts as hanging down.
         .map(|rope| rope.normalized_with_length().unwrap_or((-Vec2::Y, Fx::ZERO)));
     let scale = fx_div(LONGEST, ratio).unwrap_or(Fx::ONE).min(Fx::ONE);
     let n_a: Vec2<Unit> = -to_a.widen().scale(scale).narrow();

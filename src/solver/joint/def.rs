@@ -1,4 +1,4 @@
-//! Definitions of joints by the user.
+//! Definitions of joints.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,9 +7,7 @@ use super::{Distance, Gear, Motor, Prismatic, Pulley, Rack, Revolute, Weld, Whee
 use crate::body::{Body, BodyId, BodyKind, Pose, REACH_MAX, WORLD_EXTENT_MAX, WorldError};
 use crate::math::{Angle, Fx, Vec2};
 
-/// A joint between two bodies.
-///
-/// The joint has a frame on each body: an anchor and an angle. Its kind defines how B's frame may move in A's.
+/// A joint between two bodies, with a frame on each. Its kind defines how B's frame may move in A's.
 ///
 /// ```
 /// use lockstep2d::{body::BodyDef, fx, solver::{JointDef, Revolute}, world::World};
@@ -28,24 +26,24 @@ pub struct JointDef {
     pub body_a: BodyId,
     /// The second body, B.
     pub body_b: BodyId,
-    /// The joint's frame on A, in the frame of body A.
+    /// The joint's frame on A.
     pub frame_a: JointFrame,
-    /// The joint's frame on B, in the frame of body B.
+    /// The joint's frame on B.
     pub frame_b: JointFrame,
     /// Whether the two bodies collide with each other.
     pub collide_connected: bool,
-    /// Whether the joint acts. A disabled joint keeps its handle, exerts no force, and lets its bodies collide and
-    /// sleep as if it were absent.
+    /// Whether the joint acts. A disabled joint keeps its handle. Its bodies collide and sleep as if it were absent.
     pub enabled: bool,
-    /// The kind of joint: the relative motion that it allows.
+    /// The motion that the joint allows.
     pub kind: JointKind,
-    /// Stiffness and damping of everything that the joint holds rigidly, its limits included; `None` for those of the
-    /// world: `joint_hertz` and `joint_damping_ratio` of [`SolverSettings`](crate::solver::SolverSettings). The
-    /// frequency is limited to a quarter of the sub-step rate. Springs and motors have parameters of their own.
+    /// Stiffness and damping of what the joint holds rigidly and of its limits.
+    ///
+    /// `None` for those of [`SolverSettings`](crate::solver::SolverSettings). The frequency is limited to a quarter of
+    /// the sub-step rate.
     pub softness: Option<Soft>,
     /// The load beyond which the joint is reported or breaks.
     pub threshold: Threshold,
-    /// A number for the game. The engine does not use it, but it is part of the state and its hash.
+    /// A number for the game, which is part of the state and its hash.
     pub user_data: u64,
 }
 
@@ -69,11 +67,9 @@ pub struct JointDef {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct JointFrame {
-    /// Origin of the joint's frame in the body's frame, in metres: within ±128 on each axis, or within ±2^30 on a fixed
-    /// body.
+    /// Origin in the body's frame, in metres: within ±128 on each axis, or ±2^30 on a fixed body.
     pub anchor: Vec2<Fx>,
-    /// Rotation of the joint's frame in the body's frame. Sliding joints slide along the x axis of the joint's frame on
-    /// A.
+    /// Rotation in the body's frame. Sliding joints slide along the x axis of A's frame.
     pub angle: Angle,
 }
 
@@ -100,9 +96,9 @@ pub struct JointFrame {
 pub enum JointKind {
     /// The frames share their origin: a hinge.
     Revolute(Revolute),
-    /// B slides along the x axis of A's frame and does not turn relative to A: a lift, a drawer.
+    /// B slides along the x axis of A's frame without turning: a lift, a drawer.
     Prismatic(Prismatic),
-    /// The distance between the origins is held, limited or pulled to a length: a rod, a rope, a spring.
+    /// The distance between the origins is held, limited or sprung: a rod, a rope, a spring.
     Distance(Distance),
     /// The frames coincide: glue, rigid or soft.
     Weld(Weld),
@@ -110,10 +106,9 @@ pub enum JointKind {
     Wheel(Wheel),
     /// The frames are driven with limited force: top-down friction, dragging with a pointer.
     Motor(Motor),
-    /// The frames are free. The joint only keeps the bodies from colliding, unless [`JointDef::collide_connected`] is
-    /// set.
+    /// The frames are free. The bodies do not collide, unless [`JointDef::collide_connected`] is set.
     Filter,
-    /// The wheels about the anchors turn in a ratio: toothed wheels, a wheel in a ring.
+    /// The wheels about the anchors turn in a ratio.
     Gear(Gear),
     /// The wheel about A's anchor rolls along the x axis of B's frame.
     Rack(Rack),
@@ -123,8 +118,8 @@ pub enum JointKind {
 
 /// The load beyond which a joint is reported or breaks.
 ///
-/// It is compared with the load in the last sub-step of a tick. If a joint carries a load from its first tick on, the
-/// solver may overestimate the load in that tick by a third, because the joint has no impulse for the warm start yet.
+/// It is compared with the load in the last sub-step of a tick. Without impulses for the warm start, the load in a
+/// joint's first tick may be overestimated by a third.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
@@ -151,12 +146,12 @@ pub struct Threshold {
     pub action: ThresholdAction,
 }
 
-/// The action on a joint whose load exceeds its [`Threshold`].
+/// The action on a joint above its [`Threshold`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ThresholdAction {
-    /// The world reports the joint.
+    /// Reports the joint.
     Event,
-    /// The world reports the joint and removes it.
+    /// Reports the joint and removes it.
     Break,
 }
 
@@ -164,7 +159,6 @@ impl Threshold {
     /// No limit.
     pub const NONE: Self = Threshold { force: None, torque: None, action: ThresholdAction::Event };
 
-    /// Whether there is a limit.
     pub(crate) const fn is_set(&self) -> bool {
         self.force.is_some() || self.torque.is_some()
     }
@@ -176,7 +170,6 @@ impl JointFrame {
 }
 
 impl JointFrame {
-    /// Checks the anchor for a body of the given kind.
     fn validate(&self, kind: BodyKind) -> Result<(), WorldError> {
         let max = if kind == BodyKind::Fixed { WORLD_EXTENT_MAX } else { REACH_MAX };
         let outside = |value: &Fx| !(-max..=max).contains(value);
@@ -186,14 +179,14 @@ impl JointFrame {
         }
     }
 
-    /// Whether the anchor is farther from the origin than lever arms can be. Only anchors on fixed bodies can be far.
+    /// Whether the anchor, on a fixed body, is farther from the origin than lever arms can be.
     pub(super) fn is_far(&self) -> bool {
         let Vec2 { x, y } = self.anchor;
         x.saturating_abs().max(y.saturating_abs()) > REACH_MAX
     }
 
-    /// The centre of mass of a body in the world, and the vector from it to the anchor in the frame of the body. The
-    /// centre of a fixed body is arbitrary: if the anchor is far from the origin, the anchor itself is the centre.
+    /// The centre of mass in the world, and the vector from it to the anchor in the frame of the body. A far anchor is
+    /// itself the centre, because the centre of a fixed body is arbitrary.
     pub(super) fn centre_and_arm(&self, body: &Body) -> (Vec2<Fx>, Vec2<Fx>) {
         if self.is_far() {
             (self.far_pose(body).centre, Vec2::ZERO)
@@ -202,7 +195,7 @@ impl JointFrame {
         }
     }
 
-    /// The pose of a fixed body with a far anchor as its centre. The anchor is clamped to the range of positions.
+    /// The pose of a fixed body about its far anchor, clamped to the range of positions.
     pub(super) fn far_pose(&self, body: &Body) -> Pose {
         let place = body.transform().apply(self.anchor);
         let within = |x: Fx| x.clamp(-WORLD_EXTENT_MAX, WORLD_EXTENT_MAX);
@@ -211,7 +204,7 @@ impl JointFrame {
 }
 
 impl JointDef {
-    /// Creates a joint between the origins of two bodies. The bodies do not collide with each other.
+    /// A joint between the origins of two bodies, which do not collide with each other.
     #[must_use]
     pub fn new(body_a: BodyId, body_b: BodyId, kind: impl Into<JointKind>) -> Self {
         JointDef {
@@ -228,28 +221,28 @@ impl JointDef {
         }
     }
 
-    /// Sets the anchor on A, in metres in the frame of body A.
+    /// Sets the anchor on A, in metres in A's frame.
     #[must_use]
     pub fn anchor_a(mut self, anchor: impl Into<Vec2<Fx>>) -> Self {
         self.frame_a.anchor = anchor.into();
         self
     }
 
-    /// Sets the anchor on B, in metres in the frame of body B.
+    /// Sets the anchor on B, in metres in B's frame.
     #[must_use]
     pub fn anchor_b(mut self, anchor: impl Into<Vec2<Fx>>) -> Self {
         self.frame_b.anchor = anchor.into();
         self
     }
 
-    /// Sets the angle of the joint's frame on A, relative to body A: the direction of the axis of joints that slide.
+    /// Sets the angle of the joint's frame on A. Sliding joints slide along its x axis.
     #[must_use]
     pub const fn angle_a(mut self, angle: Angle) -> Self {
         self.frame_a.angle = angle;
         self
     }
 
-    /// Sets the angle of the joint's frame on B, relative to body B.
+    /// Sets the angle of the joint's frame on B.
     #[must_use]
     pub const fn angle_b(mut self, angle: Angle) -> Self {
         self.frame_b.angle = angle;
@@ -263,15 +256,14 @@ impl JointDef {
         self
     }
 
-    /// Sets the stiffness in Hz, above 0 and up to 1000, and the damping ratio, 0 to 100, of what the joint holds
-    /// rigidly.
+    /// Sets the stiffness in Hz, above 0, up to 1000, and the damping ratio, 0 to 100, of what the joint holds rigidly.
     #[must_use]
     pub const fn softness(mut self, hertz: Fx, damping_ratio: Fx) -> Self {
         self.softness = Some(Soft { hertz, damping_ratio });
         self
     }
 
-    /// Makes the joint disabled at first: see [`World::enable_joint`](crate::world::World::enable_joint).
+    /// Disables the joint until [`World::enable_joint`](crate::world::World::enable_joint).
     #[must_use]
     pub const fn disabled(mut self) -> Self {
         self.enabled = false;
@@ -292,7 +284,7 @@ impl JointDef {
         self
     }
 
-    /// Returns this definition with two other bodies.
+    /// This definition with two other bodies.
     #[must_use]
     pub const fn between(mut self, a: BodyId, b: BodyId) -> Self {
         (self.body_a, self.body_b) = (a, b);
@@ -305,12 +297,10 @@ impl JointDef {
         (self.body_a, self.body_b)
     }
 
-    /// The angle of B's joint frame relative to A's while neither body is rotated.
     pub(crate) fn rest_angle(&self) -> Angle {
         self.frame_b.angle - self.frame_a.angle
     }
 
-    /// Checks the definition for bodies of the given kinds.
     pub(crate) fn validate(&self, kinds: [BodyKind; 2]) -> Result<(), WorldError> {
         if self.body_a == self.body_b {
             return Err(WorldError::JointToItself(self.body_a));
@@ -338,7 +328,7 @@ impl JointDef {
 }
 
 impl JointKind {
-    /// The motor along or about the axis of the joint. In a motor joint, the angular motor.
+    /// The motor along or about the axis. In a motor joint, the angular motor.
     pub(crate) fn motor_mut(&mut self) -> Option<&mut Drive> {
         match self {
             JointKind::Revolute(Revolute { motor, .. })

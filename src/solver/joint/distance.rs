@@ -1,5 +1,4 @@
-//! The distance joint: rows along the line from anchor to anchor, with
-//! `J v = n.(v_b - v_a) + (r_b x n) w_b - (r_a x n) w_a`.
+//! The distance joint: rows along the line between the anchors, `J v = n.(v_b - v_a) + (r_b x n) w_b - (r_a x n) w_a`.
 
 use serde::{Deserialize, Serialize};
 
@@ -36,17 +35,16 @@ pub struct Distance {
     pub rod: Option<Fx>,
     /// Range of the length in metres, 0 or more.
     pub limit: Option<JointLimit>,
-    /// Motor along the line. A positive speed, in m/s, moves the anchors apart; `max` is a force in N. The motor does
-    /// not drive beyond `rod` or `limit`.
+    /// Motor along the line: speed in m/s, positive apart, and largest force in N. It does not drive beyond `rod` or
+    /// `limit`.
     pub motor: Option<Drive>,
     /// Spring with a length in metres, 0 or more.
     pub spring: Option<Spring>,
-    /// Smallest force of the spring in N, 0 or less, and largest force, 0 or more. A positive force pushes the anchors
-    /// apart: with `lower` 0 the spring only pushes, with `upper` 0 it only pulls.
+    /// Smallest force of the spring in N, 0 or less, and largest, 0 or more. Positive forces push the anchors apart.
     pub spring_force: Option<JointLimit>,
 }
 
-/// Shortest rod in metres, because a shorter rod has no well-defined direction.
+/// Shortest rod in metres, because shorter rods have no well-defined direction.
 const ROD_MIN: Fx = fx!(0.001);
 
 impl Distance {
@@ -62,7 +60,7 @@ impl Distance {
         Distance { rod: Some(length), ..Self::new() }
     }
 
-    /// Limits the length to at most `length` metres.
+    /// Limits the length to `length` metres.
     #[must_use]
     pub const fn rope(length: Fx) -> Self {
         Self::new().limit(Fx::ZERO, length)
@@ -71,15 +69,15 @@ impl Distance {
     option_builders! {
         /// Sets the range of the length in metres.
         limit(lower, upper) => JointLimit { lower, upper };
-        /// Sets a speed in m/s, which is positive if the anchors move apart, and the largest force in N.
+        /// Sets the speed in m/s, positive apart, and the largest force in N.
         motor(speed, max_force) => Drive { speed, max: max_force };
-        /// Sets a spring with a frequency in Hz and a length in metres.
+        /// Sets a spring: frequency in Hz, length in metres.
         spring(hertz, damping_ratio, length) => Spring { hertz, damping_ratio, target: length };
-        /// Sets the smallest and the largest force of the spring in N. Positive forces push the anchors apart.
+        /// Sets the smallest and the largest force of the spring in N, positive apart.
         spring_force(lower, upper) => JointLimit { lower, upper };
     }
 
-    /// The length nearest to `length`, in metres, that the rod or the limits allow.
+    /// The allowed length in metres nearest to `length`.
     pub(crate) fn nearest_allowed(&self, length: Fx) -> Fx {
         match (self.rod, self.limit) {
             (Some(rod), _) => rod,

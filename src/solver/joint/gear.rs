@@ -1,8 +1,7 @@
 //! Gears: a pair of toothed wheels, and a wheel on a rack.
 //!
-//! The impulse acts on both bodies at the pitch point, where the wheels roll on each other, along the common tangent.
-//! Momentum and angular momentum are conserved, and axles may move: a planet gear on a turning arm is two hinges and a
-//! gear.
+//! The impulse acts on both bodies at the pitch point, along the common tangent of the wheels. Axles may move: a planet
+//! gear on a turning arm is two hinges and a gear.
 //!
 //! With `NA` and `NB` teeth, the angles `a` and `b` of the frames and the angle `p` of the line from A's anchor to B's,
 //!
@@ -10,9 +9,8 @@
 //! C = NA (a - p) + NB (b - p)        in teeth; wheels that turn against each other have teeth of the same sign
 //! ```
 //!
-//! is known up to whole teeth from the pose alone, because a whole turn of a wheel is a whole number of teeth. There is
-//! no state that could drift, and wheels that are forced out of mesh by more than half a tooth skip a tooth, as real
-//! gears do.
+//! is known up to whole teeth from the pose alone, because a turn of a wheel is a whole number of teeth. No state can
+//! drift. Wheels that are forced out of mesh by more than half a tooth skip a tooth.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,27 +20,24 @@ use crate::body::WorldError;
 use crate::fx;
 use crate::math::Fx;
 
-/// Largest number of teeth of a wheel.
 const TEETH_MAX: Fx = fx!(1000);
-/// Smallest radius of a wheel on a rack, in metres.
 const RADIUS_MIN: Fx = fx!(0.001);
-/// Largest radius of a wheel on a rack, in metres.
 const RADIUS_MAX: Fx = fx!(128);
 
-/// Checks that a number or its negative is within `min` to `max`. The error states the range of the number's sign.
+/// Checks a magnitude. The error states the range for the sign of the number.
 fn check_either_sign(what: &'static str, value: Fx, min: Fx, max: Fx) -> Result<(), WorldError> {
     if value < Fx::ZERO { check(what, value, -max, -min) } else { check(what, value, min, max) }
 }
 
-/// A gear: two wheels about the anchors, whose teeth mesh. B turns by `-teeth_a / teeth_b` of the turn of A, both
-/// relative to the line between the anchors.
+/// A gear: two wheels about the anchors, whose teeth mesh.
 ///
-/// The pitch radii follow from the distance of the anchors, in the ratio of the teeth. Wheels with teeth of the same
-/// sign are beside each other and turn in opposite directions. A wheel with a negative number is a ring around the
-/// other one, and both turn the same way, as two wheels with a belt do.
+/// Relative to the line between the anchors, B turns by `-teeth_a / teeth_b` times the turn of A.
 ///
-/// The gear holds no distance: give each wheel a hinge, to the ground or to a common body. The angles of the frames
-/// define how the teeth mesh: [`World::fit_joint`](crate::world::World::fit_joint) sets them to the current poses.
+/// Wheels with teeth of the same sign are beside each other and turn in opposite directions. A wheel with a negative
+/// number is a ring around the other one, and both turn the same way, as with a belt.
+///
+/// The gear holds no distance: give each wheel a hinge, to the ground or to a common body.
+/// [`World::fit_joint`](crate::world::World::fit_joint) sets the angles of the frames so that the teeth mesh.
 ///
 /// ```
 /// use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, fx, solver::{Gear, JointDef, Revolute}, world::World};
@@ -69,7 +64,7 @@ fn check_either_sign(what: &'static str, value: Fx, min: Fx, max: Fx) -> Result<
 pub struct Gear {
     /// Teeth of A's wheel: 1 to 1000, or -1 to -1000 for a ring.
     pub teeth_a: i32,
-    /// Teeth of B's wheel: 1 to 1000, or -1 to -1000 for a ring if A's wheel is not a ring.
+    /// Teeth of B's wheel, like A's. At most one of the wheels is a ring.
     pub teeth_b: i32,
 }
 
@@ -94,12 +89,11 @@ impl Gear {
     }
 }
 
-/// A wheel on a rack: A is a wheel about its anchor, and rolls along the x axis of B's frame.
+/// A wheel on a rack: A turns about its anchor and rolls along the x axis of B's frame.
 ///
-/// The anchor of the wheel moves along that axis. The pitch line, on which the wheel rolls, is at the distance `radius`
-/// to the right of the axis: below an axis that points along +x. The joint holds no distance: give the wheel a hinge
-/// and the rack a slider, or the wheel both. [`World::fit_joint`](crate::world::World::fit_joint) moves B's anchor so
-/// that the joint holds at the current poses.
+/// The pitch line is at the distance `radius` to the right of that axis. The joint holds no distance: give the wheel a
+/// hinge and the rack a slider, or the wheel both. [`World::fit_joint`](crate::world::World::fit_joint) moves B's
+/// anchor so that the joint holds.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, world::World};
@@ -125,12 +119,12 @@ impl Gear {
 #[doc(alias = "pinion")]
 #[doc(alias = "rack and pinion")]
 pub struct Rack {
-    /// Pitch radius of the wheel in metres, 0.001 to 128. Negative for a rack on the other side of the wheel.
+    /// Pitch radius of the wheel in metres, 0.001 to 128. Negative for a rack on the other side.
     pub radius: Fx,
 }
 
 impl Rack {
-    /// A wheel of a radius in metres on a rack.
+    /// A rack for a wheel of a radius in metres.
     #[must_use]
     pub const fn new(radius: Fx) -> Self {
         Rack { radius }

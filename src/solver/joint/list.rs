@@ -1,5 +1,4 @@
-//! Joints that are solved one by one, with their rows and points: all joints except hinges. They are solved before the
-//! hinges. Rows and points in a block (`block`) are left to the block.
+//! Joints other than hinges, solved one by one before the hinges. Rows and points in a block are left to the block.
 
 use alloc::vec::Vec;
 
@@ -22,17 +21,13 @@ use super::state::{Joint, JointImpulses};
 use crate::body::{Arena, Body, JointId};
 use crate::math::{Speed, Unit};
 
-/// Joints in the order in which they are solved.
 #[derive(Clone, Debug, Default)]
 pub(super) struct JointList {
     joints: Vec<JointConstraint>,
-    /// The part of each joint that every pass needs. It is stored separately, so that the passes read little memory.
+    /// Data for every pass, stored separately so that passes read little memory.
     links: Vec<Link>,
-    /// The rows of all joints, joint by joint.
     rows: Vec<JointRow>,
-    /// The points of all joints, joint by joint.
     points: Vec<JointPoint>,
-    /// Constants of gears, racks and pulleys.
     couplings: Vec<Coupling>,
 }
 
@@ -42,7 +37,6 @@ struct JointConstraint {
     ends: Ends,
 }
 
-/// The indices of a joint's bodies, its numbers of rows and points, and its remainders.
 #[derive(Clone, Copy, Debug)]
 struct Link {
     bodies: [u32; 2],
@@ -52,7 +46,6 @@ struct Link {
 }
 
 impl Link {
-    /// Calls `change` with the two bodies, and stores their new velocities.
     #[inline]
     fn change(
         &mut self,
@@ -67,14 +60,13 @@ impl Link {
     }
 }
 
-/// A row or point of a joint whose impulse a block computes, by its index among those of all joints.
+/// A row or point in a block, by its index among those of all joints.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ListPart {
     Row(usize),
     Point(usize),
 }
 
-/// Bodies, mass fractions, softness and function of a row or point in a block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BlockedPart {
     pub(super) part: ListPart,
@@ -82,23 +74,20 @@ pub(super) struct BlockedPart {
     pub(super) fractions: MassFractions,
     pub(super) mass_scale: Unit,
     pub(super) task: BlockedTask,
-    /// Whether the part is a spring of limited force.
     pub(super) is_limited: bool,
 }
 
-/// The function of a row or point in a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BlockedTask {
     Hold,
-    /// A spring, which is solved in the bias pass only.
+    /// Solved in the bias pass only.
     Spring,
-    /// A limit, whose impulse is never negative.
+    /// The impulse is never negative.
     Limit,
-    /// A motor, whose impulse is limited in magnitude.
+    /// The impulse is limited in magnitude.
     Drive,
 }
 
-/// Iterates over joints with their rows and points.
 struct Walk<'a> {
     links: core::slice::IterMut<'a, Link>,
     rows: &'a mut [JointRow],
@@ -129,7 +118,6 @@ impl JointList {
         couplings.clear();
     }
 
-    /// Adds a joint that is not a hinge, with its bodies and their indices.
     pub(super) fn push(
         &mut self,
         slot: u32,
@@ -171,7 +159,6 @@ impl JointList {
         self.joints.push(JointConstraint { slot, ends: Ends::prepare(joint, indices, bodies) });
     }
 
-    /// Computes arms, gains and gaps at the current pose.
     pub(super) fn refresh(
         &mut self,
         bodies: &[Cell<SolverBody>],
@@ -223,7 +210,6 @@ impl JointList {
         context.add_faults(faults);
     }
 
-    /// Stores impulses and angles for the next tick.
     pub(super) fn store(&mut self, joints: &mut Arena<Joint, JointId>, body_rotations: &[BodyRotation]) {
         for (constraint, (_, rows, points)) in self.walk_joints() {
             let joint = joints.at_mut(constraint.slot);
@@ -238,7 +224,7 @@ impl JointList {
         }
     }
 
-    /// Calls `each` with every row and point in a block, and with the slot of its joint.
+    /// Calls `each` with the rows and points in blocks and the slots of their joints.
     pub(super) fn blocked_parts(&self, mut each: impl FnMut(u32, BlockedPart)) {
         let (mut row, mut point) = (0, 0);
         for (joint, link) in self.joints.iter().zip(&self.links) {
@@ -288,14 +274,12 @@ impl JointList {
         Walk { links: self.links.iter_mut(), rows: &mut self.rows, points: &mut self.points }
     }
 
-    /// Like [`Self::walk`], but also gives the constants of each joint.
     fn walk_joints(&mut self) -> impl Iterator<Item = (&JointConstraint, <Walk<'_> as Iterator>::Item)> {
         let JointList { joints, links, rows, points, .. } = self;
         joints.iter().zip(Walk { links: links.iter_mut(), rows, points })
     }
 }
 
-/// Number of rows, or of points, of one joint.
 fn count<T>(parts: &[T]) -> u16 {
     u16::try_from(parts.len()).expect("a joint has a handful of parts")
 }

@@ -1,6 +1,6 @@
-//! The motor joint: motors and springs with limited force on the angle and on the anchors. It has no rigid parts.
+//! The motor joint: motors and springs with limited force on the angle and on the anchors.
 //!
-//! A force limit that is the same in all directions bounds the length of the impulse `p = G L` of a point block.
+//! An isotropic force limit bounds the length of the impulse `p = G L` of a point block.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,14 +11,12 @@ use crate::math::{Fx, Vec2};
 
 /// A motor joint: moves B's frame relative to A's with limited force and torque.
 ///
-/// With a speed of 0 it acts as friction between B and A, as on a table seen from above. With springs it pulls the
-/// frames onto each other: if A is a kinematic or fixed body that follows a pointer, B is dragged by the pointer.
+/// At speed 0 it acts as friction, as on a table seen from above. With springs it pulls the frames onto each other: a
+/// body A that follows a pointer drags B.
 ///
-/// Forces act on both bodies at one point, B's anchor, as if A extended to it: a sideways force on B also turns A.
-/// Momentum and angular momentum of the two bodies are conserved. If both bodies are dynamic, each component of A's arm
-/// is limited to 88 times A's radius of gyration. If the arm is shortened to this limit, forces act on both bodies at
-/// the end of the shortened arm. If B's arm to that point would be too long as well, forces act only along the line
-/// between the two centres.
+/// Forces act on both bodies at B's anchor, so that a sideways force on B also turns A. If both bodies are dynamic and
+/// A's arm is longer than 88 radii of gyration on an axis, forces act at a nearer point or along the line between the
+/// centres.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
@@ -39,15 +37,13 @@ use crate::math::{Fx, Vec2};
 #[doc(alias = "target joint")]
 #[doc(alias = "MotorJoint")]
 pub struct Motor {
-    /// Drives B's anchor to a velocity relative to A's frame, at the point of the frame at which B's anchor is.
-    /// [`World::joint_velocity`](crate::world::World::joint_velocity) measures this velocity. If A rotates, B is driven
-    /// around with it.
+    /// Drives B's anchor to a velocity relative to A's frame
+    /// ([`World::joint_velocity`](crate::world::World::joint_velocity)). If A rotates, B is driven around with it.
     pub linear: Option<LinearDrive>,
     /// Drives B to an angular velocity relative to A in rad/s, with limited torque in N m.
     pub angular: Option<Drive>,
-    /// Pulls the anchors onto each other, with limited force in N. The frequency is that of two point masses with
-    /// the masses of the bodies, and the stiffness is the same in all directions ([`Soft`]). The damping acts on the
-    /// velocity of B's anchor relative to A's frame, along the spring and across it.
+    /// Pulls the anchors onto each other, with limited force in N and isotropic stiffness ([`Soft`]). The damping also
+    /// acts across the spring.
     pub linear_spring: Option<Pull>,
     /// Turns the frames parallel, with limited torque in N m.
     pub angular_spring: Option<Pull>,
@@ -74,8 +70,7 @@ pub struct Motor {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LinearDrive {
-    /// Target velocity of B's anchor relative to A's frame at that place, in m/s along the axes of the world, within
-    /// ±2^20.
+    /// Target velocity of B's anchor relative to A's frame, in m/s along the world's axes, within ±2^20.
     pub velocity: Vec2<Fx>,
     /// Largest force in N, 0 or more; [`Fx::MAX`] is unlimited.
     pub max_force: Fx,
@@ -115,7 +110,7 @@ impl Motor {
         Motor { linear: None, angular: None, linear_spring: None, angular_spring: None }
     }
 
-    /// Sets a target velocity in m/s along the axes of the world, and the largest force in N.
+    /// Sets the target velocity in m/s along the world's axes, and the largest force in N.
     #[must_use]
     pub fn linear(mut self, velocity: impl Into<Vec2<Fx>>, max_force: Fx) -> Self {
         self.linear = Some(LinearDrive { velocity: velocity.into(), max_force });
@@ -123,13 +118,12 @@ impl Motor {
     }
 
     option_builders! {
-        /// Sets a target angular velocity in rad/s, and the largest torque in N m.
+        /// Sets the target speed in rad/s and the largest torque in N m.
         angular(speed, max_torque) => Drive { speed, max: max_torque };
-        /// Sets a spring between the anchors, with the frequency in Hz that the bodies would have if they were point
-        /// masses, and with a largest force in N.
+        /// Sets a spring between the anchors: frequency of two point masses in Hz, largest force in N.
         linear_spring(hertz, damping_ratio, max_force) =>
             Pull { soft: Soft { hertz, damping_ratio }, max: max_force };
-        /// Sets a spring between the angles, with a frequency in Hz and a largest torque in N m.
+        /// Sets a spring between the angles: frequency in Hz, largest torque in N m.
         angular_spring(hertz, damping_ratio, max_torque) =>
             Pull { soft: Soft { hertz, damping_ratio }, max: max_torque };
     }

@@ -6,20 +6,16 @@ use crate::body::WorldError;
 use crate::fx;
 use crate::math::Fx;
 
-/// Largest limit, target, length or speed of a joint. The solver saturates at much smaller values.
 pub(super) const SIZE_MAX: Fx = fx!(1048576);
-/// Largest frequency of a spring in Hz.
 const HERTZ_MAX: Fx = fx!(1000);
-/// Largest damping ratio of a spring.
 const DAMPING_RATIO_MAX: Fx = fx!(100);
 
-/// The range of a joint's position, in radians or metres, within ±2^20. The lower end is not above the upper one.
-/// [`Distance::spring_force`](crate::solver::Distance::spring_force) is a range of forces in N instead.
+/// The range of a joint's position, in radians or metres, within ±2^20, with `lower <= upper`.
+/// [`Distance::spring_force`](crate::solver::Distance::spring_force) is a range of forces in N.
 ///
-/// A limit has the stiffness of a rigid joint: under a steady acceleration `a` against the limit, the position exceeds
-/// it by `a / (2 pi f)^2`. Here `f` is the frequency of [`JointDef::softness`](crate::solver::JointDef::softness) or,
-/// without it, [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz), at most a quarter of the
-/// sub-step rate.
+/// Under a steady acceleration `a`, a position exceeds its limit by `a / (2 pi f)^2`. Here `f` is the frequency of
+/// [`JointDef::softness`](crate::solver::JointDef::softness) or
+/// [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz), at most a quarter of the sub-step rate.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, math::Vec2, world::World};
@@ -44,7 +40,7 @@ pub struct JointLimit {
     pub upper: Fx,
 }
 
-/// A motor: drives the joint to a speed with limited force or torque. At speed 0 it acts as friction.
+/// A motor: drives the joint to a speed with limited force or torque. At speed 0 it is friction.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, ShapeDef}, world::World};
@@ -69,10 +65,9 @@ pub struct Drive {
 
 /// A damped spring with a target.
 ///
-/// On an angle, the frequency is that of two free bodies; a body on a hinge away from its centre of mass swings more
-/// slowly. Along a line (sliders, wheels, distance joints), it is that of two point masses with the masses of the
-/// bodies: the stiffness is `(2 pi hertz)^2 m` N/m at every pose, with `m` as for [`Soft`]. Where the line does not
-/// pass through a centre of mass, the spring also turns the body, which swings faster.
+/// On an angle, the frequency is that of two free bodies. A body on a hinge away from its centre of mass swings more
+/// slowly. Along a line, the stiffness is `(2 pi hertz)^2 m` N/m, with `m` as for [`Soft`]. If the line does not pass
+/// through a centre of mass, the spring also turns the body, which swings faster.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
@@ -93,8 +88,8 @@ pub struct Drive {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Spring {
-    /// Undamped frequency in Hz, above 0, up to 1000. Above a tenth of the sub-step rate the effective frequency is
-    /// lower, because of the time step.
+    /// Undamped frequency in Hz, above 0, up to 1000. The effective frequency is lower above a tenth of the sub-step
+    /// rate.
     pub hertz: Fx,
     /// Damping ratio, 0 to 100: 1 is critical damping.
     pub damping_ratio: Fx,
@@ -105,16 +100,14 @@ pub struct Spring {
 /// Frequency and damping ratio of a spring, or of what a joint holds rigidly
 /// ([`JointDef::softness`](crate::solver::JointDef::softness)).
 ///
-/// An angular spring has this frequency if both bodies are free. A linear spring, between anchors, has it if both
-/// bodies are point masses: its stiffness is `(2 pi hertz)^2 m` N/m in all directions, with the reduced mass `m = MA MB
-/// / (MA + MB)`, which is the mass of the moving body if the other one does not move. A body that hangs on a fixed one
-/// sags by `g / (2 pi hertz)^2`, wherever its anchor is. If the anchor is off the centre of mass by `r`, across the
-/// pull, the body also turns: it swings `sqrt(1 + r^2 / k^2)` times as fast, with `k` its radius of gyration, and its
-/// damping ratio is larger by the same factor.
+/// An angular spring has the frequency of two free bodies. A linear spring between anchors has that of two point
+/// masses: the stiffness is `(2 pi hertz)^2 m` N/m in all directions, with the reduced mass `m = MA MB / (MA + MB)`, or
+/// the mass of the only moving body. A body that hangs on a fixed one sags by `g / (2 pi hertz)^2`. If its anchor is
+/// off the centre of mass by `r`, across the pull, frequency and damping ratio are `sqrt(1 + r^2 / k^2)` times as
+/// large, with the radius of gyration `k`.
 ///
-/// A spring between anchors that is stretched by `x` turns a body of mass `M` too fast for the time step if
-/// `(2 pi hertz / rate)^2 m x r / (M k^2)` is above about 1, where `rate` is the sub-step rate. Then the body gains
-/// energy.
+/// A linear spring stretched by `x` adds energy to a body of mass `M` if `(2 pi hertz / rate)^2 m x r / (M k^2)` is
+/// above about 1, at a sub-step rate of `rate`.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
@@ -142,14 +135,12 @@ pub struct Soft {
 }
 
 impl Soft {
-    /// A spring with this softness and a target.
     pub(crate) const fn towards(self, target: Fx) -> Spring {
         Spring { hertz: self.hertz, damping_ratio: self.damping_ratio, target }
     }
 }
 
-/// Defines builder methods of a joint. Each method sets the optional field of the same name to the value after the
-/// arrow, an expression of the method's arguments.
+/// Defines builder methods that set the optional field of their name to the value after the arrow.
 macro_rules! option_builders {
     ($($(#[$doc:meta])* $field:ident($($argument:ident),+) => $value:expr;)+) => {
         $(
@@ -164,7 +155,6 @@ macro_rules! option_builders {
 }
 pub(super) use option_builders;
 
-/// Checks the options that most joints have.
 pub(super) fn check_options(
     limit: Option<JointLimit>,
     motor: Option<Drive>,
@@ -175,18 +165,15 @@ pub(super) fn check_options(
     Spring::check(spring)
 }
 
-/// Returns an error that names `what`, unless `value` is within `min` to `max`.
 pub(super) fn check(what: &'static str, value: Fx, min: Fx, max: Fx) -> Result<(), WorldError> {
     let in_range = (min..=max).contains(&value);
     if in_range { Ok(()) } else { Err(WorldError::JointOutOfRange { what, value, min, max }) }
 }
 
-/// Checks a length, an angle or a speed.
 pub(super) fn check_sane(what: &'static str, value: Fx) -> Result<(), WorldError> {
     check(what, value, -SIZE_MAX, SIZE_MAX)
 }
 
-/// Checks a largest force or torque, which may be unlimited.
 pub(super) fn check_strength(what: &'static str, value: Fx) -> Result<(), WorldError> {
     check(what, value, Fx::ZERO, Fx::MAX)
 }
@@ -209,7 +196,7 @@ impl Drive {
 }
 
 impl Soft {
-    /// Checks the frequency and the damping ratio, which have the given names.
+    /// `[frequency, damping]` are the names for errors.
     pub(super) fn check(
         soft: Option<Self>,
         [frequency, damping]: [&'static str; 2],

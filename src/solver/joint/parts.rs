@@ -1,4 +1,4 @@
-//! The rows and points of a joint. Each kind of joint adds its own to [`Parts`].
+//! The rows and points of a joint, which each kind of joint adds to [`Parts`].
 
 use alloc::vec::Vec;
 
@@ -14,9 +14,9 @@ pub(super) mod slot {
     /// A spring along or about an axis, or the row that holds the angle of a weld.
     pub(in super::super) const SPRING: u8 = 0;
     pub(in super::super) const DRIVE: u8 = 1;
-    /// The lower limit. The upper limit is in the next slot. The linear spring of a motor joint uses both slots.
+    /// The lower limit, then the upper limit. In a motor joint, the linear spring.
     pub(in super::super) const LIMIT: u8 = 2;
-    /// The point between the anchors, or up to two rows that hold a position. In a motor joint, the linear motor.
+    /// The point between the anchors, or rows that hold a position. In a motor joint, the linear motor.
     pub(in super::super) const HOLD: u8 = 4;
 }
 
@@ -29,7 +29,7 @@ pub(super) enum Direction {
     Along,
     /// The position of B's anchor along the y axis of A's frame.
     Across,
-    /// Like `Across`, but at the point where an impulse does not rotate the bodies relative to each other. Used by
+    /// Like `Across`, but at the point where an impulse does not rotate the bodies relative to each other. For
     /// prismatic joints, which also hold the angle.
     AcrossBalanced,
     /// The distance between the anchors.
@@ -38,32 +38,28 @@ pub(super) enum Direction {
     Coupled(u32),
 }
 
-/// Collects the parts of one joint.
 pub(super) struct Parts<'a> {
     pub(super) rows: &'a mut Vec<JointRow>,
     pub(super) points: &'a mut Vec<JointPoint>,
     pub(super) impulses: &'a JointImpulses,
-    /// The masses of the two bodies in kg; 0 for a body that no impulse moves.
+    /// Masses of the two bodies in kg; 0 for a body that no impulse moves.
     pub(super) masses: (Fx, Fx),
     /// Sub-steps per second.
     pub(super) rate: u32,
-    /// The softness of rows that hold a position and of limits.
+    /// Softness of limits and of rows that hold a position.
     pub(super) softness: Softness,
-    /// The index of the joint's coupling, if its kind has one.
+    /// Index of the joint's coupling, if it has one.
     pub(super) coupling: u32,
 }
 
 impl Parts<'_> {
-    /// Adds a spring, if there is one.
     pub(super) fn spring(&mut self, direction: Direction, spring: Option<Spring>) {
         self.spring_within(direction, spring, JointLimit { lower: Fx::MIN, upper: Fx::MAX });
     }
 
-    /// Adds a spring with a smallest and a largest force or torque, if there is one.
     pub(super) fn spring_within(&mut self, direction: Direction, spring: Option<Spring>, force: JointLimit) {
         if let Some(Spring { hertz, damping_ratio, target }) = spring {
             let softness = Softness::spring(hertz, damping_ratio, self.rate);
-            // An unlimited force stays unlimited.
             let unlimited = force == JointLimit { lower: Fx::MIN, upper: Fx::MAX };
             let impulse = |force| if unlimited { force } else { self.impulse(force) };
             let (lower, upper) = (impulse(force.lower), impulse(force.upper));
@@ -71,13 +67,12 @@ impl Parts<'_> {
         }
     }
 
-    /// Adds a motor, if there is one.
     pub(super) fn drive(&mut self, direction: Direction, drive: Option<Drive>) {
         self.drive_within(direction, drive, None);
     }
 
-    /// Adds a motor, if there is one. It does not drive beyond `limit`, which is along the same direction: a motor of
-    /// unlimited force and a limit that act against each other would add to their impulses in every sub-step.
+    /// Adds a motor that does not drive beyond a limit along the same direction. The impulses of an unlimited motor
+    /// against a limit would grow in every sub-step.
     pub(super) fn drive_within(
         &mut self,
         direction: Direction,
@@ -90,7 +85,6 @@ impl Parts<'_> {
         }
     }
 
-    /// Adds the rows of a lower and an upper limit, if there is a limit.
     pub(super) fn limit(&mut self, direction: Direction, limit: Option<JointLimit>) {
         if let Some(JointLimit { lower, upper }) = limit {
             self.row(slot::LIMIT, direction, RowTask::Lower { bound: lower });
@@ -98,17 +92,14 @@ impl Parts<'_> {
         }
     }
 
-    /// Adds an upper limit.
     pub(super) fn upper(&mut self, direction: Direction, bound: Fx) {
         self.row(slot::LIMIT + 1, direction, RowTask::Upper { bound });
     }
 
-    /// Holds a position.
     pub(super) fn hold(&mut self, slot: u8, direction: Direction, target: Fx) {
         self.row(slot, direction, RowTask::Hold { target });
     }
 
-    /// Pulls the anchors onto each other, with a largest force.
     pub(super) fn pull(&mut self, slot: u8, soft: Soft, max_force: Fx) {
         let softness = Softness::spring(soft.hertz, soft.damping_ratio, self.rate);
         let max =
@@ -116,7 +107,6 @@ impl Parts<'_> {
         self.point(slot, PointTask::Spring { softness, max });
     }
 
-    /// Drives the anchors to a relative velocity, with a largest force.
     pub(super) fn push(&mut self, velocity: Vec2<Fx>, max_force: Fx) {
         let max = crate::math::narrow(self.impulse(max_force));
         self.point(slot::HOLD, PointTask::Drive { velocity: velocity.narrow(), max });
@@ -136,7 +126,7 @@ impl Parts<'_> {
     }
 }
 
-/// The impulse of a force in a sub-step times `mA + mB`, the inverse masses: in m/s, or in m²/s for a torque.
+/// The impulse of a force in a sub-step times `mA + mB`, in m/s, or in m²/s for a torque.
 pub(super) fn impulse(force: Fx, masses: (Fx, Fx), rate: u32) -> Fx {
     let over = |mass: Fx| fx_div(force, mass).unwrap_or(Fx::ZERO);
     let per_second = over(masses.0).saturating_add(over(masses.1));

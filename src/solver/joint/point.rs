@@ -1,5 +1,4 @@
-//! The points of a joint: a spring pulls the anchors together, or a motor drives them to a relative velocity. Joints
-//! whose anchors are pinned rigidly are hinges.
+//! Points of a joint: a spring pulls the anchors together, or a motor drives them to a relative velocity.
 
 use super::super::body::SolverBody;
 use super::super::body_pair::BodyPair;
@@ -10,17 +9,15 @@ use super::super::softness::Softness;
 use super::pose::JointPose;
 use crate::math::{Speed, Unit, Vec2};
 
-/// The function of a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum PointTask {
-    /// Pulls the anchors onto each other with the same stiffness in all directions. Impulses times `mA + mB` are at
-    /// most `max`. Solved in the bias pass only, like spring rows.
+    /// Pulls the anchors together with isotropic stiffness, in the bias pass only. Impulses times `mA + mB` are at most
+    /// `max`.
     Spring { softness: Softness, max: Speed },
-    /// Drives the relative velocity of the anchors to `velocity`, with impulses times `mA + mB` of at most `max`.
+    /// Drives the anchors to a relative velocity. Impulses times `mA + mB` are at most `max`.
     Drive { velocity: Vec2<Speed>, max: Speed },
 }
 
-/// A point of a joint, for one tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct JointPoint {
     pub(super) slot: u8,
@@ -40,7 +37,6 @@ impl JointPoint {
         JointPoint { slot, task, block, bias: Vec2::ZERO, is_blocked: false, lambda }
     }
 
-    /// The softness of a spring.
     pub(super) fn softness(&self) -> Option<&Softness> {
         match &self.task {
             PointTask::Spring { softness, .. } => Some(softness),
@@ -48,13 +44,13 @@ impl JointPoint {
         }
     }
 
-    /// The largest impulse times `mA + mB`; [`Speed::MAX`] is unlimited.
+    /// Largest impulse times `mA + mB`; [`Speed::MAX`] is unlimited.
     pub(super) fn impulse_max(&self) -> Speed {
         let (PointTask::Spring { max, .. } | PointTask::Drive { max, .. }) = self.task;
         max
     }
 
-    /// The change of the impulse of a spring in the bias pass, before [`Self::impulse_max`] limits the impulse.
+    /// The change of the impulse of a spring in the bias pass, before [`Self::impulse_max`] applies.
     pub(super) fn wanted(
         &self,
         softness: &Softness,
@@ -66,7 +62,6 @@ impl JointPoint {
         self.block.wanted(a, b, goal, softness, self.lambda, faults)
     }
 
-    /// Computes arms, gains and gap at the current pose.
     #[inline]
     pub(super) fn refresh(&mut self, pose: &JointPose) {
         (self.block, self.bias) = match &self.task {

@@ -1,4 +1,4 @@
-//! The anchors of a joint at the current pose of its bodies, and the positions that its rows measure.
+//! The anchors of a joint at the current pose, and the positions that its rows measure.
 
 use core::cell::Cell;
 
@@ -17,34 +17,31 @@ use crate::math::{Angle, Fx, Length, Reciprocal, Rot, Unit, Vec2, fx_div, round_
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct BodyRotation {
     pub(super) rotation: Rot,
-    /// The angle of the rotation.
     pub(super) angle: Angle,
     /// The rotation since the start of the tick, in units of 2^-32 turn.
     pub(super) turns: i64,
 }
 
-/// The constants of a joint within a tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ends {
     body_a: u32,
     body_b: u32,
-    /// Vector from the centre of mass of A to the anchor, in the frame of A.
+    /// From the centre of mass of A to the anchor, in the frame of A.
     local_a: Vec2<Length>,
-    /// Vector from the centre of mass of B to the anchor, in the frame of B.
+    /// From the centre of mass of B to the anchor, in the frame of B.
     local_b: Vec2<Length>,
     inverse_gyration_a: Reciprocal,
     inverse_gyration_b: Reciprocal,
     fractions: MassFractions,
-    /// Vector from the centre of mass of A to that of B at the start of the tick.
+    /// From the centre of mass of A to that of B at the start of the tick.
     between: Vec2<Fx>,
-    /// The x axis of the joint's frame on A, in the frame of A.
+    /// X axis of the joint's frame on A, in the frame of A.
     axis: Vec2<Unit>,
-    /// The angle of the joint at the start of the tick, in units of 2^-32 turn.
+    /// Angle of the joint at the start of the tick, in units of 2^-32 turn.
     turns: i64,
 }
 
 impl Ends {
-    /// Computes the constants of a joint. `indices` are those of its bodies in the body list.
     pub(super) fn prepare(joint: &Joint, indices: [u32; 2], [a, b]: [&Body; 2]) -> Self {
         let JointDef { frame_a, frame_b, .. } = &*joint.def;
         let axis = Rot::from_angle(frame_a.angle);
@@ -63,7 +60,6 @@ impl Ends {
         }
     }
 
-    /// The indices of the bodies.
     pub(super) fn bodies(&self) -> [usize; 2] {
         [self.body_a as usize, self.body_b as usize]
     }
@@ -72,20 +68,19 @@ impl Ends {
         self.fractions
     }
 
-    /// The angle of the joint, in units of 2^-32 turn.
+    /// The angle of the joint in units of 2^-32 turn.
     pub(super) fn turns(&self, body_rotations: &[BodyRotation]) -> i64 {
         let (a, b) = (&body_rotations[self.body_a as usize], &body_rotations[self.body_b as usize]);
         self.turns.wrapping_add(b.turns).wrapping_sub(a.turns)
     }
 
-    /// The anchors at the current pose.
     #[inline]
     pub(super) fn pose(&self, bodies: &[Cell<SolverBody>], body_rotations: &[BodyRotation]) -> JointPose {
         let (a, b) = (self.body_a as usize, self.body_b as usize);
         let arm_a = WideArm::rotated(body_rotations[a].rotation, self.local_a);
         let arm_b = WideArm::rotated(body_rotations[b].rotation, self.local_b);
         let moved = (bodies[b].get().shift - bodies[a].get().shift).widen();
-        // Only the difference of the arms is rounded. It has 52 fraction bits, and world coordinates have 32.
+        // Only the difference of the arms is rounded, from 52 fraction bits to 32.
         let gap = |between: Fx, moved: Fx, arms: i64| {
             between.saturating_add(moved).saturating_add(Fx::from_bits(round_shift(arms, 20)))
         };
@@ -100,15 +95,15 @@ impl Ends {
         }
     }
 
-    /// The point at which an impulse does not rotate the bodies relative to each other. If the angle is held as well,
-    /// rows on the angle and rows at this point do not disturb each other. With the vector `c` from A's centre to B's,
-    /// and A's share `sA = iA / (iA + iB)` of the inverse inertias, the point is at `-sA c` from B's centre.
+    /// The pose at the point where an impulse does not rotate the bodies relative to each other. Rows there and rows on
+    /// the angle do not disturb each other. With the vector `c` from A's centre to B's, and the share
+    /// `sA = iA / (iA + iB)` of the inverse inertias, the point is at `-sA c` from B's centre.
     fn balanced(&self, pose: &JointPose, body_rotations: &[BodyRotation]) -> JointPose {
         let (share_a, _) = self.measure_angle(body_rotations).row.shares();
         let (arm_a, arm_b) = (pose.lever_a.arm.widen(), pose.lever_b.arm.widen());
         let between = arm_a + pose.gap - arm_b;
         let arm = -between.scale(share_a.into());
-        // Vectors from the anchor to that point, for B and for A.
+        // From the anchor to that point, for B and for A.
         let (to_b, apart) = (arm - arm_b, Angle::from_turns(Fx::from_bits(self.turns(body_rotations))));
         let to_a = Rot::from_angle(-apart).apply_wide(to_b);
         let gap = pose.gap + to_b - to_a;
@@ -120,7 +115,7 @@ impl Ends {
         }
     }
 
-    /// Measures along a direction. `Coupling::measure` does this for couplings.
+    /// Measures along a direction other than a coupling.
     pub(super) fn measure(
         &self,
         direction: Direction,
@@ -135,7 +130,7 @@ impl Ends {
                 self.measure_axis(self.axis.perp(), &self.balanced(pose, body_rotations), body_rotations)
             }
             Direction::Apart => {
-                // Anchors that coincide define no direction, so that any direction is valid.
+                // If the anchors coincide, any direction is valid.
                 let n = pose.gap.normalized().unwrap_or(self.axis);
                 let (row, denominator) = Row::prepare(n, pose.lever_a, pose.lever_b, pose.fractions);
                 Measure { row, denominator, position: pose.gap.length(), scale: Fx::ONE, reach: NO_REACH }
@@ -150,8 +145,8 @@ impl Ends {
         }
     }
 
-    /// Measures along an axis of A. The axis turns with A about A's centre, so that A's arm reaches to B's anchor,
-    /// unless that arm is too long ([`JointPose::levers_at_one_point`]).
+    /// Measures along an axis that turns with A. A's arm therefore reaches to B's anchor, unless it is too long
+    /// ([`JointPose::levers_at_one_point`]).
     fn measure_axis(&self, axis: Vec2<Unit>, pose: &JointPose, body_rotations: &[BodyRotation]) -> Measure {
         let n = body_rotations[self.body_a as usize].rotation.apply(axis);
         let [a, b] = pose.levers_at_one_point().unwrap_or([pose.reach_of_a(), pose.lever_b]);
@@ -173,7 +168,6 @@ impl Ends {
     }
 }
 
-/// The anchors of a joint at one pose.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct JointPose {
     pub(super) lever_a: Lever,
@@ -184,14 +178,12 @@ pub(super) struct JointPose {
 }
 
 impl JointPose {
-    /// The lever of A that reaches to B's anchor.
     pub(super) fn reach_of_a(&self) -> Lever {
         Lever { arm: self.lever_a.arm + self.gap.narrow(), ..self.lever_a }
     }
 
-    /// The block of a pulled or driven point. `mass_scale` is that of the spring, 1 for a motor. Its impulses act on
-    /// both bodies at one point. If there is no such point ([`Self::levers_at_one_point`]), impulses act only along the
-    /// line between the centres.
+    /// The block of a pulled or driven point. `mass_scale` is that of the spring, 1 for a motor. Without [levers at one
+    /// point](Self::levers_at_one_point), impulses act only along the line between the centres.
     pub(super) fn block(&self, mass_scale: Unit) -> PointBlock {
         match self.levers_at_one_point() {
             Some([a, b]) => PointBlock::new(a, b, self.fractions, mass_scale),
@@ -202,10 +194,8 @@ impl JointPose {
         }
     }
 
-    /// The levers of A and B to one point. An impulse that is not along the gap conserves angular momentum only if it
-    /// acts on both bodies at one point. The point is B's anchor if that is within reach of A, or if impulses do not
-    /// move one of the bodies. Otherwise it is the end of A's arm, which is shortened to the reach of A. `None` if that
-    /// end is not within reach of B.
+    /// Levers to one point, which conserve angular momentum: B's anchor if A reaches it or if impulses do not move one
+    /// of the bodies, otherwise the end of A's arm, shortened to the reach of A. `None` if B does not reach that end.
     fn levers_at_one_point(&self) -> Option<[Lever; 2]> {
         let a = self.reach_of_a();
         let longest = longest_ratio(a);
@@ -218,17 +208,15 @@ impl JointPose {
     }
 }
 
-/// Largest component of a lever ratio, so that its length is below the largest ratio of a row.
+/// Largest component of a lever ratio, whose length is then below `RATIO_MAX`.
 const REACH_MAX: Fx = fx!(88);
 
-/// The larger component of a lever ratio.
 fn longest_ratio(lever: Lever) -> Fx {
     let ratio = |x: Length| lever.inverse_gyration.times_wide(x.into()).abs();
     ratio(lever.arm.x).max(ratio(lever.arm.y))
 }
 
-/// A rotated arm with 52 fraction bits, not rounded yet. The gap is a small difference of two long arms, which are
-/// therefore subtracted before rounding.
+/// A rotated arm with 52 fraction bits, because the gap is a small difference of long arms.
 #[derive(Clone, Copy)]
 struct WideArm {
     x: i64,

@@ -1,10 +1,9 @@
 //! The prismatic joint: B slides along the x axis of A's frame and does not rotate relative to A.
 //!
 //! With the axis `n` fixed in A and `d` from A's anchor to B's, the rows along the axis have
-//! `J v = n.(v_b - v_a) + (r_b x n) w_b - ((d + r_a) x n) w_a` (E. Catto, Box2D). Two rows hold the joint: one on the
-//! angle, and one across the axis. The row across the axis acts at the point at which its impulse does not rotate the
-//! bodies relative to each other. At B's anchor the two rows would disturb each other, and a slider with a mass ratio
-//! of 100 would rotate three to ten times as far.
+//! `J v = n.(v_b - v_a) + (r_b x n) w_b - ((d + r_a) x n) w_a` (E. Catto, Box2D). The row across the axis acts at the
+//! point where its impulse does not rotate the bodies relative to each other. At B's anchor it would disturb the row on
+//! the angle, and a slider with a mass ratio of 100 would rotate three to ten times as far.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,8 +14,8 @@ use crate::math::Fx;
 
 /// A slider: B's anchor stays on the x axis of A's frame, and B's frame stays parallel to A's.
 ///
-/// The translation of the joint is the position of B's anchor along that axis, in metres. If A can turn, B's anchor
-/// should stay within 88 radii of gyration of A from A's centre of mass, because longer lever arms are clamped.
+/// The translation is the position of B's anchor along that axis, in metres. If A can turn, keep B's anchor within 88
+/// radii of gyration of A from A's centre of mass: longer lever arms are clamped.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
@@ -58,9 +57,9 @@ impl Prismatic {
     option_builders! {
         /// Sets the range of the translation in metres.
         limit(lower, upper) => JointLimit { lower, upper };
-        /// Sets a target speed in m/s, and the largest force in N.
+        /// Sets the target speed in m/s and the largest force in N.
         motor(speed, max_force) => Drive { speed, max: max_force };
-        /// Sets a spring with a frequency in Hz and a target translation in metres.
+        /// Sets a spring: frequency in Hz, target in metres.
         spring(hertz, damping_ratio, target) => Spring { hertz, damping_ratio, target };
     }
 

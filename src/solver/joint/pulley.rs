@@ -1,6 +1,5 @@
-//! The pulley: a rope over two wheels that are fixed in the world, with
-//! `J v = nA.(vA + wA x rA) + ratio nB.(vB + wB x rB)`, where `nA` and `nB` point from the wheels to the anchors (Box2D
-//! 2.4).
+//! The pulley: a rope over two fixed wheels, `J v = nA.(vA + wA x rA) + ratio nB.(vB + wB x rB)`, where `nA` and `nB`
+//! point from the wheels to the anchors (Box2D 2.4).
 
 use serde::{Deserialize, Serialize};
 
@@ -10,16 +9,15 @@ use crate::body::{WORLD_EXTENT_MAX, WorldError};
 use crate::fx;
 use crate::math::{Fx, Vec2, fx_mul};
 
-/// Smallest ratio.
 const RATIO_MIN: Fx = fx!(0.25);
-/// Largest ratio.
 const RATIO_MAX: Fx = fx!(4);
 
-/// A pulley: a rope from A's anchor over two wheels to B's anchor. The length on A's side plus `ratio` times the length
-/// on B's side is at most `length`.
+/// A pulley: a rope from A's anchor over two wheels to B's anchor.
 ///
-/// A rope only pulls. The wheels are fixed points of the world, which take up the force of the rope. B's side is pulled
-/// with `ratio` times the force on A's side, like a tackle in which `ratio` strands of the rope hold B.
+/// The length on A's side plus `ratio` times the length on B's side is at most `length`.
+///
+/// The rope only pulls. The force on B's side is `ratio` times that on A's side, as in a tackle in which `ratio`
+/// strands hold B.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
@@ -39,19 +37,18 @@ const RATIO_MAX: Fx = fx!(4);
 #[doc(alias = "PulleyJoint")]
 #[doc(alias = "tackle")]
 pub struct Pulley {
-    /// The wheel on A's side, in m in the world, within ±2^30.
+    /// Wheel on A's side, in m in the world, within ±2^30.
     pub wheel_a: Vec2<Fx>,
-    /// The wheel on B's side, in m in the world, within ±2^30.
+    /// Wheel on B's side, in m in the world, within ±2^30.
     pub wheel_b: Vec2<Fx>,
-    /// Length of the rope in metres, 0 to 2^20, without the part between the wheels. The length on B's side counts
-    /// `ratio` times.
+    /// Length of the rope in metres, 0 to 2^20, without the part between the wheels.
     pub length: Fx,
     /// Factor by which the length on B's side counts, 0.25 to 4.
     pub ratio: Fx,
 }
 
 impl Pulley {
-    /// A rope of a length in metres over two wheels in the world.
+    /// A rope with a length in metres over two wheels in the world, with the ratio 1.
     #[must_use]
     pub fn new(wheel_a: impl Into<Vec2<Fx>>, wheel_b: impl Into<Vec2<Fx>>, length: Fx) -> Self {
         Pulley { wheel_a: wheel_a.into(), wheel_b: wheel_b.into(), length, ratio: Fx::ONE }
@@ -64,8 +61,7 @@ impl Pulley {
         self
     }
 
-    /// Length in metres of a taut rope with its anchors at two points of the world. The length on B's side counts
-    /// `ratio` times.
+    /// Length in metres of a taut rope with its anchors at two points of the world.
     pub(super) fn taut_length(&self, on_a: Vec2<Fx>, on_b: Vec2<Fx>) -> Fx {
         let beside = fx_mul(self.ratio, self.wheel_b.distance(on_b));
         self.wheel_a.distance(on_a).saturating_add(beside)

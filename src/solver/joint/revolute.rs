@@ -1,7 +1,7 @@
-//! The revolute joint: a point block whose arms and gains are both updated after every displacement.
+//! The revolute joint: a point block, and spring, motor and limits on the angle.
 //!
-//! If only the arms were updated, joints with long arms would over-correct and explode. If neither were updated within
-//! a tick, a grid of joints would explode. Spring, motor and limits are rows on the angle, with `J v = w_b - w_a`.
+//! Arms and gains are both updated after every displacement. With only the arms updated, joints with long arms
+//! over-correct and explode. With neither updated within a tick, a grid of joints explodes.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,14 +12,13 @@ use crate::math::Fx;
 
 /// A revolute joint, or hinge: pins A's anchor to B's.
 ///
-/// Under a steady force that would accelerate a body by `a`, the anchors of a hinge at rest come apart by
-/// `a / (2 pi f)^2`, where `f` is the frequency of [`JointDef::softness`](crate::solver::JointDef::softness). Without a
-/// softness of its own, `f` is [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz), or twice
-/// that frequency if one of the bodies has no other joint and the other one is not dynamic. At 60 Hz the weight of a
-/// rotor opens its hinge by 18 µm, and by 70 µm if the rotor has another joint.
+/// A steady acceleration `a` of a body separates the anchors by `a / (2 pi f)^2`. Here `f` is the frequency of
+/// [`JointDef::softness`](crate::solver::JointDef::softness) or
+/// [`SolverSettings::joint_hertz`](crate::solver::SolverSettings::joint_hertz), which is doubled if one of the bodies
+/// has no other joint and the other one is not dynamic. At 60 Hz, gravity opens the hinge of a rotor by 18 µm, or by 70
+/// µm if the rotor has another joint.
 ///
-/// The angle of the joint is that of B's frame in A's, in radians, counter-clockwise. It counts whole turns, so that a
-/// limit may be wider than one turn.
+/// The angle is that of B's frame in A's, in radians, counter-clockwise. It counts whole turns.
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Geometry, Polygon, ShapeDef}, fx, math::{Fx, Vec2}, world::World};
@@ -59,9 +58,9 @@ impl Revolute {
     option_builders! {
         /// Sets the range of the angle in radians.
         limit(lower, upper) => JointLimit { lower, upper };
-        /// Sets a target angular velocity in rad/s, and the largest torque in N m.
+        /// Sets the target speed in rad/s and the largest torque in N m.
         motor(speed, max_torque) => Drive { speed, max: max_torque };
-        /// Sets a spring with a frequency in Hz and a target angle in radians.
+        /// Sets a spring: frequency in Hz, target in radians.
         spring(hertz, damping_ratio, target) => Spring { hertz, damping_ratio, target };
     }
 
@@ -69,7 +68,6 @@ impl Revolute {
         check_options(self.limit, self.motor, self.spring)
     }
 
-    /// The rows on the angle of the joint.
     pub(super) fn angle_parts(&self) -> AngleParts {
         AngleParts { spring: self.spring, held: false, drive: self.motor, limit: self.limit }
     }

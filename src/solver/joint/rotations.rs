@@ -1,4 +1,4 @@
-//! Computes the rotations of bodies with joints, in loops over many bodies that the compiler vectorises.
+//! Rotations of bodies with joints, in loops over many bodies that the compiler vectorises.
 
 use core::cell::Cell;
 
@@ -8,13 +8,11 @@ use super::pose::BodyRotation;
 use crate::math::{Angle, Fx, Rot};
 use crate::simd::{Kernel, Lanes, Quad};
 
-/// Number of bodies that one vectorised loop processes.
 const BLOCK: usize = 16;
 
-/// Computes the rotations of bodies at their current poses.
 pub(super) struct Rotations<'a> {
     pub(super) turning: &'a [Turning],
-    /// This list and the next two are indexed by body.
+    /// Indexed by body, like the next two.
     pub(super) bodies: &'a [Cell<SolverBody>],
     pub(super) body_rotations: &'a mut [BodyRotation],
     pub(super) quads: &'a mut [Quad],

@@ -1,7 +1,6 @@
 //! The scalar rows of a joint: springs, motors, limits, and rows that hold a position.
 //!
-//! With the position `x` along a direction, where angles and angular speeds are multiplied by the length `s` of the
-//! row:
+//! With the position `x` along a direction (angles and angular speeds times the length `s` of the row):
 //!
 //! ```text
 //! spring   d = -massScale (vn + biasRate (x - target)) - impulseScale L      bias pass only
@@ -12,17 +11,16 @@
 //! hold     as a limit that is reached, with L of either sign
 //! ```
 //!
-//! A spring along a line has the stiffness `omega^2 m` and the damping `2 zeta omega m` of the bodies as point masses
-//! at every pose, so that its force follows from a potential. Here `m = 1 / (mA + mB)`, with the inverse masses. Where
-//! the spring also turns the bodies, its scales are therefore those of the mobility `D` ([`Softness::at_mobility`]). If
-//! it had the same scales at every pose, its frequency would be constant, and its stiffness `omega^2 m / D` would
-//! change as the arms turn.
+//! A spring along a line has the stiffness `omega^2 m` and the damping `2 zeta omega m` of point masses, with
+//! `m = 1 / (mA + mB)`, so that its force follows from a potential. Where it also turns the bodies, its scales depend
+//! on the mobility `D` ([`Softness::at_mobility`]). With constant scales, the stiffness `omega^2 m / D` would change as
+//! arms turn.
 //!
-//! `L` is a speed. The impulse is `L / ((mA + mB) D)`, times `s` for an angle.
+//! The impulse is `L / ((mA + mB) D)`, times `s` for an angle.
 //!
-//! **Springs are not solved in the relax pass.** In the bias pass a soft row is the implicit step of a damped spring
-//! from any state: `L' = -massScale (v + biasRate x)`. If the row were solved again after the displacement, it would
-//! remove another `massScale biasRate h` of the velocity, and light springs would come to rest too early.
+//! **Springs are not solved in the relax pass.** In the bias pass, the row is the implicit step of a damped spring.
+//! Solving it again would remove another `massScale biasRate h` of the velocity, and light springs would come to rest
+//! too early.
 
 use super::super::body::SolverBody;
 use super::super::body_pair::BodyPair;
@@ -35,11 +33,10 @@ use super::options::JointLimit;
 use super::parts::Direction;
 use crate::math::{Fx, Ratio, Speed, fx_div, fx_mul, narrow, saturate_wide};
 
-/// The function of a row.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum RowTask {
     /// Drives the position to a target, with impulses times `mA + mB` within `lower..=upper`. `softness` is that of
-    /// bodies that do not turn.
+    /// point masses.
     Spring { softness: Softness, target: Fx, lower: Fx, upper: Fx },
     /// Drives the velocity to a speed, with impulses times `mA + mB` of at most `max`, and not beyond `limit`.
     Drive { speed: Fx, max: Fx, limit: Option<JointLimit> },
@@ -58,41 +55,35 @@ pub(super) struct Measure {
     pub(super) denominator: Denominator,
     /// Position along the direction in m or rad.
     pub(super) position: Fx,
-    /// Units of the row per unit of the position: `s` for an angle, the factor on both directions for a pulley,
+    /// Units of the row per unit of the position: `s` for an angle, the factor of the directions for a pulley,
     /// otherwise 1.
     pub(super) scale: Fx,
-    /// For an axis that turns with A: the arms of both bodies over their radii of gyration. 0 for other directions.
+    /// For an axis that turns with A: the arms over the radii of gyration.
     pub(super) reach: [Ratio; 2],
 }
 
-/// [`Measure::reach`] of directions that do not turn with A.
 pub(super) const NO_REACH: [Ratio; 2] = [Ratio::ZERO; 2];
 
-/// A row of a joint, for one tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct JointRow {
     pub(super) slot: u8,
     pub(super) direction: Direction,
     task: RowTask,
     pub(super) row: Row,
-    /// For a spring: [`Softness::push`] of its stretch. For other rows: the negated target speed.
+    /// For a spring: [`Softness::push`] of its stretch. Otherwise: the negated target speed.
     bias: Speed,
-    /// For a spring: its softness at the current pose. For a limit or a row that holds a position: the softness of the
-    /// joint. For a motor: [`Softness::RIGID`].
+    /// Softness at the current pose for a spring, [`Softness::RIGID`] for a motor, otherwise that of the joint.
     softness: Softness,
     /// Whether the row is a limit that is not reached.
     open: bool,
     bounds: (Speed, Speed),
     denominator: Denominator,
-    /// [`Measure::reach`] at the last refresh.
     pub(super) reach: [Ratio; 2],
-    /// Whether a block computes the impulse.
     pub(super) is_blocked: bool,
     pub(super) lambda: Speed,
 }
 
 impl JointRow {
-    /// A row of a joint of the given softness.
     pub(super) fn new(
         slot: u8,
         direction: Direction,
@@ -123,17 +114,14 @@ impl JointRow {
         }
     }
 
-    /// Whether the row is a spring of limited force.
     pub(super) fn is_limited_spring(&self) -> bool {
         matches!(self.task, RowTask::Spring { lower, upper, .. } if lower != Fx::MIN || upper != Fx::MAX)
     }
 
-    /// The bounds of the impulse at the last refresh.
     pub(super) fn bounds(&self) -> (Speed, Speed) {
         self.bounds
     }
 
-    /// The function of the row in a block.
     pub(super) fn blocked_task(&self) -> BlockedTask {
         match self.task {
             RowTask::Spring { .. } => BlockedTask::Spring,
@@ -143,12 +131,11 @@ impl JointRow {
         }
     }
 
-    /// Whether the row is a limit that is not reached.
     pub(super) fn is_open(&self) -> bool {
         self.open
     }
 
-    /// The change of the impulse of a limit that one iteration would make if the impulse were 0 and had no bounds.
+    /// The change of the impulse of a limit in one iteration, from an impulse of 0 and without bounds.
     pub(super) fn wanted_of_limit(
         &self,
         pass: Pass,
@@ -165,18 +152,15 @@ impl JointRow {
         softness.wanted(vn, bias, Speed::ZERO)
     }
 
-    /// The denominator at the last refresh.
     pub(super) fn denominator(&self) -> Denominator {
         self.denominator
     }
 
-    /// The softness of the row in the bias pass, at the pose of the last refresh. A limit that is not reached is solved
-    /// without softness.
+    /// Softness in the bias pass. A limit that is not reached does not use it.
     pub(super) fn softness(&self) -> &Softness {
         &self.softness
     }
 
-    /// Computes Jacobian, gains, bias and bounds at the current pose.
     pub(super) fn refresh(&mut self, measure: &Measure, rate: u32) {
         let Measure { row, denominator, position, scale, reach } = *measure;
         (self.row, self.denominator, self.reach) = (row, denominator, reach);
@@ -220,7 +204,7 @@ impl JointRow {
         }
     }
 
-    /// Computes bias and bounds of a limit. `gap` is the distance to the limit.
+    /// `gap` is the distance to the limit.
     fn refresh_limit(&mut self, gap: Fx, measure: &Measure, rate: u32) {
         let gap = fx_mul(gap, measure.scale);
         self.open = gap > Fx::ZERO;
@@ -239,8 +223,7 @@ impl JointRow {
         }
     }
 
-    /// The change of the impulse in a pass, in units of [`Speed`], before bounds apply. `None` if the pass leaves out
-    /// the row.
+    /// The change of the impulse before bounds apply, in units of [`Speed`]. `None` if the pass leaves out the row.
     pub(super) fn wanted(
         &self,
         pass: Pass,
@@ -268,10 +251,8 @@ impl JointRow {
     }
 }
 
-/// Returns the largest speed in m/s at which a limit may be approached from a distance of `gap`: at this speed the
-/// limit is reached in one sub-step of `1 / rate` seconds. Beyond the limit, `gap` is negative, and the result is
-/// `bias_rate` times the gap: the speed at which the joint returns to the limit, or 0 for a motor, whose `bias_rate`
-/// is 0.
+/// The largest speed in m/s at which a limit may be approached: the limit is not passed within a sub-step. Beyond the
+/// limit, where `gap` is negative, it is `bias_rate` times the gap, which is 0 for a motor.
 fn approach(gap: Fx, bias_rate: Fx, rate: u32) -> Fx {
     fx_mul(gap, if gap > Fx::ZERO { Fx::from_num(rate) } else { bias_rate })
 }
@@ -282,7 +263,7 @@ impl Measure {
     }
 }
 
-/// `L` of an impulse times `mA + mB`, clamped to the largest accumulated impulse. `scale` is that of the direction.
+/// `L` of an impulse times `mA + mB`, clamped to [`IMPULSE_MAX`]. `scale` is [`Measure::scale`].
 pub(super) fn lambda_of(impulse: Fx, denominator: Denominator, scale: Fx) -> Speed {
     // The denominator has 30 fraction bits.
     let denominator = Fx::from_bits(saturate_wide(i128::from(denominator) << 2));

@@ -1,7 +1,5 @@
-//! The joints that each thread solves in the sub-steps of a tick.
-//!
-//! The hinges of each colour are divided among all threads. One thread also solves all other joints, while the other
-//! threads wait.
+//! The joints that each thread solves: a part of the hinges of each colour. One thread also solves all other joints,
+//! while the others wait.
 
 use super::super::context::{SolverPass, StepContext};
 use super::block::Blocks;
@@ -13,7 +11,6 @@ use crate::math::{Unit, mul};
 use crate::simd::Quad;
 use crate::threads::TeamLock;
 
-/// All joints of a tick, divided among the threads.
 pub(in crate::solver) struct JointSplit<'a> {
     pub(super) is_empty: bool,
     pub(super) own: OwnJoints<'a>,
@@ -21,7 +18,6 @@ pub(in crate::solver) struct JointSplit<'a> {
     pub(super) rotations: TeamLock<BodyRotations<'a>>,
 }
 
-/// The joints that one thread solves.
 pub(in crate::solver) struct JointShare<'a, 'set> {
     is_empty: bool,
     /// `None` for all threads but one.
@@ -30,20 +26,18 @@ pub(in crate::solver) struct JointShare<'a, 'set> {
     rotations: &'a TeamLock<BodyRotations<'set>>,
 }
 
-/// The joints that only one of the threads solves: all joints except coloured hinges.
+/// All joints except coloured hinges.
 pub(super) struct OwnJoints<'a> {
     pub(super) hinges: &'a mut HingeSet,
     pub(super) list: &'a mut JointList,
     pub(super) blocks: &'a mut Blocks,
-    /// The rotation coefficients of the bodies with joints.
     pub(super) turning: &'a [Turning],
-    /// For each body of the tick, its place in `turning`, counted from 1.
+    /// For each body of the tick, its place in `turning` plus 1.
     pub(super) places: &'a [u32],
-    /// The bodies of anchored hinges.
+    /// Bodies of anchored hinges.
     pub(super) anchored: &'a [u32],
 }
 
-/// The rotations of the bodies of a tick, by their indices.
 pub(super) struct BodyRotations<'a> {
     pub(super) body_rotations: &'a mut [BodyRotation],
     pub(super) quads: &'a mut [Quad],
@@ -56,7 +50,6 @@ impl BodyRotations<'_> {
 }
 
 impl<'set> JointSplit<'set> {
-    /// The joints that each thread solves.
     pub(in crate::solver) fn shares(&mut self) -> impl Iterator<Item = JointShare<'_, 'set>> {
         let JointSplit { is_empty, own, parts, rotations } = self;
         let (is_empty, mut own, rotations) = (*is_empty, Some(own), &*rotations);
@@ -65,7 +58,7 @@ impl<'set> JointSplit<'set> {
 }
 
 impl JointShare<'_, '_> {
-    /// Computes arms, gains and gaps at the current poses. Hinges are refreshed by the next operation on them.
+    /// Computes arms and gains at the current poses. Hinges are refreshed by their next operation.
     pub(in crate::solver) fn refresh(&mut self, context: &StepContext<'_>) {
         if self.is_empty {
             return;
@@ -106,7 +99,6 @@ impl JointShare<'_, '_> {
         }
     }
 
-    /// One iteration over the joints of the thread.
     pub(in crate::solver) fn solve(&mut self, pass: impl SolverPass, context: &StepContext<'_>) {
         if self.is_empty {
             return;
@@ -155,20 +147,18 @@ impl OwnJoints<'_> {
     }
 }
 
-/// Coefficients for averaging a lever ratio over a predicted rotation `t`: the ratio changes by `half t` of its length
-/// perpendicular to itself, and shrinks by `sixth t^2` of its length.
+/// Coefficients for averaging a lever ratio over a rotation `t`: it changes by `half t` of its length across itself,
+/// and shrinks by `sixth t^2`.
 #[derive(Clone, Copy)]
 struct Stretch {
     half: Unit,
     sixth: Unit,
 }
 
-/// Largest predicted rotation of a body, in radians. Impulses do not act along the averaged lever ratios, so that an
-/// iteration may add energy to joints that it does not solve exactly. With this limit, stars of bodies on free hinges
-/// reach at most 1.00 times their initial energy in trials at 60 Hz. With 0.1 radians they reach 1.56 times
-/// (`docs/DESIGN.md`).
+/// Largest predicted rotation of a body, in radians. Impulses do not act along the averaged lever ratios, and may add
+/// energy to joints that an iteration does not solve exactly. At 60 Hz, stars of bodies on free hinges reach 1.00 times
+/// their initial energy with this limit, and 1.56 times with 0.1 radians (`docs/DESIGN.md`).
 const TURN_MAX: Unit = Unit::lit("0.04");
 
-/// Largest predicted rotation, in radians, of a body whose only joint is an anchored hinge. One iteration solves such a
-/// joint exactly.
+/// [`TURN_MAX`] of a body whose only joint is an anchored hinge, which one iteration solves exactly.
 const ANCHORED_TURN_MAX: Unit = Unit::lit("0.25");

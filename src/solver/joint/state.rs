@@ -31,21 +31,18 @@ use crate::math::{Angle, Fx, Rot, Speed, TAU, Vec2, fx_mul};
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Joint {
-    /// Boxed, so that the parts that every step changes are close together in memory: saving them is memory-bound.
+    /// Boxed so that what every step changes is close together: saving it is memory-bound.
     pub(crate) def: Box<JointDef>,
     pub(crate) impulses: JointImpulses,
-    /// The angle of B's frame in A's at the end of the last tick in which the joint was solved, with whole turns, in
-    /// units of 2^-32 turn. 0 for a new joint.
+    /// Angle of B's frame in A's when the joint was last solved, with whole turns, in units of 2^-32 turn.
     pub(crate) turns: i64,
 }
 
-/// The accumulated impulses of the last sub-step, for the warm start of the next: `L` of each row and point, by the
-/// slots of [`super::parts::slot`].
+/// Accumulated impulses `L` for the warm start, by [`super::parts::slot`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct JointImpulses(pub(crate) [Speed; 6]);
 
 impl JointImpulses {
-    /// The impulse of the point in a slot and the slot after it.
     pub(super) fn point(&self, slot: u8) -> Vec2<Speed> {
         let slot = usize::from(slot);
         Vec2::new(self.0[slot], self.0[slot + 1])
@@ -62,7 +59,7 @@ impl Joint {
         Joint { def: Box::new(def), impulses: JointImpulses::default(), turns: 0 }
     }
 
-    /// Changes the definition. Impulses are kept as long as the joint acts and its kind is the same.
+    /// Impulses are kept if the joint acts and its kind is the same.
     pub(crate) fn redefine(&mut self, def: JointDef) {
         let same_kind = core::mem::discriminant(&def.kind) == core::mem::discriminant(&self.def.kind);
         if !same_kind || !def.enabled {
@@ -71,17 +68,16 @@ impl Joint {
         *self.def = def;
     }
 
-    /// Clears the impulses. Called if neither body is dynamic.
+    /// Clears the impulses, because neither body is dynamic.
     pub(crate) fn rest(&mut self) {
         self.impulses = JointImpulses::default();
     }
 
-    /// Whether the joint needs a constraint when its bodies are simulated.
     pub(crate) fn is_solved(&self) -> bool {
         self.def.enabled && self.def.kind != JointKind::Filter
     }
 
-    /// The softness of the joint's rigid constraints.
+    /// Softness of the joint's rigid constraints and limits.
     pub(super) fn softness(&self, tuning: &Tuning) -> Softness {
         self.def.softness.map_or(tuning.joint, |soft| tuning.own_softness(soft.hertz, soft.damping_ratio))
     }
@@ -92,8 +88,7 @@ impl Joint {
         &self.def
     }
 
-    /// The angle of B's frame in A's in units of 2^-32 turn, with the number of whole turns that brings it nearest to
-    /// the last angle.
+    /// The angle of B's frame in A's in units of 2^-32 turn, with the number of whole turns nearest to the last angle.
     pub(crate) fn turns(&self, a: Angle, b: Angle) -> i64 {
         nearest_turns(self.turns, (b - a) + self.def.rest_angle())
     }
@@ -103,17 +98,16 @@ impl Joint {
         radians(self.turns(a.angle(), b.angle()))
     }
 
-    /// The axes of the joint's frame on A, in the world.
+    /// Axes of the joint's frame on A, in the world.
     pub(crate) fn axes(&self, a: &Body) -> Rot {
         Rot::from_angle(a.angle() + self.def.frame_a.angle)
     }
 
-    /// The force in N and the torque in N m about B's anchor that the joint has last exerted on B.
+    /// The force in N, and the torque in N m about B's anchor, that the joint last exerted on B.
     pub(crate) fn reaction(&self, a: &Body, b: &Body, tuning: &Tuning) -> (Vec2<Fx>, Fx) {
         JointSet::default().reaction(self, (a, b), tuning)
     }
 
-    /// [`Self::reaction`] of one part of the joint.
     pub(crate) fn part_reaction(
         &self,
         part: JointPart,
@@ -131,8 +125,7 @@ impl Joint {
     }
 }
 
-/// A part of a joint whose force can be queried: see
-/// [`World::joint_part_force`](crate::world::World::joint_part_force).
+/// A part of a joint, for [`World::joint_part_force`](crate::world::World::joint_part_force).
 ///
 /// ```
 /// # use lockstep2d::{body::{BodyDef, Polygon, ShapeDef}, world::World};
@@ -160,7 +153,6 @@ pub enum JointPart {
 }
 
 impl JointPart {
-    /// The slots of the part's impulses, as flags.
     fn slots(self, kind: &JointKind) -> u8 {
         let flags = |slots: &[u8]| slots.iter().fold(0, |flags, slot| flags | 1 << slot);
         let point = [slot::HOLD, slot::HOLD + 1];
@@ -182,7 +174,7 @@ impl JointPart {
     }
 }
 
-/// The angle `now` with the number of whole turns that brings it nearest to `last`. Both are in units of 2^-32 turn.
+/// `now` with the number of whole turns nearest to `last`, in units of 2^-32 turn.
 pub(super) fn nearest_turns(last: i64, now: Angle) -> i64 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole turns are dropped")]
     let before = Angle::from_bits(last as u32);

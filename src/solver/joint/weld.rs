@@ -1,9 +1,8 @@
 //! The weld joint: a row on the angle and a point block at the anchors, each rigid or a spring.
 //!
-//! A prismatic joint acts at the point at which its impulse does not rotate the bodies relative to each other. The
-//! point block of a weld acts at the anchors instead. If it acted at that point too, a plank that is welded to a wall
-//! would sag a fifth as far. But the gaps of a loaded chain of planks would be four times as wide, and a weld of two
-//! boxes of 1 cm that carries 100 times their mass would gain energy.
+//! The point block acts at the anchors. If it acted at the point where its impulse does not rotate the bodies relative
+//! to each other, a plank welded to a wall would sag a fifth as far. But the gaps of a loaded chain of planks would be
+//! four times as wide, and a weld of two boxes of 1 cm that carries 100 times their mass would gain energy.
 
 use serde::{Deserialize, Serialize};
 
@@ -34,24 +33,22 @@ use crate::math::Fx;
 #[doc(alias = "FixedJoint")]
 #[doc(alias = "WeldJoint")]
 pub struct Weld {
-    /// Softness of the anchors; `None` is rigid. The frequency is that of two point masses with the masses of the
-    /// bodies, and the stiffness is the same in all directions ([`Soft`]). Forces act on both bodies as those of a
-    /// [`Motor`](crate::solver::Motor) joint do, so that a soft weld conserves angular momentum however far it is
-    /// stretched.
+    /// Softness of the anchors, isotropic ([`Soft`]); `None` is rigid. Angular momentum is conserved however far the
+    /// weld is stretched.
     pub linear: Option<Soft>,
     /// Softness of the angle; `None` is rigid.
     pub angular: Option<Soft>,
 }
 
 impl Weld {
-    /// A weld that holds the anchors and the angle rigidly.
+    /// A rigid weld.
     #[must_use]
     pub const fn rigid() -> Self {
         Weld { linear: None, angular: None }
     }
 
     option_builders! {
-        /// Makes the anchors soft, with the frequency in Hz that the bodies would have if they were point masses.
+        /// Makes the anchors soft, with the frequency in Hz of two point masses.
         linear(hertz, damping_ratio) => Soft { hertz, damping_ratio };
         /// Makes the angle soft, with a frequency in Hz.
         angular(hertz, damping_ratio) => Soft { hertz, damping_ratio };
@@ -62,14 +59,13 @@ impl Weld {
         Soft::check(self.angular, ["angular frequency in Hz", "angular damping ratio"])
     }
 
-    /// The row on the angle, if the weld is a hinge. It is a hinge if its anchors are rigid.
+    /// The row on the angle, if the anchors are rigid and the weld is solved as a hinge.
     pub(super) fn angle_parts(&self) -> Option<AngleParts> {
         let spring = self.angular.map(|soft| soft.towards(Fx::ZERO));
         let parts = AngleParts { spring, held: spring.is_none(), drive: None, limit: None };
         self.linear.is_none().then_some(parts)
     }
 
-    /// Adds the parts of a weld with soft anchors.
     pub(super) fn prepare(&self, parts: &mut Parts<'_>) {
         match self.angular {
             Some(soft) => parts.spring(Direction::Angle, Some(soft.towards(Fx::ZERO))),

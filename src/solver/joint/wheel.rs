@@ -1,5 +1,4 @@
-//! The wheel joint: a slider on which B may rotate. The motor acts on the angle, spring and limits act along the axis,
-//! and one row holds B on the axis.
+//! The wheel joint: a motor on the angle, a spring and limits along the axis, and a row that holds B on the axis.
 
 use serde::{Deserialize, Serialize};
 
@@ -39,9 +38,9 @@ impl Wheel {
     option_builders! {
         /// Sets the range of the translation in metres.
         limit(lower, upper) => JointLimit { lower, upper };
-        /// Sets a target angular velocity in rad/s, and the largest torque in N m.
+        /// Sets the target speed in rad/s and the largest torque in N m.
         motor(speed, max_torque) => Drive { speed, max: max_torque };
-        /// Sets a spring with a frequency in Hz and a target translation in metres.
+        /// Sets a spring: frequency in Hz, target in metres.
         spring(hertz, damping_ratio, target) => Spring { hertz, damping_ratio, target };
     }
 

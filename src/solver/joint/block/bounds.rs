@@ -1,8 +1,8 @@
-//! Units with bounds in a block: limits, which may only push, and motors and springs of limited force. An active-set
-//! method finds the bounds that are reached. At first, the units that [`Block::activate`] chooses are active. Each
-//! round solves the equations of the active units and of the units without bounds. An active unit whose impulse would
-//! be beyond a bound is then held at that bound. In the first [`ROUNDS_MAX`] rounds, motors are exempt unless they are
-//! among those furthest beyond. The rounds end when no active unit is beyond a bound.
+//! Units with bounds in a block: limits, which may only push, and motors and springs of limited force.
+//!
+//! An active-set method finds the bounds that are reached. Each round solves the equations of the active units and of
+//! the units without bounds, and holds active units beyond a bound at that bound, until there are none. In the first
+//! [`ROUNDS_MAX`] rounds, only the motors furthest beyond are held.
 
 use super::super::super::context::{Pass, StepContext};
 use super::super::hinge::{HingeSet, Poses};
@@ -15,28 +15,25 @@ use super::{Block, ONE};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BoundedUnit {
     pub(super) unit: usize,
-    /// `Q` and `1 / Q` of the unit (see `mod.rs`).
+    /// `Q` and `1 / Q` (see `mod.rs`).
     pub(super) mass: (i64, i64),
-    /// Whether the equations of the unit are solved in the current pass. Otherwise its impulse is `held`.
+    /// Whether the equations of the unit are solved. Otherwise its impulse is `held`.
     pub(super) is_active: bool,
-    /// The impulse at which the unit is held while it is not active.
     pub(super) held: [i64; 2],
 }
 
-/// `S^2` of a limit that is not reached, with 30 fraction bits. It is far enough below 1 that the equations have a
-/// solution even if other rows depend linearly on the limit.
+/// `S^2` of a limit that is not reached, with 30 fraction bits. It is below 1 so that there is a solution even if other
+/// rows depend linearly on the limit.
 const OPEN_SCALE: i64 = ONE - (1 << 20);
 
 /// `S^2` of a motor, with 30 fraction bits. It is closer to 1 than [`OPEN_SCALE`], because the error of the speed is
-/// the impulse times `1 - S^2`, and the impulse is large under leverage.
+/// the impulse times `1 - S^2`, and impulses under leverage are large.
 const DRIVE_SCALE: i64 = ONE - (1 << 16);
 
-/// Number of initial rounds in which a motor is deactivated only if it is among those furthest beyond their largest
-/// force.
+/// Number of initial rounds in which only the motors furthest beyond their largest force are held.
 const ROUNDS_MAX: u32 = 4;
 
 impl Block {
-    /// Solves the equations of all rows that are not held at a bound.
     pub(super) fn solve_within_bounds(
         &mut self,
         pass: Pass,
@@ -62,8 +59,8 @@ impl Block {
         }
     }
 
-    /// Activates all motors, and the limits and springs that would be within their bounds if no other unit acted on
-    /// their bodies. The other springs are held at a bound; in the relax pass, springs keep their impulses.
+    /// Activates motors, and the limits and springs that would be within their bounds alone. Other springs are held at
+    /// a bound. In the relax pass, springs keep their impulses.
     fn activate(&mut self, pass: Pass, hinges: &HingeSet, list: &JointList) {
         let Block { bounded, units, impulses, wanted, .. } = self;
         for bounded in bounded.iter_mut() {
@@ -86,9 +83,10 @@ impl Block {
         }
     }
 
-    /// Deactivates units whose impulse would be beyond a bound. With `furthest_only`, motors are deactivated only if
-    /// their excess is at least half the largest one: while a brake holds a strong motor, the equations give the motor
-    /// as large an impulse as the brake, and only the brake should slip. Returns whether any unit was deactivated.
+    /// Deactivates units beyond a bound. Returns whether there were any.
+    ///
+    /// With `furthest_only`, motors need half the largest excess: while a brake holds a strong motor, the equations
+    /// give both the same impulse, and only the brake should slip.
     fn deactivate(&mut self, furthest_only: bool, hinges: &HingeSet, list: &JointList) -> bool {
         let Block { bounded, units, impulses, x, .. } = self;
         let impulses_of = |unit: &Unit| {
@@ -114,7 +112,7 @@ impl Block {
         any
     }
 
-    /// Gives units that are not active the impulses at which they are held. Returns whether an impulse has changed.
+    /// Returns whether an impulse has changed.
     fn hold(&mut self, context: &StepContext<'_>) -> bool {
         let Block { bounded, units, impulses, x, .. } = self;
         x.fill(0);
@@ -134,7 +132,7 @@ impl Block {
         any
     }
 
-    /// Sets the scales of a pass. They are 0 for units that are not active.
+    /// Sets the scales of a pass. They are 0 for inactive units.
     fn set_current_scales(&mut self, pass: Pass, hinges: &HingeSet, list: &JointList) {
         let Block { bounded, units, bias, relax, current, .. } = self;
         current.clone_from(match pass {

@@ -1,15 +1,14 @@
-//! The choice of joints that are solved in blocks, and their order.
+//! The choice and the order of the joints that are solved in blocks.
 //!
 //! One iteration solves a body with one joint exactly, and a chain of similar bodies well. It fails at bodies whose
-//! joints disturb each other, where it may even add energy. A body is *crowded* if two or more joints hold it and
+//! joints disturb each other, and may add energy there. A body is *crowded* if two or more joints hold it and
 //!
-//! - one of them is not a revolute joint: a weld, a slider or a spring, for example, or
+//! - one of them is not a revolute joint, or
 //! - it is so light, or its arms are so long, that its share in the mobility of the point of each of two hinges is
-//!   large, or that the sum of its shares over all hinges, without the largest share, is large.
+//!   large, or that the sum of its shares over all hinges, without the largest one, is large.
 //!
-//! Each joint of a crowded body is solved in a block if it has rows for one ([`Candidate::rows`]). Two crowded bodies
-//! with a common joint share a block, as long as it does not grow beyond [`ROWS_MAX`]. Whether a body is crowded
-//! depends on its own joints alone, so that joints elsewhere do not affect it.
+//! Joints of a crowded body are solved in a block if they have rows for one. Crowded bodies with a common joint share a
+//! block, up to [`ROWS_MAX`] rows. Joints of other bodies do not make a body crowded.
 
 use alloc::vec::Vec;
 
@@ -21,37 +20,34 @@ use super::super::options::JointLimit;
 use super::super::state::Joint;
 use crate::math::{Fx, Unit, fx_mul};
 
-/// Largest number of rows of a block. The cost of a block with a full matrix, such as that of a hub, grows with the
-/// third power of its rows: a block of this size costs about as much as 5000 contacts.
+/// Largest number of rows of a block. The cost of a full matrix grows with the third power of the rows: this size costs
+/// about as much as 5000 contacts.
 pub(super) const ROWS_MAX: u32 = 96;
 
 /// Smallest share in the mobility of each of two hinges that makes a body crowded.
 const PAIR_MIN: Unit = Unit::lit("0.6");
 
-/// Smallest sum of shares, without the largest share, that makes a body crowded. It is just above 1.5, the sum in cloth
-/// of discs.
+/// Smallest sum of shares, without the largest one, that makes a body crowded. In cloth of discs it is 1.5.
 const SUM_MIN: i64 = (1 << 30) / 100 * 152;
 
-/// A joint that may be solved in a block, with the properties by which blocks are chosen.
+/// A joint that may be solved in a block.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct Candidate {
-    /// The indices of its bodies: the ground for a body that no impulse changes.
+    /// The ground for a body that no impulse changes.
     pub(in super::super) bodies: [u32; 2],
-    /// Number of rows that a block would solve: rows that hold the bodies, springs, limits, and motors along one
-    /// direction. A joint without such rows is never solved in a block.
+    /// Number of rows in a block: rows that hold the bodies, springs, limits, and motors along one direction. A joint
+    /// without such rows is not solved in a block.
     pub(in super::super) rows: u32,
-    /// Whether it has rows besides that of a motor. A motor alone makes no body crowded.
+    /// Whether it has rows besides that of a motor.
     pub(in super::super) holds: bool,
-    /// Whether it is a revolute joint.
     pub(in super::super) is_hinge: bool,
     /// `1 / (1 / M + 1 / M')` of the masses of its bodies, in kg.
     pub(in super::super) reduced_mass: Fx,
-    /// The shares of the bodies in the mobility of the point of a revolute joint; 0 for other joints.
+    /// Shares in the mobility of the point of a revolute joint; 0 for other joints.
     pub(in super::super) shares: [Unit; 2],
 }
 
 impl Candidate {
-    /// The properties of a joint between two bodies.
     pub(in super::super) fn of(joint: &Joint, [a, b]: [&HingeBody; 2]) -> Self {
         let limits = |limit: Option<JointLimit>| if limit.is_some() { 2 } else { 0 };
         let (holding, motor, is_hinge) = match &joint.def.kind {
@@ -78,7 +74,7 @@ impl Candidate {
         };
         let (rows, holds) = (holding + u32::from(motor.is_some()), holding > 0);
         let shares = if is_hinge { shares(joint, [a, b]) } else { [Unit::ZERO; 2] };
-        // Both bodies give the same reduced mass. The fraction of the lighter body has more significant bits.
+        // The fraction of the lighter body has more significant bits.
         let fractions = MassFractions::of_masses(a.mass, b.mass);
         let (mass, fraction) =
             if fractions.a > fractions.b { (a.mass, fractions.a) } else { (b.mass, fractions.b) };
@@ -87,12 +83,9 @@ impl Candidate {
     }
 }
 
-/// The sums over the joints of a body.
 #[derive(Clone, Copy, Debug, Default)]
 struct Crowd {
-    /// Number of joints.
     joints: u32,
-    /// Number of joints that hold the body.
     holds: u32,
     others: bool,
     sum: i64,
@@ -116,47 +109,40 @@ impl Crowd {
     }
 }
 
-/// Largest number of rows of a joint, such as a slider with a spring, two limits and a motor.
+/// Largest number of rows of a joint: a slider with a spring, two limits and a motor.
 const JOINT_ROWS_MAX: usize = 6;
 
-/// The joints of a crowded body as ranges of `Choice::of_body`, one range for each number of rows.
+/// The joints of a crowded body in `Choice::of_body`, as one range for each number of rows.
 #[derive(Clone, Copy, Debug, Default)]
 struct JointsOfBody {
-    /// For each range, the index of the first joint that is not in a block yet.
+    /// First joint of each range that is not in a block yet.
     next: [u32; JOINT_ROWS_MAX],
-    /// For each range, its end.
     ends: [u32; JOINT_ROWS_MAX],
     /// The last walk that has visited the body.
     walk: u32,
 }
 
-/// The choice, and its working memory.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Choice {
     crowds: Vec<Crowd>,
-    /// For each body, its place in `bodies`, or [`NOT_CROWDED`].
+    /// Place of each body in `bodies`, or [`NOT_CROWDED`].
     places: Vec<u32>,
     bodies: Vec<JointsOfBody>,
     of_body: Vec<u32>,
-    /// For each candidate, whether it is in the current walk or in an earlier block.
+    /// Whether a candidate is in the current walk or in an earlier block.
     taken: Vec<bool>,
-    /// For each candidate, whether it is in a block.
     settled: Vec<bool>,
     queue: Vec<u32>,
-    /// Number of walks so far.
     walks: u32,
-    /// The chosen candidates, block by block, in the order in which they are eliminated.
+    /// Chosen candidates, block by block, in the order of elimination.
     pub(super) order: Vec<u32>,
-    /// The end of each block in `order`.
     pub(super) block_ends: Vec<usize>,
 }
 
-/// The place of a body without a list of joints.
 const NOT_CROWDED: u32 = u32::MAX;
 
 impl Choice {
-    /// Chooses among the joints of a tick. `body_count` is the number of bodies. Takes time in proportion to the number
-    /// of joints, even if very many of them are at one body.
+    /// Takes time proportional to the number of joints, even if very many are at one body.
     pub(super) fn choose(&mut self, candidates: &[Candidate], body_count: usize) {
         self.order.clear();
         self.block_ends.clear();
@@ -249,7 +235,7 @@ impl Choice {
         }
     }
 
-    /// Lists the joints that crowded bodies connect with the joint `start`, breadth first, until the block is full.
+    /// Lists the joints that crowded bodies connect with `start`, breadth first, until the block is full.
     fn walk(&mut self, candidates: &[Candidate], start: u32) {
         self.walks += 1;
         self.queue.clear();
@@ -268,9 +254,8 @@ impl Choice {
         }
     }
 
-    /// Adds the joints of a body to the walk, in ascending order. Leaves out joints that would bring the block above
-    /// [`ROWS_MAX`] rows. `rows` is the number of rows so far; returns the new number. The number only grows during a
-    /// walk, so that a joint that does not fit is not tried again in the same walk.
+    /// Adds the joints of a body to the walk, in ascending order. Takes and returns the number of rows. It only grows
+    /// during a walk, so that a joint that does not fit is not tried again.
     fn take_joints_of(&mut self, place: u32, mut rows: u32) -> u32 {
         let Choice { bodies, of_body, taken, settled, queue, walks, .. } = self;
         let JointsOfBody { next, ends, walk } = &mut bodies[place as usize];

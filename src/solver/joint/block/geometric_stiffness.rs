@@ -1,12 +1,12 @@
 //! Geometric stiffness: the torque of a pull changes while its arm turns.
 //!
-//! A force `F` that pulls a body outwards at an arm `r` exerts a restoring torque, as on a pendulum, with the stiffness
-//! `F . r`. If the torque is computed from the pose at the start of each sub-step, the body is a kicked rotor with the
-//! kick `kappa = h^2 F . r / I`, and its energy grows if `kappa` is above about 1 (B. Chirikov, "A universal
-//! instability of many-dimensional oscillator systems", 1979). A body above [`KICK_MIN`] therefore responds to the
-//! impulses of its block with the inertia `I + h^2 F . r`, as in a step that is implicit in the rotation (S. Andrews,
-//! M. Teichmann and P. Kry, "Geometric Stiffness for Real-time Constrained Multibody Dynamics", 2017). `F` is the force
-//! of the last sub-step.
+//! A force `F` that pulls a body outwards at an arm `r` exerts a restoring torque with the stiffness `F . r`, as on a
+//! pendulum. Computed from the pose at the start of each sub-step, it makes the body a kicked rotor with the kick
+//! `kappa = h^2 F . r / I`, whose energy grows if `kappa` is above about 1 (B. Chirikov, "A universal instability of
+//! many-dimensional oscillator systems", 1979). A body above [`KICK_MIN`] therefore responds to the impulses of its
+//! block with the inertia `I + h^2 F . r`, as in a step that is implicit in the rotation (S. Andrews, M. Teichmann and
+//! P. Kry, "Geometric Stiffness for Real-time Constrained Multibody Dynamics", 2017). `F` is the force of the last
+//! sub-step.
 
 use super::super::hinge::HingeSet;
 use super::super::list::JointList;
@@ -15,32 +15,27 @@ use super::scaling::{length, product};
 use super::{Block, Blocks};
 use crate::math::{Ratio, Vec2, round_shift_wide, saturate_wide};
 
-/// Smallest kick that changes the inertia, with 30 fraction bits. The larger inertia does not conserve angular
-/// momentum, so that it is not applied to bodies that are stable without it.
+/// Smallest kick that changes the inertia, with 30 fraction bits. Bodies below it are stable, and a larger inertia
+/// would not conserve angular momentum.
 const KICK_MIN: i64 = ONE / 2;
 
-/// Limit to which kicks are clamped.
 const KICK_MAX: i64 = 1000 * ONE;
 
 /// The change of the torque of a force while its body rotates.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Leverage {
-    /// No change, as for a torque, or a change that is left out, as for a spring between two points.
+    /// A torque, or a spring between two points, whose change is left out.
     None,
-    /// The point turns with the body and the force does not: the derivative is `F . r`. Contains the lever ratios of
-    /// both bodies, which are the arms over the radii of gyration, turned by a right angle.
+    /// The point turns with the body and the force does not: the derivative is `F . r`. Contains the lever ratios.
     AtPoint([Vec2<Ratio>; 2]),
-    /// The force turns with A, and acts at a point of B. Let `d` be the vector from A's centre to that point, `r` the
-    /// vector from B's centre to it, and `n` the axis. The derivatives of the torques are `F n . d` with respect to A's
-    /// rotation, `F n . r` with respect to B's rotation, and `F` with respect to a translation across the axis. For
-    /// each body, `|F|` times the length of its own arm is used instead. For any direction of the force, this is at
-    /// least the derivative with respect to the body's own rotation. Contains the lengths of the lever ratios.
+    /// The force along an axis turns with A, and acts at a point of B. `|F|` times the length of the body's arm is
+    /// used, which is at least the derivative with respect to its own rotation. Contains the lengths of the lever
+    /// ratios.
     AlongAxis([Ratio; 2]),
 }
 
 impl Leverage {
-    /// Returns the change of the torque of an impulse on the body of a side, per radian, divided by the radius of
-    /// gyration.
+    /// The change of the torque of an impulse per radian, over the radius of gyration.
     fn stiffness(&self, side: usize, impulse: [i64; 2]) -> i64 {
         let [x, y] = impulse.map(i128::from);
         let product = match self {
@@ -53,16 +48,15 @@ impl Leverage {
 }
 
 impl Blocks {
-    /// Computes the inertia of all bodies for the next sub-step from the impulses of the last sub-step. `rotation_of`
-    /// converts the scaled angular velocity of a body, with 32 fraction bits, to its rotation in a sub-step, with 30
-    /// fraction bits.
+    /// Computes the inertia from the impulses of the last sub-step. `rotation_of` converts the scaled angular velocity
+    /// of a body, with 32 fraction bits, to its rotation in a sub-step, with 30 fraction bits.
     pub(super) fn update_inertia(
         &mut self,
         hinges: &HingeSet,
         list: &JointList,
         rotation_of: impl Fn(u32, i64) -> i64,
     ) {
-        // The impulses of the last tick are known, but the rows on which they act have not been computed yet.
+        // The impulses of the last tick are known, but the rows on which they act are not computed yet.
         if core::mem::take(&mut self.is_first_sub_step) {
             self.refresh(hinges, list);
         }
@@ -110,8 +104,7 @@ impl Block {
         changed
     }
 
-    /// Removes geometric stiffness from the impulses. Impulses are scaled by the denominators of their rows, and joints
-    /// store them with the denominators of the inertia without geometric stiffness.
+    /// Removes geometric stiffness from the impulses, because joints store them without it.
     pub(super) fn restore_inertia(&mut self, hinges: &HingeSet, list: &JointList) {
         let Block { units, rows, impulses, .. } = self;
         for unit in units.iter_mut().filter(|unit| unit.is_stiffened()) {

@@ -1,41 +1,38 @@
-//! A symmetric positive definite matrix in an envelope, its Cholesky factor, and the solution of its equations.
+//! A symmetric positive definite matrix in an envelope, and its Cholesky factor.
 //!
-//! The rows of a block are scaled so that the diagonal is 1 (`scaling.rs`). Every entry of the matrix and of its factor
-//! `C` is then at most 1, and so is every partial sum of a product of two rows of `C`, by the Cauchy-Schwarz
-//! inequality: 32-bit entries with 30 fraction bits and 64-bit sums cannot overflow.
+//! Rows are scaled so that the diagonal is 1 (`scaling.rs`). Entries of the matrix and of its factor `C` are then at
+//! most 1, and by the Cauchy-Schwarz inequality so are partial sums of products of two rows of `C`. 32-bit entries with
+//! 30 fraction bits and 64-bit sums cannot overflow.
 //!
 //! ```text
 //! A = C C^T,   Cij = (Aij - sum Cik Cjk) / Cjj,   Cii = sqrt(Aii - sum Cik^2),   k < j
 //! ```
 //!
-//! Each row is stored from its first entry that is not 0 up to the diagonal. The factor has the same envelope (A.
-//! George and J. Liu, "Computer Solution of Large Sparse Positive Definite Systems", 1981, chapter 4).
+//! Rows are stored from their first entry that is not 0 to the diagonal. The factor has the same envelope (A. George
+//! and J. Liu, "Computer Solution of Large Sparse Positive Definite Systems", 1981, chapter 4).
 
 use alloc::{vec, vec::Vec};
 
 use crate::math::{round_shift, round_shift_wide, saturate, saturate_wide};
 
-/// The number 1 in the format of an entry.
 pub(super) const ONE: i64 = 1 << 30;
 
 /// Smallest square of a diagonal entry of a factor, with 60 fraction bits: 2^-16. The relax pass adds four times as
-/// much to the diagonal, so that in this pass only rounding errors could lead to a smaller one.
+/// much to the diagonal.
 const PIVOT_MIN: i64 = 1 << 44;
 
-/// The entries of the matrix below the diagonal, which is 1.
+/// Entries below the diagonal, which is 1.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Matrix {
-    /// For each row, the column of its first entry.
     first: Vec<usize>,
-    /// For each row, the index of its first entry.
     starts: Vec<usize>,
-    /// The entries row by row, with 30 fraction bits.
+    /// Row by row, with 30 fraction bits.
     entries: Vec<i32>,
 }
 
 impl Matrix {
-    /// Creates a matrix of zeros from the column of the first entry of each row. Reserves no more memory than it needs,
-    /// because there may be thousands of blocks.
+    /// A matrix of zeros, from the column of the first entry of each row. Reserves no spare memory, because there may
+    /// be thousands of blocks.
     pub(super) fn new(mut first: Vec<usize>) -> Self {
         let (mut starts, mut count) = (Vec::with_capacity(first.len()), 0);
         for (row, first) in first.iter_mut().enumerate() {
@@ -58,12 +55,10 @@ impl Matrix {
     }
 }
 
-/// The Cholesky factor of a matrix whose rows and columns are scaled.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Factor {
-    /// The entries below the diagonal, in the envelope of the matrix.
     entries: Vec<i32>,
-    /// The reciprocals of the diagonal entries, with 30 fraction bits: at most 256.
+    /// With 30 fraction bits: at most 256.
     inverses: Vec<i64>,
 }
 
@@ -123,7 +118,7 @@ fn dot(a: &[i32], b: &[i32]) -> i64 {
     a.iter().zip(b).map(|(&a, &b)| i64::from(a) * i64::from(b)).fold(0, i64::wrapping_add)
 }
 
-/// `value / 2^30` times the reciprocal of a diagonal entry.
+/// `value / 2^30` times `inverse`.
 fn divided(value: i128, inverse: i64) -> i64 {
     let value = saturate_wide(round_shift_wide(value, 30));
     saturate_wide(round_shift_wide(i128::from(value) * i128::from(inverse), 30))

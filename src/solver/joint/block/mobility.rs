@@ -5,16 +5,13 @@ use super::scaling::product;
 use crate::math::Ratio;
 use crate::solver::row::{MassFractions, turning};
 
-/// Mass fractions of two bodies, and the factors by which geometric stiffness scales their inverse inertia.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mobility {
     pub(super) fractions: MassFractions,
-    /// The square roots of the fractions, with 30 fraction bits.
+    /// Square roots of the fractions, with 30 fraction bits.
     pub(super) roots: [i64; 2],
-    /// For each body, the factor by which geometric stiffness scales its inverse inertia, `I / (I + h^2 F r)`, with 30
-    /// fraction bits.
+    /// Factor of geometric stiffness on the inverse inertia of each body, `I / (I + h^2 F r)`, with 30 fraction bits.
     spins: [i64; 2],
-    /// The square roots of `spins`.
     pub(super) spin_roots: [i64; 2],
 }
 
@@ -24,7 +21,7 @@ impl Mobility {
         Mobility { fractions, roots, spins: [ONE; 2], spin_roots: [ONE; 2] }
     }
 
-    /// Sets the factors of the inverse inertia. Returns whether they have changed.
+    /// Returns whether the factors have changed.
     pub(super) fn set_spins(&mut self, spins: [i64; 2]) -> bool {
         let changed = self.spins != spins;
         if changed {
@@ -33,20 +30,19 @@ impl Mobility {
         changed
     }
 
-    /// Whether geometric stiffness acts on one of the bodies.
     pub(super) fn is_stiffened(&self) -> bool {
         self.spins != [ONE; 2]
     }
 
-    /// The part of an entry of `K` that comes from rotations, or of the denominator `D` of a row if `other` is `e`: the
-    /// sum of the mass fraction times `e` times `other` times the factor of geometric stiffness over both bodies.
+    /// The part of an entry of `K` that comes from rotations, or of `D` if `other` is `e`: the sum over both bodies of
+    /// `a e other` times the factor of geometric stiffness.
     pub(super) fn turning(&self, e: [Ratio; 2], other: [Ratio; 2]) -> i64 {
         let MassFractions { a, b } = self.fractions;
         product(turning(a, e[0], other[0]), self.spins[0])
             + product(turning(b, e[1], other[1]), self.spins[1])
     }
 
-    /// The decrease of the denominator of a row by geometric stiffness.
+    /// Decrease of the denominator of a row by geometric stiffness.
     pub(super) fn lost_turning(&self, e: [Ratio; 2]) -> i64 {
         if self.is_stiffened() { Mobility::new(self.fractions).turning(e, e) - self.turning(e, e) } else { 0 }
     }

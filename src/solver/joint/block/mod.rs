@@ -1,9 +1,9 @@
-//! Blocks: groups of joints that are solved together, exactly, because iterations over single joints do not converge.
+//! Blocks: groups of joints that are solved together, because iterations over single joints do not converge.
 //!
 //! Warm-started iterations over joints that meet at one body may diverge: they are the heavy-ball method of B. Polyak
-//! (1964) with momentum 1, which diverges if joints disturb each other in a cycle. `choice.rs` finds such joints. All
-//! rows `i` of these joints that are not held at a bound (`bounds.rs`) then get the changes `d` that satisfy the
-//! softness of every row at once, instead of the changes `w` that each row by itself would make:
+//! (1964) with momentum 1. `choice.rs` finds such joints. Their rows `i` that are not held at a bound (`bounds.rs`) get
+//! the changes `d` that satisfy the softness of every row at once, instead of the changes `w` that each row alone would
+//! make:
 //!
 //! ```text
 //! w_i = -massScale_i (v_i + bias_i) - impulseScale_i L_i           as for a single row
@@ -11,17 +11,15 @@
 //! S_i = sqrt(massScale_i),   (1 - S^2 + S A S) z = w / S,   d = S z
 //! ```
 //!
-//! The softness of a spring between two points is part of its scale (`scaling.rs`), so that its `S` is 1.
+//! The scale of a spring between two points contains its softness, so that its `S` is 1.
 //!
 //! Changes are also divided by `Q = sqrt(m_least / m)`, where `m` is the reduced mass of the two bodies and `m_least`
-//! the smallest one in the block, because the matrix is symmetric only for impulses, not for speeds.
+//! the smallest one in the block, because the matrix is symmetric for impulses but not for speeds.
 //!
 //! The equation of `z` is `A d + (impulseScale / massScale) d = w / massScale`, scaled to a unit diagonal. The smallest
-//! eigenvalue of its matrix is at least the smallest impulse scale, whatever masses and arms are, even if rows depend
-//! on each other, as in a loop of welds. (Springs between points at long arms may depend on each other more closely;
-//! `matrix.rs` bounds the pivots.) The relax pass, which has no softness, adds [`EXCESS`] to the diagonal instead. The
-//! matrix depends on the pose and on geometric stiffness (`geometric_stiffness.rs`). `L` is defined as for single rows,
-//! but has 32 fraction bits.
+//! eigenvalue of its matrix is at least the smallest impulse scale, even if rows depend on each other, as in a loop of
+//! welds. Springs between points at long arms may depend on each other more closely, so that `matrix.rs` bounds the
+//! pivots. The relax pass adds [`EXCESS`] to the diagonal instead. `L` has 32 fraction bits.
 
 mod bounds;
 mod choice;
@@ -49,37 +47,30 @@ use scales::{Scales, mass_share};
 use scaling::{ScaledRow, root_and_inverse};
 use unit::Unit;
 
-/// Number that is added to the diagonal in the relax pass, with 30 fraction bits: 2^-14. A row that no other row
-/// disturbs keeps this share of its velocity.
+/// Addition to the diagonal in the relax pass, with 30 fraction bits: 2^-14. An undisturbed row keeps this share of its
+/// velocity.
 const EXCESS: i64 = 1 << 16;
 
-/// All blocks of a tick.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Blocks {
     choice: Choice,
     blocks: Vec<Block>,
-    /// Whether bodies have moved since the matrices were computed.
     is_stale: bool,
-    /// Whether the rows of this tick have not been computed yet.
     is_first_sub_step: bool,
 }
 
-/// A row of a spring in a joint that is not a hinge.
 #[derive(Clone, Copy, Debug)]
 struct Spring {
-    /// Its index among the rows of all joints that are not hinges.
+    /// Index among the rows of all joints that are not hinges.
     at: usize,
     row: usize,
-    /// `Q` and `1 / Q` of the row.
     mass: (i64, i64),
 }
 
-/// Joints that are solved together.
 #[derive(Clone, Debug, Default)]
 struct Block {
     units: Vec<Unit>,
-    /// Pairs of units with a common body, the later one first. Each unit is also paired with itself, except a spring
-    /// between two points.
+    /// Units with a common body, the later one first, and each unit with itself, except a spring between two points.
     pairs: Vec<(u32, u32)>,
     rows: Vec<ScaledRow>,
     bias: Scales,
@@ -91,18 +82,17 @@ struct Block {
     bounded: Vec<BoundedUnit>,
     /// Springs whose softness may depend on the pose.
     springs: Vec<Spring>,
-    /// The scales of the current pass, if the block has rows with bounds.
+    /// Scales of the current pass, if the block has rows with bounds.
     current: Scales,
     /// `L` of each row, a speed with 32 fraction bits. It may be larger than a joint can store.
     impulses: Vec<i64>,
-    /// The bodies, and changes of their velocities with 32 fraction bits. The update of the inertia uses the changes as
+    /// Bodies, and changes of their velocities with 32 fraction bits. The update of the inertia uses the changes as
     /// working memory.
     bodies: Vec<(u32, [i64; 3])>,
-    /// For each unit, the places of its bodies in `bodies`.
+    /// Places of the bodies of each unit in `bodies`.
     places: Vec<[u32; 2]>,
-    /// For each body, the factor by which geometric stiffness scales its inverse inertia.
+    /// Factor of geometric stiffness on the inverse inertia of each body.
     spins: Vec<i64>,
-    /// The changes of the impulses that each row by itself would make.
     wanted: Vec<i64>,
     /// The unknowns, with 32 fraction bits.
     x: Vec<i64>,
@@ -119,23 +109,21 @@ impl Blocks {
         self.choice.order.is_empty()
     }
 
-    /// Whether the chosen joints are arranged, if there are any.
     pub(super) fn is_arranged(&self) -> bool {
         self.blocks.is_empty() == self.choice.order.is_empty()
     }
 
-    /// Chooses the joints that are solved in blocks.
     pub(super) fn choose(&mut self, candidates: &[Candidate], body_count: usize) {
         self.choice.choose(candidates, body_count);
     }
 
-    /// The chosen joints, by the indices of their candidates.
+    /// The chosen joints, as indices of candidates.
     pub(super) fn chosen(&self) -> &[u32] {
         &self.choice.order
     }
 
-    /// Arranges the chosen joints. For each chosen joint, `numbers` has the number of a hinge among the hinges in
-    /// blocks, or the slot of any other joint. `parts` is sorted by slot.
+    /// `numbers` has the number of a hinge among the hinges in blocks, or the slot of any other joint. `parts` is
+    /// sorted by slot.
     pub(super) fn arrange(
         &mut self,
         hinges: &HingeSet,
@@ -169,26 +157,22 @@ impl Blocks {
         self.is_stale = true;
     }
 
-    /// Invalidates the matrices, because bodies have moved.
     pub(super) fn expire(&mut self) {
         self.is_stale = true;
     }
 
-    /// Takes the impulses of the last tick from the joints, at the start of a tick.
+    /// Takes the impulses from the joints, at the start of a tick.
     pub(super) fn take_impulses(&mut self, hinges: &mut HingeSet, list: &mut JointList) {
         self.is_first_sub_step = true;
         self.blocks.iter_mut().for_each(|block| block.take_impulses(hinges, list));
     }
 
-    /// Returns the impulses to the joints, at the end of a tick.
     pub(super) fn return_impulses(&mut self, hinges: &mut HingeSet, list: &mut JointList) {
         self.blocks.iter_mut().for_each(|block| block.return_impulses(hinges, list));
     }
 
-    /// Starts a sub-step with impulses of 0. Equations that are solved exactly need no warm start, and softness gives
-    /// the same result without one. At a light body between heavy ones the impulses are large and cancel each other,
-    /// but the impulses of the last pose would not cancel at the new pose. `rotation_of` is as for
-    /// [`Self::update_inertia`].
+    /// Starts a sub-step with impulses of 0. Equations that are solved exactly need no warm start. At a light body
+    /// between heavy ones, large impulses of the last pose would not cancel at the new one.
     pub(super) fn start_sub_step(
         &mut self,
         hinges: &HingeSet,
@@ -205,7 +189,6 @@ impl Blocks {
         }
     }
 
-    /// Solves all blocks, one after the other.
     pub(super) fn solve(
         &mut self,
         pass: Pass,
@@ -222,7 +205,7 @@ impl Blocks {
 }
 
 impl Block {
-    /// Adds a unit. `share` is the smallest reduced mass of the block divided by that of the unit.
+    /// `share` is the smallest reduced mass of the block over that of the unit.
     fn push(&mut self, mut unit: Unit, share: i64) {
         unit.row = self.bias.scales.len();
         let mass = root_and_inverse(share);
@@ -241,7 +224,6 @@ impl Block {
         self.units.push(unit);
     }
 
-    /// Finds the pairs of units with a common body, and the envelope of the matrix.
     fn arrange(&mut self) {
         let Block { units, pairs, rows, matrix, x, bias, impulses, wanted, bodies, places, .. } = self;
         let mut first_columns = Vec::with_capacity(bias.scales.len());
@@ -250,7 +232,7 @@ impl Block {
             for (earlier, other) in (0..=at).zip(units.iter()) {
                 if earlier == at || unit.touches(other) {
                     first = first.min(other.row);
-                    // The two rows of a spring do not disturb each other: its scale has diagonalised them.
+                    // The scale of a spring has diagonalised its two rows.
                     if earlier != at || !unit.is_point_spring() {
                         pairs.push((at, earlier));
                     }
@@ -277,7 +259,6 @@ impl Block {
         }));
     }
 
-    /// Computes the matrix at the current pose.
     fn refresh(&mut self, hinges: &HingeSet, list: &JointList) {
         let Block { units, pairs, rows, matrix, factored, bias, springs, .. } = self;
         *factored = None;
@@ -303,7 +284,6 @@ impl Block {
         }
     }
 
-    /// Takes the impulses of the last tick from the joints.
     fn take_impulses(&mut self, hinges: &mut HingeSet, list: &mut JointList) {
         for unit in &self.units {
             let impulses = unit.take_impulses(hinges, list);
@@ -313,9 +293,8 @@ impl Block {
         }
     }
 
-    /// Returns the impulses to the joints, for the next tick. Impulses that exceed the format of the joint are clamped.
-    /// This is not a fault: the next tick uses them only for geometric stiffness, or as initial guesses if the joint is
-    /// no longer in a block.
+    /// Returns the impulses to the joints, clamped to their format. This is not a fault: they are used for geometric
+    /// stiffness, or as initial guesses if the joint leaves the block.
     fn return_impulses(&mut self, hinges: &mut HingeSet, list: &mut JointList) {
         self.restore_inertia(hinges, list);
         for unit in &self.units {
@@ -332,7 +311,7 @@ impl Block {
 /// Fraction bits of the numbers of a block beyond those of a speed.
 const EXTRA_BITS: u32 = 32 - Speed::FRAC_NBITS;
 
-/// The scalar product of two scaled Jacobians, with 60 fraction bits.
+/// Scalar product with 60 fraction bits.
 fn dot(a: [i32; 3], b: [i32; 3]) -> i64 {
     let products = a.into_iter().zip(b).map(|(a, b)| i64::from(a) * i64::from(b));
     products.sum()

@@ -1,4 +1,4 @@
-//! Factors by which the rows of a block are scaled before and after its equations are solved.
+//! Factors of the rows of a block before and after its equations are solved.
 
 use alloc::vec::Vec;
 
@@ -6,21 +6,20 @@ use super::ONE;
 use super::scaling::product;
 use crate::math::{Fx, div_round, saturate_wide};
 
-/// Scales of each row, with 30 fraction bits. All are 0 for rows that the pass leaves out.
+/// Scales of each row, with 30 fraction bits. They are 0 for rows that the pass leaves out.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scales {
     /// `S` of the equations in `mod.rs`.
     pub(super) scales: Vec<i64>,
-    /// `1 / (S Q)`, by which changes are multiplied before the equations are solved.
+    /// `1 / (S Q)`, before the solution.
     pub(super) inwards: Vec<i64>,
-    /// `S Q`, by which the results are multiplied.
+    /// `S Q`, after the solution.
     pub(super) outwards: Vec<i64>,
     /// `impulseScale`.
     pub(super) yields: Vec<i64>,
 }
 
 impl Scales {
-    /// Adds a row with `S` and `1 / S`, with `Q` and `1 / Q`, and with the impulse scale `give`.
     pub(super) fn push(&mut self, scale: (i64, i64), mass: (i64, i64), give: i64) {
         for numbers in [&mut self.scales, &mut self.inwards, &mut self.outwards, &mut self.yields] {
             numbers.push(0);

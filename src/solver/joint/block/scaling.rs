@@ -1,17 +1,16 @@
 //! Scales rows and point blocks so that their own part of the matrix is 1.
 //!
-//! With the Jacobian `J` of a row or point and the mass fractions `a`, `K = sum a J J^T` is the matrix that relates an
-//! impulse (times the sum of the inverse masses) to the change of velocity. With `K = R R^T`, where `R` is lower
-//! triangular:
+//! With the Jacobian `J` of a row or point and the mass fractions `a`, `K = sum a J J^T` relates an impulse (times the
+//! sum of the inverse masses) to the change of velocity. With a lower triangular `R` and `K = R R^T`:
 //!
 //! ```text
 //! H = R^-1 sqrt(a) J,    sum H H^T = 1,    A = H H'^T + ...   for each body that two rows share
 //! ```
 //!
-//! Every entry of `H` is at most 1. Impulses as speeds are scaled by `R^-1` and scaled back by `R`.
+//! Entries of `H` are at most 1. Impulses as speeds are scaled by `R^-1` and scaled back by `R`.
 //!
-//! A spring between two points is isotropic (`point_block.rs`): it yields by `impulseScale p`, not by `impulseScale K
-//! p`. Its softness is therefore part of its scale, and `S = 1` in the equations of the block:
+//! A spring between two points is isotropic (`point_block.rs`): it yields by `impulseScale p`, not by
+//! `impulseScale K p`. Its softness is therefore part of its scale, and `S = 1`:
 //!
 //! ```text
 //! impulseScale I + massScale K = R' R'^T,   H = sqrt(massScale a) R'^-1 J,   R = sqrt(massScale) R'
@@ -22,26 +21,24 @@ use crate::math::{Ratio, Unit, Vec2, round_shift_wide, saturate, saturate_wide};
 use super::matrix::ONE;
 use super::mobility::Mobility;
 
-/// A scaled row: its Jacobian for each body, along x, along y and about the centre of mass, with 30 fraction bits.
+/// The scaled Jacobian for each body, along x, along y and about the centre of mass, with 30 fraction bits.
 pub(super) type ScaledRow = [[i32; 3]; 2];
 
-/// `R` and `R^-1`: the entries `11`, `21` and `22`, with 30 fraction bits. A row has only the first.
+/// The entries `11`, `21` and `22` of `R` and `R^-1`, with 30 fraction bits. A row has only the first.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Scaling {
     root: [i64; 3],
     inverse: [i64; 3],
 }
 
-/// Signs of the Jacobians: B's velocity is measured relative to A's.
+/// Signs: B's velocity is measured relative to A's.
 const SIGNS: [i64; 2] = [-1, 1];
 
 impl Scaling {
-    /// Scales a rigid point with the lever ratios of both bodies.
     pub(super) fn of_point(e: [Vec2<Ratio>; 2], mobility: &Mobility) -> (Self, [ScaledRow; 2]) {
         Self::of_point_with(ONE, e, mobility, mobility.roots)
     }
 
-    /// Scales a spring between two points.
     pub(super) fn of_spring(
         mass_scale: Unit,
         e: [Vec2<Ratio>; 2],
@@ -85,7 +82,7 @@ impl Scaling {
         (scaling, [scaled(inverse_11, 0), scaled(inverse_21, inverse_22)])
     }
 
-    /// Scales a row with the directions `n`, the lever ratios of both bodies, and the denominator `D` of the row.
+    /// Scales a row with the directions `n`, the lever ratios `e` and the denominator `D`.
     pub(super) fn of_row(
         n: [Vec2<Unit>; 2],
         e: [Ratio; 2],
@@ -137,18 +134,17 @@ fn apply_transposed(triangle: [i64; 3], d: [i64; 2]) -> [i64; 2] {
     [t_11 * x + t_21 * y, t_22 * y].map(|wide| saturate_wide(round_shift_wide(wide, 30)))
 }
 
-/// The product of two numbers, one of which has 30 fraction bits, in the format of the other number.
+/// The product of two numbers, one of which has 30 fraction bits, in the format of the other one.
 pub(super) fn product(a: i64, b: i64) -> i64 {
     saturate_wide(round_shift_wide(i128::from(a) * i128::from(b), 30))
 }
 
-/// The length of a vector.
 pub(super) fn length(v: [i64; 2]) -> i128 {
     let [x, y] = v.map(|part| u128::from(part.unsigned_abs()).pow(2));
     (x + y).isqrt().cast_signed()
 }
 
-/// `sqrt(x)` and `1 / sqrt(x)` of a number with 30 fraction bits, at least 2^-24, in the same format.
+/// `sqrt(x)` and `1 / sqrt(x)`. All have 30 fraction bits, and `x` counts as at least 2^-24.
 pub(super) fn root_and_inverse(x: i64) -> (i64, i64) {
     let x = x.max(1 << 6).unsigned_abs();
     // An even shift fills 63 or 64 bits, so that the root has 32 bits.

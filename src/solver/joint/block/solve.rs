@@ -48,7 +48,6 @@ impl Block {
         }
     }
 
-    /// Computes the changes of the impulses that each row by itself would make.
     pub(super) fn want(
         &mut self,
         pass: Pass,
@@ -79,7 +78,6 @@ impl Block {
         context.add_faults(faults);
     }
 
-    /// Solves the equations for the scaled changes of the impulses, `x`.
     pub(super) fn compute_changes(&mut self, pass: Pass) {
         let mut x = core::mem::take(&mut self.x);
         let Scales { inwards, outwards, .. } = self.scales(pass);
@@ -95,7 +93,6 @@ impl Block {
         self.x = x;
     }
 
-    /// Adds the changes to the impulses and applies them.
     fn accept(&mut self, context: &StepContext<'_>) {
         for unit in &self.units {
             let mut changes = [0; 3];
@@ -107,8 +104,8 @@ impl Block {
         self.apply(context);
     }
 
-    /// Changes the velocities by the scaled impulses in `x`. Each velocity is rounded and clamped only once, because
-    /// the impulses on a light body between heavy ones are large and almost cancel.
+    /// Changes the velocities by the scaled impulses `x`. Velocities are rounded and clamped once, because the impulses
+    /// on a light body between heavy ones almost cancel.
     pub(super) fn apply(&mut self, context: &StepContext<'_>) {
         let Block { units, rows, bodies, places, x, .. } = self;
         bodies.iter_mut().for_each(|(_, change)| *change = [0; 3]);

@@ -1,5 +1,3 @@
-//! Tests of the equations of a block, of the scaling of its rows, and of the choice of joints.
-
 use std::vec;
 use std::vec::Vec;
 
@@ -11,8 +9,7 @@ use crate::fx;
 use crate::math::{Ratio, Rng, Unit, Vec2};
 use crate::solver::row::MassFractions;
 
-/// A random matrix with a unit diagonal in a random envelope. The sum of the other entries of each row is below 1, so
-/// that the matrix is positive definite.
+/// A random positive definite matrix: the diagonal is 1, and the other entries of each row have a sum below 1.
 fn random_matrix(rng: &mut Rng, size: usize) -> Matrix {
     let first_columns: Vec<usize> = (1..).take(size).map(|count| rng.below(count) as usize).collect();
     let mut matrix = Matrix::new(first_columns.clone());
@@ -64,9 +61,8 @@ fn roots_and_inverses_are_those_of_theory() {
     }
 }
 
-/// Joints store the impulses of a block scaled by other denominators. Dividing and multiplying again is exact to 2^-18:
-/// the 30 fraction bits of a root, times the largest condition number of the matrix, 2^9, and a few roundings.
-/// Geometric stiffness scales down the inverse inertia of a body, which then yields less to an impulse across its arm.
+/// Dividing and multiplying again is exact to 2^-18: the 30 fraction bits of a root, times the largest condition
+/// number, 2^9, and a few roundings. With geometric stiffness, a body yields less to an impulse across its arm.
 #[test]
 fn impulses_are_the_same_whatever_the_denominator() {
     let mut rng = Rng::new(23);
@@ -103,7 +99,6 @@ fn weld(bodies: [u32; 2]) -> Candidate {
     Candidate { rows: 3, is_hinge: false, ..hinge(bodies, Unit::ZERO) }
 }
 
-/// The chosen joints, sorted.
 fn chosen(candidates: &[Candidate]) -> Vec<u32> {
     let mut choice = Choice::default();
     choice.choose(candidates, 300);
@@ -139,7 +134,7 @@ fn no_block_grows_beyond_its_limit_and_no_joint_is_lost() {
     assert!(choice.order.iter().copied().eq(0..199));
 }
 
-/// Computes the blocks from their definition, as a reference: breadth first, with a scan over all joints for each body.
+/// Blocks by their definition: breadth first, with a scan over all joints for each body.
 fn blocks_by_definition(candidates: &[Candidate], crowded: impl Fn(u32) -> bool) -> Vec<Vec<u32>> {
     let mut taken = vec![false; candidates.len()];
     let walk = |start: u32, taken: &mut Vec<bool>| {
@@ -184,7 +179,7 @@ fn blocks_are_those_of_their_definition() {
             .map(|_| {
                 let a = rng.below(bodies);
                 let b = (a + 1 + rng.below(bodies - 1)) % bodies;
-                // Some joints connect body 1 with body 2 or 3, so that these bodies have many joints.
+                // Bodies 1 to 3 have many joints.
                 let ends = if rng.chance(1, 3) { [1, 1 + b % 3] } else { [a, b] };
                 let ends = if ends[0] == ends[1] { [a, b] } else { ends };
                 Candidate { rows: rng.below(7), holds: true, ..weld(ends) }
@@ -192,7 +187,7 @@ fn blocks_are_those_of_their_definition() {
             .collect();
         let mut choice = Choice::default();
         choice.choose(&candidates, 300);
-        // Two welds make a body crowded, but never the ground.
+        // Two welds make a body crowded, but not the ground.
         let crowded = |body: u32| {
             let held = candidates.iter().filter(|joint| joint.rows > 0 && joint.bodies.contains(&body));
             body != 0 && held.count() >= 2
@@ -207,7 +202,7 @@ fn blocks_are_those_of_their_definition() {
     }
 }
 
-/// A body with very many joints takes time in proportion to them, whatever the sizes of the joints.
+/// Takes time in proportion to the joints, whatever their sizes.
 #[test]
 fn a_hundred_thousand_joints_at_one_body_are_chosen_at_once() {
     for sizes in [&[3][..], &[5], &[5, 1], &[6, 4, 1, 2]] {

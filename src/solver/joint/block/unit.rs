@@ -17,41 +17,39 @@ use crate::math::{Speed, Unit as Fraction, Vec2, div_round, saturate_wide};
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Source {
-    /// A hinge, by its number among the hinges in blocks.
+    /// The number of the hinge among the hinges in blocks.
     Hinge(usize),
-    /// A limit of a hinge, by the number of the hinge and the side of the limit: 0 for the lower one.
+    /// The number of the hinge, and the side (0 for the lower limit).
     HingeLimit(usize, usize),
-    /// The motor of a hinge, by the number of the hinge.
+    /// The number of the hinge.
     HingeDrive(usize),
-    /// A row or point of another joint.
     Part(ListPart),
 }
 
-/// The softness of a row in the bias pass. Springs are not solved in the relax pass.
+/// Softness of a row in the bias pass.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RowSoftness {
     pub(super) mass_scale: Fraction,
     pub(super) task: BlockedTask,
 }
 
-/// One or two rows that are scaled together. The unit of a hinge also contains the row on the angle, if there is one.
+/// One or two rows that are scaled together, and the row on the angle of a hinge.
 #[derive(Clone, Debug)]
 pub(super) struct Unit {
     source: Source,
-    /// The index of the first row.
+    /// Index of the first row.
     pub(super) row: usize,
-    /// The bodies from which velocities are read.
+    /// Bodies from which velocities are read.
     source_bodies: [u32; 2],
-    /// The bodies that impulses change. The ground replaces a body that no impulse changes.
+    /// Bodies that impulses change, or the ground.
     bodies: [u32; 2],
     mobility: Mobility,
     softness: [Option<RowSoftness>; 3],
     scaling: Scaling,
     angle_scaling: Scaling,
     pub(super) leverage: Leverage,
-    /// Whether the unit is a spring of limited force.
     is_limited: bool,
-    /// The ratio of the denominators of a row with and without geometric stiffness, with 30 fraction bits.
+    /// Ratio of the denominators with and without geometric stiffness, with 30 fraction bits.
     stiffened: i64,
 }
 
@@ -81,7 +79,7 @@ impl Unit {
         }
     }
 
-    /// The units of a hinge, by its number among the hinges in blocks: the hinge, its limits and its motor.
+    /// The hinge, its limits and its motor. `number` is that among the hinges in blocks.
     pub(super) fn of_hinge(number: usize, hinges: &HingeSet) -> impl Iterator<Item = Self> {
         let hinge = hinges.blocked_hinge(number);
         let row = Some(RowSoftness { mass_scale: hinge.softness.mass_scale, task: BlockedTask::Limit });
@@ -103,7 +101,6 @@ impl Unit {
         Unit::new(Source::Hinge(number), hinge.changed, hinge.fractions, [point, point, angle])
     }
 
-    /// A row or point of another joint.
     pub(super) fn part(part: &BlockedPart) -> Self {
         let &BlockedPart { part, bodies, fractions, mass_scale, task, is_limited } = part;
         let row = Some(RowSoftness { mass_scale, task });
@@ -122,7 +119,7 @@ impl Unit {
         self.row..self.row + self.rows().count()
     }
 
-    /// Returns the numbers of the unit's first two rows from a list with one number for each row of the block.
+    /// The numbers of the unit's first two rows, from a list for all rows of the block.
     pub(super) fn impulses(&self, numbers: &[i64]) -> [i64; 2] {
         let mut own = [0; 2];
         self.range().zip(&mut own).for_each(|(row, number)| *number = numbers[row]);
@@ -134,7 +131,7 @@ impl Unit {
         self.common_sides(other).iter().any(Option::is_some)
     }
 
-    /// Returns the pairs of sides, one of this unit and one of the other, that have a common body.
+    /// Pairs of sides, one of each unit, with a common body.
     pub(super) fn common_sides(&self, other: &Unit) -> [Option<(usize, usize)>; 2] {
         [0, 1].map(|side: usize| {
             let body = self.bodies[side];
@@ -143,7 +140,6 @@ impl Unit {
         })
     }
 
-    /// Computes the scaled rows at the current pose.
     pub(super) fn refresh(&mut self, hinges: &HingeSet, list: &JointList, rows: &mut [ScaledRow]) {
         let Unit { row, mobility, softness, scaling, angle_scaling, leverage, stiffened, .. } = self;
         let none = [Vec2::new(Fraction::ZERO, Fraction::ZERO); 2];
@@ -184,8 +180,7 @@ impl Unit {
         }
     }
 
-    /// For each row, the change of its impulse in one iteration over this row alone, from an impulse of 0. The change
-    /// is a speed.
+    /// For each row, the change of its impulse, a speed, in one iteration over this row alone, from an impulse of 0.
     pub(super) fn wanted(
         &self,
         pass: Pass,
@@ -223,16 +218,15 @@ impl Unit {
         }
     }
 
-    /// Whether the unit is a spring between two points, whose softness is part of its scale.
+    /// Whether the unit is a spring between two points, whose scale contains its softness.
     pub(super) fn is_point_spring(&self) -> bool {
         matches!(self.source, Source::Part(ListPart::Point(_)))
     }
 
-    /// Returns the factors of the impulse scales in the equations: `L` of a row, or `p` of a spring between two points.
+    /// Factors of the impulse scales in the equations: `L` of a row, or `p` of a spring between two points.
     pub(super) fn yielding(&self, [x, y, angle]: [i64; 3]) -> [i64; 3] {
         match (self.source, self.softness[0]) {
             (Source::Part(ListPart::Point(_)), Some(softness)) => {
-                // The scale of a spring contains its softness.
                 let mass_scale = i64::from(softness.mass_scale.to_bits());
                 let [x, y] = self.scaling.divide([x, y]).map(|part| product(part, mass_scale));
                 [x, y, 0]
@@ -241,47 +235,44 @@ impl Unit {
         }
     }
 
-    /// `R^-1 d` of the rows of the unit.
+    /// `R^-1 d`.
     pub(super) fn scale(&self, [x, y, angle]: [i64; 3]) -> [i64; 3] {
         let [x, y] = self.scaling.scale([x, y]);
         [x, y, self.angle_scaling.scale([angle, 0])[0]]
     }
 
-    /// `R d` of the rows of the unit.
+    /// `R d`.
     pub(super) fn restore(&self, [x, y, angle]: [i64; 3]) -> [i64; 3] {
         let [x, y] = self.scaling.restore([x, y]);
         [x, y, self.angle_scaling.restore([angle, 0])[0]]
     }
 
-    /// The impulses without the denominators by which they are scaled: `R^-T R^-1 L`.
+    /// Impulses without the denominators that scale them: `R^-T R^-1 L`.
     pub(super) fn exerted(&self, [x, y, angle]: [i64; 3]) -> [i64; 3] {
         let [x, y] = self.scaling.divide([x, y]);
         [x, y, self.angle_scaling.divide([angle, 0])[0]]
     }
 
-    /// `R R^T p` of the rows of the unit, the reverse of [`Self::exerted`].
+    /// `R R^T p`, the reverse of [`Self::exerted`].
     pub(super) fn scaled_by_denominator(&self, [x, y, angle]: [i64; 3]) -> [i64; 3] {
         let [x, y] = self.scaling.multiply([x, y]);
         [x, y, self.angle_scaling.multiply([angle, 0])[0]]
     }
 
-    /// Sets the factors by which geometric stiffness scales the inverse inertia of the bodies. Returns whether they
-    /// have changed.
+    /// Returns whether the factors have changed.
     pub(super) fn set_spins(&mut self, spins: [i64; 2]) -> bool {
         self.mobility.set_spins(spins)
     }
 
-    /// Whether geometric stiffness acts on one of the bodies.
     pub(super) fn is_stiffened(&self) -> bool {
         self.mobility.is_stiffened()
     }
 
-    /// The square root of the factor by which geometric stiffness scales the inverse inertia of a body.
     pub(super) fn spin_root(&self, side: usize) -> i64 {
         self.mobility.spin_roots[side]
     }
 
-    /// Takes the impulses of the last tick from the joint, as speeds.
+    /// Takes the impulses, as speeds, from the joint.
     pub(super) fn take_impulses(&self, hinges: &mut HingeSet, list: &mut JointList) -> [i32; 3] {
         match self.source {
             Source::Hinge(number) => hinges.take_impulses(number),
@@ -297,7 +288,6 @@ impl Unit {
         }
     }
 
-    /// Returns impulses to the joint, for the next tick.
     pub(super) fn return_impulses(&self, impulses: [i32; 3], hinges: &mut HingeSet, list: &mut JointList) {
         let [x, y, _] = impulses.map(Speed::from_bits);
         match self.source {
@@ -309,43 +299,38 @@ impl Unit {
         }
     }
 
-    /// The body of a side and the root of its mass fraction. `None` if no impulse changes the body.
+    /// The body and the root of its mass fraction. `None` if no impulse changes the body.
     pub(super) fn moved(&self, side: usize) -> Option<(u32, i64)> {
         (self.bodies[side] != GROUND).then_some((self.bodies[side], self.mobility.roots[side]))
     }
 
-    /// The largest magnitude of a row's impulse that fits the state.
     pub(super) fn impulse_max(&self, part: usize) -> Speed {
         let is_angle = part == 2 || matches!(self.source, Source::HingeLimit(..) | Source::HingeDrive(_));
         if is_angle { ANGLE_MAX } else { IMPULSE_MAX }
     }
 
-    /// The index of the row, if the unit is a row of a joint that is not a hinge.
+    /// Index of the row of a joint that is not a hinge.
     pub(super) fn list_row(&self) -> Option<usize> {
         if let Source::Part(ListPart::Row(at)) = self.source { Some(at) } else { None }
     }
 
-    /// Whether the unit is a spring.
     pub(super) fn is_spring(&self) -> bool {
         self.softness[0].is_some_and(|softness| softness.task == BlockedTask::Spring)
     }
 
-    /// Whether the unit is a limit, which has one row.
     pub(super) fn is_limit(&self) -> bool {
         self.softness[0].is_some_and(|softness| softness.task == BlockedTask::Limit)
     }
 
-    /// Whether the unit is a motor, which has one row.
     pub(super) fn is_drive(&self) -> bool {
         self.softness[0].is_some_and(|softness| softness.task == BlockedTask::Drive)
     }
 
-    /// Whether the unit has bounds: those of a limit, a motor, or a spring of limited force.
     pub(super) fn is_bounded(&self) -> bool {
         self.is_limit() || self.is_drive() || self.is_limited
     }
 
-    /// The bounds of the impulse of a row, as speeds with 32 fraction bits.
+    /// Bounds of an impulse, as speeds with 32 fraction bits.
     fn bounds(&self, hinges: &HingeSet, list: &JointList) -> [i64; 2] {
         let (lower, upper) = match self.source {
             Source::HingeDrive(number) => {
@@ -358,8 +343,7 @@ impl Unit {
         [lower, upper].map(|bound| product(i64::from(bound.to_bits()) << EXTRA_BITS, self.stiffened))
     }
 
-    /// Limits an impulse to the bounds: clamps the impulse of a row, and shortens the impulse of a point in its
-    /// direction.
+    /// Clamps the impulse of a row, or shortens the impulse of a point in its direction.
     pub(super) fn within_bounds(&self, impulse: [i64; 2], hinges: &HingeSet, list: &JointList) -> [i64; 2] {
         match self.source {
             Source::Part(ListPart::Point(at)) => {
@@ -378,13 +362,12 @@ impl Unit {
         }
     }
 
-    /// The magnitude of an impulse divided by the largest impulse of the motor, rounded down.
+    /// The magnitude of an impulse over the largest impulse of the motor, rounded down.
     pub(super) fn excess(&self, impulse: i64, hinges: &HingeSet, list: &JointList) -> u64 {
         let [_, max] = self.bounds(hinges, list);
         impulse.unsigned_abs() / max.unsigned_abs().max(1)
     }
 
-    /// Whether the unit is a limit that is not reached.
     pub(super) fn is_open(&self, hinges: &HingeSet, list: &JointList) -> bool {
         match self.source {
             Source::HingeLimit(number, side) => hinges.blocked_limit_is_open(number, side),
@@ -394,7 +377,7 @@ impl Unit {
     }
 }
 
-/// A quotient of two denominators, at most 1, with 30 fraction bits.
+/// A quotient of at most 1, with 30 fraction bits.
 fn quotient(part: i64, whole: i64) -> i64 {
     if part >= whole { ONE } else { saturate_wide(div_round(i128::from(part) << 30, whole.into())).max(0) }
 }

@@ -14,9 +14,8 @@ use crate::math::{Fx, Vec2, fx_mul, widen};
 use crate::simd::{Machine, Quad};
 
 impl JointSet {
-    /// The force and the torque about B's anchor that a joint exerted on B in the last sub-step: `P / h`. The impulse
-    /// `P` is computed from the velocities that the joint's impulses give to one of the bodies at rest. Clears the
-    /// set's own constraints and reuses their memory.
+    /// The force, and the torque about B's anchor, that a joint exerted on B in the last sub-step. They are computed
+    /// from the velocity that the joint's warm start gives to one body at rest. Overwrites the set's constraints.
     pub(in crate::solver) fn reaction(
         &mut self,
         joint: &Joint,
@@ -66,7 +65,7 @@ impl JointSet {
     }
 }
 
-/// The force of a rope on B. A rope pulls both bodies, so that the impulse of either gives the tension.
+/// The force of a rope on B. The impulse of either body gives the tension.
 fn pulley_reaction(
     pulley: &Pulley,
     joint: &Joint,

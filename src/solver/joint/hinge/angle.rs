@@ -1,6 +1,5 @@
-//! The rows on the angle of a batch of hinges: spring, motor and limits, in this order, with the equations of
-//! `joint/row.rs`. Beyond a limit, the speed of a motor is clamped to the speed at which the limit pushes the joint
-//! back, instead of 0.
+//! Rows on the angle of a batch of hinges, with the equations of `joint/row.rs`. Beyond a limit, a motor's speed is
+//! clamped to that at which the limit pushes the joint back, instead of 0.
 //!
 //! ```text
 //! vn = eB uB - eA uA,   w = massScale vn + push + impulseScale L,   L' = clamp(L - w, lo, hi),   d = L' - L
@@ -31,7 +30,7 @@ pub(in crate::solver) struct AngleRows<const N: usize> {
     /// The lower and the upper limit. The row of the upper limit is reversed.
     limits: [LimitRow<N>; 2],
     limit_max: Ints<N>,
-    /// Targets of the springs, in units of 2^-32 turn.
+    /// In units of 2^-32 turn.
     targets: [i64; N],
     stiffness: [Fx; N],
     closed: [Fx; N],
@@ -39,7 +38,7 @@ pub(in crate::solver) struct AngleRows<const N: usize> {
     has_spring: bool,
     has_drive: bool,
     has_limit: bool,
-    /// Whether a row holds the angle in any lane. Only then are spring rows solved in the relax pass.
+    /// Whether a row holds the angle in any lane. Otherwise the relax pass leaves out spring rows.
     holds: bool,
 }
 
@@ -50,7 +49,7 @@ struct SpringRow<const N: usize> {
     mass_scale: Ints<N>,
     impulse_scale: Ints<N>,
     push: Ints<N>,
-    /// -1 in lanes where the row holds the angle and is not a spring.
+    /// -1 where the row holds the angle.
     holds: Ints<N>,
 }
 
@@ -65,7 +64,7 @@ struct DriveRow<const N: usize> {
 struct LimitRow<const N: usize> {
     lambda: Ints<N>,
     push: Ints<N>,
-    /// -1 in lanes where the limit is not reached.
+    /// -1 where the limit is not reached.
     open: Ints<N>,
     bounds: [i64; N],
 }
@@ -99,7 +98,6 @@ impl<const N: usize> AngleRows<N> {
         open: [Fx::ZERO; N],
     };
 
-    /// Puts the rows of a hinge into a lane.
     pub(super) fn put(&mut self, lane: usize, input: &AngleInput) {
         for side in 0..2 {
             self.e[side].0[lane] = input.e[side].to_bits();
@@ -136,7 +134,7 @@ impl<const N: usize> AngleRows<N> {
         }
     }
 
-    /// Puts impulses into a lane. Each impulse is clamped to the bounds of its row, which are 0 if there is no row.
+    /// Clamps impulses to the bounds of their rows, which are 0 if there is no row.
     pub(super) fn reload(&mut self, lane: usize, impulses: &JointImpulses) {
         let AngleRows { spring, drive, limits, limit_max, .. } = self;
         let within = |slot: u8, max: i32| impulses.0[usize::from(slot)].to_bits().clamp(-max, max);
@@ -147,15 +145,14 @@ impl<const N: usize> AngleRows<N> {
         }
     }
 
-    /// The impulses in a lane: spring, motor, lower limit, upper limit.
+    /// Spring, motor, lower limit, upper limit.
     pub(super) fn impulses(&self, lane: usize) -> [Speed; 4] {
         let [lower, upper] = &self.limits;
         [&self.spring.lambda, &self.drive.lambda, &lower.lambda, &upper.lambda]
             .map(|lambda| Speed::from_bits(lambda.0[lane]))
     }
 
-    /// Computes the pushes of springs and limits from the joint angles at the current pose. `turns` are the angles at
-    /// the start of the tick, one for each lane with a hinge.
+    /// Computes pushes at the current pose. `turns` are the joint angles at the start of the tick.
     pub(super) fn refresh(&mut self, turns: &[i64], [a, b]: &[[u32; N]; 2], body_rotations: &[BodyRotation]) {
         for (lane, turn) in turns.iter().enumerate() {
             let (a, b) = (&body_rotations[a[lane] as usize], &body_rotations[b[lane] as usize]);
@@ -209,7 +206,6 @@ impl<const N: usize> AngleRows<N> {
         self.solve_limits(pass, softness, pair, faults);
     }
 
-    /// Solves the motors.
     #[inline(always)]
     pub(super) fn solve_drive<L: Lanes<N>>(&mut self, pair: &mut BodyPairW<L, N>, faults: &mut Faults) {
         if self.has_drive {
@@ -223,8 +219,7 @@ impl<const N: usize> AngleRows<N> {
         }
     }
 
-    /// The target speed of the motors: at most the speed at which the limits may be approached. A motor of unlimited
-    /// force and a limit that act against each other would add to their impulses in every sub-step.
+    /// Target speed, at most that at which the limits may be approached (see `Parts::drive_within`).
     #[inline(always)]
     fn drive_target<L: Lanes<N>>(&self) -> L::Int {
         let zero = L::splat(0);
@@ -239,7 +234,6 @@ impl<const N: usize> AngleRows<N> {
         L::select(L::greater(L::load(&self.limit_max), zero), within, speed)
     }
 
-    /// Solves the limits.
     #[inline(always)]
     fn solve_limits<L: Lanes<N>>(
         &mut self,
@@ -254,7 +248,7 @@ impl<const N: usize> AngleRows<N> {
         }
     }
 
-    /// Solves springs in the bias pass only, and rows that hold the angle in both passes.
+    /// Solves springs in the bias pass, and rows that hold the angle in both passes.
     #[inline(always)]
     fn solve_spring<L: Lanes<N>>(&mut self, pass: Pass, pair: &mut BodyPairW<L, N>, faults: &mut Faults) {
         let w = self.wanted_of_spring(pass, pair, faults);
@@ -265,7 +259,6 @@ impl<const N: usize> AngleRows<N> {
         pair.turn(&self.f, L::sub(new, old), faults);
     }
 
-    /// `w` of the springs: the decrease of the impulse.
     #[inline(always)]
     fn wanted_of_spring<L: Lanes<N>>(
         &self,
@@ -287,8 +280,8 @@ impl<const N: usize> AngleRows<N> {
         }
     }
 
-    /// Solves the lower limits (side 0) or the upper limits (side 1). As with contacts, a gap may close within this
-    /// sub-step, and a gap that the bias pass has not closed is left to the next sub-step.
+    /// Solves the lower limits (side 0) or the upper limits (side 1). As with contacts, a gap that the bias pass has
+    /// not closed is left to the next sub-step.
     #[inline(always)]
     fn solve_limit<L: Lanes<N>>(
         &mut self,
@@ -302,7 +295,6 @@ impl<const N: usize> AngleRows<N> {
         let LimitRow { lambda, push, open, .. } = &mut self.limits[side];
         let max = L::load(&self.limit_max);
         let vn = velocity::<L, N>(&self.e, max, pair, faults);
-        // A saturated velocity may be the smallest number, whose negative does not fit.
         let vn = facing::<L, N>(side, L::max(vn, L::splat(-i32::MAX)));
         let (old, push, open) = (L::load(lambda), L::load(push), L::negative(L::load(open)));
         let w = match pass {
@@ -324,7 +316,7 @@ impl<const N: usize> AngleRows<N> {
     }
 }
 
-/// Negates a number on the side of the upper limit, because the row of that limit is reversed.
+/// The row of the upper limit is reversed.
 #[inline(always)]
 fn facing<L: Lanes<N>, const N: usize>(side: usize, value: L::Int) -> L::Int {
     if side == 0 { value } else { L::sub(L::splat(0), value) }
@@ -340,8 +332,8 @@ fn softened<L: Lanes<N>, const N: usize>(
     L::narrow::<UNIT>(L::add_wide(L::mul(mass_scale, v), L::mul(impulse_scale, lambda)))
 }
 
-/// Angular velocity of B relative to A, along the row. A velocity that does not fit counts as a fault in lanes with a
-/// row, which have a largest impulse other than 0.
+/// Angular velocity of B relative to A. One that does not fit counts as a fault in lanes with a row, whose `max` is not
+/// 0.
 #[inline(always)]
 fn velocity<L: Lanes<N>, const N: usize>(
     e: &[Ints<N>; 2],
@@ -358,7 +350,7 @@ fn velocity<L: Lanes<N>, const N: usize>(
     vn
 }
 
-/// Converts an angle in units of 2^-32 turn to a speed, saturated. `per_turn` is the speed per turn.
+/// Converts units of 2^-32 turn to a speed, saturated.
 #[inline]
 fn speed_of(turns: i64, per_turn: Fx) -> i32 {
     const EXTRA: u32 = 32 + Fx::FRAC_NBITS - Speed::FRAC_NBITS;

@@ -1,7 +1,4 @@
-//! Compact copies of the rows on the angle of hinges, from which batches are filled.
-//!
-//! The bias velocity for an angle error of `x` turns, `2 pi s x` times a rate, takes one product with a coefficient
-//! that is constant within a tick.
+//! Compact copies of the rows on the angle, from which batches are filled.
 
 use alloc::vec::Vec;
 
@@ -17,11 +14,10 @@ use crate::math::{Fx, Ratio, Reciprocal, Speed, TAU, Unit, fx_mul, narrow};
 /// Largest impulse of a row on the angle. The difference of two such impulses fits the format.
 pub(in super::super) const ANGLE_MAX: Speed = Speed::lit("511");
 
-/// The rows on the angle of a hinge.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct AngleParts {
     pub(in super::super) spring: Option<Spring>,
-    /// Whether the angle is held rigidly at 0 instead of by a spring.
+    /// Whether the angle is held at 0 instead of by a spring.
     pub(in super::super) held: bool,
     pub(in super::super) drive: Option<Drive>,
     pub(in super::super) limit: Option<JointLimit>,
@@ -34,19 +30,18 @@ impl AngleParts {
     }
 }
 
-/// Cache of results for earlier hinges. A result takes many divisions, and many joints are equal, such as all links of
-/// a chain or the knees of all ragdolls. A result depends only on the key with which it is stored, so that it never
-/// becomes invalid.
+/// Cache of results for earlier hinges, because a result takes many divisions and many joints are equal. An entry
+/// depends only on its key and does not become invalid.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Memo {
-    /// Hertz, damping ratio and rate of the last spring, and its softness.
+    /// The last spring (hertz, damping ratio, rate) and its softness.
     spring: Option<((Fx, Fx, u32), Softness)>,
     /// Rows by the hash of their key.
     angulars: Vec<Option<Angular>>,
 }
 
 impl Memo {
-    /// Binary logarithm of the number of cached rows, which is enough for the joints of a few mechanisms.
+    /// Binary logarithm of the number of cached rows.
     const ANGULARS_BITS: u32 = 6;
 
     fn softness(&mut self, hertz: Fx, damping_ratio: Fx, rate: u32) -> Softness {
@@ -67,14 +62,11 @@ impl Memo {
     }
 }
 
-/// Cache key: everything on which a row on the angle between two bodies and its largest impulses depend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct AngularKey {
     /// `1 / k` and mass of each body.
     bodies: [(Reciprocal, Fx); 2],
-    /// Largest torque of the motor between the bodies.
     torque: Fx,
-    /// Sub-steps per second.
     rate: u32,
 }
 
@@ -88,16 +80,14 @@ impl AngularKey {
     }
 }
 
-/// The row on the angle between two bodies, and the largest impulses on it.
 #[derive(Clone, Copy, Debug)]
 struct Angular {
     key: AngularKey,
     e: [Ratio; 2],
     f: [Unit; 2],
     s: Fx,
-    /// Largest impulse. 0 if impulses turn neither body.
+    /// Largest impulse; 0 if impulses turn neither body.
     max: Speed,
-    /// Largest impulse of the motor.
     drive_max: Speed,
 }
 
@@ -113,7 +103,6 @@ impl Angular {
     }
 }
 
-/// The rows on the angle of one hinge.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct AngleInput {
     pub(super) e: [Ratio; 2],
@@ -128,11 +117,11 @@ pub(in super::super) struct AngleInput {
 pub(super) struct SpringInput {
     pub(super) mass_scale: Unit,
     pub(super) impulse_scale: Unit,
-    /// Target angle in units of 2^-32 turn.
+    /// In units of 2^-32 turn.
     pub(super) target: i64,
-    /// Push of the spring, a speed, per turn of the distance from the target: `massScale biasRate 2 pi s`.
+    /// Push, a speed, per turn from the target: `massScale biasRate 2 pi s`.
     pub(super) stiffness: Fx,
-    /// Largest impulse. 0 if impulses turn neither body.
+    /// Largest impulse; 0 if impulses turn neither body.
     pub(super) max: Speed,
     pub(super) held: bool,
     pub(super) lambda: Speed,
@@ -148,21 +137,21 @@ pub(super) struct DriveInput {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LimitInput {
-    /// Lower limit in units of 2^-32 turn.
+    /// In units of 2^-32 turn.
     pub(super) lower: i64,
-    /// Upper limit in units of 2^-32 turn.
+    /// In units of 2^-32 turn.
     pub(super) upper: i64,
-    /// Push towards a limit that is exceeded, a speed, per turn of the excess: `massScale biasRate 2 pi s`.
+    /// Push, a speed, per turn beyond a limit: `massScale biasRate 2 pi s`.
     pub(super) closed: Fx,
-    /// Speed at which a limit is reached within a sub-step, per turn of the distance from it: `2 pi s / h`.
+    /// Speed that reaches a limit within a sub-step, per turn of the distance: `2 pi s / h`.
     pub(super) open: Fx,
-    /// Largest impulse. 0 if impulses turn neither body.
+    /// Largest impulse; 0 if impulses turn neither body.
     pub(super) max: Speed,
     pub(super) lambda: [Speed; 2],
 }
 
 impl AngleInput {
-    /// The rows of a hinge, in a world with `rate` sub-steps per second. Rigid rows have the softness `rigid`.
+    /// Rigid rows have the softness `rigid`.
     pub(in super::super) fn new(
         parts: &AngleParts,
         ends: [&HingeBody; 2],

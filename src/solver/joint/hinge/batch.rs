@@ -9,9 +9,9 @@ use crate::simd::Ints;
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(in crate::solver) struct Batch<const N: usize> {
-    /// The indices from which the bodies are read.
+    /// Where bodies are read.
     pub(super) bodies: [[u32; N]; 2],
-    /// The indices to which the bodies are written: the ground for a body that no impulse changes.
+    /// Where bodies are written: the ground for a body that no impulse changes.
     pub(super) changed: [[u32; N]; 2],
     /// Lever ratios of A and of B.
     pub(super) e: [[Ints<N>; 2]; 2],
@@ -22,48 +22,42 @@ pub(in crate::solver) struct Batch<const N: usize> {
     pub(super) bias: [Ints<N>; 2],
     /// `L`, in world axes.
     pub(super) lambda: [Ints<N>; 2],
-    /// Whether any hinge in the batch has rows on the angle. The batch then has [`super::angle::AngleRows`].
+    /// Whether the hinges have rows on the angle, in [`super::angle::AngleRows`].
     pub(super) has_angle: bool,
-    /// Whether the hinges have a softness of their own. It is the same for all hinges of the batch, and stored in the
-    /// record.
+    /// Whether the hinges have a softness of their own, in the record and equal for all of them.
     pub(super) is_tuned: bool,
 }
 
-/// The constants from which the points of a batch are refreshed, and the joints to which its results belong.
+/// Constants for the refresh of a batch, and the joints to which its results belong.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(in crate::solver) struct Records<const N: usize> {
     pub(super) shape: Shape<N>,
     /// Number of lanes with a hinge.
     pub(super) len: usize,
-    /// The slots of the joints.
     pub(super) slots: [u32; N],
-    /// The angles of the joints in units of 2^-32 turn: those at the start of the tick while the tick is solved, and
-    /// those at its end afterwards.
+    /// Angles in units of 2^-32 turn, at the start of the tick while it is solved, then at its end.
     pub(super) turns: [i64; N],
-    /// The angles of the joints while no body is rotated.
+    /// Angles while no body is rotated.
     pub(super) rest: [Angle; N],
-    /// The softness of the points and limits of a tuned batch, and of a hinge in a block.
+    /// Softness of a tuned batch, or of a hinge in a block.
     pub(super) softness: Softness,
 }
 
-/// The geometry of hinges, which is constant within a tick.
 #[derive(Clone, Debug)]
 pub(super) struct Shape<const N: usize> {
-    /// Anchors from the centres of mass, in the frames of A and of B.
+    /// From the centres of mass, in the frames of A and of B.
     pub(super) arms: [[Ints<N>; 2]; 2],
     /// Lever ratios in the frames of A and of B.
     pub(super) ratios: [[Ints<N>; 2]; 2],
     /// Changes of lever ratios per metre of the gap ([`super::refresh::gap_factors`]).
     pub(super) gap_factors: [Ints<N>; 2],
-    /// Mass fractions.
     pub(super) fractions: [Ints<N>; 2],
-    /// Vector from the centre of mass of A to that of B at the start of the tick, with 52 fraction bits.
+    /// From the centre of mass of A to that of B at the start of the tick, with 52 fraction bits.
     pub(super) between: [[i64; N]; 2],
 }
 
 impl<const N: usize> Batch<N> {
-    /// A batch without a hinge in any lane.
     pub(super) const NONE: Self = Batch {
         bodies: [[0; N]; 2],
         changed: [[0; N]; 2],

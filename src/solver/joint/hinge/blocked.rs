@@ -1,5 +1,4 @@
-//! Hinges that belong to a block (`joint/block`): they are refreshed like all others, but the block computes their
-//! impulses.
+//! Hinges in blocks (`joint/block`), which compute their impulses.
 
 use super::super::super::batches::{BatchParts, Operation};
 use super::super::super::context::{Pass, StepContext};
@@ -15,7 +14,6 @@ use super::{HingeSet, Hinges, Poses};
 use crate::math::{Ratio, Speed, Unit, Vec2};
 use crate::simd::{Lanes, Scalar};
 
-/// Refreshes a batch without solving it, because the block solves it.
 #[derive(Clone, Copy)]
 struct RefreshBlocked<'a> {
     refresh: Refresh<'a>,
@@ -29,17 +27,14 @@ impl Operation<Hinges> for RefreshBlocked<'_> {
     }
 }
 
-/// Jacobian, mass fractions and softness of a hinge in a block.
 pub(in super::super) struct BlockedHinge {
     pub(in super::super) changed: [u32; 2],
     pub(in super::super) fractions: MassFractions,
-    /// Lever ratios of the point.
     pub(in super::super) e: [Vec2<Ratio>; 2],
-    /// Lever ratios and softness of the row that holds the angle, or of its spring.
+    /// The row that holds the angle, or its spring.
     pub(in super::super) angle: Option<BlockedAngle>,
     pub(in super::super) has_limits: bool,
     pub(in super::super) has_drive: bool,
-    /// The softness of the point and the limits.
     pub(in super::super) softness: Softness,
 }
 
@@ -50,7 +45,7 @@ pub(in super::super) struct BlockedAngle {
 }
 
 impl HingeSet {
-    /// Adds the hinge whose input has an index to the hinges in blocks. Returns its index among them.
+    /// Returns the index among the hinges in blocks.
     pub(in super::super) fn push_blocked(&mut self, index: u32) -> usize {
         let HingeSet { inputs, angles, blocked, blocked_extras, .. } = self;
         blocked.push(inputs, angles, core::iter::once(index));
@@ -59,17 +54,14 @@ impl HingeSet {
         blocked_extras.len() - 1
     }
 
-    /// Refreshes the hinges in blocks.
     pub(super) fn refresh_blocked(&mut self, refresh: Refresh<'_>, context: &StepContext<'_>) {
         self.blocked.run_in_order(RefreshBlocked { refresh }, context);
     }
 
-    /// The softness of the point and the limits of a hinge in a block.
     fn blocked_softness(&self, number: usize) -> &Softness {
         &self.blocked.records[number].softness
     }
 
-    /// A hinge in a block, at its last refresh.
     pub(in super::super) fn blocked_hinge(&self, number: usize) -> BlockedHinge {
         let batch = &self.blocked.batches[number];
         let record = &self.blocked.records[number];
@@ -90,8 +82,8 @@ impl HingeSet {
         }
     }
 
-    /// The changes of the impulses in one iteration over each part alone. Before the iteration the impulses are 0,
-    /// because [`Self::take_impulses`] has moved them to the block.
+    /// The changes of the impulses in one iteration over each part alone, from impulses of 0: [`Self::take_impulses`]
+    /// has moved them to the block.
     pub(in super::super) fn blocked_wanted(
         &self,
         number: usize,
@@ -116,7 +108,6 @@ impl HingeSet {
         [point[0], point[1], angle]
     }
 
-    /// The rows on the angle of a hinge in a block.
     fn blocked_rows(&self, number: usize) -> Option<&AngleRows<1>> {
         self.blocked_extras[number].map(|extra| &self.blocked.extras[extra])
     }
@@ -125,17 +116,16 @@ impl HingeSet {
         self.blocked_extras[number].map(|extra| &mut self.blocked.extras[extra])
     }
 
-    /// Lever ratios of a limit of a hinge in a block. Side 0 is the lower limit.
+    /// Side 0 is the lower limit.
     pub(in super::super) fn blocked_limit(&self, number: usize, side: usize) -> [Ratio; 2] {
         self.blocked_rows(number).map_or([Ratio::ZERO; 2], |rows| rows.limit_ratios(side))
     }
 
-    /// Whether a limit is not reached.
     pub(in super::super) fn blocked_limit_is_open(&self, number: usize, side: usize) -> bool {
         self.blocked_rows(number).is_none_or(|rows| rows.limit_is_open(side))
     }
 
-    /// The change of the impulse of a limit that one iteration would make if the impulse were 0.
+    /// The change of the impulse of a limit from 0 in one iteration.
     pub(in super::super) fn blocked_limit_wanted(
         &self,
         number: usize,
@@ -151,12 +141,10 @@ impl HingeSet {
         rows.map_or(0, |rows| -rows.wanted_of_limit(side, pass, softness, &pair, faults))
     }
 
-    /// Lever ratios of the motor of a hinge in a block.
     pub(in super::super) fn blocked_drive_ratios(&self, number: usize) -> [Ratio; 2] {
         self.blocked_limit(number, 0)
     }
 
-    /// The change of the impulse of a motor that one iteration would make.
     pub(in super::super) fn blocked_drive_wanted(
         &self,
         number: usize,
@@ -168,7 +156,6 @@ impl HingeSet {
         self.blocked_rows(number).map_or(0, |rows| -rows.wanted_of_drive(&pair, faults))
     }
 
-    /// The largest impulse of a motor.
     pub(in super::super) fn blocked_drive_max(&self, number: usize) -> Speed {
         self.blocked_rows(number).map_or(Speed::ZERO, AngleRows::drive_max)
     }
@@ -193,8 +180,7 @@ impl HingeSet {
         }
     }
 
-    /// Takes the impulses of a hinge into its block: of the point along x and y, and of the row on the angle. The
-    /// impulses of the hinge become 0.
+    /// Moves the impulses to the block: of the point along x and y, and of the row on the angle.
     pub(in super::super) fn take_impulses(&mut self, number: usize) -> [i32; 3] {
         let HingeSet { blocked, blocked_extras, .. } = self;
         let [x, y] = &mut blocked.batches[number].lambda;
@@ -203,7 +189,7 @@ impl HingeSet {
         [core::mem::take(&mut x.0[0]), core::mem::take(&mut y.0[0]), angle]
     }
 
-    /// Returns the impulses of a hinge from its block, for the next tick. They must be within the limits of the state.
+    /// The impulses must be within the limits of the state.
     pub(in super::super) fn return_impulses(&mut self, number: usize, [x, y, angle]: [i32; 3]) {
         let HingeSet { blocked, blocked_extras, .. } = self;
         let batch = &mut blocked.batches[number];

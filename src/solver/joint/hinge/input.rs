@@ -1,5 +1,4 @@
-//! Compact copies of hinges, from which batches are filled. Joints are read once in the order of the state. Only the
-//! copies are read in the order of colours.
+//! Compact copies of hinges in the order of the state, from which batches are filled.
 
 use super::super::super::body_list::GROUND;
 use super::super::super::colour::{Node, Size};
@@ -16,20 +15,17 @@ use crate::math::{
     saturate_wide,
 };
 
-/// The properties of a body that its joints depend on.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct HingeBody {
     pub(in super::super) turning: Turning,
     pub(in super::super) inverse_gyration: Reciprocal,
-    /// Mass in kg. 0 if no impulse moves the body.
+    /// Mass in kg; 0 if no impulse moves the body.
     pub(in super::super) mass: Fx,
-    /// Number of joints of the body.
     pub(in super::super) joints: u32,
     centre: Vec2<Fx>,
     local_centre: Vec2<Fx>,
 }
 
-/// The rotation coefficients of a body with joints: the part that every sub-step reads.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct Turning {
     pub(in super::super) index: u32,
@@ -38,7 +34,7 @@ pub(in super::super) struct Turning {
     /// Factor from `SolverBody::turn` (rotation in radians times radius of gyration, in units of 2^-26 m) to units of
     /// 2^-32 turn.
     turns: Fx,
-    /// Rotation in radians in a sub-step per m/s of the spin, times 2^9, which is the ratio of the formats.
+    /// Rotation in radians in a sub-step per m/s of the spin, times 2^9, the ratio of the formats.
     ahead: Fx,
 }
 
@@ -74,7 +70,7 @@ impl HingeBody {
         }
     }
 
-    /// The index of the body, or that of the ground if no impulse changes the body.
+    /// The index of the body, or the ground if no impulse changes it.
     pub(in super::super) fn changed(&self) -> u32 {
         if self.mass > 0 { self.turning.index } else { GROUND }
     }
@@ -101,56 +97,50 @@ impl Turning {
         product(turn.to_bits(), self.turns)
     }
 
-    /// The rotation in a sub-step, in radians.
     #[inline]
     pub(in super::super) fn ahead_of(&self, spin: Speed) -> Unit {
         Unit::from_bits(saturate(product(spin.to_bits(), self.ahead)))
     }
 
-    /// The rotation in a sub-step in radians, with 30 fraction bits, for a spin in m/s with 32 fraction bits.
+    /// The rotation in a sub-step in radians, with 30 fraction bits, for a spin with 32 fraction bits.
     pub(in super::super) fn ahead_of_wide(&self, spin: i64) -> i64 {
-        // 9 bits of `ahead` are the ratio of the formats of a speed and of the result.
+        // 9 bits are the ratio of the formats of a speed and of the result.
         let wide = i128::from(spin) * i128::from(self.ahead.to_bits());
         saturate_wide(round_shift_wide(wide, 32 + 9 + 2))
     }
 }
 
-/// `number factor`, computed in two parts, each of which fits 64 bits.
+/// `number factor`, in two parts that fit 64 bits.
 fn product(number: i32, factor: Fx) -> i64 {
     let (number, high, low) = (i64::from(number), factor.to_bits() >> 32, factor.to_bits() & 0xFFFF_FFFF);
     number * high + round_shift(number * low, 32)
 }
 
-/// The node of a joint between two bodies for graph colouring.
 pub(in super::super) fn node(key: u32, a: &HingeBody, b: &HingeBody) -> Node {
     Node::new(key.into(), [a.changed(), b.changed()], Size::Large)
 }
 
-/// A hinge that is to be put into a batch.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct Input {
-    /// The slot of the joint.
     pub(super) slot: u32,
     pub(super) bodies: [u32; 2],
     pub(super) changed: [u32; 2],
-    /// The index of its rows on the angle, if it has any.
+    /// Index of its rows on the angle.
     pub(super) angle: Option<u32>,
-    /// Anchors from the centres of mass, in the frames of the bodies.
+    /// Vectors from the centres of mass, in the frames of the bodies.
     pub(super) arms: [Vec2<Length>; 2],
     pub(super) ratios: [Vec2<Ratio>; 2],
     /// Changes of lever ratios per metre of the gap.
     pub(super) gap_factors: [i32; 2],
     pub(super) fractions: MassFractions,
-    /// Vector from the centre of mass of A to that of B.
     pub(super) between: Vec2<Fx>,
-    /// The angle of the joint, in units of 2^-32 turn.
+    /// Angle of the joint in units of 2^-32 turn.
     pub(super) turns: i64,
-    /// The angle of the joint while neither body is rotated.
+    /// Angle while neither body is rotated.
     pub(super) rest: Angle,
     pub(super) lambda: [i32; 2],
-    /// The softness of what the joint holds rigidly.
     pub(super) softness: Softness,
-    /// Whether the softness is the joint's own instead of that of the world.
+    /// Whether the softness is the joint's own.
     pub(super) is_tuned: bool,
 }
 
@@ -184,8 +174,7 @@ impl Input {
         }
     }
 
-    /// The index of the body that the hinge holds, if no impulse moves the other body and the joint has no softness of
-    /// its own.
+    /// The body that the hinge holds, if no impulse moves the other one and the joint has no softness of its own.
     pub(super) fn anchored_body(&self) -> Option<u32> {
         match self.changed {
             _ if self.is_tuned => None,
@@ -195,14 +184,14 @@ impl Input {
     }
 }
 
-/// Clamped vector from the centre of mass to an anchor. Both are within 128 m of the body's origin on each axis, so
-/// that the clamp never acts, but the sums that compute the gap rely on its bound.
+/// Clamped vector from the centre of mass to an anchor. Both are within 128 m of the origin on each axis, so that the
+/// clamp does not act, but sums that compute the gap rely on it.
 fn arm(arm: Vec2<Fx>) -> Vec2<Length> {
     const ARM_MAX: Fx = crate::fx!(300);
     Vec2::new(arm.x.clamp(-ARM_MAX, ARM_MAX), arm.y.clamp(-ARM_MAX, ARM_MAX)).narrow()
 }
 
-/// Largest length of a lever ratio. Its average over a predicted rotation then still fits the format.
+/// Largest length of a lever ratio, with which its average over a predicted rotation fits the format.
 pub(super) const LENGTH_MAX: Ratio = Ratio::lit("124");
 
 /// `(-r_y, r_x) / k`, no longer than [`LENGTH_MAX`].

@@ -5,11 +5,11 @@ use super::super::super::pair::{BodyPairW, HALF, UNIT, beyond, clamp};
 use super::batch::Batch;
 use crate::simd::{Ints, Lanes, VelocityW};
 
-/// Impulse limit, 362 m/s. Two impulses up to this limit along different axes change a velocity by less than 512 m/s.
+/// 362 m/s. Two such impulses along different axes change a velocity by less than 512 m/s.
 const PLAIN_MAX: i32 = 362 << 21;
 
 impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
-    /// Changes the velocities by impulses `d` of at most 512 m/s at a point.
+    /// Changes the velocities by impulses `d` of at most 512 m/s.
     #[inline(always)]
     pub(super) fn apply_at_point(&mut self, batch: &Batch<N>, d: [L::Int; 2], faults: &mut Faults) {
         let [g_a, g_b] = &batch.g;
@@ -28,8 +28,8 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
         self.keep_in_range(faults);
     }
 
-    /// Applies impulses above [`PLAIN_MAX`]. Impulses of 512 m/s along both axes may change a velocity by up to
-    /// 724 m/s, so that the sums saturate.
+    /// Applies impulses above [`PLAIN_MAX`]. Two of 512 m/s may change a velocity by 724 m/s, so that the sums
+    /// saturate.
     #[cold]
     fn apply_saturating(&mut self, a: VelocityW<L::Int>, b: VelocityW<L::Int>) {
         let VelocityW { x, y, turn } = self.a;
@@ -61,7 +61,7 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
         self.keep_in_range(faults);
     }
 
-    /// Applies impulses of more than 512 m/s in steps. They occur when a motor reverses or a held body comes free.
+    /// Applies impulses above 512 m/s, as when a motor reverses or a held body comes free.
     #[cold]
     fn turn_in_steps(&mut self, f: &[Ints<N>; 2], mut d: L::Int, faults: &mut Faults) {
         for _ in 0..3 {
@@ -72,7 +72,6 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
     }
 }
 
-/// Velocity changes by impulses at a point.
 #[inline(always)]
 fn changes<L: Lanes<N>, const N: usize>(
     g: &[Ints<N>; 3],

@@ -1,8 +1,7 @@
-//! Hinges: joints that pin two points together, with or without rows on the angle, solved in batches.
+//! Hinges: revolute joints and welds with rigid anchors, solved in batches.
 //!
-//! Revolute joints and welds with rigid anchors are hinges. Each operation on a batch has a file of its own: `refresh`
-//! computes lever ratios, gains and gaps at the current pose, `warm_start` and `solve` change velocities by the point
-//! block of `point_block.rs`, and `angle` does all of this for the rows on the angle. `prepare` fills each batch with
+//! `refresh` computes lever ratios, gains and gaps at the current pose. `warm_start` and `solve` change velocities by
+//! the point block of `point_block.rs`. `angle` does both for the rows on the angle. `prepare` fills batches with
 //! hinges of one colour, and returns their impulses to the state.
 
 mod angle;
@@ -55,20 +54,17 @@ impl BatchKind for Hinges {
     }
 }
 
-/// The rotations of the bodies of a tick, by their indices.
 #[derive(Clone, Copy)]
 pub(super) struct Poses<'a> {
-    /// Cosine and sine of the rotation, and two factors for averaging a lever ratio over the predicted rotation: its
-    /// relative change perpendicular to itself, and its relative decrease along itself.
+    /// Cosine and sine of the rotation, `M t/2` and `M t^2/6` (see `point_block.rs`).
     pub(super) quads: &'a [Quad],
     pub(super) body_rotations: &'a [BodyRotation],
 }
 
-/// The inputs of all hinges of a tick, and the batches of the overflow and of the hinges in blocks. The batches of all
-/// other hinges are in a [`HingeShare`].
+/// Inputs of all hinges, and batches of the overflow and of hinges in blocks. [`HingeShare`] has the others.
 #[derive(Clone, Debug, Default)]
 pub(super) struct HingeSet {
-    /// The hinges in the order of the state, before they are put into batches.
+    /// In the order of the state.
     inputs: Vec<Input>,
     angles: Vec<AngleInput>,
     memo: Memo,
@@ -78,15 +74,15 @@ pub(super) struct HingeSet {
     overflow: Batches<Hinges, 1>,
     /// Hinges in blocks (`joint/block`), in the order of the blocks.
     blocked: Batches<Hinges, 1>,
-    /// For each hinge in a block, the index of its rows on the angle.
+    /// Index of the rows on the angle of each hinge in a block.
     blocked_extras: Vec<Option<usize>>,
     /// Whether bodies have moved since the batches were refreshed.
     is_stale: bool,
 }
 
 impl HingeSet {
-    /// Invalidates the batches, because bodies have moved. The next operation refreshes each batch before it uses it,
-    /// so that the batch is fetched from memory only once.
+    /// Invalidates the batches. The next operation refreshes each batch before it uses it, so that the batch is fetched
+    /// from memory once.
     pub(super) fn expire(&mut self) {
         self.is_stale = true;
     }
@@ -97,7 +93,7 @@ impl HingeSet {
         self.blocked.run_in_order(WarmStart { refresh }, context);
     }
 
-    /// One iteration over the overflow. Also refreshes the hinges in blocks.
+    /// Also refreshes the hinges in blocks.
     pub(super) fn solve(&mut self, pass: impl SolverPass, poses: Poses<'_>, context: &StepContext<'_>) {
         let [refresh, _] = refreshes(&mut self.is_stale, poses, context);
         self.overflow.run_in_order(Solve { pass, refresh }, context);
@@ -109,15 +105,14 @@ impl HingeSet {
 #[derive(Clone, Debug, Default)]
 pub(super) struct HingeShare {
     ordinary: Coloured<Hinges>,
-    /// Anchored hinges, whose points are stiffer: they connect a body that has no other joint to a body that no impulse
+    /// Anchored hinges, whose points are stiffer: they connect a body without another joint to a body that no impulse
     /// moves, and have no softness of their own.
     anchored: Coloured<Hinges>,
-    /// Whether bodies have moved since the batches were refreshed.
     is_stale: bool,
 }
 
 impl HingeShare {
-    /// Invalidates the batches, like [`HingeSet::expire`].
+    /// Like [`HingeSet::expire`].
     pub(super) fn expire(&mut self) {
         self.is_stale = true;
     }
@@ -128,7 +123,6 @@ impl HingeShare {
         self.anchored.run_coloured(WarmStart { refresh: refresh_anchored }, context);
     }
 
-    /// One iteration over the coloured hinges of the thread.
     pub(super) fn solve(&mut self, pass: impl SolverPass, poses: Poses<'_>, context: &StepContext<'_>) {
         let [refresh, refresh_anchored] = refreshes(&mut self.is_stale, poses, context);
         self.ordinary.run_coloured(Solve { pass, refresh }, context);
@@ -136,7 +130,7 @@ impl HingeShare {
     }
 }
 
-/// Returns the refresh that the next operation has to perform, for ordinary and for anchored hinges.
+/// Refreshes of the next operation, for ordinary and for anchored hinges.
 fn refreshes<'a>(is_stale: &mut bool, poses: Poses<'a>, context: &StepContext<'_>) -> [Refresh<'a>; 2] {
     let (is_stale, tuning) = (mem::take(is_stale), context.tuning);
     [tuning.joint, tuning.anchored].map(|points| {

@@ -1,4 +1,4 @@
-//! Fills batches with hinges in the order in which they are solved, and returns their impulses to the state.
+//! Fills batches with hinges in the order of solving, and returns their impulses to the state.
 
 use alloc::vec::Vec;
 
@@ -27,7 +27,7 @@ impl HingeSet {
         blocked_extras.clear();
     }
 
-    /// Adds a hinge, and returns the index of its input.
+    /// Returns the index of the input.
     pub(in super::super) fn push_input(
         &mut self,
         slot: u32,
@@ -47,7 +47,7 @@ impl HingeSet {
         count(inputs) - 1
     }
 
-    /// Adds batches for the overflow: hinges that fit no colour, given by the indices of their inputs.
+    /// Adds batches for hinges that fit no colour.
     pub(in super::super) fn push_overflow(&mut self, indices: impl Iterator<Item = u32> + Clone) {
         let HingeSet { inputs, angles, overflow, .. } = self;
         for has_angle in [false, true] {
@@ -57,9 +57,8 @@ impl HingeSet {
         }
     }
 
-    /// Adds batches for the hinges of a colour to the share of one thread, `part`. `indices` are those of the inputs of
-    /// the hinges. Hinges with rows on the angle and anchored hinges have separate batches. `is_alone` returns whether
-    /// the body with the given index has only one joint.
+    /// Adds batches for the hinges of a colour to the share of one thread. `is_alone` returns whether a body has only
+    /// one joint.
     pub(in super::super) fn push_colour(
         &mut self,
         part: &mut HingeShare,
@@ -89,19 +88,17 @@ impl HingeSet {
         anchored.end_colour();
     }
 
-    /// Replaces the impulses and angles of the last tick by those of joints that have been restored.
+    /// Replaces impulses and angles by those of restored joints.
     pub(in super::super) fn reload(&mut self, joints: &Arena<Joint, JointId>) {
         self.overflow.reload(joints);
         self.blocked.reload(joints);
     }
 
-    /// Reuses the hinges of the last tick, with the bodies at their current poses.
     pub(in super::super) fn resume(&mut self, poses: &[Pose]) {
         self.overflow.resume(poses);
         self.blocked.resume(poses);
     }
 
-    /// Stores impulses and angles for the next tick.
     pub(in super::super) fn store(
         &mut self,
         joints: &mut Arena<Joint, JointId>,
@@ -120,30 +117,26 @@ impl HingeShare {
         with_data!(anchored, batches => batches.clear());
     }
 
-    /// Chooses the layout of the batches, which must be empty, for a machine.
+    /// Chooses the layout of the batches, which must be empty.
     pub(in super::super) fn fit(&mut self, machine: Machine) {
         self.ordinary.fit(machine);
         self.anchored.fit(machine);
     }
 
-    /// Adds the indices of the bodies of anchored hinges to a list.
     pub(in super::super) fn add_anchored_bodies(&self, all: &mut Vec<u32>) {
         with_data!(&self.anchored, batches => batches.add_anchored_bodies(all));
     }
 
-    /// Replaces the impulses and angles of the last tick by those of joints that have been restored.
     pub(in super::super) fn reload(&mut self, joints: &Arena<Joint, JointId>) {
         self.ordinary.reload(joints);
         self.anchored.reload(joints);
     }
 
-    /// Reuses the hinges of the last tick, with the bodies at their current poses.
     pub(in super::super) fn resume(&mut self, poses: &[Pose]) {
         self.ordinary.resume(poses);
         self.anchored.resume(poses);
     }
 
-    /// Stores impulses and angles for the next tick.
     pub(in super::super) fn store(
         &mut self,
         joints: &mut Arena<Joint, JointId>,
@@ -181,15 +174,15 @@ impl Coloured<Hinges> {
 }
 
 impl<const N: usize> Batches<Hinges, N> {
-    /// Adds the index of the body that each hinge holds to a list. All hinges must be anchored.
+    /// All hinges must be anchored.
     fn add_anchored_bodies(&self, all: &mut Vec<u32>) {
         for (Batch { changed: [a, b], .. }, records) in self.batches.iter().zip(&self.records) {
             all.extend(a.iter().zip(b).take(records.len).map(|(&a, &b)| if a == GROUND { b } else { a }));
         }
     }
 
-    /// Adds batches of hinges. The caller ensures that no two of `N` successive hinges share a body that impulses
-    /// change, that either all hinges or none have rows on the angle, and that all have the same softness.
+    /// No two of `N` successive hinges may share a body that impulses change. They must have the same softness, and
+    /// either all or none must have rows on the angle.
     pub(super) fn push(
         &mut self,
         inputs: &[Input],
@@ -304,7 +297,7 @@ impl<const N: usize> Shape<N> {
 }
 
 /// A distance between centres with 52 fraction bits, clamped to 1024 m so that no sum overflows. Two arms reach at most
-/// 849 m, so that larger distances need not be exact.
+/// 849 m.
 fn widened(between: Fx) -> i64 {
     const FARTHEST: Fx = crate::fx!(1024);
     const EXTRA: u32 = Length::FRAC_NBITS + Unit::FRAC_NBITS - Fx::FRAC_NBITS;

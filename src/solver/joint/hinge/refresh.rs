@@ -1,19 +1,17 @@
 //! Refresh: computes lever ratios, gains and gaps of hinges at the current pose.
 //!
-//! Lever ratios are rotated from their body's frame, `e = R e0`, instead of being computed again from the arms, because
-//! their length does not change. Between two bodies that impulses move, both levers then reach to the middle of the
-//! gap, with `eA + perp(gap) / (2 kA)` and `eB - perp(gap) / (2 kB)`: an impulse that acts on both bodies at one point
-//! conserves angular momentum.
+//! Lever ratios are rotated from their body's frame, `e = R e0`. Between two bodies that impulses move, both levers
+//! then reach to the middle of the gap, with `eA + perp(gap) / (2 kA)` and `eB - perp(gap) / (2 kB)`: impulses at one
+//! point conserve angular momentum.
 //!
-//! The products of `K` are computed exactly, in two parts of 32 bits, and then rounded:
+//! The products of `K` are exact, in two parts of 32 bits, and then rounded:
 //!
 //! ```text
 //! a e = hi 2^32 + lo,    a e e' = hi e' + round(lo e' / 2^32)       (46 fraction bits)
 //! ```
 //!
-//! If `a e` were rounded to the 24 fraction bits of `e` first, its error would be multiplied by `e'`, which may be as
-//! large as 2^7. With 46 fraction bits the determinant can be computed as the difference `K11 K22 - K12^2`, because the
-//! parts that cancel are exact.
+//! Rounding `a e` to the 24 fraction bits of `e` first would multiply its error by `e'`, up to 2^7. The determinant can
+//! be the difference `K11 K22 - K12^2`, because the parts that cancel are exact.
 
 use core::cell::Cell;
 
@@ -27,14 +25,12 @@ use super::batch::{Batch, Records, Shape};
 use crate::math::{Fx, Length, Rate, Ratio, Reciprocal, Shift, Speed, Step, Unit, saturate};
 use crate::simd::{Ints, Lanes};
 
-/// The softness of the rows of a batch.
 #[derive(Clone, Copy)]
 pub(super) struct Stiffness {
     pub(super) points: Softness,
     pub(super) limits: Softness,
 }
 
-/// Updates outdated batches to the current pose.
 #[derive(Clone, Copy)]
 pub(super) struct Refresh<'a> {
     pub(super) is_stale: bool,
@@ -43,7 +39,7 @@ pub(super) struct Refresh<'a> {
 }
 
 impl Refresh<'_> {
-    /// The softness of a batch: its own, or that of all ordinary or of all anchored hinges.
+    /// The batch's own softness, or that of ordinary or anchored hinges.
     #[inline(always)]
     pub(super) fn stiffness_of<const N: usize>(&self, batch: &Batch<N>, records: &Records<N>) -> Stiffness {
         match batch.is_tuned {
@@ -75,7 +71,6 @@ impl Refresh<'_> {
     }
 }
 
-/// Vectors from A's anchor to B's at the current pose.
 #[inline(always)]
 fn gaps<L: Lanes<N>, const N: usize>(
     batch: &Batch<N>,
@@ -92,7 +87,6 @@ fn gaps<L: Lanes<N>, const N: usize>(
     [moved_gap::<L, N>(gap_x, moved[0]), moved_gap::<L, N>(gap_y, moved[1])]
 }
 
-/// Computes lever ratios and gains at the current pose.
 #[inline(always)]
 fn refresh_gains<L: Lanes<N>, const N: usize>(
     batch: &mut Batch<N>,
@@ -115,7 +109,7 @@ fn refresh_gains<L: Lanes<N>, const N: usize>(
     }
 }
 
-/// `R v` for the rotations `R` in quads, with 30 more fraction bits.
+/// `R v` with 30 more fraction bits.
 #[inline(always)]
 fn rotated<L: Lanes<N>, const N: usize>(quads: &[L::Int; 4], v: &[Ints<N>; 2]) -> [L::Wide; 2] {
     let [c, s, ..] = *quads;
@@ -123,7 +117,6 @@ fn rotated<L: Lanes<N>, const N: usize>(quads: &[L::Int; 4], v: &[Ints<N>; 2]) -
     [L::sub_wide(L::mul(c, x), L::mul(s, y)), L::add_wide(L::mul(s, x), L::mul(c, y))]
 }
 
-/// Lever ratios in world axes.
 #[inline(always)]
 fn rotated_ratios<L: Lanes<N>, const N: usize>(quads: &[L::Int; 4], ratios: &[Ints<N>; 2]) -> [L::Int; 2] {
     let [x, y] = rotated::<L, N>(quads, ratios);
@@ -133,9 +126,8 @@ fn rotated_ratios<L: Lanes<N>, const N: usize>(quads: &[L::Int; 4], ratios: &[In
 /// Fraction bits of [`gap_factors`].
 pub(super) const FACTOR: u32 = 14;
 
-/// `1 / (2 kA)` and `-1 / (2 kB)` in 1/m: the changes of the lever ratios per metre of the gap. 0 if impulses do not
-/// move one of the bodies: angular momentum is then not conserved in any case, and impulses act at the anchors.
-/// Saturates for radii of gyration below 2^-18 m.
+/// `1 / (2 kA)` and `-1 / (2 kB)` in 1/m: changes of the lever ratios per metre of the gap. 0 if impulses do not move
+/// one of the bodies, because angular momentum is not conserved anyway. Saturates for radii of gyration below 2^-18 m.
 pub(super) fn gap_factors(inverse_gyrations: [Reciprocal; 2], fractions: MassFractions) -> [i32; 2] {
     if fractions.a == 0 || fractions.b == 0 {
         return [0; 2];
@@ -145,15 +137,15 @@ pub(super) fn gap_factors(inverse_gyrations: [Reciprocal; 2], fractions: MassFra
     [a, -b]
 }
 
-/// Lever ratios that reach into the gap, `e + factor (-gap_y, gap_x)`. Lever ratios that would be too long for the
-/// products of `K` stay as they are: beyond 87 radii of gyration angular momentum is not conserved.
+/// Lever ratios that reach into the gap, `e + factor (-gap_y, gap_x)`. Ratios that would be too long for `K` stay
+/// unchanged: beyond 87 radii of gyration angular momentum is not conserved.
 #[inline(always)]
 fn reaching<L: Lanes<N>, const N: usize>(
     e: [L::Int; 2],
     [gap_x, gap_y]: [L::Int; 2],
     factors: &Ints<N>,
 ) -> [L::Int; 2] {
-    /// Largest component. The length of a lever ratio is then below [`super::input::LENGTH_MAX`].
+    /// Largest component, with which the length is below [`super::input::LENGTH_MAX`].
     const REACH_MAX: Ratio = Ratio::lit("87");
     const SHIFT: i32 = shift(Step::FRAC_NBITS + FACTOR - Ratio::FRAC_NBITS);
     let factor = L::load(factors);
@@ -165,8 +157,8 @@ fn reaching<L: Lanes<N>, const N: usize>(
     [L::select(beyond, e[0], x), L::select(beyond, e[1], y)]
 }
 
-/// The gap in the format of [`Step`]. `gap` is the exact gap without the displacements of the bodies since the start of
-/// the tick, with 52 fraction bits. `moved` is the displacement of B relative to A. Their sum is rounded once.
+/// The gap, rounded once. `gap` has 52 fraction bits and excludes `moved`, the displacement of B relative to A since
+/// the start of the tick.
 #[inline(always)]
 fn moved_gap<L: Lanes<N>, const N: usize>(gap: L::Wide, moved: L::Int) -> L::Int {
     const ARM: u32 = Length::FRAC_NBITS + Unit::FRAC_NBITS;
@@ -196,7 +188,7 @@ impl<L: Lanes<N>, const N: usize> Parts<L, N> {
     }
 }
 
-/// An entry of `K - I`: `aA eA eA' + aB eB eB'`. `a` and `b` contain the products with the mass fractions.
+/// `aA eA eA' + aB eB eB'`, an entry of `K - I`. `a` and `b` contain the products with the mass fractions.
 #[inline(always)]
 fn entry<L: Lanes<N>, const N: usize>(
     a: &Parts<L, N>,
@@ -220,7 +212,6 @@ fn inverse<L: Lanes<N>, const N: usize>([a, b]: [[L::Int; 2]; 2], fractions: [L:
     L::inverse([xx, xy, yy])
 }
 
-/// Computes the gains of the body on a side.
 #[inline(always)]
 fn fill_gains<L: Lanes<N>, const N: usize>(
     batch: &mut Batch<N>,

@@ -18,7 +18,6 @@ use super::refresh::Refresh;
 use crate::math::Unit;
 use crate::simd::{Ints, Lanes, Quad, VelocityW};
 
-/// One iteration of a pass.
 #[derive(Clone, Copy)]
 pub(super) struct Solve<'a, P> {
     pub(super) pass: P,
@@ -31,8 +30,7 @@ impl<P: SolverPass> Operation<Hinges> for Solve<'_, P> {
         let (pass, refresh) = (self.pass.kind(), &self.refresh);
         let BatchParts { batch, record, extra: mut angle, bodies, faults } = parts;
         refresh.refresh::<L, N>(batch, record, angle.as_deref_mut(), bodies);
-        // The softness and the quads are copied, so that the compiler sees that writing to the batch does not change
-        // them.
+        // Copied, so that the compiler sees that writing to the batch does not change them.
         let (stiffness, quads) = (refresh.stiffness_of(batch, record), refresh.poses.quads);
         let mut pair = BodyPairW::<L, N>::load(bodies, &batch.bodies);
         if let Some(rows) = angle {
@@ -49,7 +47,6 @@ impl<P: SolverPass> Operation<Hinges> for Solve<'_, P> {
     }
 }
 
-/// The lever ratios with which a pass measures velocity.
 #[inline(always)]
 pub(super) fn ratios_of<L: Lanes<N>, const N: usize>(
     batch: &Batch<N>,
@@ -68,7 +65,6 @@ pub(super) fn ratios_of<L: Lanes<N>, const N: usize>(
     }
 }
 
-/// Velocity of B's anchor relative to A's.
 #[inline(always)]
 pub(super) fn relative_velocity<L: Lanes<N>, const N: usize>(
     e_a: [L::Int; 2],
@@ -84,7 +80,7 @@ pub(super) fn relative_velocity<L: Lanes<N>, const N: usize>(
     ]
 }
 
-/// `w = massScale (vr + bias) + impulseScale L` along an axis; in the relax pass `w = vr`.
+/// `w` along an axis.
 #[inline(always)]
 pub(super) fn wanted<L: Lanes<N>, const N: usize>(
     batch: &Batch<N>,
@@ -105,7 +101,7 @@ pub(super) fn wanted<L: Lanes<N>, const N: usize>(
     }
 }
 
-/// Accumulates the impulse along an axis against a relative velocity, and returns its change.
+/// Returns the change of the impulse along an axis.
 #[inline(always)]
 fn accumulate<L: Lanes<N>, const N: usize>(
     batch: &mut Batch<N>,
@@ -129,8 +125,7 @@ fn accumulate<L: Lanes<N>, const N: usize>(
     L::sub(new, old)
 }
 
-/// The lever ratios averaged over the predicted rotation, `e + M (t/2 (-e_y, e_x) - t^2/6 e)`. The quads contain
-/// `M t/2` and `M t^2/6` of each body.
+/// Lever ratios averaged over the predicted rotation, `e + M (t/2 (-e_y, e_x) - t^2/6 e)`.
 #[inline(always)]
 fn ratios_ahead<L: Lanes<N>, const N: usize>(
     e: &[Ints<N>; 2],
@@ -142,7 +137,7 @@ fn ratios_ahead<L: Lanes<N>, const N: usize>(
     [L::sub(x, L::narrow::<UNIT>(back_x)), L::sub(y, L::narrow::<UNIT>(back_y))]
 }
 
-/// Velocity of B relative to A along an axis. Each lane in which it does not fit counts as a fault.
+/// Velocity along an axis. Lanes in which it does not fit count as faults.
 #[inline(always)]
 fn velocity<L: Lanes<N>, const N: usize>(
     linear: L::Int,

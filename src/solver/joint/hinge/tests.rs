@@ -1,5 +1,4 @@
-//! Batches of hinges give the same bits on every backend as one hinge at a time, and nearly the same results as the
-//! scalar point block.
+//! Batches of hinges give the same bits on every backend as single hinges, and nearly those of the scalar point block.
 
 use std::vec;
 use std::vec::Vec;
@@ -33,10 +32,9 @@ struct Setting {
     fractions: Vec<MassFractions>,
 }
 
-/// Largest magnitudes of the random numbers of a test case.
 #[derive(Clone, Copy)]
 struct Sizes {
-    /// Size of the arms, in radii of gyration.
+    /// In radii of gyration.
     arm: Fx,
     speed: Fx,
     gap: Fx,
@@ -47,7 +45,7 @@ const COMMON: Sizes = Sizes { arm: fx!(16), speed: fx!(10), gap: fx!(0.1) };
 /// Sizes at which clamps act.
 const EXTREME: Sizes = Sizes { arm: fx!(500), speed: fx!(511), gap: fx!(2000) };
 
-/// Settings with which anchored hinges are as stiff as other hinges, so that both can be compared.
+/// As stiff as other hinges, so that both can be compared.
 fn tuning() -> Tuning {
     let tuning = Tuning::new(&SolverSettings::default(), Vec2::new(fx!(0), fx!(-10)), 60);
     Tuning { anchored: tuning.joint, ..tuning }
@@ -164,7 +162,7 @@ impl Setting {
         faults
     }
 
-    /// Solves one iteration of a relax pass. Returns the faults.
+    /// Solves one relax pass. Returns the faults.
     fn relax(&mut self) -> Faults {
         let (tuning, mut faults) = (tuning(), 0);
         let Setting { hinges, part, bodies, quads, body_rotations, .. } = self;
@@ -262,9 +260,8 @@ fn every_machine_solves_as_one_hinge_at_a_time() {
     assert!(faulty > 100, "{faulty} settings reach the clamps");
 }
 
-/// Rotated lever ratios differ by a unit of 2^-24 from lever ratios that are computed again. With arms of up to 16
-/// radii of gyration on both sides the anchors start at less than 350 m/s. One iteration may leave 128 units of
-/// [`Speed`], 6.1e-5 m/s.
+/// Rotated lever ratios differ by 2^-24 from ratios that are computed again. With arms of up to 16 radii of gyration,
+/// the anchors start at less than 350 m/s. One iteration may leave 128 units, 6.1e-5 m/s.
 #[test]
 fn a_point_is_solved_as_by_the_scalar_block() {
     let mut rng = Rng::new(2);
@@ -290,7 +287,6 @@ fn a_point_is_solved_as_by_the_scalar_block() {
                 worst = apart.into_iter().fold(worst, i32::max);
             }
         }
-        // A second update removes the rounding errors of the first.
         let first: Vec<_> = setting.impulses();
         faults += setting.relax();
         for ((_, first), (_, second)) in first.iter().zip(setting.impulses()) {

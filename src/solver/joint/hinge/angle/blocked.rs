@@ -1,4 +1,4 @@
-//! The rows on the angle of a hinge in a block. The block (`joint/block`) computes their impulses.
+//! Rows on the angle of a hinge in a block (`joint/block`), which computes their impulses.
 
 use super::super::super::super::context::Pass;
 use super::super::super::super::limits::Faults;
@@ -11,7 +11,7 @@ use crate::math::{Ratio, Speed, Unit, round_shift};
 use crate::simd::{Ints, Lanes};
 
 impl AngleRows<1> {
-    /// The spring, or the row that holds the angle. `None` without such a row, or if impulses turn neither body.
+    /// `None` without a spring or a row that holds the angle, or if impulses turn neither body.
     pub(in super::super) fn blocked_row(&self) -> Option<BlockedAngle> {
         let SpringRow { max, mass_scale, holds, .. } = &self.spring;
         (self.has_spring && max.0[0] > 0).then(|| BlockedAngle {
@@ -21,7 +21,6 @@ impl AngleRows<1> {
         })
     }
 
-    /// `w` of the spring or of the row that holds the angle.
     pub(in super::super) fn blocked_wanted<L: Lanes<1>>(
         &self,
         pass: Pass,
@@ -31,12 +30,11 @@ impl AngleRows<1> {
         if self.has_spring { self.wanted_of_spring(pass, pair, faults) } else { L::splat(0) }
     }
 
-    /// Whether the hinge has limits and a body that impulses can rotate.
     pub(in super::super) fn has_blocked_limits(&self) -> bool {
         self.has_limit && self.limit_max.0[0] > 0
     }
 
-    /// Lever ratios of a limit. Side 0 is the lower limit.
+    /// Side 0 is the lower limit.
     pub(in super::super) fn limit_ratios(&self, side: usize) -> [Ratio; 2] {
         self.e.each_ref().map(|e| Ratio::from_bits(if side == 0 { e.0[0] } else { -e.0[0] }))
     }
@@ -45,7 +43,7 @@ impl AngleRows<1> {
         self.limits[side].open.0[0] < 0
     }
 
-    /// `w` of a limit, as if its impulse were 0 and had no bounds.
+    /// `w` of a limit, from an impulse of 0 and without bounds.
     pub(in super::super) fn wanted_of_limit<L: Lanes<1>>(
         &self,
         side: usize,
@@ -69,7 +67,7 @@ impl AngleRows<1> {
         self.has_drive && self.drive.max.0[0] > 0
     }
 
-    /// `w` of the motor. Its target speed is at most the speed at which the limits may be approached.
+    /// `w` of the motor, whose target is at most the speed at which the limits may be approached.
     pub(in super::super) fn wanted_of_drive<L: Lanes<1>>(
         &self,
         pair: &BodyPairW<L, 1>,
@@ -87,22 +85,18 @@ impl AngleRows<1> {
         i64::from(vn.0[0]) - speed
     }
 
-    /// The largest impulse of the motor.
     pub(in super::super) fn drive_max(&self) -> Speed {
         Speed::from_bits(self.drive.max.0[0])
     }
 
-    /// The impulse of the motor.
     pub(in super::super) fn drive_impulse(&mut self) -> &mut i32 {
         &mut self.drive.lambda.0[0]
     }
 
-    /// The impulse of a limit.
     pub(in super::super) fn limit_impulse(&mut self, side: usize) -> &mut i32 {
         &mut self.limits[side].lambda.0[0]
     }
 
-    /// The impulse of the spring or of the row that holds the angle.
     pub(in super::super) fn held_impulse(&mut self) -> &mut i32 {
         &mut self.spring.lambda.0[0]
     }
