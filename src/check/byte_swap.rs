@@ -1,7 +1,7 @@
-//! [`ByteSwaps`]: tests whether the hash covers all state that influences future ticks.
+//! Tests whether the hash covers all state that influences future ticks.
 //!
-//! One byte or a run of bytes in a save is replaced by the bytes of a save of another tick. If the state loaded from
-//! the changed save has the hash of the original state, both states must have the same future under the same inputs.
+//! One byte or a run of bytes in a save is replaced by the bytes of a save of another tick. If the changed state has
+//! the same hash, it must have the same future under the same inputs.
 
 use alloc::boxed::Box;
 use alloc::collections::VecDeque;
@@ -16,17 +16,12 @@ use crate::codec;
 use crate::hash::StateHash;
 use crate::lockstep::Game;
 
-/// Minimum interval in ticks between kept saves. At the start, saves at ticks that are powers of two are kept in
-/// addition.
+/// Minimum interval in ticks between kept saves. At the start, saves at powers of two are kept in addition.
 const INTERVAL: u64 = 16;
-/// Maximum number of ticks for which the two futures are compared.
 const FUTURE: usize = 48;
-/// Maximum number of saves of other ticks to take bytes from.
 const DONORS_MAX: usize = 6;
-/// Maximum number of swaps tried with one save.
 const TRIES_MAX: usize = 32;
 
-/// Saves of some ticks, and the inputs that followed.
 pub(super) struct ByteSwaps<G: Game> {
     moments: VecDeque<Moment<G>>,
     donors: VecDeque<Vec<u8>>,
@@ -36,7 +31,6 @@ struct Moment<G: Game> {
     tick: u64,
     bytes: Vec<u8>,
     hash: StateHash,
-    /// The inputs of the ticks after the saved one.
     inputs: Vec<Vec<G::Input>>,
 }
 
@@ -47,7 +41,7 @@ impl<G: Game> Default for ByteSwaps<G> {
 }
 
 impl<G: Game> ByteSwaps<G> {
-    /// Keeps the save after a tick if it is due, and examines the saves that [`FUTURE`] ticks have followed.
+    /// Keeps the save after a tick if it is due, and examines saves that are [`FUTURE`] ticks old.
     pub(super) fn perturb(
         &mut self,
         game: &G,
@@ -69,7 +63,7 @@ impl<G: Game> ByteSwaps<G> {
         Ok(())
     }
 
-    /// Examines the remaining saves, with the ticks that followed them.
+    /// Examines the remaining saves.
     pub(super) fn finish(&mut self, game: &G, now: &Now<'_, G>, steps: &mut u64) -> Result<(), Box<Finding>> {
         self.add_donor(&codec::encode(&game.save()));
         core::mem::take(&mut self.moments).iter().try_for_each(|moment| self.examine(moment, now, steps))
@@ -83,13 +77,13 @@ impl<G: Game> ByteSwaps<G> {
     }
 
     fn examine(&self, moment: &Moment<G>, now: &Now<'_, G>, steps: &mut u64) -> Result<(), Box<Finding>> {
-        // The bytes of the physics world are left out: the world's own hash covers all of them.
+        // The world's own hash covers all bytes of the world.
         let world = world_in::<G>(moment, now)?;
         let byte_swaps = self.donors.iter().flat_map(|donor| byte_swaps(&moment.bytes, donor));
         let mut byte_swaps: Vec<_> = byte_swaps.filter(|(range, _)| !overlap(range, &world)).collect();
         byte_swaps.sort_by(|a, b| (a.0.start, a.0.end, &a.1).cmp(&(b.0.start, b.0.end, &b.1)));
         byte_swaps.dedup();
-        // Only [`TRIES_MAX`] swaps are tried. The first one depends on the tick, so that other saves try other swaps.
+        // The first swap depends on the tick, so that other saves try other swaps.
         let turn = usize::try_from(moment.tick).unwrap_or(0).wrapping_mul(7) % byte_swaps.len().max(1);
         byte_swaps.rotate_left(turn);
         for (range, replacement) in byte_swaps.into_iter().take(TRIES_MAX) {
@@ -104,7 +98,7 @@ impl<G: Game> ByteSwaps<G> {
     }
 
     /// Plays two states with the same hash. Returns the number of ticks after which their hashes differ, and the saves
-    /// at the start; `None` if they do not differ, or if the changed bytes are not another state with the same hash.
+    /// at the start. `None` if they do not differ, or if the changed bytes are not another state with the same hash.
     #[expect(clippy::type_complexity, reason = "it is taken apart at once")]
     fn futures_differ(
         &self,
@@ -135,7 +129,6 @@ impl<G: Game> ByteSwaps<G> {
     }
 }
 
-/// Loads a save into a new game, if the bytes are the canonical encoding of a save.
 fn loaded<G: Game>(bytes: &[u8], now: &Now<'_, G>) -> Result<Option<(G, G::Save)>, Box<Finding>> {
     let Ok(save) = codec::decode::<G::Save>(bytes) else {
         return Ok(None);
@@ -148,7 +141,7 @@ fn loaded<G: Game>(bytes: &[u8], now: &Now<'_, G>) -> Result<Option<(G, G::Save)
     Ok(Some((game, save)))
 }
 
-/// Range of the bytes of the physics world in a save; empty if there is none.
+/// Range of the bytes of the physics world in a save. Empty if there is none.
 fn world_in<G: Game>(moment: &Moment<G>, now: &Now<'_, G>) -> Result<Range<usize>, Box<Finding>> {
     let Some((mut game, _)) = loaded::<G>(&moment.bytes, now)? else {
         return Ok(0..0);
@@ -164,7 +157,7 @@ fn overlap(a: &Range<usize>, b: &Range<usize>) -> bool {
     a.start < b.end && b.start < a.end
 }
 
-/// The possible swaps with a save of the same length: every single byte that differs and every run of such bytes.
+/// The possible swaps with a save of the same length: each byte that differs, and each run of such bytes.
 fn byte_swaps(bytes: &[u8], donor: &[u8]) -> Vec<(Range<usize>, Vec<u8>)> {
     let mut found = Vec::new();
     if bytes.len() != donor.len() {

@@ -1,5 +1,3 @@
-//! [`Checker`]: simulates a reference run and one replica per variant beside it, tick by tick.
-
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
@@ -32,14 +30,14 @@ pub struct Checked {
     pub hash: StateHash,
     /// The variants in which the ticks were played, in addition to the reference run.
     pub variants: Vec<Variant>,
-    /// Number of ticks simulated by the reference run and in all variants except [`Variant::Recorded`].
+    /// Number of ticks simulated by the reference run and the variants, except [`Variant::Recorded`].
     pub simulated: u64,
 }
 
-/// A game that is checked while it is played, for callers that do not have all inputs beforehand. Supports all variants
+/// A game that is checked while it is played, for callers that do not have all inputs beforehand. Supports the variants
 /// except [`Variant::Recorded`].
 ///
-/// A checker must not be used after its first finding.
+/// Must not be used after its first finding.
 ///
 /// ```
 /// # use lockstep2d::{body::BodyDef, world::Command};
@@ -102,7 +100,7 @@ impl<'s, G: Game> Checker<'s, G> {
         self.tick
     }
 
-    /// Number of ticks simulated so far by the reference run and in all variants together.
+    /// Number of ticks simulated so far by the reference run and the variants.
     #[must_use]
     pub fn simulated(&self) -> u64 {
         self.tick + self.replicas.iter().map(|replica| replica.steps).sum::<u64>()
@@ -155,8 +153,7 @@ impl<'s, G: Game> Checker<'s, G> {
         Now { setup, options, straight, inputs, hash: *hash, tick: *tick, phases, claims: Vec::new() }
     }
 
-    /// At the tick at which checking begins, starts a replica for each variant of the options, except
-    /// [`Variant::Recorded`] and, for a game that exposes no world, the variants that need one.
+    /// Starts the replicas at the tick at which checking begins.
     fn begin(&mut self) -> Result<(), Box<Finding>> {
         if self.tick != self.options.from || !self.replicas.is_empty() {
             return Ok(());
@@ -176,7 +173,7 @@ impl<'s, G: Game> Checker<'s, G> {
     }
 }
 
-/// Plays a tick and returns the digests of its phases, if phases are compared.
+/// Plays a tick, and returns the digests of its phases if phases are compared.
 pub(super) fn step<G: Game>(game: &mut G, inputs: &[G::Input], phases: Phases) -> Vec<PhaseDigest> {
     if phases == Phases::Compared
         && let Some(world) = game.world_mut()
@@ -190,7 +187,6 @@ pub(super) fn step<G: Game>(game: &mut G, inputs: &[G::Input], phases: Phases) -
     }
 }
 
-/// Creates another game from the same setup.
 pub(super) fn another<G: Game>(setup: &G::Setup, variant: Variant, tick: u64) -> Result<G, Box<Finding>> {
     G::new(setup).map_err(|error| Box::new(Finding::new(variant, Fault::Refused { why: error.why }, tick)))
 }

@@ -1,5 +1,3 @@
-//! [`Failure`]: a fault of a game, with a replay that reproduces it.
-
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::fmt;
@@ -50,14 +48,12 @@ pub struct Failure {
     pub finding: Finding,
     /// The finding in the minimised replay.
     pub minimised: Finding,
-    /// A replay file with as few ticks and inputs as were found within the budget of the check.
-    /// [`check_replay`](super::check_replay) reproduces the failure. If the game is not deterministic between runs, the
-    /// checkpoints in the replay may differ from those of the next run.
+    /// Replay file with as few ticks and inputs as were found within the budget. [`check_replay`](super::check_replay)
+    /// reproduces the failure, unless it is random. Then the checkpoints of the replay may be wrong as well.
     pub replay: Vec<u8>,
     /// Number of ticks in the replay.
     pub ticks: u64,
-    /// Number of runs of the replay that failed, and number of runs. A game that depends on a random iteration order
-    /// does not always fail.
+    /// Number of runs of the replay that failed, and number of runs. Random failures do not occur in every run.
     pub failed: (u32, u32),
 }
 
@@ -69,7 +65,7 @@ impl fmt::Display for Failure {
     }
 }
 
-/// Same as [`Display`](fmt::Display), for the output of a test that unwraps.
+/// Prints the [`Display`](fmt::Display) text, for tests that unwrap.
 impl fmt::Debug for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{self}")
@@ -119,7 +115,7 @@ impl fmt::Display for CheckError {
     }
 }
 
-/// Same as [`Display`](fmt::Display), for the output of a test that unwraps.
+/// Prints the [`Display`](fmt::Display) text, for tests that unwrap.
 impl fmt::Debug for CheckError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{self}")

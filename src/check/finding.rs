@@ -1,5 +1,3 @@
-//! [`Finding`]: a fault, its variant and its tick.
-
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt;
@@ -30,7 +28,7 @@ pub enum Fault {
     Hash,
     /// The hash agrees, but the digest of a phase of the physics step differs.
     Phase,
-    /// Loading a save leads to a state with another hash than the saved state.
+    /// Loading a save leads to a state with another hash.
     Loaded,
     /// Decoding a save and encoding it again gives different bytes.
     Encoding,
@@ -38,23 +36,23 @@ pub enum Fault {
     SavedAgain,
     /// The bytes of a save cannot be decoded.
     Unreadable {
-        /// Reason why the bytes cannot be decoded.
+        /// Decoding error.
         why: String,
     },
-    /// The setup started a game the first time, but was refused later.
+    /// The setup started a game the first time, but not later.
     Refused {
-        /// Reason why the setup was refused.
+        /// Reason given by the game.
         why: String,
     },
-    /// Two consecutive calls of `state_hash`, `work`, `claims` or `save` return different results, or `claims` differs
-    /// between two runs.
+    /// Two calls of `state_hash`, `work`, `claims` or `save` in succession return different results, or `claims`
+    /// differs between two runs.
     Answers {
         /// Name of the function.
         of: &'static str,
     },
     /// Two states have the same hash but different futures under the same inputs.
     Unhashed,
-    /// The recording of the game fails verification, or the reference run exceeds a limit on work.
+    /// The recording fails verification, or the reference run exceeds a limit.
     Verdict(Verdict),
     /// The game cannot be recorded to its end.
     Unrecordable(RecordError),
@@ -100,17 +98,16 @@ pub struct Finding {
     pub fault: Fault,
     /// Number of ticks after which the fault exists.
     pub tick: u64,
-    /// Number of ticks played when the fault was detected. It may be more than `tick` for [`Variant::RolledBack`] and
+    /// Number of ticks played when the fault was detected. May exceed `tick` for [`Variant::RolledBack`] and
     /// [`Variant::ByteSwapped`].
     pub played: u64,
-    /// The first phase of the physics step whose digest differs, if phases are compared; `None` also if a difference
-    /// existed before the step.
+    /// The first phase whose digest differs, if phases are compared. `None` also if a difference existed before the
+    /// step.
     pub phase: Option<Phase>,
     /// Depth of the rollback in ticks, and the predicted inputs before it.
     pub rollback: Option<(u32, Guess)>,
     /// The fields that differ. `a` is the reference run or the saved state, `b` is the variant or the loaded state.
-    /// Empty if the states are not available, or if their saves are equal: then the difference is in state that is not
-    /// saved.
+    /// Empty if the states are not available, or if their saves are equal.
     pub differences: Vec<Difference>,
 }
 
@@ -119,7 +116,6 @@ impl Finding {
         Finding { variant, fault, tick, played: tick, phase: None, rollback: None, differences: Vec::new() }
     }
 
-    /// Adds the differences between two saves.
     pub(super) fn with_saves<S: Serialize>(self, a: &S, b: &S) -> Self {
         let found = fields(a).ok().zip(fields(b).ok()).map(|(a, b)| differences(&a, &b));
         Finding { differences: found.unwrap_or_default(), ..self }
@@ -160,7 +156,6 @@ impl Finding {
     }
 }
 
-/// Maximum number of differences that are printed.
 const SHOWN: usize = 8;
 
 impl fmt::Display for Finding {

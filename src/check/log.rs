@@ -1,4 +1,4 @@
-//! The inputs of every tick. Logs derived from each other share them.
+//! The inputs of every tick, which logs derived from each other share.
 
 use alloc::rc::Rc;
 use alloc::vec;
@@ -11,13 +11,10 @@ use crate::replay::{
     CHECKPOINT_INTERVAL, Flaw, Limits, RawReplay, ReadError, Reader, Recording, TickInputs, Verdict,
 };
 
-/// Checkpoint interval of the replays that a check records.
 pub(super) const INTERVAL: u32 = CHECKPOINT_INTERVAL;
 
-/// The inputs of every player for one tick.
 pub(super) type Inputs<G> = Rc<[<G as Game>::Input]>;
 
-/// The inputs of every tick, as decoded from their bytes.
 pub(super) struct Log<G: Game> {
     pub(super) players: u32,
     pub(super) ticks: Vec<Inputs<G>>,
@@ -34,7 +31,6 @@ impl<G: Game> Log<G> {
         Ok(())
     }
 
-    /// A log of other ticks with the same number of players.
     pub(super) fn of(&self, ticks: Vec<Inputs<G>>) -> Self {
         Log { players: self.players, ticks }
     }
@@ -43,12 +39,11 @@ impl<G: Game> Log<G> {
         self.ticks.len() as u64
     }
 
-    /// Default inputs for all players.
     pub(super) fn nothing(&self) -> Inputs<G> {
         vec![G::Input::default(); self.players as usize].into()
     }
 
-    /// Records a replay of the log, up to the first tick that cannot be recorded.
+    /// Records a replay, up to the first tick that cannot be recorded.
     pub(super) fn record(&self, setup: &G::Setup) -> Vec<u8> {
         let Ok(mut recording) = Recording::<G>::start(setup, INTERVAL) else {
             return Vec::new();
@@ -65,7 +60,6 @@ impl<G: Game> Log<G> {
     }
 }
 
-/// The setup and the inputs of a replay.
 pub(super) struct Logged<G: Game> {
     pub(super) setup: G::Setup,
     pub(super) log: Log<G>,
@@ -73,7 +67,7 @@ pub(super) struct Logged<G: Game> {
 
 /// Reads the first `to` ticks of a replay.
 pub(super) fn read<G: Game>(file: &[u8], limits: &Limits, to: u64) -> Result<Logged<G>, CheckError> {
-    // Opening the replay scans the file and starts the game. Afterwards only the encoding of inputs can be wrong.
+    // Opening the replay scans the file. Afterwards only the encoding of inputs can be wrong.
     let players = RawReplay::<G>::open(file, limits)?.game().players();
     let refused = |error: ReadError| CheckError::Replay(error.into());
     let mut ticks = TickInputs::open(file, limits).map_err(refused)?;

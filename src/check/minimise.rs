@@ -11,10 +11,9 @@ use super::options::{CheckOptions, Depths, Variant};
 use crate::lockstep::Game;
 use crate::replay::{Recording, Verdict, verify};
 
-/// Number of replicas of [`Variant::Again`] that are compared with the reference run to detect a random failure.
+/// Number of replicas of [`Variant::Again`] that are played to detect a random failure.
 const AGAIN: usize = 4;
 
-/// Plays a log in all variants.
 pub(super) fn run<G: Game>(
     setup: &G::Setup,
     log: &Log<G>,
@@ -44,7 +43,6 @@ fn run_counted<G: Game>(
     Ok(checked)
 }
 
-/// Records the game and verifies the recording.
 fn record<G: Game>(setup: &G::Setup, log: &Log<G>, options: &CheckOptions) -> Result<(), Box<Finding>> {
     let found = |fault, tick| Err(Box::new(Finding::new(Variant::Recorded, fault, tick)));
     let mut recording = match Recording::<G>::start(setup, INTERVAL) {
@@ -70,7 +68,7 @@ fn record<G: Game>(setup: &G::Setup, log: &Log<G>, options: &CheckOptions) -> Re
     }
 }
 
-/// Reduces a finding in a log to a failure with a minimal replay.
+/// Reduces a finding to a failure with a minimal replay.
 pub(super) fn minimise<G: Game>(
     setup: &G::Setup,
     log: &Log<G>,
@@ -84,7 +82,7 @@ pub(super) fn minimise<G: Game>(
     }
     let mut search = Search { setup, options: options.clone(), spent: 0, need: 0 };
     let variant = finding.variant;
-    // A random failure can appear in any variant, so [`Variant::Again`] is tried first and reported if it fails.
+    // A random failure can appear in any variant, so that [`Variant::Again`] is tried first.
     let (finding, best) = [Variant::Again, variant]
         .into_iter()
         .find_map(|variant| search.begin(log, variant, &finding))
@@ -105,7 +103,6 @@ fn first<G: Game>(log: &Log<G>, ticks: u64) -> Log<G> {
     log.of(log.ticks.iter().zip(0..ticks.max(1)).map(|(inputs, _)| inputs.clone()).collect())
 }
 
-/// A failing log, and the number of its failing runs.
 struct Attempt<G: Game> {
     ticks: Vec<Inputs<G>>,
     finding: Finding,
@@ -114,16 +111,13 @@ struct Attempt<G: Game> {
 
 struct Search<'s, G: Game> {
     setup: &'s G::Setup,
-    /// Options restricted to the failing variant.
     options: CheckOptions,
-    /// Number of ticks simulated.
     spent: u64,
-    /// Number of runs of a candidate that have to fail for the candidate to be accepted.
+    /// Number of runs of a candidate that have to fail.
     need: u32,
 }
 
 impl<G: Game> Search<'_, G> {
-    /// Tests whether a log fails in one variant alone, and how often.
     fn begin(&mut self, log: &Log<G>, variant: Variant, finding: &Finding) -> Option<(Finding, Attempt<G>)> {
         let variants = if variant == Variant::Again { [variant; AGAIN].to_vec() } else { [variant].to_vec() };
         self.options =
@@ -146,8 +140,8 @@ impl<G: Game> Search<'_, G> {
         Some((finding, found))
     }
 
-    /// Plays a candidate repeatedly, and stops once it cannot fail often enough. A candidate that fails often enough is
-    /// cut after the last failing tick of its runs.
+    /// Plays a candidate repeatedly, and stops once it cannot fail often enough. A candidate that fails is cut after
+    /// the last failing tick.
     fn attempt(&mut self, mut ticks: Vec<Inputs<G>>, log: &Log<G>) -> Option<Attempt<G>> {
         let repeats = self.options.repeats.max(1);
         let candidate = log.of(ticks.clone());
@@ -172,8 +166,8 @@ impl<G: Game> Search<'_, G> {
         self.spent >= self.options.budget
     }
 
-    /// Removes ticks, then all inputs of ticks, then inputs of single players, then changes between ticks. Repeats this
-    /// until the log does not become smaller any more or the budget is spent.
+    /// Removes ticks, inputs of ticks, inputs of single players, and changes between ticks. Repeats this until the log
+    /// does not become smaller or the budget is spent.
     fn shrink(&mut self, log: &Log<G>, mut best: Attempt<G>) -> Attempt<G> {
         loop {
             let before = weight(&best.ticks);
@@ -185,7 +179,6 @@ impl<G: Game> Search<'_, G> {
                     replaced(ticks, from, to, |inputs| without(inputs, player))
                 });
             }
-            // Held inputs are simpler than changing ones.
             self.pass(log, &mut best, &|ticks, from, to| {
                 let held = ticks[from.checked_sub(1)?].clone();
                 replaced(ticks, from, to, |_| held.clone())
@@ -216,7 +209,7 @@ impl<G: Game> Search<'_, G> {
     }
 }
 
-/// A change of the ticks between two indices; `None` if it is not possible.
+/// A change of the ticks between two indices, if it is possible.
 type Change<'a, G> = dyn Fn(&[Inputs<G>], usize, usize) -> Option<Vec<Inputs<G>>> + 'a;
 
 fn replaced<I: Clone>(ticks: &[I], from: usize, to: usize, with: impl Fn(&I) -> I) -> Option<Vec<I>> {
@@ -224,7 +217,6 @@ fn replaced<I: Clone>(ticks: &[I], from: usize, to: usize, with: impl Fn(&I) -> 
     Some([&ticks[..from], &changed, &ticks[to..]].concat())
 }
 
-/// Replaces the input of a player by the default one.
 fn without<I: Clone + Default>(inputs: &alloc::rc::Rc<[I]>, player: usize) -> alloc::rc::Rc<[I]> {
     let mut inputs = inputs.to_vec();
     if let Some(input) = inputs.get_mut(player) {
@@ -233,8 +225,8 @@ fn without<I: Clone + Default>(inputs: &alloc::rc::Rc<[I]>, player: usize) -> al
     inputs.into()
 }
 
-/// Size of a log, compared lexicographically: the numbers of ticks, of inputs that are not the default, and of changes
-/// between ticks.
+/// Size of a log: the numbers of ticks, of inputs that are not the default, and of changes between ticks, in this
+/// order.
 fn weight<I: Default + PartialEq>(ticks: &[alloc::rc::Rc<[I]>]) -> (usize, usize, usize) {
     let nothing = I::default();
     let inputs = ticks.iter().flat_map(|inputs| inputs.iter());

@@ -1,11 +1,9 @@
-//! Checks a game: plays a log of inputs in many variants that must not change the result, and reports the first
-//! variant that changes it.
+//! Checks a game: plays a log of inputs in many variants that must not change the result, and reports the first fault.
 //!
-//! [`check`] takes a [`Game`] and an input log. It plays the log in a reference run, and beside it in every variant
-//! ([`Variant`]) of [`CheckOptions::variants`]: again from the start, encoded and reloaded at every tick, rolled back
-//! by 1 to 8 ticks, with caches cleared, on other thread counts and so on. All variants must reach the state hashes of
-//! the reference run. If one differs, the result is a [`Failure`]: the variant, the tick, the fields that differ, and a
-//! minimised replay.
+//! [`check`] plays the inputs of a [`Game`] in a reference run, and beside it in the [`CheckOptions::variants`]: again
+//! from the start, reloaded at every tick, rolled back by 1 to 8 ticks, with cleared caches, on other thread counts and
+//! so on. The variants must reach the state hashes of the reference run. Otherwise the result is a [`Failure`]: the
+//! variant, the tick, the fields that differ, and a minimised replay.
 //!
 //! ```
 //! use lockstep2d::{check::{self, CheckOptions}, lockstep::{Game, Sandbox, SandboxSetup}, math::Rng};
@@ -16,13 +14,12 @@
 //! # Ok::<(), check::CheckError>(())
 //! ```
 //!
-//! [`random_inputs`] and [`inputs_from_bytes`] make logs for any game, for plain tests and for a fuzzer;
+//! [`random_inputs`] and [`inputs_from_bytes`] make logs for any game, for plain tests and for a fuzzer.
 //! [`check_replay`] takes a replay instead. `docs/FUZZING.md` lists causes and remedies.
 //!
 //! # Limitations
 //!
-//! A panic of the game's code is not caught: it passes through to the caller, whose test or fuzzer reports it with its
-//! input. Differences between machines, compilers or processes are not detected.
+//! A panic of the game's code is not caught. Differences between machines, compilers or processes are not detected.
 
 mod byte_swap;
 mod checker;
@@ -48,13 +45,13 @@ use crate::lockstep::Game;
 use crate::replay::{Recorder, Verdict};
 use log::{INTERVAL, Log, Logged};
 
-/// Plays a game from a setup with the inputs of every tick, in every variant ([`Variant`]) of the options.
+/// Plays a game with the inputs of every tick, in every [`Variant`] of the options.
 ///
 /// With the default options, a check takes as long as about twenty plain runs of the log. `inputs` has a list for each
 /// tick, with an input for each player.
 ///
 /// # Errors
-/// [`CheckError::Failed`] with the fault of the game; [`CheckError::Record`] if the setup cannot start a game, or if a
+/// [`CheckError::Failed`] with the fault of the game. [`CheckError::Record`] if the setup cannot start a game, or if a
 /// replay cannot represent the setup or the inputs, for example because there is not exactly one input per player.
 pub fn check<G: Game>(
     setup: &G::Setup,
@@ -69,11 +66,11 @@ pub fn check<G: Game>(
     minimise::run(setup, &log, options).map_err(|finding| failed(setup, &log, *finding, options))
 }
 
-/// Checks a game with the setup and the inputs of a replay, from [`CheckOptions::from`] to [`CheckOptions::to`]. The
-/// checkpoints of the replay are ignored.
+/// Checks a game with the inputs of a replay, from [`CheckOptions::from`] to [`CheckOptions::to`]. Its checkpoints are
+/// ignored.
 ///
 /// # Errors
-/// [`CheckError::Failed`] with the fault of the game; [`CheckError::Replay`] if the file is not a replay of this game,
+/// [`CheckError::Failed`] with the fault of the game. [`CheckError::Replay`] if the file is not a replay of this game,
 /// its setup cannot start a game, or it costs more than the limits allow.
 pub fn check_replay<G: Game>(file: &[u8], options: &CheckOptions) -> Result<Checked, CheckError> {
     let Logged { setup, log } = log::read::<G>(file, &options.limits, options.to)?;

@@ -1,5 +1,3 @@
-//! [`CheckOptions`]: the extent and cost of a check.
-
 use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt;
@@ -8,10 +6,10 @@ use crate::collision::BroadPhaseKind;
 use crate::replay::Limits;
 use crate::world::Backend;
 
-/// A variant of playing the same inputs that must lead to the same states.
+/// A way of playing the same inputs that must lead to the same states.
 ///
-/// Variants that act on a [`World`](crate::world::World) are skipped for a game that does not expose one
-/// ([`Game::world_mut`](crate::lockstep::Game::world_mut)).
+/// Variants that act on a [`World`](crate::world::World) are skipped for a game without
+/// [`Game::world_mut`](crate::lockstep::Game::world_mut).
 ///
 /// ```
 /// use lockstep2d::check::{CheckOptions, Variant};
@@ -27,36 +25,35 @@ pub enum Variant {
     /// The inputs are played again from [`CheckOptions::from`] on, in the same process. This detects random iteration
     /// orders, global state, addresses and clocks.
     Again,
-    /// Hash, work, claims and save are polled twice after every tick: polling must not change the state.
+    /// Hash, work, claims and save are polled twice after every tick, which must not change the state.
     HashPolled,
-    /// The hash is polled after the last tick only: without polls in between, the final state must be the same.
+    /// The hash is polled after the last tick only, and must be the same.
     HashUnpolled,
-    /// Every [`CheckOptions::every`] ticks, the state is saved, encoded, decoded and loaded into a new game, which
-    /// continues.
+    /// Every [`CheckOptions::every`] ticks, the state is encoded, decoded and loaded into a new game, which continues.
     Reloaded,
     /// Every [`CheckOptions::every`] ticks, the game is rolled back by some ticks and plays them again, sometimes with
-    /// predicted inputs first and then with the actual inputs.
+    /// predicted inputs first.
     RolledBack,
-    /// All caches of the world are cleared every [`CheckOptions::every`] ticks.
+    /// The caches of the world are cleared every [`CheckOptions::every`] ticks.
     ClearedScratch,
     /// The solver runs on another backend.
     Backend(Backend),
     /// The broad phase uses another algorithm.
     BroadPhase(BroadPhaseKind),
-    /// The world has this number of threads, which share every tick that follows a tick with 256 awake bodies or more.
-    /// The variant changes nothing without the feature `parallel`, or if the threads cannot be created.
+    /// The world has this number of threads, which share every tick after a tick with 256 awake bodies or more. Changes
+    /// nothing without the feature `parallel`, or if the threads cannot be created.
     Threads(usize),
-    /// Bytes of a save are replaced by bytes of another tick's save. If the hash does not change, the hashes of the
-    /// following ticks must not change either.
+    /// Bytes of a save are replaced by bytes of another tick's save. If the hash does not change, later hashes must not
+    /// change either.
     ByteSwapped,
-    /// The game is recorded and its replay verified, claims included.
+    /// The game is recorded, and its replay is verified with its claims.
     Recorded,
 }
 
 impl Variant {
-    /// All variants, among them [`Variant::Backend`] with each available backend except the best one,
-    /// [`Variant::BroadPhase`] with each algorithm except the default one, and, with the feature `parallel`,
-    /// [`Variant::Threads`] with 2 and with 4 threads.
+    /// All variants for this machine: [`Variant::Backend`] with each available backend except the best one,
+    /// [`Variant::BroadPhase`] with each algorithm except the default one, [`Variant::Threads`] with 2 and with 4
+    /// threads if the feature `parallel` is enabled, and all others.
     #[must_use]
     pub fn all() -> Vec<Variant> {
         let mut variants = vec![
@@ -79,7 +76,6 @@ impl Variant {
         variants
     }
 
-    /// Whether the variant acts on the world of a game.
     pub(super) const fn needs_world(self) -> bool {
         matches!(
             self,
@@ -120,23 +116,22 @@ impl fmt::Display for Variant {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Depths {
-    /// One combination of depth and prediction per tick, in turn. With the default depths of 1 to 8 ticks, all
-    /// combinations occur within 24 ticks, at a cost of about eight steps per tick.
+    /// One combination of depth and prediction per tick, in turn. For depths of 1 to 8 ticks, this costs about eight
+    /// steps per tick.
     #[default]
     InTurn,
-    /// All combinations of depth and prediction at every tick. With the default depths of 1 to 8 ticks, this costs 180
-    /// steps per tick.
+    /// All combinations at every tick. For depths of 1 to 8 ticks, this costs 180 steps per tick.
     Each,
 }
 
-/// Whether the phases of the physics step are compared, too.
+/// Whether the phases of the physics step are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Phases {
     /// Compares only the states between ticks.
     #[default]
     Ignored,
-    /// Compares digests of the state after each phase, and of the manifolds and solver velocities after the phases that
-    /// compute them. A tick takes several times as long.
+    /// Compares digests of the state, the manifolds and the solver velocities after the phases that compute them. A
+    /// tick takes several times as long.
     Compared,
 }
 
@@ -153,24 +148,23 @@ pub enum Phases {
 pub struct CheckOptions {
     /// The variants to play.
     pub variants: Vec<Variant>,
-    /// Interval in ticks at which the state is reloaded, rolled back or loses its caches; at least 1.
+    /// Interval in ticks at which the state is reloaded, rolled back or loses its caches, at least 1.
     /// [`Variant::ByteSwapped`] keeps saves at this interval or every 16 ticks, whichever is longer.
     pub every: u64,
     /// Maximum rollback depth in ticks, up to 64.
     pub rollback_max: u32,
     /// The depths that are played at a tick.
     pub depths: Depths,
-    /// Whether the phases of the physics step are compared, too.
+    /// Whether the phases of the physics step are compared.
     pub phases: Phases,
-    /// The tick at which checking begins; before it, only the reference run is played. [`Variant::Recorded`] begins at
-    /// tick 0.
+    /// The tick at which the variants begin, except [`Variant::Recorded`], which begins at tick 0.
     pub from: u64,
     /// The tick at which the check ends, if the log is longer.
     pub to: u64,
-    /// Maximum number of runs of each shortened log, to measure how often it fails; at least 1. A log that fails
-    /// randomly, because of a `HashMap`, is shortened only while it fails as often as before.
+    /// Maximum number of runs of each shortened log, at least 1, to measure how often it fails. A log that fails
+    /// randomly is shortened only while it fails as often as before.
     pub repeats: u32,
-    /// Number of simulated ticks after which a failing log is not minimised further. With 0 the log is only cut after
+    /// Number of simulated ticks after which a failing log is not minimised further. With 0, the log is only cut after
     /// the tick at which the fault was detected.
     pub budget: u64,
     /// Limits of the reference run, and of the replays that are read and verified.
@@ -178,8 +172,7 @@ pub struct CheckOptions {
 }
 
 impl Default for CheckOptions {
-    /// All variants with an interval of one tick and one rollback per tick, without a comparison of phases: suitable
-    /// for logs of some hundred ticks.
+    /// All variants, with an interval of one tick and one rollback per tick: for logs of some hundred ticks.
     fn default() -> Self {
         CheckOptions {
             variants: Variant::all(),

@@ -1,5 +1,3 @@
-//! [`Replica`]: a second instance of the game that plays one variant beside the reference run.
-
 use alloc::boxed::Box;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -14,16 +12,12 @@ use crate::hash::StateHash;
 use crate::lockstep::Game;
 use crate::world::PhaseDigest;
 
-/// The reference run after a tick.
 pub(super) struct Now<'a, G: Game> {
     pub(super) setup: &'a G::Setup,
     pub(super) options: &'a CheckOptions,
     pub(super) straight: &'a G,
-    /// The inputs of the tick.
     pub(super) inputs: &'a [G::Input],
-    /// Hash after the tick.
     pub(super) hash: StateHash,
-    /// Number of ticks played.
     pub(super) tick: u64,
     /// Digests of the phases of the tick, if phases are compared.
     pub(super) phases: &'a [PhaseDigest],
@@ -31,18 +25,16 @@ pub(super) struct Now<'a, G: Game> {
     pub(super) claims: Vec<(String, i64)>,
 }
 
-/// A second instance of the game that plays one variant beside the reference run.
+/// A second instance of the game, which plays one variant beside the reference run.
 pub(super) struct Replica<G: Game> {
     pub(super) variant: Variant,
     game: G,
-    /// Number of ticks simulated by this replica.
     pub(super) steps: u64,
     past: Past<G>,
     byte_swaps: ByteSwaps<G>,
 }
 
 impl<G: Game> Replica<G> {
-    /// Creates a game with the state of the reference run.
     pub(super) fn begin(variant: Variant, now: &Now<'_, G>) -> Result<Self, Box<Finding>> {
         let mut game = another::<G>(now.setup, variant, now.tick)?;
         if now.tick > 0 {
@@ -57,12 +49,11 @@ impl<G: Game> Replica<G> {
         Ok(replica)
     }
 
-    /// Plays the tick that the reference run has played, compares the results, and performs the variant's extra
-    /// operation.
+    /// Plays the tick of the reference run, compares the results, and performs the variant's extra operation.
     pub(super) fn step(&mut self, now: &Now<'_, G>) -> Result<(), Box<Finding>> {
         self.arrange();
         if self.variant == Variant::Again {
-            // The reference run has called `work` before this tick, and this replica must make the same calls.
+            // The reference run has called `work` before this tick.
             let _work = self.game.work(now.inputs);
         }
         let phases = step(&mut self.game, now.inputs, now.options.phases);
@@ -104,8 +95,7 @@ impl<G: Game> Replica<G> {
         Finding::new(self.variant, fault, now.tick)
     }
 
-    /// Configures the world for the variant. A game may replace its world at any time, so this is repeated before every
-    /// tick.
+    /// Configures the world for the variant, before every tick, because a game may replace its world.
     fn arrange(&mut self) {
         let Some(world) = self.game.world_mut() else {
             return;
@@ -140,7 +130,6 @@ impl<G: Game> Replica<G> {
         }
     }
 
-    /// Polls hash, work, claims and save twice.
     fn ask(&self, now: &Now<'_, G>) -> Result<(), Box<Finding>> {
         let answers = || {
             let game = &self.game;
@@ -155,7 +144,6 @@ impl<G: Game> Replica<G> {
         }
     }
 
-    /// Encodes the state, decodes it and loads it into a new game.
     fn reload(&mut self, now: &Now<'_, G>) -> Result<(), Box<Finding>> {
         let save = self.game.save();
         let bytes = codec::encode(&save);

@@ -1,5 +1,3 @@
-//! [`Past`]: the last ticks of the replica that is rolled back.
-
 use alloc::boxed::Box;
 use alloc::collections::VecDeque;
 use alloc::vec;
@@ -11,15 +9,12 @@ use super::replica::Now;
 use crate::hash::StateHash;
 use crate::lockstep::Game;
 
-/// Maximum depth of a rollback in ticks.
 const DEPTH_MAX: u32 = 64;
 
-/// The last ticks of the replica that is rolled back.
 pub(super) struct Past<G: Game> {
     moments: VecDeque<Moment<G>>,
 }
 
-/// A state, and the inputs that led to it.
 struct Moment<G: Game> {
     inputs: Vec<G::Input>,
     save: G::Save,
@@ -32,11 +27,9 @@ impl<G: Game> Default for Past<G> {
     }
 }
 
-/// Depth of a rollback in ticks, and the prediction before it.
 type Rollback = (u32, Guess);
 
 impl<G: Game> Past<G> {
-    /// Records the state after a tick, and rolls back.
     pub(super) fn perturb(
         &mut self,
         game: &mut G,
@@ -53,7 +46,7 @@ impl<G: Game> Past<G> {
         }
         for (depth, guess) in rollbacks(now.options.depths, depth_max, now.tick) {
             let last = self.moments.len() - 1;
-            // Near the start, the depth is limited by the number of recorded states.
+            // Near the start, fewer states are recorded.
             let depth = depth.min(u32::try_from(last).unwrap_or(u32::MAX));
             if depth > 0 {
                 *steps += u64::from(depth) * if guess == Guess::Right { 1 } else { 2 };
@@ -99,7 +92,6 @@ impl<G: Game> Past<G> {
     }
 }
 
-/// The rollbacks to perform at a tick.
 fn rollbacks(depths: Depths, depth_max: u32, tick: u64) -> Vec<Rollback> {
     let each = |depth: u32| Guess::ALL.into_iter().map(move |guess| (depth, guess));
     match depths {

@@ -1,5 +1,3 @@
-//! Generates inputs of any game from bytes, for fuzzers and for tests with random numbers.
-
 use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -10,14 +8,13 @@ use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, Visitor};
 use crate::lockstep::{EncodedInputs, Game};
 use crate::math::Rng;
 
-/// Generates inputs for some players, tick by tick, from bytes. Every byte string gives a log, and a small change of
-/// the bytes usually causes a small change of the log.
+/// Generates inputs for some players, tick by tick, from bytes. Any byte string gives a log, and a small change of the
+/// bytes usually causes a small change of the log.
 ///
 /// The first byte of a tick decides whether inputs are held, for up to 16 ticks, or whether one player or all players
-/// get new ones. New inputs are made by the input's own `Deserialize`: the bytes choose variants, lengths and numbers,
-/// such that lists are short, and integers of more than 8 bits are often small or near the maximum or the middle of
-/// their range. An input whose `Deserialize` fails is replaced by the default. If the inputs of a tick do not survive
-/// encoding and decoding, all of them are replaced.
+/// get new ones. New inputs are made by the input's own `Deserialize`, with short lists, and with integers that are
+/// often small or near the maximum or the middle of their range. An input whose `Deserialize` fails is replaced by the
+/// default. If the inputs of a tick do not survive encoding and decoding, all of them are replaced.
 #[must_use]
 pub fn inputs_from_bytes<G: Game>(players: u32, bytes: &[u8]) -> Vec<Vec<G::Input>> {
     let mut source = Source { bytes, depth: 0 };
@@ -40,7 +37,7 @@ pub fn inputs_from_bytes<G: Game>(players: u32, bytes: &[u8]) -> Vec<Vec<G::Inpu
     log
 }
 
-/// Generates random inputs for some players and a number of ticks. The same state of `rng` gives the same inputs.
+/// Generates random inputs for some players and a number of ticks, which follow from the state of `rng`.
 #[must_use]
 pub fn random_inputs<G: Game>(players: u32, ticks: u64, rng: &mut Rng) -> Vec<Vec<G::Input>> {
     let mut log = Vec::new();
@@ -52,7 +49,7 @@ pub fn random_inputs<G: Game>(players: u32, ticks: u64, rng: &mut Rng) -> Vec<Ve
     log
 }
 
-/// Returns the inputs after encoding and decoding, or default inputs if that fails.
+/// The inputs after encoding and decoding, or default inputs if that fails.
 fn canonical<I>(inputs: Vec<I>, players: u32) -> Vec<I>
 where
     I: Clone + Default + serde::Serialize + de::DeserializeOwned,
@@ -63,11 +60,9 @@ where
     }
 }
 
-/// Maximum nesting depth of values.
 const DEPTH_MAX: u32 = 32;
 
-/// A deserializer that generates values of the requested types from bytes. Floating-point numbers are always 0. After
-/// the last byte, it reads zeros.
+/// A deserializer that generates values from bytes, and from zeros after the last byte. Floating-point numbers are 0.
 struct Source<'a> {
     bytes: &'a [u8],
     depth: u32,
@@ -89,8 +84,8 @@ impl Source<'_> {
         I::deserialize(self).unwrap_or_default()
     }
 
-    /// Returns a number whose low `count` bits are used. With more than 8 bits, it is often small, or near the maximum
-    /// or the middle of the range.
+    /// A number whose low `count` bits are used. With more than 8 bits, it is often small, or near the maximum or the
+    /// middle of the range.
     fn bits(&mut self, count: u32) -> u128 {
         if count <= 8 {
             return self.byte().into();
@@ -99,7 +94,7 @@ impl Source<'_> {
             0..=3 => self.byte().into(),
             // A small negative number, if the type is signed.
             4 => !u128::from(self.byte()),
-            // Around the middle of the unsigned range, where a signed type has its limits.
+            // Around the limits of a signed type.
             5 => (1u128 << (count - 1)).wrapping_add(u128::from(self.byte())).wrapping_sub(128),
             _ => (0..count / 8).fold(0, |bits, _| bits << 8 | u128::from(self.byte())),
         }
@@ -271,7 +266,6 @@ impl<'de> Deserializer<'de> for &mut Source<'_> {
     }
 }
 
-/// The remaining values of a list, struct or map.
 struct List<'s, 'a> {
     source: &'s mut Source<'a>,
     left: usize,
@@ -305,7 +299,6 @@ impl<'de> de::MapAccess<'de> for List<'_, '_> {
     }
 }
 
-/// The chosen variant of an enum.
 struct Variant<'s, 'a> {
     source: &'s mut Source<'a>,
     index: u32,

@@ -22,7 +22,7 @@ pub struct Bar {
 }
 
 impl Bar {
-    /// Returns the longest fitting bar of 1, 2 or 5 times a power of ten millimetres, or `None` if not even 1 mm fits.
+    /// The longest fitting bar of 1, 2 or 5 times a power of ten millimetres, or `None` if not even 1 mm fits.
     #[must_use]
     pub fn up_to(fits: impl Fn(Fx) -> bool) -> Option<Self> {
         let lengths = (0u32..13).flat_map(|power| [1i64, 2, 5].map(|digit| digit * 10i64.pow(power)));

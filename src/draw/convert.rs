@@ -1,9 +1,7 @@
-//! Conversion of vectors to floats, for programs that draw. The simulation does not use it.
-
 use crate::math::{Fx, Vec2};
 
-/// Converts a vector to a pair of floats, as graphics libraries take them. The distance of two neighbouring floats is 1
-/// mm at 10 km from the origin: to draw a world that is far from it, subtract the camera's position first.
+/// Converts a vector to a pair of floats for graphics libraries. At 10 km from the origin, neighbouring floats differ
+/// by 1 mm: to draw a world far from the origin, subtract the camera's position first.
 ///
 /// ```
 /// use lockstep2d::{draw, fx, math::Vec2};
@@ -11,8 +9,8 @@ use crate::math::{Fx, Vec2};
 /// assert_eq!(draw::to_f32(ball - camera), [0.25, -1.5]);
 /// ```
 ///
-/// With the feature `mint`, `Vec2<Fx>` converts into `mint::Vector2<f32>` and `mint::Point2<f32>`, as in
-/// `mint::Vector2::from(v)`, and through them into the types of `glam`, `nalgebra`, `cgmath` and others.
+/// With the feature `mint`, `Vec2<Fx>` converts into `mint::Vector2<f32>` and `mint::Point2<f32>`, and through them
+/// into the types of `glam`, `nalgebra`, `cgmath` and others.
 #[expect(clippy::disallowed_types, reason = "graphics libraries take floats")]
 #[must_use]
 pub fn to_f32(v: Vec2<Fx>) -> [f32; 2] {

@@ -9,23 +9,21 @@ use crate::math::{Aabb, Fx, Vec2};
 use crate::world::World;
 
 /// Smallest reach of a scene in metres. The reach is the distance from the median position to the farthest body of the
-/// scene, or this value if it is larger. Bodies within four times the reach belong to the scene, so that all bodies
-/// within 64 m of the median position belong to it.
+/// scene. Bodies within four times the reach belong to the scene.
 const SCENE_REACH_MIN: Fx = fx!(16);
 /// Maximum distance, in scene sizes, at which ground is included.
 const GROUND_SIZES: i64 = 12;
-/// Search distance for ground, in metres. For a scene larger than 16 m, the distance is the size of the scene; for a
-/// small scene, [`GROUND_SIZES`] limits the distance. A falling ball should be shown with the floor below it, but not
-/// with a floor so far away that the ball becomes invisible.
+/// Search distance for ground in metres, or the size of a scene larger than 16 m. A falling ball should be shown with
+/// the floor below it, but not with a floor so far away that the ball becomes invisible.
 const GROUND_REACH: Fx = fx!(16);
-/// Maximum size, in metres, of a fixed shape that is shown if no body can move.
+/// Maximum size in metres of a fixed shape that is shown if no body can move.
 const FIXED_SIZE_MAX: Fx = fx!(512);
 
-/// Returns the window around the bodies that can move, their joints, and the ground near them, with a margin.
+/// The window around the bodies that can move, their joints, and the ground near them, with a margin.
 ///
-/// A body far away from all others is left out, because it would make the rest too small to see. A fixed shape larger
-/// than the distance up to which ground is included contributes only its nearest point. If no body can move, the window
-/// shows the fixed shapes of at most 512 m. The window depends on the current positions, so it moves with the bodies.
+/// A body far away from all others is left out, because it would make the rest too small to see. A large fixed shape
+/// contributes only its point nearest to the others. If no body can move, the window shows the fixed shapes of at most
+/// 512 m. The window moves with the bodies.
 #[must_use]
 pub fn fit(world: &World) -> Aabb {
     let moving = world.bodies().filter(|(_, body)| body.kind() != BodyKind::Fixed);
@@ -51,9 +49,8 @@ fn bounds_of(world: &World, body: &Body) -> Aabb {
     boxes.reduce(Aabb::union).unwrap_or(Aabb::new(centre, centre))
 }
 
-/// The box around the bodies that form the scene. Bodies are sorted by distance from the median. The scene ends before
-/// the first body whose distance exceeds four times [`SCENE_REACH_MIN`] and four times the distance of the body before
-/// it.
+/// The box around the bodies of the scene. In the order of the distance from the median, it ends before the first body
+/// beyond four times [`SCENE_REACH_MIN`] and four times the distance of the body before it.
 fn scene_of(mut boxes: Vec<Aabb>) -> Option<Aabb> {
     let middle = |component: fn(Vec2<Fx>) -> Fx| {
         let mut values: Vec<Fx> = boxes.iter().map(|aabb| component(aabb.centre())).collect();
@@ -75,7 +72,6 @@ fn scene_of(mut boxes: Vec<Aabb>) -> Option<Aabb> {
     near.reduce(Aabb::union)
 }
 
-/// The box around a scene, its joint anchors and the ground near it.
 fn with_surroundings(world: &World, scene: Aabb) -> Aabb {
     let side = longest_side(scene);
     let reach = side.saturating_mul_int(GROUND_SIZES).min(side.max(GROUND_REACH));
@@ -92,7 +88,6 @@ fn with_surroundings(world: &World, scene: Aabb) -> Aabb {
     anchors.chain(ground).filter(|&aabb| surroundings.overlaps(aabb)).fold(scene, Aabb::union)
 }
 
-/// The boxes of all shapes of fixed bodies.
 fn fixed_boxes(world: &World) -> impl Iterator<Item = Aabb> {
     world.shapes().filter_map(|(_, shape)| {
         let body = world.body(shape.body()).filter(|body| body.kind() == BodyKind::Fixed)?;

@@ -1,5 +1,5 @@
-//! Primitives of a joint. The part of the distance between the anchors that the joint allows is drawn as a joint arm,
-//! and the part that violates the joint as a gap.
+//! Primitives of a joint. The allowed part of the distance between the anchors is drawn as a joint arm, and the part
+//! that violates the joint as a gap.
 
 use alloc::format;
 
@@ -10,8 +10,6 @@ use crate::math::{Fx, Vec2, fx_div};
 use crate::solver::{Joint, JointKind, Pulley, Weld};
 use crate::world::World;
 
-/// Adds the primitives of a joint: its anchors, the lines to its bodies, the allowed and the violating part of the
-/// distance between the anchors, and the joint error as text.
 pub(super) fn add(world: &World, id: JointId, layers: Layers, found: Sink<'_>) {
     let (Some(joint), Some((anchor_a, anchor_b))) = (world.joint(id), world.joint_anchors(id)) else {
         return;
@@ -26,15 +24,13 @@ pub(super) fn add(world: &World, id: JointId, layers: Layers, found: Sink<'_>) {
     }
     let (body_a, body_b) = joint.def().bodies();
     for (body, anchor) in [(body_a, anchor_a), (body_b, anchor_b)] {
-        // The centre of a fixed body has no meaning: often all joints share one fixed body, and their lines would meet
-        // in a point far outside of the scene.
+        // Often all joints share one fixed body. Lines to its centre would meet in a point far outside of the scene.
         if let Some(body) = world.body(body).filter(|body| body.kind() != BodyKind::Fixed) {
             add(Style::JointArm, Form::Line { from: anchor, to: body.centre_of_mass() });
         }
         add(Style::JointAnchor, Form::Point(anchor));
     }
     match &joint.def().kind {
-        // The rope of a pulley leads over its two wheels.
         JointKind::Pulley(Pulley { wheel_a, wheel_b, .. }) => {
             for (from, to) in [(anchor_a, *wheel_a), (*wheel_a, *wheel_b), (*wheel_b, anchor_b)] {
                 add(Style::JointArm, Form::Line { from, to });
@@ -54,7 +50,7 @@ pub(super) fn add(world: &World, id: JointId, layers: Layers, found: Sink<'_>) {
     }
 }
 
-/// Returns the position nearest to B's anchor at which [`World::joint_error`] would be 0.
+/// The position nearest to B's anchor at which [`World::joint_error`] would be 0.
 fn nearest_allowed(joint: &Joint, world: &World, (anchor_a, anchor_b): (Vec2<Fx>, Vec2<Fx>)) -> Vec2<Fx> {
     let def = joint.def();
     match &def.kind {

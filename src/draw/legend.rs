@@ -1,5 +1,3 @@
-//! [`Legend`]: the text of a picture of a world.
-
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -28,13 +26,13 @@ pub struct Legend {
     pub figures: String,
     /// State hash of the world.
     pub hash: StateHash,
-    /// Names of the styles in the picture, each once, with the colour as `0xRRGGBB`. The name of a style with many hues
-    /// has the colour of text.
+    /// Names of the styles in the picture, each once, with the colour as `0xRRGGBB`. Styles with many hues have the
+    /// colour of text.
     pub names: Vec<(&'static str, u32)>,
 }
 
 impl Legend {
-    /// Creates the legend of a picture with these styles, given in the order in which they are painted.
+    /// Creates the legend of a picture with these styles, in painting order.
     #[must_use]
     pub fn of(world: &World, styles: impl IntoIterator<Item = Style>) -> Self {
         let overlap = millimetres(world.deepest_overlap());
@@ -56,7 +54,6 @@ impl Legend {
     }
 }
 
-/// Converts a length in metres to millimetres.
 fn millimetres(length: Fx) -> Fx {
     length.saturating_mul_int(1000)
 }

@@ -1,4 +1,4 @@
-//! [`Paint`]: the appearance of styles, the same in every renderer.
+//! [`Paint`]: the appearance of styles.
 
 use super::primitive::{ContactProximity, Hue, Style};
 
@@ -19,7 +19,7 @@ pub struct Paint {
     pub stroke: u32,
     /// Fill of the enclosed area.
     pub fill: Option<Fill>,
-    /// Width of lines and size of marks in hundredths of a pixel, for large bodies.
+    /// Width of lines and size of marks in hundredths of a pixel. The SVG reduces it for small bodies.
     pub width: u16,
 }
 
@@ -38,8 +38,8 @@ pub const PAPER: u32 = 0xfafaf7;
 /// Colour of the text of a legend, as `0xRRGGBB`.
 const INK: u32 = 0x222222;
 
-/// Distinguishable colours, by [`Hue::index`]. They are taken from P. Tol's qualitative schemes, which are also
-/// distinguishable with most colour vision deficiencies, in an order in which neighbours differ strongly.
+/// Colours by [`Hue::index`], from P. Tol's qualitative schemes, which are distinguishable with most colour vision
+/// deficiencies. Neighbours differ strongly.
 const HUES: [u32; Hue::COUNT as usize] = [
     0x4477aa, 0xee6677, 0x228833, 0xccbb44, 0x66ccee, 0xaa3377, 0xee7733, 0x009988, 0x332288, 0x999933,
     0xcc3311, 0x882255,
@@ -76,7 +76,6 @@ impl Style {
         }
     }
 
-    /// Colour of the style's name in a legend, as `0xRRGGBB`.
     pub(super) const fn legend_colour(self) -> u32 {
         match self {
             Style::Island(_) | Style::SolverGroup(_) => INK,

@@ -7,13 +7,11 @@ use super::primitive::Form;
 use super::screen::{Pixel, Screen};
 use crate::math::{Aabb, Fx, Unit, Vec2, round_shift, widen};
 
-/// Appends formatted text.
 pub(super) fn push(text: &mut String, arguments: Arguments<'_>) {
     text.write_fmt(arguments).expect("a String takes any text");
 }
 
-/// Appends a form to path data, if it is visible. Lines and boxes are clipped. `direction_length` is the length of a
-/// [`Form::Direction`].
+/// Appends a form to path data, if it is visible. `direction_length` is the length of a [`Form::Direction`].
 pub(super) fn add(path: &mut String, form: &Form, screen: &Screen, direction_length: Pixel) {
     match form {
         Form::Point(place) => add_point(path, *place, screen),
@@ -28,7 +26,7 @@ pub(super) fn add(path: &mut String, form: &Form, screen: &Screen, direction_len
     }
 }
 
-/// Adds a line of zero length: with round caps it is a dot whose size does not change when the picture is enlarged.
+/// Adds a line of zero length. With round caps it is a dot whose size does not change when the picture is enlarged.
 fn add_point(path: &mut String, place: Vec2<Fx>, screen: &Screen) {
     if screen.seen.contains_point(place) {
         let (x, y) = screen.place(place);
@@ -36,7 +34,7 @@ fn add_point(path: &mut String, place: Vec2<Fx>, screen: &Screen) {
     }
 }
 
-/// Adds a text element, not a path, slightly above and to the right of the position.
+/// Adds a text element, slightly above and to the right of the position.
 fn add_label(elements: &mut String, place: Vec2<Fx>, text: &str, screen: &Screen) {
     if screen.seen.contains_point(place) {
         let (x, y) = screen.place(place);
@@ -90,7 +88,6 @@ fn add_polygon(path: &mut String, vertices: &[Vec2<Fx>], radius: Fx, screen: &Sc
             let (x, y) = screen.place(from);
             push(path, format_args!("{command}{x} {y}"));
         } else {
-            // The edge moved outwards, followed by the arc of the corner at its end.
             let out = outward(from, to, radius);
             let ((x, y), (end_x, end_y)) = (screen.place(from + out), screen.place(to + out));
             let after = vertices[(i + 2) % vertices.len()];
@@ -102,7 +99,7 @@ fn add_polygon(path: &mut String, vertices: &[Vec2<Fx>], radius: Fx, screen: &Sc
     path.push('z');
 }
 
-/// Outward offset of an edge of a rounded counter-clockwise polygon.
+/// Outward offset of an edge of a counter-clockwise polygon.
 fn outward(from: Vec2<Fx>, to: Vec2<Fx>, radius: Fx) -> Vec2<Fx> {
     let Some(normal) = (from - to).perp().normalized() else { return Vec2::ZERO };
     let scale = |unit: Unit| crate::math::fx_mul(widen(unit), radius);

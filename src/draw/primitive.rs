@@ -1,12 +1,10 @@
-//! The primitives that a picture consists of, as plain data.
-
 use alloc::string::String;
 use alloc::vec::Vec;
 
 use crate::body::{BodyId, JointId, ShapeId};
 use crate::math::{Aabb, Fx, Unit, Vec2};
 
-/// The layers of a picture: the kinds of objects to draw.
+/// The kinds of objects to draw.
 ///
 /// ```
 /// use lockstep2d::draw::Layers;
@@ -17,7 +15,7 @@ use crate::math::{Aabb, Fx, Unit, Vec2};
 pub struct Layers {
     /// The shapes of all bodies.
     pub outlines: bool,
-    /// Outlines in the colour of their island, whose bodies can only fall asleep together.
+    /// Outlines in the colour of their island, whose bodies fall asleep together.
     pub islands: bool,
     /// Fat boxes, as stored in the broad phase.
     pub fat_boxes: bool,
@@ -29,7 +27,7 @@ pub struct Layers {
     pub contact_normals: bool,
     /// Normal and friction forces at the contact points.
     pub contact_forces: bool,
-    /// Contact points in the colours of the groups in which the solver processes them.
+    /// Contact points in the colours of the solver.
     pub solver_colours: bool,
     /// Anchors of enabled joints, their errors, and lines to the bodies that they connect.
     pub joints: bool,
@@ -68,7 +66,7 @@ impl Layers {
         }
     }
 
-    /// Returns a reference to each layer with its field name, in the order in which menus list the layers.
+    /// Each layer with its field name, in the order of menus.
     #[must_use]
     pub fn named(&mut self) -> [(&'static str, &mut bool); 13] {
         [
@@ -142,15 +140,15 @@ impl Default for Layers {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Primitive {
-    /// Meaning of the primitive; the renderer chooses the colours.
+    /// Meaning of the primitive. The renderer chooses the colours.
     pub style: Style,
-    /// The object that the primitive belongs to, for picking and highlighting.
+    /// The object that the primitive belongs to, for picking.
     pub subject: Subject,
     /// Geometry of the primitive.
     pub form: Form,
 }
 
-/// Meaning of a primitive. Styles are in painting order: small, explanatory marks are on top.
+/// Meaning of a primitive. Styles are in painting order: small marks are on top.
 ///
 /// ```
 /// use lockstep2d::draw::{ContactProximity, Layers, Style, primitives};
@@ -168,32 +166,32 @@ pub struct Primitive {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Style {
-    /// The outline of a sensor, on a body of any kind. It overlaps other shapes and stops none.
+    /// The outline of a sensor, on a body of any kind.
     Sensor,
     /// The outline of a shape of a fixed body, or the radius that shows the rotation of a circle.
     Fixed,
-    /// Same as [`Style::Fixed`] for a kinematic body.
+    /// [`Style::Fixed`], for a kinematic body.
     Kinematic,
-    /// Same as [`Style::Fixed`] for a dynamic body that is awake.
+    /// [`Style::Fixed`], for a dynamic body that is awake.
     Dynamic,
-    /// Same as [`Style::Fixed`] for a dynamic body that is asleep.
+    /// [`Style::Fixed`], for a dynamic body that is asleep.
     Asleep,
     /// The outline of a shape in the colour of its island.
     Island(Hue),
-    /// The box of an inner node of the broad phase. The box of a root encloses all others of its tree.
+    /// The box of an inner node of the broad phase.
     BroadPhase,
     /// The fat box of a shape in the broad phase.
     FatBox,
-    /// A line from a joint's anchor to the centre of mass of the body, or between the anchors where the joint allows
-    /// them to be apart: a rod, a spring, the travel of a slider, a rope.
+    /// A line from a joint's anchor to the centre of mass of the body, or along the distance between the anchors that
+    /// the joint allows: a rod, a spring, the travel of a slider, a rope.
     JointArm,
-    /// A line from the centre of mass to its position a tenth of a second later at constant velocity.
+    /// The displacement of the centre of mass in a tenth of a second at constant velocity.
     Velocity,
     /// The centre of mass of a body.
     CentreOfMass,
     /// An anchor of a joint.
     JointAnchor,
-    /// The part of the distance between the two anchors of a joint that violates the joint:
+    /// The part of the distance between the anchors that violates the joint:
     /// [`World::joint_error`](crate::world::World::joint_error).
     JointGap,
     /// The size of the joint error, as text.
@@ -202,16 +200,15 @@ pub enum Style {
     ContactNormal(ContactProximity),
     /// A contact point.
     ContactPoint(ContactProximity),
-    /// The normal force at a contact point on shape B. The length is 0.2 m times the square root of the relative
-    /// acceleration that the force gives to the centres of mass, in units of 10 m/s²: 0.2 m for a ball that rests on
-    /// the ground under a gravity of 10 m/s², and ten times as long for a hundred times the force. The root keeps large
-    /// forces in the picture.
+    /// The normal force at a contact point on shape B. The length is `0.2 m sqrt(a / 10 m/s²)`, where `a` is the
+    /// relative acceleration that the force gives to the centres of mass: 0.2 m for a ball at rest under a gravity of
+    /// 10 m/s². The root keeps large forces in the picture.
     ContactForce,
     /// The friction force at a contact point, to the same scale.
     ContactFriction,
-    /// A contact point, in the colour of the group in which the solver processes it.
+    /// A contact point, in the colour of the solver.
     SolverGroup(Hue),
-    /// A contact point that is solved outside of all groups, because its bodies have too many contacts.
+    /// A contact point that the solver solves by itself, because its bodies have too many contacts.
     SolverOverflow,
     /// The id of a body and its name, if it has one.
     Id,
@@ -241,7 +238,7 @@ impl Hue {
         Hue((number % Self::COUNT as usize) as u8)
     }
 
-    /// Index of the hue, less than [`Hue::COUNT`].
+    /// Index below [`Hue::COUNT`].
     #[must_use]
     pub const fn index(self) -> u8 {
         self.0
@@ -251,11 +248,10 @@ impl Hue {
 /// Whether a contact point is touching or only speculative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ContactProximity {
-    /// Further apart than [`ContactProximity::Touching`]: a speculative contact, which prevents fast shapes from
-    /// tunnelling.
+    /// Further apart: a speculative contact, which prevents fast shapes from tunnelling.
     Speculative,
     /// At most [`Config::touching_distance`](crate::world::Config::touching_distance) apart, the distance at which
-    /// contact events report that shapes begin to touch.
+    /// contact events begin.
     Touching,
 }
 
@@ -281,32 +277,32 @@ pub enum Form {
     Point(Vec2<Fx>),
     /// A straight line.
     Line {
-        /// One end of the line.
+        /// One end.
         from: Vec2<Fx>,
-        /// The other end of the line.
+        /// The other end.
         to: Vec2<Fx>,
     },
-    /// A line whose length the renderer chooses, so that it is visible at any scale.
+    /// A line whose length the renderer chooses.
     Direction {
-        /// Start of the line.
+        /// Start.
         from: Vec2<Fx>,
         /// Unit vector along the line.
         direction: Vec2<Unit>,
     },
-    /// Text beside a position, whose size the renderer chooses.
+    /// Text beside a position. The renderer chooses its size.
     Label {
-        /// Position that the text belongs to.
+        /// Position.
         at: Vec2<Fx>,
-        /// The text to show.
+        /// Text.
         text: String,
     },
     /// An axis-aligned box.
     Box(Aabb),
     /// A circle.
     Circle {
-        /// Centre of the circle.
+        /// Centre.
         centre: Vec2<Fx>,
-        /// Radius of the circle.
+        /// Radius.
         radius: Fx,
     },
     /// A convex polygon, or a line with a radius if there are two vertices.

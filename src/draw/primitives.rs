@@ -1,5 +1,3 @@
-//! Collects the primitives of a world, as plain data.
-
 use alloc::vec::Vec;
 
 use super::joint;
@@ -10,17 +8,17 @@ use crate::fx;
 use crate::math::{Fx, Unit, Vec2, fx_mul, widen};
 use crate::world::{ContactView, SolverColour, World};
 
-/// A velocity is drawn as the displacement in this time, in seconds: one metre at 10 m/s, the size of a typical body.
-/// Longer lines hide the scene, shorter ones are hard to tell from points.
+/// A velocity is drawn as the displacement in this time in seconds: 1 m at 10 m/s. Longer lines hide the scene, and
+/// shorter ones are hard to tell from points.
 const VELOCITY_TIME: Fx = fx!(0.1);
 
-/// Drawn length of the force that accelerates by [`FORCE_UNIT`], in metres: shorter than a typical body.
+/// Drawn length in metres of the force that accelerates by [`FORCE_UNIT`]: shorter than a typical body.
 const FORCE_LENGTH: Fx = fx!(0.2);
-/// Unit of drawn accelerations in m/s²: approximately gravity.
+/// Unit of drawn accelerations in m/s².
 const FORCE_UNIT: i64 = 10;
 
-/// Returns the primitives of the given layers of a world: the boxes of the broad phase, then the bodies, islands,
-/// contacts and joints. Bodies and joints are in slot order.
+/// The primitives of the given layers of a world: the boxes of the broad phase, then the bodies, islands, contacts and
+/// joints. Bodies and joints are in slot order.
 #[must_use]
 pub fn primitives(world: &World, layers: Layers) -> Vec<Primitive> {
     let mut found = Vec::new();
@@ -28,8 +26,7 @@ pub fn primitives(world: &World, layers: Layers) -> Vec<Primitive> {
     found
 }
 
-/// Same as [`primitives`], but passes the primitives to `found` one by one instead of storing them. A large world has
-/// about a hundred thousand primitives.
+/// [`primitives`], but passes each primitive to `found`. A large world has about a hundred thousand.
 pub fn each_primitive(world: &World, layers: Layers, found: Sink<'_>) {
     if layers.broad_phase {
         for (aabb, _) in world.broad_phase_boxes() {
@@ -43,7 +40,6 @@ pub fn each_primitive(world: &World, layers: Layers, found: Sink<'_>) {
         add_islands(world, found);
     }
     if layers.contact_points || layers.contact_normals || layers.contact_forces || layers.solver_colours {
-        // The distance at which events report that a contact begins.
         let touching_distance = world.config().touching_distance();
         for contact in world.contacts() {
             add_contact(&contact, touching_distance, layers, found);
@@ -56,7 +52,6 @@ pub fn each_primitive(world: &World, layers: Layers, found: Sink<'_>) {
     }
 }
 
-/// Callback for each primitive.
 pub(super) type Sink<'a> = &'a mut dyn FnMut(Primitive);
 
 pub(super) fn primitive(style: Style, subject: Subject, form: Form) -> Primitive {
@@ -110,7 +105,7 @@ fn add_outlines(world: &World, (id, body): (BodyId, &Body), style: Style, found:
             _ => style,
         };
         let mut add = |form| found(primitive(style, subject, form));
-        // The outline is the one used by collision detection, so that a picture cannot hide an error of the pose.
+        // The outline that collision detection uses, so that a picture cannot hide an error of the pose.
         let PosedShape { centre, outline, .. } = PosedShape::new(&shape.def, body, rotation);
         match outline {
             Outline::Circle { radius } => {
@@ -130,7 +125,7 @@ fn add_outlines(world: &World, (id, body): (BodyId, &Body), style: Style, found:
     }
 }
 
-/// Adds the outlines of each island, in a colour that depends on its first body.
+/// The colour of an island depends on its first body.
 fn add_islands(world: &World, found: Sink<'_>) {
     for island in world.islands() {
         let Some(first) = island.first() else { continue };
@@ -186,16 +181,13 @@ fn add_forces(contact: &ContactView<'_>, add: &mut impl FnMut(Style, Form)) {
     }
 }
 
-/// Drawn length of a force in metres, with the sign of the acceleration, to 16 fractional bits: see
-/// [`Style::ContactForce`].
+/// Drawn length of a force in metres, with the sign of the acceleration: see [`Style::ContactForce`].
 fn force_length(acceleration: Fx) -> Fx {
     let units = (acceleration / FORCE_UNIT).to_bits();
-    // The root has half as many fractional bits.
     let root = Fx::saturating_from_num(units.unsigned_abs().isqrt()) / (1 << (Fx::FRAC_NBITS / 2));
     fx_mul(root, if acceleration < Fx::ZERO { -FORCE_LENGTH } else { FORCE_LENGTH })
 }
 
-/// A vector times a factor.
 pub(super) fn stretched(vector: Vec2<Fx>, factor: Fx) -> Vec2<Fx> {
     Vec2::new(fx_mul(vector.x, factor), fx_mul(vector.y, factor))
 }

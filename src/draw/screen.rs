@@ -1,18 +1,16 @@
 //! Transformation from the world to the picture: `p = (x - centre) pixels / metres`, relative to the middle of the
 //! picture and with y flipped.
 //!
-//! Coordinates are integers in hundredths of a pixel: no screen shows finer detail, and integers are printed alike
-//! everywhere. The scale is a fraction of two integers, because a single fixed-point number would have no digits left
-//! for a window as wide as the world.
+//! Coordinates are integers in hundredths of a pixel, which are printed alike everywhere. The scale is a fraction of
+//! two integers, because a fixed-point number would have no digits left for a window as wide as the world.
 
 use core::fmt;
 
 use crate::fx;
 use crate::math::{Aabb, Fx, Vec2, div_round, saturate_wide, segment_intersection};
 
-/// Minimum width and height of the window in metres. In a picture of 960 pixels with a much narrower window, the
-/// largest polygons (110 m from the centre to a side) would have coordinates of more than 2^23 pixels, at which common
-/// renderers (cairo) overflow.
+/// Minimum width and height of the window in metres. With a much narrower window, the largest polygons (110 m from the
+/// centre to a side) would have coordinates above 2^23 pixels, at which common renderers (cairo) overflow.
 const WINDOW_MIN: Fx = fx!(0.02);
 
 /// A coordinate or length in hundredths of a pixel.
@@ -20,7 +18,7 @@ const WINDOW_MIN: Fx = fx!(0.02);
 pub(super) struct Pixel(pub(super) i64);
 
 impl fmt::Display for Pixel {
-    /// Omits trailing zeros: most of the text of a large picture is numbers.
+    /// Omits trailing zeros, because numbers are most of the text of a large picture.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let hundredths = self.0.unsigned_abs();
         let (whole, rest) = (hundredths / 100, hundredths % 100);
@@ -37,9 +35,7 @@ impl fmt::Display for Pixel {
 
 /// Maps a window of the world to an area of pixels.
 pub(super) struct Screen {
-    /// World position at the middle of the picture.
     centre: Vec2<Fx>,
-    /// Size of the picture in whole pixels.
     size: (u32, u32),
     /// Numerator of the scale, in pixels.
     pixels: i128,
@@ -51,7 +47,7 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    /// Creates the screen that shows a window as large as fits into `size` pixels.
+    /// Shows a window as large as fits into `size` pixels.
     pub(super) fn new(window: Aabb, size: (u32, u32)) -> Self {
         let window = Aabb::new(window.lower.min(window.upper), window.lower.max(window.upper));
         let units = |lower: Fx, upper: Fx| {
@@ -61,14 +57,13 @@ impl Screen {
         let (pixels_x, pixels_y) = (i128::from(size.0), i128::from(size.1));
         let wide = width * pixels_y >= height * pixels_x;
         let (pixels, units) = if wide { (pixels_x, width) } else { (pixels_y, height) };
-        // Half of the picture, plus 16 pixels for the width of strokes.
+        // 16 pixels are for the width of strokes.
         let reach = |size: i128| Fx::from_bits(saturate_wide((size / 2 + 16) * units / pixels + 1));
         let reach = Vec2::new(reach(pixels_x), reach(pixels_y));
         let centre = window.centre();
         Screen { centre, size, pixels, units, seen: Aabb::new(centre - reach, centre + reach) }
     }
 
-    /// Picture coordinates of a world position.
     pub(super) fn place(&self, point: Vec2<Fx>) -> (Pixel, Pixel) {
         let from = |value: Fx, centre: Fx| i128::from(value.to_bits()) - i128::from(centre.to_bits());
         let x = self.scaled(from(point.x, self.centre.x));
@@ -77,7 +72,6 @@ impl Screen {
         (Pixel(middle(self.size.0).saturating_add(x)), Pixel(middle(self.size.1).saturating_sub(y)))
     }
 
-    /// Picture length of a length in metres.
     pub(super) fn length(&self, length: Fx) -> Pixel {
         Pixel(self.scaled(length.to_bits().into()))
     }
@@ -86,7 +80,7 @@ impl Screen {
         saturate_wide(div_round(units * self.pixels * 100, self.units))
     }
 
-    /// Returns the visible part of a line, or `None` if there is none.
+    /// The visible part of a line.
     pub(super) fn clipped(&self, from: Vec2<Fx>, to: Vec2<Fx>) -> Option<(Vec2<Fx>, Vec2<Fx>)> {
         let Aabb { lower, upper } = self.seen;
         if self.seen.contains_point(from) && self.seen.contains_point(to) {
@@ -96,8 +90,7 @@ impl Screen {
         let borders = (0..4).map(|i| (corners[i], corners[(i + 1) % 4]));
         let crossings = borders.filter_map(|(start, end)| segment_intersection(from, to, start, end));
         let ends = [from, to].into_iter().filter(|&end| self.seen.contains_point(end));
-        // A line through a corner crosses two borders at the same point. Two different points are the ends of the
-        // visible part.
+        // A line through a corner crosses two borders at the same point.
         let mut points = ends.chain(crossings);
         let first = points.next()?;
         Some((first, points.max_by_key(|&point| first.distance(point))?))

@@ -1,8 +1,8 @@
 //! Draws a tick as an SVG document.
 //!
-//! The outlines of a body have its id and its name as a tooltip. The lines and points of each other style share one
-//! path: a picture of 5000 boxes at rest takes about two megabytes. Points are lines of zero length, and strokes do not
-//! scale, so that a picture can be enlarged in a browser to see exactly where two shapes touch.
+//! The outlines of a body have its id and its name as a tooltip. The lines and points of another style share one path:
+//! a picture of 5000 boxes at rest takes about two megabytes. Strokes do not scale, so that a picture can be enlarged
+//! in a browser to see exactly where two shapes touch.
 
 use alloc::collections::BTreeMap;
 use alloc::string::String;
@@ -22,7 +22,7 @@ use crate::world::World;
 /// Height of the legend in pixels: two lines of text.
 const LEGEND_HEIGHT: u32 = 42;
 
-/// Draws the current state of the world, with y upwards. The same world and view give the same text on every machine.
+/// Draws a world as an SVG document, with y upwards. The same world and view give the same text on every machine.
 #[must_use]
 pub fn svg(world: &World, view: &View) -> String {
     let (width, height) = (view.width.clamp(64, 16384), view.height.clamp(64, 16384));
@@ -46,7 +46,7 @@ pub fn svg(world: &World, view: &View) -> String {
         ),
     );
     add_legend(&mut text, world, view, &layers);
-    // A nested picture clips its contents. It needs no id, which could clash in a page with several pictures.
+    // A nested picture clips its contents without an id, which could clash in a page with several pictures.
     push(
         &mut text,
         format_args!(
@@ -64,14 +64,14 @@ pub fn svg(world: &World, view: &View) -> String {
     text
 }
 
-/// Size of marks: scaled down for small bodies, so that marks stay smaller than the bodies below them.
+/// Size of marks, smaller for small bodies.
 struct Marks {
-    /// Mean half extent, in hundredths of a pixel, of the fat boxes of shapes that can move; clamped.
+    /// Mean half extent, in hundredths of a pixel, of the fat boxes of shapes that can move, clamped.
     body: i64,
 }
 
 impl Marks {
-    /// Half extent at which marks reach their maximum size, in hundredths of a pixel.
+    /// Half extent from which marks have their maximum size.
     const BODY_LARGE: i64 = 2400;
 
     fn of(world: &World, screen: &Screen) -> Self {
@@ -93,7 +93,6 @@ impl Marks {
     }
 }
 
-/// The elements of all visible styles, in painting order.
 fn sorted_by_style(world: &World, view: &View, screen: &Screen, marks: &Marks) -> BTreeMap<Style, String> {
     let mut layers = BTreeMap::<Style, String>::new();
     let normal_length = marks.scaled(1800);
@@ -123,7 +122,7 @@ fn sorted_by_style(world: &World, view: &View, screen: &Screen, marks: &Marks) -
     layers
 }
 
-/// Whether the style is that of outlines, which have a tooltip with the id and the name of their body.
+/// Whether the style is that of outlines.
 fn has_tooltip(style: Style) -> bool {
     matches!(
         style,
@@ -170,7 +169,7 @@ fn add_legend(text: &mut String, world: &World, view: &View, layers: &BTreeMap<S
     text.push_str("</text>\n</g>\n");
 }
 
-/// Adds a scale bar, a tenth to a quarter of the picture wide.
+/// Adds a scale bar, up to a quarter of the picture wide.
 fn add_scale_bar(text: &mut String, screen: &Screen, (width, height): (u32, u32)) {
     let Some(Bar { length, label }) = Bar::up_to(|bar| screen.length(bar).0 <= i64::from(width) * 25) else {
         return;
@@ -188,7 +187,7 @@ fn add_scale_bar(text: &mut String, screen: &Screen, (width, height): (u32, u32)
     );
 }
 
-/// Appends text with all markup escaped. Control characters below U+0020, and U+FFFE and U+FFFF, become U+FFFD.
+/// Appends text with all markup escaped. U+FFFD replaces control characters below U+0020, U+FFFE and U+FFFF.
 fn add_escaped(text: &mut String, raw: &str) {
     for character in raw.chars() {
         match character {

@@ -1,5 +1,3 @@
-//! The content and size of a picture.
-
 use alloc::string::String;
 
 use super::primitive::Layers;
@@ -27,7 +25,7 @@ pub struct View {
 }
 
 impl Default for View {
-    /// 960 x 720 pixels of the automatically chosen window, without a title.
+    /// 960 x 720 pixels, with [`Frame::Fit`] and without a title.
     fn default() -> Self {
         View { width: 960, height: 720, frame: Frame::Fit, layers: Layers::default(), title: String::new() }
     }
@@ -51,9 +49,7 @@ impl Default for View {
 pub enum Frame {
     /// The window chosen by [`fit`](super::fit()).
     Fit,
-    /// This window, centred. If the picture has another aspect ratio, it shows more of the world in one direction. A
-    /// side of the window that is shorter than 2 cm is extended to 2 cm.
-    ///
-    /// Use the same window for several ticks of one scene.
+    /// This window, centred. With another aspect ratio, the picture shows more of the world in one direction. Sides
+    /// shorter than 2 cm are extended to 2 cm.
     Window(Aabb),
 }

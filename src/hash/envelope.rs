@@ -1,5 +1,4 @@
-//! The envelope of files that hold one value: magic, version of the layout, semantics, length of the body, body, and a
-//! hash of all preceding bytes. `docs/FORMAT.md` gives the layout.
+//! The envelope of files that hold one value: `docs/FORMAT.md` gives the layout.
 
 use alloc::vec::Vec;
 
@@ -10,30 +9,21 @@ use crate::codec::{self, DecodeError};
 
 /// Size of the header in bytes: magic, format, semantics, length.
 const HEADER_LEN: usize = 8 + 4 + 4 + 8;
-/// Size of the hash at the end, in bytes.
 const HASH_LEN: usize = 16;
 
-/// Constants that identify a kind of file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Envelope {
-    /// The first eight bytes.
     pub(crate) magic: [u8; 8],
-    /// The version of the layout.
     pub(crate) format: u32,
 }
 
 /// Reason why bytes are not an intact file of the expected kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum EnvelopeError {
-    /// The bytes do not start with the magic, or are shorter than a header.
     Magic,
-    /// The layout has another version.
     Format { found: u32 },
-    /// The file has another number of bytes than the header announces.
     Length { announced: u64, found: u64 },
-    /// The hash at the end does not match the bytes before it.
     Hash,
-    /// The body does not decode.
     Decode(DecodeError),
 }
 
@@ -43,12 +33,11 @@ pub(crate) struct Opened<'a> {
     bytes: &'a [u8],
     /// The semantics of the engine that wrote the file.
     pub(crate) semantics: u32,
-    /// Announced length of the body in bytes.
     length: u64,
 }
 
 impl Envelope {
-    /// Returns the bytes of a file with this body.
+    /// The bytes of a file with this body.
     pub(crate) fn seal<T: Serialize>(&self, semantics: u32, body: &T) -> Vec<u8> {
         let mut bytes = self.magic.to_vec();
         bytes.extend_from_slice(&self.format.to_le_bytes());

@@ -1,5 +1,3 @@
-//! [`Compound`]: collects the parts of a list, map, struct or variant.
-
 use alloc::string::String;
 
 use serde::Serialize;
@@ -8,14 +6,12 @@ use serde::ser;
 use super::serializer::{Collector, InspectError, key};
 use super::value::Value;
 
-/// A compound value whose parts are being collected.
+/// The parts of a list, map, struct or variant that is being collected.
 pub(super) struct Compound<'a> {
     collector: &'a mut Collector,
-    /// Name of the variant, if the value is an enum variant.
     variant: Option<&'static str>,
-    /// `Some` for a fixed-point number, with its number of fraction bits if known. Its only part is the raw number.
+    /// `Some` for a fixed-point number, with its number of fraction bits if known.
     fixed: Option<Option<u32>>,
-    /// Number of parts so far.
     count: u64,
     key: String,
 }
@@ -46,7 +42,7 @@ impl<'a> Compound<'a> {
         let bits = super::fields(value)?.first().and_then(|field| field.value.bits());
         match bits {
             Some(bits) => self.collector.push(Value::Fixed { bits, fraction_bits }),
-            // A number of more than 127 bits, or another struct with the name of a fixed-point type.
+            // A number of more than 127 bits, or another struct with such a name.
             None => self.collector.named(name, value)?,
         }
         Ok(())

@@ -1,5 +1,3 @@
-//! [`Decimal`]: a fixed-point number in decimal, with enough digits to distinguish it from its neighbours.
-
 use core::fmt;
 
 /// `bits / 2^fraction_bits` in decimal.
@@ -14,7 +12,7 @@ pub(super) struct Decimal {
 impl Decimal {
     /// Returns `None` if the computation exceeds 128 bits.
     pub(super) fn new(bits: i128, fraction_bits: u32) -> Option<Self> {
-        // log10(2) is a little less than 4/13; with one more digit, neighbouring numbers differ.
+        // log10(2) is a little less than 4/13. With one more digit, neighbouring numbers differ.
         let digits = fraction_bits * 4 / 13 + u32::from(fraction_bits > 0);
         let scale = 10u128.checked_pow(digits)?;
         let one = 1u128.checked_shl(fraction_bits)?;

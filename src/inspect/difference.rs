@@ -1,5 +1,3 @@
-//! Comparison of two lists of fields.
-
 use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::vec::Vec;
 use core::fmt;
@@ -23,9 +21,9 @@ use super::value::{Field, Value};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
     field: Field,
-    /// Value in the first list; `None` if the field is missing.
+    /// Value in the first list. `None` if the field is missing.
     pub a: Option<Value>,
-    /// Value in the second list; `None` if the field is missing.
+    /// Value in the second list. `None` if the field is missing.
     pub b: Option<Value>,
 }
 
@@ -35,8 +33,7 @@ impl Difference {
         Difference { field: field.clone(), a: a.map(value), b: b.map(value) }
     }
 
-    /// The field that differs, with its path and names ([`Field::path`]). If both lists contain it, this is the field
-    /// of the first list.
+    /// The field, with its path and names. If both lists contain it, this is the field of the first list.
     #[must_use]
     pub fn field(&self) -> &Field {
         &self.field
@@ -60,8 +57,8 @@ impl fmt::Display for OrNothing<'_> {
     }
 }
 
-/// Returns the fields that differ or are missing from one list, in the order of the first list. Fields that only the
-/// second list has are placed by their position in the second list.
+/// The fields that differ or are missing from one list, in the order of the first list. A field that only the second
+/// list has is placed by its position in that list.
 #[must_use]
 pub fn differences(a: &[Field], b: &[Field]) -> Vec<Difference> {
     let (positions_a, positions_b) = (positions(a), positions(b));
@@ -84,7 +81,7 @@ pub fn differences(a: &[Field], b: &[Field]) -> Vec<Difference> {
     found
 }
 
-/// A path, and the number of earlier fields with the same path: a map may have two keys with the same text.
+/// A path, and the number of earlier fields with the same path, because a map may have two keys with the same text.
 type FieldPosition<'a> = (&'a str, u32);
 
 fn positions(fields: &[Field]) -> Vec<FieldPosition<'_>> {
@@ -98,7 +95,6 @@ fn positions(fields: &[Field]) -> Vec<FieldPosition<'_>> {
     positions
 }
 
-/// Fields in a range of the second list that the first list does not have.
 fn only_in_b<'a>(
     b: &'a [Field],
     positions: &'a [FieldPosition<'a>],

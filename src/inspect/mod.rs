@@ -1,8 +1,7 @@
 //! Converts any value to a list of named fields, and compares two such lists.
 //!
-//! A field has a path, such as `world.bodies.body 12v1.velocity.x`, and a [`Value`], which is stored exactly and
-//! displayed in readable form. Every type that implements `Serialize` can be inspected; its human-readable
-//! serialization is used.
+//! A field has a path, such as `world.bodies.body 12v1.velocity.x`, and an exact [`Value`]. Any type that implements
+//! `Serialize` can be inspected, by its human-readable serialization.
 //!
 //! ```
 //! use lockstep2d::{fx, inspect::{differences, fields}, math::Vec2};
@@ -35,7 +34,7 @@ use serializer::Collector;
 /// Largest nesting depth of a value.
 pub const DEPTH_MAX: u32 = 128;
 
-/// Returns all fields of a value, in serialization order.
+/// The fields of a value, in serialization order.
 ///
 /// An `Option` results in the fields of its value or in `none`, a variant in its name and its fields, and an empty list
 /// or map in a field of its own.

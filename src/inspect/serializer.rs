@@ -1,5 +1,3 @@
-//! [`Collector`]: a serializer whose output is a list of fields.
-
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -28,7 +26,7 @@ use crate::math::Angle;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InspectError {
-    /// Message of the value's `Serialize`, or the message that the value is nested too deep.
+    /// Message of the value's `Serialize`, or that the value is nested too deep.
     pub why: String,
 }
 
@@ -46,14 +44,13 @@ impl serde::ser::Error for InspectError {
     }
 }
 
-/// State of the traversal of a value.
 #[derive(Default)]
 pub(super) struct Collector {
     fields: Vec<Field>,
     path: String,
     subject: Option<(usize, usize)>,
     depth: u32,
-    /// Type name of the current value. For display only: it decides how a number is written.
+    /// Type name of the current value. It only decides how a number is written.
     kind: &'static str,
 }
 
@@ -70,7 +67,6 @@ impl Collector {
         self.fields.push(Field { path: self.path.clone(), subject: self.subject, value });
     }
 
-    /// Adds a value at the current path.
     pub(super) fn nested<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), InspectError> {
         if self.depth == DEPTH_MAX {
             return Err(InspectError { why: format!("nested deeper than {DEPTH_MAX}") });
@@ -83,17 +79,15 @@ impl Collector {
         result
     }
 
-    /// Adds a value under a name.
     pub(super) fn named<T: Serialize + ?Sized>(&mut self, name: &str, value: &T) -> Result<(), InspectError> {
         self.within(|path| push_name(path, name), value)
     }
 
-    /// Adds a value under an index.
     pub(super) fn numbered<T: Serialize + ?Sized>(&mut self, at: u64, value: &T) -> Result<(), InspectError> {
         self.within(|path| path.push_str(&format!("[{at}]")), value)
     }
 
-    /// Adds an entry of a map. The entries of the outermost map are the objects that a report refers to.
+    /// Adds an entry of a map. The entries of the outermost map are the objects of a report.
     pub(super) fn entry<T: Serialize + ?Sized>(&mut self, key: &str, value: &T) -> Result<(), InspectError> {
         let (outer, section) = (self.subject, self.path.len());
         let length = section + usize::from(section > 0) + key.len();
@@ -115,8 +109,7 @@ impl Collector {
         result
     }
 
-    /// Number of fraction bits of the current fixed-point number. The type name contains this number as binary digits,
-    /// `B1` and `B0`.
+    /// Number of fraction bits of a fixed-point number, which its type name contains as binary digits, `B1` and `B0`.
     pub(super) fn fraction_bits(&self) -> Option<u32> {
         let name = self.kind.trim_start_matches('&').strip_prefix("fixed::")?;
         let digits = name.split(|c: char| !c.is_alphanumeric()).filter_map(|word| match word {

@@ -1,5 +1,3 @@
-//! Tests the fields of every kind of value, differences between values, the paths of fields, and the depth limit.
-
 use alloc::collections::BTreeMap;
 use alloc::string::{String, ToString};
 use alloc::vec;
@@ -87,7 +85,6 @@ fn every_kind_of_value_has_its_fields() {
     assert_eq!(lines(&Kind::One(1)), [" = One", "One = 1"]);
 }
 
-/// Type names contain the number of fraction bits.
 #[test]
 fn every_format_is_known_by_its_fraction_bits() {
     fn bits<T: Serialize>(value: T) -> Option<u32> {
@@ -179,7 +176,7 @@ fn depth_is_limited() {
         chain = Chain(Some(alloc::boxed::Box::new(chain)));
     }
     assert!(matches!(fields(&chain), Err(InspectError { why }) if why.contains("deep")));
-    // The chain is dropped iteratively, because the derived drop would recurse to its full depth.
+    // Dropped iteratively, because the derived drop would recurse to the full depth.
     while let Some(next) = chain.0.take() {
         chain = *next;
     }

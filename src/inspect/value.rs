@@ -1,5 +1,3 @@
-//! Fields and their values.
-
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -38,7 +36,7 @@ pub enum Value {
     },
     /// An angle.
     Angle(Angle),
-    /// A floating-point number, as its bits. A game may use one for display, but not in its state.
+    /// A floating-point number, as its bits.
     Float(u64),
     /// Text.
     Text(String),
@@ -51,7 +49,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Raw integer of a number, an angle or a boolean; `None` for other values, and for integers above 127 bits.
+    /// Raw integer of a number, an angle or a boolean. `None` for other values, and for integers above 127 bits.
     #[must_use]
     pub fn bits(&self) -> Option<i128> {
         match self {
@@ -66,7 +64,7 @@ impl Value {
 }
 
 impl Value {
-    /// A fixed-point number in decimal, with enough digits to distinguish it from its neighbours; `None` for other
+    /// A fixed-point number in decimal, with enough digits to distinguish it from its neighbours. `None` for other
     /// values, if the number of fraction bits is unknown, or if the computation exceeds 128 bits.
     #[must_use]
     pub fn decimal(&self) -> Option<String> {
@@ -112,7 +110,7 @@ impl fmt::Display for Value {
     }
 }
 
-/// A leaf of an inspected value: a value without parts, with its path.
+/// A value without parts, with its path.
 ///
 /// ```
 /// # use lockstep2d::{body::BodyDef, world::World};
@@ -129,8 +127,7 @@ impl fmt::Display for Value {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
     pub(super) path: String,
-    /// Lengths in bytes of two prefixes of the path: the path of the enclosing object, and the path of the object's
-    /// section.
+    /// Lengths in bytes of two prefixes of the path: the path of the enclosing object, and of its section.
     pub(super) subject: Option<(usize, usize)>,
     /// Value of the field.
     pub value: Value,
@@ -151,8 +148,8 @@ impl Field {
         self.subject.map(|(end, _)| &self.path[..end])
     }
 
-    /// Section that contains the field, such as `world.bodies`: the path of the outermost map. If the field is not in a
-    /// map: the first name of the path, or nothing if the path begins with an index.
+    /// Section that contains the field, such as `world.bodies`: the path of the outermost map. Without a map, the first
+    /// name of the path, or nothing if the path begins with an index.
     #[must_use]
     pub fn section(&self) -> &str {
         let end = match self.subject {
@@ -162,7 +159,7 @@ impl Field {
         &self.path[..end]
     }
 
-    /// Name of the field within its object, such as `velocity.x`; the whole path if the field is not in a map.
+    /// Name of the field within its object, such as `velocity.x`, or the whole path if the field is not in a map.
     #[must_use]
     pub fn name(&self) -> &str {
         match self.subject {

@@ -4,15 +4,12 @@ use core::cell::Cell;
 
 use crate::math::{Shift, Speed, Vec2};
 
-/// Index of the ground, the body that stands for all bodies that are not among the bodies of a tick. In the list of
-/// bodies to which a constraint writes, this index also replaces each body that no impulse changes, because the kernels
-/// never write to the ground.
+/// Index of the ground, which represents all bodies that are not in the body list. Kernels never write to the ground,
+/// so that it also replaces a body that no impulse changes in the list of bodies to which a constraint writes.
 pub(crate) const GROUND: u32 = 0;
 
-/// A body in the solver. A body that no impulse moves has mass fraction 0 in every row, so kernels process it like any
-/// other body and its velocity does not change.
-///
-/// The layout is two halves of 16 bytes, each of which the SIMD kernels load as a whole.
+/// A body in the solver: two halves of 16 bytes, each of which the SIMD kernels load as a whole. A body that no impulse
+/// moves has mass fraction 0 in every row.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
 pub(crate) struct SolverBody {
@@ -37,14 +34,12 @@ impl SolverBody {
         self.spin = Speed::from_bits(spin);
     }
 
-    /// Sets the displacement since the start of the tick.
     #[inline(always)]
     pub(crate) fn set_shift(&mut self, x: i32, y: i32, turn: i32) {
         self.shift = Vec2::new(Shift::from_bits(x), Shift::from_bits(y));
         self.turn = Shift::from_bits(turn);
     }
 
-    /// Returns the bodies as cells, because several lanes and several threads read and write them.
     pub(crate) fn cells(bodies: &mut [Self]) -> &[Cell<Self>] {
         Cell::from_mut(bodies).as_slice_of_cells()
     }

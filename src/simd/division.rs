@@ -1,6 +1,6 @@
-//! Scalar division, for the scalar backend and for the vector backends that divide lane by lane.
+//! Scalar division, for the scalar backend and for vector backends that divide lane by lane.
 
-/// `1 / d`, rounded down, where `d` and the result have 30 fraction bits. `d` is clamped to at least 1.
+/// `1 / d`, rounded down, with 30 fraction bits. `d` is clamped to at least 1.
 #[inline(always)]
 #[expect(
     clippy::cast_possible_truncation,
@@ -11,7 +11,7 @@ pub(super) fn reciprocal(d: i64) -> i32 {
     ((1u64 << 60) / d.max(1 << 30) as u64) as i32
 }
 
-/// Entries `g11, g12, g22` of `G = K^-1` with 30 fraction bits, from the entries of `K - I` with 46 fraction bits.
+/// [`super::Lanes::inverse`] for one lane.
 #[inline(always)]
 #[expect(
     clippy::cast_possible_truncation,
@@ -24,7 +24,7 @@ pub(super) fn inverse([xx, xy, yy]: [i64; 3]) -> [i32; 3] {
     let (k11, k22) = (ONE + xx, ONE + yy);
     // The products have 92 fraction bits, of which 30 are kept.
     let det = ((i128::from(k11) * i128::from(k22) - i128::from(xy) * i128::from(xy)) >> 62) as u64;
-    // The determinant is shifted down to at most 32 bits, so that the products with its reciprocal fit 64 bits.
+    // The determinant is shifted down to 32 bits, so that the products with its reciprocal fit 64 bits.
     let excess = 32u32.saturating_sub((det | 1).leading_zeros());
     let reciprocal = ((1u64 << 62) / (det >> excess).max(1 << 29)) as i64;
     let entry = |value: i64| ((((value >> (16 + excess)) * reciprocal) + (1 << 31)) >> 32) as i32;

@@ -28,7 +28,7 @@ impl<W, S: Default> Default for Layout<W, S> {
 }
 
 impl<W: Default, S: Default> Layout<W, S> {
-    /// Chooses the layout for a machine. If the layout changes, the data is empty afterwards.
+    /// Chooses the layout for a machine. A change of the layout empties the data.
     pub(crate) fn fit(&mut self, machine: Machine) {
         match (machine.vectors(), &mut *self) {
             (Some(new), Layout::Wide(_, vectors)) => *vectors = new,

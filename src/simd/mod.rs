@@ -1,13 +1,11 @@
 //! SIMD abstraction: the integer operations in which the wide kernels are written.
 //!
-//! A kernel is one generic function over [`Lanes`]; a backend is one implementation of that trait. The scalar backend,
-//! `Scalar<1>`, processes one row at a time. The other backends process [`WIDTH`] rows that share no body, and no lane
-//! depends on another. They use `Scalar<1>` for batches with a single row. Every backend therefore gives the same bits.
-//! Data that kernels process is laid out for the backend ([`Layout`]). Lanes hold only 32-bit numbers and their 64-bit
-//! products, because each vector instruction set has a widening multiplication 32 x 32 -> 64 (`vpmuldq`, `smull`,
-//! `i64x2.extmul`).
+//! A kernel is a generic function over [`Lanes`], and a backend is an implementation of that trait. `Scalar<1>`
+//! processes one row at a time. The other backends process [`WIDTH`] rows that share no body, and use `Scalar<1>` for
+//! batches with a single row. No lane depends on another, so that every backend gives the same bits. Lanes hold only
+//! 32-bit numbers and their 64-bit products, because each vector instruction set has a widening multiplication 32 x 32
+//! -> 64 (`vpmuldq`, `smull`, `i64x2.extmul`).
 
-// Besides the scalar backend, only the vector backends of the target architecture are compiled.
 mod body;
 mod division;
 mod layout;
@@ -33,8 +31,8 @@ use core::cell::Cell;
 /// Number of rows that a wide kernel processes at a time: eight, or four if vectors have 128 bits.
 pub(crate) use native::WIDTH;
 
-/// One number for each of `N` rows. Batches align these arrays, so that the widest load is fast. The type itself has no
-/// larger alignment, because a single row would then take as much memory as a full vector.
+/// One number for each of `N` rows. Batches align these arrays for the widest load. A larger alignment of this type
+/// would make a single row as large as a vector.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(crate) struct Ints<const N: usize>(pub(crate) [i32; N]);
@@ -43,7 +41,6 @@ impl<const N: usize> Ints<N> {
     pub(crate) const ZERO: Self = Ints([0; N]);
 }
 
-/// Converts a number of fraction bits to a shift count.
 #[expect(clippy::cast_possible_wrap, reason = "at most 64")]
 pub(crate) const fn shift(fraction_bits: u32) -> i32 {
     fraction_bits as i32
@@ -54,7 +51,7 @@ pub(crate) const fn shift(fraction_bits: u32) -> i32 {
 #[repr(C, align(16))]
 pub(crate) struct Quad(pub(crate) [i32; 4]);
 
-/// Components of a linear and angular velocity or displacement: along x, along y, and rotation.
+/// Components of a velocity or displacement: along x, along y, and rotation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct VelocityW<T> {
     pub(crate) x: T,
@@ -62,12 +59,11 @@ pub(crate) struct VelocityW<T> {
     pub(crate) turn: T,
 }
 
-/// `N` lanes of 32-bit integers. Sums and differences wrap, except those that are named `saturating`.
+/// `N` lanes of 32-bit integers. Sums wrap, except those named `saturating`.
 pub(crate) trait Lanes<const N: usize>: Copy {
     type Int: Copy;
     /// 64-bit products.
     type Wide: Copy;
-    /// A boolean per lane.
     type Mask: Copy;
 
     fn load(from: &Ints<N>) -> Self::Int;
@@ -82,47 +78,41 @@ pub(crate) trait Lanes<const N: usize>: Copy {
     fn max(a: Self::Int, b: Self::Int) -> Self::Int;
     fn or(a: Self::Int, b: Self::Int) -> Self::Int;
 
-    /// `a > b`.
     fn greater(a: Self::Int, b: Self::Int) -> Self::Mask;
     fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     fn either(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     fn any(mask: Self::Mask) -> bool;
     /// Bit mask of the lanes, the first lane in the lowest bit.
     fn bits(mask: Self::Mask) -> u32;
-    /// Number of lanes that are true.
     fn count(mask: Self::Mask) -> u32;
     fn select(mask: Self::Mask, yes: Self::Int, no: Self::Int) -> Self::Int;
     /// -1 in lanes that are true, 0 in the others.
     fn to_int(mask: Self::Mask) -> Self::Int;
-    /// Whether a number is negative.
     fn negative(a: Self::Int) -> Self::Mask;
 
-    /// The exact 64-bit product.
     fn mul(a: Self::Int, b: Self::Int) -> Self::Wide;
     fn add_wide(a: Self::Wide, b: Self::Wide) -> Self::Wide;
     fn sub_wide(a: Self::Wide, b: Self::Wide) -> Self::Wide;
     fn max_wide(a: Self::Wide, b: Self::Wide) -> Self::Wide;
     fn abs_wide(a: Self::Wide) -> Self::Wide;
-    /// `a > b`.
     fn greater_wide(a: Self::Wide, b: Self::Wide) -> Self::Mask;
-    /// `a / 2^SHIFT`, rounded to nearest, ties towards +infinity; the result must fit 32 bits. `SHIFT` is 1 to 32.
+    /// `a / 2^SHIFT`, rounded to nearest, ties towards +infinity. The result must fit 32 bits. `SHIFT` is 1 to 32.
     fn narrow<const SHIFT: i32>(a: Self::Wide) -> Self::Int;
-    /// Like [`Lanes::narrow`], but saturated, with a mask of the lanes that saturated. Adding the rounding constant
-    /// must not overflow 64 bits. `SHIFT` is 1 to 31.
+    /// [`Lanes::narrow`], but saturated, with a mask of the lanes that saturated. Adding the rounding constant must not
+    /// overflow 64 bits. `SHIFT` is 1 to 31.
     fn narrow_saturating<const SHIFT: i32>(a: Self::Wide) -> (Self::Int, Self::Mask);
 
-    /// `a / 2^shift` with a shift per lane, rounded to nearest, ties towards +infinity, saturated. `shift` is 1 to 61,
-    /// and the magnitude of `a` is at most 2^62.
+    /// [`Lanes::narrow_saturating`] with a shift per lane, 1 to 61. The magnitude of `a` is at most 2^62.
     fn narrow_by(a: Self::Wide, shift: Self::Int) -> Self::Int;
 
-    /// The lowest 32 bits, as a signed number: the remainder that `narrow::<32>` drops.
+    /// The lowest 32 bits, as a signed number.
     fn low(a: Self::Wide) -> Self::Int;
 
     /// `a / 2^SHIFT` of non-negative numbers, rounded down. `SHIFT` is 1 to 63.
     fn shift_down<const SHIFT: i32>(a: Self::Wide) -> Self::Wide;
 
-    /// `1 / d`, rounded down, where `d` and the result have 30 fraction bits. `d` is below 2^16, which is 2^46 as an
-    /// integer, and is clamped to at least 1.
+    /// `1 / d`, rounded down, where `d` and the result have 30 fraction bits. `d` is below 2^16, and is clamped to at
+    /// least 1.
     #[inline(always)]
     fn reciprocal(d: Self::Wide) -> Self::Int {
         let mut quotients = Ints::ZERO;
@@ -149,7 +139,7 @@ pub(crate) trait Lanes<const N: usize>: Copy {
     fn to_array(a: Self::Wide) -> [i64; N];
     fn load_wide(from: &[i64; N]) -> Self::Wide;
 
-    /// Gathers the quads at several indices, transposed: the first numbers, the second numbers, and so on.
+    /// Gathers the quads at several indices, transposed.
     #[inline(always)]
     fn quads(from: &[Quad], at: &[u32; N]) -> [Self::Int; 4] {
         // `map` would not be inlined into functions with other target features.
@@ -161,29 +151,22 @@ pub(crate) trait Lanes<const N: usize>: Copy {
     }
     /// Transposes quads: the first number of each row, the second of each row, and so on.
     fn transposed(rows: [&Quad; N]) -> [Self::Int; 4];
-    /// Gathers the velocities of bodies.
     fn velocities(bodies: &[Cell<SolverBody>], at: &[u32; N]) -> VelocityW<Self::Int>;
-    /// Gathers the displacements of bodies since the start of the tick.
     fn shifts(bodies: &[Cell<SolverBody>], at: &[u32; N]) -> VelocityW<Self::Int>;
     /// Scatters velocities to bodies, except those at [`GROUND`].
     fn set_velocities(bodies: &[Cell<SolverBody>], at: &[u32; N], velocities: VelocityW<Self::Int>);
-    /// Scatters displacements to bodies, except those at [`GROUND`].
     fn set_shifts(bodies: &[Cell<SolverBody>], at: &[u32; N], shifts: VelocityW<Self::Int>);
 }
 
 /// A computation that is generic over the lanes.
 pub(crate) trait Kernel<const N: usize> {
-    /// Must be `#[inline(always)]`, as must every function that it calls with lanes: only then is it compiled with the
-    /// target features of the backend.
     fn run<L: Lanes<N>>(self);
 }
 
-/// A backend that is available on this machine; by default the best one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Machine(Backend);
 
 impl Machine {
-    /// Returns `None` if the backend is not available on this machine.
     pub(crate) fn new(backend: Backend) -> Option<Self> {
         Backend::available().find(|&available| available == backend).map(Machine)
     }
@@ -198,7 +181,6 @@ impl Machine {
         Vectors::of(self.0)
     }
 
-    /// Runs a kernel whose data does not depend on the number of lanes.
     #[inline]
     pub(crate) fn run(self, kernel: impl Kernel<WIDTH> + Kernel<1>) {
         match self.vectors() {
@@ -207,7 +189,7 @@ impl Machine {
         }
     }
 
-    /// Runs a kernel of [`WIDTH`] lanes. Without vectors, it runs on arrays of plain integers.
+    /// Runs a kernel of [`WIDTH`] lanes, without vectors on arrays of plain integers.
     #[cfg(test)]
     pub(crate) fn run_wide(self, kernel: impl Kernel<WIDTH>) {
         match self.vectors() {
@@ -241,22 +223,21 @@ impl Machine {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Backend {
-    /// Plain integers, on every machine. A WebAssembly module with simd128 and the feature `sole_backend` does not
-    /// contain this backend.
+    /// Plain integers. Not available in a WebAssembly module with simd128 and the feature `sole_backend`.
     Scalar,
     /// 256-bit vectors, on most x86-64 processors since 2013.
     Avx2,
     /// 512-bit vectors, on most x86-64 servers since 2017 and on desktop processors with AVX-512.
     Avx512,
-    /// 128-bit vectors, on every 64-bit Arm processor.
+    /// 128-bit vectors of 64-bit Arm processors.
     Neon,
     /// 128-bit vectors of WebAssembly, if compiled with `-C target-feature=+simd128`.
     Simd128,
 }
 
 impl Backend {
-    /// Every backend that is compiled in and that this machine can run, the best one last. Without the feature `std`
-    /// only backends whose target features are enabled at compile time are listed.
+    /// The backends that are compiled in and that this machine can run, the best one last. Without the feature `std`,
+    /// only backends whose target features are enabled at compile time.
     pub fn available() -> impl Iterator<Item = Backend> {
         let scalar = Vectors::ARE_OPTIONAL.then_some(Backend::Scalar);
         scalar.into_iter().chain(Vectors::backends())

@@ -2,10 +2,8 @@
 
 use super::{Backend, Kernel};
 
-/// Number of lanes.
 pub(crate) const WIDTH: usize = 8;
 
-/// Uninhabited, because there are no vectors.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Vectors {}
 

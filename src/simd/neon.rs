@@ -11,8 +11,7 @@ use super::{Backend, Ints, Kernel, Lanes, Quad, VelocityW};
 /// Number of lanes. With twice as many, each number would take two vectors.
 pub(crate) const WIDTH: usize = 4;
 
-/// NEON instructions. This file is only compiled for targets that have them, so every intrinsic in an `unsafe` block is
-/// available.
+/// NEON instructions, which every target for which this file is compiled has.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Neon;
 
@@ -31,7 +30,6 @@ impl Neon {
         (backend == Backend::Neon).then_some(Neon)
     }
 
-    /// Runs a kernel.
     pub(crate) fn run(self, kernel: impl Kernel<WIDTH>) {
         kernel.run::<Neon>();
     }
@@ -296,14 +294,12 @@ fn set_velocities_w(at: &[u32; WIDTH], v: VelocityW<int32x4_t>, place: impl Fn(u
     }
 }
 
-/// Transposes rows of four numbers, and drops the last column.
 #[inline(always)]
 fn velocity_w(rows: [int32x4_t; WIDTH]) -> VelocityW<int32x4_t> {
     let [x, y, turn, _] = transposed(rows);
     VelocityW { x, y, turn }
 }
 
-/// Transposes a matrix of four rows and four columns.
 #[inline(always)]
 fn transposed([r0, r1, r2, r3]: [int32x4_t; 4]) -> [int32x4_t; 4] {
     // SAFETY: see `Neon`.

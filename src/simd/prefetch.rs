@@ -1,26 +1,24 @@
 //! Cache prefetch.
 
-/// Prefetches a value into the cache, which does not affect any result. Does nothing on architectures other than
-/// x86-64.
+/// Prefetches a value into the cache. Does nothing on architectures other than x86-64.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 #[expect(unsafe_code, reason = "vendor intrinsics")]
 pub(crate) fn prefetch<T>(of: &T) {
     use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-    /// Size of a cache line in bytes.
     const LINE: usize = 64;
     let start = core::ptr::from_ref(of).cast::<i8>();
     let ask = |offset| {
         // SAFETY: every processor of this architecture has the instruction, and the address is within the value.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(offset)) };
     };
-    // Written as a plain loop, which the compiler unrolls.
+    // A plain loop, which the compiler unrolls.
     let mut offset = 0;
     while offset < size_of::<T>() {
         ask(offset);
         offset += LINE;
     }
-    // A value that is not aligned to a line may extend into one more line.
+    // A value that is not aligned to a line may extend into one more.
     if align_of::<T>() < LINE.min(size_of::<T>()) {
         ask(size_of::<T>() - 1);
     }

@@ -3,14 +3,13 @@
 
 use core::cell::Cell;
 
-/// A slice shared between the threads of a team, under the condition that no thread writes an element that another
-/// thread accesses between the same two barriers.
+/// A slice shared between the threads of a team. No thread may write an element that another thread accesses between
+/// the same two barriers.
 ///
 /// The shared slices are the bodies of the solver (`Solver::sub_steps`), and the contacts of the state with their
 /// results (`ContactStore::new`). Each body is in at most one constraint of a colour, and is integrated by one thread.
-/// Each contact and its results are written only by the thread that solves the contact. `new` is not an `unsafe`
-/// function, because each access, not the sharing, has to meet the condition. Tests compare the results of 1, 2, 4 and
-/// 8 threads.
+/// Each contact is written only by the thread that solves it. `new` is not `unsafe`, because each access, not the
+/// sharing, has to meet the condition.
 pub(crate) struct Shared<'a, T>(&'a [Cell<T>]);
 
 impl<T> Clone for Shared<'_, T> {
@@ -28,7 +27,6 @@ unsafe impl<T: Send> Send for Shared<'_, T> {}
 unsafe impl<T: Send> Sync for Shared<'_, T> {}
 
 impl<'a, T> Shared<'a, T> {
-    /// Shares a slice. Every access must meet the condition in the documentation of the type.
     pub(crate) fn new(elements: &'a mut [T]) -> Self {
         Shared(Cell::from_mut(elements).as_slice_of_cells())
     }

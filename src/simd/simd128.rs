@@ -8,8 +8,7 @@ use super::body::{GROUND, SolverBody};
 use super::scalar::{Scalar, map};
 use super::{Backend, Ints, Kernel, Lanes, Quad, VelocityW};
 
-/// Vector instructions of WebAssembly. This file is only compiled for programs that use them; a machine without them
-/// rejects such a program as a whole.
+/// Vector instructions of WebAssembly, which every machine that accepts the program has.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Simd128;
 
@@ -28,7 +27,6 @@ impl Simd128 {
         (!Self::ARE_OPTIONAL || backend == Backend::Simd128).then_some(Simd128)
     }
 
-    /// Runs a kernel.
     pub(crate) fn run(self, kernel: impl Kernel<WIDTH>) {
         kernel.run::<Simd128>();
     }
@@ -260,7 +258,6 @@ fn set_velocities_w(at: &[u32; WIDTH], v: VelocityW<v128>, place: impl Fn(u32) -
     }
 }
 
-/// -1 in lanes that are negative, 0 in the others.
 #[inline(always)]
 fn sign(a: v128) -> v128 {
     i32x4_shr(a, 31)
@@ -278,21 +275,19 @@ fn rounded<const SHIFT: i32>(a: Products) -> Products {
     a.map(|a| i64x2_add(a, i64x2_splat(1 << (SHIFT - 1))))
 }
 
-/// The 32 bits above the lowest `SHIFT`. A logical shift is enough: these bits equal those of an arithmetic shift.
+/// The 32 bits above the lowest `SHIFT`, which are the same after a logical and an arithmetic shift.
 #[inline(always)]
 fn shifted<const SHIFT: i32>([a, b]: Products) -> v128 {
     let shift = |a| u64x2_shr(a, SHIFT.unsigned_abs());
     i32x4_shuffle::<0, 2, 4, 6>(shift(a), shift(b))
 }
 
-/// Transposes rows of four numbers, and drops the last column.
 #[inline(always)]
 fn velocity_w(rows: [v128; WIDTH]) -> VelocityW<v128> {
     let [x, y, turn, _] = transposed(rows);
     VelocityW { x, y, turn }
 }
 
-/// Transposes a matrix of four rows and four columns.
 #[inline(always)]
 fn transposed([r0, r1, r2, r3]: [v128; 4]) -> [v128; 4] {
     let (low_01, high_01) = (i32x4_shuffle::<0, 4, 1, 5>(r0, r1), i32x4_shuffle::<2, 6, 3, 7>(r0, r1));

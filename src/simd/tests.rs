@@ -1,9 +1,8 @@
-//! Tests every backend against the scalar backend, on numbers of all sizes.
+//! Every backend computes what the scalar backend does, on numbers of all sizes.
 
 use super::*;
 use crate::math::Rng;
 
-/// A random number: small, large, or an end of the range.
 fn random(rng: &mut Rng) -> i32 {
     match rng.below(8) {
         0 => i32::MIN,
@@ -17,7 +16,6 @@ fn randoms(rng: &mut Rng) -> Ints<WIDTH> {
     Ints(core::array::from_fn(|_| random(rng)))
 }
 
-/// The number of the first lane, and 0 for the others.
 fn only_first([first, ..]: [i32; WIDTH]) -> [i32; WIDTH] {
     core::array::from_fn(|i| if i == 0 { first } else { 0 })
 }
@@ -27,7 +25,6 @@ fn first(numbers: [u32; 8]) -> [u32; WIDTH] {
     core::array::from_fn(|i| numbers[i])
 }
 
-/// Kernel that applies all operations to the same numbers.
 struct Operations<'a> {
     a: Ints<WIDTH>,
     b: Ints<WIDTH>,
@@ -53,7 +50,7 @@ impl Kernel<WIDTH> for Operations<'_> {
             keep(L::select(mask, a, b));
             keep(L::to_int(mask));
         }
-        // Sums of products stay below 2^62, as they do in the kernels.
+        // Sums of products stay below 2^62, as in the kernels.
         let quarter = L::narrow::<2>(L::mul(L::splat(1), b));
         let products = [L::mul(a, quarter), L::add_wide(L::mul(a, quarter), L::mul(quarter, quarter))];
         for wide in products.into_iter().chain([L::sub_wide(L::mul(quarter, quarter), L::mul(a, quarter))]) {
@@ -73,7 +70,7 @@ impl Kernel<WIDTH> for Operations<'_> {
             keep(L::narrow_saturating::<31>(wide).0);
             keep(L::low(wide));
         }
-        // `narrow_saturating` accepts any number to which the rounding constant can be added without overflow.
+        // Any number to which the rounding constant can be added without overflow.
         let wide = L::load_wide(&core::array::from_fn(|i| {
             (i64::from(self.a.0[i]) << 31).saturating_add(i64::from(self.b.0[i])).saturating_mul(2) / 2
         }));
@@ -87,7 +84,7 @@ impl Kernel<WIDTH> for Operations<'_> {
         keep(L::narrow_by(L::mul(a, b), L::load(&shifts)));
         let quads: std::vec::Vec<_> = (0..WIDTH).map(|i| Quad([self.a.0[i], self.b.0[i], 3, -4])).collect();
         L::quads(&quads, &first([3, 0, 2, 2, 1, 7, 6, 5])).into_iter().for_each(&mut keep);
-        // `narrow` needs a result that fits 32 bits.
+        // The result fits 32 bits.
         keep(L::narrow::<30>(L::mul(quarter, L::splat(1 << 30))));
     }
 }
@@ -98,7 +95,6 @@ fn masks<L: Lanes<WIDTH>>(a: L::Int, b: L::Int) -> [L::Mask; 4] {
     [greater, negative, L::both(greater, negative), L::either(greater, negative)]
 }
 
-/// Kernel of the operations that combine all lanes of a mask.
 struct Masks<'a> {
     a: Ints<WIDTH>,
     b: Ints<WIDTH>,
@@ -114,7 +110,6 @@ impl Kernel<WIDTH> for Masks<'_> {
     }
 }
 
-/// Kernel of the divisions and matrix inverses.
 struct Divisions<'a> {
     divisors: [i64; WIDTH],
     entries: [[i64; WIDTH]; 3],
@@ -131,7 +126,7 @@ impl Kernel<WIDTH> for Divisions<'_> {
     }
 }
 
-/// Entries of `K - I` with 46 fraction bits, for two bodies with mass fractions and lever ratios of all sizes.
+/// Entries of `K - I` with 46 fraction bits, for mass fractions and lever ratios of all sizes.
 fn entries(rng: &mut Rng) -> [i64; 3] {
     let a = i64::from(rng.below(1 << 30) + 1) >> rng.below(31);
     let mut sum = [0; 3];
@@ -216,7 +211,6 @@ fn one_lane_computes_what_the_first_of_all_does() {
     }
 }
 
-/// Kernel that reads bodies and quads, and writes bodies, at the indices of all lanes.
 struct Places<'a> {
     quads: &'a [Quad],
     bodies: &'a [Cell<SolverBody>],

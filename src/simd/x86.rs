@@ -12,17 +12,15 @@ use super::{Backend, Kernel};
 use avx2::Avx2;
 use avx512::Avx512;
 
-/// Number of lanes of both backends.
 pub(crate) const WIDTH: usize = 8;
 
-/// The vectors of a backend that the processor has.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Vectors {
     Avx2,
     Avx512,
 }
 
-/// Whether the processor has all of these features: detected at run time with `std`, otherwise by the target features.
+/// Whether the processor has these features: detected at run time with `std`, otherwise by the target features.
 macro_rules! has {
     ($($feature:tt),+) => {{
         #[cfg(feature = "std")]
@@ -43,7 +41,7 @@ impl Vectors {
         avx2.into_iter().chain(wide.then_some(Backend::Avx512))
     }
 
-    /// The vectors of a backend. The caller ensures that the processor has them.
+    /// The vectors of a backend, which the processor must have.
     #[inline]
     pub(super) fn of(backend: Backend) -> Option<Self> {
         match backend {
@@ -53,7 +51,6 @@ impl Vectors {
         }
     }
 
-    /// Runs a kernel.
     pub(crate) fn run(self, kernel: impl Kernel<WIDTH>) {
         #[target_feature(enable = "avx2")]
         unsafe fn with_avx2(kernel: impl Kernel<WIDTH>) {

@@ -1,9 +1,7 @@
 //! Batches of constraints of one kind, and the loops that run a stage of the solver over them.
 //!
-//! Contacts and hinges are solved in batches. No two constraints of a colour change the same body, so that the batches
-//! of a colour may be solved in any order and on several threads. Each thread has its own batches of every colour.
-//! Constraints that fit no colour form the overflow, which is solved one constraint after the other, by the same code
-//! with one lane. A batch with a single constraint is also solved with one lane.
+//! No two constraints of a colour change the same body, so that the batches of a colour may be solved in any order and
+//! on several threads. Constraints that fit no colour form the overflow, which one thread solves one by one.
 //!
 //! Each kind of constraint defines the parts of its batches ([`BatchKind`]), and each stage of the solver defines an
 //! operation on one batch ([`Operation`]).
@@ -17,30 +15,25 @@ use super::context::StepContext;
 use super::limits::Faults;
 use crate::simd::{GROUND, Kernel, Lanes, Layout, Scalar, WIDTH, prefetch, with_data};
 
-/// A kind of constraint. `N` constraints of the kind are solved at a time.
 pub(super) trait BatchKind: Clone + Debug + 'static {
     /// The part that the iterations of the solver read and write.
     type Batch<const N: usize>: Clone + Debug + Send;
-    /// The part that only some operations read. It is stored separately, because passes over large piles are
-    /// memory-bound.
+    /// The part that only some operations read. It is separate because passes over large piles are memory-bound.
     type Record<const N: usize>: Clone + Debug + Sync;
     /// The part that only some batches have.
     type Extra<const N: usize>: Clone + Debug + Send;
 
-    /// The body indices of all lanes, for A and for B.
     fn bodies<const N: usize>(batch: &Self::Batch<N>) -> &[[u32; N]; 2];
 
-    /// Whether a batch has an extra.
     fn has_extra<const N: usize>(batch: &Self::Batch<N>) -> bool;
 }
 
-/// An operation of the solver on one batch. [`Run`] calls it for one batch after the other.
+/// An operation of the solver on one batch.
 pub(super) trait Operation<K: BatchKind>: Copy + Send + Sync {
     /// Must be `#[inline(always)]`: see [`Kernel::run`].
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, K, N>);
 }
 
-/// A batch with its record and its extra, and the bodies and the count of faults that an operation changes.
 pub(super) struct BatchParts<'a, K: BatchKind, const N: usize> {
     pub(super) batch: &'a mut K::Batch<N>,
     pub(super) record: &'a K::Record<N>,
@@ -49,39 +42,32 @@ pub(super) struct BatchParts<'a, K: BatchKind, const N: usize> {
     pub(super) faults: &'a mut Faults,
 }
 
-/// All constraints of a kind.
 #[derive(Clone, Debug)]
 pub(super) struct BatchList<K: BatchKind> {
-    /// The overflow: the constraints that fit no colour, in the order in which they are solved.
+    /// The constraints that fit no colour, in the order in which they are solved.
     pub(super) overflow: Batches<K, 1>,
-    /// For each thread, the batches of the constraints with a colour that it solves, colour by colour.
+    /// For each thread, the batches that it solves, colour by colour.
     pub(super) coloured: Vec<Coloured<K>>,
 }
 
-/// The coloured constraints of a thread.
 pub(super) type Coloured<K> = Layout<Batches<K, WIDTH>, Batches<K, 1>>;
 
-/// The constraints of a kind that one thread solves.
 #[derive(Debug)]
 pub(super) struct BatchShare<'a, K: BatchKind> {
     /// `None` if there is no overflow.
     overflow: Option<Overflow<'a, K>>,
-    /// The coloured constraints of the thread.
     pub(super) coloured: &'a mut Coloured<K>,
 }
 
-/// The constraints that fit no colour, which one of the threads solves.
 #[derive(Debug)]
 enum Overflow<'a, K: BatchKind> {
     Own(&'a mut Batches<K, 1>),
     OfAnotherThread,
 }
 
-/// Batches in the order in which they are solved.
 #[derive(Clone, Debug)]
 pub(super) struct Batches<K: BatchKind, const N: usize> {
     pub(super) batches: Vec<K::Batch<N>>,
-    /// One record for each batch.
     pub(super) records: Vec<K::Record<N>>,
     /// One extra for each batch that has one, in the order of the batches.
     pub(super) extras: Vec<K::Extra<N>>,
@@ -89,7 +75,6 @@ pub(super) struct Batches<K: BatchKind, const N: usize> {
     colour_ends: Vec<ColourEnd>,
 }
 
-/// The numbers of batches and of extras up to the end of a colour.
 #[derive(Clone, Copy, Debug, Default)]
 struct ColourEnd {
     batches: usize,
@@ -115,7 +100,7 @@ impl<K: BatchKind, const N: usize> Batches<K, N> {
         self.records.clear();
     }
 
-    /// Clears everything but the batches and records, which the caller overwrites.
+    /// Clears all but the batches and records, which the caller overwrites.
     pub(super) fn clear_all_but_batches(&mut self) {
         self.extras.clear();
         self.colour_ends.clear();
@@ -128,17 +113,14 @@ impl<K: BatchKind, const N: usize> Batches<K, N> {
 }
 
 impl<K: BatchKind> BatchList<K> {
-    /// Whether there are no constraints.
     pub(super) fn is_empty(&self) -> bool {
         self.overflow.batches.is_empty() && self.coloured.iter().all(Coloured::is_empty)
     }
 
-    /// Whether any batch has an extra.
     pub(super) fn has_extras(&self) -> bool {
         !self.overflow.extras.is_empty() || self.coloured.iter().any(Coloured::has_extras)
     }
 
-    /// Divides the constraints into one share for each thread.
     pub(super) fn shares(&mut self) -> impl Iterator<Item = BatchShare<'_, K>> {
         let has_overflow = !self.overflow.batches.is_empty();
         let mut own = Some(&mut self.overflow).filter(|_| has_overflow);
@@ -150,7 +132,6 @@ impl<K: BatchKind> BatchList<K> {
 }
 
 impl<K: BatchKind> BatchShare<'_, K> {
-    /// The overflow, if this thread solves it.
     pub(super) fn own_overflow(&mut self) -> Option<&mut Batches<K, 1>> {
         match &mut self.overflow {
             Some(Overflow::Own(batches)) => Some(batches),
@@ -158,8 +139,8 @@ impl<K: BatchKind> BatchShare<'_, K> {
         }
     }
 
-    /// Runs an operation over the overflow, one constraint after the other, if this thread solves the overflow. Then
-    /// waits for the other threads, unless there is no overflow.
+    /// Runs an operation over the overflow, if this thread solves it. Waits for the other threads if there is an
+    /// overflow.
     pub(super) fn run_overflow(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
         match &mut self.overflow {
             None => return,
@@ -171,7 +152,6 @@ impl<K: BatchKind> BatchShare<'_, K> {
 }
 
 impl<K: BatchKind> Batches<K, 1> {
-    /// Runs an operation over constraints, one after the other.
     pub(super) fn run_in_order(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
         let Batches { batches, records, extras, .. } = self;
         if batches.is_empty() {
@@ -193,7 +173,7 @@ impl<K: BatchKind> Coloured<K> {
         with_data!(self, batches => !batches.extras.is_empty())
     }
 
-    /// Runs an operation over the batches of a thread, and waits after each colour for the other threads.
+    /// Runs an operation over the batches of a thread. Waits after each colour for the other threads.
     pub(super) fn run_coloured(&mut self, operation: impl Operation<K>, context: &StepContext<'_>) {
         match self {
             Layout::Wide(batches, vectors) => {
@@ -207,7 +187,6 @@ impl<K: BatchKind> Coloured<K> {
 }
 
 impl<K: BatchKind, const N: usize> Batches<K, N> {
-    /// Runs an operation colour by colour. `run` runs it on the batches of a colour.
     fn for_each_colour<O: Operation<K>>(
         &mut self,
         operation: O,
@@ -215,7 +194,7 @@ impl<K: BatchKind, const N: usize> Batches<K, N> {
         run: impl Fn(Run<'_, K, O, N>),
     ) {
         let Batches { batches, records, extras, colour_ends } = self;
-        // A single thread needs no barriers between colours, because the batches are in the order of the colours.
+        // A single thread needs no barriers between colours.
         let all = [ColourEnd { batches: batches.len(), extras: extras.len() }];
         let ends = if context.is_alone() { &all } else { colour_ends.as_slice() };
         let (mut start, mut faults) = (ColourEnd::default(), 0);
@@ -234,7 +213,6 @@ impl<K: BatchKind, const N: usize> Batches<K, N> {
     }
 }
 
-/// An operation over batches of `N` constraints.
 struct Run<'a, K: BatchKind, O, const N: usize> {
     batches: &'a mut [K::Batch<N>],
     records: &'a [K::Record<N>],
@@ -253,20 +231,19 @@ impl<K: BatchKind, O: Operation<K>, const N: usize> Kernel<N> for Run<'_, K, O, 
         while let ([batch, others @ ..], Some(record)) = (rest, records.next()) {
             rest = others;
             if let Some(next) = rest.first() {
-                // The next batch gathers its bodies at these indices.
+                // The next batch reads its bodies at these indices.
                 prefetch(K::bodies(next));
             }
             let extra = if K::has_extra(batch) { extras.next() } else { None };
             let is_single = has_one_constraint(K::bodies(batch));
             let parts = BatchParts { batch, record, extra, bodies, faults };
-            // Solving one lane takes fewer instructions than solving all: with eight lanes, less than half. In a small
-            // world, most batches have one constraint.
+            // One lane takes less than half of the instructions of eight. In a small world, most batches have one
+            // constraint.
             if is_single { operation.apply::<Scalar<1>, N>(parts) } else { operation.apply::<L, N>(parts) }
         }
     }
 }
 
-/// Whether a batch of several lanes, which are filled in order, has a constraint in the first lane only.
 #[inline(always)]
 fn has_one_constraint<const N: usize>(bodies: &[[u32; N]; 2]) -> bool {
     bodies.iter().all(|side| side.get(1) == Some(&GROUND))

@@ -1,4 +1,4 @@
-//! Bodies in the solver: copying them from the state, and changing the velocities of two of them.
+//! Bodies in the solver.
 
 use core::cell::Cell;
 
@@ -17,8 +17,8 @@ impl SolverBody {
     pub(crate) fn set_velocity(&mut self, x: Speed, y: Speed, spin: Speed, faults: &mut Faults) {
         self.velocity = Vec2::new(x, y);
         self.spin = spin;
-        // One branch that is almost never taken replaces three clamps. Magnitudes are unsigned, because a saturated sum
-        // may be the minimum of its format, whose negative does not fit the format.
+        // One branch that is almost never taken replaces three clamps. Magnitudes are unsigned, because the negative of
+        // the minimum does not fit the format.
         let fastest = x.unsigned_abs().max(y.unsigned_abs()).max(spin.unsigned_abs());
         if fastest > SPEED_MAX.unsigned_abs() {
             self.clamp(faults);
@@ -34,12 +34,10 @@ impl SolverBody {
         }
     }
 
-    /// The body with its velocities reversed.
     pub(crate) fn reversed(&self) -> Self {
         SolverBody { velocity: -self.velocity, spin: self.spin.saturating_neg(), ..*self }
     }
 
-    /// Calls `change` with two different bodies of a list, and stores the results.
     #[inline]
     pub(super) fn change_pair(
         bodies: &[Cell<SolverBody>],
@@ -55,8 +53,7 @@ impl SolverBody {
     }
 }
 
-/// The rotation of a body, `dtheta = turn / k`, in units of 2^-32 turns. A small body may rotate by more than a full
-/// turn in a tick.
+/// The rotation of a body, `dtheta = turn / k`, in units of 2^-32 turns. It may exceed a full turn.
 pub(crate) fn turn_of(turn: Shift, inverse_gyration: Reciprocal) -> i64 {
     /// `1 / (2 pi)` with 63 fraction bits.
     const INVERSE_TAU: i128 = 1_467_945_251_641_000_613;

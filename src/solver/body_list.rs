@@ -11,24 +11,22 @@ use crate::body::{Body, Pose};
 use crate::math::{Angle, Fx, Ratio, Reciprocal, Vec2, round_shift, saturate};
 pub(super) use crate::simd::GROUND;
 
-/// The ground, then the active bodies in the order in which they were added, then the bodies that only joints need.
+/// The ground, then the active bodies, then the bodies that only joints need.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BodyList {
     pub(super) bodies: Vec<SolverBody>,
-    /// The pose of each body at the start of the tick.
+    /// Poses at the start of the tick.
     poses: Vec<Pose>,
-    /// For each body, the properties on which its contacts depend.
     facts: Vec<BodyFacts>,
-    /// For each body slot, the index of its body in `bodies`, or 0 if the body is not among the bodies of the tick.
+    /// For each body slot, the index of its body in `bodies`, or 0 if the body is not in this list.
     indices: Vec<u32>,
-    /// The slots of all bodies except the ground, in the order of `bodies`.
     slots: Vec<u32>,
 }
 
 /// The properties of a body that do not change within a tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BodyFacts {
-    /// Mass in kg; 0 if no impulse moves the body.
+    /// Mass in kg, 0 if no impulse moves the body.
     pub(super) mass: Fx,
     pub(super) inverse_gyration: Reciprocal,
 }
@@ -42,9 +40,8 @@ impl BodyFacts {
     }
 }
 
-/// Lever ratio `e = c / k` of an arm, where `c` is the cross product of the arm and a direction. Clamped to
-/// [`RATIO_MAX`]. The direction has the fraction bits of a lever ratio. `mantissa / 2^shift` is `1 / k`, including the
-/// conversion from the format of a length to that of a lever ratio.
+/// Lever ratio `e = c / k` of an arm along a direction, clamped to [`RATIO_MAX`]. The direction has the fraction bits
+/// of a lever ratio. `mantissa / 2^shift` is `1 / k`, including the conversion from a length to a lever ratio.
 pub(super) fn lever_ratio([x, y]: [i32; 2], [n_x, n_y]: [i32; 2], mantissa: i32, shift: i32) -> Ratio {
     let wide = |a: i32| i64::from(a);
     // `c` is below 2^31.5, so its product with a mantissa is below 2^63.
@@ -55,14 +52,12 @@ pub(super) fn lever_ratio([x, y]: [i32; 2], [n_x, n_y]: [i32; 2], mantissa: i32,
 }
 
 impl BodyList {
-    /// Lists the bodies in the given slots.
     #[cfg(test)]
     pub(super) fn fill(&mut self, bodies: &Arena<Body, BodyId>, slots: &[u32]) {
         self.begin(bodies.slot_count());
         slots.iter().for_each(|&slot| self.add(slot, bodies.at(slot)));
     }
 
-    /// Starts a list that contains only the ground, for a world with `slot_count` body slots.
     pub(super) fn begin(&mut self, slot_count: usize) {
         for &slot in &self.slots {
             self.indices[slot as usize] = GROUND;
@@ -77,7 +72,6 @@ impl BodyList {
         self.facts.push(BodyFacts::GROUND);
     }
 
-    /// Adds an active body.
     #[inline]
     pub(super) fn add(&mut self, slot: u32, body: &Body) {
         self.push(slot, body, SolverBody::of(body), BodyFacts::of(body));
@@ -95,13 +89,12 @@ impl BodyList {
         self.bodies.len()
     }
 
-    /// The index of the body in a slot, 1 or more; 0 if the body is not among the bodies of the tick.
+    /// The index of the body in a slot, or 0 if the body is not in this list.
     pub(super) fn index_of(&self, slot: u32) -> u32 {
         self.indices[slot as usize]
     }
 
-    /// The index of a body with a joint. Adds the body if needed: it cannot share the ground's index, because joints
-    /// need its rotation.
+    /// The index of a body with a joint. Adds the body if needed, because joints need its rotation.
     pub(super) fn own_index_of(&mut self, slot: u32, body: &Body) -> u32 {
         if self.index_of(slot) == GROUND {
             self.push(slot, body, SolverBody::default(), BodyFacts::GROUND);
@@ -109,8 +102,8 @@ impl BodyList {
         self.index_of(slot)
     }
 
-    /// Adds a body without mass at a far anchor (see [`JointFrame::is_far`]) of the fixed body in a slot, and returns
-    /// its index. [`Self::index_of`] does not return this index.
+    /// Adds a body without mass at a far anchor ([`JointFrame::is_far`]) of the fixed body in a slot, and returns its
+    /// index. [`Self::index_of`] does not return this index.
     pub(super) fn add_far_anchor(&mut self, slot: u32, pose: Pose) -> u32 {
         let index = u32::try_from(self.bodies.len()).expect("fewer than 2^32 bodies");
         self.slots.push(slot);
@@ -120,22 +113,19 @@ impl BodyList {
         index
     }
 
-    /// The slots of all bodies except the ground.
     pub(super) fn slots(&self) -> &[u32] {
         &self.slots
     }
 
-    /// The pose of each body at the start of the tick. The pose of the ground does not matter.
     pub(super) fn poses(&self) -> &[Pose] {
         &self.poses
     }
 
-    /// The facts of a body, by its index.
     pub(super) fn facts(&self, index: u32) -> &BodyFacts {
         &self.facts[index as usize]
     }
 
-    /// Returns the body in a slot, or the ground if that body is not among the bodies of the tick.
+    /// The body in a slot, or the ground if that body is not in this list.
     pub(super) fn body(&self, slot: u32) -> &SolverBody {
         &self.bodies[self.index_of(slot) as usize]
     }

@@ -1,10 +1,9 @@
-//! The two bodies of a joint that is not a hinge (`joint/list`), while the joint is solved.
+//! The two bodies of a joint that is not a hinge, while the joint is solved.
 //!
-//! A change of velocity is rounded to the resolution of [`Speed`]. Over the thousands of updates of a joint that acts
-//! in every sub-step, the roundings would add up to a force: a spring and a motor that balance each other would turn
-//! the heavier body by a unit in every sub-step. The part that rounding leaves out is therefore carried over to the
-//! next change by the same joint (error feedback, as in first-order noise shaping), so that the sum of all changes in a
-//! tick is rounded once.
+//! A velocity change is rounded to the resolution of [`Speed`]. Over thousands of updates the roundings would add up to
+//! a force: a spring and a motor that balance each other would turn the heavier body by a unit in every sub-step. The
+//! rounding error is therefore carried over to the next change by the same joint (error feedback, as in first-order
+//! noise shaping), so that the sum of the changes in a tick is rounded once.
 
 use super::body::SolverBody;
 use super::limits::Faults;
@@ -20,12 +19,11 @@ pub(crate) struct Change {
 }
 
 impl Change {
-    /// Additional fraction bits compared with [`Speed`].
     const EXTRA: u32 = 30;
 }
 
-/// The part of the changes of a body by one joint that is not yet in its velocity, in units of 2^-51 m/s: at most half
-/// a unit of [`Speed`].
+/// The part of a joint's changes of a body that is not yet in its velocity, in units of 2^-51 m/s: at most half a unit
+/// of [`Speed`].
 #[derive(Clone, Copy, Debug, Default)]
 struct Remainder {
     x: i32,
@@ -33,7 +31,7 @@ struct Remainder {
     spin: i32,
 }
 
-/// The remainders of the two bodies of a joint. They last for one tick.
+/// The remainders of both bodies of a joint, for one tick.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Remainders {
     a: Remainder,
@@ -41,15 +39,14 @@ pub(crate) struct Remainders {
 }
 
 impl Remainders {
-    /// Remainders for a tick. They start at arbitrary numbers, so that the rounding at the end of a tick is not the
-    /// same in every tick of a steady rotation (dither). The numbers follow from the poses, so that they do not change
-    /// while the bodies are at rest.
+    /// Remainders at the start of a tick: arbitrary numbers, so that the rounding at the end of a tick differs from
+    /// tick to tick in a steady rotation (dither). They follow from the poses, so that they do not change while the
+    /// bodies are at rest.
     pub(crate) fn starting([a, b]: [&Body; 2]) -> Self {
         Remainders { a: Remainder::starting(a), b: Remainder::starting(b) }
     }
 }
 
-/// The bodies of a joint, its remainders, and the count of faults.
 pub(crate) struct BodyPair<'a> {
     pub(crate) a: &'a mut SolverBody,
     pub(crate) b: &'a mut SolverBody,
@@ -58,7 +55,6 @@ pub(crate) struct BodyPair<'a> {
 }
 
 impl BodyPair<'_> {
-    /// Adds a change to the velocity of each body.
     #[inline]
     pub(crate) fn change(&mut self, a: Change, b: Change) {
         self.remainders.a.add(a, self.a, self.faults);
@@ -88,7 +84,7 @@ impl Remainder {
     }
 }
 
-/// Returns the speed after a change, saturated. Adds the last remainder to the change, and stores the new remainder.
+/// The speed after a change and the last remainder, saturated. Stores the new remainder.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "the remainder is at most half a unit, 2^29")]
 fn rounded_sum(speed: Speed, change: i64, remainder: &mut i32) -> Speed {
@@ -103,7 +99,7 @@ mod tests {
     use super::*;
     use crate::math::Rng;
 
-    /// After any number of small changes, the error of the velocity is at most half a unit.
+    /// The error of the velocity stays within half a unit.
     #[test]
     fn the_sum_of_all_changes_is_rounded_once() {
         let mut rng = Rng::new(3);

@@ -1,44 +1,41 @@
-//! Graph colouring: no two constraints of a colour change the same body, so that the order within a colour does not
-//! matter. A scalar, a wide and a threaded solver then give the same bits.
+//! Graph colouring: no two constraints of a colour change the same body, so that their order does not matter. A scalar,
+//! a wide and a threaded solver then give the same bits.
 //!
-//! The constraints of a colour are divided among the threads of a tick by their bodies, so that a body is seldom passed
-//! from one processor to another.
+//! The constraints of a colour are divided among the threads by their bodies, so that a body is seldom passed from one
+//! processor to another.
 //!
 //! Constraints are coloured greedily, in the order of a hash of their shapes or of their joint. In sorted order, the
-//! solver would always sweep in the same direction: a pyramid would sway by 0.1 to 0.4 m, instead of 0.006 m in hashed
-//! order.
+//! solver would always sweep in the same direction: a pyramid would sway by 0.1 to 0.4 m, instead of 0.006 m.
 
 use alloc::vec::Vec;
 
 use super::body_list::GROUND;
 
 /// Largest number of colours. More colours would be nearly empty. Constraints that fit no colour, such as most contacts
-/// of a drum with hundreds of boxes, are the overflow: they are solved one after the other before all colours.
+/// of a drum with hundreds of boxes, are the overflow.
 const COLOURS_MAX: u8 = 24;
 
 const BUCKETS: usize = 256;
 
-/// A constraint to be coloured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Node {
-    /// Hash bucket. Constraints are coloured bucket by bucket.
+    /// Constraints are coloured bucket by bucket.
     bucket: u8,
-    /// Within a thread, the constraints of a colour are ordered by size.
     size: Size,
-    /// Whether the constraint is cold: it gets more iterations (`COLD_ROUNDS`). Cold constraints are listed separately.
+    /// Whether the constraint gets more iterations (`COLD_ROUNDS`).
     cold: bool,
-    /// The bodies that the constraint changes. [`GROUND`] replaces a body that it does not change.
+    /// The bodies that the constraint changes. [`GROUND`] replaces other bodies.
     bodies: [u32; 2],
 }
 
 impl Node {
-    /// Creates a node. `key` identifies the shapes or the joint of the constraint.
+    /// `key` identifies the shapes or the joint of the constraint.
     pub(super) fn new(key: u64, bodies: [u32; 2], size: Size) -> Self {
         Node { bucket: bucket_of(key), size, cold: false, bodies }
     }
 }
 
-/// The amount of work in a constraint. Contacts with one point are small, all other constraints are large.
+/// The amount of work in a constraint. Contacts with one point are small, other constraints are large.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Size {
     Large,
@@ -62,30 +59,28 @@ pub(super) enum Size {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SolverColour {
-    /// The contact has this colour, counted from 0. It is independent of all other contacts of the colour.
+    /// The colour, counted from 0. The contact shares no moving body with other contacts of this colour.
     Group(u8),
-    /// The contact fits no colour, because other contacts of its bodies already have all colours. It is solved by
-    /// itself, before the contacts with a colour.
+    /// Other contacts of the bodies already have all colours. The contact is solved by itself, before contacts with a
+    /// colour.
     Overflow,
 }
 
 /// The constraints of a colour that one thread solves.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Group<'a> {
-    /// The indices of the constraints, large ones first.
+    /// Indices of the constraints, large ones first.
     pub(super) indices: &'a [u32],
-    /// Number of large constraints.
     pub(super) large: usize,
 }
 
 impl<'a> Group<'a> {
-    /// A group for batches of one constraint each, where sizes do not matter.
     pub(super) fn of_singles(indices: &'a [u32]) -> Self {
         Group { indices, large: 0 }
     }
 
-    /// Splits into batches of up to `N` constraints of one size. The last batch of large constraints is filled up with
-    /// small ones, if `mixes` holds for all constraints of the filled batch.
+    /// Splits into batches of up to `N` constraints of one size. Small constraints fill up the last batch of large
+    /// ones, if `mixes` holds for all constraints of the filled batch.
     pub(super) fn batches<const N: usize>(
         self,
         mixes: impl Fn(u32) -> bool,
@@ -103,33 +98,30 @@ impl<'a> Group<'a> {
     }
 }
 
-/// Sorts constraints into colours. Reuses the last order while the constraints do not change.
+/// Sorts constraints into colours.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Colouring {
-    /// The constraints to be sorted.
     nodes: Vec<Node>,
-    /// The constraints of the current order. In a world at rest they are the same in most ticks.
+    /// The constraints of the current order. In a world at rest they seldom change.
     ordered: Vec<Node>,
-    /// For each body, a bit set of the colours that its constraints already have.
+    /// For each body, a bit set of the colours of its constraints.
     used: Vec<u32>,
     hashed: Vec<u32>,
-    /// For each constraint, its place in the order; see [`place_of`].
+    /// For each constraint, its place in the order: see [`place_of`].
     places: Vec<u8>,
     order: Vec<u32>,
-    /// For each rank, the end of its constraints in the order; see [`Ranks`].
+    /// For each rank, the end of its constraints in the order.
     ends: Vec<u32>,
-    /// Number of colours in use.
     colour_count: u8,
     ranks: Ranks,
 }
 
 impl Colouring {
-    /// Starts with no constraints.
     pub(super) fn begin(&mut self) {
         self.nodes.clear();
     }
 
-    /// Adds a constraint. Its index is the number of constraints that were added before it.
+    /// Adds a constraint. Its index is the number of earlier ones.
     #[inline]
     pub(super) fn add(&mut self, node: Node) {
         self.nodes.push(node);
@@ -140,8 +132,8 @@ impl Colouring {
         self.nodes.iter_mut().for_each(|node| node.cold = is_cold(node.bodies));
     }
 
-    /// Sorts the constraints into colours, each of which is divided among `parts` threads. `body_count` is one more
-    /// than the largest index of a body.
+    /// Sorts the constraints into colours, each of which is divided among `parts` threads. `body_count` is above the
+    /// largest index of a body.
     pub(super) fn sort(&mut self, body_count: usize, parts: usize) {
         let Colouring { nodes, ordered, used, hashed, places, order, ends, colour_count, ranks } = self;
         let new_ranks = Ranks { parts: parts.max(1), body_count };
@@ -162,7 +154,7 @@ impl Colouring {
             let colour = taken.trailing_ones().min(COLOURS_MAX.into());
             used[a as usize] |= 1 << colour;
             used[b as usize] |= 1 << colour;
-            // The ground does not change, so that constraints with it may have the same colour.
+            // Nothing changes the ground, so that constraints with it may have the same colour.
             used[GROUND as usize] = 0;
             let place = place_of(colour, size);
             *colour_count = (*colour_count).max(place.div_ceil(2));
@@ -177,7 +169,6 @@ impl Colouring {
         self.used.get(body as usize).is_some_and(|&colours| colours != 0)
     }
 
-    /// The colour that a constraint had in the last order, by its index.
     pub(super) fn colour_of(&self, node: usize) -> Option<SolverColour> {
         self.places.get(node).map(|&place| match (place % PLACES).checked_sub(1) {
             None => SolverColour::Overflow,
@@ -185,20 +176,19 @@ impl Colouring {
         })
     }
 
-    /// All constraints in the order of the last sort: the overflow, then colour by colour, and then the cold
-    /// constraints in the same way.
+    /// All constraints in the order of their [`Ranks`].
     pub(super) fn order(&self) -> &[u32] {
         &self.order
     }
 
-    /// The overflow of the last order: the constraints that fit no colour, either the cold ones or all others.
+    /// The constraints that fit no colour, either the cold ones or the others.
     pub(super) fn overflow(&self, cold: bool) -> &[u32] {
         let place = if cold { PLACES } else { 0 };
         &self.order[self.start(place, 0)..self.end(place, 0)]
     }
 
-    /// The coloured constraints of one of the threads, colour by colour. Colours that are empty for all threads are
-    /// left out, because every operation iterates over the colours.
+    /// The coloured constraints of a thread, colour by colour. Colours that are empty for all threads are left out,
+    /// because every operation iterates over the colours.
     pub(super) fn colours(&self, cold: bool, part: usize) -> impl Iterator<Item = Group<'_>> {
         let first = if cold { PLACES } else { 0 };
         let places = (0..self.colour_count).map(move |colour| first + place_of(colour.into(), Size::Large));
@@ -209,23 +199,22 @@ impl Colouring {
         })
     }
 
-    /// Index in `order` of the first constraint with a place (see [`place_of`]) that belongs to the thread `part`.
+    /// Index in `order` of the first constraint with a place that belongs to the thread `part`.
     fn start(&self, place: u8, part: usize) -> usize {
         let rank = self.ranks.rank_of(place, part);
         rank.checked_sub(1).and_then(|last| self.ends.get(last)).map_or(0, |&end| end as usize)
     }
 
-    /// Index in `order` after the last constraint with a place that belongs to the thread `part`.
+    /// Index in `order` after the last such constraint.
     fn end(&self, place: u8, part: usize) -> usize {
         self.ends.get(self.ranks.rank_of(place, part)).map_or(0, |&end| end as usize)
     }
 }
 
-/// Ranks: the order of the constraints. The overflow comes first, then the colours. A colour is ordered by thread
-/// (`part`), and each thread's constraints by size, large ones first. Cold constraints follow in the same order.
+/// The order of the constraints: the overflow, then colour by colour. A colour is ordered by thread (`part`), and each
+/// thread's constraints by size, large ones first. Cold constraints follow in the same order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Ranks {
-    /// Number of threads.
     parts: usize,
     body_count: usize,
 }
@@ -235,9 +224,9 @@ impl Ranks {
         2 * (1 + 2 * usize::from(COLOURS_MAX) * self.parts)
     }
 
-    /// The thread that solves a constraint: the thread of one of its bodies. The bodies are divided evenly among the
-    /// threads, in the order of their indices. If the first body always decided, the first thread would get most
-    /// constraints of a mixed heap.
+    /// The thread that solves a constraint. The bodies are divided evenly among the threads, by index, and the thread
+    /// of one body solves the constraint. If the first body always decided, the first thread would get most constraints
+    /// of a mixed heap.
     fn part_of(self, node: &Node) -> usize {
         let body = match node.bodies {
             [GROUND, body] | [body, GROUND] => body,
@@ -247,7 +236,7 @@ impl Ranks {
         body as usize * self.parts / self.body_count
     }
 
-    /// The rank of a constraint with a place. The overflow has one rank for all threads.
+    /// The rank of a place in a thread. The overflow has one rank for all threads.
     fn rank_of(self, place: u8, part: usize) -> usize {
         let first = if place < PLACES { 0 } else { self.count() / 2 };
         first
@@ -258,11 +247,10 @@ impl Ranks {
     }
 }
 
-/// Number of places of warm constraints. Cold constraints have the same number of places, after these.
+/// Number of places of warm constraints. The places of cold constraints follow.
 const PLACES: u8 = 1 + 2 * COLOURS_MAX;
 
-/// The place of a constraint in the order of a single thread: the overflow comes first, then the large and the small
-/// constraints of each colour.
+/// The place in the order of a single thread: the overflow, then the large and the small constraints of each colour.
 #[expect(clippy::cast_possible_truncation, reason = "at most COLOURS_MAX")]
 fn place_of(colour: u32, size: Size) -> u8 {
     match colour as u8 {
@@ -276,7 +264,7 @@ fn bucket_of(key: u64) -> u8 {
     (key.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 56) as u8
 }
 
-/// Sorts the indices `0..count` by bucket, stably, and lists the end of each of `buckets` buckets.
+/// Sorts the indices `0..count` by bucket, stably, and lists the end of each bucket.
 #[expect(clippy::cast_possible_truncation, reason = "constraints are counted in 32 bits")]
 fn counting_sort(
     count: usize,
@@ -308,7 +296,6 @@ mod tests {
     use super::*;
     use crate::math::Rng;
 
-    /// Checks that the constraints of a thread come in the order of their sizes.
     fn check_sizes(group: &Group<'_>, nodes: &[Node], cold: bool) {
         for (place, node) in group.indices.iter().map(|&i| nodes[i as usize]).enumerate() {
             let size = if place < group.large { Size::Large } else { Size::Small };
@@ -316,7 +303,6 @@ mod tests {
         }
     }
 
-    /// Checks that the constraints of a colour change different bodies.
     fn check_bodies(indices: &[u32], nodes: &[Node]) {
         let mut bodies = std::collections::BTreeSet::new();
         for node in indices.iter().map(|&i| nodes[i as usize]) {

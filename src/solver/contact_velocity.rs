@@ -1,16 +1,15 @@
 //! Warm start of contacts, body by body: one sum applies the accumulated impulses of all contacts of a body.
 //!
-//! The rows of contacts do not change within a tick. The accumulated impulses therefore cause the same velocity change
-//! that contacts caused in the last sub-step, from their warm start to the end of the sub-step:
+//! The rows of contacts do not change within a tick. The accumulated impulses therefore cause the velocity change of
+//! the last sub-step again:
 //!
 //! ```text
 //! change = v - v_free,    v' = v_free' + change
 //! ```
 //!
-//! where `v_free` is the velocity that the body would have without contacts. The warm start takes one sum for each body
-//! instead of a pass over the rows of all contacts. Joints, whose rows turn with their bodies, locked axes and
-//! restitution also change velocities within a sub-step. Their changes are not applied again: they are added to
-//! `v_free`.
+//! where `v_free` is the velocity without contacts. Joints, whose rows turn with their bodies, locked axes and
+//! restitution also change velocities within a sub-step. Their changes are added to `v_free`, so that they are not
+//! applied again.
 
 #[cfg(test)]
 mod tests;
@@ -24,11 +23,11 @@ use super::limits::Faults;
 use super::pair::BodyPairW;
 use crate::simd::{GROUND, Ints, Kernel, Lanes, Layout, Machine, Scalar, VelocityW, WIDTH, with_data};
 
-/// The velocity changes that contacts have caused, for the bodies with contacts that one thread integrates.
+/// The velocity changes by contacts of the bodies that one thread integrates.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactVelocities {
     groups: Layout<Groups<WIDTH>, Groups<1>>,
-    /// Whether the tick has had a sub-step, so that velocity changes can be measured.
+    /// Whether the tick has had a sub-step to measure.
     known: bool,
     /// Whether any group of any thread is shared.
     pub(super) shared: bool,
@@ -36,26 +35,23 @@ pub(super) struct ContactVelocities {
 
 type Groups<const N: usize> = Vec<Group<N>>;
 
-/// Bodies that are processed together, one in each lane.
 #[derive(Clone, Debug)]
 #[repr(align(32))]
 struct Group<const N: usize> {
     /// The indices of the bodies. Lanes without a body have the ground.
     at: [u32; N],
-    /// Whether joints, locked axes or restitution may change the velocity of one of these bodies between the warm start
-    /// and the end of a sub-step. The velocities of the other bodies of a shared group stay exact: `free - v + v` does
-    /// not round or saturate, because `free` and `v` are below 512 m/s.
+    /// Whether one of the bodies is shared ([`PushedBody::shared`]). The velocities of the others stay exact:
+    /// `free - v + v` does not round or saturate, because `free` and `v` are below 512 m/s.
     shared: bool,
     free: VelocityW<Ints<N>>,
     change: VelocityW<Ints<N>>,
 }
 
-/// An operation on all groups, one after the other.
 #[derive(Clone, Copy, Debug)]
 enum Task {
-    /// Computes the velocity changes by contacts, `change`, from the velocities and `v_free`.
+    /// Computes `change` from the velocities and `v_free`.
     Measure,
-    /// Records `v_free` and adds `change` to the velocities.
+    /// Records `v_free`, and adds `change` to the velocities.
     Apply,
     /// Subtracts the velocity from `v_free`, in shared groups.
     Suspend,
@@ -63,37 +59,36 @@ enum Task {
     Resume,
 }
 
-/// A body whose velocity contacts change.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PushedBody {
     pub(super) index: u32,
-    /// Whether joints, locked axes or restitution may change its velocity within a sub-step.
+    /// Whether joints, locked axes or restitution may change the velocity between the warm start and the end of a
+    /// sub-step.
     pub(super) shared: bool,
 }
 
 impl ContactVelocities {
-    /// Starts a tick with the bodies that contacts change.
     pub(super) fn begin(&mut self, machine: Machine, bodies: impl Iterator<Item = PushedBody>) {
         self.known = false;
         self.groups.fit(machine);
         self.shared = with_data!(&mut self.groups, groups => arrange(groups, bodies));
     }
 
-    /// Measures the velocity changes by contacts in the last sub-step, unless this is the first sub-step of the tick.
+    /// Measures the velocity changes of the last sub-step, unless this is the first one of the tick.
     pub(super) fn measure(&mut self, context: &StepContext<'_>) {
         if self.known {
             self.perform(Task::Measure, context);
         }
     }
 
-    /// Records the free velocities and applies the velocity changes of the last sub-step again. Returns `false` in the
-    /// first sub-step of a tick, which has no changes to apply.
+    /// Records the free velocities and applies the velocity changes of the last sub-step. Returns `false` in the first
+    /// sub-step of a tick, which has none.
     pub(super) fn apply(&mut self, context: &StepContext<'_>) -> bool {
         self.perform(Task::Apply, context);
         core::mem::replace(&mut self.known, true)
     }
 
-    /// Runs `change`. Its velocity changes do not count as changes by contacts.
+    /// Runs `change`, whose velocity changes do not count as changes by contacts.
     pub(super) fn exempt(&mut self, context: &StepContext<'_>, change: impl FnOnce()) {
         if self.shared {
             self.perform(Task::Suspend, context);
@@ -127,7 +122,7 @@ impl<const N: usize> Group<N> {
     const STILL: VelocityW<Ints<N>> = VelocityW { x: Ints::ZERO, y: Ints::ZERO, turn: Ints::ZERO };
 }
 
-/// Arranges bodies in groups. Returns whether any body is shared.
+/// Arranges bodies in groups. Returns whether any is shared.
 fn arrange<const N: usize>(groups: &mut Groups<N>, bodies: impl Iterator<Item = PushedBody>) -> bool {
     groups.clear();
     let mut shared = false;
@@ -165,7 +160,6 @@ impl<const N: usize> Kernel<N> for Perform<'_, N> {
                 Task::Apply => {
                     let v = L::velocities(bodies, at);
                     store::<L, N>(v, free);
-                    // The free velocity is already within the limits.
                     let mut changed = BodyPairW::<L, N> { a: v, b: sum::<L, N>(v, load::<L, N>(change)) };
                     changed.keep_in_range(faults);
                     L::set_velocities(bodies, at, changed.b);

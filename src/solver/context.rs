@@ -9,7 +9,6 @@ use super::settings::Tuning;
 use crate::simd::Machine;
 use crate::threads::Member;
 
-/// Whether a pass removes position errors or only velocity errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pass {
     /// Removes position errors by velocity.
@@ -18,16 +17,14 @@ pub(super) enum Pass {
     Relax,
 }
 
-/// A pass as a type, so that the operations of each pass are compiled separately.
+/// A pass as a type, so that each pass is compiled separately.
 pub(super) trait SolverPass: Copy + Debug + Send + Sync {
     fn kind(self) -> Pass;
 }
 
-/// The type of [`Pass::Bias`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bias;
 
-/// The type of [`Pass::Relax`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Relax;
 
@@ -45,19 +42,18 @@ impl SolverPass for Relax {
     }
 }
 
-/// Backend and settings of a tick, the thread that works on it, and the bodies that the stages change.
+/// The settings of a tick, the thread that works on it, and its bodies.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StepContext<'a> {
     pub(super) machine: Machine,
     member: Member<'a>,
     pub(super) tuning: &'a Tuning,
-    /// The bodies of the tick, by their indices in the body list.
     pub(super) bodies: &'a [Cell<SolverBody>],
     faults: &'a Cell<Faults>,
 }
 
 impl<'a> StepContext<'a> {
-    /// Creates the context of a thread that works alone. The faults of all stages are added to `faults`.
+    /// The context of a thread that works alone. The stages add their faults to `faults`.
     pub(super) fn new(
         machine: Machine,
         tuning: &'a Tuning,
@@ -68,7 +64,7 @@ impl<'a> StepContext<'a> {
         StepContext { machine, member: Member::ALONE, tuning, bodies, faults }
     }
 
-    /// Creates the context of a member of a team. All members share the bodies.
+    /// The context of a member of a team, which shares the bodies with the other members.
     pub(super) fn of_member(
         machine: Machine,
         member: Member<'a>,
@@ -79,17 +75,15 @@ impl<'a> StepContext<'a> {
         StepContext { machine, member, tuning, bodies, faults: Cell::from_mut(faults) }
     }
 
-    /// Whether no other thread works on the stages.
     pub(super) fn is_alone(&self) -> bool {
         self.member.is_alone()
     }
 
-    /// Waits for all other threads. Afterwards, each thread may read the results of the others.
+    /// Waits for all other threads, whose results may be read afterwards.
     pub(super) fn wait(&self) {
         self.member.wait();
     }
 
-    /// Adds faults that a stage has counted.
     pub(super) fn add_faults(&self, faults: Faults) {
         self.faults.set(self.faults.get() + faults);
     }

@@ -1,6 +1,5 @@
-//! Limits of velocities and impulses, chosen so that a velocity within its limit plus a change of up to [`STEP_MAX`]
-//! does not overflow the 32-bit format. Within a tick, the impulses of joints in blocks (`joint/block`) are not clamped
-//! to these limits: their velocity changes saturate instead.
+//! Limits of velocities and impulses. A velocity within its limit plus a change of up to [`STEP_MAX`] fits the 32-bit
+//! format. Impulses of joints in blocks (`joint/block`) are not clamped within a tick: their velocity changes saturate.
 
 pub(crate) use crate::body::SPEED_MAX;
 use crate::math::Speed;
@@ -8,15 +7,13 @@ use crate::math::Speed;
 /// Number of results that a clamp has changed. The state of the world contains the sum over all ticks.
 pub(crate) type Faults = u64;
 
-/// Largest impulse that is applied to the velocities at once, in m/s. A larger impulse of a row is applied in steps; a
-/// larger impulse of a point is clamped.
+/// Largest impulse that is applied at once, in m/s. A larger impulse of a row is applied in steps. That of a point is
+/// clamped.
 pub(crate) const STEP_MAX: Speed = Speed::lit("512");
 /// Largest accumulated impulse, in m/s.
 pub(crate) const IMPULSE_MAX: Speed = Speed::lit("1023");
 
-/// Clamps an impulse of a point to [`STEP_MAX`], before it is applied at once to a velocity of up to [`SPEED_MAX`]: the
-/// accumulated impulse in the warm start, or its change in an iteration. An accumulated impulse may be larger than
-/// [`STEP_MAX`], because it is the sum of several changes.
+/// Clamps an impulse of a point to [`STEP_MAX`] before it is applied.
 #[inline]
 pub(crate) fn clamp_lambda(lambda: &mut Speed, faults: &mut Faults) {
     let within = (*lambda).clamp(-STEP_MAX, STEP_MAX);

@@ -1,14 +1,11 @@
 //! The solver: sequential impulses in sub-steps, in a fixed order.
 //!
 //! `sub_step` lists the stages of a sub-step, which follow E. Catto's soft step (Solver2D, `solve_soft_step.c`).
-//! `integrate` moves bodies. `contact_velocity` and `contact` solve contacts, `joint/hinge` solves hinges, and
-//! `joint/list` all other joints. `joint/block` solves the hinges and other joints for which iterations do not
-//! converge.
+//! `integrate` moves bodies, `contact` solves contacts, and `contact_velocity` warm-starts them. `joint/hinge` solves
+//! hinges, `joint/list` other joints, and `joint/block` the joints for which iterations do not converge.
 //!
 //! A row removes velocity along one direction (`row`). A point block pins two points together (`point_block`). Contacts
-//! and hinges are solved in batches (`batches`): of four or eight on machines with vector instructions, by code that is
-//! written once for any number of lanes (`simd`). The rows and points of all other joints are solved one by one. The
-//! joints of a block are solved together.
+//! and hinges are solved in batches (`batches`), one constraint in each lane of the vector instructions (`simd`).
 
 mod batches;
 mod body;
@@ -59,28 +56,25 @@ use crate::simd::{Shared, WIDTH};
 use crate::threads::{Threads, part_of};
 use sub_step::SolverShare;
 
-/// Factor on the number of iterations of cold contacts, which are between bodies without a useful impulse for the warm
-/// start, such as bodies with new contacts only. With one iteration in a sub-step, the boxes of 20 x 20 pyramids of 55
-/// boxes move at 0.27 m/s and overlap by 5.8 mm in the first ticks, instead of 0.05 m/s and 1.5 mm.
+/// Factor on the number of iterations of cold contacts ([`ContactSet`]). With a factor of 1, the boxes of 20 x 20
+/// pyramids of 55 boxes move at 0.27 m/s and overlap by 5.8 mm in the first ticks, instead of 0.05 m/s and 1.5 mm.
 const COLD_ROUNDS: u32 = 8;
 
-/// The working memory of the solver. It is not part of the state: contents of the last tick are reused only as caches,
-/// such as the order of the constraints, and never change a result.
+/// The working memory of the solver. It is not part of the state, and its earlier contents never change a result.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Solver {
     list: BodyList,
     moving: Vec<MovingBody>,
     joints: JointSet,
-    /// Working memory for the reaction of a single joint.
+    /// For the reaction of a single joint.
     reaction: JointSet,
     contacts: ContactSet,
-    /// For each thread, the velocity changes that contacts cause in the bodies that the thread integrates.
+    /// For each thread, the velocity changes by contacts of the bodies that the thread integrates.
     contact_velocities: Vec<ContactVelocities>,
     pub(crate) results: ContactResults,
     colouring: Colouring,
     pub(crate) machine: Machine,
     pub(crate) threads: Threads,
-    /// Number of threads that share the tick.
     pub(crate) parts: usize,
     pub(crate) warm_starts: WarmStarts,
     pub(crate) faults: Faults,
@@ -92,13 +86,12 @@ impl Solver {
         Solver { machine: self.machine, threads: self.threads.clone(), ..Solver::default() }
     }
 
-    /// Copies the properties that the solver needs from the bodies in the given slots.
     pub(crate) fn prepare_bodies(&mut self, bodies: &Arena<Body, BodyId>, slots: &[u32], tuning: &Tuning) {
         self.faults = 0;
         self.warm_starts = WarmStarts::default();
         self.list.begin(bodies.slot_count());
         self.moving.clear();
-        // Each body is read only once, because bodies are large.
+        // Bodies are large, so that each is read once.
         for &slot in slots {
             let body = bodies.at(slot);
             self.list.add(slot, body);
@@ -106,7 +99,7 @@ impl Solver {
         }
     }
 
-    /// Applies the effect of areas to the dynamic body in a slot. The body must be among the bodies of the tick.
+    /// Applies the effect of areas to the dynamic body in a slot.
     pub(crate) fn apply_areas(&mut self, slot: u32, body: &Body, effect: &AreaEffect, tuning: &Tuning) {
         let index = self.list.index_of(slot);
         if let Ok(at) = self.moving.binary_search_by_key(&index, MovingBody::index) {
@@ -114,13 +107,11 @@ impl Solver {
         }
     }
 
-    /// The body in a slot at the end of the sub-steps.
     pub(crate) fn body(&self, slot: u32) -> &SolverBody {
         self.list.body(slot)
     }
 
-    /// Makes the constraints of the joints in the given slots, in the order in which they are solved. Also chooses the
-    /// joints that are solved in blocks. [`Self::prepare_blocks`] prepares the blocks.
+    /// Makes the constraints of the joints in the given slots, except the blocks ([`Self::prepare_blocks`]).
     pub(crate) fn prepare_joints(
         &mut self,
         joints: &Arena<Joint, JointId>,
@@ -133,21 +124,19 @@ impl Solver {
         set.prepare(&JointSource { joints, slots, bodies, tuning }, list, colouring, parts, *machine);
     }
 
-    /// Number of joints that are solved in blocks in this tick.
     pub(crate) fn blocked_joint_count(&self) -> usize {
         self.joints.blocked_count()
     }
 
-    /// Prepares the joints in blocks, and computes the arms of all joints except hinges, whose arms are computed when
-    /// they are warm-started. Blocks take more time and memory than the rest of the preparation, so that the caller
-    /// first checks that the work budget of the tick covers [`Self::blocked_joint_count`] joints.
+    /// Prepares the joints in blocks, and computes the arms of all joints except hinges. Blocks take much time and
+    /// memory, so that the caller first compares [`Self::blocked_joint_count`] with the work budget.
     pub(crate) fn prepare_blocks(&mut self, tuning: &Tuning) {
         let Solver { list, joints: set, machine, faults, .. } = self;
         set.prepare_blocks();
         set.refresh(&StepContext::new(*machine, tuning, &mut list.bodies, faults));
     }
 
-    /// [`Joint::reaction`] with working memory that is kept from call to call.
+    /// [`Joint::reaction`], with reused working memory.
     pub(crate) fn reaction(
         &mut self,
         joint: &Joint,
@@ -157,7 +146,6 @@ impl Solver {
         self.reaction.reaction(joint, bodies, tuning)
     }
 
-    /// Makes a constraint for every touching pair, in the order in which they are solved.
     pub(crate) fn prepare_contacts(
         &mut self,
         pairs: &[ActiveContact],
@@ -188,8 +176,8 @@ impl Solver {
         self.colouring.colour_of(pair)
     }
 
-    /// Performs `count` sub-steps, and stores the impulses of contacts for the next tick. `first` is the number of the
-    /// first sub-step: the number of the tick times the number of sub-steps in a tick.
+    /// Performs `count` sub-steps, and stores the impulses of contacts. `first` is the number of the first sub-step:
+    /// the tick number times the sub-steps in a tick.
     pub(crate) fn sub_steps(&mut self, first: u64, count: u32, tuning: &Tuning, contacts: &mut [Contact]) {
         let Solver { list, moving, joints, contacts: set, contact_velocities, machine, threads, .. } = self;
         let (machine, parts) = (*machine, contact_velocities.len());
@@ -215,7 +203,6 @@ impl Solver {
         });
     }
 
-    /// Stores the impulses of joints for the next tick.
     pub(crate) fn store_joints(&mut self, joints: &mut Arena<Joint, JointId>) {
         self.joints.store(joints);
     }

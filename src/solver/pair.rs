@@ -1,4 +1,4 @@
-//! The bodies of a batch while the batch is solved, and arithmetic that contacts and hinges share.
+//! The bodies of a batch while it is solved, and arithmetic that contacts and hinges share.
 
 use core::cell::Cell;
 
@@ -14,20 +14,19 @@ pub(super) const RATIO: i32 = shift(Ratio::FRAC_NBITS);
 /// 512 m/s in the format of speeds, whose range is ±1024 m/s.
 pub(super) const HALF: i32 = 1 << 30;
 
-/// The velocities of two bodies in each lane. Each kind of constraint defines how impulses change them.
+/// The velocities of two bodies in each lane.
 pub(super) struct BodyPairW<L: Lanes<N>, const N: usize> {
     pub(super) a: VelocityW<L::Int>,
     pub(super) b: VelocityW<L::Int>,
 }
 
 impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
-    /// A copy of the velocities.
     #[inline(always)]
     pub(super) fn copy(&self) -> Self {
         BodyPairW { a: self.a, b: self.b }
     }
 
-    /// Replaces the velocities by those of another pair in the lanes of a mask.
+    /// Replaces the velocities in the lanes of a mask.
     #[inline(always)]
     pub(super) fn replace(&mut self, mask: L::Mask, other: &Self) {
         for (to, from) in [(&mut self.a, &other.a), (&mut self.b, &other.b)] {
@@ -42,7 +41,7 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
         BodyPairW { a: L::velocities(bodies, a), b: L::velocities(bodies, b) }
     }
 
-    /// Loads the displacements of two bodies in each lane instead of their velocities.
+    /// Loads displacements instead of velocities.
     #[inline(always)]
     pub(super) fn load_shifts(bodies: &[Cell<SolverBody>], [a, b]: &[[u32; N]; 2]) -> Self {
         BodyPairW { a: L::shifts(bodies, a), b: L::shifts(bodies, b) }
@@ -54,7 +53,7 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
         L::set_velocities(bodies, b, self.b);
     }
 
-    /// Clamps every component to [`SPEED_MAX`]. Counts each component that changes as a fault.
+    /// Clamps every component to [`SPEED_MAX`], and counts each change as a fault.
     #[inline(always)]
     pub(super) fn keep_in_range(&mut self, faults: &mut Faults) {
         // One branch that is almost never taken replaces six clamps.
@@ -78,7 +77,7 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
     }
 }
 
-/// Mask of the lanes in which the magnitude of a number is above a limit.
+/// Mask of the lanes in which `|value| > limit`.
 #[inline(always)]
 pub(super) fn beyond<L: Lanes<N>, const N: usize>(value: L::Int, limit: L::Int) -> L::Mask {
     L::either(L::greater(value, limit), L::greater(L::sub(L::splat(0), limit), value))

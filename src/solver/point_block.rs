@@ -1,4 +1,4 @@
-//! The point block: pins a point of body A to a point of body B. Both directions are solved at once.
+//! The point block pins a point of body A to a point of body B. Both directions are solved at once.
 //!
 //! In world axes, with `e = (-r_y, r_x) / k` of each body, the mass fractions `a`, and `s = massScale`:
 //!
@@ -15,23 +15,22 @@
 //! vA -= GA d,  uA -= fA.d,  vB += GB d,  uB += fB.d
 //! ```
 //!
-//! `p` is the impulse times `mA + mB`, the inverse masses. For a rigid block (`s = 1`), `L` is the change of the
-//! relative velocity of the anchors by the impulse.
+//! `p` is the impulse times the sum of the inverse masses. For a rigid block (`s = 1`), `L` is the change of the
+//! relative velocity of the anchors.
 //!
-//! **A soft block is an isotropic spring.** Without arms it is the spring of `softness.rs`. With arms,
+//! **A soft block is an isotropic spring**, with the potential `omega^2 m |x|^2 / 2` and `m = 1 / (mA + mB)`:
 //! `(impulseScale I + massScale K1) p = -massScale v - push`, where `K1` is `K` of the rigid block, is the implicit
-//! step of a spring with the stiffness `omega^2 m` and the damping `2 zeta omega m` in all directions,
-//! `m = 1 / (mA + mB)`. Its force follows from the potential `omega^2 m |x|^2 / 2`. A spring that yields by
-//! `impulseScale L` instead has the stiffness `omega^2 m K1^-1`, which depends on the directions of the arms: it has no
-//! potential, and feeds energy into bodies that turn.
+//! step of a spring with the stiffness `omega^2 m` and the damping `2 zeta omega m` in all directions. A spring that
+//! yields by `impulseScale L` instead has the stiffness `omega^2 m K1^-1`, which depends on the directions of the arms:
+//! it has no potential, and feeds energy into bodies that turn.
 //!
 //! `L` is carried over from pose to pose: the new `G` removes the part of `L` that no longer acts along the arm.
 //! Carrying over the impulse `p = G L` instead would multiply that part by up to `e^2` (1100 m/s on a rod 40 radii of
 //! gyration long). Two scalar rows instead of the block would gain energy in a swinging chain.
 //!
 //! **The bias pass of a hinge measures along the chord.** Displacements are straight while arms turn, which opens the
-//! joint by about half the length of an arm times the square of its rotation. To keep the joint closed, the velocity is
-//! measured with the arm averaged over the predicted rotation `t = h u / k`, to second order in `t`:
+//! joint by about half the length of an arm times the square of its rotation. The velocity is therefore measured with
+//! the arm averaged over the predicted rotation `t = h u / k`, to second order in `t`:
 //!
 //! ```text
 //! eM = e + M (t/2 (-e_y, e_x) - t^2/6 e),   M = 1 + 0.6 impulseScale / massScale, at most 1.9
@@ -40,9 +39,8 @@
 //!
 //! The impulse still acts along the arm at the start of the sub-step, so that it dissipates no energy (the position
 //! constraint of RATTLE, H. Andersen 1983). `M` compensates for the softness, which would yield to the centrifugal
-//! force. The relax pass, after the displacement, measures with the arm at the new pose. Hinges solve these equations
-//! in batches (`joint/hinge`). Springs and motors between points (`joint/point`) always measure with the arm at the
-//! current pose.
+//! force. The relax pass measures with the arm at the new pose. Hinges solve these equations in batches
+//! (`joint/hinge`). Springs and motors between points (`joint/point`) measure with the arm at the current pose.
 
 #[cfg(test)]
 mod tests;
@@ -58,7 +56,6 @@ use super::row::{Lever, MassFractions, turning};
 use super::softness::Softness;
 use crate::math::{Ratio, Speed, Unit, Vec2, mul, round_shift, round_shift_wide, saturate, saturate_wide};
 
-/// A symmetric 2x2 matrix.
 #[derive(Clone, Copy, Debug, Default)]
 struct Symmetric<T> {
     m11: T,
@@ -93,25 +90,23 @@ impl Symmetric<Unit> {
 pub(crate) struct PointGoal {
     /// The negated target velocity.
     pub(crate) bias: Vec2<Speed>,
-    /// Impulse that the softness does not scale: [`Softness::push`] of a spring.
+    /// Impulse that the softness does not scale: [`Softness::push`].
     pub(crate) push: Vec2<Speed>,
 }
 
-/// The block at one pose of its bodies.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PointBlock {
     e_a: Vec2<Ratio>,
     e_b: Vec2<Ratio>,
     g_a: Symmetric<Unit>,
     g_b: Symmetric<Unit>,
-    /// `f` of A with 30 fraction bits, in 64 bits, because it may be as large as `e` in a soft block.
+    /// `f` of A and B with 30 fraction bits, in 64 bits, because it may be as large as `e` in a soft block.
     f_a: Vec2<i64>,
-    /// `f` of B, in the same format.
     f_b: Vec2<i64>,
 }
 
 impl PointBlock {
-    /// The block of two levers. `mass_scale` is that of the softness, 1 for a rigid block.
+    /// The block of two levers. `mass_scale` is that of the softness.
     pub(crate) fn new(a: Lever, b: Lever, fractions: MassFractions, mass_scale: Unit) -> Self {
         let ratios = |end: Lever| -> Vec2<Ratio> {
             let perp = end.arm.perp();
@@ -123,8 +118,7 @@ impl PointBlock {
         };
         let (xx, xy, yy) = (sum(|e| e.x, |e| e.x), sum(|e| e.x, |e| e.y), sum(|e| e.y, |e| e.y));
         let product = |a: Ratio, b: Ratio| i128::from(a.to_bits()) * i128::from(b.to_bits());
-        // 24 fraction bits of `eA x eB` are enough: rounding it changes the determinant by a relative error of less
-        // than 2^-25.
+        // Rounding `eA x eB` to 24 fraction bits changes the determinant by a relative error below 2^-25.
         let cross = round_shift_wide(product(e_a.x, e_b.y) - product(e_a.y, e_b.x), 24);
         let shares = product_of_fractions(fractions);
         let square = saturate_wide(round_shift_wide(cross * cross, 24));
@@ -137,8 +131,7 @@ impl PointBlock {
         PointBlock { e_a, e_b, g_a, g_b, f_a: g_a.apply_ratio(e_a), f_b: g_b.apply_ratio(e_b) }
     }
 
-    /// The block of bodies that impulses move only along `n`, the direction of the line through both centres:
-    /// `G = n n^T`.
+    /// The block of bodies that impulses move only along `n`, the line through both centres: `G = n n^T`.
     pub(crate) fn along(n: Vec2<Unit>, fractions: MassFractions) -> Self {
         let g = Symmetric { m11: mul(n.x, n.x), m12: mul(n.x, n.y), m22: mul(n.y, n.y) };
         PointBlock { g_a: g.scale(fractions.a), g_b: g.scale(fractions.b), ..PointBlock::default() }
@@ -147,8 +140,8 @@ impl PointBlock {
     /// Changes the velocities by a change `d` of `L`.
     #[inline]
     pub(crate) fn apply(&self, d: Vec2<Speed>, bodies: &mut BodyPair<'_>) {
-        // Sums of two products of a gain and an impulse have 51 fraction bits, and with gains of at most 1 and impulses
-        // within 512 at most 61 bits.
+        // Sums of two products have 51 fraction bits, and at most 61 bits: gains are at most 1, and impulses at most
+        // 512.
         let dot = |x: Unit, y: Unit| {
             let times = |gain: Unit, d: Speed| i64::from(gain.to_bits()) * i64::from(d.to_bits());
             times(x, d.x) + times(y, d.y)
@@ -165,18 +158,16 @@ impl PointBlock {
 
     /// `p = G L`.
     fn impulse(&self, lambda: Vec2<Speed>) -> Vec2<Speed> {
-        // The mass fractions add up to 1.
+        // `G` is `GA + GB`.
         let (a, b) = (self.g_a.apply(lambda), self.g_b.apply(lambda));
         Vec2::new(a.x.saturating_add(b.x), a.y.saturating_add(b.y))
     }
 
-    /// The lever ratios at this pose.
     pub(crate) fn ratios(&self) -> (Vec2<Ratio>, Vec2<Ratio>) {
         (self.e_a, self.e_b)
     }
 
-    /// Solves a rigid block for one iteration, measuring velocity with the given lever ratios. `lambda` is the
-    /// accumulated `L`.
+    /// Solves a rigid block for one iteration, measuring with the given lever ratios.
     #[cfg(test)]
     #[expect(clippy::too_many_arguments, reason = "the quantities of the equations above")]
     pub(crate) fn solve(
@@ -198,8 +189,7 @@ impl PointBlock {
         self.apply(d, &mut BodyPair { a, b, remainders: &mut Remainders::default(), faults });
     }
 
-    /// Solves the block for one iteration with an impulse of limited length: `|p| <= p_max`, where `p = G L` is the
-    /// impulse times `mA + mB`.
+    /// Solves the block for one iteration, with `|p| <= p_max`.
     #[inline]
     pub(crate) fn solve_within(
         &self,
@@ -220,7 +210,7 @@ impl PointBlock {
         self.apply(d, bodies);
     }
 
-    /// The change of `L` in one iteration, before `L` is limited.
+    /// The change of `L` in one iteration, before limits.
     #[inline]
     pub(crate) fn wanted(
         &self,
@@ -240,7 +230,7 @@ impl PointBlock {
         )
     }
 
-    /// Shortens `L` so that `|G L|` is at most `p_max`.
+    /// Shortens `L` so that `|G L| <= p_max`.
     fn shortened(&self, lambda: Vec2<Speed>, p_max: Speed) -> Vec2<Speed> {
         let p = self.impulse(lambda);
         let square = |speed: Speed| u64::from(speed.unsigned_abs().to_bits()).pow(2);
@@ -280,7 +270,7 @@ impl PointBlock {
     }
 }
 
-/// A number times a fraction, in the format of the number.
+/// A number times a fraction.
 #[inline]
 fn scaled(x: i64, fraction: Unit) -> i64 {
     saturate_wide(round_shift_wide(i128::from(x) * i128::from(fraction.to_bits()), 30))
@@ -302,8 +292,8 @@ fn accumulate(lambda: Speed, d: Speed, faults: &mut Faults) -> Speed {
 
 /// `[K22 -K12; -K12 K11] / det` with one division. All numbers have 30 fraction bits.
 fn inverse(k: &Symmetric<i64>, det: i64) -> Symmetric<Unit> {
-    // The determinant is reduced to at most 32 bits. No entry of `K` is larger than the determinant, so that products
-    // with its reciprocal, `2^62 / det`, fit 64 bits.
+    // The determinant is reduced to 32 bits. Products with its reciprocal, `2^62 / det`, fit 64 bits, because no entry
+    // of `K` is larger than the determinant.
     let excess = (64 - det.leading_zeros()).saturating_sub(32);
     let reciprocal = (1i64 << 62) / (det >> excess);
     let entry = |value: i64| Unit::from_bits(saturate(round_shift((value >> excess) * reciprocal, 32)));

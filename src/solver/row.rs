@@ -1,8 +1,8 @@
 //! The row: removes relative velocity along one direction between two bodies.
 //!
-//! With lever arms `c = r x n`, inverse masses `m` and radii of gyration `k` of bodies A and B, and angular
-//! velocity carried as the speed `u = k w` (E. Catto, "Iterative Dynamics with Temporal Coherence", 2005, in
-//! units in which every coefficient is bounded):
+//! With lever arms `c = r x n`, inverse masses `m` and radii of gyration `k` of bodies A and B, and the spin `u = k w`
+//! instead of the angular velocity (E. Catto, "Iterative Dynamics with Temporal Coherence", 2005, in units in which
+//! every coefficient is bounded):
 //!
 //! ```text
 //! e = c / k                                            lever ratio
@@ -16,9 +16,8 @@
 //! vA -= gA d n,  uA -= fA d,  vB += gB d n,  uB += fB d
 //! ```
 //!
-//! `L` is the accumulated impulse divided by the effective mass: a speed. Velocities and `L` also have fixed limits
-//! (`limits.rs`), and an impulse of more than 512 m/s is applied in steps, so that no sum overflows. Each number that a
-//! fixed limit changes counts as a fault, except an initial guess ([`lambda_of`]). A clamp to `lo` or `hi` is no fault.
+//! `L` is the accumulated impulse divided by the effective mass: a speed. `limits.rs` limits velocities and `L`. A
+//! number that these limits change counts as a fault, except in an initial guess ([`lambda_of`]).
 
 mod angular;
 mod coupled;
@@ -38,7 +37,7 @@ use crate::math::{
     saturate, saturate_wide,
 };
 
-/// The mass fractions of a pair of bodies: the share of each in a change of the relative velocity.
+/// The share of each body in a change of the relative velocity.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MassFractions {
     pub(crate) a: Unit,
@@ -46,16 +45,15 @@ pub(crate) struct MassFractions {
 }
 
 impl MassFractions {
-    /// The fractions of two bodies. With masses `M` instead of inverse masses, `mA / (mA + mB)` is `MB / (MA + MB)`.
     pub(crate) fn of(a: &Body, b: &Body) -> Self {
         let mass = |body: &Body| if body.is_dynamic() { body.mass() } else { Fx::ZERO };
         Self::of_masses(mass(a), mass(b))
     }
 
-    /// The fractions for masses in kg: 0 for a body that no impulse moves.
+    /// The fractions for masses in kg: 0 for a body that no impulse moves. `mA / (mA + mB)` of inverse masses is
+    /// `MB / (MA + MB)` of masses.
     pub(crate) fn of_masses(a: Fx, b: Fx) -> Self {
         match (a.is_positive(), b.is_positive()) {
-            // Equal masses need no division.
             (true, true) if a == b => MassFractions { a: Unit::ONE / 2, b: Unit::ONE / 2 },
             (true, true) => {
                 let (mass_a, mass_b) = (a.to_bits().unsigned_abs(), b.to_bits().unsigned_abs());
@@ -73,8 +71,7 @@ impl MassFractions {
     }
 }
 
-/// `a e e'` with 30 fraction bits, at most 2^14. `a e` is not rounded first, because the error would be multiplied by
-/// `e'`, which may be as large as 2^7.
+/// `a e e'` with 30 fraction bits, at most 2^14. Rounding `a e` first would multiply its error by up to 2^7.
 #[inline]
 pub(super) fn turning(fraction: Unit, e: Ratio, other: Ratio) -> i64 {
     let square = i64::from(e.to_bits()) * i64::from(other.to_bits());
@@ -82,10 +79,10 @@ pub(super) fn turning(fraction: Unit, e: Ratio, other: Ratio) -> i64 {
     saturate_wide(round_shift_wide(wide, 48))
 }
 
-/// The lever of a row or block on a body: the point at which the impulse acts, and the inverse radius of gyration.
+/// The point at which an impulse acts on a body, and the inverse radius of gyration.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lever {
-    /// Vector from the centre of mass to the point where the impulse acts.
+    /// Vector from the centre of mass to this point.
     pub(crate) arm: Vec2<Length>,
     pub(crate) inverse_gyration: Reciprocal,
 }
@@ -98,12 +95,10 @@ impl Lever {
     }
 }
 
-/// The constant part of a row.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row {
-    /// Direction on A.
     n: Vec2<Unit>,
-    /// Direction on B: the same as on A, except for coupled rows.
+    /// Direction on B, which differs from `n` in coupled rows.
     n_b: Vec2<Unit>,
     e_a: Ratio,
     e_b: Ratio,
@@ -113,11 +108,10 @@ pub(crate) struct Row {
     f_b: Unit,
 }
 
-/// Largest lever ratio. The products of two such ratios with spins of up to 1024 m/s leave room for a linear part of
-/// 2^57 in the 64 bits of [`Row::along`].
+/// Largest lever ratio. It leaves room for a linear part of 2^57 in [`Row::along`], with spins of up to 1024 m/s.
 pub(super) const RATIO_MAX: Ratio = Ratio::lit("126");
 
-/// `D` of a row, with 30 fraction bits: for [`Row::prepare`] 1 to 15 877, or 0 if impulses move neither body.
+/// `D` of a row, with 30 fraction bits. 0 if impulses move neither body.
 pub(crate) type Denominator = i64;
 
 impl Row {
@@ -150,23 +144,19 @@ impl Row {
         f_b: Unit::ZERO,
     };
 
-    /// Lever ratios and angular gains of A and B.
     pub(super) fn turning_parts(&self) -> ([Ratio; 2], [Unit; 2]) {
         ([self.e_a, self.e_b], [self.f_a, self.f_b])
     }
 
-    /// The directions along which the row measures A and B, and its lever ratios.
     pub(super) fn jacobian(&self) -> ([Vec2<Unit>; 2], [Ratio; 2]) {
         ([self.n, self.n_b], [self.e_a, self.e_b])
     }
 
-    /// The row in the opposite direction.
     pub(crate) fn reversed(&self) -> Self {
         let Row { n, n_b, e_a, e_b, g_a, g_b, f_a, f_b } = *self;
         Row { n: -n, n_b: -n_b, e_a: -e_a, e_b: -e_b, g_a, g_b, f_a: -f_a, f_b: -f_b }
     }
 
-    /// Velocity of B relative to A along the row.
     #[inline]
     pub(crate) fn velocity(&self, a: &SolverBody, b: &SolverBody, faults: &mut Faults) -> Speed {
         let along = |n: Vec2<Unit>, velocity: Vec2<Speed>| {
@@ -181,9 +171,7 @@ impl Row {
     }
 
     /// `nB.vB - nA.vA + eB uB - eA uA` in the format of speeds. `linear` is the sum of the first two terms, with 30
-    /// more fraction bits. It is rounded to the scale of the angular part, which has 24 more fraction bits, and then
-    /// the sum is rounded. Speeds are below 2^30 units, so that `linear` stays below 2^63 for directions of length up
-    /// to 2.
+    /// more fraction bits. It stays below 2^63, because speeds are below 2^30 units and directions at most 2 long.
     #[inline]
     fn along(&self, linear: i64, turn_a: i32, turn_b: i32) -> i64 {
         let angular = i64::from(self.e_b.to_bits()) * i64::from(turn_b)
@@ -194,7 +182,6 @@ impl Row {
     /// Changes the velocities by an impulse `d` of at most [`STEP_MAX`].
     #[inline]
     fn apply_step(&self, d: Speed, bodies: &mut BodyPair<'_>) {
-        // A gain times an impulse has 51 fraction bits.
         let times = |gain: Unit| i64::from(gain.to_bits()) * i64::from(d.to_bits());
         let along = |n: Unit, change: i64| {
             saturate_wide(round_shift_wide(i128::from(n.to_bits()) * i128::from(change), 30))
@@ -210,7 +197,7 @@ impl Row {
         );
     }
 
-    /// Solves the row for one iteration. `lambda` is the accumulated `L`, kept within `bounds`. Returns the change `d`.
+    /// Solves the row for one iteration. Returns the change `d`.
     #[cfg(test)]
     #[expect(clippy::too_many_arguments, reason = "the quantities of the equation above, all 32-bit numbers")]
     pub(crate) fn solve(
@@ -247,14 +234,12 @@ impl Row {
         Speed::from_bits(saturate(d))
     }
 
-    /// Changes the velocities by an impulse.
     #[inline]
     pub(crate) fn apply(&self, d: Speed, bodies: &mut BodyPair<'_>) {
         self.apply_wide(d.to_bits().into(), bodies);
     }
 
-    /// Changes the velocities by an impulse in units of [`Speed`]. The difference of two accumulated impulses may be
-    /// twice as large as a [`Speed`] can be.
+    /// Changes the velocities by an impulse in units of [`Speed`], which may exceed the range of [`Speed`].
     #[inline]
     fn apply_wide(&self, d: i64, bodies: &mut BodyPair<'_>) {
         if d.unsigned_abs() <= u64::from(STEP_MAX.to_bits().unsigned_abs()) {
@@ -264,8 +249,7 @@ impl Row {
         }
     }
 
-    /// Applies an impulse of more than 512 m/s in steps. When a bound shrinks or a pushed body comes free, the change
-    /// may exceed the range of a velocity.
+    /// Applies an impulse of more than 512 m/s, which occurs when a bound shrinks or a pushed body comes free.
     #[cold]
     fn apply_in_steps(&self, mut d: i64, bodies: &mut BodyPair<'_>) {
         let limit = i64::from(STEP_MAX.to_bits());
@@ -277,14 +261,13 @@ impl Row {
     }
 }
 
-/// `L = p D`, where `p = L / D` was computed with an earlier `D`. The result is only an initial guess, so that clamping
-/// it is not a fault.
+/// `L = p D` with the `p` of an earlier `D`. It is only an initial guess, so that clamping it is no fault.
 pub(crate) fn lambda_of(p: Speed, denominator: Denominator) -> Speed {
     let bits = round_shift_wide(i128::from(p.to_bits()) * i128::from(denominator), 30);
     Speed::from_bits(saturate(saturate_wide(bits))).clamp(-IMPULSE_MAX, IMPULSE_MAX)
 }
 
-/// `p = L / D`: the impulse times `mA + mB`, the inverse masses. It does not depend on the lever arms.
+/// `p = L / D`: the impulse times the sum of the inverse masses. It does not depend on the lever arms.
 pub(crate) fn impulse_of(lambda: Speed, denominator: Denominator) -> Speed {
     let bits = div_round(i128::from(lambda.to_bits()) << 30, denominator.max(1).into());
     Speed::from_bits(saturate(saturate_wide(bits)))
@@ -326,7 +309,7 @@ mod tests {
         MassFractions { a, b: Unit::ONE - a }
     }
 
-    /// One update leaves no relative velocity except rounding errors of up to 5 units of [`Speed`], 2.4e-6 m/s.
+    /// One update leaves at most 5 units of [`Speed`], 2.4e-6 m/s.
     #[test]
     fn an_update_removes_the_relative_velocity() {
         let mut rng = Rng::new(4);
@@ -346,7 +329,7 @@ mod tests {
         assert!(worst <= 5, "{worst} units left");
     }
 
-    /// Momentum is conserved: `MA dvA = -MB dvB` for masses `M`, so `aB dvA = -aA dvB`.
+    /// `MA dvA = -MB dvB` for masses `M`, so `aB dvA = -aA dvB`.
     #[test]
     fn an_update_keeps_momentum() {
         let mut rng = Rng::new(5);
@@ -364,7 +347,6 @@ mod tests {
         }
     }
 
-    /// Velocities stay within their limits whatever the inputs are, and clamps count faults.
     #[test]
     fn extreme_systems_stay_in_range_and_are_counted() {
         let mut rng = Rng::new(6);

@@ -1,4 +1,4 @@
-//! Settings of the solver, as the user sets them and in the number formats of the solver.
+//! Settings of the solver.
 
 use serde::{Deserialize, Serialize};
 
@@ -23,23 +23,22 @@ use crate::math::{Fx, Rate, Speed, Step, Vec2, narrow};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ContactTuning {
-    /// Stiff damped springs, with a relax pass that removes the push-out velocity.
+    /// Stiff damped springs, followed by a relax pass that removes the push-out velocity.
     Soft {
-        /// Stiffness in Hz, 1 to 1000. A value above an eighth of the sub-step rate acts like an eighth of that rate.
-        /// The value is doubled against bodies that are not dynamic. A stack sinks in proportion to `g / hertz^2`:
-        /// see [`Config`](crate::world::Config) for small bodies.
+        /// Stiffness in Hz, 1 to 1000, limited to an eighth of the sub-step rate. Doubled against bodies that are not
+        /// dynamic. A stack sinks in proportion to `g / hertz^2`: see [`Config`](crate::world::Config) for small
+        /// bodies.
         hertz: Fx,
         /// Damping ratio, 0 to 100.
         damping_ratio: Fx,
         /// Largest speed at which overlap is pushed out, in m/s, 0 to 400.
         push_speed: Fx,
     },
-    /// Baumgarte stabilisation: every sub-step removes a share of the overlap beyond a slop (J. Baumgarte, 1972).
-    /// Simpler than soft contacts, but bodies bounce more.
+    /// Baumgarte stabilisation (J. Baumgarte, 1972). Simpler than soft contacts, but bodies bounce more.
     Baumgarte {
-        /// Share of the overlap removed in a sub-step, 0 to 1.
+        /// Share of the overlap beyond the slop that a sub-step removes, 0 to 1.
         share: Fx,
-        /// Overlap that is not removed, in metres, 0 to 1. It lets contacts persist from tick to tick.
+        /// Overlap that is not removed, in metres, 0 to 1, so that contacts persist from tick to tick.
         slop: Fx,
         /// Largest speed at which overlap is pushed out, in m/s, 0 to 400.
         push_speed: Fx,
@@ -52,8 +51,7 @@ pub(crate) const SUB_STEPS_MAX: u32 = 64;
 /// Largest number of sub-steps in a second.
 pub(crate) const RATE_MAX: u32 = 4000;
 
-/// Largest displacement of a body in a tick at the speed limit, in metres. It lowers the speed limit at low tick rates:
-/// see [`SolverSettings::speed_max`].
+/// Largest displacement of a body in a tick at the speed limit, in metres. See [`SolverSettings::speed_max`].
 pub const DISTANCE_MAX: Fx = fx!(15);
 
 /// Settings of the solver.
@@ -71,23 +69,21 @@ pub struct SolverSettings {
     /// Sub-steps in a tick, 1 to 64. Ticks per second times sub-steps is 60 to 4000. Small bodies need more sub-steps:
     /// see [`Config::for_smallest`](crate::world::Config::for_smallest).
     pub sub_steps: u32,
-    /// Iterations in a sub-step, 1 to 16. Additional sub-steps improve the result more than additional iterations.
+    /// Iterations in a sub-step, 1 to 16. Additional sub-steps improve the result more.
     pub iterations: u32,
     /// Method by which contacts remove overlap.
     pub contact: ContactTuning,
-    /// Stiffness in Hz, 1 to 1000, of joints that have no
-    /// [softness of their own](crate::solver::JointDef::softness). A value above a quarter of the sub-step rate acts
-    /// like a quarter of that rate. The value is doubled for the anchors of a hinge, or of a weld with rigid anchors,
-    /// that connects a body without any other joint to a body that is not dynamic. Such a joint disturbs no
-    /// other joint.
+    /// Stiffness in Hz, 1 to 1000, of joints that have no [softness of their own](crate::solver::JointDef::softness),
+    /// limited to a quarter of the sub-step rate. Doubled for the anchors of a hinge, or of a weld with rigid anchors,
+    /// between a body without any other joint and a body that is not dynamic.
     pub joint_hertz: Fx,
     /// Damping ratio, 0 to 100, of joints that have no softness of their own.
     pub joint_damping_ratio: Fx,
-    /// Approach speed in m/s below which restitution is not applied, 0 to 400, for shapes without a threshold of their
-    /// own ([`Material::restitution_threshold`](crate::body::Material::restitution_threshold)).
+    /// Approach speed in m/s, 0 to 400, below which shapes do not bounce, unless
+    /// [`Material::restitution_threshold`](crate::body::Material::restitution_threshold) is set.
     pub restitution_threshold: Fx,
-    /// Speed limit in m/s, 1 to 400. It also limits the radius of gyration times the angular velocity. At fewer than
-    /// 27 ticks per second, the limit is also at most [`DISTANCE_MAX`] in a tick.
+    /// Speed limit in m/s, 1 to 400, also of the radius of gyration times the angular velocity. A body moves at most
+    /// [`DISTANCE_MAX`] in a tick at this limit, which lowers the limit at fewer than 27 ticks per second.
     pub speed_max: Fx,
 }
 
@@ -106,12 +102,10 @@ impl Default for SolverSettings {
 }
 
 impl SolverSettings {
-    /// The speed limit in a world of `tick_rate` ticks per second.
     pub(crate) fn speed_limit(&self, tick_rate: u32) -> Fx {
         self.speed_max.min(DISTANCE_MAX * i64::from(tick_rate))
     }
 
-    /// Checks every setting, for a world of `tick_rate` ticks per second.
     pub(crate) fn validate(&self, tick_rate: u32) -> Result<(), WorldError> {
         let SolverSettings {
             sub_steps,
@@ -145,34 +139,29 @@ impl SolverSettings {
     }
 }
 
-/// Checks a setting of a world.
 pub(crate) fn check_setting(name: &'static str, value: Fx, min: Fx, max: Fx) -> Result<(), WorldError> {
     let in_range = (min..=max).contains(&value);
     if in_range { Ok(()) } else { Err(WorldError::Setting { name, value, min, max }) }
 }
 
-/// Checks a setting of a world that is a whole number.
 pub(crate) fn check_count(name: &'static str, value: u32, min: u32, max: u32) -> Result<(), WorldError> {
     let in_range = (min..=max).contains(&value);
     if in_range { Ok(()) } else { Err(WorldError::CountSetting { name, value, min, max }) }
 }
 
-/// The settings in the formats of the solver, for one tick.
+/// The settings of a tick in the formats of the solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tuning {
     /// Sub-steps per second.
     pub(crate) rate: u32,
     pub(crate) iterations: u32,
-    /// Softness of contacts between two dynamic bodies.
     pub(crate) contact: Softness,
     /// Softness of contacts with a body that is not dynamic.
     pub(crate) contact_immovable: Softness,
     pub(crate) slop: Step,
     pub(crate) push_speed: Speed,
-    /// Softness of joints without a softness of their own.
     pub(crate) joint: Softness,
-    /// Softness of the anchors of anchored hinges. Such a hinge joins a body that has no other joint to a body that
-    /// impulses do not move, and has no softness of its own.
+    /// Softness of the anchors of hinges between a body without another joint and a body that impulses do not move.
     pub(crate) anchored: Softness,
     pub(crate) relax: bool,
     pub(crate) speed_max: Speed,
@@ -218,18 +207,15 @@ impl Tuning {
 }
 
 impl Tuning {
-    /// The softness of a joint with its own stiffness in Hz and damping ratio.
     pub(crate) fn own_softness(&self, hertz: Fx, damping_ratio: Fx) -> Softness {
         Softness::spring(hertz.min(joint_hertz_max(self.rate)), damping_ratio, self.rate)
     }
 }
 
-/// Largest stiffness of joints in Hz, for a number of sub-steps per second.
 fn joint_hertz_max(rate: u32) -> Fx {
     Fx::from_num(rate) / 4
 }
 
-/// Converts a share in every sub-step to a rate per second.
 fn fx_rate(share: Fx, rate: u32) -> Fx {
     crate::math::fx_mul(share, Fx::from_num(rate))
 }

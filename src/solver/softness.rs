@@ -12,7 +12,7 @@ use crate::math::{
     Fx, Rate, Speed, TAU, Unit, div_round, fx_div, fx_mul, narrow, round_shift, saturate, saturate_wide,
 };
 
-/// The coefficients from which the impulse of a soft constraint is computed.
+/// The coefficients of a soft constraint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Softness {
     pub(crate) bias_rate: Rate,
@@ -21,7 +21,7 @@ pub(crate) struct Softness {
 }
 
 impl Softness {
-    /// Solves the velocity exactly and ignores the position error.
+    /// Solves the velocity exactly, without regard to the position error.
     pub(crate) const RIGID: Self =
         Softness { bias_rate: Rate::ZERO, mass_scale: Unit::ONE, impulse_scale: Unit::ZERO };
 
@@ -30,7 +30,7 @@ impl Softness {
         Softness { bias_rate, ..Self::RIGID }
     }
 
-    /// A spring with frequency `hertz` and `damping_ratio` that is solved `rate` times per second.
+    /// A spring with a frequency in Hz, solved `rate` times per second.
     pub(crate) fn spring(hertz: Fx, damping_ratio: Fx, rate: u32) -> Self {
         let omega = fx_mul(TAU, hertz);
         let h_omega = omega / i64::from(rate);
@@ -38,15 +38,13 @@ impl Softness {
         let a2 = fx_mul(h_omega, a1);
         let a3 = fx_div(Fx::ONE, Fx::ONE.saturating_add(a2)).unwrap_or(Fx::ONE);
         let bias_rate = fx_div(omega, a1).unwrap_or(Fx::ZERO);
-        // The scales add up to exactly 1, so that a mean with these weights never exceeds the larger value.
+        // The scales add up to exactly 1, so that a mean with these weights is at most the larger value.
         let impulse_scale = narrow(a3);
         Softness { bias_rate: narrow(bias_rate), mass_scale: Unit::ONE - impulse_scale, impulse_scale }
     }
 
-    /// The softness of the same spring in a row that also turns bodies. An impulse then changes the velocity along the
-    /// row by `D` times as much as without rotation, where `D` is `denominator`, with 30 fraction bits. `a2` becomes
-    /// `a2 D`, and `massScale' = massScale D / (impulseScale + massScale D)`. Stiffness and damping in N/m and N s/m
-    /// stay the same.
+    /// The softness of a spring with this stiffness and damping in a row with the denominator `D` (30 fraction bits),
+    /// which also turns bodies. `a2` becomes `a2 D`, and `massScale' = massScale D / (impulseScale + massScale D)`.
     pub(crate) fn at_mobility(&self, denominator: i64) -> Self {
         let [mass, impulse] = [self.mass_scale, self.impulse_scale].map(|scale| i128::from(scale.to_bits()));
         let mass = mass * i128::from(denominator);
@@ -58,27 +56,25 @@ impl Softness {
 
     /// The factor by which a joint overestimates the predicted rotation, so that its softness yields to only 0.4 of the
     /// centrifugal force: `1 + 0.6 impulseScale / massScale`, at most 1.9. On a rod that turns at 20 rad/s about an
-    /// anchor 40 radii of gyration away, a coefficient of 0.5 instead of 0.6 leaves a gap of 8.4 mm instead of 6.9 mm.
-    /// With a coefficient of 1, chains of free bodies gain energy.
+    /// anchor 40 radii of gyration away, 0.5 instead of 0.6 leaves a gap of 8.4 mm instead of 6.9 mm. With 1, chains of
+    /// free bodies gain energy.
     pub(crate) fn stretch(&self) -> Unit {
         let (impulse, mass) = (Fx::from(self.impulse_scale), Fx::from(self.mass_scale));
         let give = fx_mul(fx!(0.6), fx_div(impulse, mass).unwrap_or(Fx::ZERO));
         narrow(Fx::ONE.saturating_add(give.min(fx!(0.9))))
     }
 
-    /// Returns the bits of the coefficients, as a sort key.
     pub(crate) fn to_bits(self) -> [i32; 3] {
         [self.bias_rate.to_bits(), self.mass_scale.to_bits(), self.impulse_scale.to_bits()]
     }
 
-    /// The part of a spring's impulse that comes from its stretch, negated: `massScale biasRate x`, about `h omega^2
-    /// x`. The products are computed as [`Fx`], because the product of the bias rate and a long stretch does not fit a
-    /// [`Speed`].
+    /// The negated part of a spring's impulse that comes from its stretch: `massScale biasRate x`, about `h omega^2 x`.
+    /// The product of the bias rate and a long stretch does not fit a [`Speed`].
     pub(crate) fn push(&self, stretch: Fx) -> Speed {
         narrow(fx_mul(fx_mul(stretch, self.bias_rate.into()), self.mass_scale.into()))
     }
 
-    /// `-massScale (v + bias) - impulseScale L` in units of [`Speed`]: at most twice as large as a [`Speed`] can be.
+    /// `-massScale (v + bias) - impulseScale L` in units of [`Speed`], up to twice the range of a [`Speed`].
     #[inline]
     pub(crate) fn wanted(&self, v: Speed, bias: Speed, lambda: Speed) -> i64 {
         let error = i64::from(v.to_bits()) + i64::from(bias.to_bits());
@@ -104,7 +100,7 @@ mod tests {
 
     #[test]
     fn coefficients_match_the_formula() {
-        // 30 Hz, damping ratio 10, 240 solves per second: omega = 188.4956, h omega = 0.785398.
+        // omega = 188.4956, h omega = 0.785398.
         let soft = Softness::spring(fx!(30), fx!(10), 240);
         let close = |a: Fx, b: Fx| assert!((a - b).abs() < fx!(0.0001), "{a} is not {b}");
         close(soft.bias_rate.into(), fx!(9.06873));

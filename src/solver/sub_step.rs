@@ -1,8 +1,7 @@
 //! One sub-step: the stages of E. Catto's soft step (Solver2D, `solve_soft_step.c`).
 //!
-//! The threads of a tick run every stage at the same time, each on bodies and constraints of its own. A stage that
-//! reads bodies of other threads begins after a barrier: [`StepContext::wait`]. Stages over constraints end with a
-//! barrier.
+//! All threads of a tick run the same stage at a time, each on its own bodies and constraints. A barrier
+//! ([`StepContext::wait`]) precedes a stage that reads bodies of other threads, and ends a stage over constraints.
 
 use super::COLD_ROUNDS;
 use super::contact::{self, Constants, ContactShare, Measure, MeasureApproach, PointOrder, PredictImpacts};
@@ -20,8 +19,8 @@ pub(super) struct SolverShare<'a, 'set> {
 }
 
 impl SolverShare<'_, '_> {
-    /// Performs one sub-step. `index` is its number: the number of the tick times the number of sub-steps in a tick,
-    /// plus the number of earlier sub-steps in the tick. `is_first` is whether it is the first sub-step of the tick.
+    /// Performs one sub-step. `index` counts the sub-steps of all ticks. `is_first` tells whether it is the first one
+    /// of the tick.
     pub(super) fn sub_step(&mut self, index: u64, is_first: bool, context: &StepContext<'_>) {
         let SolverShare { moving, contacts, velocities, joints } = self;
         let tuning = context.tuning;
@@ -29,7 +28,6 @@ impl SolverShare<'_, '_> {
         let cold_iterations = if contacts.has_cold() { iterations * COLD_ROUNDS } else { 0 };
         let constants = Constants::new(tuning);
 
-        // Integrate velocities.
         if is_first && contacts.has_extras() {
             contacts.run(MeasureApproach, context);
         }
@@ -38,7 +36,6 @@ impl SolverShare<'_, '_> {
         integrate_velocities(moving, context);
         context.wait();
 
-        // Warm start.
         if contacts.has_extras() {
             contacts.run(PredictImpacts { constants, is_first }, context);
         }
@@ -63,7 +60,6 @@ impl SolverShare<'_, '_> {
             );
         }
 
-        // Integrate displacements.
         velocities.exempt(context, || integrate_displacements(moving, context));
         context.wait();
         joints.refresh(context);

@@ -3,17 +3,16 @@
 use core::hint;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Number of spins, which take some microseconds, after which a waiting member yields to other threads of the machine.
-/// The member that it waits for may need the same processor.
+/// Number of spins, some microseconds, after which a waiting member yields: the member that it waits for may need the
+/// same processor.
 const SPINS: u32 = 100;
 
 /// Lets `count` members wait for each other, any number of times.
 #[derive(Debug)]
 pub(super) struct Barrier {
     count: usize,
-    /// Number of members that have arrived since all of them last arrived.
+    /// Number of members that have arrived since all last arrived.
     arrived: AtomicUsize,
-    /// Number of times that all members have arrived.
     generation: AtomicUsize,
     /// Whether a member has panicked, so that it will not arrive.
     is_broken: AtomicBool,
@@ -29,8 +28,7 @@ impl Barrier {
         }
     }
 
-    /// Waits until all members have arrived. Everything that a member wrote before its call is then visible to all
-    /// members.
+    /// Waits until all members have arrived. Earlier writes of a member are then visible to all members.
     ///
     /// # Panics
     ///
@@ -55,8 +53,7 @@ impl Barrier {
     }
 }
 
-/// Guard of a member, which breaks the barrier when it is dropped. Only a panic drops it: a member that finishes its
-/// work forgets its guard.
+/// Breaks the barrier when it is dropped, by a panic. A member that finishes its work forgets its guard.
 pub(super) struct Guard<'a>(pub(super) &'a Barrier);
 
 impl Drop for Guard<'_> {

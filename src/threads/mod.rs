@@ -1,9 +1,9 @@
-//! Threads that share a tick. The number of threads changes the speed, never the result, because between two barriers
-//! no thread reads anything that another thread writes.
+//! Threads that share a tick. Their number changes the speed, never the result, because between two barriers no thread
+//! reads anything that another thread writes.
 //!
-//! A team runs the parallel stages of a tick: the calling thread and the threads of a pool, each on its own part. The
-//! members of a team wait for each other at barriers, about a hundred times in a tick. A barrier costs about 0.1
-//! microseconds. A fork and join of tasks in its place would cost 1 to 50 microseconds.
+//! A team runs the parallel stages of a tick: the calling thread and the threads of a pool, each on its own part. They
+//! wait for each other at barriers, about a hundred times in a tick. A barrier costs about 0.1 microseconds. A fork and
+//! join of tasks would cost 1 to 50 microseconds.
 
 #[cfg(feature = "parallel")]
 mod barrier;
@@ -19,12 +19,12 @@ use barrier::Barrier;
 #[cfg(feature = "parallel")]
 use team::Team;
 
-/// Minimum number of active bodies for a tick on several threads. With fewer bodies, barriers take more time than a
-/// second thread saves.
+/// Minimum number of active bodies for a tick on several threads. With fewer, barriers take more time than a second
+/// thread saves.
 #[cfg(feature = "parallel")]
 const BODIES_MIN: usize = 256;
 
-/// Threads of a world: only the calling thread, unless the feature `parallel` is enabled and more are requested.
+/// Threads of a world. More than one thread needs the feature `parallel`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Threads {
     #[cfg(feature = "parallel")]
@@ -35,14 +35,13 @@ pub(crate) struct Threads {
 #[cfg(feature = "parallel")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sharing {
-    /// Ticks with at least [`BODIES_MIN`] active bodies run on one thread or on all, whichever took less time in
-    /// earlier ticks, except for a few trials.
+    /// Ticks with at least [`BODIES_MIN`] active bodies run on one thread or on all, whichever was faster in earlier
+    /// ticks, except for a few trials.
     Adaptive,
     /// The threads share every tick with at least [`BODIES_MIN`] active bodies.
     Always,
 }
 
-/// A thread that runs a part of a stage.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Member<'a> {
     /// `None` for a thread that works alone.
@@ -53,7 +52,6 @@ pub(crate) struct Member<'a> {
 }
 
 impl Member<'_> {
-    /// A thread that works alone.
     pub(crate) const ALONE: Self = Member {
         #[cfg(feature = "parallel")]
         barrier: None,
@@ -67,14 +65,13 @@ impl Member<'_> {
         self.barrier.is_none()
     }
 
-    /// Whether no other thread works on the stage.
     #[cfg(not(feature = "parallel"))]
     #[expect(clippy::unused_self, reason = "same signature as with the feature")]
     pub(crate) const fn is_alone(self) -> bool {
         true
     }
 
-    /// Waits until all members of the team have called this method as often as this member has.
+    /// Waits until all members of the team have called this method as often.
     pub(crate) fn wait(self) {
         #[cfg(feature = "parallel")]
         if let Some(barrier) = self.barrier {
@@ -87,7 +84,6 @@ impl Member<'_> {
 #[cfg(feature = "parallel")]
 pub(crate) struct TeamLock<T>(std::sync::RwLock<T>);
 
-/// A value that the members of a team write and read in turn, with a barrier in between.
 #[cfg(not(feature = "parallel"))]
 pub(crate) struct TeamLock<T>(core::cell::RefCell<T>);
 
@@ -121,15 +117,14 @@ impl<T> TeamLock<T> {
     }
 }
 
-/// Returns the part of `0..len` that `member` works on, one of `count` members. Each part ends at a multiple of `unit`
-/// or at `len`.
+/// The part of `0..len` that one of `count` members works on. It ends at a multiple of `unit` or at `len`.
 pub(crate) fn part_of(len: usize, unit: usize, member: usize, count: usize) -> Range<usize> {
     let units = len.div_ceil(unit);
     let end = |member: usize| (units * member / count * unit).min(len);
     end(member)..end(member + 1)
 }
 
-/// Divides a slice at the given ends. A part whose end is beyond the slice ends where the slice ends.
+/// Divides a slice at the given ends. Ends beyond the slice count as its end.
 pub(crate) fn split_at_ends<T>(
     slice: &mut [T],
     ends: impl Iterator<Item = usize>,
@@ -144,8 +139,7 @@ pub(crate) fn split_at_ends<T>(
 }
 
 impl Threads {
-    /// Starts `count - 1` threads, which are `count` together with the calling one. `sharing` is the rule by which they
-    /// share ticks. Returns `None` if they cannot be started.
+    /// Starts `count - 1` threads in addition to the calling one. Returns `None` if they cannot be started.
     #[cfg(feature = "parallel")]
     pub(crate) fn new(count: usize, sharing: Sharing) -> Option<Self> {
         match count {
@@ -160,7 +154,6 @@ impl Threads {
         self.team.as_ref().map_or(1, |team| team.count())
     }
 
-    /// Number of threads.
     #[cfg(not(feature = "parallel"))]
     #[expect(clippy::unused_self, reason = "same signature as with the feature")]
     pub(crate) const fn count(&self) -> usize {
@@ -177,15 +170,14 @@ impl Threads {
         }
     }
 
-    /// Runs a tick. The argument of `tick` is the number of parts to pass to [`Self::run_team`]: one.
     #[cfg(not(feature = "parallel"))]
     #[expect(clippy::unused_self, reason = "same signature as with the feature")]
     pub(crate) fn run_tick<R>(&self, _bodies: usize, tick: impl FnOnce(usize) -> R) -> R {
         tick(1)
     }
 
-    /// Runs `work` on every part at the same time, one thread for each of at most [`Self::count`] parts, and returns
-    /// the sum of the results. The calling thread takes the first part.
+    /// Runs `work` on each of at most [`Self::count`] parts, at the same time, one thread for each. Returns the sum of
+    /// the results.
     #[cfg(feature = "parallel")]
     pub(crate) fn run_team<P: Send>(
         &self,
@@ -202,7 +194,6 @@ impl Threads {
         }
     }
 
-    /// Runs `work` on the only part.
     #[cfg(not(feature = "parallel"))]
     #[expect(clippy::unused_self, reason = "same signature as with the feature")]
     pub(crate) fn run_team<P>(
@@ -250,8 +241,8 @@ mod team_tests {
 
     const MEMBERS: u64 = 4;
 
-    /// Every member adds its number to each of 20 sums in turn, and reads each sum after a barrier. Returns the number
-    /// of members.
+    /// Every member adds its number to each of 20 sums, and reads each sum after a barrier. Returns the number of
+    /// members.
     fn add(threads: &Threads) -> u64 {
         let sums = [0; 20].map(AtomicU64::new);
         threads.run_tick(BODIES_MIN, |parts| {

@@ -1,9 +1,9 @@
-//! Decides which ticks the threads of a team share: those that are shorter with all threads than with one.
+//! Decides which ticks the threads of a team share, by the times of earlier ticks.
 //!
-//! The threads wait for each other about a hundred times in a tick. If other programs use the processors as well, a
-//! wait lasts as long as a time slice of the operating system, and a tick takes up to thirty times as long as with one
-//! thread. Small worlds may be slower with several threads even on idle processors. The times of earlier ticks show
-//! both effects. Times never influence a result, because no result depends on the number of threads.
+//! The threads wait for each other about a hundred times in a tick. If other programs use the processors, a wait lasts
+//! as long as a time slice of the operating system, and a tick takes up to thirty times as long as with one thread.
+//! Small worlds may be slower with several threads even on idle processors. Times never influence a result, because no
+//! result depends on the number of threads.
 
 use core::time::Duration;
 
@@ -13,25 +13,20 @@ const TRIAL_MIN: u32 = 16;
 /// Largest number of ticks between two trials: 17 s at 60 Hz.
 const TRIAL_MAX: u32 = 1024;
 
-/// The threads that work on a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Mode {
-    /// The calling thread.
     Alone,
-    /// All threads of the team.
     Team,
 }
 
-/// Compares the times of ticks in both modes. Most ticks use the faster mode. From time to time, a trial tick uses the
-/// other mode. If that mode loses several trials in succession, trials become rare, because a tick in the slower mode
-/// may take long.
+/// Compares the times of ticks in both modes. Most ticks use the faster mode, and trial ticks the other one. Trials
+/// become rare if they keep being slower, because each may take long.
 #[derive(Clone, Debug)]
 pub(super) struct Pace {
-    /// Time of a tick in nanoseconds per 1024 active bodies, by mode: a running mean of the last ticks, or the time of
-    /// the last trial. `None` before the first tick in the mode.
+    /// Time of a tick in nanoseconds per 1024 active bodies, by mode: a running mean, or the time of the last trial.
+    /// `None` before the first tick in the mode.
     costs: [Option<u64>; 2],
     faster: Mode,
-    /// Number of ticks before the next trial.
     until_trial: u32,
     /// Number of ticks between the last trial and the next one.
     interval: u32,
@@ -42,7 +37,6 @@ impl Pace {
         Pace { costs: [None; 2], faster: Mode::Team, until_trial: TRIAL_MIN, interval: TRIAL_MIN }
     }
 
-    /// The mode of the next tick.
     pub(super) fn mode(&self) -> Mode {
         if self.until_trial == 0 { self.faster.other() } else { self.faster }
     }
@@ -69,7 +63,7 @@ impl Pace {
         self.until_trial = self.interval;
     }
 
-    /// Whether the other mode takes less than seven eighths of the time of the current mode.
+    /// Whether the other mode takes less than seven eighths of the time of the current one.
     fn other_is_faster(&self) -> bool {
         let [this, other] = [self.faster, self.faster.other()].map(|mode| self.costs[mode as usize]);
         this.zip(other).is_some_and(|(this, other)| other < this - this / 8)
@@ -89,8 +83,8 @@ impl Mode {
 mod tests {
     use super::*;
 
-    /// Runs ticks that take `alone` or `team` milliseconds, depending on their mode. Returns the number of ticks with
-    /// all threads.
+    /// Runs ticks that take `alone` or `team` milliseconds, by their mode. Returns the number of ticks with all
+    /// threads.
     fn run(pace: &mut Pace, ticks: u32, alone: u64, team: u64) -> u32 {
         let mut shared = 0;
         for _ in 0..ticks {
@@ -114,7 +108,6 @@ mod tests {
         assert!((16..16 + 8).contains(&shared), "{shared}");
     }
 
-    /// The processors are idle, then busy for 10 s, then idle again.
     #[test]
     fn busy_processors_are_left_to_other_programs() {
         let mut pace = Pace::new();
@@ -126,7 +119,7 @@ mod tests {
         assert!(shared >= 90, "{shared}");
     }
 
-    /// A single tick that takes long, because the operating system interrupts it, does not end the sharing for long.
+    /// A single tick that takes long does not end the sharing for long.
     #[test]
     fn an_interruption_is_forgotten() {
         let mut pace = Pace::new();

@@ -1,4 +1,4 @@
-//! The calling thread and the threads of a pool, which run the parts of a stage.
+//! The calling thread and the threads of a pool.
 
 use core::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -9,21 +9,19 @@ use super::barrier::{Barrier, Guard};
 use super::pace::{Mode, Pace};
 use super::{Member, Sharing};
 
-/// Number of polls after which a thread without work yields to other threads of the machine.
+/// Number of polls after which a thread without work yields.
 const LOOKS: u32 = 1000;
 
-/// Number of spins after a stage, during which the other threads return from the last barrier of the stage. Without
-/// these spins, the calling thread would go to sleep, and waking it takes 50 microseconds.
+/// Number of spins after a stage, while the other threads return from its last barrier. Otherwise the calling thread
+/// would go to sleep, and waking it takes 50 microseconds.
 const RETURN_SPINS: u32 = 100;
 
-/// Threads that work on a tick together with the calling thread.
 #[derive(Debug)]
 pub(super) struct Team {
     /// All threads but the calling one.
     pool: rayon::ThreadPool,
-    /// Held during a tick: worlds that are clones of each other share a team. If two worlds used it at once, the
-    /// barrier of each could wait for a thread that waits at the barrier of the other. The lock contains `None` if
-    /// the threads share every tick.
+    /// Held during a tick, because worlds that are clones of each other share a team. If two worlds used it at once,
+    /// each could wait for a thread that waits at the barrier of the other. Contains `None` for [`Sharing::Always`].
     turn: Mutex<Option<Pace>>,
 }
 
@@ -36,7 +34,7 @@ impl Drop for TickEnd<'_> {
     }
 }
 
-/// Runs the tasks that the pool has for this thread until the tick is over.
+/// Runs tasks of the pool until the tick is over.
 fn run_stages(is_over: &AtomicBool) {
     let mut looks = 0;
     while !is_over.load(Ordering::Acquire) {
@@ -52,7 +50,6 @@ fn run_stages(is_over: &AtomicBool) {
 }
 
 impl Team {
-    /// Starts `count - 1` threads.
     pub(super) fn new(count: usize, sharing: Sharing) -> Option<Self> {
         let name = |number: usize| alloc::format!("lockstep2d {}", number + 1);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(count - 1).thread_name(name).build().ok()?;
@@ -65,7 +62,7 @@ impl Team {
     }
 
     /// Runs a tick of a world with a number of active bodies. All threads share it, unless [`Pace`] chooses the calling
-    /// thread alone or another tick uses the team.
+    /// thread or another tick uses the team.
     pub(super) fn run_tick<R>(&self, bodies: usize, tick: impl FnOnce(usize) -> R) -> R {
         let mut turn = match self.turn.try_lock() {
             Ok(turn) => turn,
@@ -84,8 +81,7 @@ impl Team {
         result
     }
 
-    /// Runs a tick with all threads. They stay awake between the stages of the tick, because waking a thread takes 50
-    /// microseconds.
+    /// Runs a tick with all threads. They stay awake between its stages, because waking a thread takes 50 microseconds.
     fn share_tick<R>(&self, tick: impl FnOnce(usize) -> R) -> R {
         let is_over = &AtomicBool::new(false);
         self.pool.in_place_scope(|scope| {

@@ -1,5 +1,4 @@
-//! AVX2 backend: eight lanes in vectors of 256 bits. Eight products are two vectors: one of the even and one of the odd
-//! lanes.
+//! AVX2 backend: eight lanes in a vector of 256 bits. Their products are a vector of the even and one of the odd lanes.
 #![expect(unsafe_code, reason = "vendor intrinsics")]
 
 #[path = "avx2/rows.rs"]
@@ -13,8 +12,7 @@ use super::super::{Ints, Lanes, Quad, VelocityW, WIDTH};
 use super::records::Records;
 use rows::{set_velocities_w, transposed, velocity_w};
 
-/// AVX2 instructions. Only a [`super::super::Machine`] that has them runs kernels with this backend, so every intrinsic
-/// in an `unsafe` block is available.
+/// AVX2 instructions. Only a [`super::super::Machine`] that has them runs kernels with this backend.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Avx2;
 
@@ -300,14 +298,12 @@ impl Lanes<WIDTH> for Avx2 {
     }
 }
 
-/// Maximum of 64-bit numbers.
 #[inline(always)]
 fn larger(a: __m256i, b: __m256i) -> __m256i {
     // SAFETY: see `Avx2`.
     unsafe { _mm256_blendv_epi8(b, a, _mm256_cmpgt_epi64(a, b)) }
 }
 
-/// Absolute value of 64-bit numbers.
 #[inline(always)]
 fn magnitude(a: __m256i) -> __m256i {
     // SAFETY: see `Avx2`. `-a` is `!a + 1`.
@@ -317,9 +313,8 @@ fn magnitude(a: __m256i) -> __m256i {
     }
 }
 
-/// Products of the even lanes, in inline assembly. The compiler models the intrinsic as a product of sign-extended
-/// numbers, and hoists the extension out of loops and past branches. It then computes a full product of 64-bit numbers,
-/// which costs a fifth of the time of a kernel.
+/// Products of the even lanes, in inline assembly. The compiler would hoist the sign extension of the intrinsic out of
+/// loops and past branches, and then compute full 64-bit products, which costs a fifth of the time of a kernel.
 #[inline]
 #[target_feature(enable = "avx2")]
 unsafe fn multiplied(a: __m256i, b: __m256i) -> __m256i {
@@ -358,7 +353,7 @@ fn rounded<const SHIFT: i32>(a: Products) -> Products {
     }
 }
 
-/// The 32 bits above the lowest `SHIFT`. A logical shift is enough: these bits equal those of an arithmetic shift.
+/// The 32 bits above the lowest `SHIFT`, which are the same after a logical and an arithmetic shift.
 #[inline(always)]
 fn shifted<const SHIFT: i32>(a: Products) -> __m256i {
     // SAFETY: see `Avx2`.

@@ -1,6 +1,6 @@
-//! AVX-512 backend: eight lanes in vectors of 512 bits. Each number is the lower half of 64 bits, and the upper half is
-//! undefined. Eight products then fit one vector, factors need no shuffle, and a shifted product already has the format
-//! of a number.
+//! AVX-512 backend: eight lanes in a vector of 512 bits. Each number is the lower half of 64 bits, and the upper half
+//! is undefined. Eight products then fit one vector, factors need no shuffle, and a shifted product is already a
+//! number.
 #![expect(unsafe_code, reason = "vendor intrinsics")]
 
 #[path = "avx512/division.rs"]
@@ -13,12 +13,11 @@ use super::super::body::SolverBody;
 use super::super::{Ints, Lanes, Quad, VelocityW, WIDTH};
 use super::records::Records;
 
-/// AVX-512 instructions. Only a [`super::super::Machine`] that has them runs kernels with this backend, so every
-/// intrinsic in an `unsafe` block is available.
+/// AVX-512 instructions. Only a [`super::super::Machine`] that has them runs kernels with this backend.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Avx512;
 
-/// Bits of a mask that belong to lanes: one for every second 32-bit number. The other bits are undefined.
+/// Bits of a mask that belong to lanes. The other bits are undefined.
 const LANES: u16 = 0x5555;
 
 impl Lanes<WIDTH> for Avx512 {
@@ -187,7 +186,7 @@ impl Lanes<WIDTH> for Avx512 {
 
     #[inline(always)]
     fn narrow<const SHIFT: i32>(a: __m512i) -> __m512i {
-        // In the lower half a logical shift gives the same bits as an arithmetic shift.
+        // The lower half is the same after a logical and an arithmetic shift.
         Self::shift_down::<SHIFT>(with_half::<SHIFT>(a))
     }
 
@@ -275,7 +274,7 @@ impl Lanes<WIDTH> for Avx512 {
     }
 }
 
-/// Products of the lower halves, in inline assembly for the reason given at `multiplied` in `avx2.rs`.
+/// Products of the lower halves, in inline assembly: see `multiplied` in `avx2.rs`.
 #[inline]
 #[target_feature(enable = "avx512f")]
 unsafe fn multiplied(a: __m512i, b: __m512i) -> __m512i {
@@ -309,7 +308,7 @@ fn with_half<const SHIFT: i32>(a: __m512i) -> __m512i {
     unsafe { _mm512_add_epi64(a, _mm512_set1_epi64(1 << (SHIFT - 1))) }
 }
 
-/// Saturates 64-bit numbers to 32 bits, and returns a mask of the lanes that saturated.
+/// Saturates 64-bit numbers to 32 bits. Returns a mask of the lanes that saturated.
 #[inline(always)]
 fn saturated(a: __m512i) -> (__m512i, __mmask16) {
     // SAFETY: see `Avx512`. A number fits if its upper half equals the sign of its lower half.
@@ -320,21 +319,19 @@ fn saturated(a: __m512i) -> (__m512i, __mmask16) {
     }
 }
 
-/// Upper halves of 64-bit numbers, moved to the lower halves.
 #[inline(always)]
 fn upper_halves(a: __m512i) -> __m512i {
     // SAFETY: see `Avx512`.
     unsafe { _mm512_srli_epi64::<32>(a) }
 }
 
-/// Gathers three numbers of each body.
 #[inline(always)]
 fn velocity_w<T>(bodies: &Records<'_, T>, place: impl Fn(&T) -> *mut i32) -> VelocityW<__m512i> {
     let [x, y, turn, _] = transposed(|lane| place(bodies.get(lane)).cast_const());
     VelocityW { x, y, turn }
 }
 
-/// Gathers rows of four numbers, transposed: the first number of each lane, the second of each lane, and so on.
+/// Gathers rows of four numbers, transposed.
 #[inline(always)]
 fn transposed(row: impl Fn(usize) -> *const i32) -> [__m512i; 4] {
     // SAFETY: see `Avx512`; loads 16 bytes, aligned to 16.

@@ -6,14 +6,13 @@ use core::arch::x86_64::*;
 use super::super::WIDTH;
 use super::super::body::GROUND;
 
-/// Eight records of a slice, by index.
 pub(super) struct Records<'a, T> {
     all: &'a [T],
     at: &'a [u32; WIDTH],
 }
 
 impl<'a, T> Records<'a, T> {
-    /// Checks all eight indices at once, because a check of each index takes as long as processing the record.
+    /// Checks all indices at once, because a check of each index takes as long as processing the record.
     #[inline(always)]
     #[expect(clippy::cast_possible_wrap, reason = "compared as unsigned")]
     pub(super) fn new(all: &'a [T], at: &'a [u32; WIDTH]) -> Self {
@@ -28,7 +27,6 @@ impl<'a, T> Records<'a, T> {
         Records { all, at }
     }
 
-    /// Whether the ground is among the indices.
     #[inline(always)]
     fn has_ground(&self) -> bool {
         const { assert!(GROUND == 0) };
@@ -41,15 +39,15 @@ impl<'a, T> Records<'a, T> {
 
     #[inline(always)]
     pub(super) fn get(&self, lane: usize) -> &'a T {
-        // A volatile read: otherwise the compiler would extract the index from the vector that `new` has checked, which
-        // would occupy the execution units on which the kernels depend.
+        // A volatile read. Otherwise the compiler would extract the index from the vector in `new`, on the execution
+        // units that the kernels need.
         let at: *const u32 = &self.at[lane];
         // SAFETY: the index can be read, and `new` has checked that it is within the slice.
         unsafe { self.all.get_unchecked(at.read_volatile() as usize) }
     }
 
-    /// Calls `each` with every body except those at the ground's index. Most batches do not contain the ground, so that
-    /// no lane needs a check.
+    /// Calls `each` with every body except the ground. Most batches do not contain the ground, so that no lane needs a
+    /// check.
     #[inline(always)]
     pub(super) fn each_but_the_ground(&self, mut each: impl FnMut(usize, &'a T)) {
         let has_ground = self.has_ground();

@@ -1,44 +1,42 @@
-//! Batches of contacts: `N` at a time, as a structure of arrays.
+//! Batches of contacts, as a structure of arrays.
 
 use super::super::pair::shift;
 use crate::math::{Shift, Step};
 use crate::simd::{Ints, Lanes};
 
-/// `N` contacts for one tick, no two of which change the same body. Lanes without a contact have gains of 0, and the
-/// ground as both bodies.
+/// `N` contacts, no two of which change the same body. Lanes without a contact have gains of 0, and the ground as both
+/// bodies.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(in crate::solver) struct Batch<const N: usize> {
-    /// The indices from which the bodies are read.
     pub(super) bodies: [[u32; N]; 2],
     /// The indices to which the bodies are written: the ground for a body that no impulse changes.
     pub(super) changed: [[u32; N]; 2],
-    /// The normal, from A to B, with the fraction bits of a lever ratio. The tangent is perpendicular to it.
+    /// The normal, from A to B, with the fraction bits of a lever ratio.
     pub(super) n_x: Ints<N>,
     pub(super) n_y: Ints<N>,
-    /// -1 in lanes in which impulses do not move one of the bodies, or -2 if in addition the other body has an impact.
-    /// These contacts are stiffer.
+    /// Makes contacts stiffer: -1 in lanes in which impulses do not move one of the bodies, -2 if in addition the other
+    /// body has an impact.
     pub(super) immovable: Ints<N>,
-    /// -1 in lanes with two points. In the other lanes of a batch of two points, the second point is a copy of the
-    /// first point, without an impulse.
+    /// -1 in lanes with two points. In other lanes of a batch of two points, the second point is a copy of the first
+    /// one, without an impulse.
     pub(super) both: Ints<N>,
     pub(super) points: [Point<N>; 2],
-    /// The friction row, half-way between the points. Both points would have the same row, because they lie on one line
+    /// The friction row, half-way between the points. Both points have about the same row, because they lie on one line
     /// along the tangent.
     pub(super) tangent: Row<N>,
     pub(super) tangent_lambda: Ints<N>,
-    /// Largest number of points of a contact in the batch. Points beyond this number are stale and have no effect.
+    /// Largest number of points of a contact. Points beyond this number are stale.
     pub(super) count: usize,
-    /// Whether any contact in the batch has extras. The batch then has a [`super::extras::ContactExtras`].
+    /// Whether the batch has a [`super::extras::ContactExtras`].
     pub(super) extras: bool,
-    /// Whether the warm start first runs without overflow checks ([`super::overflow_policy::Unchecked`]), and also the
-    /// iterations, if [`super::Constants::unchecked`] holds.
+    /// Whether the warm start first runs without overflow checks ([`super::overflow_policy::Unchecked`]). Iterations
+    /// also do, if [`super::Constants::unchecked`] holds.
     pub(super) unchecked: bool,
-    /// For each point, a bit mask of the lanes in which the shapes have pushed each other in this tick.
+    /// For each point, the lanes in which it has pushed in this tick, as a bit mask.
     pub(super) pushed: [u32; 2],
 }
 
-/// One point of each of `N` contacts.
 #[derive(Clone, Debug)]
 pub(super) struct Point<const N: usize> {
     pub(super) normal: Row<N>,
@@ -51,13 +49,12 @@ pub(super) struct Point<const N: usize> {
     pub(super) normal_lambda: Ints<N>,
 }
 
-/// `N` rows: lever ratios, and the velocity changes by an impulse of 1. The linear part of the Jacobian is the normal
-/// or the tangent of the batch ([`Batch::directions`]).
+/// `N` rows. The linear part of the Jacobian is the normal or the tangent of the batch.
 #[derive(Clone, Debug)]
 pub(super) struct Row<const N: usize> {
     pub(super) e_a: Ints<N>,
     pub(super) e_b: Ints<N>,
-    /// `g n_x`, `g n_y` and `f` of each body.
+    /// Velocity changes by an impulse of 1, `g n_x`, `g n_y` and `f`, of each body.
     pub(super) a: [Ints<N>; 3],
     pub(super) b: [Ints<N>; 3],
 }
@@ -78,7 +75,6 @@ impl<const N: usize> Point<N> {
 }
 
 impl<const N: usize> Batch<N> {
-    /// A batch without a contact in any lane.
     pub(super) const NONE: Self = Batch {
         bodies: [[0; N]; 2],
         changed: [[0; N]; 2],
@@ -95,7 +91,7 @@ impl<const N: usize> Batch<N> {
         pushed: [0; 2],
     };
 
-    /// Resets the fields that filling the batch does not set as a whole.
+    /// Resets the fields that are set lane by lane.
     #[inline(always)]
     pub(super) fn begin(&mut self) {
         self.bodies = Self::NONE.bodies;
@@ -103,14 +99,13 @@ impl<const N: usize> Batch<N> {
         (self.count, self.extras, self.pushed) = (0, false, [0; 2]);
     }
 
-    /// The normal and the tangent.
     #[inline(always)]
     pub(super) fn directions<L: Lanes<N>>(&self) -> ([L::Int; 2], [L::Int; 2]) {
         let (x, y) = (L::load(&self.n_x), L::load(&self.n_y));
         ([x, y], [L::sub(L::splat(0), y), x])
     }
 
-    /// Sets the separations of the points at the start of the tick, given in the format of a step.
+    /// Sets the separations at the start of the tick, given in the format of a step.
     #[inline(always)]
     pub(super) fn separate<L: Lanes<N>>(&mut self, [first, second]: [L::Int; 2]) {
         const STEP_TO_SHIFT: i32 = shift(Step::FRAC_NBITS - Shift::FRAC_NBITS);
@@ -122,7 +117,7 @@ impl<const N: usize> Batch<N> {
         }
     }
 
-    /// Sets the normal impulse of a point, and records the lanes in which it pushes.
+    /// Sets the normal impulse of a point, and records where it pushes.
     #[inline(always)]
     pub(super) fn push<L: Lanes<N>>(&mut self, place: usize, lambda: L::Int) {
         L::store(lambda, &mut self.points[place].normal_lambda);

@@ -1,22 +1,17 @@
-//! The settings of a tick in the number formats of the operations on contacts.
-
 use super::super::settings::Tuning;
 use super::super::softness::Softness;
 use super::overflow_policy::unchecked_at;
 use crate::math::{Rate, Shift};
 
-/// Settings in the formats of the lanes.
+/// The settings of a tick in the number formats of the operations on contacts.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct Constants {
     /// Sub-steps per second, in the format of [`Rate`].
     pub(super) rate: i32,
-    /// Largest gap or overlap for which the speed that removes it in a sub-step fits the format of a speed.
+    /// Largest gap or overlap for which the speed that removes it in a sub-step fits its format.
     pub(super) separation_max: i32,
-    /// Overlap that is not pushed out.
     pub(super) slop: i32,
-    /// Largest speed at which overlap is pushed out.
     pub(super) push_speed: i32,
-    /// Softness between two bodies that impulses move.
     pub(super) soft: Softness,
     /// Softness against a body that impulses do not move.
     pub(super) stiff: Softness,

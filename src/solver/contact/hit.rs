@@ -4,14 +4,13 @@
 //! L_tick = sum of (L + L_restitution) over the sub-steps
 //! ```
 //!
-//! Every sub-step applies the whole accumulated impulse `L`: the warm start applies the value of the last sub-step, and
-//! the passes apply its changes.
+//! Every sub-step applies the whole `L`: the warm start applies its last value, and the passes apply its changes.
 
 use super::super::batches::{BatchParts, Operation};
 use super::Contacts;
 use crate::simd::Lanes;
 
-/// Adds the impulses of a sub-step to those of the tick. A sum beyond the format of impulses saturates.
+/// Adds the impulses of a sub-step to those of the tick, saturated.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct AddHits;
 

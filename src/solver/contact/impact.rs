@@ -1,9 +1,8 @@
-//! Impacts of points with restitution: when a point hits within a sub-step, and how far it has rebounded at the end of
-//! the sub-step.
+//! Impacts of points with restitution: the time of impact within a sub-step, and the rebound until its end.
 //!
-//! Semi-implicit Euler is a leapfrog scheme: the velocity that moves a body in a sub-step is the velocity at the middle
-//! of the sub-step. With the relative normal velocity `v` of the point, its change `a` by forces in the sub-step, and
-//! the separation `s`:
+//! Semi-implicit Euler is a leapfrog scheme: the velocity that moves a body is the velocity at the middle of the
+//! sub-step. With the relative normal velocity `v` of the point, its change `a` by forces in the sub-step, and the
+//! separation `s`:
 //!
 //! ```text
 //! f  = s / (-v h)                 time of impact, as a fraction of the sub-step
@@ -13,8 +12,8 @@
 //! ```
 //!
 //! With `e = 1` and a constant force, these equations conserve the energy of the leapfrog scheme,
-//! `v^2 / 2 + g x - g h v / 2`, exactly. Bodies move as if the impulse had acted at the time of impact, so that angular
-//! momentum is conserved as well.
+//! `v^2 / 2 + g x - g h v / 2`. Bodies move as if the impulse had acted at the time of impact, so that angular momentum
+//! is conserved as well.
 
 use super::super::batches::{BatchParts, Operation};
 use super::super::context::Pass;
@@ -31,28 +30,25 @@ use crate::simd::{Ints, Lanes};
 /// quite flat would spin.
 const NEAR: Shift = Shift::lit("0.005");
 
-/// The impacts of a batch in a sub-step.
 #[derive(Clone, Debug)]
 pub(super) struct Impacts<const N: usize> {
-    /// For each point, the change `a` of its relative normal velocity by forces in the first sub-step of the tick.
-    /// Before [`PredictImpacts`] runs in that sub-step, the field contains the relative normal velocity before forces
-    /// act.
+    /// For each point, the change `a` of its relative normal velocity by forces. Until [`PredictImpacts`] runs in the
+    /// first sub-step of a tick, the relative normal velocity before forces act.
     forced: [Ints<N>; 2],
     /// For each point, the relative normal velocity before contacts act: `va` for a point that bounces, else `v`. A
-    /// point bounces if it approaches fast and its gap is below [`NEAR`] at the time `f` of the first impact.
+    /// point bounces if it approaches fast and its gap is below [`NEAR`] at the time of the first impact.
     pub(super) approach: [Ints<N>; 2],
-    /// For each point that bounces, `a (f - 1/2)` plus one unit of [`Speed`]; 0 for the others.
+    /// For each point that bounces, `a (f - 1/2)` plus one unit of [`Speed`].
     pub(super) drift: [Ints<N>; 2],
     /// For each point that hits, `s' / h`: the speed that opens the gap within a sub-step.
     pub(super) rebound: [Ints<N>; 2],
     /// For each point, -1 where it has pushed in the bias pass.
     touches: [Ints<N>; 2],
-    /// For each point of an elastic contact, -1 where the shapes do not approach before contacts act. If the shapes
-    /// touch or overlap, -1 only where they separate at the restitution threshold or faster.
+    /// For each point of an elastic contact, -1 where it does not approach before contacts act. If the shapes touch or
+    /// overlap, -1 only where it separates at the restitution threshold or faster.
     late: [Ints<N>; 2],
-    /// The tangential velocity before contacts act.
     pub(super) slide: Ints<N>,
-    /// `f` times the tangential velocity: the sliding before the impact, on which friction does not act.
+    /// `f` times the tangential velocity. Friction does not act on this sliding before the impact.
     pub(super) slip: Ints<N>,
 }
 
@@ -68,7 +64,6 @@ impl<const N: usize> Impacts<N> {
         slip: Ints::ZERO,
     };
 
-    /// Records which points push in the bias pass.
     #[inline(always)]
     pub(super) fn record_touches<L: Lanes<N>>(&mut self, batch: &Batch<N>) {
         for (point, touches) in batch.points[..batch.count].iter().zip(&mut self.touches) {
@@ -88,14 +83,12 @@ impl<const N: usize> Impacts<N> {
     }
 }
 
-/// The impact of a point in each lane.
 #[derive(Clone, Copy)]
 pub(super) struct PointImpact<L: Lanes<N>, const N: usize> {
-    /// `s' / h`. 0 for a point that does not hit.
+    /// `s' / h`, or 0 for a point that does not hit.
     pub(super) rebound: L::Int,
-    /// Whether [`Impacts::late`] is set for the point. If the impulse of another point drives this point to the
-    /// surface, the relax pass removes the impulse of this point. In the next sub-step this point approaches and may
-    /// bounce.
+    /// [`Impacts::late`]. If another impulse drives a late point to the surface, the relax pass removes the impulse of
+    /// this point. In the next sub-step it approaches and may bounce.
     pub(super) late: L::Mask,
 }
 
@@ -127,7 +120,6 @@ impl Operation<Contacts> for MeasureApproach {
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct PredictImpacts {
     pub(in crate::solver) constants: Constants,
-    /// Whether this is the first sub-step of the tick.
     pub(in crate::solver) is_first: bool,
 }
 
@@ -160,7 +152,6 @@ impl Operation<Contacts> for PredictImpacts {
             L::store(L::to_int(is_late), &mut extras.impacts.late[i]);
             late = L::either(late, is_late);
         }
-        // Unchecked batches have no impacts.
         batch.unchecked &= !L::any(L::either(fast, late));
         if !L::any(fast) {
             return;
@@ -184,7 +175,6 @@ impl<const N: usize> ContactExtras<N> {
         self.bounce = [Ints::ZERO; 2];
     }
 
-    /// Predicts the impact of a contact. Points that are near at the time of the first impact bounce together.
     fn predict(&mut self, batch: &Batch<N>, lane: usize, rate: Rate) {
         let speed = |of: &Ints<N>| Speed::from_bits(of.0[lane]);
         let restitution = Unit::from_bits(self.restitution.0[lane]);
@@ -217,8 +207,7 @@ impl<const N: usize> ContactExtras<N> {
     }
 }
 
-/// `f`, from 0 to 1: 1 for a point that does not hit in this sub-step unless other impulses drive it. `closing` is
-/// `s / h`, and `v` is negative.
+/// `f`, from 0 to 1. `closing` is `s / h`, and `v` is negative.
 fn time_of_impact(closing: Speed, v: Speed) -> Unit {
     let one = i64::from(Unit::ONE.to_bits());
     let time = i64::from(closing.to_bits()) * one / -i64::from(v.to_bits());
@@ -226,7 +215,6 @@ fn time_of_impact(closing: Speed, v: Speed) -> Unit {
     Unit::from_bits(time.clamp(0, one) as i32)
 }
 
-/// The velocities of a point that hits.
 #[derive(Clone, Copy, Debug)]
 struct Impact {
     /// `va`.
@@ -238,8 +226,7 @@ struct Impact {
 }
 
 impl Impact {
-    /// Predicts the velocities at the time `f` from the velocity `v`. `forced` is the part of `v` that forces have
-    /// added.
+    /// The velocities of an impact at the time `f`. `forced` is the part of `v` that forces have added.
     fn of(v: Speed, forced: Speed, time: Unit, restitution: Unit) -> Self {
         let drift: Speed = mul(forced, time - Unit::lit("0.5"));
         let approach = v.saturating_add(drift);
@@ -257,8 +244,7 @@ mod tests {
     use crate::fx;
     use crate::math::{Fx, Rng, fx_mul, narrow, widen};
 
-    /// The sub-step in which a ball hits a floor does not change the energy of the leapfrog scheme, except for a loss
-    /// by rounding.
+    /// An impact does not change the energy of the leapfrog scheme, except for a loss by rounding.
     #[test]
     fn an_elastic_impact_conserves_the_energy_of_the_scheme() {
         let mut rng = Rng::new(1);
@@ -282,7 +268,7 @@ mod tests {
         }
     }
 
-    /// A point at rest on a floor does not rebound from the speed that gravity adds in a sub-step.
+    /// Gravity in a sub-step causes no rebound.
     #[test]
     fn a_point_at_rest_does_not_rebound() {
         let v = Speed::lit("-0.0417");

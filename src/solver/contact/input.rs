@@ -1,4 +1,4 @@
-//! Gathers the inputs of a contact's rows from the narrow phase, the state and the body list.
+//! Gathers the inputs of a contact's rows.
 
 use super::super::body_list::{BodyList, GROUND};
 use super::super::colour::{Colouring, Node, Size};
@@ -12,28 +12,24 @@ use crate::collision::{Contact, KeptManifold, Manifold, Pair, PointImpulse};
 use crate::math::{Length, Step, convert};
 use crate::simd::{Lanes, Quad, prefetch};
 
-/// A touching pair that the solver solves.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ActiveContact {
-    /// Index of the contact in the state.
+    /// Index in the contacts of the state.
     pub(crate) contact: u32,
-    /// Index of its manifold among the manifolds of the tick.
+    /// Index in the manifolds of the tick.
     pub(crate) manifold: u32,
-    /// Slots of the shapes.
     pub(crate) shapes: Pair,
-    /// Slots of the bodies of the shapes.
+    /// Slots of the bodies.
     pub(crate) bodies: (u32, u32),
     pub(crate) surface: Surface,
     /// Whether the shapes may approach each other so fast that the impulses of the last tick are no useful initial
-    /// guess for this tick.
+    /// guess.
     pub(crate) is_impact: bool,
-    /// Whether the shapes approach each other fast enough for a hit event, which reports the impulse of the tick.
+    /// Whether the contact has a hit event, which reports the impulse of the tick.
     pub(crate) is_hit: bool,
-    /// Whether the contact needs more than rows along the normal and the tangent. It does if its surface has extras or
-    /// if it has a hit event.
+    /// Whether the surface has extras or the contact has a hit event.
     pub(crate) extras: bool,
-    /// Whether the rows are those of the last tick: the contact has kept its manifold and its surface, and has no
-    /// extras.
+    /// Whether the rows are those of the last tick.
     pub(crate) keeps_rows: bool,
 }
 
@@ -47,22 +43,20 @@ pub(in crate::solver) struct ContactSource<'a> {
     pub(in crate::solver) list: &'a BodyList,
 }
 
-/// A lane of a batch that is being filled. The numbers are stored in quads, because the quads of all lanes are
-/// transposed into vectors.
+/// A lane of a batch that is being filled. Quads of all lanes are transposed into vectors.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Input {
     pub(super) bodies: [u32; 2],
-    /// The bodies that impulses change. The ground replaces a body that no impulse moves.
+    /// [`ContactSource::changed`].
     pub(super) changed: [u32; 2],
     pub(super) contact: u32,
     pub(super) shapes: Pair,
     pub(super) features: [u16; 2],
-    /// Whether one of the bodies is wedged; see [`Prospect::is_wedged`].
+    /// Whether one of the bodies is wedged: see [`Prospect::is_wedged`].
     pub(super) wedged: bool,
     /// Whether one of the bodies has an impact, in this contact or in another one.
     pub(super) impact: bool,
     pub(super) count: u8,
-    /// Whether the contact needs more than rows along the normal and the tangent.
     pub(super) extras: bool,
     /// The normal, and the mass fractions of A and B.
     pub(super) shares: Quad,
@@ -70,18 +64,16 @@ pub(super) struct Input {
     pub(super) gyrations: Quad,
     /// Vectors from the centres of mass of A and B to the origin of the contact, its first point.
     pub(super) to_origin: Quad,
-    /// Vectors from the origin to the two points.
     pub(super) anchors: Quad,
-    /// Impulses of the last tick, `p = L / D`: along the normal of each point, and along the tangent. The last number
-    /// is the number of points.
+    /// Impulses of the last tick, `p = L / D`: along the normal of each point, and along the tangent. Then the number
+    /// of points.
     pub(super) carried: Quad,
-    /// The separations of the points, in the format of a step, the friction, and the gap between the surfaces half-way
+    /// The separations of both points in the format of a step, the friction, and the gap between the surfaces half-way
     /// between the points, 0 for an overlap.
     pub(super) rest: Quad,
 }
 
 impl Input {
-    /// A lane without a contact.
     pub(super) const NONE: Self = Input {
         bodies: [GROUND; 2],
         changed: [GROUND; 2],
@@ -102,8 +94,8 @@ impl Input {
 }
 
 impl ContactSource<'_> {
-    /// Adds a node for each touching pair to the graph that is coloured, and collects the properties of each body that
-    /// follow from its contacts. Returns whether any contact is elastic, and whether any is a hit.
+    /// Adds a node for each touching pair, and collects the prospects of the bodies. Returns whether any contact is
+    /// elastic, and whether any is a hit.
     pub(super) fn add_nodes(&self, colouring: &mut Colouring, prospects: &mut Vec<Prospect>) -> Features {
         let mut features = Features::default();
         prospects.clear();
@@ -138,8 +130,7 @@ impl ContactSource<'_> {
         features
     }
 
-    /// Prefetches the data that [`Self::gather`] reads for a pair. In the order of colours, the accesses to contacts
-    /// are random.
+    /// Prefetches the data that [`Self::gather`] reads. In the order of colours, the accesses are random.
     #[inline(always)]
     pub(super) fn prefetch(&self, index: u32) {
         let pair = &self.pairs[index as usize];
@@ -147,7 +138,6 @@ impl ContactSource<'_> {
         prefetch(&self.contacts[pair.contact as usize]);
     }
 
-    /// Gathers the data from which the rows of a touching pair are computed.
     #[inline(always)]
     pub(super) fn gather(
         &self,
@@ -209,16 +199,15 @@ impl ContactSource<'_> {
         [self.list.index_of(pair.bodies.0), self.list.index_of(pair.bodies.1)]
     }
 
-    /// The bodies that impulses change. A body counts as changed even if it is so heavy that its share of an impulse
-    /// rounds to 0: other contacts of the body may change it, and must not get the same colour.
+    /// The bodies that impulses change, with the ground in place of the others. A body counts as changed even if its
+    /// share of an impulse rounds to 0: another contact may change it, and must not get the same colour.
     #[inline(always)]
     pub(super) fn changed(&self, bodies: [u32; 2]) -> [u32; 2] {
         bodies.map(|index| if self.list.facts(index).mass.is_positive() { index } else { GROUND })
     }
 }
 
-/// Transposes the quads of all contacts: returns the first numbers of all contacts, then their second numbers, and so
-/// on.
+/// Transposes the quads of all contacts.
 #[inline(always)]
 pub(super) fn columns<L: Lanes<N>, const N: usize>(
     inputs: &[Input; N],
@@ -231,8 +220,8 @@ pub(super) fn columns<L: Lanes<N>, const N: usize>(
     L::transposed(rows)
 }
 
-/// The impulses with which the two points are warm-started: 0 if the feature of a point is new in this tick. Also
-/// updates the statistics `warm`.
+/// The impulses for the warm start of the two points: 0 if the feature of a point is new. Updates the statistics
+/// `warm`.
 #[inline]
 fn carried_over(manifold: &Manifold, memory: &Contact, warm: &mut WarmStarts) -> [PointImpulse; 2] {
     let points = manifold.points();
@@ -256,8 +245,7 @@ mod tests {
     use crate::fx;
     use crate::math::{Fx, Speed, Unit, Vec2};
 
-    /// The share of a very heavy body in an impulse rounds to 0, but two contacts of the body must still have different
-    /// colours.
+    /// The share of a very heavy body rounds to 0, but its contacts must still have different colours.
     #[test]
     fn a_body_that_is_too_heavy_to_be_moved_is_still_one_that_changes() {
         let mut bodies: Arena<Body, BodyId> = Arena::default();

@@ -17,8 +17,8 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
         policy.speed(along::<L, N>(&self.a, &self.b, n, row))
     }
 
-    /// Changes the velocities by impulses below 512 m/s, so that no sum overflows. `SHIFT` is the number of fraction
-    /// bits of a product of a gain and an impulse beyond those of a speed.
+    /// Changes the velocities by impulses below 512 m/s, so that no sum overflows. `SHIFT` is the number of additional
+    /// fraction bits of a gain times an impulse.
     #[inline(always)]
     pub(super) fn change<const SHIFT: i32>(&mut self, row: &Row<N>, d: L::Int) {
         let VelocityW { x, y, turn } = self.a;
@@ -37,7 +37,6 @@ impl<L: Lanes<N>, const N: usize> BodyPairW<L, N> {
     }
 }
 
-/// The change of one velocity component by an impulse.
 #[inline(always)]
 fn part<L: Lanes<N>, const N: usize, const SHIFT: i32>(gain: &Ints<N>, d: L::Int) -> L::Int {
     L::narrow::<SHIFT>(L::mul(L::load(gain), d))

@@ -23,7 +23,6 @@ impl Operation<Contacts> for Measure {
     }
 }
 
-/// Computes the separations at the current positions.
 #[inline(always)]
 pub(super) fn measure<L: Lanes<N>, const N: usize>(
     batch: &mut Batch<N>,

@@ -1,6 +1,6 @@
-//! Contacts: one row along the normal for each point and one along the tangent for both points.
+//! Contacts: one row along the normal for each point, and one along the tangent for both points.
 //!
-//! With the rows and gains of `row.rs`, for a batch of contacts at a time:
+//! With the rows and gains of `row.rs`, for each contact of a batch:
 //!
 //! ```text
 //! J  = (-n, -eA, n, eB)                                  the form of the rows along the normal and the tangent
@@ -10,9 +10,8 @@
 //! ```
 //!
 //! The operations on a batch are in `warm_start`, `solve` (the equations for `w` and `L'`), `measure`, `impact`,
-//! `restitution` and `hit`. `jacobian` computes `J v` and the velocity changes by impulses. `prepare` fills the batches
-//! of a tick, `rows` computes their rows, and `store` returns the impulses to the state. `overflow_policy` defines the
-//! two ways in which numbers are kept within their formats.
+//! `restitution` and `hit`. `prepare` fills the batches of a tick, `rows` computes their rows, and `store` returns the
+//! impulses to the state. `overflow_policy` keeps numbers within their formats.
 //!
 //! The difference of two velocities fits its format, because each velocity is below 512 m/s. Lanes without a contact
 //! have gains of 0, so that their other numbers do not matter.
@@ -61,8 +60,8 @@ pub(super) use warm_start::WarmStart;
 /// Largest impulse of friction and of rolling resistance. The difference of two such impulses fits the format.
 const TANGENT_MAX: Speed = Speed::lit("511");
 
-/// Number of passes in which elastic contacts that bounce at the same time, such as those of a body in a corner, are
-/// solved against each other. With one pass, a box in a closed room would gain half of its energy within a minute.
+/// Number of passes in which elastic contacts that bounce at the same time are solved against each other. With one
+/// pass, a box in a closed room would gain half of its energy within a minute.
 const RESTITUTION_PASSES: u32 = 12;
 
 /// All contacts of a tick.
@@ -74,25 +73,19 @@ pub(super) struct ContactSet {
     warm: BatchList<Contacts>,
     cold: BatchList<Contacts>,
     prospects: Vec<Prospect>,
-    /// The statistics of each thread.
     warm_starts: Vec<WarmStarts>,
     features: Features,
 }
 
-/// Properties of the contacts of a tick that decide which operations they need.
 #[derive(Clone, Copy, Debug, Default)]
 struct Features {
     /// Whether any contact is elastic: its restitution is above `restitution::ELASTIC`.
     elastic: bool,
-    /// Whether any contact is cold.
     cold: bool,
-    /// Whether any contact has a hit event.
     hits: bool,
-    /// Whether any contact has extras.
     extras: bool,
 }
 
-/// The contacts that one thread solves.
 #[derive(Debug)]
 pub(super) struct ContactShare<'a> {
     warm: BatchShare<'a, Contacts>,
@@ -101,59 +94,50 @@ pub(super) struct ContactShare<'a> {
 }
 
 impl ContactSet {
-    /// The contacts that each thread solves.
     pub(super) fn shares(&mut self) -> impl Iterator<Item = ContactShare<'_>> {
         let ContactSet { warm, cold, features, .. } = self;
         warm.shares().zip(cold.shares()).map(|(warm, cold)| ContactShare { warm, cold, features: *features })
     }
 
-    /// Whether any contact has a hit event.
     pub(super) fn has_hits(&self) -> bool {
         self.features.hits
     }
 
-    /// Whether any contact of a body may bounce. `body` is its index among the bodies of the tick.
+    /// Whether any contact of a body may bounce. `body` is its index in the body list.
     pub(super) fn bounces(&self, body: u32) -> bool {
         self.prospects[body as usize].bounces()
     }
 }
 
 impl ContactShare<'_> {
-    /// Runs an operation over the contacts that fit no colour, one after the other.
     pub(super) fn run_overflow(&mut self, operation: impl Operation<Contacts>, context: &StepContext<'_>) {
         self.warm.run_overflow(operation, context);
         self.cold.run_overflow(operation, context);
     }
 
-    /// Runs an operation over the contacts with a colour, colour by colour.
     pub(super) fn run_coloured(&mut self, operation: impl Operation<Contacts>, context: &StepContext<'_>) {
         self.warm.coloured.run_coloured(operation, context);
         self.cold.coloured.run_coloured(operation, context);
     }
 
-    /// Runs an operation over all contacts.
     pub(super) fn run(&mut self, operation: impl Operation<Contacts>, context: &StepContext<'_>) {
         self.run_overflow(operation, context);
         self.run_coloured(operation, context);
     }
 
-    /// Whether any contact is cold.
     pub(super) fn has_cold(&self) -> bool {
         self.features.cold
     }
 
-    /// Whether any contact has extras.
     pub(super) fn has_extras(&self) -> bool {
         self.features.extras
     }
 
-    /// Runs an operation over the cold contacts.
     pub(super) fn run_cold(&mut self, operation: impl Operation<Contacts>, context: &StepContext<'_>) {
         self.cold.run_overflow(operation, context);
         self.cold.coloured.run_coloured(operation, context);
     }
 
-    /// Applies restitution, after the passes of a sub-step.
     pub(super) fn bounce(&mut self, context: &StepContext<'_>) {
         for pass in 0..if self.features.elastic { RESTITUTION_PASSES } else { 1 } {
             let restitution = ApplyRestitution { again: pass > 0 };
@@ -161,7 +145,6 @@ impl ContactShare<'_> {
         }
     }
 
-    /// Adds the impulses of a sub-step to those of the tick, for contacts with a hit event.
     pub(super) fn add_hits(&mut self, context: &StepContext<'_>) {
         if self.features.hits {
             self.run(AddHits, context);
@@ -169,7 +152,6 @@ impl ContactShare<'_> {
     }
 }
 
-/// Contacts as a kind of constraint.
 #[derive(Clone, Debug)]
 pub(super) enum Contacts {}
 
@@ -189,14 +171,14 @@ impl BatchKind for Contacts {
     }
 }
 
-/// Statistics of warm starting: how many contact points continue points of the last tick.
+/// Statistics of warm starting.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct WarmStarts {
     /// Points in contact.
     pub(crate) points: u32,
     /// Points that already existed in the last tick.
     pub(crate) kept: u32,
-    /// Points with an impulse in the last tick that no longer exist, although the shapes still touch.
+    /// Points that no longer exist and had an impulse in the last tick, although the shapes still touch.
     pub(crate) lost: u32,
 }
 

@@ -1,10 +1,9 @@
 //! Overflow policies: how numbers are kept within their formats.
 //!
-//! [`Saturating`] saturates every sum that may not fit its format, and counts a fault for each velocity or normal
-//! impulse that it clamps. [`Unchecked`] does neither: it records whether all numbers were within bounds in which no
-//! sum can overflow and no clamp can act. Nearly all contacts are within these bounds: they are neither fast nor deep,
-//! and their impulses are small. Most batches are solved with `Unchecked` first, and again with `Saturating` if a
-//! number was out of bounds. Within the bounds, both policies give the same bits:
+//! [`Saturating`] saturates sums that may not fit their format. [`Unchecked`] only records whether all numbers were
+//! within bounds in which no sum can overflow and no clamp can act. Most contacts are within these bounds, because they
+//! are neither fast nor deep and their impulses are small. They are solved with `Unchecked` first, and again with
+//! `Saturating` if a number was out of bounds. Within the bounds, both give the same bits:
 //!
 //! ```text
 //! |vx|, |vy|, |u| < 64 at first, |d| < 4 for at most 10 rows       velocities stay below 104, spins below 84
@@ -27,9 +26,7 @@ use crate::simd::{Lanes, VelocityW};
 
 pub(super) const FRICTION_RATIO: i32 = shift(FrictionRatio::FRAC_NBITS);
 
-/// Largest lever ratio of unchecked contacts.
 const UNCHECKED_RATIO: Ratio = Ratio::lit("3");
-/// Largest friction ratio of unchecked contacts.
 const UNCHECKED_FRICTION_RATIO: FrictionRatio = FrictionRatio::lit("3.5");
 /// Largest factor between a separation and a speed in unchecked contacts.
 const UNCHECKED_RATE: Rate = Rate::lit("512");
@@ -37,17 +34,15 @@ const UNCHECKED_RATE: Rate = Rate::lit("512");
 /// Base-2 logarithm of the bound of speeds and impulses, 64 m/s, and of displacements, 2 m, in units of their formats.
 const LARGE_BITS: u32 = 6 + Speed::FRAC_NBITS;
 const _: () = assert!(LARGE_BITS == 1 + Shift::FRAC_NBITS);
-/// Base-2 logarithm of the bound of changes of an impulse, 4 m/s, and of separations in a solve, 1/8 m, in the same
-/// units.
+/// Base-2 logarithm of the bound of impulse changes, 4 m/s, and of separations, 1/8 m.
 const SMALL_BITS: u32 = 2 + Speed::FRAC_NBITS;
 const _: () = assert!(SMALL_BITS + 3 == Shift::FRAC_NBITS);
 
-/// Whether contacts may be unchecked if separations are multiplied by these rates to give speeds.
+/// Whether contacts may be unchecked if separations are multiplied by these rates.
 pub(super) fn unchecked_at(rates: [Rate; 3]) -> bool {
     rates.into_iter().all(|rate| rate <= UNCHECKED_RATE)
 }
 
-/// An overflow policy: the treatment of numbers that might overflow.
 pub(super) trait OverflowPolicy<L: Lanes<N>, const N: usize> {
     /// Restricts the counting of faults to the given lanes.
     #[inline(always)]
@@ -55,10 +50,8 @@ pub(super) trait OverflowPolicy<L: Lanes<N>, const N: usize> {
     /// Checks velocities or displacements that an operation has loaded.
     #[inline(always)]
     fn see(&mut self, _: &BodyPairW<L, N>) {}
-    /// Checks an accumulated impulse.
     #[inline(always)]
     fn see_impulse(&mut self, _: L::Int) {}
-    /// Checks a separation.
     #[inline(always)]
     fn see_separation(&mut self, _: L::Int) {}
     /// `J v` as a speed.
@@ -67,7 +60,6 @@ pub(super) trait OverflowPolicy<L: Lanes<N>, const N: usize> {
     fn limit(wide: L::Wide) -> L::Int;
     fn add(a: L::Int, b: L::Int) -> L::Int;
     fn sub(a: L::Int, b: L::Int) -> L::Int;
-    /// Clamps a number to `-limit..=limit`.
     fn clamp(value: L::Int, limit: L::Int) -> L::Int;
     /// Clamps an accumulated impulse along a normal.
     fn impulse(&mut self, wanted: L::Int) -> L::Int;
@@ -79,11 +71,9 @@ pub(super) trait OverflowPolicy<L: Lanes<N>, const N: usize> {
     fn apply_again(&mut self, pair: &mut BodyPairW<L, N>, row: &Row<N>, lambda: L::Int);
 }
 
-/// Saturates every sum that may not fit its format. Counts each velocity and each normal impulse that it clamps as a
-/// fault.
+/// Saturates sums. Counts each velocity and normal impulse that it clamps as a fault.
 pub(super) struct Saturating<'a, L: Lanes<N>, const N: usize> {
     faults: &'a mut Faults,
-    /// The lanes whose faults are counted.
     counted: L::Mask,
 }
 
@@ -93,7 +83,6 @@ impl<'a, L: Lanes<N>, const N: usize> Saturating<'a, L, N> {
         Saturating { faults, counted: L::greater(L::splat(1), L::splat(0)) }
     }
 
-    /// Counts a fault for each lane of the mask that is among the counted lanes.
     #[inline(always)]
     fn count(&mut self, out: L::Mask) {
         if L::any(out) {
@@ -163,8 +152,7 @@ impl<L: Lanes<N>, const N: usize> OverflowPolicy<L, N> for Saturating<'_, L, N> 
     }
 }
 
-/// Applies impulses of more than 512 m/s in steps. When a friction limit shrinks or a pushed shape comes free, the
-/// change of an impulse may exceed the range of a velocity.
+/// Applies impulses of more than 512 m/s, which occur when a friction limit shrinks or a pushed shape comes free.
 #[cold]
 fn apply_in_steps<L: Lanes<N>, const N: usize>(
     pair: &mut BodyPairW<L, N>,
@@ -181,12 +169,12 @@ fn apply_in_steps<L: Lanes<N>, const N: usize>(
     }
 }
 
-/// Does not check sums. Records whether all numbers were within their bounds; see [`Unchecked::held`].
+/// Does not check sums, but records whether all numbers were within their bounds.
 pub(super) struct Unchecked<L: Lanes<N>, const N: usize> {
-    /// Bitwise OR of all numbers so far that must be within the bound of [`LARGE_BITS`], with the bound added to each.
-    /// The bound is a power of two, so that a number within it sets no bit at or above twice the bound.
+    /// Bitwise OR of the numbers that must be within the bound of [`LARGE_BITS`], with the bound added to each. The
+    /// bound is a power of two, so that a number within it sets no bit at or above twice the bound.
     large: L::Int,
-    /// Bitwise OR of all numbers so far that must be within the bound of [`SMALL_BITS`], with that bound added to each.
+    /// Bitwise OR of the numbers that must be within the bound of [`SMALL_BITS`], with that bound added to each.
     small: L::Int,
 }
 
@@ -206,7 +194,7 @@ impl<L: Lanes<N>, const N: usize> Unchecked<L, N> {
         self.small = L::or(self.small, L::add(number, L::splat(1 << SMALL_BITS)));
     }
 
-    /// Whether the rows of a batch are within the bounds, and no contact has a surface speed or rolling resistance.
+    /// Whether the rows are within the bounds, and no contact has a surface speed or rolling resistance.
     #[inline(always)]
     pub(super) fn suits(batch: &Batch<N>, extras: Option<&ContactExtras<N>>) -> bool {
         let ratio = L::splat(UNCHECKED_RATIO.to_bits());
@@ -222,7 +210,6 @@ impl<L: Lanes<N>, const N: usize> Unchecked<L, N> {
         !(drags || L::any(wild))
     }
 
-    /// Whether all numbers were within their bounds.
     #[inline(always)]
     pub(super) fn held(&self) -> bool {
         let beyond = |seen: L::Int, bits: u32| {
@@ -232,7 +219,7 @@ impl<L: Lanes<N>, const N: usize> Unchecked<L, N> {
     }
 }
 
-/// Mask of the lanes in which the magnitude of a lever ratio of a row is above a limit.
+/// Mask of the lanes in which a lever ratio of a row is above a limit.
 #[inline(always)]
 fn long<L: Lanes<N>, const N: usize>(row: &Row<N>, limit: L::Int) -> L::Mask {
     L::either(beyond::<L, N>(L::load(&row.e_a), limit), beyond::<L, N>(L::load(&row.e_b), limit))
@@ -310,8 +297,8 @@ impl<L: Lanes<N>, const N: usize> OverflowPolicy<L, N> for Unchecked<L, N> {
     }
 }
 
-/// Changes velocities by impulses within the bounds. These impulses can be multiplied by four, so that the velocity
-/// change is the upper half of a product, which saves a shift.
+/// Changes velocities by impulses within the bounds. Multiplied by four, the impulse gives the velocity change as the
+/// upper half of a product, which saves a shift.
 #[inline(always)]
 fn change_within_bounds<L: Lanes<N>, const N: usize>(pair: &mut BodyPairW<L, N>, row: &Row<N>, d: L::Int) {
     let twice = L::add(d, d);

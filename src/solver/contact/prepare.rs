@@ -1,4 +1,4 @@
-//! Fills batches with the contacts of a tick, in the order in which they are solved.
+//! Fills batches with the contacts of a tick.
 
 use super::super::batches::{Batches, Coloured};
 use super::super::colour::{Colouring, Group};
@@ -20,7 +20,6 @@ const PAIRS_AHEAD: usize = 4;
 const MANIFOLDS_AHEAD: usize = 2;
 
 impl ContactSet {
-    /// Sorts the contacts of a tick into colours, for `parts` threads.
     pub(in crate::solver) fn sort(
         &mut self,
         source: &ContactSource<'_>,
@@ -32,7 +31,6 @@ impl ContactSet {
         colouring.sort(source.list.len(), parts);
     }
 
-    /// Fills the batches of each of `parts` threads. Returns the statistics of warm starting.
     pub(in crate::solver) fn fill(
         &mut self,
         source: &ContactSource<'_>,
@@ -52,7 +50,7 @@ impl ContactSet {
         }
         let shares = warm.coloured.iter_mut().zip(&mut cold.coloured).zip(&mut *warm_starts).enumerate();
         threads.run_team(shares, |(part, ((warm, cold), warm_starts)), _| {
-            // Counted in a local variable, because the counts of several threads share a cache line.
+            // A local variable, because the counts of several threads share a cache line.
             let mut own = WarmStarts::default();
             for (coloured, is_cold) in [(warm, false), (cold, true)] {
                 let (colours, warm_starts) = (colouring.colours(is_cold, part), &mut own);
@@ -75,7 +73,6 @@ impl ContactSet {
     }
 }
 
-/// Fills batches of `N` contacts, given the indices of the pairs of each colour.
 struct Fill<'a, I, const N: usize> {
     batches: &'a mut Batches<Contacts, N>,
     source: &'a ContactSource<'a>,
@@ -111,8 +108,8 @@ impl<'a, I: Iterator<Item = Group<'a>>, const N: usize> Kernel<N> for Fill<'_, I
 }
 
 impl<const N: usize> Batches<Contacts, N> {
-    /// Fills a batch with up to `N` contacts. Reuses a batch of the last tick if there is one, without initialising
-    /// the fields that are overwritten, because the operation is memory-bound.
+    /// Fills a batch with up to `N` contacts. Reuses the memory of a batch of the last tick without initialising it,
+    /// because the operation is memory-bound.
     #[inline(always)]
     fn fill<L: Lanes<N>>(
         &mut self,
@@ -162,9 +159,8 @@ impl<const N: usize> Batches<Contacts, N> {
     }
 }
 
-/// Keeps the rows of a batch, if it had the same contacts in the last tick and their rows have not changed. Only the
-/// separations are new: the impulses for the warm start are in the batch. Returns `false` if the batch has to be filled
-/// again. Batches with extras, an impact or a wedged body always are.
+/// Keeps the rows of a batch if it had the same contacts in the last tick and their rows have not changed. The impulses
+/// for the warm start are already in the batch. Returns `false` if the batch has to be filled again.
 #[inline(always)]
 fn keep<L: Lanes<N>, const N: usize>(
     batch: &mut Batch<N>,

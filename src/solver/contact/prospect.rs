@@ -1,41 +1,30 @@
-//! Properties of a body that follow from all of its contacts, and on which the solution of these contacts depends: for
-//! example, how many iterations they get.
+//! Properties of a body that follow from all of its contacts, such as whether these contacts are cold.
 
 use crate::math::{Unit, Vec2};
 
-/// Largest dot product of the normals of two walls between which an impact may wedge a body: the normals are at least
-/// 60 degrees apart. Friction holds a body between walls that open wider only if its coefficient is above 1.7. Two
-/// tiles of a floor are no wedge.
+/// Largest dot product of the normals of two walls between which an impact may wedge a body: the normals differ by at
+/// least 60 degrees. Friction holds a body between walls that open wider only if its coefficient is above 1.7.
 const WEDGE_DOT_MAX: Unit = Unit::lit("0.5");
 
-/// Properties of a body that follow from all of its contacts.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Prospect {
     flags: u32,
-    /// Normal of the first contact with a wall, directed towards this body. A wall is a body that impulses do not move.
+    /// Normal of the first contact with a wall, towards this body. A wall is a body that impulses do not move.
     wall: Vec2<Unit>,
 }
 
 impl Prospect {
-    /// A contact had points in the last tick.
     pub(super) const WARM: u32 = 1;
-    /// A contact is an impact.
     pub(super) const IMPACT: u32 = 2;
-    /// A contact has restitution.
     pub(super) const BOUNCES: u32 = 4;
-    /// The body has a contact.
     const CONTACT: u32 = 8;
-    /// The body touches a wall.
     const WALL: u32 = 16;
-    /// The body touches two walls between which it may be wedged.
     const WEDGE: u32 = 32;
 
-    /// Adds a contact with the given flags.
     pub(super) fn add(&mut self, flags: u32) {
         self.flags |= flags | Self::CONTACT;
     }
 
-    /// Adds the normal of a contact with a wall, towards this body.
     pub(super) fn add_wall(&mut self, normal: Vec2<Unit>) {
         let dot: Unit = self.wall.dot(normal);
         if self.flags & Self::WALL == 0 {
@@ -51,23 +40,20 @@ impl Prospect {
         self.flags & Self::CONTACT != 0 && !self.has_guess()
     }
 
-    /// Whether the impulses of the last tick are an initial guess for those of this tick: a contact of the body had
-    /// points, and the body is not wedged.
+    /// Whether the impulses of the last tick are an initial guess: a contact had points, and the body is not wedged.
     pub(super) fn has_guess(self) -> bool {
         self.flags & Self::WARM != 0 && !self.is_wedged()
     }
 
-    /// Whether an impact may drive the body between two walls, which are bodies that impulses do not move.
+    /// Whether an impact may drive the body between two walls.
     pub(super) fn is_wedged(self) -> bool {
         self.flags & Self::IMPACT != 0 && self.flags & Self::WEDGE != 0
     }
 
-    /// Whether a contact of the body is an impact.
     pub(super) fn has_impact(self) -> bool {
         self.flags & Self::IMPACT != 0
     }
 
-    /// Whether a contact of the body has restitution.
     pub(super) fn bounces(self) -> bool {
         self.flags & Self::BOUNCES != 0
     }
@@ -79,7 +65,6 @@ mod tests {
     use crate::fx;
     use crate::math::{Angle, Rot, narrow};
 
-    /// Whether a body with an impact is wedged between two walls whose normals differ by an angle.
     fn is_wedged(degrees: i64) -> bool {
         let rotation = Rot::from_angle(Angle::from_turns(fx!(1) * degrees / 360));
         let mut prospect = Prospect::default();

@@ -1,16 +1,16 @@
-//! Restitution: a point bounces if its approach speed was not below the threshold of its surface, and if it is pushed
-//! or bounces together with a point that is pushed. It separates at `e` times the approach speed, or more slowly if `e`
-//! is at most 1 and the contact would gain energy.
+//! Restitution: a point bounces if its approach speed was not below the threshold, and if it is pushed or bounces
+//! together with a point that is pushed. It separates at `e` times the approach speed, or more slowly if `e` is at most
+//! 1 and the contact would gain energy.
 //!
 //! ```text
 //! L' = max(L - (vn + min(e va + drift, 0)), 0)     in the sub-step in which it is pushed, after the passes
 //! ```
 //!
-//! The impulse is not part of the accumulated impulse, which the next sub-step would apply again. `impact.rs` computes
-//! `va`, the drift, and the rebound that the bias pass takes into account.
+//! This impulse is not part of the accumulated impulse, which the next sub-step would apply again. `impact.rs` computes
+//! `va` and the drift.
 //!
-//! The approach speed is measured before any contact is warm-started. Otherwise the impulse of one contact would count
-//! as an approach at the next contact, and balls in a groove would bounce for ever.
+//! The approach speed is measured before the warm start. Otherwise the impulse of one contact would count as an
+//! approach at the next contact, and balls in a groove would bounce for ever.
 
 use super::super::batches::{BatchParts, Operation};
 use super::super::limits::IMPULSE_MAX;
@@ -23,20 +23,19 @@ use super::rows::Denominators;
 use crate::math::{Unit, saturate, saturate_wide};
 use crate::simd::{Ints, Lanes};
 
-/// Number of iterations in which two points that bounce are solved against each other. With one iteration, the first
-/// point would separate too fast: a tall box that is dropped flat would gain a third of its energy, and spin. For boxes
-/// with an aspect ratio of up to 3, an iteration removes at least 3/4 of the error.
+/// Number of iterations in which two points that bounce are solved against each other. With one iteration, a tall box
+/// that is dropped flat would gain a third of its energy, and spin. For boxes with an aspect ratio of up to 3, an
+/// iteration removes at least 3/4 of the error.
 const RESTITUTION_ITERATIONS: u32 = 12;
 
-/// Applies restitution.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct ApplyRestitution {
-    /// `false` in the first pass of the sub-step. In later passes, only elastic contacts bounce again.
+    /// `false` in the first pass of a sub-step. In later passes, only elastic contacts bounce.
     pub(in crate::solver) again: bool,
 }
 
-/// Restitution above which contacts that bounce at the same time are solved against each other. Below it an impact
-/// loses so much energy that the order of contacts does not matter.
+/// Restitution above which contacts that bounce at the same time are solved against each other. Below it, an impact
+/// loses so much energy that their order does not matter.
 pub(super) const ELASTIC: Unit = Unit::lit("0.5");
 
 impl Operation<Contacts> for ApplyRestitution {
@@ -44,8 +43,7 @@ impl Operation<Contacts> for ApplyRestitution {
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
         let BatchParts { batch, record, extra: Some(extras), bodies, faults } = parts else { return };
         let policy = &mut Saturating::<L, N>::new(faults);
-        // Velocities are read in all lanes, also in those that do not bounce. A velocity that does not fit is therefore
-        // not counted as a fault here.
+        // Velocities are read in all lanes. A velocity that does not fit in a lane that does not bounce is no fault.
         let mut unread = 0;
         let reader = &mut Saturating::<L, N>::new(&mut unread);
         let restitution = L::load(&extras.restitution);
@@ -57,7 +55,6 @@ impl Operation<Contacts> for ApplyRestitution {
         }
         let masks = [bounces::<L, N>(batch, extras, 0), bounces::<L, N>(batch, extras, 1)];
         let masks = [L::both(masks[0], takes_part), L::both(masks[1], takes_part)];
-        // Impulses are applied only in active lanes.
         let active = L::either(masks[0], masks[1]);
         if !L::any(active) {
             return;
@@ -84,7 +81,7 @@ impl Operation<Contacts> for ApplyRestitution {
             for (i, &mask) in masks.iter().enumerate().take(batch.count) {
                 let point = &batch.points[i];
                 let bounce = L::mul(restitution, L::load(&extras.impacts.approach[i]));
-                // With a restitution above 1, the product may not fit the format of speeds.
+                // With a restitution above 1, the product may not fit.
                 let (bounce, _) = L::narrow_saturating::<UNIT>(bounce);
                 let bounce =
                     L::min(L::add_saturating(bounce, L::load(&extras.impacts.drift[i])), L::splat(0));
@@ -121,7 +118,7 @@ impl Operation<Contacts> for ApplyRestitution {
 }
 
 /// The full rebound of a point: its impulses without and with restitution (`old` and `new`), and its relative normal
-/// velocities before and after the rebound.
+/// velocities before and after.
 #[derive(Clone, Copy)]
 struct Rebound<const N: usize> {
     old: Ints<N>,
@@ -134,19 +131,18 @@ impl<const N: usize> Rebound<N> {
     const NONE: Self = Rebound { old: Ints::ZERO, new: Ints::ZERO, before: Ints::ZERO, after: Ints::ZERO };
 }
 
-/// Returns the share of a lane's rebound at which the impulses of its contact in the sub-step add no energy:
+/// The share of a lane's rebound at which the impulses of its contact in the sub-step add no energy:
 ///
 /// ```text
 /// W = sum P (v+ + drift + va) / 2 <= 0          P = L / D
 /// ```
 ///
-/// over its normal rows and its friction row, where `v+` is the velocity after the rebound. If a surface moves,
-/// tangential velocities are relative to it. A restitution above 1 is meant to do work, and is not limited.
+/// over its normal rows and its friction row, where `v+` is the velocity after the rebound. Tangential velocities are
+/// relative to a moving surface. A restitution above 1 is meant to do work, and is not limited.
 ///
 /// Newton's restitution gains energy where the rebounds of two points add up, and in a corner, where the rebound from
 /// one wall reverses the sliding along the other. `W` is convex in the share, so that it is at most the line from its
-/// value without a rebound to its value with the full rebound. `slides` are the tangential velocities without and with
-/// the full rebound.
+/// value without a rebound to its value with the full rebound. `slides` are the tangential velocities of both.
 fn share_without_gain<const N: usize>(
     lane: usize,
     batch: &Batch<N>,
@@ -167,20 +163,19 @@ fn share_without_gain<const N: usize>(
         none += inverse * at(old) * (at(before) + approach);
         all += inverse * at(new) * (at(after) + approach);
     }
-    // Without a rebound, the contact adds energy if the rebound of another contact has driven its shapes apart. A
-    // smaller impulse then adds less.
+    // Without a rebound, the contact adds energy if another contact has driven its shapes apart. A smaller impulse then
+    // adds less.
     if all <= none.max(0) || extras.restitution.0[lane] > Unit::ONE.to_bits() {
         Unit::ONE.to_bits()
     } else if none >= 0 {
         0
     } else {
-        // `none` is at most 2^98 before it is shifted by 30 bits.
+        // `none` is at most 2^98.
         saturate(saturate_wide((-none << Unit::FRAC_NBITS) / (all - none)))
     }
 }
 
-/// Mask of the lanes in which a point bounces: it approached fast enough, and is either pushed itself or bounces
-/// together with the other point, which is pushed.
+/// Mask of the lanes in which a point bounces.
 #[inline(always)]
 fn bounces<L: Lanes<N>, const N: usize>(batch: &Batch<N>, extras: &ContactExtras<N>, i: usize) -> L::Mask {
     if i >= batch.count {

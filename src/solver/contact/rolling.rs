@@ -1,7 +1,7 @@
 //! Rolling resistance of a contact: one angular row, limited by the normal impulses.
 //!
-//! A wheel that deforms is supported by the ground slightly ahead of its axle. The result is a torque of at most `R N`
-//! against rolling, with a length `R` and the normal force `N` (the model of Box2D 3). With the scale `s` of
+//! A wheel that deforms is supported slightly ahead of its axle, which gives a torque of at most `R N` against rolling,
+//! with a length `R` and the normal force `N` (the model of Box2D 3). With the scale `s` of
 //! [`super::super::row::Row::angular`]:
 //!
 //! ```text
@@ -20,7 +20,6 @@ use super::{ActiveContact, TANGENT_MAX};
 use crate::math::{Speed, Unit, fx_div, round_shift_wide, saturate_wide};
 use crate::simd::{Ints, Lanes};
 
-/// The rolling rows of a batch.
 #[derive(Clone, Debug)]
 pub(super) struct RollingRows<const N: usize> {
     pub(super) row: Row<N>,
@@ -31,7 +30,6 @@ pub(super) struct RollingRows<const N: usize> {
 }
 
 impl<const N: usize> RollingRows<N> {
-    /// Rows of a batch in which no lane has rolling resistance.
     pub(super) const NONE: Self = RollingRows {
         row: Row::NONE,
         friction_ratios: [Ints::ZERO; 2],
@@ -39,8 +37,8 @@ impl<const N: usize> RollingRows<N> {
         denominators: [0; N],
     };
 
-    /// Computes the row of a contact. `inverse_normals` are the reciprocals of its points' denominators. The value for
-    /// a missing point does not matter.
+    /// Computes the row of a contact. `inverse_normals` are the reciprocals of its points' denominators, with any value
+    /// for a missing point.
     pub(super) fn fill(
         &mut self,
         lane: usize,
@@ -65,7 +63,6 @@ impl<const N: usize> RollingRows<N> {
         self.denominators[lane] = denominator;
     }
 
-    /// One iteration, with an impulse of at most `limit`.
     #[inline(always)]
     pub(super) fn solve<L: Lanes<N>>(
         &mut self,
@@ -80,7 +77,6 @@ impl<const N: usize> RollingRows<N> {
         policy.apply(pair, &self.row, L::sub(new, old));
     }
 
-    /// The impulse of a lane, for the warm start in the next tick.
     pub(super) fn impulse(&self, lane: usize) -> Speed {
         impulse_of(Speed::from_bits(self.lambda.0[lane]), self.denominators[lane])
     }

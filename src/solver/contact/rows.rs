@@ -21,19 +21,15 @@ use crate::simd::{Ints, Lanes};
 /// Shift from the format of a unit vector to that of a lever ratio.
 const UNIT_TO_RATIO: i32 = UNIT - RATIO;
 
-/// One body of each contact.
 #[derive(Clone, Copy)]
 struct ContactSide<L: Lanes<N>, const N: usize> {
     fraction: L::Int,
-    /// Vector from the centre of mass to the origin of the manifold.
     to_origin: [L::Int; 2],
-    /// Mantissa of `1 / k`.
     mantissa: L::Int,
-    /// Shift from a product with the mantissa to the format of a lever ratio.
+    /// Shift from a product with the mantissa of `1 / k` to the format of a lever ratio.
     shift: L::Int,
 }
 
-/// The denominators of a batch's rows.
 #[derive(Clone, Debug)]
 pub(super) struct Denominators<const N: usize> {
     pub(super) normals: [Denominator<N>; 2],
@@ -62,14 +58,14 @@ impl<const N: usize> Denominator<N> {
         L::narrow::<UNIT>(L::mul(L::load(&self.inverse), lambda))
     }
 
-    /// `L = p D`, for an initial guess: saturated to the largest impulse along the normal.
+    /// `L = p D`, for an initial guess along the normal.
     #[inline(always)]
     pub(super) fn normal_lambda<L: Lanes<N>>(&self, impulse: L::Int) -> L::Int {
         let lambda = product::<L, N>(impulse, &self.long::<L>());
         L::min(L::max(lambda, L::splat(0)), L::splat(IMPULSE_MAX.to_bits()))
     }
 
-    /// `L = p D`, for an initial guess: saturated to the largest impulse along the tangent.
+    /// `L = p D`, for an initial guess along the tangent.
     #[inline(always)]
     pub(super) fn tangent_lambda<L: Lanes<N>>(&self, impulse: L::Int) -> L::Int {
         let lambda = product::<L, N>(impulse, &self.long::<L>());
@@ -82,7 +78,6 @@ impl<const N: usize> Denominator<N> {
     }
 }
 
-/// Computes the rows of a batch.
 #[inline(always)]
 pub(super) fn fill<L: Lanes<N>, const N: usize>(
     inputs: &[Input; N],
@@ -116,7 +111,7 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
         2 => [half_way::<L, N>(first[0], second[0]), half_way::<L, N>(first[1], second[1])],
         _ => first,
     };
-    // While there is a gap, friction acts on the surfaces of A and B at different points.
+    // While there is a gap, friction acts on A and B at different points.
     let half = L::narrow::<1>(L::mul(gap, one));
     let lift_x = L::narrow::<RATIO>(L::mul(n[0], half));
     let lift_y = L::narrow::<RATIO>(L::mul(n[1], half));
@@ -125,7 +120,7 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
     let Denominators { normals, tangent: denominator } = denominators;
     fill_row::<L, N>(&mut batch.tangent, t, &ends, [surface_a, surface_b], denominator);
     let tangent = denominator.long::<L>();
-    // Impulses of the last tick are only initial guesses, so that clamping them is not a fault.
+    // Clamping an initial guess is no fault.
     L::store(denominator.tangent_lambda::<L>(carried), &mut batch.tangent_lambda);
     let points = batch.points.iter_mut().zip(normals).take(batch.count);
     for ((point, denominator), (anchor, carried)) in points.zip([(first, normal_0), (second, normal_1)]) {
@@ -137,7 +132,6 @@ pub(super) fn fill<L: Lanes<N>, const N: usize>(
     batch.separate::<L>([separation_0, separation_1]);
 }
 
-/// The mean of two numbers, rounded to nearest.
 #[inline(always)]
 fn half_way<L: Lanes<N>, const N: usize>(a: L::Int, b: L::Int) -> L::Int {
     let one = L::splat(1);
@@ -145,11 +139,11 @@ fn half_way<L: Lanes<N>, const N: usize>(a: L::Int, b: L::Int) -> L::Int {
 }
 
 impl<L: Lanes<N>, const N: usize> ContactSide<L, N> {
-    /// Creates one side of the contacts. `mantissa` and `exponent` are those of `1 / k`.
+    /// `mantissa` and `exponent` are those of `1 / k`.
     #[inline(always)]
     fn new(fraction: L::Int, to_origin: [L::Int; 2], mantissa: L::Int, exponent: L::Int) -> Self {
         const DIFFERENCE: i32 = shift(Ratio::FRAC_NBITS - Length::FRAC_NBITS);
-        // The exponent is at most `DIFFERENCE` only for a body that does not turn, whose mantissa is 0.
+        // The exponent is smaller only for a body that does not turn, whose mantissa is 0.
         let shift = L::max(L::sub(exponent, L::splat(DIFFERENCE)), L::splat(1));
         ContactSide { fraction, to_origin, mantissa, shift }
     }
@@ -214,7 +208,7 @@ fn fill_row<L: Lanes<N>, const N: usize>(
     }
 }
 
-/// Numbers from 0 to 2^15 with 30 fraction bits. They are stored in two parts, because they do not fit a lane.
+/// Numbers from 0 to 2^15 with 30 fraction bits, in two parts, because they do not fit a lane.
 #[derive(Clone, Copy)]
 struct Long<L: Lanes<N>, const N: usize> {
     whole: L::Int,
@@ -231,17 +225,16 @@ impl<L: Lanes<N>, const N: usize> Long<L, N> {
     }
 }
 
-/// `x D`, rounded to nearest, saturated.
+/// `x D`, rounded and saturated.
 #[inline(always)]
 fn product<L: Lanes<N>, const N: usize>(x: L::Int, long: &Long<L, N>) -> L::Int {
     let Long { whole, part } = *long;
-    // The product with the whole part is exact. Both products have the sign of x, so that the sum saturates if one of
-    // them does.
+    // The product with the whole part is exact. Both products have the sign of x, so that the sum saturates if one
+    // does.
     let (whole, _) = L::narrow_saturating::<1>(L::mul(x, L::add(whole, whole)));
     L::add_saturating(whole, L::narrow::<30>(L::mul(x, part)))
 }
 
-/// `Dt / Dn`, computed from the rounded reciprocal of `Dn`.
 #[inline(always)]
 fn ratio<L: Lanes<N>, const N: usize>(tangent: &Long<L, N>, normal_inverse: L::Int) -> Long<L, N> {
     let part = L::narrow::<30>(L::mul(normal_inverse, tangent.part));

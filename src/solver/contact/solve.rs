@@ -1,5 +1,5 @@
-//! Solve: one iteration over the rows of a batch. Normals are solved first, then rolling resistance and friction, which
-//! the normal impulses limit.
+//! Solve: one iteration over the rows of a batch. The normals come first, because their impulses limit rolling
+//! resistance and friction.
 //!
 //! ```text
 //! bias pass    w = massScale (vn + bias(s)) + impulseScale L        bias(s) = s / h            for a gap
@@ -28,22 +28,22 @@ use super::{Constants, Contacts, TANGENT_MAX};
 use crate::math::{Rate, Shift, Speed, Unit};
 use crate::simd::{Ints, Lanes};
 
-/// Largest number of rounds in which the two points of a contact are solved against each other. At an impact, a single
-/// round would turn the body: ten boxes that fall on each other from 5 or 10 mm would sway by 12 mm, instead of 1 mm
-/// with up to four rounds. In a pile at rest the first round is usually enough: simulating a pyramid of 5050 boxes
-/// takes a tenth more time than with a single round.
+/// Largest number of rounds in which the two points of a contact are solved against each other. With a single round, an
+/// impact would turn the body: ten boxes that fall on each other from 5 or 10 mm would sway by 12 mm instead of 1 mm.
+/// In a pile at rest one round is usually enough: a pyramid of 5050 boxes takes a tenth more time than with a limit of
+/// one.
 const NORMAL_ROUNDS_MAX: u32 = 4;
 
 /// Change of the second point's impulse, in m/s, below which the points are not solved again.
 const SETTLED: Speed = Speed::lit("0.005");
 
-/// Normal velocity, in m/s, below which an overlap with a body that no impulse moves is as rigid as a gap, if the other
-/// body has an impact. A soft contact would remove only a part of the approach velocity. Without an impact the velocity
-/// comes from other constraints: a wheel on a fixed axle that overlaps the ground would shake.
+/// Normal velocity, in m/s, below which an overlap with a body that no impulse moves is rigid, if the other body has an
+/// impact. A soft contact would remove only a part of the approach velocity. Without an impact the velocity comes from
+/// other constraints: a wheel on a fixed axle that overlaps the ground would shake.
 const IMPACT_SPEED: Speed = Speed::lit("-1");
 
-/// Order in which the two points of a contact are solved. It alternates, because the point that is solved first turns
-/// the body a little. With a fixed order, a stack of ten boxes sways by 4.7 mm while it settles, instead of 0.05 mm.
+/// Order in which the two points of a contact are solved. The first point turns the body a little. With a fixed order,
+/// a stack of ten boxes sways by 4.7 mm while it settles, instead of 0.05 mm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::solver) enum PointOrder {
     Forward,
@@ -51,14 +51,14 @@ pub(in crate::solver) enum PointOrder {
 }
 
 impl PointOrder {
-    /// The order in an iteration of a sub-step. It alternates with every sub-step and with every iteration.
+    /// The order alternates with every sub-step and with every iteration.
     pub(in crate::solver) const fn of(sub_step: u64, iteration: u32) -> Self {
         if sub_step % 2 == iteration as u64 % 2 { PointOrder::Forward } else { PointOrder::Backward }
     }
 }
 
-/// One iteration of a pass. The relax pass measures the separations first. The bias pass of the next sub-step uses the
-/// same separations, because no body moves in between.
+/// One iteration of a pass. The relax pass measures the separations, which the bias pass of the next sub-step uses as
+/// well, because no body moves in between.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct Solve<P> {
     pub(in crate::solver) pass: P,
@@ -67,8 +67,7 @@ pub(in crate::solver) struct Solve<P> {
 }
 
 impl<P: SolverPass> Operation<Contacts> for Solve<P> {
-    /// Solves a batch. An unchecked batch is first solved without overflow checks, and again with checks if a number
-    /// was out of bounds.
+    /// An unchecked batch is first solved without overflow checks, and again with checks if a number was out of bounds.
     #[inline(always)]
     fn apply<L: Lanes<N>, const N: usize>(self, parts: BatchParts<'_, Contacts, N>) {
         let BatchParts { batch, extra: mut extras, bodies, faults, .. } = parts;
@@ -79,7 +78,7 @@ impl<P: SolverPass> Operation<Contacts> for Solve<P> {
                 solved.store(batch, bodies);
                 return;
             }
-            // A batch that was out of bounds once is likely to be out of bounds again in this tick.
+            // It is likely to be out of bounds again in this tick.
             batch.unchecked = false;
         }
         let saturating = &mut Saturating::<L, N>::new(faults);
@@ -91,18 +90,16 @@ impl<P: SolverPass> Operation<Contacts> for Solve<P> {
     }
 }
 
-/// The result of an iteration, before it is stored.
 struct Solved<L: Lanes<N>, const N: usize> {
-    /// The points in the order in which they were solved.
+    /// The points in the order in which they were solved, and their impulses in this order.
     places: [usize; 2],
-    /// The impulses of the points, in the same order.
     normal_lambdas: [L::Int; 2],
     tangent_lambda: L::Int,
     pair: BodyPairW<L, N>,
 }
 
 impl<P: SolverPass> Solve<P> {
-    /// Solves one iteration with an overflow policy. `extras` is `None` without overflow checks.
+    /// Solves one iteration. `extras` is `None` without overflow checks.
     #[inline(always)]
     fn iterate<L: Lanes<N>, C: OverflowPolicy<L, N>, const N: usize>(
         self,
@@ -153,8 +150,7 @@ impl<P: SolverPass> Solve<P> {
         if let Some(extras) = extras {
             surface_speed = L::load(&extras.surface_speed);
             if self.pass.kind() == Pass::Bias {
-                // Friction acts only after the time of impact, and its limit does not include the impulse of
-                // restitution.
+                // Friction acts only after the time of impact. Its limit does not include the impulse of restitution.
                 surface_speed = C::sub(surface_speed, L::load(&extras.impacts.slip));
                 for (pressing, impact) in pressing.iter_mut().zip(&impacts) {
                     *pressing = L::max(C::sub(*pressing, impact.rebound), L::splat(0));
@@ -167,7 +163,7 @@ impl<P: SolverPass> Solve<P> {
                 extras.rolling.solve(limit, &mut pair, policy);
             }
         }
-        // Coulomb friction: an impulse against sliding, at most as large as the normal impulses allow.
+        // Coulomb friction.
         let vt = C::add(pair.velocity(t, &batch.tangent, policy), surface_speed);
         let limit = limit::<L, C, N>([&points[0].friction_ratio, &points[1].friction_ratio], pressing);
         let old = L::load(&batch.tangent_lambda);
@@ -179,7 +175,6 @@ impl<P: SolverPass> Solve<P> {
 }
 
 impl<const N: usize> Point<N> {
-    /// Passes the impulse and the separation of the point to an overflow policy.
     #[inline(always)]
     fn show_to<L: Lanes<N>>(&self, policy: &mut impl OverflowPolicy<L, N>) {
         policy.see_impulse(L::load(&self.normal_lambda));
@@ -188,7 +183,6 @@ impl<const N: usize> Point<N> {
 }
 
 impl<L: Lanes<N>, const N: usize> Solved<L, N> {
-    /// Stores the impulses in the batch, and the velocities in its bodies.
     #[inline(always)]
     fn store(self, batch: &mut Batch<N>, bodies: &[Cell<SolverBody>]) {
         let Solved { places, normal_lambdas, tangent_lambda, pair } = self;
@@ -201,7 +195,7 @@ impl<L: Lanes<N>, const N: usize> Solved<L, N> {
     }
 }
 
-/// The parameters that all normal rows of a batch share in a pass.
+/// The parameters of the normal rows of a batch in a pass.
 struct Normals<L: Lanes<N>, const N: usize> {
     pass: Pass,
     n: [L::Int; 2],
@@ -238,9 +232,8 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
         }
     }
 
-    /// Solves two points against each other, until the impulse of the second hardly changes ([`SETTLED`]), in up to
-    /// [`NORMAL_ROUNDS_MAX`] rounds. For each of the two points, `present` contains the mask of the lanes that have the
-    /// point. Returns the impulses of both points.
+    /// Solves two points against each other, until the impulse of the second changes by less than [`SETTLED`], in up to
+    /// [`NORMAL_ROUNDS_MAX`] rounds. `present` are the lanes that have each point. Returns the impulses of both points.
     #[inline(always)]
     fn solve_both<C: OverflowPolicy<L, N>>(
         &self,
@@ -273,9 +266,9 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
         [one, two]
     }
 
-    /// The contact equation. Solves a point in the given lanes: computes the accumulated impulse that it should have
-    /// instead of `old`, and applies the difference. `other` is the impulse of the other point: a point with a rebound
-    /// bounces if either point pushes. Returns the impulses of all lanes.
+    /// The contact equation. Solves a point in the given lanes: computes the impulse that it should have instead of
+    /// `old`, and applies the difference. `other` is the impulse of the other point: a point with a rebound bounces if
+    /// either point pushes.
     #[inline(always)]
     fn solve<C: OverflowPolicy<L, N>>(
         &self,
@@ -300,8 +293,8 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
                 let wide = L::add_wide(L::mul(mass_scale, error), L::mul(impulse_scale, old));
                 policy.impulse(L::max(C::sub(old, L::narrow::<UNIT>(wide)), L::splat(0)))
             }
-            // A gap without an impulse is left to the next sub-step. Slowing down the approach before the gap is closed
-            // would make a ball rebound from above the floor.
+            // A gap without an impulse is left to the next sub-step. If its approach slowed down before the gap is
+            // closed, a ball would rebound from above the floor.
             Pass::Relax => {
                 let approaches = L::both(gap, L::greater(L::splat(1), rebound));
                 let speed = L::select(approaches, self.speed_of::<C>(separation, self.rate), L::splat(0));
@@ -315,8 +308,7 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
         new
     }
 
-    /// The bias velocity for a separation. A gap may close within this sub-step, but not turn into an overlap. An
-    /// overlap is pushed out slowly.
+    /// The bias velocity for a separation. A gap may close within this sub-step, but not turn into an overlap.
     #[inline(always)]
     fn bias<C: OverflowPolicy<L, N>>(&self, separation: L::Int, gap: L::Mask) -> L::Int {
         let overlap = L::min(C::add(separation, self.slop), L::splat(0));
@@ -331,8 +323,7 @@ impl<L: Lanes<N>, const N: usize> Normals<L, N> {
     }
 }
 
-/// Limit of the impulse of a friction or rolling row: the normal impulses of both points times their friction ratios,
-/// at most [`TANGENT_MAX`].
+/// Limit of the impulse of a friction or rolling row.
 #[inline(always)]
 fn limit<L: Lanes<N>, C: OverflowPolicy<L, N>, const N: usize>(
     friction_ratios: [&Ints<N>; 2],
@@ -343,13 +334,12 @@ fn limit<L: Lanes<N>, C: OverflowPolicy<L, N>, const N: usize>(
     L::min(C::limit(L::add_wide(first, second)), L::splat(TANGENT_MAX.to_bits()))
 }
 
-/// The mask of all lanes.
 #[inline(always)]
 fn every<L: Lanes<N>, const N: usize>() -> L::Mask {
     L::greater(L::splat(1), L::splat(0))
 }
 
-/// Selects `stiff` in the lanes of a mask, and `soft` in all other lanes.
+/// Selects `stiff` in the lanes of a mask, and `soft` in the others.
 #[inline(always)]
 fn chosen<L: Lanes<N>, const N: usize>(immovable: L::Mask, soft: i32, stiff: i32) -> L::Int {
     L::select(immovable, L::splat(stiff), L::splat(soft))

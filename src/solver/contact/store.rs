@@ -14,7 +14,7 @@ use crate::collision::{Contact, Feature, Pair, PointImpulse};
 use crate::math::Speed;
 use crate::simd::{Ints, Kernel, Lanes, Layout, Scalar, Shared, prefetch};
 
-/// Prefetch distance in batches: in the order of colours, the accesses to contacts are random.
+/// Prefetch distance in batches. In the order of colours, the accesses to contacts are random.
 const CONTACTS_AHEAD: usize = 2;
 
 /// The contacts to which the impulses of a batch belong, and the data for converting the impulses.
@@ -22,14 +22,11 @@ const CONTACTS_AHEAD: usize = 2;
 pub(in crate::solver) struct Records<const N: usize> {
     /// Number of lanes with a contact.
     len: u32,
-    /// The indices of the contacts in the state.
+    /// Indices of the contacts in the state.
     contacts: [u32; N],
-    /// The slots of the shapes.
     shapes: [Pair; N],
-    /// Number of points of each contact.
     counts: [u8; N],
     features: [[u16; 2]; N],
-    /// Whether one of the bodies is wedged.
     wedged: [bool; N],
     pub(super) denominators: Denominators<N>,
 }
@@ -45,14 +42,13 @@ impl<const N: usize> Records<N> {
         denominators: Denominators::NONE,
     };
 
-    /// Removes the contacts of an earlier batch.
     #[inline(always)]
     pub(super) fn begin(&mut self) {
         self.len = 0;
         self.wedged = [false; N];
     }
 
-    /// Puts a contact into a lane. Lanes are filled in order.
+    /// Puts a contact into the next lane.
     #[inline(always)]
     pub(super) fn take(&mut self, lane: usize, input: &Input) {
         self.len += 1;
@@ -63,7 +59,7 @@ impl<const N: usize> Records<N> {
         self.wedged[lane] = input.wedged;
     }
 
-    /// Iterates over the lanes with a contact. Gives the lane, the index of the contact and its number of points.
+    /// The lanes with a contact: lane, index of the contact and number of points.
     fn lanes(&self) -> impl Iterator<Item = (usize, usize, u8)> {
         let lanes = self.contacts.iter().zip(&self.counts).take(self.len as usize);
         lanes.enumerate().map(|(lane, (&contact, &count))| (lane, contact as usize, count))
@@ -75,16 +71,15 @@ impl<const N: usize> Records<N> {
         (self.wedged == [false; N]).then_some(self.len as usize)
     }
 
-    /// Updates the index of the contact in a lane. Returns whether it is the contact of the given shapes.
+    /// Updates the index of the contact in a lane. Returns whether its shapes are the same.
     #[inline(always)]
     pub(super) fn keep(&mut self, lane: usize, pair: &ActiveContact) -> bool {
         self.contacts[lane] = pair.contact;
         self.shapes[lane] == pair.shapes
     }
 
-    /// Returns the impulses of each point along the normal and the tangent, for the warm start in the next tick. Also
-    /// writes them back to the batch, because the next tick may keep the batch. The impulses in the batch are rounded
-    /// in the same way as when a batch is filled with them.
+    /// The impulses of each point along the normal and the tangent, for the warm start in the next tick. Also writes
+    /// them back to the batch, which the next tick may keep, rounded as when a batch is filled with them.
     #[inline(always)]
     fn impulses<L: Lanes<N>>(&self, batch: &mut Batch<N>) -> [[Ints<N>; 2]; 2] {
         let Denominators { normals, tangent } = &self.denominators;
@@ -103,7 +98,6 @@ impl<const N: usize> Records<N> {
         impulses
     }
 
-    /// The normal impulse of each point over the tick.
     #[inline(always)]
     fn hit_impulses<L: Lanes<N>>(&self, extras: &ContactExtras<N>) -> [Ints<N>; 2] {
         let mut impulses = [Ints::ZERO; 2];
@@ -115,7 +109,7 @@ impl<const N: usize> Records<N> {
     }
 }
 
-/// The share of each point in the impulse along the tangent: one half, unless the friction limit of a point is lower.
+/// The share of each point in the tangential impulse: one half, unless the friction limit of a point is lower.
 #[inline(always)]
 fn shares_of_friction<L: Lanes<N>, const N: usize>(batch: &Batch<N>) -> [L::Int; 2] {
     let whole = L::load(&batch.tangent_lambda);
@@ -132,17 +126,16 @@ fn shares_of_friction<L: Lanes<N>, const N: usize>(batch: &Batch<N>) -> [L::Int;
     [L::sub(whole, rest), rest]
 }
 
-/// Results of the solver for each contact of the state in a tick, by index.
+/// Results of a tick for each contact of the state, by index.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ContactResults {
     /// Whether the shapes have pushed each other.
     pub(crate) pushed: Vec<bool>,
-    /// For contacts with a hit event, the normal impulse of the tick, as the relative velocity that it would give to
-    /// the centres of mass. Empty if no contact has a hit event.
+    /// Normal impulse of the tick for contacts with a hit event, as the relative velocity that it would give to the
+    /// centres of mass. Empty if there is no hit event.
     pub(crate) hit_impulses: Vec<Speed>,
 }
 
-/// Destination of the impulses: the contacts of the state, and the results of the tick.
 #[derive(Clone, Copy)]
 pub(in crate::solver) struct ContactStore<'a> {
     contacts: Shared<'a, Contact>,
@@ -151,7 +144,7 @@ pub(in crate::solver) struct ContactStore<'a> {
 }
 
 impl<'a> ContactStore<'a> {
-    /// Creates the store, and clears the results. Each contact is in one batch, and so belongs to one thread.
+    /// Creates the store, and clears the results.
     pub(in crate::solver) fn new(
         contacts: &'a mut [Contact],
         results: &'a mut ContactResults,
@@ -171,7 +164,6 @@ impl<'a> ContactStore<'a> {
 }
 
 impl ContactShare<'_> {
-    /// Stores the impulses for the next tick.
     pub(in crate::solver) fn store(&mut self, store: ContactStore<'_>) {
         for share in [&mut self.warm, &mut self.cold] {
             if let Some(batches) = share.own_overflow() {
@@ -185,7 +177,6 @@ impl ContactShare<'_> {
     }
 }
 
-/// Stores the impulses of batches.
 struct Store<'a, const N: usize> {
     batches: &'a mut Batches<Contacts, N>,
     store: ContactStore<'a>,
@@ -234,9 +225,8 @@ impl<const N: usize> Kernel<N> for Store<'_, N> {
     }
 }
 
-/// The part of a wedged body's impulse that carries a load: at most the impulse of the last tick. The rest comes from
-/// the impact. In a narrow wedge, friction would otherwise keep the impulse of the impact for ever, as a stress between
-/// the walls.
+/// The part of a wedged body's impulse that carries a load: at most the impulse of the last tick. Otherwise friction in
+/// a narrow wedge would keep the impulse of the impact for ever, as a stress between the walls.
 fn load_of(impulse: PointImpulse, old: &Contact) -> PointImpulse {
     let load = old.impulse_of(Feature(impulse.feature)).unwrap_or_default();
     let most = load.tangent.abs();
@@ -253,8 +243,6 @@ mod tests {
     use crate::math::Rng;
     use crate::simd::Scalar;
 
-    /// The shares of both points add up to the impulse along the tangent. Each share is within the friction limit of
-    /// its point, and is half of the impulse if both limits allow it.
     #[test]
     fn friction_is_shared_out_by_halves_as_far_as_each_point_reaches() {
         let mut rng = Rng::new(31);
@@ -262,7 +250,6 @@ mod tests {
             let mut batch = Batch::<1> { count: 2, ..Batch::NONE };
             let limits = [0, 1].map(|i| {
                 let limit = i64::from(rng.below(1000));
-                // A friction ratio of 1.
                 batch.points[i].friction_ratio.0[0] = 1 << 20;
                 batch.points[i].normal_lambda.0[0] = i32::try_from(limit).expect("below 1000");
                 limit

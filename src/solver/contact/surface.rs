@@ -3,12 +3,11 @@
 use crate::body::Material;
 use crate::math::{FrictionRatio, Fx, Speed, Unit, fx_mul, narrow};
 
-/// The combined surface of two shapes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface {
     pub(crate) friction: FrictionRatio,
     pub(crate) restitution: Unit,
-    /// Approach speed below which the shapes do not bounce.
+    /// Approach speed in m/s below which the shapes do not bounce.
     pub(crate) restitution_threshold: Speed,
     /// Sum of the surface speeds of the two shapes, in m/s.
     pub(crate) surface_speed: Speed,
@@ -16,7 +15,6 @@ pub(crate) struct Surface {
     pub(crate) rolling_resistance: Fx,
 }
 
-/// The properties of one shape that contribute to a surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SurfaceSide<'a> {
     pub(crate) material: &'a Material,
@@ -25,7 +23,7 @@ pub(crate) struct SurfaceSide<'a> {
 }
 
 impl Surface {
-    /// Mixes the materials of two shapes, in a world with the restitution threshold `threshold`.
+    /// Mixes the materials of two shapes. `threshold` is the restitution threshold of the world.
     pub(crate) fn between(a: SurfaceSide<'_>, b: SurfaceSide<'_>, threshold: Fx) -> Self {
         let resistance = a.material.rolling_resistance.max(b.material.rolling_resistance);
         Surface {

@@ -1,7 +1,5 @@
-//! Warm start: applies the impulses that contacts have accumulated so far.
-//!
-//! Only the first sub-step of a tick applies them row by row. In all other sub-steps `contact_velocity` applies the sum
-//! of the velocity changes by all contacts, once for each body.
+//! Warm start: applies the impulses that contacts have accumulated so far, row by row, in the first sub-step of a tick.
+//! In other sub-steps `contact_velocity` applies their sum for each body.
 
 use core::cell::Cell;
 
@@ -14,7 +12,6 @@ use super::extras::ContactExtras;
 use super::overflow_policy::{OverflowPolicy, Saturating, Unchecked};
 use crate::simd::Lanes;
 
-/// Applies the accumulated impulses of all rows.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct WarmStart;
 

@@ -1,5 +1,5 @@
-//! The warm start applies the velocity changes that contacts caused in the last sub-step. A clamped velocity is a
-//! fault. `world::tests` compares the velocity changes with the impulses in whole worlds (`contact_velocity_error`).
+//! The warm start applies the velocity changes that contacts caused in the last sub-step. `world::tests` compares them
+//! with the impulses in whole worlds (`contact_velocity_error`).
 
 use std::vec::Vec;
 
@@ -10,10 +10,9 @@ use crate::simd::{Backend, Machine};
 use crate::solver::settings::SolverSettings;
 use crate::solver::{Solver, Tuning, contact};
 
-/// Number of bodies. It is not a multiple of four or eight lanes, so that the last group is not full.
+/// Not a multiple of four or eight lanes, so that the last group is not full.
 const COUNT: usize = 21;
 
-/// Calls a function with a context for the bodies.
 fn with_context<T>(
     machine: Machine,
     bodies: &mut [SolverBody],
@@ -40,7 +39,7 @@ fn change_cells(bodies: &[Cell<SolverBody>], by: &[[Speed; 3]]) {
     }
 }
 
-/// Velocity changes by contacts are applied again in the next sub-step. Other velocity changes are not.
+/// Only velocity changes by contacts are applied again.
 #[test]
 fn what_contacts_have_changed_is_changed_again() {
     let mut rng = Rng::new(7);
@@ -89,7 +88,6 @@ fn what_contacts_have_changed_is_changed_again() {
     }
 }
 
-/// A velocity change that takes a body beyond the speed limit is clamped, and counted as a fault.
 #[test]
 fn what_is_too_fast_is_a_fault() {
     let mut bodies = Vec::from([SolverBody::default(); 2]);
@@ -108,8 +106,8 @@ fn what_is_too_fast_is_a_fault() {
 }
 
 impl Solver {
-    /// Compares the velocity changes that contacts have caused in the last sub-step with those by the accumulated
-    /// impulses in their rows. Returns the largest difference and the largest change by impulses, in units of a speed.
+    /// Compares the velocity changes by contacts in the last sub-step with those by the accumulated impulses. Returns
+    /// the largest difference and the largest change by impulses, in units of a speed.
     pub(crate) fn contact_velocity_error(&mut self, tuning: &Tuning) -> (i32, i32) {
         let Solver { list, contacts, contact_velocities, machine, faults, .. } = self;
         let context = &StepContext::new(*machine, tuning, &mut list.bodies, faults);
@@ -136,7 +134,6 @@ impl Solver {
 }
 
 impl<const N: usize> Group<N> {
-    /// The index of each body, and the changes of its velocity.
     fn changes(&self) -> impl Iterator<Item = (u32, [i32; 3])> {
         let Group { at, change: VelocityW { x, y, turn }, .. } = self;
         at.iter().enumerate().map(|(lane, &index)| (index, [x.0[lane], y.0[lane], turn.0[lane]]))

@@ -11,12 +11,11 @@ use super::MovingBody;
 use crate::body::{Body, BodySettings};
 use crate::math::{Fx, Speed, Vec2, fx_mul, narrow};
 
-/// The sum of the effects of all areas on a body.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct AreaEffect {
-    /// Acceleration in m/s², in addition to gravity. It includes the part by which drag carries the body along, `c u`.
+    /// Acceleration in m/s², in addition to gravity. Includes `c u` of drag.
     pub(crate) acceleration: Vec2<Fx>,
-    /// Angular acceleration in rad/s² by which drag turns the body along.
+    /// Angular acceleration in rad/s² by drag.
     pub(crate) angular_acceleration: Fx,
     /// Force in N.
     pub(crate) force: Vec2<Fx>,
@@ -29,7 +28,6 @@ pub(crate) struct AreaEffect {
 }
 
 impl MovingBody {
-    /// Prepares a dynamic body on which areas act.
     pub(in crate::solver) fn in_areas(index: u32, body: &Body, effect: &AreaEffect, tuning: &Tuning) -> Self {
         let AreaEffect { acceleration, angular_acceleration, force, torque, linear_drag, angular_drag } =
             *effect;

@@ -1,4 +1,4 @@
-//! Integrates a group of bodies with SIMD, one in each lane, unless one of them needs special treatment.
+//! Integrates a group of bodies, one in each lane, unless one of them needs special treatment.
 
 use core::cell::Cell;
 
@@ -10,14 +10,12 @@ use super::{MovingBody, SHIFT_MAX};
 use crate::math::{Speed, Unit};
 use crate::simd::{Kernel, Lanes, VelocityW};
 
-/// Integrates velocities.
 pub(super) struct Velocities<'a> {
     pub(super) moving: &'a [MovingBody],
     pub(super) bodies: &'a [Cell<SolverBody>],
     pub(super) speed_max: Speed,
 }
 
-/// Integrates displacements.
 pub(super) struct Displacements<'a> {
     pub(super) moving: &'a [MovingBody],
     pub(super) bodies: &'a [Cell<SolverBody>],
@@ -70,24 +68,21 @@ fn one_by_one(
     }
 }
 
-/// Speeds up to which no lane has to be limited.
+/// Limits below which no lane has to be limited.
 #[derive(Clone, Copy)]
 struct SpeedLimits {
-    /// Limit of each component of the velocity.
     on_axis: i32,
-    /// Limit of the spin.
     turning: i32,
 }
 
-/// Largest component for which a velocity is within the limit whatever its direction: the limit over the square root
-/// of 2.
+/// The largest component with which a velocity in any direction is within the limit.
 fn on_axis(speed_max: Speed) -> i32 {
     let square = u64::from(speed_max.unsigned_abs().to_bits()).pow(2);
     i32::try_from((square / 2).isqrt()).expect("less than the limit")
 }
 
-/// Integrates the velocities of `N` bodies. Changes nothing and returns `false` if one of them is not dynamic, has a
-/// locked axis, or may be above a limit.
+/// Integrates the velocities of `N` bodies. Changes nothing and returns `false` if a body is not dynamic, has a locked
+/// axis or may be above a limit.
 #[inline(always)]
 fn velocities<L: Lanes<N>, const N: usize>(
     moving: &[MovingBody; N],
@@ -116,18 +111,18 @@ fn velocities<L: Lanes<N>, const N: usize>(
     true
 }
 
-/// A damped speed, rounded towards 0. The speed is never the minimum of its format, so that its magnitude fits.
+/// A damped speed, rounded towards 0. The speed is above the minimum of its format.
 #[inline(always)]
 fn towards_rest<L: Lanes<N>, const N: usize>(speed: L::Int, factor: L::Int) -> L::Int {
     let reversed = L::sub(L::splat(0), speed);
     let size = L::mul(L::max(speed, reversed), factor);
-    // Subtracting half a unit first turns rounding to nearest into rounding down.
+    // Subtracting half a unit turns rounding to nearest into rounding down.
     let less = L::narrow::<UNIT>(L::sub_wide(size, L::mul(L::splat(1 << (UNIT - 1)), L::splat(1))));
     L::select(L::negative(speed), L::sub(L::splat(0), less), less)
 }
 
-/// Integrates the displacements of `N` bodies. Changes nothing and returns `false` if one of them is not dynamic, has a
-/// locked axis, or would move too far in the tick.
+/// Integrates the displacements of `N` bodies. Changes nothing and returns `false` if a body is not dynamic, has a
+/// locked axis or would move too far in the tick.
 #[inline(always)]
 fn displacements<L: Lanes<N>, const N: usize>(
     moving: &[MovingBody; N],

@@ -1,7 +1,7 @@
 //! Semi-implicit Euler: velocities first, then displacements from the new velocities.
 //!
-//! With vector instructions, several bodies are integrated at a time (`kernel`) if all of them are dynamic and have no
-//! locked axis, and if none may be beyond a limit. All other bodies are integrated one by one.
+//! With vector instructions, several dynamic bodies without locked axes are integrated at a time (`kernel`), if none
+//! may be beyond a limit. Other bodies are integrated one by one.
 
 mod area_effect;
 mod kernel;
@@ -19,18 +19,16 @@ use crate::simd::Quad;
 pub(crate) use area_effect::AreaEffect;
 use sub_step::SubStep;
 
-/// Largest displacement of a body in a tick, in metres: along each axis, and of the rotation times the radius of
-/// gyration.
+/// Largest displacement along an axis in a tick, and largest rotation times the radius of gyration, in metres.
 const SHIFT_MAX: Shift = Shift::lit("15.999");
 
-/// A body that moves, with the velocity changes that are the same in every sub-step of the tick.
+/// A body that moves, with its velocity changes in a sub-step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MovingBody {
-    /// Velocity change in a sub-step along x and y by gravity, applied force and areas, and change of the spin by
-    /// applied torque and areas.
+    /// Changes of the velocity and of the spin in a sub-step by gravity, applied forces and torques, and areas.
     step: Quad,
-    /// Damping factors of the velocity and of the spin, `1 / (1 + h c)`. This implicit step is stable for any damping
-    /// rate `c`. The third number is negative if the body is not dynamic or has a locked axis.
+    /// Damping factors of the velocity and of the spin, `1 / (1 + h c)`: an implicit step, stable for any damping rate
+    /// `c`. The third number is negative if the body is not dynamic or has a locked axis.
     factors: Quad,
     index: u32,
     dynamic: bool,
@@ -63,7 +61,6 @@ impl MovingBody {
         }
     }
 
-    /// A dynamic body with the velocity changes in a sub-step by forces and by torques.
     #[inline(always)]
     fn dynamic(
         index: u32,
@@ -89,7 +86,6 @@ impl MovingBody {
         }
     }
 
-    /// The index of the body in the body list.
     pub(super) fn index(&self) -> u32 {
         self.index
     }
@@ -101,7 +97,7 @@ impl MovingBody {
         extras < 0
     }
 
-    /// `v' = (v + h F / m) / (1 + h c)`, within the world's speed limit.
+    /// `v' = (v + h F / m) / (1 + h c)`, within the speed limit.
     fn integrate_velocity(&self, body: &mut SolverBody, speed_max: Speed) {
         if !self.dynamic {
             return;
@@ -124,7 +120,7 @@ impl MovingBody {
         body.spin = body.spin.clamp(-speed_max, speed_max);
     }
 
-    /// Removes the velocity along locked axes. Rotation is locked by a reciprocal radius of gyration of 0.
+    /// Removes the velocity along locked axes. Locked rotation is a reciprocal radius of gyration of 0.
     fn hold_locked_axes(&self, body: &mut SolverBody) {
         if self.locks.x {
             body.velocity.x = Speed::ZERO;
@@ -138,8 +134,8 @@ impl MovingBody {
     fn integrate_displacement(&self, body: &mut SolverBody, sub_step: SubStep, faults: &mut Faults) {
         self.hold_locked_axes(body);
         let mut advance = |sum: &mut Shift, speed: Speed| {
-            // Both summands are within ±16 m, so the sum does not saturate. It is clamped only at fewer than 32 ticks
-            // per second, if impulses have raised a speed above the speed limit of the world.
+            // Both summands are within ±16 m, so that the sum does not saturate. It is out of range only below 32 ticks
+            // per second, if impulses have raised a speed above the speed limit.
             let wanted = sum.saturating_add(sub_step.distance(speed));
             *sum = wanted.clamp(-SHIFT_MAX, SHIFT_MAX);
             *faults += u64::from(*sum != wanted);
@@ -150,13 +146,11 @@ impl MovingBody {
     }
 }
 
-/// Integrates the velocities of bodies that move.
 pub(super) fn integrate_velocities(moving: &[MovingBody], context: &StepContext<'_>) {
     let &StepContext { machine, bodies, tuning, .. } = context;
     machine.run(kernel::Velocities { moving, bodies, speed_max: tuning.speed_max });
 }
 
-/// Integrates displacements from the new velocities.
 pub(super) fn integrate_displacements(moving: &[MovingBody], context: &StepContext<'_>) {
     let &StepContext { machine, bodies, tuning, .. } = context;
     let mut faults = 0;
@@ -165,7 +159,7 @@ pub(super) fn integrate_displacements(moving: &[MovingBody], context: &StepConte
     context.add_faults(faults);
 }
 
-/// A damped speed, rounded towards 0. With rounding to nearest a body would creep for ever.
+/// A damped speed, rounded towards 0, so that a body does not creep for ever.
 fn towards_rest(speed: Speed, factor: Unit) -> Speed {
     let product = i64::from(speed.to_bits()) * i64::from(factor.to_bits());
     Speed::from_bits(saturate(product / (1 << 30)))
@@ -178,8 +172,7 @@ fn damping_factor(damping: Fx, rate: u32) -> Unit {
     narrow(fx_div(Fx::ONE, Fx::ONE + damping / i64::from(rate)).unwrap_or(Fx::ONE))
 }
 
-/// Shortens a velocity to the limit. This is not a fault, because the limit is a setting. The components are within
-/// ±1024 m/s, so that the square fits 64 bits.
+/// Shortens a velocity to the limit. This is no fault, because the limit is a setting.
 fn limit_speed(velocity: &mut Vec2<Speed>, speed_max: Speed) {
     let square = |speed: Speed| i64::from(speed.to_bits()) * i64::from(speed.to_bits());
     if square(velocity.x).saturating_add(square(velocity.y)) <= square(speed_max) {

@@ -3,7 +3,7 @@
 use crate::math::{Shift, Speed};
 use crate::simd::Lanes;
 
-/// A time step of `1 / rate` seconds, which is never rounded.
+/// A time step of `1 / rate` seconds, not rounded.
 #[derive(Clone, Copy)]
 pub(super) struct SubStep {
     /// Twice the rate, `d`.
@@ -11,12 +11,12 @@ pub(super) struct SubStep {
     /// `2^64 / d`, rounded up.
     reciprocal: u64,
     rate: i32,
-    /// `2^36 / rate`, rounded: below 2^31.
+    /// `2^36 / rate`, rounded.
     coarse: i32,
 }
 
 impl SubStep {
-    /// Creates the time step for `rate` sub-steps per second, 60 to 4000.
+    /// The time step for `rate` sub-steps per second, 60 to 4000.
     pub(super) fn of(rate: u32) -> Self {
         let divisor = 2 * u64::from(rate);
         let bits = |number: u64| i32::try_from(number).expect("at least 60 sub-steps in a second");
@@ -30,7 +30,7 @@ impl SubStep {
 
     /// `v / rate`, rounded to nearest, ties towards +infinity, by a product instead of a division (T. Granlund, P.
     /// Montgomery, 1994). The dividend `n` is below 2^48. The product of `n`, the reciprocal and `d` exceeds `2^64 n`
-    /// by less than `2^48 d`, which is below 2^64, so that the quotient does not reach the next integer.
+    /// by less than `2^48 d < 2^64`, so that the quotient does not reach the next integer.
     #[inline]
     #[expect(
         clippy::cast_possible_truncation,
@@ -39,22 +39,21 @@ impl SubStep {
         reason = "at most 512 m/s in a sixtieth of a second, and the dividend is positive"
     )]
     pub(super) fn distance(&self, speed: Speed) -> Shift {
-        /// Offset that keeps every quotient from being negative.
+        /// Keeps the dividend positive.
         const BIAS: u64 = 1 << 34;
-        // A distance has 5 more fraction bits than a speed. The sixth bit is for the half that rounds to nearest.
+        // A distance has 5 more fraction bits than a speed. The sixth bit is for rounding to nearest.
         let doubled = (i64::from(speed.to_bits()) << 6) + (self.divisor / 2) as i64;
         let dividend = (doubled + (BIAS * self.divisor) as i64) as u64;
         let quotient = ((u128::from(dividend) * u128::from(self.reciprocal)) >> 64) as u64;
         Shift::from_bits((quotient as i64 - BIAS as i64) as i32)
     }
 
-    /// [`Self::distance`] in lanes: a quotient `q` that is off by at most one is corrected by its remainder. The
-    /// remainder of the right quotient, `64 v + rate - 2 rate q`, is between 0 and `2 rate`, so that its lowest 32 bits
-    /// suffice.
+    /// [`Self::distance`] in lanes. A quotient `q` that is off by at most one is corrected by its remainder,
+    /// `64 v + rate - 2 rate q`, of which the lowest 32 bits suffice.
     #[inline(always)]
     pub(super) fn distances<L: Lanes<N>, const N: usize>(&self, speed: L::Int) -> L::Int {
         let double = L::splat(2 * self.rate);
-        // 2^36 v / (2^31 rate) is off by at most half a unit, and rounding adds another half.
+        // The product is off by at most half a unit, and rounding adds another half.
         let q = L::narrow::<31>(L::mul(speed, L::splat(self.coarse)));
         let dividend = L::add(L::low(L::mul(speed, L::splat(64))), L::splat(self.rate));
         let rest = L::sub(dividend, L::low(L::mul(q, double)));
@@ -79,7 +78,7 @@ mod tests {
             let ends = [i32::MIN, i32::MIN + 1, -1, 0, 1, i32::MAX - 1, i32::MAX];
             let random =
                 core::iter::repeat_with(|| i32::from_le_bytes(rng.next_u32().to_le_bytes())).take(50);
-            // Speeds just before, at and after a tie.
+            // Speeds around a tie.
             let ties: Vec<i32> = (0..50).map(|i| (i * i32::try_from(rate).unwrap()) / 64 - 40 + i).collect();
             for bits in random.collect::<Vec<_>>().into_iter().chain(ends).chain(ties) {
                 let rate = i64::from(rate);

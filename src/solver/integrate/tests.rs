@@ -1,4 +1,4 @@
-//! Integrating several bodies at a time gives the same bits as integrating them one by one, on every backend.
+//! Integrating several bodies at a time gives the same bits as integrating them one by one.
 
 use std::vec::Vec;
 
@@ -12,7 +12,7 @@ fn random_speed(rng: &mut Rng, size: Fx) -> Speed {
     narrow(rng.range(-size, size))
 }
 
-/// A random body: usually dynamic and without locked axes.
+/// A body that is usually dynamic and without locked axes.
 fn random_mover(index: u32, rng: &mut Rng) -> MovingBody {
     let one_in = |rng: &mut Rng, count| rng.below(count) == 0;
     let step = [0; 3].map(|_| random_speed(rng, fx!(1)).to_bits());
@@ -34,7 +34,7 @@ fn random_mover(index: u32, rng: &mut Rng) -> MovingBody {
 }
 
 fn random_body(rng: &mut Rng) -> SolverBody {
-    // Some bodies are near the limits of speed and of the displacement in a tick.
+    // Some bodies are near the limits.
     let (fast, far) = match rng.below(40) {
         0 => (fx!(511), fx!(15.999)),
         1 => (fx!(400), fx!(15.9)),

@@ -1,21 +1,21 @@
 //! Rows on the angle between two bodies: `vn = s (w_b - w_a)`, with `e = s / k` and without linear part.
 //!
-//! `s` is a length that may be chosen for each row. The choice that makes `D = aA eA^2 + aB eB^2` about 1 keeps every
-//! coefficient small, whatever the masses and radii of gyration are:
+//! The length `s` may be chosen for each row. This choice makes `D = aA eA^2 + aB eB^2` about 1 and keeps the
+//! coefficients small:
 //!
 //! ```text
 //! s^2 = 1 / (aA / kA^2 + aB / kB^2),  so that  f = a e / D <= sqrt(a) <= 1  and  e <= 1 / sqrt(a)
 //! ```
 //!
-//! `e` is limited to 100. It would be larger only for a body that is more than 10 000 times as heavy as the other, and
-//! only if the other does not turn or has at least about 100 times its radius of gyration. An angular impulse `P`
-//! corresponds to `L = P (mA + mB) D / s`, with inverse masses.
+//! `e` is limited to 100. It would be larger only for a body more than 10 000 times as heavy as the other, if the other
+//! does not turn or has at least about 100 times its radius of gyration. An angular impulse `P` corresponds to
+//! `L = P (mA + mB) D / s`, with inverse masses.
 
 use super::{Denominator, MassFractions, RATIO_MAX, Row, turning};
 use crate::math::{Length, Ratio, Reciprocal, Speed, Unit, div_round, mul, saturate, saturate_wide};
 
 impl Row {
-    /// Returns the row between two bodies, its denominator and `s`. The last two are 0 if impulses turn neither body.
+    /// The row, its denominator and `s`. The last two are 0 if impulses turn neither body.
     pub(crate) fn angular(
         a: Reciprocal,
         b: Reciprocal,
@@ -28,7 +28,6 @@ impl Row {
         let (e_a, e_b) = (ratio(a), ratio(b));
         let denominator = turning(fractions.a, e_a, e_a) + turning(fractions.b, e_b, e_b);
         let gain = |fraction: Unit, e: Ratio| {
-            // The product has 54 fraction bits, the denominator 30.
             let product = i64::from(fraction.to_bits()) * i64::from(e.to_bits());
             // A velocity change must not be larger than `L`.
             Unit::from_bits(saturate(quotient(product, denominator.max(1)))).min(Unit::ONE)
@@ -37,8 +36,7 @@ impl Row {
         (Row { e_a, e_b, f_a, f_b, ..Row::NONE }, denominator, s)
     }
 
-    /// The shares of A and B in a change of the relative angular velocity. They add up to about 1, unless impulses turn
-    /// neither body.
+    /// The shares of A and B in a change of the relative angular velocity.
     pub(crate) fn shares(&self) -> (Unit, Unit) {
         (mul(self.f_a, self.e_a), mul(self.f_b, self.e_b))
     }
@@ -47,7 +45,6 @@ impl Row {
 /// `2^6 n / d` for numbers that are not negative, rounded to nearest.
 fn quotient(n: i64, d: i64) -> i64 {
     if n < 1 << 56 && d < 1 << 62 {
-        // `2^6 n` fits 64 bits here.
         ((n << 6) + d / 2) / d
     } else {
         saturate_wide(div_round(i128::from(n) << 6, d.into()))
@@ -55,7 +52,7 @@ fn quotient(n: i64, d: i64) -> i64 {
 }
 
 /// `1 / sqrt(aA / kA^2 + aB / kB^2)`, at most a hundred times the radius of gyration of each body that impulses turn.
-/// It only sets the units of a row, so that it need not be exact.
+/// It need not be exact, because it only sets the units of a row.
 pub(in crate::solver) fn angular_scale([a, b]: [Reciprocal; 2], fractions: MassFractions) -> Length {
     // 1 / k has 21 fraction bits, so that the sum has 72.
     let inverse = |inverse_gyration: Reciprocal, fraction: Unit| -> Speed {
@@ -70,9 +67,8 @@ pub(in crate::solver) fn angular_scale([a, b]: [Reciprocal; 2], fractions: MassF
     if sum == 0 {
         return Length::ZERO;
     }
-    // The sum is normalised to 31 or 32 bits by an even shift. Its reciprocal then has as many bits, and the square
-    // root of the reciprocal half as many. The root is increased by more than its rounding error, so that `f` is not
-    // above 1.
+    // An even shift leaves 31 or 32 bits. Then the reciprocal has as many, and its root half as many. The root is
+    // increased by more than its rounding error, so that `f` is not above 1.
     let shift = (i64::from(128 - sum.leading_zeros()) - 31) & !1;
     let top = if shift >= 0 { sum >> shift } else { sum << -shift };
     let root = ((1u64 << 62) / u64::try_from(top).unwrap_or(u64::MAX).max(1)).isqrt();
@@ -93,8 +89,7 @@ mod tests {
     use crate::solver::limits::IMPULSE_MAX;
     use crate::solver::softness::Softness;
 
-    /// One update leaves no relative angular velocity, and `MA kA duA = -MB kB duB` for masses `M`. Most mass ratios
-    /// are 1:1 to 1:10 000 either way, the radii of gyration 1 cm to 50 m, and some bodies do not turn.
+    /// One update leaves no relative angular velocity, and `MA kA duA = -MB kB duB` for masses `M`.
     #[test]
     fn an_update_removes_the_relative_angular_velocity_and_keeps_momentum() {
         let mut rng = Rng::new(7);
@@ -120,7 +115,7 @@ mod tests {
                 assert!(s == 0 && fractions.b == 0);
                 continue;
             }
-            // At most 20 rad/s, at most 20 m/s as a scaled angular velocity, and at most 200 m/s along the row.
+            // At most 20 rad/s, and at most 200 m/s along the row.
             let mut spin = |k: Fx, e: Ratio| {
                 let omega = rng.range(fx!(-20), fx!(20));
                 let most = fx_div(fx!(200), widen(e)).unwrap_or(fx!(20)).min(fx!(20));

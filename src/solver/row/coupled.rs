@@ -1,19 +1,18 @@
-//! Rows of gears, racks and pulleys. Their directions on A and B may differ, and need not be unit vectors.
+//! Rows of gears, racks and pulleys, whose directions on A and B may differ and need not be unit vectors.
 //!
 //! ```text
 //! vn = nB.vB + eB uB - nA.vA - eA uA
 //! D  = aA (nA^2 + eA^2) + aB (nB^2 + eB^2)
 //! ```
 //!
-//! `D` should be about 1, so that gains `a / D` are small. Gains are at most 2: a `D` that is too small is replaced by
-//! a larger one, and one update then removes only a part of the velocity.
+//! `D` should be about 1. A `D` that would give gains above 2 is replaced by a larger one, and one update then removes
+//! only a part of the velocity.
 
 use super::{Denominator, MassFractions, RATIO_MAX, Row, turning};
 use crate::math::{Length, Ratio, Reciprocal, Unit, Vec2, mul, saturate};
 
 impl Row {
-    /// A row with a direction on each body, at most 2 long, and the lever arm of each body about its centre of mass, in
-    /// metres.
+    /// A row with a direction on each body, at most 2 long, and the lever arm of each body in metres.
     pub(crate) fn coupled(
         n: [Vec2<Unit>; 2],
         arms: [Length; 2],
@@ -65,8 +64,7 @@ mod tests {
     use crate::fx;
     use crate::math::{Fx, Rng, Rot, Speed, narrow};
 
-    /// One update removes the velocity of a row whose `D` is not too small, except rounding errors of up to 12 units of
-    /// [`Speed`].
+    /// One update removes the velocity of a row whose `D` is not too small.
     #[test]
     fn an_update_removes_the_velocity_along_both_directions() {
         let mut rng = Rng::new(11);

@@ -1,4 +1,4 @@
-//! Gather and scatter of records: the four numbers of each of eight records become four vectors.
+//! Gather and scatter of eight records of four numbers.
 #![expect(unsafe_code, reason = "vendor intrinsics")]
 
 use core::arch::x86_64::*;
@@ -33,14 +33,13 @@ pub(super) fn set_velocities_w<T>(
     }
 }
 
-/// Gathers three numbers of each body.
 #[inline(always)]
 pub(super) fn velocity_w<T>(bodies: &Records<'_, T>, place: impl Fn(&T) -> *mut i32) -> VelocityW<__m256i> {
     let [x, y, turn, _] = transposed(|lane| place(bodies.get(lane)).cast_const());
     VelocityW { x, y, turn }
 }
 
-/// Gathers rows of four numbers, transposed: the first number of each lane, the second of each lane, and so on.
+/// Gathers rows of four numbers, transposed.
 #[inline(always)]
 pub(super) fn transposed(row: impl Fn(usize) -> *const i32) -> [__m256i; 4] {
     // SAFETY: see `super::Avx2`; loads 16 bytes, aligned to 16.

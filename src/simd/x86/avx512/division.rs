@@ -12,12 +12,12 @@ use core::arch::x86_64::*;
 
 use super::{LANES, multiplied};
 
-/// Number of chords; the leading bits of a mantissa select one.
+/// Number of chords, selected by the leading bits of a mantissa.
 const CHORDS: usize = 16;
 /// Number of mantissa bits that give the position on the chord.
 const REST: u32 = 27;
 
-/// `2^62 / m` at the start of each chord, less 1, so that all values fit 31 bits.
+/// `2^62 / m` at the start of each chord, less 1, so that the values fit 31 bits.
 const STARTS: [i32; CHORDS] = CURVE.0;
 /// Decrease of that value along each chord.
 const FALLS: [i32; CHORDS] = CURVE.1;
@@ -34,8 +34,7 @@ const CURVE: ([i32; CHORDS], [i32; CHORDS]) = {
     (starts, falls)
 };
 
-/// `2^60 / d`, rounded down, for a number `d` with 30 fraction bits, given as an integer of up to 2^46: like
-/// [`super::super::super::division::reciprocal`].
+/// `2^60 / d`, like [`super::super::super::division::reciprocal`].
 #[inline(always)]
 pub(super) fn reciprocal(d: __m512i) -> __m512i {
     // SAFETY: see `super::Avx512`.
@@ -84,7 +83,7 @@ fn quotient<const BITS: u32>(d: __m512i) -> __m512i {
         let less = |from: u32, a| _mm512_sub_epi64(_mm512_set1_epi64(from.into()), a);
         let spare = _mm512_lzcnt_epi64(d);
         let m = _mm512_srli_epi64::<32>(_mm512_sllv_epi64(d, spare));
-        // The permutation uses only the lowest bits of an index, which are the number of the chord.
+        // The permutation uses only the lowest bits of an index.
         let chord = _mm512_srli_epi64::<REST>(m);
         let looked_up = |table: &[i32; CHORDS]| {
             _mm512_maskz_permutexvar_epi32(LANES, chord, _mm512_loadu_si512(table.as_ptr().cast()))

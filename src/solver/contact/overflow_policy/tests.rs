@@ -1,4 +1,4 @@
-//! Solving a batch without checks gives the same bits as solving it with all checks, on every backend.
+//! Solving a batch without checks gives the same bits as with checks, on every backend.
 
 use super::super::super::batches::{BatchParts, Operation};
 use super::super::super::body::SolverBody;
@@ -18,7 +18,7 @@ use crate::solver::settings::Tuning;
 use core::cell::Cell;
 use std::vec::Vec;
 
-/// A random contact that is within the bounds of unchecked contacts, or just beyond them.
+/// A random contact within the bounds of unchecked contacts, or just beyond them.
 fn input(rng: &mut Rng, count: u8) -> Input {
     let n = Rot::from_angle(rng.angle()).apply(Vec2::X);
     let mass = |rng: &mut Rng| if rng.below(5) == 0 { fx!(0) } else { rng.range(fx!(0.1), fx!(20)) };
@@ -51,7 +51,7 @@ fn input(rng: &mut Rng, count: u8) -> Input {
     }
 }
 
-/// A random number in the format of a speed: usually small, sometimes large.
+/// A random number in the format of a speed, usually small.
 fn number(rng: &mut Rng, large: Fx, small: Fx) -> i32 {
     let limit = if rng.below(200) == 0 { large } else { small };
     let speed: Speed = narrow(rng.range(-limit, limit));
@@ -66,7 +66,6 @@ struct Trial<'a> {
     end: Option<TrialEnd>,
 }
 
-/// The result of a trial.
 #[derive(Debug, PartialEq)]
 struct TrialEnd {
     numbers: Vec<i32>,
@@ -75,7 +74,6 @@ struct TrialEnd {
     unchecked: bool,
 }
 
-/// A batch to which operations are applied.
 struct Applied<'a> {
     batch: Batch<WIDTH>,
     record: Records<WIDTH>,

@@ -1,5 +1,4 @@
-//! Tests of the rows of contacts. Every backend has to compute the rows of the equations, which are evaluated here one
-//! number at a time.
+//! Every backend computes the rows of the equations, which are evaluated here one number at a time.
 
 use super::super::super::row::MassFractions;
 use super::*;
@@ -46,7 +45,7 @@ impl<const N: usize> Kernel<N> for FillRows<'_, N> {
     }
 }
 
-/// A random number of a format. The ends of the range are frequent.
+/// A random number. The ends of the range are frequent.
 fn any(rng: &mut Rng, limit: i32) -> i32 {
     match rng.below(8) {
         0 => limit,
@@ -95,7 +94,6 @@ fn limited(x: i128, limit: i32) -> i32 {
     i32::try_from(x.clamp(-i128::from(limit), limit.into())).expect("clamped")
 }
 
-/// Reference row from the equations: lever ratios, gains of A and of B, denominator and its reciprocal.
 struct Naive {
     e: [i32; 2],
     gains: [[i32; 3]; 2],
@@ -103,14 +101,13 @@ struct Naive {
     inverse: i32,
 }
 
-/// Points at which friction acts on the surfaces of A and of B: half the gap before and behind the anchor.
+/// The points at which friction acts on A and B: the anchor minus and plus half the gap.
 fn surfaces(input: &Input, anchor: [i32; 2], [x, y]: [i32; 2]) -> [[i32; 2]; 2] {
     let half = rounded(input.rest.0[3].into(), 1);
     let lift = [x, y].map(|n| limited(rounded(i128::from(n) * half, 24), i32::MAX));
     [-1, 1].map(|sign| [0, 1].map(|axis| anchor[axis].wrapping_add(sign * lift[axis])))
 }
 
-/// The anchor of a point, or the mean of two.
 fn anchor(input: &Input, points: &[usize]) -> [i32; 2] {
     [0, 1].map(|axis| {
         let sum: i128 = points.iter().map(|point| i128::from(input.anchors.0[2 * point + axis])).sum();
@@ -139,8 +136,7 @@ fn naive_row(input: &Input, anchors: [[i32; 2]; 2], n: [i32; 2]) -> Naive {
     Naive { e, gains, denominator, inverse }
 }
 
-/// Checks that every number of a lane equals the one from the equations. The second point of a contact with one point
-/// is a copy of the first.
+/// Checks a lane. The second point of a contact with one point is a copy of the first.
 fn check<const N: usize>(input: &Input, lane: usize, made: &Made<N>) {
     let Made { batch, denominators } = made;
     let mut input = *input;
