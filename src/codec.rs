@@ -61,8 +61,7 @@ impl core::error::Error for DecodeError {}
 /// Appends the canonical encoding of `value` to `bytes`.
 ///
 /// # Panics
-/// If the type's `Serialize` returns an error, or does not announce the length of a list or map (a derived
-/// implementation with `#[serde(flatten)]` does not).
+/// If the type's `Serialize` fails, or does not announce the length of a list or map, as with `#[serde(flatten)]`.
 pub fn encode_into<T: Serialize + ?Sized>(value: &T, bytes: &mut Vec<u8>) {
     struct Append<'a>(&'a mut Vec<u8>);
     impl bincode::enc::write::Writer for Append<'_> {
@@ -81,7 +80,7 @@ pub fn encode_into<T: Serialize + ?Sized>(value: &T, bytes: &mut Vec<u8>) {
 /// As [`encode_into`].
 #[must_use]
 pub fn encode<T: Serialize + ?Sized>(value: &T) -> Vec<u8> {
-    // Most values are short: this capacity saves them the reallocations of a growing vector.
+    // Most values fit without reallocation.
     let mut bytes = Vec::with_capacity(256);
     encode_into(value, &mut bytes);
     bytes
@@ -90,28 +89,23 @@ pub fn encode<T: Serialize + ?Sized>(value: &T) -> Vec<u8> {
 /// Largest number of bytes that [`decode`] accepts: 256 MiB.
 pub const DECODE_BYTES_MAX: usize = 256 << 20;
 
-/// Slack of the decoder's limit in bytes: the size of the largest number, a `u128`. If the announced length of a string
-/// exceeds the bytes that are left by at most the slack, the error is that bytes are missing. If the length exceeds
-/// them by more, the error is that it is too large.
+/// Slack of the decoder's limit in bytes: the size of a `u128`. A string that exceeds the remaining bytes by at most
+/// this is reported as missing bytes, otherwise as too long.
 const SLACK: usize = 16;
 
 /// Decodes a value whose canonical encoding is all of `bytes`.
 ///
-/// A length prefix is not trusted. For a string, the allocation is at most 16 bytes more than the bytes given. For a
-/// list of values, it is at most a multiple of the number of bytes given, plus up to 1 MiB that is reserved for each
-/// list when it begins; the factor depends on the size of a value in memory compared with its shortest encoding. Two
-/// kinds of types defeat these limits and must not be decoded from untrusted bytes: lists
-/// of values that take no bytes, whose length is unbounded, and recursive types, whose depth is unbounded.
+/// A length prefix is not trusted: allocations are bounded by a multiple of the bytes given, plus up to 1 MiB per list.
+/// Do not decode untrusted bytes as lists of values that take no bytes, or as recursive types: their length or depth is
+/// unbounded.
 ///
 /// # Errors
-/// [`DecodeError`] if there are more than [`DECODE_BYTES_MAX`] bytes, or they are not exactly the encoding of one such
-/// value.
+/// [`DecodeError`] if there are more than [`DECODE_BYTES_MAX`] bytes, or they are not exactly one such value.
 pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, DecodeError> {
     let unused = DECODE_BYTES_MAX.checked_sub(bytes.len());
     let unused = unused.ok_or(DecodeError::TooLong { count: bytes.len() as u64 })?;
-    // bincode allocates the announced length of a string before it checks that the bytes are present, unless the length
-    // exceeds a limit. The limit is a compile-time constant. Claiming the part of it that these bytes do not need
-    // lowers it to their number plus the slack.
+    // bincode allocates the announced length of a string, up to a constant limit, before it checks the bytes. Claiming
+    // the part of the limit that these bytes do not need lowers it to their number plus the slack.
     let layout = LAYOUT.with_limit::<{ DECODE_BYTES_MAX + SLACK }>();
     let mut decoder = DecoderImpl::new(Rest(bytes), layout, ());
     let decoded = decoder.claim_bytes_read(unused).and_then(|()| Compat::<T>::decode(&mut decoder));
@@ -122,7 +116,6 @@ pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, DecodeError> {
     }
 }
 
-/// The bytes that have not been read.
 struct Rest<'a>(&'a [u8]);
 
 impl Reader for Rest<'_> {
@@ -176,8 +169,7 @@ mod tests {
         }
     }
 
-    /// The allocation is limited by the number of bytes given: a length that exceeds the bytes that are left by more
-    /// than the slack is rejected because of its size, not because of the missing bytes.
+    /// A length beyond the slack is rejected for its size.
     #[test]
     fn an_announced_length_is_limited_by_how_much_there_is() {
         for count in [8, 4 << 10, (4 << 10) + 1, 1 << 20] {

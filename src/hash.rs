@@ -1,7 +1,7 @@
 //! 128-bit state hash.
 //!
-//! XXH3-128 is fast and well mixed but not cryptographic: it detects accidental differences, not forgery. Where an
-//! attacker could gain from a collision (a cache key, a signature), hash the bytes with BLAKE3 or SHA-256 instead.
+//! XXH3-128 detects accidental differences, not forgery. Where a collision could help an attacker (a cache key, a
+//! signature), use BLAKE3 or SHA-256.
 
 mod envelope;
 
@@ -38,20 +38,20 @@ impl StateHash {
     #[must_use]
     pub fn of_digests(digests: impl IntoIterator<Item = StateHash>) -> Self {
         let digests = digests.into_iter();
-        // The digests of a small world need no allocation.
+        // Small worlds need no allocation.
         let mut bytes = SmallVec::<[u8; 512]>::with_capacity(digests.size_hint().0 * size_of::<Self>());
         digests.for_each(|digest| bytes.extend_from_slice(&digest.bytes()));
         Self::of_bytes(&bytes)
     }
 
-    /// Bytes of this digest as input of another digest, the same on every machine.
+    /// The digest as input of another digest, equal on every machine.
     #[cfg(not(lockstep2d_broken))]
     fn bytes(self) -> [u8; 16] {
         self.0.to_le_bytes()
     }
 
-    /// Deliberately wrong version for the canary `tests/cross/run broken`: the result depends on the machine's byte
-    /// order and on its width of `usize`. Neither mistake has an effect on x86-64.
+    /// Deliberately wrong for the canary `tests/cross/run broken`: depends on byte order and on the width of `usize`,
+    /// without effect on x86-64.
     #[cfg(lockstep2d_broken)]
     #[allow(clippy::cast_possible_truncation, reason = "a deliberate mistake")]
     fn bytes(self) -> alloc::vec::Vec<u8> {
@@ -83,13 +83,12 @@ mod tests {
         assert_eq!(alloc::format!("{}", StateHash(0xab)), "000000000000000000000000000000ab");
     }
 
-    /// The expected values are from the reference implementation in C, xxHash 0.8.
+    /// Expected values of the reference implementation in C, xxHash 0.8.
     #[test]
     fn digests_of_all_lengths_are_those_of_the_reference() {
         let byte = |i: u32| u8::try_from((i * i + 7 * i + 13 * (i >> 8)) & 0xff).expect("masked");
         let bytes: Vec<u8> = (0..4096).map(byte).collect();
-        // The lengths are around each limit at which the algorithm changes, and end at many positions within a stripe
-        // and a block.
+        // The lengths are around the limits of the algorithm, and end at many positions in a stripe and a block.
         let lengths = (0..600).chain((600..4096).step_by(61));
         let all = StateHash::of_digests(lengths.map(|length| StateHash::of_bytes(&bytes[..length])));
         assert_eq!(all, StateHash(0x895a_7f64_9a6f_6e88_c604_0708_9b0a_5435));

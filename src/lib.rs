@@ -1,18 +1,15 @@
 //! lockstep2d: a deterministic fixed-point 2D physics and lockstep engine.
 //!
-//! Equal setups and equal inputs give equal state hashes after every tick, on every machine, because the
-//! simulation does not use floating-point numbers. A saved replay contains hashes at a fixed interval of ticks, so that
-//! any machine can check this.
+//! Equal setups and inputs give equal state hashes after every tick, on every machine: the simulation uses no
+//! floating-point numbers. Replays contain hashes, so that any machine can check this.
 //!
 //! - [`world`]: start here. [`world::World`] owns bodies, shapes and joints and steps them.
 //! - [`body`]: definitions of bodies and shapes. [`solver`]: joints and settings. [`collision`]: contact manifolds.
 //! - [`math`]: numbers, vectors and angles, also for a game's own rules; [`fx!`] writes constants.
 //! - [`lockstep`]: [`lockstep::Game`], the trait over which recording, verification and tools are generic.
-//! - [`peer`]: a participant of a match, for any game. It is built on [`session`], the protocol without I/O by which
-//!   the peers of a match agree on one history.
+//! - [`peer`]: a participant of a match of any game. [`session`]: its protocol, without I/O.
 //! - [`replay`]: writes, reads and verifies replay files.
-//! - [`report`]: the report that a peer writes when states differ, and its analysis: which peer diverged, when and
-//!   where.
+//! - [`report`]: files that peers write when states differ. Their comparison shows which peer diverged, when and where.
 //! - [`check`]: runs a game in many ways that must give the same result, for tests and fuzzers.
 //! - [`inspect`]: converts any value to named fields, and compares two values.
 //! - [`draw`]: renders a world.
@@ -56,8 +53,8 @@ pub mod solver;
 mod threads;
 pub mod world;
 
-/// Version of the engine's arithmetic. It changes whenever the same inputs give a different state. Replays and
-/// snapshots store it. A snapshot with another version is rejected, and a replay with another version cannot be played.
+/// Version of the engine's arithmetic, increased when the same inputs may give another state. Snapshots of another
+/// version are rejected, and replays cannot be played.
 pub const SEMANTICS: u32 = 19;
 
 /// Version of this crate.

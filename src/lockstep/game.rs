@@ -1,5 +1,3 @@
-//! [`Game`]: the rules and the state of a game that advances in ticks from the inputs of its players.
-
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt;
@@ -9,8 +7,7 @@ use serde::{Serialize, de::DeserializeOwned};
 use crate::hash::StateHash;
 use crate::world::World;
 
-/// Identifies the rules that a replay was made with. Increment `version` whenever a change of the rules lets the same
-/// inputs lead to a different state.
+/// Identifies the rules of a replay. Increment `version` with each change that may give another state.
 ///
 /// ```
 /// use lockstep2d::lockstep::RulesId;
@@ -27,7 +24,7 @@ pub struct RulesId {
     pub version: u32,
 }
 
-/// Reason why a game does not start within a budget.
+/// Reason why a game does not start.
 ///
 /// ```
 /// use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup, StartError};
@@ -44,7 +41,7 @@ pub enum StartError {
     Refused(SetupError),
     /// The setup takes more work than the budget.
     TooMuchWork {
-        /// Work units of the setup, or a lower bound of them.
+        /// Work units, or a lower bound of them.
         work: u64,
         /// The budget in work units.
         max: u64,
@@ -78,7 +75,7 @@ impl core::error::Error for StartError {}
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SetupError {
-    /// Reason why the game refuses the setup.
+    /// Reason of the refusal.
     pub why: String,
 }
 
@@ -90,9 +87,9 @@ impl fmt::Display for SetupError {
 
 impl core::error::Error for SetupError {}
 
-/// A deterministic game: the same setup and the same inputs give the same state hash after every tick.
+/// A deterministic game: equal setups and inputs give equal state hashes after every tick.
 ///
-/// Recording, verification, rollback and the command-line tools are generic over this trait.
+/// Recording, verification, rollback and the tools are generic over this trait.
 ///
 /// ```
 /// # use lockstep2d::{body::*, fx, hash::StateHash, math::*, world::*};
@@ -146,8 +143,8 @@ pub trait Game: Sized {
     type Setup: Serialize + DeserializeOwned;
     /// Input of one player for one tick. `Default` is "nothing pressed".
     type Input: Clone + Default + PartialEq + Serialize + DeserializeOwned;
-    /// Complete copy of the state, which [`Game::load`] restores. Saves are sent to late joiners and compared with the
-    /// saves of other machines. Desync reports show the field names of the human-readable serialization.
+    /// Complete copy of the state. Saves are sent to late joiners and compared between machines. Reports show the field
+    /// names of their human-readable serialization.
     type Save: Clone + Serialize + DeserializeOwned;
 
     /// The name and version of the rules.
@@ -156,31 +153,29 @@ pub trait Game: Sized {
     /// Creates the game before its first tick.
     ///
     /// # Errors
-    /// [`SetupError`] when the setup is not playable. A setup may come from an untrusted file.
+    /// [`SetupError`] if the setup is not playable. It may come from an untrusted file.
     fn new(setup: &Self::Setup) -> Result<Self, SetupError>;
 
-    /// Creates the game before its first tick if this takes at most `work_max` work units, and returns the game with
-    /// the number of units used. The default calls [`Game::new`] and counts nothing. Override it if a setup from an
-    /// untrusted file can make the start expensive; the override must stop before it exceeds the budget.
+    /// Creates the game within a budget of `work_max` work units, and returns the units used. The default calls
+    /// [`Game::new`] and counts nothing. Override it if an untrusted setup can be expensive.
     ///
     /// # Errors
-    /// [`StartError`] when the setup is not playable or takes more work.
+    /// [`StartError`] if the setup is not playable or takes more work.
     fn new_within(setup: &Self::Setup, work_max: u64) -> Result<(Self, u64), StartError> {
         let _ = work_max;
         Self::new(setup).map(|game| (game, 0)).map_err(StartError::Refused)
     }
 
-    /// Number of players; constant during a game, at most 64.
+    /// Number of players, constant and at most 64.
     fn players(&self) -> u32;
 
-    /// Ticks per second; constant during a game. A game that steps its world once in a tick returns the world's
-    /// [`Config::tick_rate`](crate::world::Config::tick_rate). With another rate everything moves too fast or too slow.
-    /// [`check`](crate::check) does not detect this mistake.
+    /// Ticks per second, constant. A game that steps its world once per tick returns the world's
+    /// [`Config::tick_rate`](crate::world::Config::tick_rate). [`check`](crate::check) does not detect another rate.
     fn tick_rate(&self) -> u32;
 
-    /// Advances one tick. `inputs` has one entry for each player, in player order.
+    /// Advances one tick, with one input for each player, in player order.
     ///
-    /// Inputs may come from an untrusted file: an impossible input must be ignored, not panic.
+    /// Inputs may come from an untrusted file: ignore impossible ones, without panic.
     fn step(&mut self, inputs: &[Self::Input]);
 
     /// Hash of all state that influences future ticks.
@@ -192,47 +187,38 @@ pub trait Game: Sized {
     /// Restores a saved state.
     fn load(&mut self, save: &Self::Save);
 
-    /// Work units of the next tick: an upper bound of its cost, except for the work that the world itself counts during
-    /// a step. A verifier uses the bound to limit the computing time of an untrusted file. A game with a world can base
-    /// the bound on [`World::work`].
+    /// Work units of the next tick: an upper bound, without the work that the world counts during the step. It limits
+    /// the computing time of an untrusted file. [`World::work`] is the bound of a world.
     fn work(&self, inputs: &[Self::Input]) -> u64;
 
-    /// Input of a seat without a player, in every tick before a player has joined and after the player has left. The
-    /// default is "nothing pressed". A game that distinguishes absence from idleness returns an input that no player
-    /// can send.
-    ///
-    /// Replays record it like any other input. All peers use it from the same tick on.
+    /// Input of a seat without a player, before one has joined and after it has left. To distinguish absence from
+    /// idleness, return an input that no player can send. Replays record it like any other input.
     #[must_use]
     fn absent() -> Self::Input {
         Self::Input::default()
     }
 
-    /// The physics world, if the game has one, for drawing and other readers. A game that has a world implements both
-    /// this method and [`Game::world_mut`].
+    /// The physics world, if there is one, for drawing and other readers. Implement [`Game::world_mut`] as well.
     fn world(&self) -> Option<&World> {
         None
     }
 
-    /// The physics world, if the game has one, for tools that count the work of a step, compare the phases of a step,
-    /// or change settings that must not affect the result. A tool modifies the world only in a game that the tool
-    /// created. If this method returns `None`, [`check`](crate::check) leaves out the variants that change such a
-    /// setting, and a verifier bounds the work of a tick by [`Game::work`] alone.
+    /// The physics world, for tools that count work, compare phases, or change settings that must not affect the
+    /// result. Without it, [`check`](crate::check) leaves out such settings, and a verifier bounds the work by
+    /// [`Game::work`] alone.
     fn world_mut(&mut self) -> Option<&mut World> {
         None
     }
 
-    /// Results that the game reports at the end of a replay, such as a score or a time: at most 256 values with
-    /// different names of 1 to 64 bytes.
-    ///
-    /// A replay stores the claims, so that they can be read without playing it. A verifier compares them with the
-    /// claims of its own simulation.
+    /// Results at the end of a replay, such as a score: at most 256 values with different names of 1 to 64 bytes. A
+    /// verifier compares those of the replay with its own.
     fn claims(&self) -> Vec<(String, i64)> {
         Vec::new()
     }
 }
 
-/// The physics world of a game that implements [`Game::world`] or [`Game::world_mut`], for reading.
+/// The world of a game, for reading.
 pub(crate) fn world_of<G: Game>(game: &mut G) -> Option<&World> {
-    // The second call is for games that implement `world_mut` alone.
+    // Some games implement `world_mut` alone.
     if game.world().is_some() { game.world() } else { game.world_mut().map(|world| &*world) }
 }

@@ -1,12 +1,9 @@
-//! [`History`]: saves of the last seconds of a game. With them, a divergence that is detected late can be examined at
-//! its first tick.
-
 use alloc::collections::VecDeque;
 
 use super::Game;
 use crate::hash::StateHash;
 
-/// The game after a given tick.
+/// The game after a tick.
 ///
 /// ```
 /// use lockstep2d::lockstep::{Game, History, Past, Sandbox, SandboxSetup};
@@ -32,12 +29,12 @@ pub struct Past<S> {
     pub save: S,
 }
 
-/// Number of ticks kept in addition to two seconds. Entries of mispredicted ticks displace the oldest entries, and a
-/// rollback then removes them. After a rollback of at most this many ticks, at least two seconds are left.
+/// Ticks kept in addition to two seconds: entries of mispredicted ticks displace old ones before a rollback removes
+/// them.
 const ROLLBACK_TICKS: u32 = 16;
 
-/// Saves and state hashes of the last ticks. Saves of a world share unchanged data, so a few seconds of them cost
-/// little more memory than the data that the steps change.
+/// Saves and state hashes of the last ticks, for rollback and to examine a divergence at its first tick. Saves of a
+/// world share unchanged data.
 ///
 /// ```
 /// use lockstep2d::lockstep::{Game, History, Sandbox, SandboxSetup};
@@ -53,20 +50,18 @@ const ROLLBACK_TICKS: u32 = 16;
 /// ```
 #[derive(Clone, Debug)]
 pub struct History<G: Game> {
-    /// The entries in ascending order of ticks.
     ticks: VecDeque<Past<G::Save>>,
     length: u64,
 }
 
 impl<G: Game> History<G> {
-    /// Creates an empty history with room for at least the last two seconds of a game, given that rollbacks repeat at
-    /// most 16 ticks.
+    /// Creates a history of at least two seconds, if rollbacks repeat at most 16 ticks.
     #[must_use]
     pub fn new(game: &G) -> Self {
         Self::of_ticks(game.tick_rate().saturating_mul(2).saturating_add(ROLLBACK_TICKS))
     }
 
-    /// Creates an empty history with room for the last `length` ticks, at least 1.
+    /// Creates a history of the last `length` ticks, at least 1.
     #[must_use]
     pub fn of_ticks(length: u32) -> Self {
         History { ticks: VecDeque::new(), length: length.max(1).into() }
@@ -78,8 +73,7 @@ impl<G: Game> History<G> {
         self.length
     }
 
-    /// Stores the game after `tick` ticks. Entries of this tick and of later ticks are removed: a rollback repeats
-    /// ticks, and the states after mispredicted ticks are not part of the game.
+    /// Stores the game after `tick` ticks. Removes entries of this and later ticks, which a rollback has made invalid.
     pub fn push(&mut self, tick: u64, save: G::Save, hash: StateHash) {
         if let Some(before) = tick.checked_sub(1) {
             self.truncate(before);
@@ -99,12 +93,12 @@ impl<G: Game> History<G> {
         self.ticks.get(index).filter(|past| past.tick == tick)
     }
 
-    /// Removes all entries after `tick`.
+    /// Removes the entries after `tick`.
     pub fn truncate(&mut self, tick: u64) {
         self.ticks.truncate(self.ticks.partition_point(|past| past.tick <= tick));
     }
 
-    /// All entries, in ascending order of ticks.
+    /// The entries, ascending by tick.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = &Past<G::Save>> {
         self.ticks.iter()
     }
@@ -129,7 +123,6 @@ mod tests {
     use super::super::{RulesId, SetupError};
     use super::*;
 
-    /// A game without state, to test the history alone.
     struct Toy;
 
     impl Game for Toy {

@@ -1,5 +1,3 @@
-//! [`InputLog`]: the inputs of every tick in memory, and the canonical encoding of inputs.
-
 use alloc::vec::Vec;
 use core::fmt;
 
@@ -40,10 +38,9 @@ impl fmt::Display for InputError {
 
 impl core::error::Error for InputError {}
 
-/// The inputs of all players for one tick, as canonical bytes and as decoded from these bytes.
+/// The inputs of all players for one tick, as canonical bytes and as decoded from them.
 ///
-/// An encoding may be lossy. A game must be stepped with the decoded inputs, because peers and verifiers receive only
-/// the bytes.
+/// An encoding may be lossy. Step a game with the decoded inputs, because peers and verifiers receive the bytes.
 ///
 /// ```
 /// use lockstep2d::lockstep::EncodedInputs;
@@ -69,26 +66,20 @@ impl<I: Serialize + DeserializeOwned> EncodedInputs<I> {
     /// Encodes the inputs of all players, then decodes the bytes.
     ///
     /// # Errors
-    /// [`InputError`] when there is not exactly one input per player, or when the encoded inputs do not decode to
-    /// inputs with the same encoding.
+    /// [`InputError`] unless there is one input per player and the bytes decode to inputs with the same encoding.
     pub fn new(inputs: &[I], players: u32) -> Result<Self, InputError> {
         Self::from_bytes(encode_checked(inputs, players)?, players)
     }
 
-    /// Decodes the canonical bytes of `players` inputs.
-    ///
-    /// # Errors
-    /// [`InputError::NotCanonical`] when the bytes are not the canonical bytes of `players` inputs.
     pub(crate) fn from_bytes(bytes: Vec<u8>, players: u32) -> Result<Self, InputError> {
         let inputs = decode_inputs(&bytes, players)?;
         Ok(EncodedInputs { bytes, inputs })
     }
 
-    /// Encodes the inputs of all players. Returns `None` if the bytes equal the bytes of `last`; otherwise decodes the
-    /// bytes.
+    /// Returns `None` if the bytes equal those of `last`.
     ///
     /// # Errors
-    /// Same as [`EncodedInputs::new`].
+    /// As [`EncodedInputs::new`].
     pub(crate) fn new_after(
         last: Option<&Self>,
         inputs: &[I],
@@ -101,7 +92,7 @@ impl<I: Serialize + DeserializeOwned> EncodedInputs<I> {
         Self::from_bytes(bytes, players).map(Some)
     }
 
-    /// Canonical bytes of all players' inputs, one after the other.
+    /// Canonical bytes of the inputs, one after the other.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
@@ -114,7 +105,6 @@ impl<I: Serialize + DeserializeOwned> EncodedInputs<I> {
     }
 }
 
-/// Canonical bytes of all players' inputs, after checking that there is one per player.
 fn encode_checked<I: Serialize>(inputs: &[I], players: u32) -> Result<Vec<u8>, InputError> {
     let count = inputs.len() as u64;
     if count == u64::from(players) {
@@ -124,7 +114,6 @@ fn encode_checked<I: Serialize>(inputs: &[I], players: u32) -> Result<Vec<u8>, I
     }
 }
 
-/// Encodes all players' inputs, one after the other.
 fn encode_inputs<I: Serialize>(inputs: &[I]) -> Vec<u8> {
     let mut bytes = Vec::new();
     for input in inputs {
@@ -133,19 +122,18 @@ fn encode_inputs<I: Serialize>(inputs: &[I]) -> Vec<u8> {
     bytes
 }
 
-/// Decodes the inputs of `players` players from their canonical bytes.
 pub(crate) fn decode_inputs<I>(bytes: &[u8], players: u32) -> Result<Vec<I>, InputError>
 where
     I: Serialize + DeserializeOwned,
 {
-    // The bytes with the list length in front are the canonical encoding of a list.
+    // With the list length in front, the bytes are the canonical encoding of a list.
     let mut list = u64::from(players).to_le_bytes().to_vec();
     list.extend_from_slice(bytes);
     let inputs: Vec<I> = codec::decode(&list).map_err(|_| InputError::NotCanonical)?;
     if encode_inputs(&inputs) == bytes { Ok(inputs) } else { Err(InputError::NotCanonical) }
 }
 
-/// The inputs of all ticks so far, in memory. Consecutive ticks with the same inputs are stored once.
+/// The inputs of all ticks so far. Consecutive ticks with equal inputs are stored once.
 ///
 /// ```
 /// use lockstep2d::lockstep::InputLog;
@@ -166,13 +154,12 @@ pub struct InputLog<I> {
 
 #[derive(Clone, Debug)]
 struct LoggedRun<I> {
-    /// The tick after the last tick of the run.
     end: u64,
     inputs: EncodedInputs<I>,
 }
 
 impl<I: Serialize + DeserializeOwned> InputLog<I> {
-    /// Creates an empty log for a given number of players.
+    /// Creates an empty log.
     #[must_use]
     pub fn new(players: u32) -> Self {
         InputLog { players, runs: Vec::new() }
@@ -184,26 +171,26 @@ impl<I: Serialize + DeserializeOwned> InputLog<I> {
         self.runs.last().map_or(0, |run| run.end)
     }
 
-    /// Number of runs, each of consecutive ticks with the same inputs.
+    /// Number of runs of ticks with equal inputs.
     #[must_use]
     pub fn runs(&self) -> usize {
         self.runs.len()
     }
 
-    /// Logs the inputs of the next tick and returns the inputs to step the game with: encoded and decoded.
+    /// Logs the inputs of the next tick. Returns them encoded and decoded, to step the game with.
     ///
     /// # Errors
-    /// [`InputError`] when the inputs cannot be logged; the log is then unchanged.
+    /// [`InputError`] if the inputs cannot be logged. The log is unchanged.
     pub fn push(&mut self, inputs: &[I]) -> Result<&[I], InputError> {
         let last = self.runs.last().map(|run| &run.inputs);
         let new = EncodedInputs::new_after(last, inputs, self.players)?;
         Ok(self.extend(new))
     }
 
-    /// Logs the inputs of the next tick, which are already encoded, and returns them.
+    /// Logs encoded inputs of the next tick, and returns them.
     ///
     /// # Errors
-    /// [`InputError::Count`] when there is not exactly one input per player; the log is then unchanged.
+    /// [`InputError::Count`] unless there is one input per player. The log is unchanged.
     pub fn push_encoded(&mut self, inputs: &EncodedInputs<I>) -> Result<&[I], InputError>
     where
         I: Clone,
@@ -216,8 +203,7 @@ impl<I: Serialize + DeserializeOwned> InputLog<I> {
         Ok(self.extend((!is_same).then(|| inputs.clone())))
     }
 
-    /// Adds a tick with the inputs `new`, or with the inputs of the previous tick if `new` is `None`, and returns its
-    /// inputs.
+    /// Adds a tick with the inputs `new`, or with the last ones if `None`. Returns them.
     fn extend(&mut self, new: Option<EncodedInputs<I>>) -> &[I] {
         let end = self.ticks() + 1;
         match (new, self.runs.last_mut()) {
@@ -228,20 +214,20 @@ impl<I: Serialize + DeserializeOwned> InputLog<I> {
         self.runs.last().map_or(&[], |run| run.inputs.inputs())
     }
 
-    /// The inputs of tick number `tick`, counted from 0.
+    /// The inputs of a tick, counted from 0.
     #[must_use]
     pub fn get(&self, tick: u64) -> Option<&[I]> {
         self.get_encoded(tick).map(EncodedInputs::inputs)
     }
 
-    /// The inputs of tick number `tick`, counted from 0, with their bytes.
+    /// The inputs of a tick, counted from 0, with their bytes.
     #[must_use]
     pub fn get_encoded(&self, tick: u64) -> Option<&EncodedInputs<I>> {
         let index = self.runs.partition_point(|run| run.end <= tick);
         self.runs.get(index).map(|run| &run.inputs)
     }
 
-    /// Removes all ticks after the first `ticks` ones.
+    /// Keeps the first `ticks` ticks.
     pub fn truncate(&mut self, ticks: u64) {
         let keep = self.runs.partition_point(|run| run.end <= ticks);
         let start = keep.checked_sub(1).map_or(0, |before| self.runs[before].end);
@@ -305,7 +291,7 @@ mod tests {
         for bad in [&[5, 1, 6][..], &[5, 1, 6, 0, 0], &[5, 1, 6, 2], &[]] {
             assert_eq!(decode_inputs::<(u8, bool)>(bad, 2), Err(InputError::NotCanonical), "{bad:?}");
         }
-        // A set whose elements are encoded out of order decodes, but the canonical encoding is in ascending order.
+        // Elements in descending order decode, but the canonical encoding is ascending.
         type Set = alloc::collections::BTreeSet<u8>;
         let sorted = [2, 0, 0, 0, 0, 0, 0, 0, 3, 4];
         assert_eq!(decode_inputs::<Set>(&sorted, 1), Ok(alloc::vec![Set::from([3, 4])]));

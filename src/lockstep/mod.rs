@@ -1,5 +1,4 @@
-//! The [`Game`] trait, over which recording, verification, rollback and the tools are generic, with input logs, state
-//! history and the sandbox.
+//! The [`Game`] trait, over which recording, verification, rollback and the tools are generic.
 
 mod game;
 mod history;

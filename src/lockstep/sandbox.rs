@@ -1,4 +1,4 @@
-//! The sandbox: raw physics as a game, whose input is a list of [`Command`]s.
+//! The sandbox: physics as a game, whose input is a list of [`Command`]s.
 
 use alloc::format;
 use alloc::vec::Vec;
@@ -15,7 +15,7 @@ use work::Costs;
 
 /// A physics world that one player modifies by commands.
 ///
-/// A command that the world refuses, for example because its body no longer exists, is skipped and counted.
+/// A command that the world refuses is skipped and counted.
 ///
 /// ```
 /// use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
@@ -30,10 +30,10 @@ pub struct Sandbox {
     refused: u64,
 }
 
-/// Work units of creating a world: the cost of a setup without commands.
+/// Work units of a setup without commands.
 const START_WORK: u64 = 100;
 
-/// Maximum work units of a setup, which take a few seconds. A million bodies with one shape each take 12 million units.
+/// Maximum work units of a setup, which take a few seconds. A million bodies with one shape each take 12 million.
 const SETUP_WORK_MAX: u64 = 100_000_000;
 
 /// Initial state of a sandbox.
@@ -52,7 +52,7 @@ const SETUP_WORK_MAX: u64 = 100_000_000;
 pub struct SandboxSetup {
     /// The world's settings.
     pub config: Config,
-    /// Commands that create the contents of the world before the first tick.
+    /// Commands that fill the world before the first tick.
     pub commands: Vec<Command>,
 }
 
@@ -84,8 +84,8 @@ impl Sandbox {
         &self.world
     }
 
-    /// Mutable access to the world, for settings that are not part of the state, such as the broad phase and the
-    /// solver's backend. A change of the state is missing from the input log, so a replay of the log diverges.
+    /// The world, for settings outside of the state, such as the solver's backend. A change of the state would be
+    /// missing from the inputs, so that a replay diverges.
     pub fn world_mut(&mut self) -> &mut World {
         &mut self.world
     }
@@ -104,9 +104,7 @@ impl Game for Sandbox {
 
     const RULES: RulesId = RulesId { name: "sandbox", version: 1 };
 
-    /// Refuses a setup if the world refuses its settings or any of its commands, or if it takes more than 100 million
-    /// work units. Only a player's commands are skipped if the world refuses them, because they may be wrong
-    /// predictions.
+    /// Refuses a setup whose settings or commands the world refuses, or that takes more than 100 million work units.
     fn new(setup: &SandboxSetup) -> Result<Self, SetupError> {
         match Self::new_within(setup, SETUP_WORK_MAX) {
             Ok((game, _)) => Ok(game),
@@ -115,8 +113,7 @@ impl Game for Sandbox {
         }
     }
 
-    /// Charges each command before it is executed, and adds the work that the world counts during the command. If
-    /// `work_max` is larger than 100 million units, the limit is 100 million.
+    /// Charges each command before its execution, and the work that the world counts. The limit is at most 100 million.
     fn new_within(setup: &SandboxSetup, work_max: u64) -> Result<(Self, u64), StartError> {
         let max = work_max.min(SETUP_WORK_MAX);
         let refused = |why| StartError::Refused(SetupError { why });
@@ -149,7 +146,7 @@ impl Game for Sandbox {
     fn step(&mut self, inputs: &[Vec<Command>]) {
         let tick_rate = self.world.config().tick_rate;
         for command in inputs.iter().flatten() {
-            // The tick rate of a game is constant; only a setup may change it.
+            // The tick rate of a game is constant.
             let is_constant = match command {
                 Command::SetConfig { config } => config.tick_rate == tick_rate,
                 _ => true,
@@ -182,8 +179,8 @@ impl Game for Sandbox {
         Some(&mut self.world)
     }
 
-    /// The bound of [`World::work`] for a world that already contains the objects that the commands add, plus the work
-    /// of the commands. The world itself counts work that is known only during the tick.
+    /// The bound of [`World::work`] with the added objects, plus the work of the commands. The world counts work that
+    /// is known only during the tick.
     fn work(&self, inputs: &[Vec<Command>]) -> u64 {
         let mut costs = Costs::of(&self.world);
         inputs.iter().flatten().for_each(|command| costs.add(command));

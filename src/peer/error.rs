@@ -1,5 +1,3 @@
-//! [`PeerError`]: reasons why a peer cannot continue.
-
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt;
@@ -24,19 +22,18 @@ use crate::session::ConfigError;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PeerError {
-    /// The setup cannot start a game, the checkpoint interval is out of its range, or a replay cannot represent the
-    /// game, its inputs or its claims.
+    /// The setup or the checkpoint interval is invalid, or a replay cannot represent the game, its inputs or its
+    /// claims.
     Record(RecordError),
-    /// An option, or a number of the game that the session depends on, is out of its range. The error names the field
-    /// of [`PeerOptions`](super::PeerOptions), such as `delay.0`, the method, such as `Game::tick_rate`, or the `bytes
-    /// of the default input`.
+    /// A value is out of its range. The error names a field of [`PeerOptions`](super::PeerOptions), such as `delay.0`,
+    /// a method, such as `Game::tick_rate`, or the `bytes of the default input`.
     Config(ConfigError),
     /// An encoded input is longer than [`PeerOptions::input_bytes`](super::PeerOptions::input_bytes). Without that
-    /// option: it has another length than the default input, or the default input is longer than 65 535 bytes.
+    /// option, its length differs from the default input's, or that is above 65 535 bytes.
     InputLength {
         /// Bytes of the encoded input.
         bytes: usize,
-        /// Number of bytes available for an input.
+        /// Number of bytes available.
         possible: usize,
     },
     /// The number of inputs is not the number of this peer's own seats.
@@ -62,17 +59,17 @@ pub enum PeerError {
     Parameters(Vec<ParameterDifference>),
     /// The contact refuses the request to join.
     Refused {
-        /// Reason why the contact refuses the request.
+        /// Reason of the refusal.
         why: &'static str,
     },
     /// The received state is not a state of this game.
     State {
-        /// Reason why the state cannot be used.
+        /// Reason.
         why: String,
     },
-    /// A state, or the inputs of a tick, are needed but no longer kept.
+    /// A state, or the inputs of a tick, are no longer kept.
     NoState {
-        /// Number of ticks played before that state or that tick.
+        /// Number of ticks before that state or tick.
         tick: u64,
     },
 }

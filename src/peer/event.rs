@@ -1,5 +1,3 @@
-//! [`PeerEvent`]: an event of a match; [`PeerEnd`]: the result of a finished peer.
-
 use alloc::vec::Vec;
 
 use crate::hash::StateHash;
@@ -26,16 +24,16 @@ use crate::session::{Event, PeerId};
 pub enum PeerEvent {
     /// An event of the session.
     Session(Event),
-    /// The initial state has arrived; the game continues from it.
+    /// The initial state has arrived, and the game continues from it.
     Joined {
-        /// Number of ticks played before this state.
+        /// Number of ticks before this state.
         tick: u64,
     },
     /// Another peer has a different state. Write [`Peer::report`](super::Peer::report) to a file.
     Desync(PeerDesync),
 }
 
-/// A desync: this peer and another one had different states after the same number of final ticks.
+/// This peer and another one had different states after as many final ticks.
 ///
 /// ```
 /// # use lockstep2d::lockstep::Game;
@@ -62,7 +60,7 @@ pub enum PeerEvent {
 pub struct PeerDesync {
     /// The other peer.
     pub peer: PeerId,
-    /// Number of ticks after which the two states differ.
+    /// Number of ticks after which the states differ.
     pub tick: u64,
     /// Hash of this peer's state.
     pub ours: StateHash,
@@ -102,7 +100,7 @@ pub struct PeerEnd<G> {
     pub ticks: u64,
     /// The game after the last final tick.
     pub game: G,
-    /// The bytes of the replay that [`Peer::take_replay`](super::Peer::take_replay) has not returned yet. Empty for a
-    /// peer that joined after the first tick.
+    /// Bytes that [`Peer::take_replay`](super::Peer::take_replay) has not returned yet. Empty for a peer that joined
+    /// after the first tick.
     pub replay: Vec<u8>,
 }

@@ -1,4 +1,4 @@
-//! [`InputSlot`]: encodes inputs of a game in the fixed number of bytes that a session transmits.
+//! [`InputSlot`]: encodes inputs in the fixed number of bytes that a session transmits.
 
 use alloc::vec::Vec;
 
@@ -7,20 +7,18 @@ use serde::{Serialize, de::DeserializeOwned};
 use super::error::PeerError;
 use crate::codec;
 
-/// Number of bytes that state the length of an input.
 pub(super) const LENGTH_BYTES: u16 = 2;
 
-/// Encoding of an input in a fixed number of bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum InputSlot {
     /// Every input has this many bytes.
     Fixed(u16),
-    /// Two bytes state the length of an input, which is at most this many bytes. Zeros fill the rest.
+    /// Two bytes state the length of an input, at most this number. Zeros fill the rest.
     Prefixed(u16),
 }
 
 impl InputSlot {
-    /// The slot for a game: as long as its default input, or for inputs of up to `bytes` bytes.
+    /// The slot for inputs as long as the default one, or of up to `bytes` bytes.
     pub(super) fn of<I: Serialize + Default>(bytes: Option<u16>) -> Result<Self, PeerError> {
         let default = codec::encode(&I::default()).len();
         match (bytes, u16::try_from(default)) {
@@ -30,7 +28,7 @@ impl InputSlot {
         }
     }
 
-    /// Bytes that an input takes in the session.
+    /// Bytes of an input in the session.
     pub(super) fn bytes(self) -> u16 {
         match self {
             // A session transmits at least one byte.
@@ -39,7 +37,6 @@ impl InputSlot {
         }
     }
 
-    /// Appends an input.
     pub(super) fn put<I: Serialize>(self, input: &I, slots: &mut Vec<u8>) -> Result<(), PeerError> {
         let encoded = codec::encode(input);
         let end = slots.len() + usize::from(self.bytes());
@@ -62,7 +59,7 @@ impl InputSlot {
         Ok(())
     }
 
-    /// Decodes the input in a slot. All peers decode invalid bytes as the default input.
+    /// Decodes the input in a slot. Invalid bytes are the default input for all peers.
     pub(super) fn take<I: Default + DeserializeOwned>(self, slot: &[u8]) -> I {
         let encoded = match self {
             InputSlot::Fixed(bytes) => slot.get(..usize::from(bytes)),

@@ -1,9 +1,8 @@
-//! A participant in a match of any [`Game`](crate::lockstep::Game): a [`session`](crate::session) together with the
-//! game, its saved states and its replay.
+//! A participant in a match of any [`Game`](crate::lockstep::Game): a [`session`](crate::session) with the game, its
+//! saved states and its replay.
 //!
-//! A peer uses neither a clock nor a socket of its own: the time is passed to [`Peer::update`], and packets go through
-//! a [`Transport`]. Lockstep and rollback are one mechanism: [`PeerOptions::guess`] is the number of ticks that may be
-//! played with guessed inputs, and 0 is lockstep.
+//! The caller passes the time, and packets go through a [`Transport`]. Up to [`PeerOptions::guess`] ticks are played
+//! with guessed inputs and corrected by rollback; 0 is lockstep.
 //!
 //! ```no_run
 //! # use lockstep2d::lockstep::Game;

@@ -1,5 +1,3 @@
-//! [`Network`]: a network in memory with configurable link conditions, for tests and examples.
-
 use alloc::collections::{BTreeMap, BTreeSet, VecDeque};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -10,12 +8,12 @@ use super::transport::Transport;
 use crate::math::Rng;
 use crate::session::Address;
 
-/// Additional delay of a reordered packet, which later packets may overtake.
+/// Additional delay of a reordered packet.
 const REORDER_DELAY: Duration = Duration::from_millis(20);
-/// Maximum number of packets waiting for one receiver. Further ones are lost, as when the buffer of a socket is full.
+/// Maximum number of packets waiting for a receiver. Further ones are lost.
 const QUEUE_MAX: usize = 8192;
 
-/// Conditions of a link in one direction. The default is a link without delay or loss.
+/// Conditions of a link in one direction. The default has no delay or loss.
 ///
 /// ```
 /// use core::time::Duration;
@@ -33,25 +31,25 @@ const QUEUE_MAX: usize = 8192;
 pub struct LinkConditions {
     /// Smallest time from sending to receiving.
     pub latency: Duration,
-    /// Largest additional time, which differs from packet to packet. It does not change the order of the packets.
+    /// Largest additional time, random for each packet. It does not change their order.
     pub jitter: Duration,
     /// Lost packets in percent.
     pub loss: u8,
     /// Packets in percent that arrive twice.
     pub duplication: u8,
-    /// Packets in percent that are delayed by another 20 ms, so that later packets may overtake them.
+    /// Packets in percent that are delayed by another 20 ms, so that later ones may overtake them.
     pub reordering: u8,
 }
 
 impl LinkConditions {
-    /// A link with this latency, without jitter, loss, duplication or reordering.
+    /// A link with a latency and no other impairment.
     #[must_use]
     pub const fn latency(latency: Duration) -> Self {
         LinkConditions { latency, jitter: Duration::ZERO, loss: 0, duplication: 0, reordering: 0 }
     }
 }
 
-/// A network in memory. The caller sets its time. The same seed and the same calls give the same delays and losses.
+/// A network in memory for tests. The caller sets its time. A seed and a sequence of calls determine delays and losses.
 ///
 /// ```
 /// use core::time::Duration;
@@ -89,17 +87,17 @@ pub struct Port {
 #[derive(Debug)]
 struct State {
     conditions: LinkConditions,
-    /// Conditions of individual links, by sender and receiver.
+    /// Individual conditions, by sender and receiver.
     links: BTreeMap<(u32, u32), LinkConditions>,
     /// Links that lose all packets.
     cut: BTreeSet<(u32, u32)>,
     rng: Rng,
     now: Duration,
     sent: u64,
-    /// Time at which the last packet of a link arrives, without [`REORDER_DELAY`]. Later packets arrive no earlier, so
-    /// that jitter does not change the order.
+    /// Arrival of the last packet of a link, without [`REORDER_DELAY`]. Later ones arrive no earlier: jitter keeps the
+    /// order.
     last: BTreeMap<(u32, u32), Duration>,
-    /// Packets in flight, by time of arrival and order of sending.
+    /// Packets in flight, by arrival and order of sending.
     flying: BTreeMap<(Duration, u64), Datagram>,
     arrived: BTreeMap<u32, VecDeque<(u32, Vec<u8>)>>,
 }
@@ -112,7 +110,7 @@ struct Datagram {
 }
 
 impl Network {
-    /// A network whose links all have these conditions. The seed determines random delays and losses.
+    /// A network with these conditions on all links. The seed determines random delays and losses.
     #[must_use]
     pub fn new(conditions: LinkConditions, seed: u64) -> Self {
         Network(Arc::new(Mutex::new(State {
@@ -128,7 +126,7 @@ impl Network {
         })))
     }
 
-    /// The socket with this number. Sockets with the same number share one receive queue.
+    /// The socket with this number. Sockets with one number share a receive queue.
     #[must_use]
     pub fn port(&self, number: u32) -> Port {
         Port { network: self.clone(), number }
@@ -140,7 +138,7 @@ impl Network {
         Address::new(&number.to_le_bytes()).unwrap_or_else(Address::nowhere)
     }
 
-    /// Sets the time. An earlier time than the current one has no effect.
+    /// Sets the time. An earlier time has no effect.
     pub fn set_time(&self, now: Duration) {
         let state = &mut *self.state();
         state.now = state.now.max(now);
@@ -152,22 +150,22 @@ impl Network {
         self.state().now
     }
 
-    /// Changes the conditions of all links without conditions of their own, for packets sent from now on.
+    /// Changes the conditions of links without individual conditions, for packets sent later.
     pub fn set_conditions(&self, conditions: LinkConditions) {
         self.state().conditions = conditions;
     }
 
-    /// Changes the conditions of one link in one direction, for packets sent from now on.
+    /// Changes the conditions of one link in one direction, for packets sent later.
     pub fn set_link(&self, from: u32, to: u32, conditions: LinkConditions) {
         self.state().links.insert((from, to), conditions);
     }
 
-    /// Drops all packets sent from one socket to another until [`mend`](Network::mend) is called.
+    /// Drops packets sent from one socket to another until [`mend`](Network::mend).
     pub fn cut(&self, from: u32, to: u32) {
         self.state().cut.insert((from, to));
     }
 
-    /// Restores all links that [`cut`](Network::cut) has interrupted.
+    /// Ends all calls of [`cut`](Network::cut).
     pub fn mend(&self) {
         self.state().cut.clear();
     }
@@ -250,7 +248,7 @@ mod tests {
 
     const MS: Duration = Duration::from_millis(1);
 
-    /// Sends 1000 numbered packets, one per millisecond, and returns the number and delay of each packet that arrives.
+    /// Sends 1000 numbered packets, one per millisecond. Returns number and delay of the arrivals.
     fn run(conditions: LinkConditions, seed: u64) -> Vec<(u32, u32)> {
         let network = Network::new(conditions, seed);
         let (mut a, mut b) = (network.port(1), network.port(2));

@@ -1,5 +1,3 @@
-//! [`PeerOptions`] and [`PeerIdentity`].
-
 use core::time::Duration;
 
 use crate::lockstep::Game;
@@ -9,10 +7,10 @@ use crate::session::{Config, ConfigError, INPUT_BYTES_MAX, Key, PeerId, Timing};
 use super::error::PeerError;
 use super::input_slot::{InputSlot, LENGTH_BYTES};
 
-/// Options of a peer. `patience`, `input_bytes` and `match_tag` have to be the same for all peers of a match.
+/// Options of a peer. `patience`, `input_bytes` and `match_tag` must be equal for all peers of a match.
 ///
-/// The defaults are those of [`PeerOptions::lockstep`] and [`PeerOptions::rollback`].
-/// [`Peer::host`](super::Peer::host), `join` and `watch` return an error if a value is out of its range.
+/// The defaults are [`PeerOptions::lockstep`] and [`PeerOptions::rollback`]. [`Peer::host`](super::Peer::host), `join`
+/// and `watch` check the ranges.
 ///
 /// ```
 /// use core::time::Duration;
@@ -23,29 +21,26 @@ use super::input_slot::{InputSlot, LENGTH_BYTES};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PeerOptions {
-    /// Largest number of ticks that are played with guessed inputs: 0 to 32, and 0 is lockstep. Default: 0 in lockstep,
-    /// 8 with rollback. Each peer chooses its own.
+    /// Largest number of ticks played with guessed inputs, 0 (lockstep) to 32. Default: 0 or, with rollback, 8.
     pub guess: u16,
-    /// Smallest and largest delay of own inputs in ticks, at most 60. Within these bounds the delay follows the
-    /// latency. Default: (0, 20) in lockstep, (1, 20) with rollback. Each peer chooses its own.
+    /// Bounds of the input delay in ticks, 0 to 60. Within them it follows the latency. Default: (0, 20) or, with
+    /// rollback, (1, 20).
     pub delay: (u16, u16),
-    /// Time for which the other peers wait for a missing peer before they continue without it. `Duration::MAX`: no
-    /// limit. Any duration is possible. Default: 2 s.
+    /// Time after which the others continue without a missing peer; `Duration::MAX` for never. Default: 2 s.
     pub patience: Duration,
-    /// Number of seats that have to be taken before the first tick: 0 to the number of players of the game. Default: 2.
+    /// Number of seats taken before the first tick: 0 to the number of players of the game. Default: 2.
     pub start_with: u8,
-    /// Number of own seats. 0 makes a host a dedicated server; a peer that joins requests at least 1. Default: 1.
+    /// Number of own seats. 0 makes a host a dedicated server; a joining player requests at least 1. Default: 1.
     pub seats: u8,
-    /// First own seat, if this peer requests certain seats. `first_seat` + `seats` is at most the number of players of
-    /// the game. Default: `None`, any free seats.
+    /// First own seat, to request certain seats. `first_seat` + `seats` is at most the number of players. Default:
+    /// `None`, any free seats.
     pub first_seat: Option<u8>,
-    /// Largest encoded input in bytes, 0 to 510, for games whose inputs differ in length: see [`codec`](crate::codec).
-    /// Default: `None`, every input is as long as the default input, which has at most 512 bytes.
+    /// Largest encoded input in bytes, 0 to 510, for inputs that differ in length: see [`codec`](crate::codec).
+    /// Default: `None`, inputs are as long as the default input, which has at most 512 bytes.
     pub input_bytes: Option<u16>,
-    /// Identifies a match among other matches of the same game: any number. A peer with another tag gets no answer.
-    /// Default: 0.
+    /// Identifies a match of a game. A peer with another tag gets no answer. Default: 0.
     pub match_tag: u64,
-    /// Number of ticks per block of the replay: 1 to 3600. Default: 60
+    /// Ticks per block of the replay, 1 to 3600. Default: 60
     /// ([`CHECKPOINT_INTERVAL`](crate::replay::CHECKPOINT_INTERVAL)).
     pub checkpoint_interval: u32,
 }
@@ -83,7 +78,6 @@ impl PeerOptions {
         Ok((first..end).fold(0, |set, seat| set | 1_u64.checked_shl(seat.into()).unwrap_or(0)))
     }
 
-    /// The configuration of the session.
     pub(super) fn config<G: Game>(&self, game: &G, slot: InputSlot) -> Result<Config, PeerError> {
         let seats = u8::try_from(game.players()).unwrap_or(u8::MAX);
         let mut config = Config::new(self.match_tag, seats);
@@ -95,7 +89,7 @@ impl PeerOptions {
         (config.delay_min, config.delay_max) = self.delay;
         let patience = u64::try_from(self.patience.as_micros()).unwrap_or(u64::MAX);
         config.timing = Timing { patience, ..Timing::DEFAULT };
-        // Checkpoints of the replay need the hash of the state, so the save interval has to divide their interval.
+        // Checkpoints of the replay need the hash of the state: the save interval divides theirs.
         let divides = |interval: &u16| self.checkpoint_interval.is_multiple_of(u32::from(*interval));
         let longest = if self.guess > 0 { 1 } else { 8 };
         config.save_interval = (1..=longest).rev().find(divides).unwrap_or(1);
@@ -105,8 +99,7 @@ impl PeerOptions {
     }
 }
 
-/// Replaces the name, value and range of a session parameter by those of the option, or of the method of the game, that
-/// sets the parameter.
+/// Replaces the session's name by that of the option or of the game's method, with its value and range.
 fn named<G: Game>(error: ConfigError, game: &G, slot: InputSlot) -> ConfigError {
     match (error.field, slot) {
         ("delay_min", _) => ConfigError { field: "delay.0", ..error },
@@ -138,15 +131,15 @@ fn named<G: Game>(error: ConfigError, game: &G, slot: InputSlot) -> ConfigError 
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PeerIdentity {
-    /// A random number, new for each start of a process.
+    /// A random number, new for each process.
     pub id: PeerId,
-    /// The identity that outlives processes. A peer that returns with the same key gets its seat back, if it is free.
+    /// The identity that outlives processes. A peer that returns with it gets its seat back, if that is free.
     pub key: Key,
-    /// Random numbers that no other peer knows: the key of the handshake cookies and of the tokens of probes.
+    /// Random numbers unknown to others: the key of handshake cookies and probe tokens.
     pub secret: [u64; 2],
 }
 
-/// Random numbers of the operating system. The standard library exposes them only as the keys of its hash function.
+/// Random numbers of the operating system: the standard library exposes them as keys of its hash function.
 #[cfg(all(feature = "std", not(all(target_family = "wasm", target_os = "unknown"))))]
 pub(super) fn random_numbers<const N: usize>() -> [u64; N] {
     use std::hash::{BuildHasher, RandomState};
@@ -155,8 +148,7 @@ pub(super) fn random_numbers<const N: usize>() -> [u64; N] {
 }
 
 impl PeerIdentity {
-    /// An identity from random numbers, which have to differ for every process: the id (only its low 32 bits are used),
-    /// the key, and the two words of the secret.
+    /// An identity from random numbers, new for each process: the id (its low 32 bits), the key, and the secret.
     #[must_use]
     pub fn new(random: [u64; 4]) -> Self {
         let [id, key, secret @ ..] = random;
@@ -164,15 +156,15 @@ impl PeerIdentity {
         PeerIdentity { id: PeerId(u32::from_le_bytes([a, b, c, d])), key: Key(key), secret }
     }
 
-    /// An identity from random numbers of the operating system. The standard library provides none on the web; pass
-    /// random numbers of the browser to [`PeerIdentity::new`] there.
+    /// An identity from random numbers of the operating system. On the web, use [`PeerIdentity::new`] with the
+    /// browser's.
     #[cfg(all(feature = "std", not(all(target_family = "wasm", target_os = "unknown"))))]
     #[must_use]
     pub fn random() -> Self {
         PeerIdentity::new(random_numbers())
     }
 
-    /// Returns the identity with its key replaced by one that the lobby has assigned.
+    /// Replaces the key by one that the lobby has assigned.
     #[must_use]
     pub fn with_key(self, key: Key) -> Self {
         PeerIdentity { key, ..self }

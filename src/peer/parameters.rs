@@ -1,5 +1,3 @@
-//! [`PeerParameters`]: the parameters that have to be equal for all peers of a match.
-
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
@@ -10,7 +8,7 @@ use crate::hash::StateHash;
 use crate::lockstep::Game;
 use crate::session::Config;
 
-/// Parameters that have to be equal for all peers of a match.
+/// Parameters that must be equal for all peers of a match.
 ///
 /// ```
 /// use lockstep2d::{SEMANTICS, hash::StateHash, peer::{ParameterDifference, PeerParameters}};
@@ -43,8 +41,8 @@ pub struct PeerParameters {
     pub tick_rate: u32,
     /// Number of seats.
     pub players: u32,
-    /// Size of an input in the session, in bytes: [`PeerOptions::input_bytes`](super::PeerOptions::input_bytes) plus 2,
-    /// or without that option the length of the default input, at least 1.
+    /// Bytes of an input in the session: [`PeerOptions::input_bytes`](super::PeerOptions::input_bytes) plus 2, or
+    /// without that option the length of the default input, at least 1.
     pub input_bytes: u16,
     /// [`PeerOptions::patience`](super::PeerOptions::patience) in microseconds.
     pub patience: u64,
@@ -75,7 +73,7 @@ impl PeerParameters {
         }
     }
 
-    /// All differences to the parameters of another peer.
+    /// The differences to another peer.
     #[must_use]
     pub fn differences(&self, theirs: &Self) -> Vec<ParameterDifference> {
         let values = |parameters: &Self| {

@@ -1,5 +1,3 @@
-//! [`Peer`]: one participant of a match.
-
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
 use core::fmt;
@@ -20,13 +18,11 @@ use crate::session::{
     Tick,
 };
 
-/// Maximum number of packets read in one update.
 const PACKETS_PER_UPDATE: usize = 4096;
 
-/// One participant of a match, which opens, joins or watches the match.
+/// One participant of a match, with the game and the transport.
 ///
-/// The peer owns the game and the transport, and determines when a tick can be played; the caller owns the clock. Call
-/// [`update`](Peer::update) every few milliseconds, and [`advance`](Peer::advance) while [`is_due`](Peer::is_due).
+/// Call [`update`](Peer::update) every few milliseconds, and [`advance`](Peer::advance) while [`is_due`](Peer::is_due).
 ///
 /// ```no_run
 /// # use lockstep2d::{lockstep::{Sandbox, SandboxSetup}, peer::{Peer, PeerIdentity, PeerOptions, Udp, socket_address}};
@@ -42,9 +38,8 @@ pub struct Peer<G: Game, T> {
     parameters: PeerParameters,
     slot: InputSlot,
     now: u64,
-    /// Number of ticks after which this peer wants the match to end.
     end: Option<u64>,
-    /// Buffer for the bytes of a tick's inputs, reused in every tick.
+    /// Reused buffer for the bytes of a tick's inputs.
     inputs: Vec<u8>,
     events: VecDeque<PeerEvent>,
 }
@@ -59,18 +54,17 @@ impl<G: Game, T: fmt::Debug> fmt::Debug for Peer<G, T> {
     }
 }
 
-/// Way of entering a match.
 enum Entry {
     Host,
     Join(Role, Address),
 }
 
 impl<G: Game, T: Transport> Peer<G, T> {
-    /// Opens a match, which starts once [`PeerOptions::start_with`] seats are taken. A host without own seats
-    /// ([`PeerOptions::seats`] is 0) is a dedicated server.
+    /// Opens a match, which starts once [`PeerOptions::start_with`] seats are taken. Without own seats
+    /// ([`PeerOptions::seats`] is 0) the host is a dedicated server.
     ///
     /// # Errors
-    /// [`PeerError`] when the setup or the options cannot start a game.
+    /// [`PeerError`] if the setup or the options are invalid.
     pub fn host(
         setup: &G::Setup,
         options: PeerOptions,
@@ -80,11 +74,10 @@ impl<G: Game, T: Transport> Peer<G, T> {
         Self::new(setup, options, me, transport, Entry::Host)
     }
 
-    /// Joins a match as a player through a contact, which is any participant of the match. The peer plays as soon as it
-    /// has caught up and seats are free.
+    /// Joins a match as a player through any participant. The peer plays once it has caught up and seats are free.
     ///
     /// # Errors
-    /// Same as [`Peer::host`].
+    /// As [`Peer::host`].
     pub fn join(
         setup: &G::Setup,
         options: PeerOptions,
@@ -96,10 +89,10 @@ impl<G: Game, T: Transport> Peer<G, T> {
         Self::new(setup, options, me, transport, Entry::Join(role, contact))
     }
 
-    /// Joins a match as a spectator through a contact, which is any participant of the match, including a spectator.
+    /// Joins a match as a spectator through any participant.
     ///
     /// # Errors
-    /// Same as [`Peer::host`].
+    /// As [`Peer::host`].
     pub fn watch(
         setup: &G::Setup,
         options: PeerOptions,
@@ -138,11 +131,11 @@ impl<G: Game, T: Transport> Peer<G, T> {
         Ok(Peer { transport, endpoint, simulation, parameters, slot, now: 0, end: None, inputs, events })
     }
 
-    /// Processes received packets, plays ticks again if their inputs have changed, and sends packets that are due.
-    /// `now` is the time since a fixed moment in the past.
+    /// Processes received packets, plays ticks again if their inputs have changed, and sends packets. `now` is the time
+    /// since a fixed moment.
     ///
     /// # Errors
-    /// [`PeerError`] when this peer cannot continue.
+    /// [`PeerError`] if this peer cannot continue.
     pub fn update(&mut self, now: Duration) -> Result<(), PeerError> {
         self.now = self.now.max(u64::try_from(now.as_micros()).unwrap_or(u64::MAX));
         for _ in 0..PACKETS_PER_UPDATE {
@@ -185,7 +178,6 @@ impl<G: Game, T: Transport> Peer<G, T> {
                         return Err(PeerError::Refused { why: "too many peers are joining" });
                     }
                     RefusalReason::Taken => return Err(PeerError::Refused { why: "the identity is taken" }),
-                    // The request is sent again later.
                     RefusalReason::NotReady => {}
                 },
                 JoinEvent::BadState => {}
@@ -194,7 +186,6 @@ impl<G: Game, T: Transport> Peer<G, T> {
         Ok(())
     }
 
-    /// Fulfils the requests of the session, and collects its events.
     fn fulfil(&mut self) -> Result<(), PeerError> {
         let Some(session) = self.endpoint.session_mut() else { return Ok(()) };
         self.simulation.fulfil(session)?;
@@ -219,22 +210,21 @@ impl<G: Game, T: Transport> Peer<G, T> {
         }
     }
 
-    /// Whether to call [`advance`](Peer::advance): the next tick is due, and can be played or needs this peer's inputs.
+    /// Whether to call [`advance`](Peer::advance): the next tick is due, and can be played or needs inputs of this
+    /// peer.
     #[must_use]
     pub fn is_due(&self) -> bool {
         self.endpoint.session().is_some_and(|session| session.is_due(self.now))
     }
 
-    /// Issues the inputs of this peer's own seats, in the order of the seats, and plays a tick if the inputs of the
-    /// other peers allow it. Inputs of a peer without seats are ignored. Returns whether the inputs were issued;
-    /// otherwise they may be passed again.
+    /// Issues the inputs of this peer's seats, in the order of the seats, and plays a tick if possible. Without seats
+    /// the inputs are ignored. Returns whether they were issued: if not, they may be passed again.
     ///
     /// # Errors
-    /// [`PeerError`] when the inputs cannot be issued, or the game or its replay cannot continue.
+    /// [`PeerError`] if the inputs cannot be issued, or the game or its replay cannot continue.
     pub fn advance(&mut self, inputs: &[G::Input]) -> Result<bool, PeerError> {
         let Some(session) = self.endpoint.session_mut() else { return Ok(false) };
         let seats = usize::try_from(session.seats().count_ones()).unwrap_or(0);
-        // A peer that has no seat yet may already pass inputs, which are ignored.
         let inputs = if seats == 0 { &[] } else { inputs };
         if seats != inputs.len() {
             return Err(PeerError::InputCount { seats, inputs: inputs.len() });
@@ -256,7 +246,7 @@ impl<G: Game, T: Transport> Peer<G, T> {
         self.events.pop_front()
     }
 
-    /// The current state of the game; it may depend on guessed inputs.
+    /// The current game, which may depend on guessed inputs.
     #[must_use]
     pub const fn game(&self) -> &G {
         &self.simulation.game
@@ -268,19 +258,19 @@ impl<G: Game, T: Transport> Peer<G, T> {
         self.simulation.tick
     }
 
-    /// Number of ticks played with final inputs. If this peer records a replay, the replay has these ticks.
+    /// Number of ticks played with final inputs, and recorded if there is a replay.
     #[must_use]
     pub const fn confirmed(&self) -> u64 {
         self.simulation.committed
     }
 
-    /// The states after recent ticks, kept for rollback and for reports.
+    /// Recent states, kept for rollback and reports.
     #[must_use]
     pub const fn history(&self) -> &History<G> {
         &self.simulation.history
     }
 
-    /// The session, once this peer takes part: its view, delay, links and statistics.
+    /// The session, once this peer takes part.
     #[must_use]
     pub fn session(&self) -> Option<&Session> {
         self.endpoint.session()
@@ -297,13 +287,13 @@ impl<G: Game, T: Transport> Peer<G, T> {
         self.endpoint.session().map(Session::status)
     }
 
-    /// The seats of this peer, in ascending order.
+    /// The seats of this peer, ascending.
     #[must_use]
     pub fn seats(&self) -> Vec<u32> {
         self.endpoint.session().map_or_else(Vec::new, |session| self.seats_of(session.id()))
     }
 
-    /// Number of bytes received and total number of bytes of the initial state, while it is downloaded.
+    /// Bytes received and total bytes of the initial state, while it is downloaded.
     #[must_use]
     pub fn download(&self) -> Option<(u64, u64)> {
         self.endpoint.download()
@@ -315,21 +305,21 @@ impl<G: Game, T: Transport> Peer<G, T> {
         self.endpoint.session().and_then(|session| session.link(peer))
     }
 
-    /// Votes for removing a peer permanently, as [`Session::kick`] does.
+    /// Votes to remove a peer permanently, as [`Session::kick`] does.
     pub fn kick(&mut self, key: Key) {
         if let Some(session) = self.endpoint.session_mut() {
             session.kick(key);
         }
     }
 
-    /// Sends the request to join to another contact, or again to the same one, for example after a time without an
-    /// answer. A session in progress is discarded.
+    /// Sends the request to join to this contact, for example after a time without an answer. Discards a session in
+    /// progress.
     pub fn ask(&mut self, contact: Address) {
         self.endpoint.ask(contact);
     }
 
-    /// Leaves the match; the others continue without waiting for this peer. Call [`update`](Peer::update) until the
-    /// status is [`Status::Closed`]. Before the initial state has arrived, the [`Peer`] can be dropped at once.
+    /// Leaves the match: the others continue without this peer. Call [`update`](Peer::update) until [`Status::Closed`].
+    /// Before the initial state has arrived, drop the [`Peer`] instead.
     pub fn leave(&mut self) {
         if let Some(session) = self.endpoint.session_mut() {
             session.leave();
@@ -341,24 +331,22 @@ impl<G: Game, T: Transport> Peer<G, T> {
         self.end = Some(ticks);
     }
 
-    /// The seats of a peer, in ascending order.
+    /// The seats of a peer, ascending.
     #[must_use]
     pub fn seats_of(&self, peer: PeerId) -> Vec<u32> {
         let seats = self.endpoint.session().map_or(0, |session| session.view().seats_of(peer));
         (0..64).filter(|seat| seats >> seat & 1 == 1).collect()
     }
 
-    /// The transport of this peer.
+    /// The transport.
     pub fn transport_mut(&mut self) -> &mut T {
         &mut self.transport
     }
 
-    /// This peer's report of a desync, as the bytes of a file. From the reports of two peers with different states,
-    /// [`compare`](crate::report::compare()) finds the first known tick at which the states differ, and the parts that
-    /// differ. If one of the reports contains a replay, it also finds the side that diverged.
+    /// This peer's report of a desync, as the bytes of a file, for [`compare`](crate::report::compare()).
     ///
     /// # Errors
-    /// [`PeerError`] when the states that the report needs are not kept.
+    /// [`PeerError`] if the states for the report are not kept.
     pub fn report(&mut self, desync: &PeerDesync) -> Result<Vec<u8>, PeerError> {
         let theirs = self.endpoint.session().map_or(0, |session| session.view().seats_of(desync.peer));
         let players = self.simulation.game.players();
@@ -368,20 +356,19 @@ impl<G: Game, T: Transport> Peer<G, T> {
         Ok(self.simulation.report(desync.tick, seats, hashes)?.to_bytes())
     }
 
-    /// Takes the finished bytes of the replay, to be appended to its file. Every byte is returned once. A peer that
-    /// joined after the first tick has no replay.
+    /// Takes the finished bytes of the replay, to be appended to its file. A peer that joined after the first tick has
+    /// no replay.
     #[must_use]
     pub fn take_replay(&mut self) -> Vec<u8> {
-        // Before the initial state has arrived, it is unknown whether the state is that of tick 0.
+        // Before the initial state has arrived, it is unknown whether this peer has a replay.
         if self.endpoint.session().is_some() { self.simulation.take_replay() } else { Vec::new() }
     }
 
-    /// Ends the replay after the last final tick. Returns the bytes of the replay that have not been taken yet, and the
-    /// game after that tick. Leave or end the match first, and call [`update`](Peer::update) until the status is
-    /// [`Status::Closed`].
+    /// Ends the replay after the last final tick, and returns the rest of it and the game. First leave or end the
+    /// match, and call [`update`](Peer::update) until [`Status::Closed`].
     ///
     /// # Errors
-    /// [`PeerError`] when the replay cannot be finished.
+    /// [`PeerError`] if the replay cannot be finished.
     pub fn finish(self) -> Result<PeerEnd<G>, PeerError> {
         let ticks = self.simulation.committed;
         let (game, replay) = self.simulation.finish()?;

@@ -1,13 +1,12 @@
-//! [`Sealed`]: a transport that encrypts and authenticates packets with a key that only the members of a match have.
+//! [`Sealed`]: a transport that encrypts and authenticates packets with the key of a match.
 //!
-//! A packet consists of sender (8 bytes), counter (8 bytes), ciphertext and tag (16 bytes). The cipher is
-//! XChaCha20-Poly1305; its nonce consists of sender, eight zero bytes and counter. Packets of at most 1200 bytes become
-//! at most 1232 bytes long, which with headers fit into 1280 bytes, the smallest maximum packet size of IPv6.
+//! A packet has a sender (8 bytes), a counter (8 bytes), the ciphertext and a tag (16 bytes). The cipher is
+//! XChaCha20-Poly1305 with the nonce sender, eight zero bytes, counter. 1200 bytes become 1232 and fit with headers
+//! into 1280, the smallest maximum packet size of IPv6.
 //!
-//! **A nonce must never be used twice with one key.** Within one [`Sealed`], the counter prevents this. Across several
-//! of them, for example after a restart, the sender number prevents it, which `Sealed::new` draws from 2^64 numbers at
-//! random. Among `n` such numbers, two are equal with a probability of about `n^2 / 2^65`: for 10 000 numbers, 3 in
-//! 10^12. Nothing has to be stored.
+//! **A nonce must never be used twice with one key.** The counter prevents this in one [`Sealed`]. Across several, such
+//! as after a restart, the sender does, which `Sealed::new` draws from 2^64 numbers. Two of `n` are equal with a
+//! probability of about `n^2 / 2^65`: for 10 000, 3 in 10^12.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -18,24 +17,21 @@ use chacha20poly1305::{Key, Tag, XChaCha20Poly1305, XNonce};
 use super::transport::Transport;
 use crate::session::Address;
 
-/// Number of bytes that sealing adds to a packet.
+/// Bytes that sealing adds to a packet.
 pub const SEALED_OVERHEAD: usize = HEADER + TAG;
 const HEADER: usize = 16;
 const TAG: usize = 16;
-/// Number of words of a replay window.
 const WINDOW_WORDS: usize = 32;
-/// Length of a replay window: a packet that was sent 2048 packets or more before the newest one of its sender is
-/// dropped.
+/// Length of a replay window. Packets that are older than the newest one of their sender by this are dropped.
 const WINDOW: u64 = 2048;
-/// Maximum number of senders with a replay window. Beyond it, the sender that was silent longest is removed.
+/// Maximum number of senders with a replay window. Beyond it, the one silent longest is removed.
 const SENDERS_MAX: usize = 1024;
 
 /// A transport whose packets can be read and written only with the key of the match.
 ///
-/// Packets are dropped if they were forged, changed or truncated, arrive a second time, or come back to their sender.
-/// Addresses and sizes are visible. All members have the same key, so a member can pose as another one, and a member
-/// accepts a packet that was addressed to another member. A restarted process does not know which packets arrived
-/// before the restart, so it accepts old packets again. They do no harm to a session, because its rows have versions.
+/// Drops packets that were forged, changed or truncated, arrive again, or come back to their sender. Addresses and
+/// sizes are visible. A member can pose as another one. Old packets are accepted again after a restart, and from
+/// senders whose replay window was removed. They do no harm to a session, because its rows have versions.
 ///
 /// ```
 /// use lockstep2d::peer::{LinkConditions, Network, Sealed, Transport};
@@ -52,20 +48,19 @@ pub struct Sealed<T> {
     inner: T,
     cipher: XChaCha20Poly1305,
     sender: u64,
-    /// Number of packets sent.
     sent: u64,
     windows: Vec<Window>,
-    /// Number of packets received, as a clock for [`Window::heard`].
+    /// Number of packets received: the clock of [`Window::heard`].
     received: u64,
 }
 
-/// Replay window of a sender: the packets that have arrived.
+/// Replay window of a sender.
 #[derive(Clone, Debug)]
 struct Window {
     sender: u64,
     /// Counter after the newest packet.
     next: u64,
-    /// Bit for each of the last [`WINDOW`] counters, at the index of the counter modulo `WINDOW`.
+    /// Bit for each of the last [`WINDOW`] counters, at the counter modulo `WINDOW`.
     seen: [u64; WINDOW_WORDS],
     heard: u64,
 }
@@ -86,24 +81,22 @@ impl Window {
         (usize::try_from(place / 64).unwrap_or(0), 1 << (place % 64))
     }
 
-    /// Whether a packet has not arrived yet. A packet older than the window counts as arrived.
+    /// Whether a packet has not arrived yet. Those older than the window count as arrived.
     fn is_new(&self, counter: u64) -> bool {
         if counter >= self.next {
-            // `next` is one more than the last counter. After the largest `u64` it would overflow, so that this counter
-            // is refused; `Sealed` never sends it.
+            // `next` would overflow after the largest `u64`, which `Sealed` never sends.
             return counter < u64::MAX;
         }
         let (word, bit) = Window::bit(counter);
         self.next - counter <= WINDOW && self.seen.get(word).is_some_and(|seen| seen & bit == 0)
     }
 
-    /// Marks an authenticated packet as arrived.
     fn note(&mut self, counter: u64) {
         if counter >= self.next {
             if counter - self.next >= WINDOW {
                 self.seen = [0; WINDOW_WORDS];
             } else {
-                // The counters that were skipped have not arrived.
+                // The skipped counters have not arrived.
                 for skipped in self.next..counter {
                     let (word, bit) = Window::bit(skipped);
                     self.seen.get_mut(word).into_iter().for_each(|seen| *seen &= !bit);
@@ -128,15 +121,14 @@ fn nonce(sender: u64, counter: u64) -> XNonce {
 }
 
 impl<T> Sealed<T> {
-    /// Seals the packets of a transport. The key has to be random and the same for all members of the match; a new
-    /// match gets a new one.
+    /// Seals the packets of a transport. The key must be random, shared by all members, and new for each match.
     #[cfg(all(feature = "std", not(all(target_family = "wasm", target_os = "unknown"))))]
     pub fn new(inner: T, key: [u8; 32]) -> Self {
         let [sender] = super::options::random_numbers();
         Sealed::with_sender(inner, key, sender)
     }
 
-    /// Same as [`Sealed::new`] with a given sender number, which has to be random and new for each call with this key.
+    /// Like [`Sealed::new`] with a given sender number, which must be random and new for each call with this key.
     pub fn with_sender(inner: T, key: [u8; 32], sender: u64) -> Self {
         let cipher = XChaCha20Poly1305::new(&Key::from(key));
         Sealed { inner, cipher, sender, sent: 0, windows: Vec::new(), received: 0 }
@@ -149,7 +141,7 @@ impl<T> Sealed<T> {
 
     fn seal(&mut self, packet: &[u8]) -> Option<Vec<u8>> {
         let counter = self.sent;
-        // After 2^64 - 1 packets, far more than any match sends, no further packet is sent.
+        // After 2^64 - 1 packets nothing more is sent.
         self.sent = counter.checked_add(1)?;
         let mut bytes = Vec::with_capacity(packet.len() + SEALED_OVERHEAD);
         bytes.extend_from_slice(&self.sender.to_le_bytes());
@@ -174,7 +166,7 @@ impl<T> Sealed<T> {
         let mut body = body.to_vec();
         let tag = Tag::from(*tag);
         self.cipher.decrypt_in_place_detached(&nonce(sender, counter), b"", &mut body, &tag).ok()?;
-        // The packet is authentic from here on: no other packet changes any state.
+        // The packet is authentic: no other packet changes the state.
         self.received += 1;
         let at = known.unwrap_or_else(|| self.remember(sender));
         let window = self.windows.get_mut(at)?;
@@ -183,7 +175,6 @@ impl<T> Sealed<T> {
         Some(body)
     }
 
-    /// Adds a window for a sender and returns its index.
     fn remember(&mut self, sender: u64) -> usize {
         if self.windows.len() >= SENDERS_MAX {
             let silent = (0..).zip(&self.windows).min_by_key(|(_, window)| window.heard);
@@ -224,7 +215,7 @@ mod tests {
         Sealed::with_sender(network.port(number), KEY, u64::from(number))
     }
 
-    /// A network, two members, and the bytes of a packet in flight from the first to the second member.
+    /// A network, two members, and a packet from the first to the second.
     fn on_the_way() -> (Network, Sealed<Port>, Sealed<Port>, Vec<u8>) {
         let network = Network::new(LinkConditions::default(), 1);
         let (mut alice, bob) = (sealed(&network, 1), sealed(&network, 2));

@@ -1,4 +1,4 @@
-//! [`Simulation`]: a game, its saved states and its replay, driven by the requests of a session.
+//! [`Simulation`]: a game with its states and its replay, driven by the requests of a session.
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
@@ -12,17 +12,14 @@ use crate::replay::{RecordError, Recorder};
 use crate::report::{Desync, DesyncReport};
 use crate::session::{InputStatus, Request, Session, Tick, TickInputs};
 
-/// A game that is played by a session.
 pub(super) struct Simulation<G: Game> {
     pub(super) game: G,
-    /// Number of ticks played.
     pub(super) tick: u64,
     pub(super) history: History<G>,
     slot: InputSlot,
-    /// Inputs of the ticks from `first_input` on.
     inputs: VecDeque<EncodedInputs<G::Input>>,
     first_input: u64,
-    /// Number of ticks that were played with final inputs and, if there is a replay, recorded.
+    /// Number of ticks played with final inputs and, if there is a replay, recorded.
     pub(super) committed: u64,
     recorder: Option<Recorder<G>>,
     checkpoint_interval: u64,
@@ -31,7 +28,6 @@ pub(super) struct Simulation<G: Game> {
 }
 
 impl<G: Game> Simulation<G> {
-    /// Starts a game and its replay.
     pub(super) fn start(
         setup: &G::Setup,
         checkpoint_interval: u32,
@@ -54,7 +50,6 @@ impl<G: Game> Simulation<G> {
         })
     }
 
-    /// Keeps the states of at least this many ticks.
     pub(super) fn set_memory(&mut self, ticks: u32) {
         if self.history.capacity() < u64::from(ticks) {
             self.history = History::of_ticks(ticks);
@@ -62,8 +57,7 @@ impl<G: Game> Simulation<G> {
         }
     }
 
-    /// Continues from a state received from another peer. If it is not the state of tick 0, there is no replay, because
-    /// the earlier inputs are unknown.
+    /// Continues from a received state. After tick 0 there is no replay, for lack of the earlier inputs.
     pub(super) fn resume(&mut self, tick: u64, bytes: &[u8]) -> Result<(), PeerError> {
         let wrong = |why: &dyn core::fmt::Display| PeerError::State { why: alloc::format!("{why}") };
         let (hash, save): (StateHash, G::Save) = codec::decode(bytes).map_err(|error| wrong(&error))?;
@@ -81,13 +75,12 @@ impl<G: Game> Simulation<G> {
         Ok(())
     }
 
-    /// The newest kept state at or before `tick`, as bytes for a joining peer.
+    /// The newest state up to `tick`, as bytes for a joining peer.
     pub(super) fn state_for(&self, tick: u64) -> Option<(u64, Vec<u8>)> {
         let past = self.history.iter().rev().find(|past| past.tick <= tick)?;
         Some((past.tick, codec::encode(&(past.hash, &past.save))))
     }
 
-    /// Fulfils all requests of a session.
     pub(super) fn fulfil(&mut self, session: &mut Session) -> Result<(), PeerError> {
         while let Some(request) = session.next_request() {
             match request {
@@ -132,13 +125,13 @@ impl<G: Game> Simulation<G> {
         Ok(())
     }
 
-    /// Writes ticks to the replay once no rollback can change them.
+    /// Records ticks that no rollback can change.
     fn commit(&mut self, ticks: Tick) -> Result<(), PeerError> {
         while self.committed < u64::from(ticks).min(self.tick) {
             let tick = self.committed;
             if let Some(mut recorder) = self.recorder.take() {
                 let recorded = self.record(tick, &mut recorder);
-                // On an error, the recorder keeps the ticks recorded so far.
+                // An error must not lose the recorder.
                 self.recorder = Some(recorder);
                 if !recorded? {
                     break;
@@ -146,7 +139,7 @@ impl<G: Game> Simulation<G> {
             }
             self.committed += 1;
         }
-        // Inputs since the oldest state are needed to end the replay, and for reports.
+        // Inputs since the oldest state are needed for the end of the replay and for reports.
         let oldest = self.history.oldest().unwrap_or(0).min(self.committed);
         while self.first_input < oldest {
             self.inputs.pop_front();
@@ -155,7 +148,7 @@ impl<G: Game> Simulation<G> {
         Ok(())
     }
 
-    /// Records a tick. Returns whether that was possible: the checkpoint at the end of a block needs the state's hash.
+    /// Records a tick if possible. The checkpoint at the end of a block needs the state's hash.
     fn record(&self, tick: u64, recorder: &mut Recorder<G>) -> Result<bool, PeerError> {
         let place = tick.checked_sub(self.first_input).and_then(|place| usize::try_from(place).ok());
         let inputs = place.and_then(|place| self.inputs.get(place)).ok_or(PeerError::NoState { tick })?;
@@ -172,15 +165,13 @@ impl<G: Game> Simulation<G> {
         Ok(true)
     }
 
-    /// Takes the finished bytes of the replay; empty if there is no replay.
     pub(super) fn take_replay(&mut self) -> Vec<u8> {
         let bytes = self.recorder.as_mut().map(Recorder::take_bytes).unwrap_or_default();
         self.taken.extend_from_slice(&bytes);
         bytes
     }
 
-    /// Ends the replay after the last committed tick. Returns the game after that tick, and the bytes of the replay
-    /// that have not been taken yet.
+    /// Ends the replay after the last committed tick. Returns the game after it, and the rest of the replay.
     pub(super) fn finish(mut self) -> Result<(G, Vec<u8>), PeerError> {
         self.play_to(self.committed)?;
         let replay = match self.recorder.take() {
@@ -190,7 +181,7 @@ impl<G: Game> Simulation<G> {
         Ok((self.game, replay))
     }
 
-    /// Restores the state after a number of ticks that have been played.
+    /// Restores the state after a tick that has been played.
     fn play_to(&mut self, tick: u64) -> Result<(), PeerError> {
         if self.tick == tick {
             return Ok(());
@@ -210,8 +201,7 @@ impl<G: Game> Simulation<G> {
         Ok(())
     }
 
-    /// Creates the report of a desync. `hashes` has an entry for each seat, which is the hash of the other peer's state
-    /// if that peer plays the seat.
+    /// Creates the report of a desync. `hashes` has the other peer's hash at its seats.
     pub(super) fn report(
         &mut self,
         tick: u64,

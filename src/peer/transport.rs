@@ -1,10 +1,8 @@
-//! [`Transport`]: sends and receives packets. [`Udp`] implements it with a UDP socket.
-
 use alloc::vec::Vec;
 
 use crate::session::Address;
 
-/// Carries packets between peers. Packets may be lost, duplicated, delayed and reordered, and may come from any sender.
+/// Carries packets between peers. They may be lost, duplicated, delayed and reordered, and come from anybody.
 ///
 /// ```
 /// use lockstep2d::{peer::Transport, session::Address};
@@ -24,8 +22,8 @@ use crate::session::Address;
 /// }
 /// ```
 pub trait Transport {
-    /// Sends a packet of at most [`PACKET_BYTES_MAX`](crate::session::PACKET_BYTES_MAX) bytes, or drops it. `Sealed`
-    /// passes packets that are 32 bytes longer to the transport inside it.
+    /// Sends a packet of at most [`PACKET_BYTES_MAX`](crate::session::PACKET_BYTES_MAX) bytes, or drops it. Inside of
+    /// `Sealed`, packets are 32 bytes longer.
     fn send(&mut self, packet: &[u8], to: &Address);
 
     /// The next received packet and its sender. Does not block.
@@ -47,7 +45,7 @@ mod udp {
     use super::Transport;
     use crate::session::Address;
 
-    /// Largest payload of an IP packet of 1280 bytes: the headers of IPv4 and UDP have at least 28 bytes.
+    /// Largest payload of an IPv4 packet of 1280 bytes: its headers and UDP's have at least 28 bytes.
     const PAYLOAD_MAX: usize = 1280 - 28;
 
     /// A UDP socket.
@@ -77,7 +75,7 @@ mod udp {
         }
     }
 
-    /// The [`Address`] of a socket. IPv4 addresses that are mapped to IPv6 become IPv4 addresses.
+    /// The [`Address`] of a socket. IPv4 addresses mapped to IPv6 become IPv4 addresses.
     #[must_use]
     pub fn socket_address(address: SocketAddr) -> Address {
         let port = address.port().to_le_bytes();
@@ -85,11 +83,9 @@ mod udp {
             IpAddr::V4(ip) => [&ip.octets()[..], &port].concat(),
             IpAddr::V6(ip) => [&ip.octets()[..], &port].concat(),
         };
-        // There are at most 18 bytes, which fit into an address.
         Address::new(&bytes).unwrap_or_else(Address::nowhere)
     }
 
-    /// The inverse of [`socket_address`].
     fn to_socket(address: &Address) -> Option<SocketAddr> {
         let (ip, port) = address.bytes().split_last_chunk::<2>()?;
         let ip = match ip.len() {
@@ -100,10 +96,10 @@ mod udp {
     }
 
     impl Udp {
-        /// Opens a socket; port 0 lets the system choose one.
+        /// Opens a socket. Port 0 lets the system choose one.
         ///
         /// # Errors
-        /// The error that the operating system reports.
+        /// The error of the operating system.
         pub fn bind(address: impl ToSocketAddrs) -> io::Result<Self> {
             let socket = UdpSocket::bind(address)?;
             socket.set_nonblocking(true)?;
@@ -114,7 +110,7 @@ mod udp {
         /// The local address of the socket.
         ///
         /// # Errors
-        /// The error that the operating system reports.
+        /// The error of the operating system.
         pub fn local_address(&self) -> io::Result<SocketAddr> {
             self.socket.local_addr()
         }
@@ -123,11 +119,10 @@ mod udp {
     impl Transport for Udp {
         fn send(&mut self, packet: &[u8], to: &Address) {
             let Some(mut to) = to_socket(to) else { return };
-            // An IPv6 socket reaches IPv4 addresses only in their mapped form.
+            // An IPv6 socket reaches IPv4 addresses in their mapped form.
             if let (true, IpAddr::V4(ip)) = (self.is_v6, to.ip()) {
                 to.set_ip(IpAddr::V6(ip.to_ipv6_mapped()));
             }
-            // A packet that cannot be sent counts as lost.
             let _ = self.socket.send_to(packet, to);
         }
 
@@ -138,7 +133,7 @@ mod udp {
                         return Some((socket_address(from), self.buffer.get(..length)?.to_vec()));
                     }
                     Err(error) if error.kind() == io::ErrorKind::WouldBlock => return None,
-                    // The system reports unreachable receivers of earlier packets as errors of a later call.
+                    // The system reports unreachable receivers of earlier packets here.
                     Err(error)
                         if matches!(
                             error.kind(),

@@ -1,11 +1,10 @@
-//! Encoding of the format's numbers: little-endian, and LEB128 for numbers that are mostly small.
+//! Encoding of the format's numbers: little-endian, and LEB128.
 
 use alloc::vec::Vec;
 
 use super::flaw::Flaw;
 use super::reader::ReadError;
 
-/// Reads fields one after the other and tracks the offset in the file.
 #[derive(Clone, Debug)]
 pub(super) struct Cursor<'a> {
     rest: &'a [u8],
@@ -13,12 +12,11 @@ pub(super) struct Cursor<'a> {
 }
 
 impl<'a> Cursor<'a> {
-    /// Creates a cursor over a part of the file that begins at `offset`.
+    /// Creates a cursor over the part of the file that begins at `offset`.
     pub(super) fn new(bytes: &'a [u8], offset: u64) -> Self {
         Cursor { rest: bytes, offset }
     }
 
-    /// Offset of the next byte in the file.
     pub(super) fn offset(&self) -> u64 {
         self.offset
     }
@@ -27,7 +25,6 @@ impl<'a> Cursor<'a> {
         self.rest.is_empty()
     }
 
-    /// The next `count` bytes, or `None` when fewer are left.
     pub(super) fn take(&mut self, count: usize) -> Option<&'a [u8]> {
         let (taken, rest) = self.rest.split_at_checked(count)?;
         self.rest = rest;
@@ -58,11 +55,10 @@ impl<'a> Cursor<'a> {
         self.array().map(i64::from_le_bytes)
     }
 
-    /// Reads a number in LEB128. Only the shortest form is accepted, so that the encoding of a log is unique.
+    /// Reads a number in LEB128. The shortest form is required, so that the encoding of a log is unique.
     pub(super) fn varint(&mut self) -> Result<u32, ReadError> {
         let start = self.offset;
         let mut value: u64 = 0;
-        // Five groups of seven bits hold every u32.
         for shift in [0, 7, 14, 21, 28] {
             let [byte] = self.array().ok_or(ReadError::Malformed { offset: start, flaw: Flaw::BlockCut })?;
             value |= u64::from(byte & 0x7f) << shift;
@@ -78,7 +74,6 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// Appends a number in LEB128.
 pub(super) fn put_varint(mut value: u32, bytes: &mut Vec<u8>) {
     loop {
         let [low, ..] = (value & 0x7f).to_le_bytes();

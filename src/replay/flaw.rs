@@ -1,11 +1,9 @@
-//! [`Flaw`]: the reasons why the bytes of a replay are malformed.
-
 use alloc::string::String;
 use core::fmt;
 
 use super::format::{CLAIM_NAME_BYTES_MAX, CLAIMS_MAX, PLAYERS_MAX, RULES_NAME_BYTES_MAX};
 
-/// Reason why a file is not a replay, or not a replay that a recorder could have written.
+/// Reason why a file is not a replay that a recorder could have written.
 ///
 /// ```
 /// use lockstep2d::{lockstep::Sandbox, replay::{Flaw, Limits, Verdict, verify}};
@@ -27,7 +25,7 @@ pub enum Flaw {
     RulesName,
     /// The header does not match its checksum.
     HeaderChecksum,
-    /// The header states more players than a game can have.
+    /// There are more players than a game can have.
     Players {
         /// Number of players in the header.
         count: u32,
@@ -43,21 +41,21 @@ pub enum Flaw {
         /// Reason given by the game.
         why: String,
     },
-    /// The game created from the setup has another number of players than the header states.
+    /// The setup gives a game with another number of players.
     PlayersDisagree {
         /// Players in the header.
         header: u32,
         /// Players of the game.
         game: u32,
     },
-    /// The game created from the setup has another tick rate than the header states.
+    /// The setup gives a game with another tick rate.
     TickRateDisagrees {
         /// Tick rate in the header.
         header: u32,
         /// Tick rate of the game.
         game: u32,
     },
-    /// A block has a kind that this version does not define.
+    /// The kind of a block is unknown.
     BlockKind {
         /// The kind found.
         kind: u8,
@@ -72,21 +70,20 @@ pub enum Flaw {
     EmptyBlock,
     /// A run has no ticks.
     EmptyRun,
-    /// Two consecutive runs have the same inputs and should be a single run.
+    /// Two consecutive runs have the same inputs.
     SplitRun,
-    /// A block has more ticks than the header's checkpoint interval.
+    /// A block has more ticks than the checkpoint interval.
     BlockTicks {
-        /// Ticks in the block, counted up to the run that exceeds the interval.
+        /// Ticks up to and including the run that exceeds the interval.
         ticks: u64,
         /// The checkpoint interval.
         interval: u32,
     },
-    /// A block of inputs follows a block with fewer ticks than the interval, although only the last block may be
-    /// shorter.
+    /// A block of inputs follows one that is shorter than the interval.
     BlockAfterLast,
     /// The bytes of a run are not the canonical encoding of one input for each player.
     Inputs,
-    /// The trailer states another number of ticks than the blocks contain.
+    /// The trailer states another number of ticks than the blocks have.
     Ticks {
         /// Ticks in the trailer.
         trailer: u64,
@@ -95,14 +92,14 @@ pub enum Flaw {
     },
     /// The trailer's chain hash does not match the header and the blocks.
     Chain,
-    /// The trailer has more claims than are allowed.
+    /// The trailer has too many claims.
     Claims {
         /// Number of claims in the trailer.
         count: u32,
     },
     /// The name of a claim is empty, too long or not UTF-8.
     ClaimName,
-    /// The claims are not in strictly ascending order of their names.
+    /// The claims are not in strictly ascending order of names.
     ClaimOrder,
     /// Bytes follow the last claim.
     TrailerLength,

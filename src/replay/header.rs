@@ -1,5 +1,3 @@
-//! The header of a replay: identifies the game and its setup.
-
 use alloc::vec::Vec;
 
 use super::bytes::Cursor;
@@ -9,7 +7,7 @@ use super::limits::{LimitKind, Limits};
 use super::reader::ReadError;
 use crate::hash::StateHash;
 
-/// The header fields of a replay, ahead of its first tick.
+/// The header of a replay.
 ///
 /// ```
 /// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
@@ -24,7 +22,7 @@ use crate::hash::StateHash;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Header<'a> {
-    /// Version of the engine's semantics; [`SEMANTICS`](crate::SEMANTICS) for this engine.
+    /// Version of the engine's semantics, [`SEMANTICS`](crate::SEMANTICS).
     pub semantics: u32,
     /// Version of the game's rules.
     pub rules_version: u32,
@@ -32,7 +30,7 @@ pub struct Header<'a> {
     pub players: u32,
     /// Ticks per second.
     pub tick_rate: u32,
-    /// Ticks in every block of inputs. Only the last block may have fewer.
+    /// Ticks in a block of inputs. The last block may have fewer.
     pub checkpoint_interval: u32,
     /// Name of the game's rules.
     pub rules_name: &'a str,
@@ -40,7 +38,7 @@ pub struct Header<'a> {
     pub setup: &'a [u8],
 }
 
-/// Offsets of the fields that a verdict may refer to.
+/// Offsets of fields for verdicts.
 pub(super) mod offset {
     pub(in crate::replay) const PLAYERS: u64 = 20;
     pub(in crate::replay) const TICK_RATE: u64 = 24;
@@ -49,7 +47,7 @@ pub(super) mod offset {
     pub(in crate::replay) const RULES_NAME: u64 = 40;
 }
 
-/// A header read from a file, with the initial hashes for the rest of the file.
+/// A header, with the initial hashes for the rest of the file.
 #[derive(Clone, Debug)]
 pub(super) struct ReadHeader<'a> {
     pub(super) header: Header<'a>,
@@ -62,14 +60,11 @@ pub(super) struct ReadHeader<'a> {
 }
 
 impl<'a> Header<'a> {
-    /// Offset of the setup's bytes in the file.
     pub(super) fn setup_offset(&self) -> u64 {
         offset::RULES_NAME + self.rules_name.len() as u64
     }
 
-    /// Encodes the header up to the start checkpoint, whose hash includes the digest of these bytes.
-    ///
-    /// The caller has checked the lengths of the name and the setup.
+    /// Encodes the header up to the start checkpoint, which covers these bytes. The caller has checked the lengths.
     pub(super) fn encode(&self) -> Vec<u8> {
         let Header { semantics, rules_version, players, tick_rate, checkpoint_interval, rules_name, setup } =
             *self;
@@ -91,7 +86,6 @@ impl<'a> Header<'a> {
         bytes
     }
 
-    /// Reads the header at the beginning of a file.
     pub(super) fn read(file: &'a [u8], limits: &Limits) -> Result<ReadHeader<'a>, ReadError> {
         let malformed = |offset, flaw| Err(ReadError::Malformed { offset, flaw });
         let cut = || ReadError::Malformed { offset: file.len() as u64, flaw: Flaw::HeaderCut };
@@ -157,7 +151,6 @@ fn take<'a>(cursor: &mut Cursor<'a>, count: u32) -> Option<&'a [u8]> {
     cursor.take(usize::try_from(count).ok()?)
 }
 
-/// The bytes of the file before the cursor.
 fn before<'a>(file: &'a [u8], cursor: &Cursor<'_>) -> &'a [u8] {
     let passed = usize::try_from(cursor.offset()).expect("an offset inside a slice");
     &file[..passed]

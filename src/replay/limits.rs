@@ -1,15 +1,12 @@
-//! [`Limits`]: bounds on the cost of reading and playing an untrusted file.
-
 use core::fmt;
 
 use super::format::{BLOCK_BYTES_MAX, BLOCK_TICKS_MAX, PLAYERS_MAX, SETUP_BYTES_MAX};
 use super::reader::ReadError;
 
-/// Bounds on the size of a replay and on its computing time.
+/// Bounds on the size and computing time of a replay.
 ///
-/// The default accepts anything that an ordinary game records in a day. It allows 20 000 million work units, which take
-/// less than an hour of computing for an ordinary game, and about five and a half hours for a file made to be slow. A
-/// server for one game should narrow the limits, for example to a race of ten minutes and two players.
+/// The default allows a day of an ordinary game, and 20 000 million work units: less than an hour of computing, or
+/// about five and a half hours for a file made to be slow. A server for one game should narrow them.
 ///
 /// ```
 /// use lockstep2d::replay::Limits;
@@ -27,18 +24,16 @@ pub struct Limits {
     pub players: u32,
     /// Size of a block's payload in bytes.
     pub block_bytes: u32,
-    /// Ticks between two checkpoints, which is also the maximum length of a run.
+    /// Ticks between two checkpoints, and in a run.
     pub block_ticks: u32,
     /// Ticks in the whole game.
     pub ticks: u64,
-    /// Bodies in the game's world, checked at the start and after every tick, if the game exposes a world
-    /// ([`Game::world`](crate::lockstep::Game::world)). Between two checks, `setup_bytes` and `tick_work` bound
-    /// their number.
+    /// Bodies in the world of the game ([`Game::world`](crate::lockstep::Game::world)), checked at the start and after
+    /// every tick. `setup_bytes` and `tick_work` bound them in between.
     pub bodies: u64,
-    /// Work units of one tick, as counted by [`Game::work`](crate::lockstep::Game::work) and by the world while it
-    /// plays the tick.
+    /// Work units of one tick, counted by [`Game::work`](crate::lockstep::Game::work) and by the world during the tick.
     pub tick_work: u64,
-    /// Work units of the whole game, including its setup.
+    /// Work units of the whole game, with its setup.
     pub total_work: u64,
 }
 
@@ -54,8 +49,8 @@ impl Default for Limits {
             ticks: 24 * 60 * 60 * 60,
             // Maximum number of bodies in a world.
             bodies: 1 << 20,
-            // A work unit of the sandbox takes 5 to 130 ns in ordinary games, and at most a microsecond in a file that
-            // was made to be slow (docs/VERIFYING.md).
+            // A work unit of the sandbox takes 5 to 130 ns in ordinary games, and up to a microsecond in a file made to
+            // be slow (docs/VERIFYING.md).
             tick_work: 10_000_000,
             total_work: 20_000_000_000,
         }
@@ -101,7 +96,7 @@ pub enum LimitKind {
 }
 
 impl LimitKind {
-    /// The name of the field in [`Limits`].
+    /// Name of the field in [`Limits`].
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -117,7 +112,6 @@ impl LimitKind {
         }
     }
 
-    /// Returns an error for a value above `max`.
     pub(super) fn check(self, value: impl Into<u64>, max: impl Into<u64>) -> Result<(), ReadError> {
         let (value, max) = (value.into(), max.into());
         if value > max { Err(ReadError::LimitExceeded { limit: self, value, max }) } else { Ok(()) }

@@ -1,11 +1,8 @@
-//! Playing a tick within the work limits.
-
 use super::limits::{LimitKind, Limits};
 use super::verdict::Verdict;
 use crate::lockstep::Game;
 
-/// Plays a tick of a game with `step`, within the limits of a tick and of the whole replay. `spent` is the work of the
-/// setup and of all ticks so far, to which the work of this tick is added.
+/// Plays a tick with `step`, within the limits of a tick and of the replay. `spent` is the work so far.
 pub(crate) fn play_within<G: Game, T>(
     game: &mut G,
     inputs: &[G::Input],
@@ -22,7 +19,7 @@ pub(crate) fn play_within<G: Game, T>(
         world.start_work_meter(room);
     }
     let done = step(game, inputs);
-    // A world whose work budget is exhausted has a wrong state, so this check precedes any use of the state.
+    // A world with an exhausted work budget has a wrong state: check before any use of it.
     let metered = game.world_mut().map_or(0, |world| world.metered_work());
     let work = work.saturating_add(metered);
     *spent = before.saturating_add(work);

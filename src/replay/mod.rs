@@ -1,28 +1,21 @@
-//! Replay files: recording, reading and verifying. All functions work on bytes in memory; `docs/FORMAT.md` gives the
-//! layout.
+//! Replay files: recording, reading and verifying, on bytes in memory. `docs/FORMAT.md` gives the layout.
 //!
-//! A replay is a setup and the inputs of every tick. [`Recording`] steps a game and writes its replay at the same time.
-//! [`verify`] simulates a replay and returns a [`Verdict`]. A [`Timeline`] seeks to any tick, forwards and backwards.
+//! A replay is a setup and the inputs of every tick. [`Recording`] steps a game and writes its replay. [`verify`]
+//! simulates a replay and returns a [`Verdict`]. A [`Timeline`] seeks to any tick, forwards and backwards.
 //!
 //! # What `Match` means
 //!
-//! The file is complete, and its setup and its inputs lead, tick by tick, to the end state and the claims that the file
-//! states, under these rules and with this engine. This holds for a file from any source, because the verifier trusts
-//! only the setup and the inputs: it recomputes everything else and compares.
+//! The file is complete. With these rules and this engine, its setup and its inputs lead to its end state and its
+//! claims.
 //!
-//! # What it does not mean
-//!
-//! None of the hashes is keyed, so a match does not prove who played or that the file is the original recording: anyone
-//! who can run the game can write another valid replay. But a file with other inputs has other hashes than its
-//! original, even if the checksums are repaired: every checkpoint is a hash of the state *and* of all inputs so far
-//! ([`checkpoint_hash`]), so that it covers even an input that the game ignores. To prove authorship, sign the file's
-//! bytes.
+//! The hashes have no key. A match does not prove who played: anyone who can run the game can write a valid replay. To
+//! prove authorship, sign the file. A file with other inputs has other hashes, because each checkpoint covers the state
+//! *and* the inputs so far ([`checkpoint_hash`]).
 //!
 //! # Untrusted files
 //!
-//! The [`Limits`] on work and bodies are checked when the game is started and in every tick, all others before the game
-//! is started. A file is scanned to its end (lengths, checksums, chain, run lengths) before the game is started, so
-//! that a damaged file costs no simulation.
+//! The [`Limits`] on work and bodies are checked at the start of the game and in every tick, the others before it. A
+//! file is scanned to its end first, so that a damaged file costs no simulation.
 
 mod bytes;
 mod flaw;

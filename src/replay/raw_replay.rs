@@ -1,5 +1,3 @@
-//! [`RawReplay`]: simulates recorded inputs without comparing checkpoints.
-
 use alloc::vec::Vec;
 
 use super::flaw::Flaw;
@@ -11,8 +9,8 @@ use super::verified_replay::{Ending, Step, check_bodies, check_rules, decode_set
 use crate::lockstep::{Game, decode_inputs, world_of};
 use crate::world::World;
 
-/// Simulates the inputs of a replay file without comparing checkpoints, unlike a
-/// [`VerifiedReplay`](super::VerifiedReplay). Its states are those that the running engine computes from these inputs.
+/// Simulates the inputs of a replay without comparing checkpoints, unlike [`VerifiedReplay`](super::VerifiedReplay).
+/// Its states are those of the running engine.
 ///
 /// ```
 /// # use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
@@ -33,16 +31,14 @@ pub struct RawReplay<'a, G: Game> {
     /// Bytes that `inputs` were decoded from.
     encoded: Option<&'a [u8]>,
     inputs: Vec<G::Input>,
-    /// Number of ticks in the complete blocks of the file.
     length: u64,
 }
 
-/// Position in a replay: the state of a raw replay without the game.
 #[derive(Clone, Debug)]
 pub(super) struct ReplayPosition<'a> {
     pub(super) inputs: TickInputs<'a>,
     pub(super) tick: u64,
-    /// Work units of the setup and of all ticks up to here.
+    /// Work units of the setup and of the ticks so far.
     pub(super) work: u64,
 }
 
@@ -50,13 +46,13 @@ impl<'a, G: Game> RawReplay<'a, G> {
     /// Scans the whole file and starts the game.
     ///
     /// # Errors
-    /// The [`Verdict`] when nothing can be played: the file is malformed, exceeds a limit, or is
+    /// The [`Verdict`] if nothing can be played: the file is malformed, exceeds a limit, or is
     /// [`Verdict::Unverifiable`].
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, Verdict> {
         Self::open_to_end(file, limits).map(|(raw, _)| raw)
     }
 
-    /// Same as [`RawReplay::open`], and also returns the ending of the file that the scan found.
+    /// Like [`RawReplay::open`], and also returns the ending of the file.
     pub(super) fn open_to_end(file: &'a [u8], limits: &Limits) -> Result<(Self, Ending), Verdict> {
         let inputs = TickInputs::open(file, limits)?;
         let ending = scan(inputs.reader().clone())?;
@@ -74,7 +70,7 @@ impl<'a, G: Game> RawReplay<'a, G> {
         &self.game
     }
 
-    /// The game's physics world at the current tick, if it has one, for inspection.
+    /// The world of the game, if it has one.
     pub fn world(&mut self) -> Option<&World> {
         world_of(&mut self.game)
     }
@@ -91,8 +87,7 @@ impl<'a, G: Game> RawReplay<'a, G> {
         self.position.tick
     }
 
-    /// Work units of the setup and of all ticks played, as counted by [`Game::new_within`] and [`Game::work`], and by
-    /// the world while it plays.
+    /// Work units of the setup and of the ticks played, counted by [`Game::new_within`], [`Game::work`] and the world.
     #[must_use]
     pub fn work(&self) -> u64 {
         self.position.work
@@ -113,7 +108,7 @@ impl<'a, G: Game> RawReplay<'a, G> {
     /// Plays one tick.
     ///
     /// # Errors
-    /// The [`Verdict`] when the inputs are not valid for this game or exceed a limit on work or bodies.
+    /// The [`Verdict`] if the inputs are not valid for this game or exceed a limit on work or bodies.
     pub fn step(&mut self) -> Result<Step, Verdict> {
         if self.read_inputs()? == Step::Ended {
             return Ok(Step::Ended);
@@ -122,7 +117,7 @@ impl<'a, G: Game> RawReplay<'a, G> {
         Ok(Step::Ticked)
     }
 
-    /// Reads the inputs of the next tick. The caller must then play or skip that tick.
+    /// Reads the inputs of the next tick, which the caller then plays or skips.
     pub(crate) fn read_inputs(&mut self) -> Result<Step, Verdict> {
         let Some(run) = self.position.inputs.next_tick()? else {
             return Ok(Step::Ended);
@@ -136,12 +131,11 @@ impl<'a, G: Game> RawReplay<'a, G> {
         Ok(Step::Ticked)
     }
 
-    /// Plays the tick whose inputs were read.
     pub(crate) fn play(&mut self) -> Result<(), Verdict> {
         self.play_with(G::step)
     }
 
-    /// Plays the tick whose inputs were read, with a custom `step` function.
+    /// Plays the tick whose inputs were read, with this `step`.
     pub(crate) fn play_with<T>(&mut self, step: impl FnOnce(&mut G, &[G::Input]) -> T) -> Result<T, Verdict> {
         let RawReplay { game, inputs, limits, position, .. } = self;
         let done = play_within(game, inputs, limits, &mut position.work, step)?;
@@ -150,33 +144,28 @@ impl<'a, G: Game> RawReplay<'a, G> {
         Ok(done)
     }
 
-    /// Skips the tick whose inputs were read, because another game with the same state has played it.
+    /// Skips the tick whose inputs were read.
     pub(crate) fn skip(&mut self) {
         self.position.tick += 1;
     }
 
-    /// Canonical bytes of the inputs that were read last.
     pub(crate) fn encoded(&self) -> Option<&'a [u8]> {
         self.encoded
     }
 
-    /// Mutable access to the game at the current tick, for tools that inspect its world.
     pub(crate) fn game_mut(&mut self) -> &mut G {
         &mut self.game
     }
 
-    /// Decodes the setup that the game was started from.
     pub(crate) fn setup(&self) -> Result<G::Setup, Verdict> {
         decode_setup::<G>(self.position.inputs.reader().header())
     }
 
-    /// The current position in the file.
     pub(super) fn position(&self) -> &ReplayPosition<'a> {
         &self.position
     }
 
-    /// Restores a state and a position, of this raw replay or of another one of the same file, and clears
-    /// [`RawReplay::inputs`].
+    /// Restores a state and a position in this file, and clears [`RawReplay::inputs`].
     pub(super) fn go(&mut self, save: &G::Save, position: ReplayPosition<'a>) {
         self.game.load(save);
         self.position = position;

@@ -1,7 +1,6 @@
 //! [`Reader`]: reads the structure of a replay, block by block, independently of the game.
 //!
-//! The reader checks all properties that do not depend on the game's types: lengths, checksums, the chain, run lengths,
-//! the order of the blocks, the trailer's counts.
+//! It checks lengths, checksums, the chain, run lengths, the order of the blocks, and the trailer's counts.
 
 use core::fmt;
 
@@ -14,7 +13,7 @@ use super::runs::Runs;
 use super::trailer::{Trailer, read_claims};
 use crate::hash::StateHash;
 
-/// Reason why a file, or the rest of it, cannot be read.
+/// Reason why a file cannot be read to its end.
 ///
 /// ```
 /// use lockstep2d::replay::{Flaw, Limits, ReadError, Reader};
@@ -32,9 +31,9 @@ pub enum ReadError {
         /// The flaw at this offset.
         flaw: Flaw,
     },
-    /// The file exceeds one of the reader's limits.
+    /// The file exceeds a limit.
     LimitExceeded {
-        /// The limit that is exceeded.
+        /// The limit.
         limit: LimitKind,
         /// Value in the file.
         value: u64,
@@ -85,7 +84,7 @@ pub enum Part<'a> {
     Inputs(InputBlock<'a>),
     /// The end of a complete file.
     Trailer(Trailer),
-    /// The file ends before the end of its trailer, for example because its recorder was stopped or is still running.
+    /// The file ends before the end of its trailer: its recorder was stopped or is still running.
     Cut,
 }
 
@@ -112,7 +111,7 @@ pub struct InputBlock<'a> {
     pub ticks: u32,
     /// Checkpoint after the block's last tick.
     pub checkpoint: StateHash,
-    /// Digest of the setup and of all inputs up to the block's last tick.
+    /// Digest of the setup and the inputs up to the block's last tick.
     pub inputs_digest: StateHash,
     runs: Runs<'a>,
 }
@@ -156,7 +155,7 @@ pub struct Reader<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Next {
     InputsOrTrailer,
-    /// Only the trailer may follow, because a block had fewer ticks than the interval.
+    /// A block with fewer ticks than the interval was the last.
     Trailer,
     Nothing,
 }
@@ -165,7 +164,7 @@ impl<'a> Reader<'a> {
     /// Reads the header.
     ///
     /// # Errors
-    /// [`ReadError`] when the header is malformed or has another format version, or when the file exceeds `limits`.
+    /// [`ReadError`] if the header is malformed or of another format version, or the file exceeds `limits`.
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, ReadError> {
         LimitKind::FileBytes.check(file.len() as u64, limits.file_bytes)?;
         let ReadHeader { header, start, inputs_digest, chain, length } = Header::read(file, limits)?;
@@ -194,7 +193,7 @@ impl<'a> Reader<'a> {
         self.start
     }
 
-    /// Digest of the setup and all inputs read so far.
+    /// Digest of the setup and the inputs read so far.
     #[must_use]
     pub fn inputs_digest(&self) -> StateHash {
         self.inputs_digest
@@ -215,7 +214,7 @@ impl<'a> Reader<'a> {
     /// Returns the next part of the file, or `None` after a [`Part::Trailer`] or [`Part::Cut`].
     ///
     /// # Errors
-    /// [`ReadError`] when the block is malformed or exceeds a limit. Further calls return the same error.
+    /// [`ReadError`] if the block is malformed or exceeds a limit. Further calls return the same error.
     pub fn next_part(&mut self) -> Result<Option<Part<'a>>, ReadError> {
         if self.next == Next::Nothing {
             return Ok(None);
@@ -233,7 +232,7 @@ impl<'a> Reader<'a> {
         Ok(Some(part))
     }
 
-    /// Reads the next block and checks its checksum. Returns `None` when the file ends before the end of the block.
+    /// Reads the next block and checks its checksum; `None` if the file ends before the block.
     fn frame(&self) -> Result<Option<Block<'a>>, ReadError> {
         let start = self.offset as u64;
         let rest = &self.file[self.offset..];
@@ -282,7 +281,6 @@ impl<'a> Reader<'a> {
         Ok(InputBlock { ticks, checkpoint, inputs_digest: self.inputs_digest, runs })
     }
 
-    /// Counts the ticks of all runs of a block.
     fn count_ticks(&self, mut runs: Runs<'a>, offset: u64) -> Result<u32, ReadError> {
         let interval = self.header.checkpoint_interval;
         let mut ticks: u32 = 0;

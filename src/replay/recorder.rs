@@ -1,5 +1,3 @@
-//! [`Recorder`]: writes a replay while the game runs.
-
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt;
@@ -16,14 +14,13 @@ use crate::codec;
 use crate::hash::StateHash;
 use crate::lockstep::{EncodedInputs, Game, InputError};
 
-/// Recommended checkpoint interval: one second at 60 Hz. A shorter interval costs bytes (29 per block, besides the
-/// runs). A longer interval loses more ticks in a crash and locates a divergence less precisely.
+/// Recommended checkpoint interval: one second at 60 Hz. A block takes 29 bytes besides its runs. A longer interval
+/// loses more ticks in a crash and locates a divergence less precisely.
 pub const CHECKPOINT_INTERVAL: u32 = 60;
 
-/// Maximum length of a u32 in LEB128, in bytes.
 const VARINT_BYTES_MAX: usize = 5;
 
-/// Reason why a game or a tick cannot be recorded. The recorder is then unchanged.
+/// Reason why a game or a tick cannot be recorded.
 ///
 /// ```
 /// use lockstep2d::lockstep::{InputError, Sandbox, SandboxSetup};
@@ -53,7 +50,7 @@ pub enum RecordError {
         /// The interval in ticks.
         ticks: u32,
     },
-    /// The encoded setup does not decode, or decodes to a setup with other bytes.
+    /// The setup changes when it is encoded and decoded.
     Setup,
     /// The game cannot start from the setup.
     SetupRefused {
@@ -67,14 +64,14 @@ pub enum RecordError {
     },
     /// The inputs cannot be recorded.
     Inputs(InputError),
-    /// With these inputs, the block could exceed the maximum payload.
+    /// The block could exceed its maximum payload.
     BlockLength {
         /// Upper bound of the payload in bytes.
         bytes: u64,
     },
-    /// The block is full, and its checkpoint has not been given.
+    /// The block is full, and [`Recorder::checkpoint`] was not called.
     CheckpointDue,
-    /// Two claims have the same name, a name is empty or too long, or there are too many claims.
+    /// Two claims have one name, a name is empty or too long, or there are too many claims.
     Claims,
 }
 
@@ -113,10 +110,10 @@ impl fmt::Display for RecordError {
 
 impl core::error::Error for RecordError {}
 
-/// Writes the replay of a game that the caller steps. [`Recording`](super::Recording) steps the game as well.
+/// Writes the replay of a game that the caller steps. [`Recording`](super::Recording) also steps the game.
 ///
-/// Finished bytes are fetched with [`Recorder::take_bytes`] and can be appended to a file at any time: after the header
-/// and after every block they are a valid prefix of a replay. In a game with rollback, record confirmed ticks only.
+/// Bytes from [`Recorder::take_bytes`] can be appended to a file: after the header and each block they are a prefix of
+/// a replay. With rollback, record confirmed ticks.
 ///
 /// ```
 /// use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
@@ -136,11 +133,11 @@ impl core::error::Error for RecordError {}
 pub struct Recorder<G: Game> {
     players: u32,
     checkpoint_interval: u32,
-    /// Header and complete blocks that have not been taken yet.
+    /// Header and complete blocks that have not been taken.
     finished: Vec<u8>,
     chain: StateHash,
     inputs_digest: StateHash,
-    /// Encoded runs of the current block, except the last run.
+    /// Encoded runs of the current block, except the last one.
     runs: Vec<u8>,
     last_run: Option<(EncodedInputs<G::Input>, u32)>,
     block_ticks: u32,
@@ -160,12 +157,12 @@ impl<G: Game> Clone for Recorder<G> {
 }
 
 impl<G: Game> Recorder<G> {
-    /// Starts the game that `setup` describes, and its replay.
+    /// Starts the game and its replay.
     ///
-    /// The game is created from the encoded and decoded setup, as in a verifier.
+    /// The game gets the encoded and decoded setup, as in a verifier.
     ///
     /// # Errors
-    /// [`RecordError`] when the setup cannot start a game, or when a replay cannot represent that game.
+    /// [`RecordError`] if the setup cannot start a game, or a replay cannot represent the game.
     pub fn start(setup: &G::Setup, checkpoint_interval: u32) -> Result<(Self, G), RecordError> {
         let setup = codec::encode(setup);
         let (game, header) = first_state::<G>(&setup, checkpoint_interval)?;
@@ -198,11 +195,10 @@ impl<G: Game> Recorder<G> {
         self.ticks
     }
 
-    /// Records the inputs of the next tick and returns the inputs to step the game with: encoded and decoded, as in a
-    /// verifier.
+    /// Records the inputs of the next tick. Returns them encoded and decoded, as in a verifier, to step the game with.
     ///
     /// # Errors
-    /// [`RecordError`] when the inputs cannot be recorded; the tick must then not be played.
+    /// [`RecordError`] if the inputs cannot be recorded. Do not play the tick.
     pub fn record(&mut self, inputs: &[G::Input]) -> Result<&[G::Input], RecordError> {
         if self.is_checkpoint_due() {
             return Err(RecordError::CheckpointDue);
@@ -212,10 +208,10 @@ impl<G: Game> Recorder<G> {
         self.extend(new)
     }
 
-    /// Records the inputs of the next tick, which have been encoded already.
+    /// Records encoded inputs of the next tick.
     ///
     /// # Errors
-    /// [`RecordError`] when the inputs cannot be recorded.
+    /// [`RecordError`] if the inputs cannot be recorded.
     pub fn record_encoded(&mut self, inputs: &EncodedInputs<G::Input>) -> Result<(), RecordError> {
         if self.is_checkpoint_due() {
             return Err(RecordError::CheckpointDue);
@@ -229,7 +225,7 @@ impl<G: Game> Recorder<G> {
         Ok(())
     }
 
-    /// Adds a tick with new inputs, or with those of the tick before, and returns its inputs.
+    /// Adds a tick with new inputs, or with those of the tick before, and returns them.
     fn extend(&mut self, new: Option<EncodedInputs<G::Input>>) -> Result<&[G::Input], RecordError> {
         if let Some(new) = new {
             let bytes = self.block_length_with(&new);
@@ -248,28 +244,27 @@ impl<G: Game> Recorder<G> {
         }))
     }
 
-    /// Whether the block is full, so that [`Recorder::checkpoint`] must be called before the next tick.
+    /// Whether the block is full and needs [`Recorder::checkpoint`] before the next tick.
     #[must_use]
     pub fn is_checkpoint_due(&self) -> bool {
         self.block_ticks == self.checkpoint_interval
     }
 
-    /// Finishes a full block with the state hash after its last tick. Does nothing if the block is not full.
+    /// Finishes a full block with the state hash after its last tick. Otherwise does nothing.
     pub fn checkpoint(&mut self, state: StateHash) {
         if self.is_checkpoint_due() {
             self.finish_block(state);
         }
     }
 
-    /// Takes the finished bytes, to be appended to the file. Every byte is returned once.
+    /// Takes the finished bytes, to be appended to the file.
     #[must_use]
     pub fn take_bytes(&mut self) -> Vec<u8> {
         core::mem::take(&mut self.finished)
     }
 
-    /// Returns the bytes that have not been taken yet, followed by the current block, which is finished with this
-    /// state. Appended to the bytes already taken, they are a replay of all ticks so far, without a trailer. The
-    /// recorder is unchanged.
+    /// Returns the bytes not taken yet, with the current block finished by this state. Together with the bytes taken,
+    /// they are a replay without a trailer. The recorder is unchanged.
     #[must_use]
     pub fn so_far(&self, state: StateHash) -> Vec<u8> {
         let mut copy = self.clone();
@@ -279,10 +274,10 @@ impl<G: Game> Recorder<G> {
         copy.finished
     }
 
-    /// Writes the last block and the trailer, and returns all bytes that have not been taken yet.
+    /// Writes the last block and the trailer, and returns the bytes that have not been taken.
     ///
     /// # Errors
-    /// [`RecordError::Claims`] when the game's claims cannot be recorded.
+    /// [`RecordError::Claims`] if the game's claims cannot be recorded.
     pub fn finish(mut self, game: &G) -> Result<Vec<u8>, RecordError> {
         let claims = encode_claims(game.claims())?;
         let state = game.state_hash();
@@ -298,7 +293,7 @@ impl<G: Game> Recorder<G> {
         Ok(self.finished)
     }
 
-    /// Upper bound of the payload in bytes after a run of these inputs is added.
+    /// Upper bound of the payload in bytes with another run of these inputs.
     fn block_length_with(&self, added: &EncodedInputs<G::Input>) -> usize {
         let run_length = |encoded: &EncodedInputs<G::Input>| encoded.bytes().len() + 2 * VARINT_BYTES_MAX;
         let previous = self.last_run.as_ref().map_or(0, |(encoded, _)| run_length(encoded));
@@ -329,7 +324,6 @@ impl<G: Game> Recorder<G> {
     }
 }
 
-/// Creates the game before its first tick and the header of its replay.
 fn first_state<G: Game>(setup: &[u8], checkpoint_interval: u32) -> Result<(G, Header<'_>), RecordError> {
     let rules_name = G::RULES.name;
     if rules_name.is_empty() || rules_name.len() > RULES_NAME_BYTES_MAX as usize {
@@ -365,7 +359,6 @@ fn first_state<G: Game>(setup: &[u8], checkpoint_interval: u32) -> Result<(G, He
     Ok((game, header))
 }
 
-/// Encodes the claims for the trailer, in ascending order of names.
 fn encode_claims(mut claims: Vec<(String, i64)>) -> Result<Vec<u8>, RecordError> {
     claims.sort();
     let are_distinct = claims.windows(2).all(|pair| pair[0].0 != pair[1].0);

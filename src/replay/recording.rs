@@ -1,5 +1,3 @@
-//! [`Recording`]: a game and its recorder, stepped together.
-
 use alloc::vec::Vec;
 
 use super::recorder::{RecordError, Recorder};
@@ -27,10 +25,10 @@ pub struct Recording<G: Game> {
 }
 
 impl<G: Game> Recording<G> {
-    /// Starts the game that `setup` describes, with a checkpoint every `checkpoint_interval` ticks.
+    /// Starts a game, with a checkpoint every `checkpoint_interval` ticks.
     ///
     /// # Errors
-    /// [`RecordError`] when the setup cannot start a game, or when a replay cannot represent that game.
+    /// [`RecordError`] if the setup cannot start a game, or a replay cannot represent the game.
     pub fn start(setup: &G::Setup, checkpoint_interval: u32) -> Result<Self, RecordError> {
         let (recorder, game) = Recorder::start(setup, checkpoint_interval)?;
         Ok(Recording { game, recorder })
@@ -51,7 +49,7 @@ impl<G: Game> Recording<G> {
     /// Plays one tick with the inputs as a verifier decodes them.
     ///
     /// # Errors
-    /// [`RecordError`] when the inputs cannot be recorded; the tick is then not played.
+    /// [`RecordError`] if the inputs cannot be recorded. The tick is not played.
     pub fn step(&mut self, inputs: &[G::Input]) -> Result<(), RecordError> {
         let inputs = self.recorder.record(inputs)?;
         self.game.step(inputs);
@@ -61,16 +59,16 @@ impl<G: Game> Recording<G> {
         Ok(())
     }
 
-    /// Takes the finished bytes, to be appended to the file. Every byte is returned once.
+    /// Takes the finished bytes, to be appended to the file.
     #[must_use]
     pub fn take_bytes(&mut self) -> Vec<u8> {
         self.recorder.take_bytes()
     }
 
-    /// Ends the replay and returns all bytes that have not been taken yet.
+    /// Ends the replay, and returns the bytes that have not been taken.
     ///
     /// # Errors
-    /// [`RecordError::Claims`] when the game's claims cannot be recorded.
+    /// [`RecordError::Claims`] if the game's claims cannot be recorded.
     pub fn finish(self) -> Result<Vec<u8>, RecordError> {
         self.recorder.finish(&self.game)
     }

@@ -1,5 +1,3 @@
-//! The runs of a block: consecutive ticks with the same inputs.
-
 use alloc::vec::Vec;
 
 use super::bytes::{Cursor, put_varint};
@@ -28,14 +26,13 @@ use super::reader::ReadError;
 pub struct Run<'a> {
     /// Number of ticks, at least one.
     pub ticks: u32,
-    /// Canonical bytes of all players' inputs for one tick, in player order.
+    /// Canonical bytes of the inputs for one tick, in player order.
     pub encoded: &'a [u8],
     /// Offset of the run in the file.
     pub offset: u64,
 }
 
 impl Run<'_> {
-    /// Appends a run in the encoding of a block.
     pub(super) fn write(ticks: u32, encoded: &[u8], bytes: &mut Vec<u8>) {
         put_varint(ticks, bytes);
         put_varint(u32::try_from(encoded.len()).expect("a length that was checked"), bytes);
@@ -43,7 +40,7 @@ impl Run<'_> {
     }
 }
 
-/// Reads the runs of a block one after the other and accepts only their canonical encoding.
+/// Reads the runs of a block in their canonical encoding.
 #[derive(Clone, Debug)]
 pub struct Runs<'a> {
     cursor: Cursor<'a>,
@@ -58,8 +55,8 @@ impl<'a> Runs<'a> {
     /// The next run, or `None` at the end of the block.
     ///
     /// # Errors
-    /// [`ReadError::Malformed`] for bytes that no recorder writes. A [`Reader`](super::Reader) has already refused
-    /// blocks with such bytes.
+    /// [`ReadError::Malformed`] for bytes that no recorder writes, which a [`Reader`](super::Reader) has already
+    /// refused.
     pub fn next_run(&mut self) -> Result<Option<Run<'a>>, ReadError> {
         if self.cursor.is_empty() {
             return Ok(None);

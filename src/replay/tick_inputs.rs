@@ -1,10 +1,8 @@
-//! [`TickInputs`]: the encoded inputs of a replay, tick by tick.
-
 use super::limits::Limits;
 use super::reader::{InputBlock, Part, ReadError, Reader};
 use super::runs::{Run, Runs};
 
-/// The encoded inputs of a replay, tick by tick.
+/// Reads the inputs of a replay tick by tick.
 ///
 /// ```
 /// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
@@ -24,9 +22,7 @@ use super::runs::{Run, Runs};
 #[derive(Clone, Debug)]
 pub struct TickInputs<'a> {
     reader: Reader<'a>,
-    /// The current block.
     block: Option<InputBlock<'a>>,
-    /// Number of remaining ticks of the current block.
     block_left: u32,
     runs: Runs<'a>,
     /// The current run, with the number of its remaining ticks.
@@ -37,17 +33,17 @@ impl<'a> TickInputs<'a> {
     /// Opens a replay at its first tick.
     ///
     /// # Errors
-    /// Same as [`Reader::open`].
+    /// As [`Reader::open`].
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, ReadError> {
         let reader = Reader::open(file, limits)?;
         Ok(TickInputs { reader, block: None, block_left: 0, runs: Runs::new(&[], 0), run: None })
     }
 
-    /// Advances by one tick and returns the run that the tick belongs to, with the number of ticks left in it including
-    /// this one. Returns `None` at the end of the complete blocks.
+    /// Advances by one tick. Returns its run, with the ticks left including this one, or `None` at the end of the
+    /// complete blocks.
     ///
     /// # Errors
-    /// [`ReadError`] when the next block is malformed or exceeds a limit.
+    /// [`ReadError`] if the next block is malformed or exceeds a limit.
     pub fn next_tick(&mut self) -> Result<Option<Run<'a>>, ReadError> {
         loop {
             if let Some(run) = self.run.as_mut().filter(|run| run.ticks > 0) {
@@ -67,13 +63,12 @@ impl<'a> TickInputs<'a> {
         }
     }
 
-    /// The block whose last tick was just read. Its checkpoint belongs to the state after that tick.
+    /// The block whose last tick was just read, with the checkpoint after that tick.
     #[must_use]
     pub fn finished_block(&self) -> Option<&InputBlock<'a>> {
         self.block.as_ref().filter(|_| self.block_left == 0)
     }
 
-    /// The reader, positioned after the current block.
     pub(super) fn reader(&self) -> &Reader<'a> {
         &self.reader
     }

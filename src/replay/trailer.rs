@@ -1,5 +1,3 @@
-//! [`Trailer`]: the end of a complete replay, with the final hash and the claims of the game.
-
 use alloc::collections::BTreeMap;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -11,7 +9,7 @@ use super::reader::ReadError;
 use super::verdict::ClaimDifference;
 use crate::hash::StateHash;
 
-/// The trailer of a file: its statements about the end of the game.
+/// Statements of a file about the end of the game.
 ///
 /// ```
 /// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
@@ -32,19 +30,17 @@ pub struct Trailer {
     pub ticks: u64,
     /// Hash of the state after the last tick.
     pub final_hash: StateHash,
-    /// Hash of the header and all blocks of inputs.
+    /// Hash of the header and the blocks of inputs.
     pub chain: StateHash,
-    /// Results that the game reports, in ascending order of names.
+    /// Results of the game, ascending by name.
     pub claims: Vec<(String, i64)>,
 }
 
 impl Trailer {
-    /// Returns the first difference from the last state of a game: the final hash, or the first claim that differs, in
-    /// ascending order of names.
+    /// Returns the first difference to the end of a game: the final hash, or the first claim by name.
     #[must_use]
     pub fn difference(&self, hash: StateHash, claims: &[(String, i64)]) -> Option<ClaimDifference> {
-        // The last checkpoint already covers this state, so a different final hash is a wrong statement in the trailer
-        // and not a divergence of the game.
+        // The last checkpoint covers this state, so the trailer is wrong and the game has not diverged.
         if self.final_hash != hash {
             return Some(ClaimDifference::FinalHash { claimed: self.final_hash, actual: hash });
         }

@@ -1,5 +1,3 @@
-//! [`Verdict`]: the result of verifying a file.
-
 use alloc::string::String;
 use core::fmt;
 
@@ -8,7 +6,7 @@ use super::limits::LimitKind;
 use super::reader::ReadError;
 use crate::hash::StateHash;
 
-/// Result of verifying a file. Only `Match` means that the file is valid.
+/// Result of verifying a file. Only `Match` means that it is valid.
 ///
 /// ```
 /// use lockstep2d::{lockstep::Sandbox, replay::{Limits, Verdict, verify}};
@@ -20,33 +18,33 @@ use crate::hash::StateHash;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// The setup and the inputs lead to every checkpoint, to the end state and to the claims of the file.
+    /// The setup and the inputs lead to every checkpoint, to the end state and to the claims.
     Match {
         /// Number of ticks in the game.
         ticks: u64,
         /// Hash of the last state.
         hash: StateHash,
     },
-    /// All checkpoints agree, but a claim or the final hash in the trailer differs from the game's.
+    /// The checkpoints agree, but a claim or the final hash in the trailer differs.
     ClaimMismatch {
         /// Number of ticks in the game.
         ticks: u64,
-        /// Hash of the last state, as simulated by the verifier.
+        /// Hash of the last simulated state.
         hash: StateHash,
         /// The first difference.
         difference: ClaimDifference,
     },
-    /// The state of the simulation differs from the recorded game at a checkpoint.
+    /// The simulated state differs at a checkpoint.
     Diverged {
-        /// Tick of the last checkpoint that agrees; `None` if the start checkpoint already differs.
+        /// Tick of the last checkpoint that agrees; `None` if the start checkpoint differs.
         last_equal: Option<u64>,
         /// Tick of the first checkpoint that differs.
         first_different: u64,
     },
     /// The file ends before the end of its trailer, or [`VerifiedReplay::conclude`](super::VerifiedReplay::conclude)
-    /// was called before the last tick was played. All checkpoints up to there agree.
+    /// was called early. The checkpoints so far agree.
     Incomplete {
-        /// Number of ticks played: all ticks in the complete blocks, if the replay was played to its end.
+        /// Number of ticks played.
         ticks: u64,
         /// Hash of the state after these ticks.
         hash: StateHash,
@@ -58,18 +56,18 @@ pub enum Verdict {
         /// The flaw at this offset.
         flaw: Flaw,
     },
-    /// The file exceeds one of the verifier's limits on size and computing.
+    /// The file exceeds a limit of the verifier.
     LimitExceeded {
-        /// The limit that is exceeded.
+        /// The limit.
         limit: LimitKind,
         /// Value in the file, or a lower bound of it.
         value: u64,
         /// Maximum allowed value.
         max: u64,
     },
-    /// The file may be valid, but this program cannot verify it.
+    /// This program cannot verify the file, which may be valid.
     Unverifiable {
-        /// Reason why this program cannot verify the file.
+        /// Reason.
         why: Mismatch,
     },
 }
@@ -93,7 +91,7 @@ pub enum Verdict {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ClaimDifference {
-    /// The hash of the last state differs.
+    /// The final hash differs.
     FinalHash {
         /// Hash in the trailer.
         claimed: StateHash,
@@ -104,14 +102,14 @@ pub enum ClaimDifference {
     Value {
         /// Name of the value.
         name: String,
-        /// Value in the trailer; `None` if the trailer does not have the name.
+        /// Value in the trailer, if it has the name.
         claimed: Option<i64>,
-        /// Value of the game; `None` if the game does not report the name.
+        /// Value of the game, if it reports the name.
         actual: Option<i64>,
     },
 }
 
-/// A version of the format, engine or rules that the file requires and this program does not have.
+/// A version that the file requires and this program does not have.
 ///
 /// ```
 /// use lockstep2d::replay::{Mismatch, Verdict};
@@ -157,7 +155,7 @@ impl Verdict {
         matches!(self, Verdict::Match { .. })
     }
 
-    /// The verdict as one word, as printed by tools.
+    /// The verdict as one word, for tools.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -171,7 +169,7 @@ impl Verdict {
         }
     }
 
-    /// Number of ticks played to reach the verdict; 0 if the verdict does not contain it.
+    /// Number of ticks played, or 0 if the verdict does not contain it.
     #[must_use]
     pub fn ticks(&self) -> u64 {
         match self {
@@ -183,7 +181,7 @@ impl Verdict {
         }
     }
 
-    /// Hash of the last state played, if the verdict contains it. All checkpoints up to that state agree.
+    /// Hash of the last state played, if the verdict contains it.
     #[must_use]
     pub fn hash(&self) -> Option<StateHash> {
         match self {

@@ -1,5 +1,3 @@
-//! [`VerifiedReplay`]: simulates a replay tick by tick and compares its checkpoints; [`verify`] runs it to its end.
-
 use super::flaw::Flaw;
 use super::format::checkpoint_hash;
 use super::header::{Header, offset};
@@ -72,7 +70,6 @@ pub struct VerifiedReplay<'a, G: Game> {
     failed: Option<Verdict>,
 }
 
-/// The end of the file, known before the first tick is played.
 #[derive(Clone, Debug)]
 pub(super) struct Ending {
     pub(super) ticks: u64,
@@ -83,8 +80,8 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
     /// Scans the whole file, starts the game and compares the start checkpoint.
     ///
     /// # Errors
-    /// The [`Verdict`] when nothing can be played: the file is malformed, exceeds a limit, is
-    /// [`Verdict::Unverifiable`], or its setup leads to another start state.
+    /// The [`Verdict`] if nothing can be played: the file is malformed, exceeds a limit, is [`Verdict::Unverifiable`],
+    /// or its setup leads to another start state.
     pub fn open(file: &'a [u8], limits: &Limits) -> Result<Self, Verdict> {
         let (raw, ending) = RawReplay::<G>::open_to_end(file, limits)?;
         let reader = raw.position().inputs.reader();
@@ -100,7 +97,7 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
         self.raw.game()
     }
 
-    /// The game's physics world at the current tick, if it has one, for inspection.
+    /// The world of the game, if it has one.
     pub fn world(&mut self) -> Option<&World> {
         self.raw.world()
     }
@@ -123,7 +120,7 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
         self.raw.inputs()
     }
 
-    /// Work units of the setup and of all ticks played: see [`RawReplay::work`].
+    /// Work units of the setup and of the ticks played: see [`RawReplay::work`].
     #[must_use]
     pub fn work(&self) -> u64 {
         self.raw.work()
@@ -135,17 +132,17 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
         self.raw.ticks()
     }
 
-    /// The trailer, if the file is complete. Its statements are verified only if the verdict is [`Verdict::Match`].
+    /// The trailer, if the file is complete. It is verified once the verdict is [`Verdict::Match`].
     #[must_use]
     pub fn trailer(&self) -> Option<&Trailer> {
         self.ending.trailer.as_ref()
     }
 
-    /// Plays one tick and, at the end of a block, compares the checkpoint.
+    /// Plays one tick. At the end of a block, compares the checkpoint.
     ///
     /// # Errors
-    /// The [`Verdict`] when the inputs are not valid for this game, exceed a limit on work or bodies, or lead
-    /// to another state. The verdict is final.
+    /// The [`Verdict`] if the inputs are not valid for this game, exceed a limit on work or bodies, or lead to another
+    /// state. It is final.
     pub fn step(&mut self) -> Result<Step, Verdict> {
         if let Some(verdict) = &self.failed {
             return Err(verdict.clone());
@@ -157,9 +154,7 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
         result
     }
 
-    /// Returns the verdict on the file, to be called after all ticks have been played.
-    ///
-    /// Before the end of the file the best verdict is `Incomplete`.
+    /// Returns the verdict, which is at best `Incomplete` before all ticks have been played.
     #[must_use]
     pub fn conclude(self) -> Verdict {
         if let Some(verdict) = self.failed {
@@ -184,30 +179,27 @@ impl<'a, G: Game> VerifiedReplay<'a, G> {
         }
         let (tick, inputs) = (self.tick(), &self.raw.position().inputs);
         let block_ticks = inputs.finished_block().map_or(0, |block| u64::from(block.ticks));
-        // The state at the start of the block has been compared.
+        // The state at the start of the block agreed.
         Err(Verdict::Diverged { last_equal: Some(tick - block_ticks), first_different: tick })
     }
 
-    /// Whether the state matches the checkpoint of this tick; true if the file has none at this tick.
+    /// Whether the state matches the checkpoint of this tick, if there is one.
     pub(super) fn agrees(&self) -> bool {
         self.raw.position().inputs.finished_block().is_none_or(|block| {
             checkpoint_hash(self.game().state_hash(), block.inputs_digest) == block.checkpoint
         })
     }
 
-    /// The current position in the file.
     pub(super) fn position(&self) -> &ReplayPosition<'a> {
         self.raw.position()
     }
 
-    /// Restores a saved state and its position.
     pub(super) fn go(&mut self, save: &G::Save, position: ReplayPosition<'a>) {
         self.raw.go(save, position);
         self.failed = None;
     }
 }
 
-/// Reads the file to its end.
 pub(super) fn scan(mut reader: Reader<'_>) -> Result<Ending, ReadError> {
     loop {
         match reader.next_part()? {
@@ -235,13 +227,12 @@ pub(super) fn check_rules<G: Game>(header: &Header<'_>) -> Result<(), Verdict> {
     Ok(())
 }
 
-/// Checks the number of bodies. A game that exposes no world counts as having none.
+/// Checks the number of bodies, which is 0 without a world.
 pub(super) fn check_bodies<G: Game>(game: &mut G, limits: &Limits) -> Result<(), ReadError> {
     let bodies = world_of(game).map_or(0, World::body_count);
     LimitKind::Bodies.check(u64::try_from(bodies).unwrap_or(u64::MAX), limits.bodies)
 }
 
-/// Decodes the setup, which must be in canonical encoding.
 pub(super) fn decode_setup<G: Game>(header: &Header<'_>) -> Result<G::Setup, Verdict> {
     codec::decode(header.setup)
         .ok()
@@ -249,9 +240,7 @@ pub(super) fn decode_setup<G: Game>(header: &Header<'_>) -> Result<G::Setup, Ver
         .ok_or(Verdict::Malformed { offset: header.setup_offset(), flaw: Flaw::Setup })
 }
 
-/// Creates the game before its first tick and checks that it matches the header.
-///
-/// Returns the game and the work units of its setup, which count like the work units of the ticks.
+/// Creates the game and checks it against the header. Returns it with the work units of its setup.
 pub(super) fn start<G: Game>(header: &Header<'_>, limits: &Limits) -> Result<(G, u64), Verdict> {
     let malformed = |offset, flaw| Verdict::Malformed { offset, flaw };
     let setup = decode_setup::<G>(header)?;

@@ -1,5 +1,3 @@
-//! [`bisect`]: finds the tick at which a trajectory diverges from the running engine's, or from another replay's.
-
 use alloc::format;
 
 use super::compare::{CompareError, compare_worlds, survey};
@@ -11,19 +9,17 @@ use crate::lockstep::Game;
 use crate::replay::Limits;
 
 /// Finds the first tick at which two trajectories differ, the stage of that tick, and the differences, with the
-/// probable origin first. Equal inputs are played once, with a save and a hash per tick. The total cost, including the
-/// search for a single bit flip that explains all differences, is less than playing all ticks three times.
+/// probable origin first. This costs about as much as playing all ticks two or three times.
 ///
-/// Without `b`, the other trajectory is the one that the running engine computes from the same inputs. A replay shows
-/// only between which of its checkpoints the trajectories diverge. A [`Trace`](super::Trace) of these ticks, made by
-/// the engine that wrote the replay, shows the exact tick. So does a desync report, for the last seconds before the
-/// desync.
+/// Without `b`, the other trajectory is that of the running engine with the same inputs. A replay shows between which
+/// of its checkpoints they diverge. The exact tick needs a [`Trace`](super::Trace) by the engine that wrote the replay,
+/// or a desync report.
 ///
-/// With `b`, the files are recordings of the same match on two machines, or two replays of any setups and inputs. Their
-/// inputs are simulated until a difference is found. Two snapshots are compared without a simulation.
+/// With `b`, the files are recordings of a match on two machines, or any two replays. Two snapshots are compared
+/// without a simulation.
 ///
 /// # Errors
-/// [`CompareError`] when the files cannot be compared or played.
+/// [`CompareError`] if the files cannot be compared or played.
 pub fn bisect<G: Game>(
     a: &Evidence,
     b: Option<&Evidence>,

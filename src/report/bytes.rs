@@ -9,7 +9,7 @@ use crate::codec::DecodeError;
 use crate::hash::{Envelope, EnvelopeError};
 use crate::replay::{Limits, PLAYERS_MAX, RULES_NAME_BYTES_MAX};
 
-/// The first eight bytes of a report, modelled on those of a replay.
+/// The first eight bytes of a report.
 pub const REPORT_MAGIC: [u8; 8] = *b"\x89L2R\r\n\x1a\n";
 
 /// Version of the layout.
@@ -32,23 +32,23 @@ const ENVELOPE: Envelope = Envelope { magic: REPORT_MAGIC, format: REPORT_FORMAT
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ReportError {
-    /// The bytes do not start with [`REPORT_MAGIC`], or are shorter than the header.
+    /// The bytes do not start with [`REPORT_MAGIC`], or are too short.
     NotAReport,
     /// The layout has another version.
     Format {
         /// The version found.
         found: u32,
     },
-    /// There are more bytes than the reader allows.
+    /// The report is longer than the reader allows.
     TooLong {
         /// Number of bytes.
         bytes: u64,
         /// Maximum number of bytes.
         max: u64,
     },
-    /// The number of bytes is not the number announced in the header.
+    /// The number of bytes differs from the header.
     Length {
-        /// Length of the whole file according to its header, in bytes.
+        /// Length of the file according to its header, in bytes.
         announced: u64,
         /// Number of bytes found.
         found: u64,
@@ -66,18 +66,18 @@ pub enum ReportError {
 pub enum ReportFlaw {
     /// The name of the rules is empty or too long.
     RulesName,
-    /// The report states more players than a game can have.
+    /// There are more players than a game can have.
     Players,
     /// The seats are not in ascending order, or one of them does not exist.
     Seats,
-    /// The number of hashes, known or unknown, is not the number of seats.
+    /// There is not one hash, known or unknown, for each seat.
     Hashes,
     /// The ticks of the history are not in ascending order.
     History,
-    /// The ticks of the saves are not in ascending order, or one of them is not in the history.
+    /// The saves are not in ascending order of ticks, or one is not in the history.
     Saves,
-    /// The ticks of the phase digests are not in ascending order, one of them is not in the history, or one has more
-    /// than [`PHASE_DIGESTS_MAX`] digests.
+    /// The phase digests are not in ascending order of ticks, a tick is not in the history, or there are more than
+    /// [`PHASE_DIGESTS_MAX`] in one.
     Phases,
 }
 
@@ -136,11 +136,11 @@ impl DesyncReport {
         ENVELOPE.seal(self.semantics, &self.body)
     }
 
-    /// Decodes a report written by [`DesyncReport::to_bytes`]. Only the limit `file_bytes` applies: memory allocation
-    /// is bounded by a small multiple of the file's length. The saves and the replay in the report are not checked yet.
+    /// Decodes a report of [`DesyncReport::to_bytes`], within the limit `file_bytes`. Its saves and its replay are not
+    /// checked.
     ///
     /// # Errors
-    /// [`ReportError`] for any other bytes, and for a report that is longer than the limit.
+    /// [`ReportError`] for other bytes, and for a report longer than the limit.
     pub fn from_bytes(bytes: &[u8], limits: &Limits) -> Result<Self, ReportError> {
         let opened = ENVELOPE.open(bytes)?;
         let found = bytes.len() as u64;

@@ -1,10 +1,10 @@
 //! Finds the body in which a difference originated, among many bodies that differ.
 //!
-//! A body with a wrong velocity affects all bodies that it touches in the same tick: dozens of bodies differ, and the
-//! largest difference need not be at the origin. Therefore single bit flips of the speeds and poses of the bodies that
-//! differ are tried in the last correct state. Bits whose value is closest to the observed difference come first. If no
-//! body that differs is known, the speeds and poses of all bodies are tried, before and after the tick. A flip that
-//! leads to exactly the wrong state is the explanation.
+//! A body with a wrong velocity affects the bodies that it touches in the same tick, and the largest difference need
+//! not be at the origin. Therefore single bits of the last correct state are flipped, in the speeds and poses of the
+//! bodies that differ. Bits whose value is closest to the observed difference come first. If no body that differs is
+//! known, all bodies are tried, before and after the tick. A flip that leads to exactly the wrong state is the
+//! explanation.
 
 use alloc::collections::BTreeMap;
 use alloc::format;
@@ -19,27 +19,23 @@ use crate::inspect::{Difference, InspectError, Value, differences, fields};
 use crate::lockstep::Game;
 use crate::world::BodyField;
 
-/// Maximum work units that [`compare`](super::compare::compare) spends on trying bit flips: about ten seconds. The
-/// limits may allow fewer.
+/// Maximum work units that [`compare`](super::compare::compare) spends on bit flips: about ten seconds.
 pub(super) const WORK_MAX: u64 = 400_000_000;
-/// Minimum work units that are charged for a step. Loading and hashing a state is charged with half the work of a step.
+/// Minimum charge for a step in work units. Loading and hashing a state is charged as half a step.
 const TRY_WORK: u64 = 1000;
 
-/// A tick in which one side diverged.
 pub(super) struct WrongTick<G: Game> {
     /// Number of ticks up to the last correct state.
     pub(super) tick: u64,
-    /// The last correct state.
     pub(super) before: G::Save,
-    /// The inputs that led from that state to the wrong one.
+    /// The inputs between that state and the wrong one.
     pub(super) inputs: Vec<G::Input>,
     /// The wrong state, as a hash stated by the diverged side.
     pub(super) wrong: Said,
-    /// Phase digests of the wrong tick, if available.
     pub(super) phases: Option<TickPhases>,
 }
 
-/// Groups differences by subject. The subjects are sorted by the difference in motion, largest first.
+/// Groups differences by subject, sorted by the difference in motion, largest first.
 pub(super) fn subjects(differences: Vec<Difference>) -> Vec<Subject> {
     let mut subjects: Vec<Subject> = Vec::new();
     let mut places = BTreeMap::new();
@@ -57,7 +53,7 @@ pub(super) fn subjects(differences: Vec<Difference>) -> Vec<Subject> {
     subjects
 }
 
-/// Difference of a body's motion, in units of the last bit; 0 for anything else.
+/// Difference of a body's motion in units of the last bit; 0 for other subjects.
 fn disturbance(subject: &Subject) -> u128 {
     let is_motion = |difference: &&Difference| {
         BodyField::SPEEDS.iter().any(|field| difference.field().name() == field.name())
@@ -66,22 +62,21 @@ fn disturbance(subject: &Subject) -> u128 {
     subject.differences.iter().filter(is_motion).map(units).sum()
 }
 
-/// The bits of two numbers that differ; `None` if one is missing or not a number.
+/// The bits of two numbers that differ.
 fn both_bits(difference: &Difference) -> Option<(i128, i128)> {
     let bits = |value: &Option<Value>| value.as_ref().and_then(|value| value.bits());
     bits(&difference.a).zip(bits(&difference.b))
 }
 
-/// The bit in which two numbers differ, if there is exactly one.
 pub(super) fn flipped_bit(difference: &Difference) -> Option<u32> {
     let (a, b) = both_bits(difference)?;
     let changed = a ^ b;
-    // The sign occupies all bits above the width of the number.
+    // The sign fills the bits above the width of the number.
     let is_sign = changed.leading_ones() + changed.trailing_zeros() == i128::BITS;
     (changed.count_ones() == 1 || is_sign).then(|| changed.trailing_zeros())
 }
 
-/// Searches for the bit flip that explains all differences, and moves its body and field to the front.
+/// Searches for the bit flip that explains the differences, and moves its body to the front.
 pub(super) fn explain<G: Game>(
     wrong: &WrongTick<G>,
     mut game: G,
@@ -94,12 +89,12 @@ pub(super) fn explain<G: Game>(
         && is_known
         && flipped_bit(only).is_some()
     {
-        // The differences already show the flipped bit.
+        // The difference already shows the flipped bit.
         return Ok(());
     }
     let mut candidates = if is_known { candidates(&found.subjects) } else { Vec::new() };
     if candidates.is_empty() {
-        // The step may have restored the body, and only the impulses of its contacts differ.
+        // The step may have restored the body: only its contacts differ.
         candidates = everybody(&mut game, &wrong.before);
     }
     let Some(culprit) = search(wrong, &mut game, candidates, work) else {
@@ -129,26 +124,23 @@ pub(super) fn explain<G: Game>(
     Ok(())
 }
 
-/// Time at which a candidate bit is flipped, relative to the tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum When {
     Before,
     After,
 }
 
-/// A candidate for the flipped bit.
 struct Candidate {
     path: String,
     field: BodyField,
     bit: u32,
     when: When,
-    /// Distance of the bit's value from the observed difference, as a base-2 logarithm times 256. Candidates at the
-    /// lowest distance are tried first.
+    /// Distance of the bit's value from the observed difference, as a base-2 logarithm times 256.
     distance: u32,
 }
 
-/// All bits of the speeds and poses of the bodies that differ. Bits whose value is close to the observed difference
-/// come first: unless the flip causes a strong collision, most of the difference stays in the number whose bit flipped.
+/// Bits of the speeds and poses of the bodies that differ, closest to the difference first: without a strong collision,
+/// most of the difference stays in the number with the flipped bit.
 fn candidates(subjects: &[Subject]) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for subject in subjects.iter().filter(|subject| handle(&subject.path).is_some()) {
@@ -169,15 +161,15 @@ fn candidates(subjects: &[Subject]) -> Vec<Candidate> {
     candidates
 }
 
-/// Base-2 logarithm of a number times 256, with an error of at most 25 units; `None` for 0.
+/// Approximate base-2 logarithm of a number times 256; `None` for 0.
 fn log2(number: u128) -> Option<u32> {
     let whole = number.checked_ilog2()?;
-    // The bits after the leading one, which interpolate linearly between powers of two.
+    // The bits after the leading one interpolate linearly between powers of two.
     let fraction = number << (127 - whole) << 1 >> 120;
     Some((whole << 8) + u32::try_from(fraction).unwrap_or(0))
 }
 
-/// All bits of the speeds and poses of all bodies, after and before the tick.
+/// The bits of the speeds and poses of all bodies, after and before the tick.
 fn everybody<G: Game>(game: &mut G, before: &G::Save) -> Vec<Candidate> {
     game.load(before);
     let Some(world) = game.world_mut() else {
@@ -196,7 +188,7 @@ fn everybody<G: Game>(game: &mut G, before: &G::Save) -> Vec<Candidate> {
     candidates
 }
 
-/// Returns the first candidate that leads to the wrong state. Tries cost at most `work` units together.
+/// Returns the first candidate that leads to the wrong state, within `work` units.
 fn search<G: Game>(
     wrong: &WrongTick<G>,
     game: &mut G,
@@ -209,7 +201,6 @@ fn search<G: Game>(
     let right = game.save();
     let mut left = work;
     candidates.into_iter().find(|candidate| {
-        // Cost of loading and hashing a state.
         let loading = step_work / 2;
         let price = if candidate.when == When::Before { step_work + loading } else { loading };
         // A cheaper candidate may still fit into the budget.
@@ -232,13 +223,13 @@ fn search<G: Game>(
 /// Slot and generation of a body, from its path.
 fn handle(path: &str) -> Option<(u32, u32)> {
     let (_, label) = path.rsplit_once("body ")?;
-    // A name may follow the handle.
+    // A name may follow.
     let handle = label.split(' ').next()?;
     let (slot, generation) = handle.split_once('v')?;
     Some((slot.parse().ok()?, generation.parse().ok()?))
 }
 
-/// Flips a bit of a body's speed or pose; `None` if the state has no such body, or `World::flip_bit` refuses the bit.
+/// Flips a bit of a body's speed or pose; `None` if there is no such body, or `World::flip_bit` refuses the bit.
 fn flip<G: Game>(game: &mut G, path: &str, field: BodyField, bit: u32) -> Option<()> {
     let handle = handle(path)?;
     let world = game.world_mut()?;

@@ -1,5 +1,3 @@
-//! [`compare`]: compares two files by simulating their inputs again.
-
 use alloc::vec::Vec;
 use core::fmt;
 
@@ -28,18 +26,18 @@ use crate::world::World;
 pub enum CompareError {
     /// A snapshot of a world can only be compared with another one.
     Kinds,
-    /// A report was made by an engine with other semantics, by another game, or by another version of its rules.
+    /// A report comes from other engine semantics, another game, or another version of its rules.
     Unverifiable {
         /// The file.
         side: Side,
-        /// The version or name in which the file and this program differ.
+        /// The difference to this program.
         why: Mismatch,
     },
     /// A replay, or the replay in a report, cannot be read or played.
     Replay {
         /// The file.
         side: Side,
-        /// The verdict on the replay.
+        /// The verdict.
         verdict: Verdict,
     },
     /// A save, setup or input cannot be inspected.
@@ -67,12 +65,11 @@ impl From<InspectError> for CompareError {
 
 /// Finds the first difference between two reports, replays or snapshots, and the side that diverged.
 ///
-/// The inputs of the longer replay are simulated again by the running engine, within the limits. Two snapshots are
-/// compared without a simulation, and `G` may be any game.
+/// The running engine simulates the inputs of the longer replay again. Two snapshots are compared without a simulation,
+/// and `G` may be any game.
 ///
 /// # Errors
-/// [`CompareError`] when the files cannot be compared at all. If only a part of the result cannot be determined, a note
-/// gives the reason.
+/// [`CompareError`] if the files cannot be compared. Parts of the result that cannot be determined give a note.
 pub fn compare<G: Game>(a: &Evidence, b: &Evidence, limits: &Limits) -> Result<Comparison, CompareError> {
     if let (Evidence::World(a), Evidence::World(b)) = (a, b) {
         return compare_worlds(a, b);
@@ -91,7 +88,7 @@ pub(super) fn compare_worlds(a: &World, b: &World) -> Result<Comparison, Compare
     Ok(Comparison { subjects: candidate::subjects(found), ..Comparison::new() })
 }
 
-/// Collects the data of both sides, and the differences that need no simulation. Without `b`, the second side is the
+/// Collects the data of both sides, and differences that need no simulation. Without `b`, the second side is the
 /// running engine.
 pub(super) fn survey<'a, G: Game>(
     a: &'a Evidence,
@@ -142,7 +139,6 @@ fn unreadable(side: Side, error: ReadError) -> CompareError {
     CompareError::Replay { side, verdict: error.into() }
 }
 
-/// Checks that this program can play a file with these semantics and rules.
 fn check_rules<G: Game>(semantics: u32, name: &str, version: u32) -> Result<(), Mismatch> {
     if semantics != crate::SEMANTICS {
         return Err(Mismatch::Semantics { file: semantics, here: crate::SEMANTICS });
@@ -154,7 +150,7 @@ fn check_rules<G: Game>(semantics: u32, name: &str, version: u32) -> Result<(), 
     Ok(())
 }
 
-/// The differences between the setups of two replays. Setups of another game are not compared: they are an error.
+/// The differences between the setups of two replays. Another game is an error.
 fn setup_differences<G: Game>(
     known: &[SideEvidence<'_>; 2],
     limits: &Limits,

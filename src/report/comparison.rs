@@ -1,5 +1,3 @@
-//! [`Comparison`]: the differences between two files.
-
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt;
@@ -53,7 +51,7 @@ impl fmt::Display for Side {
     }
 }
 
-/// The side that diverged from the trajectory computed by the running engine from the setup and the inputs.
+/// The side that diverged from the trajectory of the running engine.
 ///
 /// ```
 /// use lockstep2d::report::{Blame, Side};
@@ -74,38 +72,35 @@ pub enum Blame {
     Nobody,
     /// One side diverged, the other did not.
     Side(Side),
-    /// Both sides diverged. If they agree with each other, they probably used another engine or other rules than this
-    /// program.
+    /// Both sides diverged. If they agree with each other, they probably used another engine or other rules.
     Both,
-    /// Unknown: there are no inputs to simulate, the setups differ, or [`bisect`](super::bisect) compared replays with
-    /// different inputs.
+    /// There are no inputs to simulate, the setups differ, or [`bisect`](super::bisect) compared different inputs.
     Unknown,
 }
 
-/// Comparison of one side with the rerun of the inputs.
+/// Comparison of one side with the rerun.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Trajectory {
     /// The seats that this side plays, according to its report.
     pub seats: Vec<u32>,
-    /// The last tick, before a divergence of this side, at which its state is known to equal that of the rerun.
+    /// The last tick before its divergence at which this side is known to equal the rerun.
     pub equal_until: Option<u64>,
-    /// The first tick at which this side's state is known to differ from that of the rerun.
+    /// The first tick at which this side is known to differ from the rerun.
     pub diverges: Option<u64>,
 }
 
-/// The first input that differs between two replays.
+/// The first different input of two replays.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InputDifference {
     /// Tick of the input, counted from 0.
     pub tick: u64,
     /// Seat of the input.
     pub seat: u32,
-    /// The fields in which the inputs differ.
+    /// The fields that differ.
     pub differences: Vec<Difference>,
 }
 
-/// A part of the state that differs between two states, or that only one of them has: a body, a contact, an entry of
-/// any map, or a section without entries.
+/// A part of the state that differs: a body, a contact, an entry of any map, or a section without entries.
 ///
 /// ```
 /// # use lockstep2d::body::{BodyDef, Geometry, ShapeDef};
@@ -127,15 +122,14 @@ pub struct InputDifference {
 pub struct Subject {
     /// Path of the subject, such as `world.bodies.body 12v1`.
     pub path: String,
-    /// Section that contains the subject, such as `world.bodies`.
+    /// Section with the subject, such as `world.bodies`.
     pub section: String,
     /// The fields that differ.
     pub differences: Vec<Difference>,
 }
 
-/// A single bit flip between two ticks that explains the divergence: with it, the rules lead exactly to the state of
-/// the diverged side. In rare cases another flip leads to the same state, for example a flip of the velocity instead of
-/// the spin of a rolling ball. Only the phase digests of that tick can tell the two apart.
+/// A single bit flip between two ticks that explains the divergence. In rare cases another flip leads to the same
+/// state, such as of the velocity instead of the spin of a rolling ball.
 ///
 /// ```
 /// use lockstep2d::report::{Comparison, Explanation, Stage};
@@ -159,12 +153,11 @@ pub struct Subject {
 pub struct Explanation {
     /// Number of ticks after which the bit flipped.
     pub tick: u64,
-    /// Path of the body or other subject that contains the bit.
+    /// Path of the body or other subject with the bit.
     pub path: String,
     /// Index of the bit, counted from the lowest.
     pub bit: u32,
-    /// The changes caused by the flip, starting with the number that contains the bit. A is before the flip, B is after
-    /// it.
+    /// The changes by the flip, the number with the bit first. A is before the flip, B after it.
     pub differences: Vec<Difference>,
 }
 
@@ -187,8 +180,7 @@ pub struct Explanation {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Comparison {
-    /// The last tick before the first difference at which both states are known to be equal. If there is no difference,
-    /// the last tick at which they are known to be equal.
+    /// The last tick before the first difference, if any, at which the states are known to be equal.
     pub last_equal: Option<u64>,
     /// The first tick at which the states are known to differ.
     pub first_different: Option<u64>,
@@ -196,29 +188,27 @@ pub struct Comparison {
     pub setup: Vec<Difference>,
     /// The first input that differs. [`compare`](super::compare) compares states up to its tick.
     pub input: Option<InputDifference>,
-    /// Comparisons of A and B with the rerun.
+    /// A and B compared with the rerun.
     pub trajectories: [Trajectory; 2],
     /// Number of ticks simulated in the rerun.
     pub simulated: Option<u64>,
     /// The side that diverged.
     pub blame: Blame,
-    /// The tick at which `subjects` were compared: the first different tick at which both states are available.
+    /// The tick of `subjects`: the first different one with both states.
     pub tick: Option<u64>,
-    /// The subjects that differ. The origin of the differences is first, if it is known. The others are sorted by the
-    /// difference in motion, largest first.
+    /// The subjects that differ: the origin first, if known, then by the difference in motion, largest first.
     pub subjects: Vec<Subject>,
-    /// The stage at which the states diverged, within the tick that led to `first_different`.
+    /// The stage in which the states diverged, in the tick that led to `first_different`.
     pub stage: Option<Stage>,
-    /// If the states diverged before the step of the world: the differences at the start of the step. B is the diverged
-    /// side, A the rerun.
+    /// The differences at the start of the world's step, if the states diverged before. B is the diverged side.
     pub began: Vec<Subject>,
-    /// A single bit flip that explains all differences.
+    /// A single bit flip that explains the differences.
     pub explanation: Option<Explanation>,
     /// The checkpoint for which a report was written.
     pub checkpoint: Option<u64>,
     /// The seats that agree at the checkpoint, largest group first.
     pub groups: Vec<Group>,
-    /// The parts of the result that could not be determined, with reasons.
+    /// Parts of the result that could not be determined, with reasons.
     pub notes: Vec<String>,
 }
 
@@ -243,7 +233,7 @@ impl Comparison {
         }
     }
 
-    /// Whether no difference was found, neither between the files nor between a file and the rerun.
+    /// Whether no difference was found.
     #[must_use]
     pub fn is_equal(&self) -> bool {
         self.setup.is_empty()
@@ -253,7 +243,7 @@ impl Comparison {
             && self.trajectories.iter().all(|trajectory| trajectory.diverges.is_none())
     }
 
-    /// The sections that contain differences, in the order of `subjects`.
+    /// The sections with differences, in the order of `subjects`.
     #[must_use]
     pub fn sections(&self) -> Vec<&str> {
         let mut sections: Vec<&str> = Vec::new();

@@ -1,5 +1,3 @@
-//! [`DesyncReport`]: the file that a peer writes on a desync.
-
 use alloc::collections::BTreeMap;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -21,13 +19,12 @@ pub struct Desync {
     pub players: u32,
     /// Number of ticks after which the states differ.
     pub tick: u64,
-    /// Number of ticks simulated with the confirmed inputs of all players; without prediction, all ticks. Later entries
-    /// of a history depend on predicted inputs and are not evidence.
+    /// Number of ticks simulated with confirmed inputs. Later entries of a history depend on predicted inputs and are
+    /// not evidence.
     pub known: u64,
-    /// The seats that this peer plays, in ascending order; empty for a spectator.
+    /// The seats of this peer, ascending; empty for a spectator.
     pub seats: Vec<u32>,
-    /// The state hash reported by the peer of each seat, if it has been received. This peer's own hash is taken from
-    /// its history.
+    /// The state hash of the peer of each seat, if received. This peer's own hash is taken from its history.
     pub hashes: Vec<Option<StateHash>>,
 }
 
@@ -36,12 +33,11 @@ pub struct Desync {
 pub struct Group {
     /// Hash of that state.
     pub hash: StateHash,
-    /// The seats, in ascending order.
+    /// The seats, ascending.
     pub seats: Vec<u32>,
 }
 
-/// The data of one peer at a desync. [`compare`](super::compare()) finds out from two reports where the states differ
-/// and, if one of the reports contains a replay, which peer diverged.
+/// The data of one peer at a desync, for [`compare`](super::compare()).
 ///
 /// ```
 /// # use lockstep2d::{hash::StateHash, lockstep::{Game, History, Sandbox, SandboxSetup}, replay::Recording};
@@ -66,11 +62,9 @@ pub struct Group {
 pub struct DesyncReport {
     /// Version of the engine's semantics.
     pub semantics: u32,
-    /// The rest of the report.
     pub(super) body: Body,
 }
 
-/// The body of a report, which follows its header.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Body {
     pub(super) rules_name: String,
@@ -79,27 +73,24 @@ pub(super) struct Body {
     pub(super) seats: Vec<u32>,
     pub(super) tick: u64,
     pub(super) hashes: Vec<Option<StateHash>>,
-    /// State hashes, in ascending order of ticks.
     pub(super) history: Vec<(u64, StateHash)>,
-    /// Canonical bytes of saves, in ascending order of ticks.
     pub(super) saves: Vec<(u64, Vec<u8>)>,
-    /// Phase digests of steps, by the tick that the step led to, in ascending order of ticks.
     pub(super) phases: Vec<(u64, TickPhases)>,
     pub(super) replay: Vec<u8>,
 }
 
 impl DesyncReport {
-    /// Creates the report of a peer. `replay` contains the inputs of the known ticks, for example from
+    /// Creates the report of a peer. `replay` has the inputs of the known ticks, for example from
     /// [`Recorder::so_far`](crate::replay::Recorder::so_far).
     ///
-    /// The report contains the hash of every known tick in the history, and as many saves as fit into
-    /// [`SAVES_BYTES_MAX`]: first the saves up to the tick that differs, newest first, then the later ones.
+    /// The report has the hash of each known tick in the history, and the saves that fit into [`SAVES_BYTES_MAX`]:
+    /// first up to the tick that differs, newest first, then later ones.
     #[must_use]
     pub fn new<G: Game>(found: &Desync, history: &History<G>, replay: Vec<u8>) -> Self {
         Self::within(SAVES_BYTES_MAX, found, history, replay)
     }
 
-    /// Same as [`DesyncReport::new`] with at most `bytes_max` bytes of saves.
+    /// Like [`DesyncReport::new`] with at most `bytes_max` bytes of saves.
     #[must_use]
     pub fn within<G: Game>(bytes_max: usize, found: &Desync, history: &History<G>, replay: Vec<u8>) -> Self {
         let Desync { players, tick, known, ref seats, ref hashes } = *found;
@@ -146,26 +137,25 @@ impl DesyncReport {
         self.body.players
     }
 
-    /// The seats played by the peer that wrote the report.
+    /// The seats of the peer that wrote the report.
     #[must_use]
     pub fn seats(&self) -> &[u32] {
         &self.body.seats
     }
 
-    /// The checkpoint at which the states were found to differ, as a number of ticks.
+    /// The checkpoint with different states, as a number of ticks.
     #[must_use]
     pub fn tick(&self) -> u64 {
         self.body.tick
     }
 
-    /// The hash that the peer of each seat had at the checkpoint [`DesyncReport::tick`], if known.
+    /// The hash of the peer of each seat at [`DesyncReport::tick`], if known.
     #[must_use]
     pub fn hashes(&self) -> &[Option<StateHash>] {
         &self.body.hashes
     }
 
-    /// The seats that agree at the checkpoint [`DesyncReport::tick`], largest group first. With three peers or more,
-    /// this usually shows which peer diverged.
+    /// The seats that agree at [`DesyncReport::tick`], largest group first.
     #[must_use]
     pub fn groups(&self) -> Vec<Group> {
         let mut groups: BTreeMap<StateHash, Vec<u32>> = BTreeMap::new();
@@ -179,39 +169,37 @@ impl DesyncReport {
         groups
     }
 
-    /// The state hash after each known tick in the peer's history, in ascending order of ticks.
+    /// State hashes of the peer's known ticks, ascending by tick.
     #[must_use]
     pub fn history(&self) -> &[(u64, StateHash)] {
         &self.body.history
     }
 
-    /// Canonical bytes of the game's saves, in ascending order of ticks.
+    /// Canonical bytes of the game's saves, ascending by tick.
     #[must_use]
     pub fn saves(&self) -> &[(u64, Vec<u8>)] {
         &self.body.saves
     }
 
-    /// Phase digests of steps, by the ticks that they led to, in ascending order. Only the report of a
-    /// [`Trace`](super::Trace) contains them.
+    /// Phase digests of steps, ascending by the tick that they led to. Only a [`Trace`](super::Trace) has them.
     #[must_use]
     pub fn phases(&self) -> &[(u64, TickPhases)] {
         &self.body.phases
     }
 
-    /// Number of ticks in the history without a save, because the report would have become too large.
+    /// Number of ticks in the history without a save, for lack of space.
     #[must_use]
     pub fn saves_left_out(&self) -> usize {
         self.body.history.len().saturating_sub(self.body.saves.len())
     }
 
-    /// The replay up to the time of the report, as the bytes of a file; empty if the peer has no replay.
+    /// The replay up to the report, as the bytes of a file; empty without a replay.
     #[must_use]
     pub fn replay(&self) -> &[u8] {
         &self.body.replay
     }
 }
 
-/// Selects and encodes the saves of a report.
 fn saves<S: Serialize>(bytes_max: usize, tick: u64, states: &[&Past<S>]) -> Vec<(u64, Vec<u8>)> {
     let until = states.iter().rev().filter(|past| past.tick <= tick);
     let after = states.iter().filter(|past| past.tick > tick);

@@ -1,5 +1,3 @@
-//! [`Evidence`]: a file that contains states or state hashes of a game.
-
 use alloc::boxed::Box;
 use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
@@ -17,9 +15,9 @@ use crate::world::{SnapshotError, World};
 pub enum Evidence {
     /// The report of a peer on a desync, or of a [`Trace`](super::Trace).
     Report(Box<DesyncReport>),
-    /// The bytes of a replay, which are checked when it is played.
+    /// The bytes of a replay, which are not checked yet.
     Replay(Vec<u8>),
-    /// A world, read from the bytes of a snapshot.
+    /// The world of a snapshot.
     World(Box<World>),
 }
 
@@ -63,11 +61,11 @@ impl fmt::Display for EvidenceError {
 impl core::error::Error for EvidenceError {}
 
 impl Evidence {
-    /// Reads a file. Its first bytes determine the kind.
+    /// Reads a file, whose kind follows from its first bytes.
     ///
     /// # Errors
-    /// [`EvidenceError`] for a report or snapshot that cannot be read, and for bytes that are neither a report nor a
-    /// replay nor a snapshot. A replay is not checked.
+    /// [`EvidenceError`] for bytes that are not a readable report or snapshot, nor start like a replay. A replay is not
+    /// checked.
     pub fn read(bytes: Vec<u8>, limits: &Limits) -> Result<Self, EvidenceError> {
         if bytes.starts_with(&replay::MAGIC) {
             return Ok(Evidence::Replay(bytes));
@@ -88,33 +86,27 @@ impl Evidence {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Said {
     hash: StateHash,
-    /// For a checkpoint, the digest of the inputs that is combined with the state hash.
+    /// Digest of the inputs that a checkpoint combines with the state hash.
     inputs: Option<StateHash>,
 }
 
 impl Said {
-    /// Whether the stated hash matches a state hash.
     pub(super) fn is(&self, state: StateHash) -> bool {
         self.hash == self.inputs.map_or(state, |inputs| checkpoint_hash(state, inputs))
     }
 }
 
-/// The data that one side provides about the trajectory of a game.
 #[derive(Default)]
 pub(super) struct SideEvidence<'a> {
     pub(super) seats: &'a [u32],
-    /// State hashes by tick.
     pub(super) states: BTreeMap<u64, StateHash>,
-    /// Checkpoints of a replay.
     checkpoints: BTreeMap<u64, Said>,
     pub(super) saves: BTreeMap<u64, &'a [u8]>,
     /// Phase digests of the step that led to a tick.
     pub(super) phases: BTreeMap<u64, &'a TickPhases>,
-    /// Whether this side is the running engine, whose states are those of the rerun.
+    /// Whether this side is the running engine.
     is_rerun: bool,
-    /// Bytes of the replay; empty for a report without a replay.
     pub(super) replay: &'a [u8],
-    /// Number of ticks in the replay.
     pub(super) ticks: u64,
 }
 
@@ -128,7 +120,7 @@ impl<'a> SideEvidence<'a> {
         Ok(known)
     }
 
-    /// The side of the running engine, which plays the inputs of another side.
+    /// The side of the running engine with the inputs of another side.
     pub(super) fn of_rerun(&self) -> Self {
         SideEvidence { replay: self.replay, ticks: self.ticks, is_rerun: true, ..SideEvidence::default() }
     }
@@ -155,7 +147,7 @@ impl<'a> SideEvidence<'a> {
         Ok(known)
     }
 
-    /// Whether this side had the state with the hash `state` after `tick` ticks; `None` if it states no hash for it.
+    /// Whether this side had this state after `tick` ticks; `None` if it states no hash for it.
     pub(super) fn had(&self, tick: u64, state: StateHash) -> Option<bool> {
         if self.is_rerun {
             return Some(true);
@@ -164,29 +156,26 @@ impl<'a> SideEvidence<'a> {
         self.said(tick).map(|said| said.is(state) && by_checkpoint)
     }
 
-    /// The hash that this side states for a tick.
     pub(super) fn said(&self, tick: u64) -> Option<Said> {
         let state = self.states.get(&tick).map(|state| Said { hash: *state, inputs: None });
         state.or_else(|| self.checkpoints.get(&tick).copied())
     }
 
-    /// Whether both sides had the same state after `tick` ticks; `None` if a hash is missing or they are incomparable.
+    /// Whether both sides had the same state after `tick` ticks; `None` if that is unknown.
     pub(super) fn same(&self, other: &Self, tick: u64) -> Option<bool> {
         if let Some((a, b)) = self.states.get(&tick).zip(other.states.get(&tick)) {
             return Some(a == b);
         }
         let (a, b) = self.checkpoints.get(&tick).zip(other.checkpoints.get(&tick))?;
-        // Checkpoints with different input digests, for example because of different intervals, cannot be compared.
+        // Checkpoints with different input digests are incomparable, for example because of different intervals.
         (a.inputs == b.inputs).then_some(a.hash == b.hash)
     }
 
-    /// The last tick for which this side states a hash; 0 if it states none.
     pub(super) fn last(&self) -> u64 {
         let last = |tick: Option<&u64>| tick.copied().unwrap_or(0);
         last(self.states.keys().next_back()).max(last(self.checkpoints.keys().next_back()))
     }
 
-    /// All ticks for which this side states a hash.
     pub(super) fn ticks_known(&self) -> impl Iterator<Item = u64> {
         self.states.keys().chain(self.checkpoints.keys()).copied()
     }

@@ -1,16 +1,13 @@
-//! Desync reports, and their comparison, which determines the side that diverged, the tick and the part of the state.
+//! Desync reports, and comparisons that find the side that diverged, the tick and the part of the state.
 //!
-//! A peer keeps a [`History`](crate::lockstep::History) of the last seconds. When it receives a hash that differs from
-//! its own, its game can write a [`DesyncReport`]: the hashes and saves of the history, and the replay so far.
-//! [`compare`] takes two reports or replays and simulates the confirmed inputs again. A side whose states differ from
-//! this rerun has diverged from the rules. This works with two peers, too. Two snapshots are compared without a
-//! simulation.
+//! A peer keeps a [`History`](crate::lockstep::History) of the last seconds. When it receives another hash than its
+//! own, its game can write a [`DesyncReport`]: hashes and saves of the history, and the replay so far. [`compare`]
+//! takes two reports or replays and simulates their inputs again. A side whose states differ from this rerun has
+//! diverged.
 //!
-//! [`bisect`] also examines a single file and finds the tick at which its trajectory diverges from the running
-//! engine's. A [`Trace`] contains more data for this than a replay.
+//! [`bisect`] also examines a single file against the running engine. A [`Trace`] has more data for this than a replay.
 //!
-//! In this module *tick t* is the state after *t* ticks, as in replays: tick 0 is the start. A *trajectory* is the
-//! sequence of the states that one machine computed.
+//! Here *tick t* is the state after *t* ticks, and a *trajectory* is the sequence of states that one machine computed.
 
 mod bisect;
 mod bytes;

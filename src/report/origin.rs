@@ -1,5 +1,5 @@
-//! Finds the stage of a tick at which two trajectories diverged and, for a stage before the step, the differences at
-//! the start of the step. Requires phase digests of that tick from the diverged side.
+//! Finds the stage of a tick in which two trajectories diverged, and the differences at the start of the step. This
+//! needs phase digests of the diverged side.
 
 use alloc::string::String;
 
@@ -10,7 +10,6 @@ use super::stage::Stage;
 use crate::inspect::{Difference, InspectError, differences, fields};
 use crate::lockstep::Game;
 
-/// Simulates the tick from the last equal state, and compares the phases.
 pub(super) fn find<G: Game>(
     wrong: &WrongTick<G>,
     theirs: &TickPhases,
@@ -39,8 +38,7 @@ fn flipped_bit<G: Game>(
     wrong: &WrongTick<G>,
     differences: &[Difference],
 ) -> Result<Option<Explanation>, InspectError> {
-    // Derived fields: the angular velocity is derived from the stored spin, and a change of a body's motion may change
-    // the bounding boxes of its shapes.
+    // The angular velocity is derived from the stored spin, and bounding boxes from the motion of a body.
     let derived = ["angular_velocity", "fat.lower.x", "fat.lower.y", "fat.upper.x", "fat.upper.y"];
     let stored = |difference: &&Difference| !derived.contains(&difference.field().name());
     let mut stored = differences.iter().filter(stored);
@@ -50,7 +48,7 @@ fn flipped_bit<G: Game>(
     let Some(bit) = candidate::flipped_bit(only) else {
         return Ok(None);
     };
-    // The path of the world within the game's save is not known here, so the end of the path is compared.
+    // The place of the world in the game's save is unknown here, so ends of paths are compared.
     let place = only.field().subject().unwrap_or(only.field().section());
     let saved = fields(&wrong.before)?;
     let path = saved.iter().filter_map(|field| field.subject()).find(|path| path.ends_with(place));

@@ -1,5 +1,3 @@
-//! [`TickPhases`]: digests of the phases of a tick.
-
 use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
@@ -12,7 +10,7 @@ use crate::world::{Phase, Snapshot, World};
 /// Maximum number of phase digests per tick in a report.
 pub const PHASE_DIGESTS_MAX: usize = 1024;
 
-/// Digests of the phases of one tick; see [`World::phase_digests`](crate::world::World::phase_digests).
+/// Digests of the phases of a tick: see [`World::phase_digests`](crate::world::World::phase_digests).
 ///
 /// ```
 /// # use lockstep2d::lockstep::{Sandbox, SandboxSetup};
@@ -27,27 +25,25 @@ pub const PHASE_DIGESTS_MAX: usize = 1024;
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TickPhases {
-    /// For each step of the world: the digest at its start, then the digests after its phases, in order. At most
-    /// [`PHASE_DIGESTS_MAX`].
+    /// For each step of the world: the digest at its start, then one after each phase. At most [`PHASE_DIGESTS_MAX`].
     pub digests: Vec<StateHash>,
-    /// The bytes of the world at the start of its last step, as differences to the world after the previous tick.
+    /// The world at the start of its last step, as differences to the bytes after the previous tick.
     start: Vec<Patch>,
-    /// Length of the world at the start of its last step, in bytes.
+    /// Length of that world in bytes.
     start_length: u64,
 }
 
-/// Bytes that differ from those of another world.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Patch {
     at: u64,
     bytes: Vec<u8>,
 }
 
-/// Maximum number of equal bytes between two differences in the same patch.
+/// Maximum number of equal bytes within a patch.
 const GAP: usize = 16;
 
 impl TickPhases {
-    /// Plays a tick and records its phases; empty for a game without a world.
+    /// Plays a tick and records its phases. A game without a world has none.
     pub(super) fn of<G: Game>(game: &mut G, inputs: &[G::Input]) -> Self {
         let Some(world) = game.world_mut() else {
             game.step(inputs);
@@ -66,8 +62,7 @@ impl TickPhases {
         TickPhases { digests, start: patches(&before, &start), start_length: start.len() as u64 }
     }
 
-    /// Restores the world at the start of the step, given the world after the previous tick; `None` if the recorded
-    /// bytes are not a world.
+    /// Restores the world at the start of the step from the world after the previous tick, if the bytes are valid.
     pub(super) fn start(&self, before: &World) -> Option<World> {
         let mut bytes = before.to_bytes();
         let patched: usize = self.start.iter().map(|patch| patch.bytes.len()).sum();
@@ -84,8 +79,7 @@ impl TickPhases {
         World::from_bytes(&bytes).ok()
     }
 
-    /// The stage of the tick at which another trajectory with the same start diverged from this one; `None` if either
-    /// side has no digests.
+    /// The stage in which another trajectory with the same start diverged; `None` if digests are missing.
     pub(super) fn parting(&self, other: &Self) -> Option<Stage> {
         if self.digests.is_empty() || other.digests.is_empty() {
             return None;
@@ -93,7 +87,7 @@ impl TickPhases {
         let Some(first) = self.digests.iter().zip(&other.digests).position(|(a, b)| a != b) else {
             return Some(Stage::AfterStep);
         };
-        // A world that is stepped several times in a tick has several sequences of digests.
+        // A world may be stepped several times in a tick.
         Some(match Phase::ALL.get((first % (Phase::ALL.len() + 1)).wrapping_sub(1)) {
             Some(phase) => Stage::Phase(*phase),
             None => Stage::BeforeStep,
@@ -107,7 +101,6 @@ fn bytes_of(snapshot: &Snapshot) -> Vec<u8> {
     world.to_bytes()
 }
 
-/// The patches that turn `old` into `new`.
 fn patches(old: &[u8], new: &[u8]) -> Vec<Patch> {
     let differs = |at: usize| old.get(at) != new.get(at);
     let mut patches = Vec::new();

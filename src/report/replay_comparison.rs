@@ -1,7 +1,6 @@
 //! Comparison of two replays with different setups or inputs, both simulated by the running engine.
 //!
-//! As long as the states and the inputs are equal, one game serves both sides. Only ticks with different inputs cost
-//! more than playing one replay.
+//! While states and inputs are equal, one game serves both sides.
 
 use alloc::format;
 
@@ -14,7 +13,6 @@ use crate::inspect::{differences, fields};
 use crate::lockstep::Game;
 use crate::replay::{Limits, RawReplay, Step, Verdict};
 
-/// Plays both replays until their states differ, and fills in the comparison.
 pub(super) fn run<G: Game>(
     known: &[SideEvidence<'_>; 2],
     limits: &Limits,
@@ -61,7 +59,7 @@ struct ReplayComparison<'f, 'a, G: Game> {
 }
 
 impl<G: Game> ReplayComparison<'_, '_, G> {
-    /// Plays a tick. Before it, the states of both sides are equal, and A's game has this state.
+    /// Plays a tick from equal states. A's game has this state.
     fn step(&mut self) -> Result<Step, ReplayComparisonError> {
         let of = |side| move |verdict| ReplayComparisonError::Verdict(side, verdict);
         let a = self.a.read_inputs().map_err(of(Side::A))?;
@@ -92,7 +90,6 @@ impl<G: Game> ReplayComparison<'_, '_, G> {
         Ok(Step::Ticked)
     }
 
-    /// Compares the states at the current tick.
     fn compare(&mut self, tick: u64) -> Result<(), CompareError> {
         let (a, b) = (self.a.game(), self.b.game());
         if a.state_hash() == b.state_hash() {

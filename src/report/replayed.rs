@@ -1,4 +1,4 @@
-//! Simulates the inputs of the files again and compares the states with the hashes that both sides state.
+//! Simulates the inputs of the files again, and compares the states with the hashes of both sides.
 
 use alloc::format;
 use alloc::string::String;
@@ -15,19 +15,16 @@ use crate::inspect::{differences, fields};
 use crate::lockstep::Game;
 use crate::replay::{Limits, RawReplay, Step};
 
-/// Extent of the simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Effort {
-    /// Plays all ticks for which either side has data, up to the first input that differs. Searches for an explanation
-    /// of a difference up to a fixed limit.
+    /// Plays all ticks with data of either side, up to the first different input. Searches for an explanation up to a
+    /// fixed limit.
     Thorough,
-    /// Plays until a side has diverged and the states of both sides after the divergence are available, or the file of
-    /// the diverged side contains no further state. Limits the search for an explanation such that both together cost
-    /// less than playing all ticks three times.
+    /// Plays until a side has diverged and both states are available, or its file has no further state. Limits rerun
+    /// and search together to two and a half times the work of all ticks.
     Bounded,
 }
 
-/// Fills in the states, the trajectories and the blame of a comparison.
 pub(super) fn run<G: Game>(
     known: &[SideEvidence<'_>; 2],
     limits: &Limits,
@@ -51,7 +48,7 @@ fn play<G: Game>(
     effort: Effort,
     found: &mut Comparison,
 ) -> Result<(), CompareError> {
-    // After the first different input the states may differ for a good reason, so that later ticks are not compared.
+    // After the first different input the states may differ for a good reason.
     let horizon = found.input.as_ref().map_or(u64::MAX, |input| input.tick);
     compare_directly(known, horizon, found);
     let side = if known[0].ticks < known[1].ticks { Side::B } else { Side::A };
@@ -82,7 +79,7 @@ fn play<G: Game>(
     .run(until)
 }
 
-/// Compares the hashes of both sides without simulation, up to the first tick at which they differ.
+/// Compares the hashes of both sides without simulation, up to the first difference.
 fn compare_directly(known: &[SideEvidence<'_>; 2], horizon: u64, found: &mut Comparison) {
     let mut ticks: Vec<u64> = known.iter().flat_map(|known| known.ticks_known()).collect();
     ticks.sort_unstable();
@@ -126,13 +123,11 @@ fn compare_saves_alone<G: Game>(
     Ok(())
 }
 
-/// The states of both sides after a tick.
 struct States<S> {
     tick: u64,
     states: [S; 2],
-    /// The side that states no hash for this tick and is presumed to have had the state of the rerun. A side that has
-    /// diverged does not converge again, so the presumption is right if this side equals the rerun at this tick or
-    /// later.
+    /// The side without a hash for this tick, presumed to equal the rerun. This is right if it equals the rerun at this
+    /// tick or later, because a diverged side does not converge again.
     presumed: Option<Side>,
 }
 
@@ -146,13 +141,13 @@ struct Beside<'a, 'k, G: Game> {
     raw: RawReplay<'k, G>,
     /// State of the rerun before the current tick.
     previous: Option<G::Save>,
-    /// The tick of the first divergence of either side from the rerun.
+    /// The tick of the first divergence from the rerun.
     wrong: Option<WrongTick<G>>,
-    /// The states at the first different tick at which both are available.
+    /// The states at the first different tick with both states.
     states: Option<States<G::Save>>,
-    /// The states at the first different tick at which the state of one side is only presumed.
+    /// As `states`, if the state of one side is presumed.
     presumed: Option<States<G::Save>>,
-    /// Reason why the states of an earlier tick could not be used.
+    /// Reason why states of an earlier tick could not be used.
     obstacle: Option<String>,
 }
 
@@ -168,7 +163,7 @@ impl<G: Game> Beside<'_, '_, G> {
             match self.raw.step() {
                 Ok(Step::Ticked) => {}
                 Ok(Step::Ended) => break,
-                // If no difference has been found so far, an incomplete rerun would look like equal trajectories.
+                // Without a difference so far, an incomplete rerun would look like equal trajectories.
                 Err(verdict) if self.found.first_different.is_none() && self.wrong.is_none() => {
                     return Err(CompareError::Replay { side: self.side, verdict });
                 }
@@ -180,13 +175,12 @@ impl<G: Game> Beside<'_, '_, G> {
             }
         }
         self.found.simulated = Some(self.raw.tick());
-        // The files may contain more ticks than the replay has inputs for.
+        // The files may have more ticks than the replay has inputs.
         let equal = equal.filter(|equal| self.found.first_different.is_none_or(|first| *equal < first));
         self.found.last_equal = self.found.last_equal.max(equal);
         self.conclude()
     }
 
-    /// Whether [`Effort::Bounded`] needs no further ticks.
     fn is_enough(&self) -> bool {
         let tick = self.raw.tick();
         let has_diverged = |side: &usize| self.found.trajectories[*side].diverges.is_some();
@@ -195,7 +189,6 @@ impl<G: Game> Beside<'_, '_, G> {
         self.effort == Effort::Bounded && diverged.is_some_and(|side| self.states.is_some() || has_told(side))
     }
 
-    /// Compares the current state of the rerun with the hashes of both sides.
     fn look(&mut self, direct: Option<u64>) {
         let (tick, hash) = (self.raw.tick(), self.raw.game().state_hash());
         let had = [0, 1].map(|side: usize| self.known[side].had(tick, hash));
@@ -231,7 +224,6 @@ impl<G: Game> Beside<'_, '_, G> {
         }
     }
 
-    /// Stores the states of both sides, if both are available at the current tick.
     fn take_states(&mut self, had: [Option<bool>; 2]) {
         let tick = self.raw.tick();
         let mut states = Vec::new();
@@ -297,7 +289,7 @@ impl<G: Game> Beside<'_, '_, G> {
         if let Some(theirs) = &wrong.phases {
             origin::find(&wrong, theirs, &mut game, found)?;
         }
-        // In all other cases it is already known which bit flipped before the step, or that none did.
+        // Otherwise the phases already show which bit flipped before the step, or that none did.
         if found.stage.is_none_or(|stage| stage == Stage::BeforeStep) && found.began.is_empty() {
             candidate::explain(&wrong, game, work.min(limits.total_work), found)?;
         }

@@ -1,15 +1,12 @@
-//! [`Stage`]: the stage of a tick at which two trajectories diverge.
-
 use core::fmt;
 
 use crate::world::Phase;
 
-/// The first stage of a tick after which two states differ that were equal before this stage.
+/// The first stage of a tick after which two states differ that were equal before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stage {
-    /// Before the world's step: the inputs were different, the rules computed a different state, or code outside the
-    /// rules or a memory error changed the state.
+    /// Before the world's step: by different inputs, by the rules, or by code outside the rules or a memory error.
     BeforeStep,
     /// In a phase of the world's step.
     Phase(Phase),
@@ -18,7 +15,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// The stage as one word, as printed by tools for other programs.
+    /// The stage as one word, for other programs.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

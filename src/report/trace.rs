@@ -1,5 +1,3 @@
-//! [`Trace`]: a recorded game with the data needed to find out later where its trajectory diverged from another one.
-
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
 use core::fmt;
@@ -9,11 +7,11 @@ use super::phases::TickPhases;
 use crate::lockstep::{Game, History};
 use crate::replay::{CHECKPOINT_INTERVAL, Limits, RawReplay, RecordError, Recorder, Step, Verdict};
 
-/// A game that is recorded with the state hash, the save and the phase digests of its last ticks. The result is a
-/// [`DesyncReport`] that names no desync; [`bisect`](super::bisect) compares it with the running engine.
+/// Records a game with hashes, saves and phase digests of its last ticks, as a [`DesyncReport`] for
+/// [`bisect`](super::bisect).
 ///
-/// A replay usually has one hash per second, which shows the second in which two engines diverge. A trace of that
-/// second, made by the engine that wrote the replay, shows the tick, the phase, the body and the field.
+/// A replay usually shows the second in which two engines diverge. A trace of that second, made by the engine that
+/// wrote the replay, can show the tick, the phase, the body and the field.
 ///
 /// ```
 /// use lockstep2d::lockstep::{Sandbox, SandboxSetup};
@@ -40,10 +38,10 @@ pub struct Trace<G: Game> {
 }
 
 impl<G: Game> Trace<G> {
-    /// Starts the game that `setup` describes and keeps the data of its last `ticks` ticks.
+    /// Starts a game, and keeps the data of its last `ticks` ticks.
     ///
     /// # Errors
-    /// [`RecordError`] when the setup cannot start a game, or when a replay cannot represent that game.
+    /// [`RecordError`] if the setup cannot start a game, or a replay cannot represent the game.
     pub fn start(setup: &G::Setup, ticks: u32) -> Result<Self, RecordError> {
         let (recorder, game) = Recorder::start(setup, CHECKPOINT_INTERVAL)?;
         let mut memory = Memory::new(ticks);
@@ -66,7 +64,7 @@ impl<G: Game> Trace<G> {
     /// Plays one tick with the inputs as a verifier decodes them.
     ///
     /// # Errors
-    /// [`RecordError`] when the inputs cannot be recorded; the tick is then not played.
+    /// [`RecordError`] if the inputs cannot be recorded. The tick is not played.
     pub fn step(&mut self, inputs: &[G::Input]) -> Result<(), RecordError> {
         let inputs = self.recorder.record(inputs)?;
         let phases = TickPhases::of(&mut self.game, inputs);
@@ -78,19 +76,18 @@ impl<G: Game> Trace<G> {
         Ok(())
     }
 
-    /// Creates the report of the last ticks, with a replay of all ticks so far.
+    /// Creates the report of the last ticks, with a replay from the start.
     #[must_use]
     pub fn report(&self) -> DesyncReport {
         let replay = [self.replay.as_slice(), &self.recorder.so_far(self.game.state_hash())].concat();
         self.memory.report(&self.game, self.ticks(), replay)
     }
 
-    /// Simulates the inputs of a replay, up to tick `until` at most, and reports the last `ticks` ticks as the running
-    /// engine computes them. The checkpoints of the file are ignored.
+    /// Simulates the inputs of a replay up to tick `until`, and reports the last `ticks` ticks. Checkpoints are
+    /// ignored.
     ///
     /// # Errors
-    /// [`TraceError`] when the file or its inputs are malformed, the file is unverifiable, a limit is exceeded, or the
-    /// inputs cannot be recorded again.
+    /// [`TraceError`] if the file is malformed or unverifiable, exceeds a limit, or cannot be recorded again.
     pub fn of_replay(
         file: &[u8],
         limits: &Limits,
@@ -125,7 +122,6 @@ impl<G: Game> Trace<G> {
     }
 }
 
-/// Data of the last ticks of a game.
 struct Memory<G: Game> {
     history: History<G>,
     phases: VecDeque<(u64, TickPhases)>,

@@ -1,13 +1,12 @@
-//! Changes of the view: one instance of single-decree Paxos for each view number. The promises and acceptances of an
-//! instance are in rows, the status records that peers send to each other (`row.rs`).
+//! Changes of the view: single-decree Paxos for each view number. Promises and acceptances are in rows (`row.rs`).
 //!
-//! A voter that sees a higher ballot promises it and freezes its acknowledgement. Once a quorum has promised a ballot,
-//! its proposer chooses the change: the change that the promisers accepted in the highest ballot or, if they accepted
-//! none, one of its own (`proposal.rs`). A voter accepts a change in the ballot that it promised, or in a higher one,
-//! if it holds the inputs of all ticks before the cut. A change is decided once a quorum of the old view has accepted
-//! it in one ballot. Every peer that sees the decision installs the change. The cut is the first tick that the change
-//! may affect: the largest frozen acknowledgement of the quorum that promised. All final ticks lie before the cut,
-//! because a quorum has acknowledged them, and any two quorums have a member in common.
+//! A voter promises a higher ballot and freezes its acknowledgement. With promises of a quorum the proposer chooses the
+//! change: the one that the promisers accepted in the highest ballot, otherwise its own (`proposal.rs`). A voter
+//! accepts a change if it has promised no higher ballot and holds all inputs before the cut. A change is decided once a
+//! quorum of the old view has accepted it in one ballot. Each peer that sees this installs it.
+//!
+//! The cut is the first tick that the change may affect: the largest frozen acknowledgement of the promisers. Final
+//! ticks lie before it, because a quorum has acknowledged them, and any two quorums have a member in common.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -20,13 +19,11 @@ use super::row::Ballot;
 use super::state::Session;
 use super::view::{Change, View, bit, has_bit};
 
-/// State of a voter in the ballots of its view.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Agreement {
     pub(super) promised: Option<Ballot>,
     pub(super) promised_at: u64,
     pub(super) accepted: Option<(Ballot, Arc<Change>)>,
-    /// This peer's ballot, if one is under way.
     pub(super) proposal: Option<Proposal>,
     /// This peer starts no ballot before this time.
     pub(super) not_before: u64,
@@ -38,11 +35,9 @@ pub(super) struct Agreement {
     pub(super) wanted_since: Option<u64>,
 }
 
-/// Maximum number of steps in one call of [`Session::agree`]. A change of the view takes a few steps.
 const STEPS_MAX: usize = 64;
 
 impl Session {
-    /// Takes all steps of the agreement that are possible now.
     pub(super) fn agree(&mut self) {
         for _ in 0..STEPS_MAX {
             if !self.agreement_step() {
@@ -51,7 +46,6 @@ impl Session {
         }
     }
 
-    /// Begins a ballot if it is time for one, and takes all steps of the agreement that are possible now.
     pub(super) fn agree_in_time(&mut self) {
         if self.view.voter(self.me).is_some() && self.agreement.proposal.is_none() {
             self.begin_ballot();
@@ -59,7 +53,7 @@ impl Session {
         self.agree();
     }
 
-    /// Takes a step. Returns whether another one may be possible.
+    /// Returns whether another step may be possible.
     fn agreement_step(&mut self) -> bool {
         if let Some(change) = self.decided() {
             return self.install(&[(*change).clone()]);
@@ -75,7 +69,6 @@ impl Session {
         self.agreement.proposal.is_some() && self.conduct_ballot()
     }
 
-    /// A change that a quorum has accepted in one ballot.
     fn decided(&self) -> Option<Arc<Change>> {
         let mut tally: Vec<(Ballot, &Arc<Change>, u64)> = Vec::new();
         for (index, _, row) in self.peers.rows(self.view.number) {
@@ -112,13 +105,12 @@ impl Session {
         }
     }
 
-    /// A random time to wait before the next ballot, so that competing proposers do not collide again.
+    /// A random wait, so that competing proposers do not collide again.
     pub(super) fn backoff(&mut self) -> u64 {
         let ballot = self.config.timing.ballot;
         ballot / 5 + self.random.below(ballot / 2)
     }
 
-    /// Accepts the change that another voter accepted in the highest ballot.
     fn accept(&mut self) -> bool {
         let rows = self.peers.rows(self.view.number);
         let accepted = rows.filter_map(|(_, _, row)| row.accepted.as_ref());
@@ -133,7 +125,6 @@ impl Session {
         true
     }
 
-    /// Whether this peer holds the inputs of all ticks before the cut of a change.
     pub(super) fn holds(&self, change: &Change) -> bool {
         self.progress.complete >= change.cut || self.config.has(Fault::AcceptBlind)
     }
@@ -147,7 +138,7 @@ impl Session {
         self.refresh_row();
     }
 
-    /// Applies decided changes. Returns whether they lead from this view to a newer one; otherwise nothing changes.
+    /// Applies decided changes if they lead to a newer view. Returns whether they do.
     pub(super) fn install(&mut self, changes: &[Change]) -> bool {
         let mut next = self.view.clone();
         for change in changes {
@@ -168,7 +159,7 @@ impl Session {
         agreement.base_round = agreement.round;
         self.peers.follow(&self.view, self.clock.active);
         self.log.follow(&self.view.spans);
-        // Views may have been skipped, so the complete ticks are determined again from this peer's final tick on.
+        // Views may have been skipped: complete ticks are determined again from the final ones.
         let (complete, moved_at) = (self.progress.complete, self.progress.moved_at);
         if !self.config.has(Fault::KeepComplete) {
             self.progress.complete = self.progress.fin;
@@ -208,8 +199,7 @@ impl Session {
         self.is_quorum(set)
     }
 
-    /// Number of voters before this one whose rows are fresh. Voters of lower rank start ballots earlier. The rank of a
-    /// peer without a vote is 0.
+    /// Number of voters before this one whose rows are fresh. Voters of lower rank start ballots earlier.
     pub(super) fn rank(&self) -> u64 {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         let alive = self.peers.voters_that(|remote| within(remote.fresh, fresh, active));

@@ -2,7 +2,6 @@
 
 use alloc::vec::Vec;
 
-/// Error: the bytes are not a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Malformed;
 
@@ -28,7 +27,6 @@ impl<'a> Reader<'a> {
         Ok(taken)
     }
 
-    /// Takes all remaining bytes.
     pub(super) fn rest(&mut self) -> &'a [u8] {
         core::mem::take(&mut self.rest)
     }
@@ -80,7 +78,6 @@ impl<'a> Reader<'a> {
         u32::try_from(self.var64()?).map_err(|_| Malformed)
     }
 
-    /// A number encoded as its difference to `base`.
     pub(super) fn near(&mut self, base: u32) -> Decoded<u32> {
         let coded = self.var64()?;
         let size = i64::try_from(coded >> 1).map_err(|_| Malformed)?;
@@ -89,21 +86,18 @@ impl<'a> Reader<'a> {
         u32::try_from(value).map_err(|_| Malformed)
     }
 
-    /// A count of at most `most`.
     pub(super) fn count(&mut self, most: usize) -> Decoded<usize> {
         let count = usize::try_from(self.var()?).map_err(|_| Malformed)?;
         if count <= most { Ok(count) } else { Err(Malformed) }
     }
 }
 
-/// Appends the fields of packets.
 pub(super) trait Write {
     fn put_u16(&mut self, value: u16);
     fn put_u32(&mut self, value: u32);
     fn put_u64(&mut self, value: u64);
     fn put_u128(&mut self, value: u128);
     fn put_var64(&mut self, value: u64);
-    /// Writes a number in LEB128.
     fn put_var(&mut self, value: u32) {
         self.put_var64(u64::from(value));
     }
@@ -113,7 +107,6 @@ pub(super) trait Write {
         let below = u64::from(base.saturating_sub(value));
         self.put_var64(if below == 0 { above << 1 } else { (below - 1) << 1 | 1 });
     }
-    /// Writes the length of a list. Lists are far shorter than 2^32.
     fn put_count(&mut self, count: usize) {
         self.put_var64(u64::try_from(count).unwrap_or(u64::MAX));
     }

@@ -1,10 +1,8 @@
-//! [`Config`]: the parameters of a session.
-
 use core::fmt;
 
 use super::view::SEATS_MAX;
 
-/// One millisecond in microseconds. All times of a session are in microseconds.
+/// One millisecond in microseconds, the unit of the session's times.
 pub(super) const MS: u64 = 1000;
 
 /// Largest number of ticks that may be played with guessed inputs.
@@ -14,7 +12,7 @@ pub const DELAY_MAX: u16 = 60;
 /// Largest size of an input in bytes.
 pub const INPUT_BYTES_MAX: u16 = 512;
 
-/// Time limits of a session, in microseconds. `patience` has to be the same for all peers of a match.
+/// Time limits of a session, in microseconds. `patience` must be equal for all peers of a match.
 ///
 /// ```
 /// use lockstep2d::session::{Config, Timing};
@@ -25,32 +23,29 @@ pub const INPUT_BYTES_MAX: u16 = 512;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
-    /// Time for which play stalls because of a missing peer before the others go on without it. `u64::MAX`: no limit. A
-    /// quorum or the tie-holder can end a stall at any time with
-    /// [`Session::go_on_without`](super::Session::go_on_without).
+    /// Time for which the others wait for a missing peer before they go on without it; `u64::MAX` for no limit.
+    /// [`Session::go_on_without`](super::Session::go_on_without) ends a stall earlier.
     pub patience: u64,
-    /// A peer counts as heard if a packet from it arrived within this time. A stall is reported with
-    /// [`Event::Waiting`](super::Event::Waiting) once it is longer than this time and than six ticks.
+    /// Time for which a peer counts as heard after a packet. [`Event::Waiting`](super::Event::Waiting) reports a stall
+    /// longer than this and than six ticks.
     pub heard: u64,
-    /// A peer's row (its latest status record) counts as fresh for this time after it arrived.
+    /// Time for which a peer's row (its latest status record) counts as fresh.
     pub fresh: u64,
-    /// Maximum time for which a proposer that has promises from a quorum waits for the promises of the other voters.
+    /// Time for which a proposer with promises from a quorum waits for the other voters.
     pub promises: u64,
-    /// Minimum time between the promise of a ballot and the start of another one, if no decision is reached. The time
-    /// grows with the number of rounds without a decision.
+    /// Minimum time between the promise of a ballot and the start of another one, growing with the rounds without a
+    /// decision.
     pub ballot: u64,
     /// Minimum time for which a peer that has finished or left still answers.
     pub linger: u64,
-    /// Maximum time for which a peer that has finished or left still answers. Also the maximum time for which a peer
-    /// that wants to leave waits for the decision of the others.
+    /// Maximum time for which a peer that has finished or left still answers, and a leaving peer waits for a decision.
     pub linger_max: u64,
-    /// Upper bound of the time counted between two calls, so that a process that was suspended does not take the other
-    /// peers for silent.
+    /// Upper bound of the time counted between two calls, so that a suspended process does not take others for silent.
     pub step_max: u64,
 }
 
 impl Timing {
-    /// Time limits for matches over the internet: a patience of 2 s.
+    /// Time limits for matches over the internet.
     pub const DEFAULT: Timing = Timing {
         patience: 2000 * MS,
         heard: 300 * MS,
@@ -77,7 +72,7 @@ impl Timing {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Config {
-    /// Identifies the match: packets with another tag are ignored.
+    /// Identifies the match. Packets with another tag are ignored.
     pub match_tag: u64,
     /// Number of seats, 1 to [`SEATS_MAX`].
     pub seats: u8,
@@ -85,26 +80,24 @@ pub struct Config {
     pub input_bytes: u16,
     /// Duration of a tick in microseconds, 1000 to 1 000 000.
     pub tick_micros: u32,
-    /// Number of seats that have to be taken before the first tick, at most `seats`.
+    /// Number of seats that must be taken before the first tick, at most `seats`.
     pub start_with: u8,
-    /// Bit for each seat that this peer asks for; 0 for any seats that are free.
+    /// Bit for each seat that this peer asks for; 0 for any free seats.
     pub seats_wanted: u64,
-    /// Number of ticks that may be played with guessed inputs, at most [`GUESS_MAX`]; 0 is lockstep. Each peer chooses
-    /// its own.
+    /// Number of ticks that may be played with guessed inputs, at most [`GUESS_MAX`]; 0 is lockstep. Peers may differ.
     pub guess: u16,
-    /// Smallest delay of inputs in ticks, at most `delay_max`. Each peer chooses its own.
+    /// Smallest delay of inputs in ticks, at most `delay_max`. Peers may differ.
     pub delay_min: u16,
     /// Largest delay of inputs in ticks, at most [`DELAY_MAX`].
     pub delay_max: u16,
-    /// In a match that has begun, the first tick of a peer that joins lies this number of ticks plus three round trips
-    /// after the cut of the view change. The distance is limited to half of `history`, or to `seat_lead` if that is
-    /// larger.
+    /// Ticks from the cut of a view change to the first tick of a joining peer, in addition to three round trips. The
+    /// sum is at most half of `history`, or `seat_lead` if that is larger. Unused before the match begins.
     pub seat_lead: u16,
-    /// A peer that lags by at most this many ticks has caught up and may have a seat.
+    /// A peer that lags by at most this many ticks may get a seat.
     pub seat_within: u16,
     /// Number of ticks that may be played beyond the last final one, at least 16.
     pub history: u16,
-    /// Minimum number of final ticks whose inputs are kept for peers that reconnect; at least `history`.
+    /// Final ticks whose inputs are kept for peers that reconnect; at least `history`.
     pub log_ticks: u32,
     /// Interval in ticks at which states are saved, from 1 to half of `history`.
     pub save_interval: u16,
@@ -112,7 +105,7 @@ pub struct Config {
     pub check_interval: u16,
     /// Time limits.
     pub timing: Timing,
-    /// Deliberate mistakes, for tests that have to notice them.
+    /// Deliberate mistakes for tests.
     #[cfg(feature = "__faults")]
     #[doc(hidden)]
     pub fault: Option<Fault>,
@@ -129,7 +122,7 @@ pub struct ConfigError {
     pub min: u64,
     /// Largest value allowed.
     pub max: u64,
-    /// The value has to be a multiple of this number, which is 1 for most fields.
+    /// The value must be a multiple of this number.
     pub step: u64,
 }
 
@@ -201,12 +194,11 @@ impl Config {
         check("check_interval", self.check_interval.into(), (save_interval, u16::MAX.into()), save_interval)
     }
 
-    /// Bit for each seat of the match.
     pub(super) fn seat_set(&self) -> u64 {
         if usize::from(self.seats) >= SEATS_MAX { u64::MAX } else { (1 << self.seats) - 1 }
     }
 
-    /// Whether a deliberate mistake is active. Without the feature `__faults` the result is a constant.
+    /// Whether a deliberate mistake is active.
     #[cfg(not(feature = "__faults"))]
     #[expect(clippy::unused_self, reason = "the other version needs it")]
     pub(super) const fn has(&self, _: Fault) -> bool {
@@ -219,7 +211,7 @@ impl Config {
     }
 }
 
-/// Deliberate mistakes in the protocol, which tests enable to show that they are detected.
+/// Deliberate mistakes in the protocol, which tests must detect.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {

@@ -1,52 +1,41 @@
 //! [`Congestion`]: the rate at which a state is sent to one receiver.
 //!
-//! Additive increase, multiplicative decrease (Chiu and Jain 1989), evaluated after each period of about one round
-//! trip. The rate of a period was too high if more than an eighth of its chunks were lost, or if the round trip rose by
-//! more than 60 ms above the smallest one. Such a rise means that a queue fills up, and the inputs of the match pass
-//! through the same queue. Loss of up to an eighth is attributed to the link. Until the rate is too high for the first
+//! Additive increase, multiplicative decrease (Chiu and Jain 1989), about once per round trip. A rate was too high if
+//! more than an eighth of the chunks were lost, or if the round trip rose by more than 60 ms: a queue, which delays the
+//! inputs of the match. Loss of up to an eighth is attributed to the link. Until the rate is too high for the first
 //! time, it grows by half after each period in which it limited the sending.
 
-/// Initial rate in bytes a second.
+/// Initial, smallest and largest rate, and its increase in a period, in bytes a second.
 const RATE_START: u64 = 1_000_000;
-/// Smallest rate in bytes a second.
 const RATE_MIN: u64 = 128_000;
-/// Largest rate in bytes a second, for one receiver and for all receivers together.
+/// Also the limit of all receivers together.
 pub(super) const RATE_MAX: u64 = 16_000_000;
-/// Increase of the rate in a period, in bytes a second.
 const RATE_STEP: u64 = 100_000;
 /// Rise of the round trip above which a queue is assumed, in microseconds.
 const QUEUE: u64 = 60_000;
-/// Minimum length of a period in microseconds.
+/// Bounds of a period in microseconds.
 const PERIOD_MIN: u64 = 40_000;
-/// Maximum length of a period in microseconds.
 const PERIOD_MAX: u64 = 500_000;
-/// Largest burst, as the time in microseconds that it takes at the current rate. It covers a frame at 60 Hz, because a
-/// game may update its session only once per frame.
+/// Largest burst in microseconds at the current rate. It covers a frame at 60 Hz, the interval of updates in a game.
 pub(super) const BURST: u64 = 25_000;
 /// Minimum number of chunks for an estimate of the loss.
 const CHUNKS_MIN: u32 = 8;
 
-/// The rate of one upload.
 #[derive(Clone, Debug)]
 pub(super) struct Congestion {
     rate: u64,
-    /// Whether the rate has been acceptable in every period so far.
+    /// Whether the rate has not been too high yet.
     is_starting: bool,
-    /// Number of bytes that may be sent now.
     budget: u64,
-    /// Time at which the budget was last increased.
     budget_at: u64,
-    /// Smallest round trip in microseconds.
+    /// Smallest and last round trip in microseconds.
     round_trip_min: u64,
-    /// Last round trip in microseconds.
     round_trip: u64,
-    /// Start of the current period.
     since: u64,
-    /// Number of chunks sent in the period.
     sent: u32,
-    /// Number of chunks lost in the period.
+    /// Number of chunks sent again in the period, each of which counts as a loss.
     lost: u32,
-    /// Whether the rate limited the number of chunks sent in the period.
+    /// Whether the rate limited the sending in the period.
     is_limiting: bool,
 }
 
@@ -66,13 +55,11 @@ impl Congestion {
         }
     }
 
-    /// Notes a measured round trip.
     pub(super) fn measure(&mut self, round_trip: u64) {
         self.round_trip = round_trip;
         self.round_trip_min = self.round_trip_min.min(round_trip);
     }
 
-    /// Whether another chunk may be sent.
     pub(super) fn may_send(&mut self, now: u64) -> bool {
         self.judge(now);
         let passed = now.saturating_sub(self.budget_at).min(BURST);
@@ -82,7 +69,7 @@ impl Congestion {
         self.budget > 0
     }
 
-    /// Notes that a chunk is sent. `again` is whether the chunk was sent before and is assumed lost.
+    /// Counts a chunk. `again` is whether it was sent before and is assumed lost.
     pub(super) fn note_sent(&mut self, bytes: u64, again: bool) {
         self.budget = self.budget.saturating_sub(bytes);
         self.sent += 1;
@@ -111,7 +98,7 @@ mod tests {
     use super::*;
 
     /// Sends over a link of `rate` bytes per second, with a queue of 100 ms and a loss of `loss` percent. Returns the
-    /// throughput after the first ten seconds, in bytes per second.
+    /// bytes per second after the first ten seconds.
     fn run(rate: u64, loss: u64) -> u64 {
         let (mut control, mut queued, mut arrived, mut random) = (Congestion::new(), 0_u64, 0, 1_u64);
         let mut lost = 0;

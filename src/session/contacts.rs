@@ -1,24 +1,21 @@
-//! [`Contacts`]: alternative contacts for a peer without a vote that has lost its contact.
+//! [`Contacts`]: other contacts for a peer without a vote.
 //!
-//! A spectator receives the match through the peer that admitted it. When it no longer receives rows of a majority, it
-//! contacts the peers whose addresses it has learned, one after the other, with the same handshake as when joining. The
-//! peer that admits it serves it from then on. The spectator keeps its state and continues at its current tick.
+//! A spectator receives the match through the peer that admitted it. Without recent rows of a majority it asks other
+//! peers in turn, with the handshake of joining, and continues at its current tick.
 
 use alloc::vec::Vec;
 
 use super::address::Address;
 use super::id::PeerId;
 
-/// Time without fresh rows of a majority after which other peers are contacted, in microseconds.
+/// Time without fresh rows of a majority after which other peers are asked, in microseconds.
 const SILENCE: u64 = 500_000;
 /// Time after which an unanswered attempt is given up, in microseconds.
 const ASK_TIME: u64 = 1_500_000;
 /// Time between two hello packets, in microseconds.
 const HELLO_INTERVAL: u64 = 200_000;
-/// Maximum number of addresses kept.
 const CONTACTS_MAX: usize = 128;
 
-/// A peer that is asked to serve this peer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PendingContact {
     pub(super) address: Address,
@@ -28,7 +25,6 @@ pub(super) struct PendingContact {
     until: u64,
 }
 
-/// Addresses of the peers that take part, and the peer that is currently asked to serve this peer.
 #[derive(Debug, Default)]
 pub(super) struct Contacts {
     list: Vec<(PeerId, Address)>,
@@ -38,7 +34,6 @@ pub(super) struct Contacts {
 }
 
 impl Contacts {
-    /// Notes the address of a peer. It replaces an older address of that peer.
     pub(super) fn note(&mut self, id: PeerId, address: Address) {
         match self.list.iter_mut().find(|(known, _)| *known == id) {
             Some(known) => known.1 = address,
@@ -51,8 +46,8 @@ impl Contacts {
         }
     }
 
-    /// Returns the contact to send a hello to, if one is due. `is_silent` is whether this peer has no recent rows of a
-    /// majority. `nonce` generates the number of a new handshake.
+    /// Returns the contact to send a hello to, if one is due. `is_silent` is whether there are no recent rows of a
+    /// majority. `nonce` numbers a new handshake.
     pub(super) fn update(
         &mut self,
         now: u64,
@@ -79,7 +74,7 @@ impl Contacts {
         Some(*asked)
     }
 
-    /// Processes a challenge. Returns whether it answers a hello of this peer, which confirms the address.
+    /// Returns whether the challenge answers this peer's hello, which confirms the address.
     pub(super) fn take_challenge(&mut self, nonce: u64, cookie: u64) -> bool {
         let Some(asked) = self.asked.as_mut().filter(|asked| asked.nonce == nonce) else { return false };
         if asked.cookie != cookie {
@@ -88,7 +83,7 @@ impl Contacts {
         true
     }
 
-    /// Processes a refusal: the next peer is contacted.
+    /// A refusal: the next peer is asked.
     pub(super) fn take_refusal(&mut self, nonce: u64) {
         if self.asked.is_some_and(|asked| asked.nonce == nonce) {
             self.asked = None;

@@ -1,6 +1,3 @@
-//! [`Endpoint`]: a session with addresses. It opens a match or joins one, admits peers that join, sends them a state,
-//! and tracks the addresses of peers.
-
 use alloc::boxed::Box;
 use alloc::collections::VecDeque;
 use alloc::sync::Arc;
@@ -20,18 +17,17 @@ use super::state::{Role, Session};
 use super::transfer::{Download, Pinned};
 use super::view::View;
 
-/// Largest download that is accepted, in bytes: the game's state, with the view and the addresses of the peers.
+/// Largest accepted download in bytes: the game's state, the view and the addresses.
 pub const STATE_BYTES_MAX: u64 = 256 << 20;
 /// Time between attempts to reach the contact, in microseconds.
 const HELLO_INTERVAL: u64 = 200_000;
-/// Time without a new chunk after which a download starts again, in microseconds.
+/// Time without a new chunk after which a download restarts, in microseconds.
 const DOWNLOAD_PATIENCE: u64 = 3_000_000;
 /// Time between two packets with the addresses of peers, in microseconds.
 const ADDRESS_LIST_INTERVAL: u64 = 500_000;
-/// Maximum number of packets waiting to be sent.
 const PACKETS_MAX: usize = 8192;
 
-/// An event of an endpoint while it joins a match. The events of its session are [`Event`](super::Event)s.
+/// An event of an endpoint while it joins a match. Events of its session are [`Event`](super::Event)s.
 ///
 /// ```
 /// use lockstep2d::session::{JoinEvent, RefusalReason};
@@ -49,35 +45,38 @@ const PACKETS_MAX: usize = 8192;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JoinEvent {
-    /// The contact refuses the request to join. After [`RefusalReason::NotReady`] the endpoint asks again; after any
-    /// other reason it waits for [`Endpoint::ask`].
+    /// The contact refuses. After [`RefusalReason::NotReady`] the endpoint asks again, otherwise it waits for
+    /// [`Endpoint::ask`].
     Refused {
-        /// Reason of the refusal.
+        /// Reason.
         reason: RefusalReason,
-        /// The contact's own offer, which the offer in the request has to equal.
+        /// The contact's offer, which must equal the offer in the request.
         offer: Vec<u8>,
     },
-    /// The initial state has arrived: the game has to restore it, and then fulfil the requests of the session.
+    /// The initial state has arrived. The game restores it and then fulfils the requests of the session.
     State {
         /// Number of ticks played before this state.
         tick: Tick,
-        /// The bytes that [`Endpoint::offer_state`] was given on the other side.
+        /// The bytes passed to [`Endpoint::offer_state`] on the other side.
         bytes: Vec<u8>,
     },
-    /// The downloaded bytes are not a valid state. The endpoint requests the state again.
+    /// The download is not a valid state and is requested again.
     BadState,
 }
 
-/// Progress of joining a match.
 #[derive(Debug)]
 pub(super) enum Phase {
-    /// Asks the contact for permission to join.
-    Asking { nonce: u64, cookie: u64, next_at: u64 },
-    /// Downloads the state.
-    Downloading { nonce: u64, download: Download },
-    /// Takes part in the match.
+    Asking {
+        nonce: u64,
+        cookie: u64,
+        next_at: u64,
+    },
+    Downloading {
+        nonce: u64,
+        download: Download,
+    },
     InMatch(Box<Session>),
-    /// The request was refused. Nothing happens until [`Endpoint::ask`] is called.
+    /// Waits for [`Endpoint::ask`].
     Refused,
 }
 
@@ -136,7 +135,7 @@ pub struct Endpoint {
     pub(super) events: VecDeque<JoinEvent>,
 }
 
-/// Identifiers of a peer, its secret, and the parameters that it offers in the handshake.
+/// Identifiers of a peer, its secret, and its offer in the handshake.
 ///
 /// ```
 /// use lockstep2d::session::{Config, Endpoint, Identity, Key, PeerId};
@@ -158,10 +157,9 @@ pub struct Identity {
     pub id: PeerId,
     /// The identity that outlives processes.
     pub key: Key,
-    /// Handshake data that has to be equal for all peers of a match: versions, rules, setup. Only the first
-    /// [`OFFER_BYTES_MAX`] bytes count.
+    /// Handshake data that must be equal for all peers: versions, rules, setup. Truncated to [`OFFER_BYTES_MAX`] bytes.
     pub offer: Vec<u8>,
-    /// 16 random bytes that no other peer knows: the key of the handshake cookies and of the tokens of probes.
+    /// 16 random bytes, unknown to others: the key of handshake cookies and probe tokens.
     pub secret: [u64; 2],
 }
 
@@ -203,7 +201,7 @@ impl Endpoint {
         Ok(Endpoint::new(config, identity, role, Phase::InMatch(Box::new(session)), None))
     }
 
-    /// Joins a match through a contact, which is a peer that already takes part in it.
+    /// Joins a match through a contact, a peer that already takes part in it.
     ///
     /// # Errors
     /// [`ConfigError`] if a parameter is out of its range.
@@ -219,8 +217,7 @@ impl Endpoint {
         Ok(endpoint)
     }
 
-    /// Requests to join through another contact, or again through the same one. The next call of
-    /// [`update`](Endpoint::update) sends the request. A session in progress is discarded.
+    /// Requests to join through this contact at the next [`update`](Endpoint::update). Discards a session in progress.
     pub fn ask(&mut self, contact: Address) {
         self.contact = Some(contact);
         let nonce = token(self.secret, self.me, &contact).wrapping_add(self.packets_seed());
@@ -251,7 +248,7 @@ impl Endpoint {
         }
     }
 
-    /// Number of bytes received and total number of bytes of the state, while it is downloaded.
+    /// Bytes received and total bytes of the state, while it is downloaded.
     #[must_use]
     pub fn download(&self) -> Option<(u64, u64)> {
         match &self.phase {
@@ -260,13 +257,13 @@ impl Endpoint {
         }
     }
 
-    /// The address of a peer, once a probe or the handshake has shown that the peer receives packets there.
+    /// The address at which a probe or the handshake has shown that a peer receives packets.
     #[must_use]
     pub fn address(&self, peer: PeerId) -> Option<Address> {
         self.routes.address(peer)
     }
 
-    /// Next packet to send.
+    /// Next packet to send, with its destination.
     pub fn next_packet(&mut self) -> Option<(Address, Vec<u8>)> {
         self.packets.pop_front()
     }
@@ -281,14 +278,13 @@ impl Endpoint {
         self.packets.push_back((to, bytes));
     }
 
-    /// Whether a joining peer waits for a state. If so, the game calls [`offer_state`](Endpoint::offer_state).
+    /// Whether a joining peer waits for a state from [`offer_state`](Endpoint::offer_state).
     #[must_use]
     pub fn wants_state(&self) -> bool {
         self.guests.anybody_waits()
     }
 
-    /// Offers the state after `tick` ticks, all of which must be final; otherwise the call has no effect. The state is
-    /// sent to all peers that wait for one, while play continues.
+    /// Offers the state after `tick` ticks to the peers that wait for one. Ignored unless all these ticks are final.
     pub fn offer_state(&mut self, tick: Tick, state: Vec<u8>) {
         let Phase::InMatch(session) = &self.phase else { return };
         if tick > session.final_tick() {
@@ -299,7 +295,7 @@ impl Endpoint {
         self.guests.serve(&Arc::new(Pinned::new(tick, start.encode())));
     }
 
-    /// Advances the endpoint to the time `now`, in microseconds: sends packets that are due and handles timeouts.
+    /// Advances to the time `now` in microseconds: sends packets that are due and handles timeouts.
     pub fn update(&mut self, now: u64) {
         match &mut self.phase {
             Phase::Asking { nonce, cookie, next_at } => {
@@ -333,7 +329,7 @@ impl Endpoint {
         }
     }
 
-    /// Asks other peers to serve this peer, if it has no vote and has no recent rows of a majority.
+    /// Asks other peers to serve this peer if it has no vote and has lost the majority.
     fn search(&mut self, now: u64) {
         let Phase::InMatch(session) = &self.phase else { return };
         let is_silent = session.status() == Status::Paused && session.view().voter(self.me).is_none();
@@ -370,8 +366,7 @@ impl Endpoint {
         self.flush();
     }
 
-    /// Takes the packets of the session, so that [`next_packet`](Endpoint::next_packet) returns them. Call it after
-    /// [`Session::advance`].
+    /// Moves the session's packets to [`next_packet`](Endpoint::next_packet). Call it after [`Session::advance`].
     pub fn flush(&mut self) {
         let Phase::InMatch(session) = &mut self.phase else { return };
         while let Some((id, bytes)) = session.next_packet() {

@@ -45,7 +45,7 @@ impl Endpoint {
             JoinPacket::Challenge { nonce, cookie } => {
                 if let Phase::InMatch(session) = &mut self.phase {
                     if self.contacts.take_challenge(nonce, cookie) {
-                        // This peer sends packets to the contact from now on, even before the contact admits it.
+                        // Packets go to the contact even before it admits this peer.
                         session.attach(sender, None);
                         self.routes.prove(sender, from, now);
                     }
@@ -105,12 +105,10 @@ impl Endpoint {
         }
     }
 
-    /// Whether the session knows a peer.
     fn knows(&self, id: PeerId) -> bool {
         self.session().is_some_and(|session| session.link(id).is_some())
     }
 
-    /// Admits a peer, or sends it a refusal with the reason.
     fn admit(&mut self, now: u64, from: Address, sender: PeerId, key: Key, nonce: u64, offer: &[u8]) {
         let reason = if offer != self.offer {
             Some(RefusalReason::Offer)
@@ -138,7 +136,6 @@ impl Endpoint {
         }
     }
 
-    /// Begins to take part, with the downloaded state.
     fn begin(&mut self, now: u64) {
         let refused = Phase::Refused;
         let Phase::Downloading { download, .. } = core::mem::replace(&mut self.phase, refused) else {

@@ -1,8 +1,6 @@
-//! [`Event`]: an event that a session reports to the game; [`Status`]: the status of a session.
-
 use super::id::{PeerId, Tick};
 
-/// Status of a session: what this peer does in the match.
+/// What this peer does in the match.
 ///
 /// ```
 /// use lockstep2d::session::Status;
@@ -21,26 +19,25 @@ use super::id::{PeerId, Tick};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// Follows the match without a seat, and asks for one.
+    /// Follows the match and asks for a seat.
     Joining,
     /// Follows the match and asks for no seat.
     Watching,
-    /// Has a seat, or is a dedicated server. The match has not begun, because too few seats are taken.
+    /// Has a seat, or is a dedicated server. Too few seats are taken to begin.
     Waiting,
     /// Takes part in a match that has begun, with a seat or as a dedicated server.
     Playing,
-    /// No recent status records of a majority have arrived, directly or through other peers, and only a majority can
-    /// continue the match. A peer without a seat may ask another contact.
+    /// No recent status records of a majority have arrived, and only a majority can continue the match.
     Paused,
-    /// The others continued without this peer. A player requests a seat again.
+    /// The others continue without this peer. A player requests a seat again.
     Dropped,
     /// The others removed this peer for good.
     Kicked,
-    /// Announces its departure to the others.
+    /// Announces its departure.
     Leaving,
-    /// Has left, and still answers peers that do not know of its departure yet.
+    /// Has left, and still answers peers that may not know.
     Left,
-    /// All ticks of the match are final. This peer still answers peers that lack some of them.
+    /// All ticks of the match are final. This peer still answers others.
     Finished {
         /// Number of ticks of the match.
         ticks: Tick,
@@ -50,7 +47,7 @@ pub enum Status {
 }
 
 impl Status {
-    /// Whether the session has ended and sends nothing more.
+    /// Whether the session has ended.
     #[must_use]
     pub const fn is_closed(self) -> bool {
         matches!(self, Status::Closed)
@@ -76,40 +73,39 @@ impl Status {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// The status of the session has changed.
+    /// The status has changed.
     Status(Status),
-    /// A new view is in force: the voters, the seats, or the start or end of the match have changed.
+    /// A new view is in force.
     View {
         /// Number of the view.
         number: u32,
     },
-    /// From a tick on, a peer occupies a seat.
+    /// A peer occupies a seat from a tick on.
     Seated {
         /// Incarnation of the peer.
         peer: PeerId,
         /// Number of the player.
         seat: u8,
-        /// First tick in which the peer occupies the seat.
+        /// First tick with the peer in the seat.
         from: Tick,
     },
-    /// From a tick on, a peer no longer occupies a seat.
+    /// A peer leaves a seat from a tick on.
     Unseated {
         /// Incarnation of the peer.
         peer: PeerId,
         /// Number of the player.
         seat: u8,
-        /// First tick in which the peer does not occupy the seat.
+        /// First tick without the peer in the seat.
         from: Tick,
     },
-    /// Play stalls because inputs of a peer are missing. Reported once for each stall and peer.
+    /// Play stalls because inputs of a peer are missing.
     Waiting {
         /// Incarnation of the peer.
         peer: PeerId,
-        /// Whether rows of the peer arrive, directly or through other peers. If so, the peer is connected, but its game
-        /// does not advance.
+        /// Whether rows of the peer arrive, directly or through others: it is connected, but its game does not advance.
         heard: bool,
     },
-    /// Play continues after [`Event::Waiting`].
+    /// The stall of [`Event::Waiting`] is over.
     Resumed,
     /// A peer requests a pause, or withdraws its request.
     Pause {
@@ -134,15 +130,15 @@ pub enum Event {
         /// Hash of the other peer's state.
         theirs: u128,
     },
-    /// A peer has issued two different inputs for one tick. The input that arrived first counts. This peer no longer
-    /// proposes that the other one gets a seat.
+    /// A peer has issued two inputs for one tick. The first to arrive counts. This peer no longer proposes a seat for
+    /// it.
     Conflict {
-        /// The peer that issued two inputs.
+        /// The peer.
         peer: PeerId,
-        /// The tick for which the peer issued two inputs.
+        /// The tick.
         tick: Tick,
     },
-    /// This peer is more than [`Config::log_ticks`](super::Config::log_ticks) ticks behind, so that the others may no
-    /// longer keep the inputs that it lacks. It has to join again and download a state.
+    /// This peer is more than [`Config::log_ticks`](super::Config::log_ticks) ticks behind, so that others may have
+    /// dropped inputs that it lacks. It has to join again.
     TooFarBehind,
 }

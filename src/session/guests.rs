@@ -1,5 +1,5 @@
-//! [`Guests`]: peers that join or watch through this peer, until their first row arrives, and the states that are sent
-//! to them. Nothing is stored for a peer whose address has not been confirmed by the handshake.
+//! [`Guests`]: peers that join through this peer, until their first row arrives, and uploads to them. Nothing is stored
+//! before the handshake has confirmed an address.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -19,34 +19,29 @@ pub const GUESTS_MAX: usize = 64;
 const COOKIE_LIFE: u64 = 15_000_000;
 /// Time without a request after which a guest is removed, in microseconds.
 const GUEST_PATIENCE: u64 = 5_000_000;
-/// Time between announcements of a state to a guest that has not asked for it yet, in microseconds.
+/// Time between announcements of a state until the guest asks for chunks, in microseconds.
 const WELCOME_INTERVAL: u64 = 200_000;
 
-/// A peer that joins or watches.
 #[derive(Debug)]
 struct Guest {
     id: PeerId,
     nonce: u64,
     upload: Option<Upload>,
-    /// Whether the guest has asked for chunks.
     asked: bool,
     welcome_at: u64,
-    /// Time of the guest's last request; before its first one, time at which its upload began.
+    /// Time of the guest's last request, or of the start of its upload.
     heard_at: Option<u64>,
 }
 
-/// All guests.
 #[derive(Debug, Default)]
 pub(super) struct Guests {
     list: Vec<Guest>,
-    /// Number of bytes that may be sent now.
     budget: u64,
-    /// Time at which the budget was last increased.
     budget_at: u64,
 }
 
 impl Guests {
-    /// The cookies that are valid for a joining peer: the newest one, and the one before it.
+    /// The valid cookies of a joining peer, the newest first.
     pub(super) fn cookies(
         secret: Secret,
         now: u64,
@@ -68,7 +63,7 @@ impl Guests {
         })
     }
 
-    /// Admits a peer whose address is confirmed. Returns the reason if the peer is refused.
+    /// Admits a peer whose address is confirmed, or returns the reason of the refusal.
     pub(super) fn admit(
         &mut self,
         session: &mut Session,
@@ -78,7 +73,6 @@ impl Guests {
     ) -> Option<RefusalReason> {
         if let Some(guest) = self.list.iter_mut().find(|guest| guest.id == id) {
             if guest.nonce != nonce {
-                // The guest starts its handshake again.
                 (guest.nonce, guest.upload, guest.asked, guest.heard_at) = (nonce, None, false, None);
             }
             return None;
@@ -98,7 +92,6 @@ impl Guests {
         self.list.iter().any(|guest| guest.upload.is_none())
     }
 
-    /// Starts to send a state to all guests that wait for one.
     pub(super) fn serve(&mut self, state: &Arc<Pinned>) {
         for guest in self.list.iter_mut().filter(|guest| guest.upload.is_none()) {
             guest.upload = Some(Upload::new(Arc::clone(state)));
@@ -121,8 +114,7 @@ impl Guests {
         upload.take(now, next, window, masks);
     }
 
-    /// Returns the packets that are due to guests. Removes guests that already take part in the match, and guests that
-    /// have gone.
+    /// Returns packets for guests that are due. Removes guests that take part in the match or have gone.
     pub(super) fn update(&mut self, now: u64, session: &mut Session) -> Vec<(PeerId, JoinPacket)> {
         let passed = now.saturating_sub(self.budget_at).min(BURST);
         self.budget_at = now;
@@ -147,7 +139,7 @@ impl Guests {
                 packets.push((guest.id, chunk));
             }
         }
-        // The next call begins with another guest, so that each gets a share.
+        // Another guest is first in the next call, so that each gets a share.
         if !self.list.is_empty() {
             self.list.rotate_left(1);
         }

@@ -1,17 +1,14 @@
-//! Identities of participants: [`PeerId`] and [`Key`].
-
 use core::fmt;
 
 /// Number of a tick: tick `t` leads from the state after `t` ticks to the state after `t + 1`.
 pub type Tick = u32;
 
-/// A tick that is never reached: the end of a span whose owner still plays, and of a match whose end is not decided.
+/// A tick that is never reached: the end of an open span, or of a match without a decided end.
 pub const NEVER: Tick = u32::MAX;
 
-/// Incarnation of a peer: a random number that a process chooses when it starts, unique in its match.
+/// Incarnation of a peer: a random number chosen at the start of each process, unique in its match.
 ///
-/// A process that restarts must choose another number, because it does not remember the promises that were made under
-/// the old one.
+/// A restarted process must choose another one, because it does not remember its promises.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PeerId(pub u32);
 
@@ -21,7 +18,7 @@ impl fmt::Display for PeerId {
     }
 }
 
-/// Identity of a participant that outlives its process: the lobby assigns it, or the game derives it from a public key.
-/// A peer that returns with the same key, and asks for no other seat, gets its former seat if that is still free.
+/// Identity of a participant that outlives its process: assigned by a lobby, or derived from a public key. A peer that
+/// returns with it gets its former seat, if that is free and it asks for no other one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Key(pub u64);

@@ -5,7 +5,6 @@ use alloc::vec::Vec;
 use super::id::Tick;
 use super::view::Span;
 
-/// The inputs of a span, without gaps.
 #[derive(Clone, Debug)]
 struct SpanLog {
     /// First tick whose input is in `bytes`.
@@ -15,21 +14,18 @@ struct SpanLog {
     bytes: Vec<u8>,
 }
 
-/// Result of adding inputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Added {
-    /// All inputs were known already, or they would have left a gap.
+    /// All inputs are known already, or would leave a gap.
     Nothing,
     /// The inputs from this tick on are new.
     From(Tick),
-    /// The owner has issued a different input for this tick before.
+    /// The owner has issued a different input for this tick.
     Conflict(Tick),
 }
 
-/// The inputs of all spans of a view, by the index of the span.
 #[derive(Clone, Debug)]
 pub(super) struct InputLog {
-    /// Bytes of an input.
     size: usize,
     spans: Vec<SpanLog>,
 }
@@ -43,14 +39,13 @@ impl InputLog {
         self.size
     }
 
-    /// Makes room for the spans of a newer view.
     pub(super) fn follow(&mut self, spans: &[Span]) {
         let new = spans.get(self.spans.len()..).unwrap_or_default();
         let empty = |span: &Span| SpanLog { first: span.from, next: span.from, bytes: Vec::new() };
         self.spans.extend(new.iter().map(empty));
     }
 
-    /// Discards all inputs. The log then starts at a tick whose state is loaded.
+    /// Discards all inputs. The log starts at a tick whose state is loaded.
     pub(super) fn start_at(&mut self, spans: &[Span], tick: Tick) {
         self.spans.clear();
         let empty = |span: &Span| {
@@ -60,12 +55,10 @@ impl InputLog {
         self.spans.extend(spans.iter().map(empty));
     }
 
-    /// First tick whose input is missing.
     pub(super) fn next(&self, span: usize) -> Tick {
         self.spans.get(span).map_or(0, |log| log.next)
     }
 
-    /// The input for a tick.
     pub(super) fn get(&self, span: usize, tick: Tick) -> Option<&[u8]> {
         self.range(span, tick, tick.checked_add(1)?)
     }
@@ -77,7 +70,7 @@ impl InputLog {
         log.bytes.get(at(from)?..at(until)?)
     }
 
-    /// Adds the inputs from tick `start` on. Inputs that would leave a gap are ignored; they will be sent again.
+    /// Adds the inputs from tick `start` on. Inputs that would leave a gap are ignored and will be sent again.
     pub(super) fn add(&mut self, span: usize, start: Tick, inputs: &[u8]) -> Added {
         let size = self.size;
         let Some(log) = self.spans.get_mut(span) else { return Added::Nothing };
@@ -100,7 +93,7 @@ impl InputLog {
         if log.next > before { Added::From(before) } else { Added::Nothing }
     }
 
-    /// Drops the inputs before a tick, once there are enough of them to justify moving the others.
+    /// Drops the inputs before a tick, if that is more than half of those kept.
     pub(super) fn forget_before(&mut self, tick: Tick) {
         for log in &mut self.spans {
             let until = tick.min(log.next);
@@ -113,7 +106,6 @@ impl InputLog {
         }
     }
 
-    /// Number of bytes that are kept.
     pub(super) fn bytes(&self) -> usize {
         self.spans.iter().map(|log| log.bytes.len()).sum()
     }

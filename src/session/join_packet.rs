@@ -1,4 +1,4 @@
-//! Packets outside of the match itself: requests to join, transfer of states, and discovery of addresses.
+//! Packets for joining, transfer of states, and discovery of addresses.
 
 use alloc::vec::Vec;
 
@@ -11,36 +11,34 @@ use super::packet::{PACKET_BYTES_MAX, checksum};
 pub const OFFER_BYTES_MAX: usize = 512;
 /// Bytes of a state per packet.
 pub(super) const CHUNK_BYTES: usize = 1152;
-/// Largest number of words in a request's bit mask of received chunks.
+/// Largest number of words in the bit mask of received chunks.
 pub(super) const MASKS_MAX: usize = 16;
-/// Largest number of addresses in a packet.
 pub(super) const ADDRESS_LIST_MAX: usize = 24;
 
-/// Reason why a peer may not join.
+/// Reason of a refusal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RefusalReason {
     /// The offers differ: another game, setup or version.
     Offer,
-    /// Too many peers are joining through this contact.
+    /// Too many peers join through this contact.
     Full,
-    /// The incarnation already belongs to a voter of the match.
+    /// The incarnation already has a vote in the match.
     Taken,
     /// The contact is not in a match yet.
     NotReady,
 }
 
-/// A packet outside of the match.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum JoinPacket {
-    /// A peer asks to join; the cookie is 0 at first.
+    /// Asks to join. The cookie is 0 at first.
     Hello {
         nonce: u64,
         key: Key,
         cookie: u64,
         offer: Vec<u8>,
     },
-    /// Carries a cookie to the address from which a hello came. The next hello returns the cookie, which proves that
-    /// its sender receives packets at this address. The sender of a challenge stores nothing for it.
+    /// Carries a cookie. The next hello returns it, which proves that its sender receives packets there. The sender of
+    /// a challenge stores nothing.
     Challenge {
         nonce: u64,
         cookie: u64,
@@ -57,8 +55,8 @@ pub(super) enum JoinPacket {
         hash: u64,
         length: u64,
     },
-    /// The receiver of a state has all chunks before `next`, and those from `next` on whose bit is set. Up to `window`
-    /// chunks from `next` on may be sent.
+    /// The receiver has the chunks before `next`, and later ones with a set bit. Up to `window` chunks from `next` on
+    /// may be sent.
     Want {
         hash: u64,
         next: u32,
@@ -78,18 +76,16 @@ pub(super) enum JoinPacket {
     Pong {
         token: u64,
     },
-    /// Addresses of other peers.
     AddressList {
         addresses: Vec<(PeerId, Address)>,
     },
 }
 
-/// Offset of the kind in the body of a packet. Packets of the match have their flags at this offset.
+/// Offset of the kind in the body. Match packets have their flags here.
 const KIND_AT: usize = 4;
-/// Smallest value of a kind. Values of the flags of match packets are smaller.
+/// Smallest kind, above the flags of match packets.
 const KIND_FIRST: u8 = 0x80;
 
-/// Whether the body belongs to a join packet and not to a packet of the match.
 pub(super) fn is_join_packet(body: &[u8]) -> bool {
     body.get(KIND_AT).is_some_and(|&kind| kind >= KIND_FIRST)
 }
@@ -165,7 +161,6 @@ impl JoinPacket {
         bytes
     }
 
-    /// Decodes the body of a packet.
     pub(super) fn read(body: &[u8]) -> Decoded<(PeerId, JoinPacket)> {
         let reader = &mut Reader::new(body);
         let sender = PeerId(reader.u32()?);

@@ -1,4 +1,4 @@
-//! The [`Status`] of a session, determined by each call of [`Session::update`].
+//! The [`Status`] of a session.
 
 use super::config::Fault;
 use super::event::{Event, Status};
@@ -7,29 +7,25 @@ use super::row::{Removal, SeatWant};
 use super::state::{Role, Session};
 use super::view::{View, has_bit};
 
-/// The status, and the data on which it depends in addition to the view.
 #[derive(Clone, Debug)]
 pub(super) struct Lifecycle {
     pub(super) status: Status,
-    /// Time at which this peer began to leave, had left, or had finished. The time limits of `Timing::linger` and
-    /// `Timing::linger_max` start here.
+    /// Time at which this peer began to leave, had left, or had finished. Linger times start here.
     since: Option<u64>,
-    /// Whether this peer had a seat and lost it against its will.
+    /// Whether this peer lost its vote against its will.
     dropped: bool,
     kicked: bool,
     left: bool,
-    /// The peer that play waits for, as last reported to the game.
+    /// The peer that play waits for, as last reported.
     waiting_for: Option<PeerId>,
     too_far_behind: bool,
-    /// Peers that request a pause, as last reported to the game.
     paused: alloc::vec::Vec<PeerId>,
 }
 
-/// Length of a stall in ticks after which the peer whose inputs are missing is reported to the game, but not before
-/// [`Timing::heard`](super::Timing::heard) has passed.
+/// Minimum length of a reported stall in ticks.
 const WAITING_TICKS: u64 = 6;
 
-/// Time before the end of a match at which a peer proposes the end, in microseconds.
+/// Time before the end of a match at which this peer requests the end, in microseconds.
 const END_NOTICE: u64 = 2_000_000;
 
 impl Lifecycle {
@@ -52,7 +48,6 @@ impl Lifecycle {
 }
 
 impl Session {
-    /// Follows a change of the view.
     pub(super) fn lifecycle_after_change(&mut self, before: &View) {
         let (was, is) = (before.voter(self.me).is_some(), self.view.voter(self.me).is_some());
         if is {
@@ -71,7 +66,7 @@ impl Session {
             self.lifecycle.dropped = !self.wants.leave;
             self.lifecycle.since = None;
         }
-        // A peer that was removed with `Removal::Without` may return.
+        // A peer removed with `Removal::Without` may return.
         let view = &self.view;
         self.wants.removals.retain(|removal| match *removal {
             Removal::Without(id) => view.voter(id).is_some(),
@@ -79,13 +74,11 @@ impl Session {
         });
     }
 
-    /// First tick after the end of the match for this peer.
     pub(super) fn stop(&self) -> Tick {
         let own = self.wants.end.filter(|_| self.config.has(Fault::LocalEnd));
         own.map_or(self.view.stop(), |own| own.min(self.view.stop()))
     }
 
-    /// Updates the requests of this peer to the others.
     pub(super) fn update_wants(&mut self) {
         let lead = self.peers.voters().filter_map(|(_, remote)| remote.row.as_ref()).map(|row| row.ack).max();
         let within = Tick::from(self.config.seat_within);
@@ -100,7 +93,7 @@ impl Session {
             Role::Spectator => 0,
         };
         let wants = seats > 0 && may_have && caught_up && self.is_connected();
-        // A peer that was dropped asks for any seats, because its own may be taken.
+        // The seats of a dropped peer may be taken, so it asks for any.
         let which = if self.lifecycle.dropped { 0 } else { self.config.seats_wanted };
         self.wants.seats = wants.then_some(SeatWant { seats, key: self.key, which });
         let notice =
@@ -111,14 +104,13 @@ impl Session {
         }
     }
 
-    /// A seat that this peer requests and that belongs to another peer.
+    /// A seat that this peer requests and another one has.
     pub(crate) fn taken_seat(&self) -> Option<u8> {
         let want = self.wants.seats?;
         let others = self.view.spans.iter().filter(|span| span.is_open() && span.key != self.key);
         others.map(|span| span.seat).find(|&seat| has_bit(want.which, usize::from(seat)))
     }
 
-    /// Determines the status, and reports a change to the game.
     pub(super) fn update_status(&mut self) {
         let status = self.determine_status();
         if status != self.lifecycle.status {
@@ -151,7 +143,7 @@ impl Session {
             return if self.lingered(since, known) { Status::Closed } else { Status::Left };
         }
         if self.wants.leave {
-            // A minority cannot decide on a departure, so the peer leaves without a decision after `linger_max`.
+            // A minority cannot decide: the peer leaves without a decision after `linger_max`.
             let since = *self.lifecycle.since.get_or_insert(self.clock.active);
             let waited = self.clock.active > since.saturating_add(self.config.timing.linger_max);
             return if waited { Status::Closed } else { Status::Leaving };
@@ -162,15 +154,13 @@ impl Session {
             (true, _) => Status::Playing,
             (false, _) if self.lifecycle.kicked => Status::Kicked,
             (false, _) if self.lifecycle.dropped => Status::Dropped,
-            // The contact may be lost: the peer can ask another one.
             (false, _) if self.view.begun && !self.is_connected() => Status::Paused,
             (false, Role::Player { .. }) => Status::Joining,
             (false, Role::Spectator) => Status::Watching,
         }
     }
 
-    /// Whether a peer that has finished or left may stop answering: the minimum time has passed and no other peer needs
-    /// its answers any more (`known`), or the maximum time has passed.
+    /// Whether a peer that has finished or left may stop answering. `known`: no other peer needs its answers.
     fn lingered(&self, since: u64, known: bool) -> bool {
         let timing = &self.config.timing;
         let hasty = self.config.has(Fault::HastyLeave);
@@ -178,7 +168,6 @@ impl Session {
         waited(timing.linger) && known || waited(timing.linger_max)
     }
 
-    /// Whether the rows of all voters are in this view and fulfil a condition.
     fn all_voters(&self, condition: impl Fn(&super::row::Row) -> bool) -> bool {
         let count = self.peers.rows(self.view.number).filter(|(_, _, row)| condition(row)).count();
         count == self.view.voters.len()

@@ -1,10 +1,7 @@
-//! [`Link`]: measurements of the network path to a peer.
-
-/// Binary logarithm of the unit of times in packets, which is 128 microseconds.
+/// Binary logarithm of the unit of times in packets, 128 microseconds.
 const UNIT_SHIFT: u32 = 7;
 /// Longest round trip that is accepted, in microseconds. Times in packets wrap after 8.4 s.
 const ROUND_TRIP_MAX: u64 = 4_000_000;
-/// Number of packets over which loss is counted.
 const LOSS_WINDOW: u32 = 64;
 
 /// Measurements of the network path to a peer and back.
@@ -28,7 +25,7 @@ pub struct Link {
     pub round_trip: u64,
     /// Smoothed deviation of the round trip, in microseconds.
     pub jitter: u64,
-    /// Share of about the last 64 packets of the peer that did not arrive, in thousandths.
+    /// Share of the peer's packets that did not arrive, in thousandths, updated about every 64 packets.
     pub loss_per_mille: u32,
     /// Bytes sent, without the headers of the transport.
     pub bytes_sent: u64,
@@ -46,7 +43,6 @@ pub struct Link {
     arrived: u32,
 }
 
-/// Converts a time to the units of packet timestamps.
 pub(super) fn stamp(now: u64) -> u16 {
     let [low, high, ..] = (now >> UNIT_SHIFT).to_le_bytes();
     u16::from_le_bytes([low, high])
@@ -60,7 +56,6 @@ impl Link {
         Some(sent.wrapping_add(stamp(held)))
     }
 
-    /// Notes a packet from the peer, and updates loss, round trip and jitter.
     pub(super) fn arrived(&mut self, sequence: u16, sent: u16, echo: Option<u16>, bytes: usize, now: u64) {
         self.packets_received += 1;
         self.bytes_received += u64::try_from(bytes).unwrap_or(0);
@@ -95,7 +90,6 @@ impl Link {
         self.round_trip = ((7 * self.round_trip + trip) / 8).max(1);
     }
 
-    /// Notes a packet to the peer.
     pub(super) fn sent(&mut self, bytes: usize) {
         self.next_sequence = self.next_sequence.wrapping_add(1);
         self.packets_sent += 1;

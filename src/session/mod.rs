@@ -1,12 +1,10 @@
 //! A match between peers, without sockets, clocks or threads: bytes in, bytes out, time as an argument.
 //!
-//! All peers play a tick with the same inputs, once these are final. They send each other inputs and short status
-//! records; a state is sent only to a peer that joins. The [`Session`]s of all peers agree on one history: which peer
-//! plays which seat in which ticks, which inputs are final, and at which tick the match ends. A session neither reads a
-//! clock nor opens a socket, and the same calls give the same results.
+//! Peers exchange inputs and short status records. A state is sent to a peer that joins. The [`Session`]s of all peers
+//! agree on which peer plays which seat in which ticks, which inputs are final, and at which tick the match ends.
 //!
 //! - [`Session`]: takes packets and local inputs, returns packets, [`Request`]s to the game, and [`Event`]s.
-//! - [`Endpoint`]: a session with addresses, which opens or joins a match and sends states to peers that join.
+//! - [`Endpoint`]: a session with addresses. It opens or joins a match and sends states to peers that join.
 //! - [`View`]: the seats, players and voters of a match. Views change by agreement of a majority.
 //! - [`Config`]: the parameters of a match and of a peer. Lockstep is a [`Config::guess`] of 0.
 //!

@@ -1,10 +1,9 @@
-//! [`Pace`]: the time at which the next tick is due, and the number of ticks by which this peer's inputs are delayed.
+//! [`Pace`]: the time of the next tick, and the delay of this peer's inputs.
 //!
-//! The current tick of another player is estimated from its newest row, the age of that row and half a round trip. Each
-//! voter steers towards the median of these estimates, and a peer without a vote towards [`FOLLOW`] ticks behind the
-//! final ticks. A peer lengthens its ticks by up to 1/8 when it is ahead, and shortens them by up to 1/16 when it is
-//! behind. Therefore the speed of play changes gradually, and clocks that run at different rates do no harm. A peer
-//! that is far behind plays ticks at once, and a voter that is far ahead waits.
+//! The current tick of another player is estimated from its newest row, the row's age and half a round trip. A voter
+//! steers towards the median of these estimates, a peer without a vote towards [`FOLLOW`] ticks behind the final ones.
+//! Ticks are lengthened by up to 1/8 or shortened by up to 1/16, so that speed changes gradually and clocks may differ.
+//! A peer that is far behind plays ticks at once, and a voter that is far ahead waits.
 
 use alloc::vec::Vec;
 
@@ -13,7 +12,6 @@ use super::id::{PeerId, Tick};
 use super::peers::within;
 use super::state::Session;
 
-/// The tick clock of a peer.
 #[derive(Clone, Debug)]
 pub(super) struct Pace {
     tick_micros: u64,
@@ -24,26 +22,25 @@ pub(super) struct Pace {
     /// Delay of this peer's inputs in ticks.
     pub(super) delay: u16,
     delay_at: u64,
-    /// Whether this peer plays no tick because another peer is far behind.
+    /// Whether this peer waits because another one is far behind.
     held: bool,
-    /// Number of complete ticks, or of final ticks for a peer without a vote, that this peer has not played yet.
+    /// Complete ticks (final ticks, for a peer without a vote) that this peer has not played.
     behind: Tick,
-    /// Whether this peer has just got a seat. It then plays all complete ticks without waiting for the time at which
-    /// each is due.
+    /// Whether this peer has just got a vote and plays complete ticks before they are due.
     hurries: bool,
 }
 
-/// A voter waits while it is more than this many ticks ahead of the slowest other player.
+/// A voter that leads the slowest other player by more ticks than this waits.
 const AHEAD_MAX: i64 = 6;
-/// Largest lateness that is made up, in ticks. Any further lateness is dropped.
+/// Largest lateness that is made up, in ticks.
 const LATE_MAX: u64 = 3;
 /// A peer plays ticks before they are due while [`Pace::behind`] is at least this number.
 const CATCH_UP: Tick = 12;
-/// Minimum time between changes of the delay by one tick, in microseconds.
+/// Minimum time between steps of the delay, in microseconds.
 const DELAY_INTERVAL: u64 = 500_000;
-/// Number of ticks by which a peer without a vote stays behind the final ticks.
+/// Ticks by which a peer without a vote stays behind the final ticks.
 const FOLLOW: i64 = 2;
-/// Units per tick in which leads over other peers are measured.
+/// Units per tick of leads over other peers.
 const PART: i64 = 256;
 
 impl Pace {
@@ -66,7 +63,6 @@ impl Pace {
         self.behind >= CATCH_UP || self.hurries && self.behind > 0 || due && !self.held
     }
 
-    /// Notes that a tick was played.
     pub(super) fn played(&mut self, now: u64) {
         let at = self.next_at.unwrap_or(now);
         let oldest = now.saturating_sub(LATE_MAX * self.tick_micros);
@@ -77,7 +73,7 @@ impl Pace {
         self.behind = self.behind.saturating_sub(1);
     }
 
-    /// Notes that the inputs were issued but the tick cannot be played yet.
+    /// The inputs were issued but the tick cannot be played yet.
     pub(super) fn blocked(&mut self, now: u64) {
         let oldest = now.saturating_sub(LATE_MAX * self.tick_micros);
         self.next_at = Some(self.next_at.unwrap_or(now).max(oldest));
@@ -85,7 +81,6 @@ impl Pace {
 }
 
 impl Session {
-    /// Adapts the duration of ticks and the delay of inputs.
     pub(super) fn steer(&mut self) {
         let ahead = self.ticks_ahead();
         let own = self.view.voter(self.me).is_some();
@@ -105,7 +100,7 @@ impl Session {
         self.adapt_delay();
     }
 
-    /// The lead of this peer over each other peer that plays, in 1/256 ticks, in ascending order.
+    /// The lead over each other peer that plays, in 1/256 ticks, ascending.
     fn ticks_ahead(&self) -> Vec<i64> {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         let tick = self.pace.tick_micros.max(1);
@@ -126,7 +121,6 @@ impl Session {
         ahead
     }
 
-    /// Whether a peer plays a seat at a tick.
     fn plays_at(&self, id: PeerId, tick: Tick) -> bool {
         self.view.spans.iter().any(|span| span.owner == id && span.is_open() && span.from <= tick)
     }
@@ -137,8 +131,7 @@ impl Session {
         i64::try_from((self.pace.tick_micros - left) * 256 / self.pace.tick_micros.max(1)).unwrap_or(0)
     }
 
-    /// Catches up with the other players after this peer got a seat. Sets the input delay at once, so that its first
-    /// inputs arrive in time.
+    /// Catches up after this peer got a vote. The input delay is set at once, so that its first inputs arrive in time.
     pub(super) fn hurry(&mut self) {
         self.pace.hurries = true;
         self.pace.delay = self.delay_aim();
@@ -147,7 +140,7 @@ impl Session {
 
     fn adapt_delay(&mut self) {
         let now = self.clock.now;
-        // When another peer begins to play, this peer's inputs have to reach it in time, too.
+        // The inputs have to be in time for a peer that is about to play.
         let played = self.play.played;
         if self.view.spans.iter().any(|span| span.is_open() && span.from > played) {
             self.pace.delay = self.pace.delay.max(self.delay_aim());
@@ -162,8 +155,8 @@ impl Session {
         }
     }
 
-    /// Target of the input delay in ticks, from the slowest link to another player: half a round trip, twice the jitter
-    /// and one tick, less [`Config::guess`], clamped to the bounds in [`Config`].
+    /// Target of the input delay in ticks, from the slowest link to a player: half a round trip, twice the jitter and
+    /// one tick, less [`Config::guess`].
     fn delay_aim(&self) -> u16 {
         let (least, most) = (self.config.delay_min, self.config.delay_max);
         let tick = self.pace.tick_micros.max(1);

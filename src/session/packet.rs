@@ -1,7 +1,7 @@
-//! Packets between peers of a match. `docs/PROTOCOL.md` has their layout as tables.
+//! Packets between peers of a match. `docs/PROTOCOL.md` has their layout.
 //!
-//! The decoder is strict: it drops a packet with a wrong checksum, an unknown flag, a number that is not in its
-//! shortest form, a length beyond its bound, or bytes after its end. A dropped packet counts as lost.
+//! The decoder drops a packet with a wrong checksum, an unknown flag, a number in a longer form, a length beyond its
+//! bound, or bytes after its end.
 
 use alloc::vec::Vec;
 
@@ -13,18 +13,13 @@ use super::view::Change;
 
 /// Largest packet in bytes. Most networks transmit it without fragmentation.
 pub const PACKET_BYTES_MAX: usize = 1200;
-/// Largest number of rows of other peers in a packet.
 pub(super) const FOREIGN_ROWS_MAX: usize = 3;
-/// Largest number of changes in a packet.
 pub(super) const CHANGES_MAX: usize = 16;
-/// Largest number of input runs in a packet.
 pub(super) const RUNS_MAX: usize = 128;
-/// Largest number of ticks in a run.
 pub(super) const RUN_TICKS_MAX: u32 = 64;
-/// Largest number of bytes of inputs in a packet, decoded.
+/// Largest number of decoded bytes of inputs in a packet.
 pub(super) const INPUTS_MAX: usize = 1 << 16;
 
-/// Bits of the flags of a packet.
 mod flag {
     pub(super) const ECHO: u8 = 1;
     pub(super) const CHANGES: u8 = 1 << 1;
@@ -42,37 +37,33 @@ pub(super) struct Run {
     pub(super) bytes: core::ops::Range<usize>,
 }
 
-/// Header of a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Header {
     pub(super) sender: PeerId,
     pub(super) sequence: u16,
     /// Time of sending in units of 128 us.
     pub(super) sent: u16,
-    /// Timestamp of the receiver's newest packet, plus the time since that packet arrived.
+    /// Timestamp of the receiver's newest packet, plus the time since it arrived.
     pub(super) echo: Option<u16>,
 }
 
-/// A decoded packet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Packet {
     pub(super) header: Header,
     pub(super) row: Row,
-    /// Number of the view that the first change leads to, and changes that lead to consecutive views.
+    /// Number of the view that the first change leads to, and consecutive changes.
     pub(super) changes: (u32, Vec<Change>),
     pub(super) runs: Vec<Run>,
     pub(super) inputs: Vec<u8>,
     pub(super) foreign: Vec<(PeerId, Row)>,
 }
 
-/// The first bytes of a packet: a checksum that depends on the match, so that packets of other matches are not
-/// accepted.
+/// First bytes of a packet: a checksum seeded with the match, so that packets of other matches are dropped.
 pub(super) fn checksum(match_tag: u64, body: &[u8]) -> [u8; 4] {
     let digest = twox_hash::XxHash3_128::oneshot_with_seed(match_tag, body).to_le_bytes();
     [digest[0], digest[1], digest[2], digest[3]]
 }
 
-/// Returns the body of a packet if its checksum is right.
 pub(super) fn open(match_tag: u64, bytes: &[u8]) -> Decoded<&[u8]> {
     let (sum, body) = bytes.split_first_chunk::<4>().ok_or(Malformed)?;
     if bytes.len() <= PACKET_BYTES_MAX && checksum(match_tag, body) == *sum {
@@ -82,8 +73,7 @@ pub(super) fn open(match_tag: u64, bytes: &[u8]) -> Decoded<&[u8]> {
     }
 }
 
-/// Composes a packet part by part, in the order of the methods. Parts that would not fit in [`PACKET_BYTES_MAX`] are
-/// left out.
+/// Composes a packet in the order of the methods. Parts that would not fit in [`PACKET_BYTES_MAX`] are left out.
 pub(super) struct Composer {
     bytes: Vec<u8>,
     flags: u8,
@@ -95,7 +85,6 @@ const FLAGS_AT: usize = 8;
 const RESERVE: usize = 4;
 
 impl Composer {
-    /// Starts with the sender's own row, already encoded.
     pub(super) fn new(header: &Header, row: &[u8]) -> Self {
         let mut bytes = Vec::with_capacity(row.len() + 96);
         bytes.put_u32(0);
@@ -112,7 +101,7 @@ impl Composer {
         Composer { bytes, flags }
     }
 
-    /// Appends a section with as many parts as fit; `write` appends one. A section without parts is left out.
+    /// Appends a section with as many parts as fit. A section without parts is left out.
     fn section<T>(
         &mut self,
         flag: u8,
@@ -168,7 +157,6 @@ impl Composer {
         });
     }
 
-    /// Appends rows of other peers.
     pub(super) fn foreign<'a>(&mut self, rows: impl IntoIterator<Item = (PeerId, &'a Row)>) {
         self.section(flag::FOREIGN, FOREIGN_ROWS_MAX, rows, |(id, row), bytes| {
             bytes.put_u32(id.0);
@@ -176,7 +164,6 @@ impl Composer {
         });
     }
 
-    /// The finished packet.
     pub(super) fn finish(mut self, match_tag: u64) -> Vec<u8> {
         if let Some(byte) = self.bytes.get_mut(FLAGS_AT) {
             *byte = self.flags;
@@ -190,7 +177,6 @@ impl Composer {
 }
 
 impl Packet {
-    /// Decodes the body of a packet with inputs of `size` bytes.
     pub(super) fn read(body: &[u8], size: usize) -> Decoded<Packet> {
         let reader = &mut Reader::new(body);
         let sender = PeerId(reader.u32()?);

@@ -1,4 +1,4 @@
-//! [`Peers`]: the data that a session keeps about each peer, with the times at which it arrived.
+//! [`Peers`]: the data that a session keeps about each peer.
 
 use alloc::vec::Vec;
 
@@ -7,34 +7,33 @@ use super::link::Link;
 use super::row::Row;
 use super::view::{View, bit};
 
-/// Largest number of known peers. Beyond it, the peer without a vote that has been silent longest is removed.
+/// Largest number of known peers. Beyond it, the one silent longest without a vote is removed.
 pub(super) const PEERS_MAX: usize = 192;
 
-/// The data that a session keeps about a peer.
 #[derive(Clone, Debug)]
 pub(super) struct Remote {
     pub(super) id: PeerId,
     pub(super) key: Option<Key>,
     pub(super) row: Option<Row>,
-    /// Time at which the newest row of the peer arrived, directly or through another peer.
+    /// Time at which the peer's newest row arrived, directly or through others.
     pub(super) fresh: Option<u64>,
-    /// Time at which the last packet arrived from the peer itself.
+    /// Time of the last packet from the peer itself.
     pub(super) heard: Option<u64>,
-    /// Time at which the newest row arrived that states a connection of the peer to a quorum. Before the first such
-    /// row, the time at which the peer became known.
+    /// Arrival of the newest row that states a connection of the peer to a quorum; at first, when the peer became
+    /// known.
     pub(super) contact: u64,
-    /// Whether the peer is served although it has no vote.
+    /// Whether the peer is served without a vote.
     pub(super) attached: bool,
     /// Whether the peer issued two different inputs for a tick, or has a different state.
     pub(super) faulty: bool,
     pub(super) link: Link,
 }
 
-/// All known peers. The first one is this peer itself.
+/// All known peers. This peer is the first.
 #[derive(Clone, Debug)]
 pub(super) struct Peers {
     pub(super) list: Vec<Remote>,
-    /// Index in the list of each voter of the view.
+    /// Index in `list` for each voter of the view.
     voters: Vec<Option<usize>>,
 }
 
@@ -53,7 +52,7 @@ impl Peers {
         self.list.iter_mut().find(|remote| remote.id == id)
     }
 
-    /// Adds a peer, unless it is known. `now` counts as the last contact.
+    /// Adds an unknown peer. `now` counts as its last contact.
     pub(super) fn add(&mut self, id: PeerId, key: Option<Key>, now: u64) {
         if let Some(remote) = self.find_mut(id) {
             remote.key = remote.key.or(key);
@@ -72,7 +71,6 @@ impl Peers {
         });
     }
 
-    /// Finds the voters of a view in the list. Adds those that are not known.
     pub(super) fn follow(&mut self, view: &View, now: u64) {
         for voter in &view.voters {
             self.add(voter.id, Some(voter.key), now);
@@ -85,7 +83,6 @@ impl Peers {
         self.voters = view.voters.iter().map(|voter| place(voter.id)).collect();
     }
 
-    /// Removes peers without a vote while there are more than [`PEERS_MAX`] peers.
     pub(super) fn bound(&mut self, view: &View) {
         while self.list.len() > PEERS_MAX {
             let silent = |(_, remote): &(usize, &Remote)| remote.fresh.max(remote.heard);
@@ -97,17 +94,15 @@ impl Peers {
         }
     }
 
-    /// A voter of the view by its index.
     pub(super) fn voter(&self, index: usize) -> Option<&Remote> {
         self.list.get((*self.voters.get(index)?)?)
     }
 
-    /// Voters of the view with their index.
     pub(super) fn voters(&self) -> impl Iterator<Item = (usize, &Remote)> {
         (0..self.voters.len()).filter_map(|index| Some((index, self.voter(index)?)))
     }
 
-    /// Rows of voters that are in this view, with their index.
+    /// Rows of voters in this view, with the index of the voter.
     pub(super) fn rows(&self, view: u32) -> impl Iterator<Item = (usize, &Remote, &Row)> {
         self.voters().filter_map(move |(index, remote)| {
             let row = remote.row.as_ref().filter(|row| row.view == view)?;
@@ -115,7 +110,6 @@ impl Peers {
         })
     }
 
-    /// Bit for each voter that fulfils a condition.
     pub(super) fn voters_that(&self, condition: impl Fn(&Remote) -> bool) -> u64 {
         self.voters().filter(|(_, remote)| condition(remote)).fold(0, |set, (index, _)| set | bit(index))
     }

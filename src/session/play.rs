@@ -1,4 +1,4 @@
-//! Playing ticks: the inputs that the game gets, and rollback when inputs differ from those that were played.
+//! Playing ticks: the inputs for the game, and rollback when other inputs arrive than those played.
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
@@ -13,27 +13,22 @@ use super::view::{bit, bits, has_bit};
 /// Number of this peer's hashes that are kept for comparison.
 const HASHES_MAX: usize = 16;
 
-/// Ticks that the game was asked to play, and the inputs and states kept for rollback.
 #[derive(Clone, Debug)]
 pub(super) struct Play {
     pub(super) played: Tick,
     pub(super) confirmed: Tick,
-    /// Inputs with which the ticks from `used_from` to `played` were played. A rollback may play these ticks again.
+    /// Inputs of the ticks from `used_from` to `played`, which a rollback may play again.
     used: VecDeque<TickInputs>,
-    /// First tick of `used`.
     used_from: Tick,
-    /// Ticks for which the game keeps a copy of the state before the tick, ascending.
+    /// Ticks for which the game keeps the state before the tick, ascending.
     saves: VecDeque<Tick>,
-    /// First tick whose inputs may differ from the ones it was played with.
+    /// First tick whose inputs may differ from those it was played with.
     dirty: Tick,
     pub(super) requests: VecDeque<Request>,
     hashes: VecDeque<(Tick, u128)>,
-    /// Tick of the last requested hash.
     checked: Tick,
     seats: usize,
-    /// Number of ticks that were played again.
     pub(super) replayed: u64,
-    /// Largest number of ticks that one rollback played again.
     pub(super) replayed_max: Tick,
 }
 
@@ -52,13 +47,13 @@ pub(super) struct Play {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Statistics {
-    /// Number of ticks that were played again, because inputs had been guessed wrongly or a view changed.
+    /// Number of ticks played again because of wrong guesses or changed views.
     pub replayed: u64,
     /// Largest number of ticks that one rollback played again.
     pub replayed_max: Tick,
     /// Bytes of inputs that are kept.
     pub input_bytes: usize,
-    /// Number of peers that are known, this one included.
+    /// Number of known peers, including this one.
     pub peers: usize,
 }
 
@@ -80,12 +75,10 @@ impl Play {
         }
     }
 
-    /// Notes that inputs from a tick on have changed.
     pub(super) fn note_change(&mut self, tick: Tick) {
         self.dirty = self.dirty.min(tick);
     }
 
-    /// First tick that a rollback may still play again.
     pub(super) fn needed_from(&self) -> Tick {
         self.saves.front().copied().unwrap_or(self.used_from).min(self.used_from)
     }
@@ -110,7 +103,7 @@ impl Session {
         complete.then(|| self.inputs_at(tick, &all))
     }
 
-    /// The inputs of a tick as they are known now, with guesses for those that are missing.
+    /// The inputs of a tick as known now. Missing ones are guessed.
     fn inputs_at(&self, tick: Tick, spans: &[usize]) -> TickInputs {
         let size = self.log.size();
         let bytes = alloc::vec![0; size * self.play.seats];
@@ -131,7 +124,6 @@ impl Session {
         inputs
     }
 
-    /// First tick that may not be played yet.
     fn play_limit(&self) -> Tick {
         let limit = if self.view.voter(self.me).is_some() {
             let guessed = self.progress.complete.saturating_add(Tick::from(self.config.guess));
@@ -150,7 +142,6 @@ impl Session {
         open && self.pace.is_time(now) && (self.play.played < self.play_limit() || self.issues())
     }
 
-    /// Whether inputs have to be issued before the next tick.
     pub(super) fn issues(&self) -> bool {
         self.own_spans().any(|(index, _)| self.log.next(index) < self.issue_limit(index))
     }
@@ -161,8 +152,8 @@ impl Session {
         spans.map(|(index, span)| (index, span.seat))
     }
 
-    /// First tick of an own span whose input must not be issued yet. At the start of a span, the inputs of `delay + 1`
-    /// ticks are issued at once, so that the other peers need not wait for the first ticks.
+    /// First tick of an own span whose input must not be issued yet. The inputs of the first `delay + 1` ticks are
+    /// issued at once, so that no peer waits for them.
     fn issue_limit(&self, span: usize) -> Tick {
         if !self.view.begun {
             return 0;
@@ -172,13 +163,11 @@ impl Session {
         now.saturating_add(Tick::from(self.pace.delay)).saturating_add(1).min(self.stop())
     }
 
-    /// Issues the inputs of this peer's own seats, in the order of the seats, and plays a tick if that is possible. To
-    /// be called while [`is_due`](Session::is_due). Returns whether the inputs were issued: if not, they may be used
-    /// again.
+    /// Issues the inputs of this peer's seats, in the order of the seats, and plays a tick if possible. Call it while
+    /// [`is_due`](Session::is_due). Returns whether inputs were issued: if not, they may be used again.
     ///
     /// # Errors
-    /// [`InputSize`] when the number of bytes is not the input size times the number of own seats. Nothing is issued or
-    /// played then.
+    /// [`InputSize`] unless there is one input for each own seat. Nothing is issued or played.
     pub fn advance(&mut self, now: u64, inputs: &[u8]) -> Result<bool, InputSize> {
         let expected = self.log.size() * usize::try_from(self.seats().count_ones()).unwrap_or(0);
         if inputs.len() != expected {
@@ -225,7 +214,7 @@ impl Session {
         issued
     }
 
-    /// Plays ticks again if their inputs differ from those used, and notes how far the played ticks are confirmed.
+    /// Plays ticks again if their inputs differ from those used.
     pub(super) fn resolve(&mut self) {
         let mut tick = self.play.dirty.max(self.play.used_from);
         self.play.dirty = NEVER;
@@ -256,7 +245,7 @@ impl Session {
                 .all(|(seat, (used, known_input))| used == known_input || has_bit(known.guessed, seat))
     }
 
-    /// Loads the last saved state at or before a tick, and plays from there with the inputs known now.
+    /// Loads the last saved state at or before a tick, and plays on with the inputs known now.
     fn rewind(&mut self, tick: Tick) {
         let limit = self.play_limit().max(self.progress.fin.min(self.play.played));
         let target = self.play.played.min(limit);
@@ -291,7 +280,7 @@ impl Session {
         self.play.played = tick.saturating_add(1);
     }
 
-    /// Notes which played ticks are final, and drops the data that only a rollback before them would need.
+    /// Notes which played ticks are final, and drops data for rollbacks before them.
     fn confirm(&mut self) {
         let play = &mut self.play;
         let confirmed = self.progress.fin.min(play.played);
@@ -318,7 +307,7 @@ impl Session {
         }
     }
 
-    /// Passes the hash that [`Request::Checksum`] asks for.
+    /// Passes the hash requested by [`Request::Checksum`].
     pub fn report_hash(&mut self, tick: Tick, hash: u128) {
         if self.play.hashes.len() == HASHES_MAX {
             self.play.hashes.pop_front();
@@ -338,7 +327,6 @@ impl Session {
         }
     }
 
-    /// Compares the hash of another peer with the hash of this peer.
     pub(super) fn compare_hash(&mut self, peer: PeerId, tick: Tick, theirs: u128) {
         let own = self.play.hashes.iter().find(|(own, _)| *own == tick);
         let Some(&(_, ours)) = own.filter(|(_, ours)| *ours != theirs) else { return };

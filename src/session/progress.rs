@@ -1,10 +1,9 @@
-//! Counts of complete, acknowledged and final ticks.
+//! Complete, acknowledged and final ticks.
 //!
-//! A tick is *complete* when this peer has all inputs of the view's spans for it. A tick that no peer plays is complete
-//! if a peer plays a later one. A complete tick is *acknowledged* unless this peer's promise of a ballot freezes the
-//! acknowledgement. A complete tick is *final* when a quorum of this view acknowledges it, when it lies before the
-//! view's cut, or when a voter's row in this view states it as final. A change of the view may revoke complete ticks,
-//! but never final ones.
+//! A tick is *complete* when this peer has all its inputs. A tick that no peer plays is complete if one will play
+//! later. Complete ticks are *acknowledged* until a promise of a ballot freezes the acknowledgement. A complete tick is
+//! *final* when a quorum of this view acknowledges it, when it lies before the view's cut, or when a voter's row in
+//! this view states it as final. A change of the view may revoke complete ticks, but never final ones.
 
 use alloc::vec::Vec;
 
@@ -13,22 +12,20 @@ use super::id::{NEVER, Tick};
 use super::state::Session;
 use super::view::{View, bit};
 
-/// Numbers of ticks that are complete, acknowledged and final.
 #[derive(Clone, Debug)]
 pub(super) struct Progress {
     pub(super) complete: Tick,
     pub(super) ack: Tick,
     pub(super) fin: Tick,
-    /// Time at which `complete` last increased. Reaching its old value again after a view change does not count.
+    /// Time at which `complete` last increased. At a view change it must exceed its old value.
     pub(super) moved_at: u64,
-    /// Indices of the spans that do not end before `live_from`. Earlier ticks are not played again.
+    /// Spans that do not end before `live_from`. Earlier ticks are not played again.
     pub(super) live: Vec<usize>,
     pub(super) live_from: Tick,
-    /// Number of final ticks when old inputs were last forgotten.
     cleaned: Tick,
 }
 
-/// Interval in ticks at which old inputs are forgotten.
+/// Interval in ticks at which old inputs are dropped.
 const CLEAN_INTERVAL: Tick = 256;
 
 impl Progress {
@@ -46,7 +43,6 @@ impl Progress {
         progress
     }
 
-    /// Lists the spans that do not end before a tick.
     pub(super) fn follow(&mut self, view: &View, tick: Tick) {
         self.live.clear();
         self.live_from = tick;
@@ -56,7 +52,6 @@ impl Progress {
 }
 
 impl Session {
-    /// Determines which ticks are complete, acknowledged and final.
     pub(super) fn settle(&mut self) {
         self.complete_ticks();
         if self.agreement.promised.is_none() || self.config.has(Fault::NoFreeze) {
@@ -69,7 +64,7 @@ impl Session {
     fn complete_ticks(&mut self) {
         while self.progress.complete < self.view.stop() && self.view.begun {
             let tick = self.progress.complete;
-            // Between two consecutive starts or ends of spans, the set of spans that cover a tick does not change.
+            // Up to the next start or end of a span, the same spans cover each tick.
             let mut limit = self.view.stop();
             let mut somebody = false;
             for &index in &self.progress.live {
@@ -107,7 +102,7 @@ impl Session {
         }
     }
 
-    /// Number of ticks that a quorum acknowledges in rows of this view, or that the row of a voter states as final.
+    /// Ticks that a quorum acknowledges in rows of this view, or that a voter's row states as final.
     fn acknowledged(&self) -> Tick {
         let view = self.view.number;
         let mut acks = [(0, 0_u64); super::view::SEATS_MAX];
@@ -132,7 +127,6 @@ impl Session {
         acknowledged
     }
 
-    /// Whether a set of voters of the view is a quorum.
     pub(super) fn is_quorum(&self, set: u64) -> bool {
         let half = self.config.has(Fault::HalfIsEnough)
             && 2 * self.view.weight_of(set) + 1 >= self.view.weight_of(u64::MAX);

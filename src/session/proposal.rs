@@ -1,4 +1,4 @@
-//! Ballots of this peer: the reasons to start one, and the choice of the proposed change.
+//! Ballots of this peer: reasons to start one, and the proposed change.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -11,25 +11,21 @@ use super::row::{Ballot, Removal, Row, SeatWant};
 use super::state::Session;
 use super::view::{Change, JOINS_MAX, Join, SEATS_MAX, SPANS_MAX, bit, bits, has_bit};
 
-/// A ballot of this peer.
 #[derive(Clone, Debug)]
 pub(super) struct Proposal {
     pub(super) ballot: Ballot,
     started_at: u64,
-    /// Time at which this peer first knew that a quorum had promised the ballot.
+    /// Time at which this peer learned that a quorum has promised the ballot.
     quorum_at: Option<u64>,
-    /// The change that is proposed, once it is chosen.
     change: Option<Arc<Change>>,
 }
 
-/// Number of rounds without a decision up to which the time limit of a ballot grows linearly with the rounds. After
-/// that it grows quadratically.
+/// Rounds without a decision up to which the time limit grows linearly, and then quadratically.
 const ROUNDS_MAX: u64 = 4;
-/// Upper bound of the time limit of a ballot in microseconds, unless `ROUNDS_MAX` times the initial limit is longer.
+/// Upper bound of the time limit of a ballot in microseconds, but at least `ROUNDS_MAX` times the initial limit.
 const BALLOT_MAX: u64 = 6_000_000;
 
 impl Session {
-    /// Starts a ballot if there is a reason for one.
     pub(super) fn begin_ballot(&mut self) {
         let active = self.clock.active;
         if active < self.agreement.not_before {
@@ -56,7 +52,7 @@ impl Session {
         self.agreement.not_before = active + self.backoff();
     }
 
-    /// Time limit of a ballot. It grows with the number of rounds of the view that led to no decision.
+    /// Time limit of a ballot, which grows with the rounds of the view without a decision.
     fn ballot_time(&self) -> u64 {
         let ballot = self.config.timing.ballot.max(1);
         let rounds = u64::from(self.agreement.round.saturating_sub(self.agreement.base_round));
@@ -64,8 +60,8 @@ impl Session {
         ballot.saturating_mul(factor).min((ballot * ROUNDS_MAX).max(BALLOT_MAX))
     }
 
-    /// Whether a voter has been out of contact for `patience`, and either play has stalled for as long or the voter has
-    /// no seat. The time grows with `rank`, so that voters do not start ballots at the same time.
+    /// Whether a voter has been out of contact for `patience`, and play has stalled as long or the voter has no seat.
+    /// `rank` adds to the time, so that voters do not start ballots together.
     fn is_stalled(&self, rank: u64) -> bool {
         let active = self.clock.active;
         let patience = self.config.timing.patience.saturating_add(rank * self.config.timing.ballot / 15);
@@ -81,7 +77,6 @@ impl Session {
         })
     }
 
-    /// Whether the rows request a change that is possible, or the match can begin.
     fn change_is_wanted(&self) -> bool {
         let (number, ends) = (self.view.number, self.view.end.is_some());
         let voters = self.fresh_rows().any(|(_, row)| row.wants.leave || row.wants.end.is_some() && !ends);
@@ -92,7 +87,6 @@ impl Session {
         voters || removed() || !ends && (self.seat_wants(number).next().is_some() || self.may_begin())
     }
 
-    /// Whether the match has not begun although enough seats are taken.
     fn may_begin(&self) -> bool {
         !self.view.begun
             && (!self.view.free_seats() & self.config.seat_set()).count_ones() >= self.first_seats()
@@ -102,7 +96,7 @@ impl Session {
         u32::from(self.config.start_with.max(1))
     }
 
-    /// Fresh rows of voters that are in this view.
+    /// Fresh rows of voters in this view.
     fn fresh_rows(&self) -> impl Iterator<Item = (&Remote, &Row)> {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         let rows = self.peers.rows(self.view.number);
@@ -130,7 +124,7 @@ impl Session {
         })
     }
 
-    /// Bit for each voter that was replaced: the voter is silent, and another incarnation with its key requests seats.
+    /// Bit for each silent voter whose key another incarnation uses to request seats.
     fn replaced(&self) -> u64 {
         let (fresh, active) = (self.config.timing.fresh, self.clock.active);
         let number = self.view.number;
@@ -145,7 +139,7 @@ impl Session {
         self.peers.voters_that(|remote| silent(remote) && remote.key.is_some_and(wanted))
     }
 
-    /// Bit for each seat that is free once the voters in `leaves` and all replaced voters have left.
+    /// Bit for each seat that is free without the voters in `leaves` and the replaced ones.
     fn free_after(&self, leaves: u64) -> u64 {
         let leaves = leaves | self.replaced();
         let voters = self.view.voters.iter().enumerate();
@@ -154,7 +148,7 @@ impl Session {
         self.config.seat_set() & !taken
     }
 
-    /// Whether the tie-holder or a quorum votes for the removal of a peer.
+    /// Whether the tie-holder or a quorum votes to remove a peer.
     pub(super) fn is_removed(&self, id: PeerId, key: Key) -> bool {
         let mut set = 0;
         for (index, remote, row) in self.peers.rows(self.view.number) {
@@ -172,8 +166,7 @@ impl Session {
         self.is_quorum(set)
     }
 
-    /// Free seats for a joining peer: first those that its key had, then those that no peer has had, then others. If
-    /// the peer asks for certain seats, only those are considered.
+    /// Requested free seats for a joining peer: first those that its key had, then unused ones, then others.
     fn seats_for(&self, want: SeatWant, free: u64) -> Option<u64> {
         let SeatWant { seats: count, key, which } = want;
         let free = if which == 0 { free } else { free & which };
@@ -189,7 +182,7 @@ impl Session {
         (count > 0 && chosen.count_ones() == u32::from(count)).then_some(chosen)
     }
 
-    /// Advances this peer's ballot by one step. Returns whether another step may be possible.
+    /// Returns whether another step may be possible.
     pub(super) fn conduct_ballot(&mut self) -> bool {
         let Some(mut proposal) = self.agreement.proposal.take() else { return false };
         let active = self.clock.active;
@@ -219,14 +212,12 @@ impl Session {
         false
     }
 
-    /// Bit for each voter that promised a ballot.
     fn promisers(&self, ballot: Ballot) -> u64 {
         let rows = self.peers.rows(self.view.number);
         rows.filter(|(_, _, row)| row.promised == Some(ballot)).fold(0, |set, (index, _, _)| set | bit(index))
     }
 
-    /// The change to propose in a ballot that a quorum promised: the one that a promiser has accepted in the highest
-    /// ballot or, if no promiser has accepted one, a new one.
+    /// The change that a promiser has accepted in the highest ballot. Without one, a new change.
     fn choose_change(&self, ballot: Ballot) -> Arc<Change> {
         let promisers = self.promisers(ballot);
         let rows = || self.peers.rows(self.view.number).filter(|(index, _, _)| has_bit(promisers, *index));
@@ -269,8 +260,8 @@ impl Session {
         Change { cut, end, begun, leaves, tie_holder, joins, from: cut.saturating_add(lead) }
     }
 
-    /// Number of ticks from the cut to the first tick of the peers that join. This lead has to cover the round trips of
-    /// promises and acceptances, and the arrival of the first inputs.
+    /// Ticks from the cut to the first tick of joining peers, for the round trips of promises and acceptances and the
+    /// arrival of the first inputs.
     fn seat_lead(&self, joins: &[Join]) -> Tick {
         let matters = |remote: &&Remote| {
             self.view.voter(remote.id).is_some() || joins.iter().any(|join| join.id == remote.id)
@@ -282,7 +273,7 @@ impl Session {
             .min(Tick::from(self.config.history / 2).max(lead))
     }
 
-    /// Bit for each voter that wants to leave, is removed, or has neither promised the ballot nor been in contact for
+    /// Bit for each voter that wants to leave, is removed, or neither promised the ballot nor was in contact for
     /// `patience`.
     fn leaving(&self, promisers: u64) -> u64 {
         let active = self.clock.active;

@@ -1,4 +1,4 @@
-//! Handles received packets and the passing of time.
+//! Received packets and the passing of time.
 
 use super::config::Fault;
 use super::event::Event;
@@ -9,20 +9,19 @@ use super::peers::PEERS_MAX;
 use super::row::Row;
 use super::state::Session;
 
-/// Once a span's inputs are known for more than this many ticks after the complete ones, further inputs are dropped, so
-/// that no peer exhausts the memory.
+/// Lead over the complete ticks above which inputs are dropped, so that no peer exhausts the memory.
 const INPUTS_AHEAD_MAX: Tick = 1024;
 
 impl Session {
-    /// Advances the clocks. If the process was suspended for long, `active` advances by a limited time only.
+    /// Advances the clocks. After a suspension, `active` advances by a limited time.
     pub(super) fn look(&mut self, now: u64) {
         let passed = now.saturating_sub(self.clock.now);
         self.clock.active = self.clock.active.saturating_add(passed.min(self.config.timing.step_max));
         self.clock.now = self.clock.now.max(now);
     }
 
-    /// Processes a received packet. Returns its sender, or `None` if it is not a packet of this match from another
-    /// known peer, or if this session is closed.
+    /// Processes a packet. Returns its sender, or `None` if the session is closed or this is no packet of the match
+    /// from another known peer.
     pub fn receive(&mut self, now: u64, bytes: &[u8]) -> Option<PeerId> {
         self.look(now);
         if self.status().is_closed() {
@@ -81,7 +80,7 @@ impl Session {
         }
     }
 
-    /// Processes a row relayed by another peer. It may belong to an unknown peer that requests a seat.
+    /// A relayed row may belong to an unknown peer that requests a seat.
     fn take_foreign_row(&mut self, id: PeerId, row: Row) {
         if id == self.me || self.config.has(Fault::NoRelay) {
             return;
@@ -98,7 +97,7 @@ impl Session {
     fn take_inputs(&mut self, index: usize, start: u32, inputs: &[u8]) {
         let Some(span) = self.view.spans.get(index) else { return };
         let owner = span.owner;
-        // The bound does not slow down a peer that catches up: each packet brings it at most 64 ticks of a span.
+        // This does not slow down a peer that catches up: a packet carries at most 64 ticks of a span.
         let far = self.progress.complete.saturating_add(INPUTS_AHEAD_MAX);
         if owner == self.me || self.log.next(index) > far.max(span.from) {
             return;
@@ -114,7 +113,7 @@ impl Session {
         }
     }
 
-    /// Advances the session to the time `now`. Call it every few milliseconds, and after packets have arrived.
+    /// Advances to the time `now`. Call it every few milliseconds, and after packets have arrived.
     pub fn update(&mut self, now: u64) {
         self.look(now);
         if self.status().is_closed() {

@@ -1,5 +1,3 @@
-//! [`Request`]: a request of a session to the game; [`TickInputs`]: the inputs of a tick.
-
 use alloc::vec::Vec;
 use core::fmt;
 
@@ -11,7 +9,7 @@ use super::view::has_bit;
 pub enum InputStatus {
     /// Issued by the player.
     Confirmed,
-    /// Not received yet; the player's last known input is used instead, or zeros if there is none.
+    /// Not received yet. The player's last known input is used, or zeros if there is none.
     Guessed,
     /// No peer plays the seat.
     Absent,
@@ -27,8 +25,7 @@ pub struct TickInputs {
 }
 
 impl TickInputs {
-    /// The input of a seat with its status; `None` for a seat that does not exist. The input of an absent player is all
-    /// zeros.
+    /// The input of a seat with its status; `None` if the seat does not exist. The input of an absent player is zeros.
     #[must_use]
     pub fn seat(&self, seat: u8) -> Option<(&[u8], InputStatus)> {
         let index = usize::from(seat);
@@ -117,12 +114,12 @@ impl TickInputs {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Request {
-    /// Keep a copy of the state before this tick. An older copy for the same tick is replaced.
+    /// Keep a copy of the state before this tick. It replaces an older one.
     Save {
         /// The tick.
         tick: Tick,
     },
-    /// Restore the copy of the state before this tick. Later copies are no longer needed.
+    /// Restore the copy before this tick. Later copies are no longer needed.
     Load {
         /// The tick.
         tick: Tick,
@@ -134,20 +131,19 @@ pub enum Request {
         /// The inputs.
         inputs: TickInputs,
     },
-    /// Pass the hash of the copy of the state before this tick to
-    /// [`Session::report_hash`](super::Session::report_hash).
+    /// Pass the hash of the copy before this tick to [`Session::report_hash`](super::Session::report_hash).
     Checksum {
         /// The tick.
         tick: Tick,
     },
-    /// Copies of states before this tick are no longer needed.
+    /// Copies before this tick are no longer needed.
     Forget {
         /// The tick.
         tick: Tick,
     },
 }
 
-/// Error: the inputs do not have the size that the session was configured for.
+/// Error: the inputs do not have the expected size.
 ///
 /// ```
 /// # use lockstep2d::session::{Config, Key, PeerId, Role, Session, View};
@@ -160,9 +156,9 @@ pub enum Request {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InputSize {
-    /// Number of bytes that were expected: the size of an input times the number of own seats.
+    /// Expected number of bytes: the size of an input times the number of own seats.
     pub expected: usize,
-    /// Number of bytes that were given.
+    /// Given number of bytes.
     pub given: usize,
 }
 

@@ -1,7 +1,6 @@
-//! [`Routes`]: the addresses of peers. A packet is attributed to the peer whose incarnation it states, whatever address
-//! it comes from. But packets of the match are sent to an address only after a probe or the handshake has shown that
-//! the peer receives packets there. Therefore a peer whose address changes is found again, and no peer can direct
-//! packets of the match to an address that is not its own.
+//! [`Routes`]: the addresses of peers. A received packet is attributed to the incarnation that it states. Match packets
+//! are sent to an address after a probe or the handshake has shown that the peer receives there. Hence a peer may
+//! change its address, but cannot direct match packets to another machine.
 
 use alloc::vec::Vec;
 
@@ -14,14 +13,12 @@ use super::siphash::Secret;
 const PROBE_INTERVAL: u64 = 250_000;
 /// Maximum number of probes of an address that does not answer.
 const PROBES_MAX: u8 = 40;
-/// Maximum number of addresses of a peer that are probed at a time.
+/// Maximum number of addresses of a peer probed at a time.
 const CANDIDATES_MAX: usize = 4;
-/// An address from which a packet arrived within this time, in microseconds, is not replaced by another one.
+/// An address heard within this time, in microseconds, is not replaced by another one.
 const KEPT: u64 = 500_000;
-/// Largest number of peers with addresses.
 const ROUTES_MAX: usize = 192;
 
-/// An address that may belong to a peer.
 #[derive(Clone, Debug)]
 struct Candidate {
     address: Address,
@@ -29,7 +26,6 @@ struct Candidate {
     probes: u8,
 }
 
-/// The addresses of a peer.
 #[derive(Clone, Debug)]
 struct Route {
     id: PeerId,
@@ -39,7 +35,6 @@ struct Route {
     candidates: Vec<Candidate>,
 }
 
-/// The addresses of all peers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Routes {
     list: Vec<Route>,
@@ -61,12 +56,11 @@ impl Routes {
         self.find(id)
     }
 
-    /// The address of a peer, once a probe or the handshake has shown that the peer receives packets there.
     pub(super) fn address(&self, id: PeerId) -> Option<Address> {
         self.list.iter().find(|route| route.id == id).and_then(|route| route.address)
     }
 
-    /// Notes that an address has been proven to belong to a peer.
+    /// An address has been proven to belong to a peer.
     pub(super) fn prove(&mut self, id: PeerId, address: Address, now: u64) {
         let Some(route) = self.add(id) else { return };
         if route.address != Some(address)
@@ -78,7 +72,6 @@ impl Routes {
         route.candidates.retain(|candidate| candidate.address != address);
     }
 
-    /// Notes a packet of a peer.
     pub(super) fn heard(&mut self, id: PeerId, address: Address, now: u64) {
         match self.find(id) {
             Some(route) if route.address == Some(address) => route.heard_at = now,
@@ -86,7 +79,7 @@ impl Routes {
         }
     }
 
-    /// Notes an address that may belong to a peer.
+    /// An address may belong to a peer.
     pub(super) fn suggest(&mut self, id: PeerId, address: Address) {
         let Some(route) = self.add(id).filter(|route| route.address != Some(address)) else { return };
         if route.candidates.iter().all(|candidate| candidate.address != address) {
@@ -97,7 +90,6 @@ impl Routes {
         }
     }
 
-    /// Addresses to probe now.
     pub(super) fn probes(&mut self, now: u64) -> Vec<(PeerId, Address)> {
         let mut probes = Vec::new();
         for route in &mut self.list {
@@ -111,12 +103,11 @@ impl Routes {
         probes
     }
 
-    /// Removes the peers for which `matters` is false.
     pub(super) fn retain(&mut self, matters: impl Fn(PeerId) -> bool) {
         self.list.retain(|route| matters(route.id));
     }
 
-    /// At most `most` known addresses to send to other peers. If there are more, the next call starts at another one.
+    /// Up to `most` known addresses. If there are more, calls take turns.
     pub(super) fn known(&mut self, most: usize) -> Vec<(PeerId, Address)> {
         let known: Vec<_> = self.list.iter().filter_map(|route| Some((route.id, route.address?))).collect();
         self.turn = self.turn.wrapping_add(most);
@@ -125,7 +116,7 @@ impl Routes {
     }
 }
 
-/// The token that a peer has to return from an address to show that it receives packets there.
+/// The token that a peer returns from an address at which it receives packets.
 pub(super) fn token(secret: Secret, id: PeerId, address: &Address) -> u64 {
     let mut bytes = Vec::with_capacity(64);
     bytes.put_u32(id.0);

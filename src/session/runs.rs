@@ -1,8 +1,7 @@
-//! Compression of the inputs of consecutive ticks: each tick is XORed with the tick before it, then run-length encoded.
-//! Inputs that are held for many ticks become one run of zeros, which takes few bytes whatever its length.
+//! Compression of the inputs of consecutive ticks: each is XORed with the one before it, then run-length encoded.
 //!
-//! The encoding is a list of runs that together have the number of bytes that the decoder expects. A run starts with a
-//! LEB128 number: its length times two, plus one for a run of zeros. The bytes of any other run follow this number.
+//! A run starts with a LEB128 number: its length times two, plus one for a run of zeros. The bytes of other runs
+//! follow. The total number of bytes is known to the decoder.
 
 use alloc::vec::Vec;
 
@@ -11,7 +10,7 @@ use super::bytes::{Decoded, Malformed, Reader, Write};
 /// Minimum number of zeros for a separate run between other bytes.
 const ZEROS_MIN: usize = 3;
 
-/// Appends the coded form of inputs of `size` bytes each.
+/// Appends the encoding of inputs of `size` bytes each.
 pub(super) fn encode(inputs: &[u8], size: usize, bytes: &mut Vec<u8>) {
     let differences = |at: usize| {
         let before = at.checked_sub(size).and_then(|at| inputs.get(at)).copied().unwrap_or(0);
@@ -39,7 +38,7 @@ pub(super) fn encode(inputs: &[u8], size: usize, bytes: &mut Vec<u8>) {
     }
 }
 
-/// Appends `count` decoded bytes of inputs of `size` bytes each to `inputs`.
+/// Appends `count` decoded bytes of inputs of `size` bytes each.
 pub(super) fn decode(reader: &mut Reader, count: usize, size: usize, inputs: &mut Vec<u8>) -> Decoded<()> {
     let start = inputs.len();
     let end = start + count;

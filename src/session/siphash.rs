@@ -1,7 +1,5 @@
-//! SipHash-2-4: a keyed hash whose results cannot be guessed without the key. It generates the cookies of the handshake
-//! and the tokens of probes.
+//! SipHash-2-4 (Aumasson and Bernstein), a keyed hash for handshake cookies and probe tokens.
 
-/// A secret key.
 #[derive(Clone, Copy)]
 pub(super) struct Secret(pub(super) [u64; 2]);
 
@@ -26,7 +24,6 @@ fn round(v: &mut [u64; 4]) {
 }
 
 impl Secret {
-    /// The hash of some bytes.
     pub(super) fn hash(self, bytes: &[u8]) -> u64 {
         let [k0, k1] = self.0;
         let mut v = [
@@ -56,7 +53,7 @@ impl Secret {
 mod tests {
     use super::*;
 
-    /// The test vectors of the paper by Aumasson and Bernstein, and of its reference implementation.
+    /// Test vectors of the paper and of its reference implementation.
     #[test]
     fn it_is_siphash_2_4() {
         let secret = Secret([0x0706_0504_0302_0100, 0x0f0e_0d0c_0b0a_0908]);

@@ -1,5 +1,4 @@
-//! [`StartState`]: the view, the addresses and the game's state that a joining peer receives. The inputs of later ticks
-//! reach the peer in packets of the match.
+//! [`StartState`]: the view, the addresses and the game's state for a joining peer.
 
 use alloc::vec::Vec;
 
@@ -8,15 +7,13 @@ use super::bytes::{Decoded, Malformed, Reader, Write};
 use super::id::{Key, NEVER, PeerId, Tick};
 use super::view::{SEATS_MAX, SPANS_MAX, Span, View, Voter};
 
-/// Largest number of addresses in a state.
 const ADDRESSES_MAX: usize = 256;
 
-/// The initial state of a joining peer, as it is sent in chunks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct StartState {
     pub(super) view: View,
     pub(super) addresses: Vec<(PeerId, Address)>,
-    /// Number of ticks that were played; all of them are final.
+    /// Number of played ticks, all of them final.
     pub(super) tick: Tick,
     pub(super) state: Vec<u8>,
 }
@@ -93,7 +90,7 @@ fn read_span(reader: &mut Reader) -> Decoded<Span> {
     if sound { Ok(span) } else { Err(Malformed) }
 }
 
-/// Whether a received view has the properties that every sequence of changes preserves.
+/// Whether a received view satisfies the invariants of views.
 fn is_sound(view: &View) -> bool {
     let distinct = view.voters.iter().enumerate().all(|(at, voter)| view.voter(voter.id) == Some(at));
     let mut taken = 0;

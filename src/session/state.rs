@@ -1,5 +1,3 @@
-//! [`Session`]: its fields, its construction, and the calls available to the game.
-
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
 
@@ -35,20 +33,20 @@ use super::view::{Change, View};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Requests a number of seats, and plays as soon as it has them.
+    /// Requests seats, and plays once it has them.
     Player {
         /// Number of seats, at least 1.
         seats: u8,
     },
-    /// Requests no seat: a peer that only watches and plays only final ticks, or a dedicated server.
+    /// Requests no seat: a peer that watches final ticks, or a dedicated server.
     Spectator,
 }
 
-/// One peer of a match: its inputs, its view of the match, and the packets that it exchanges with the other peers.
+/// One peer of a match.
 ///
-/// In a loop: pass every received packet to [`receive`](Session::receive), call [`update`](Session::update), and call
-/// [`advance`](Session::advance) while [`is_due`](Session::is_due). Fulfil all requests of
-/// [`next_request`](Session::next_request) in order, then send all packets of [`next_packet`](Session::next_packet).
+/// In a loop: pass received packets to [`receive`](Session::receive), call [`update`](Session::update), and call
+/// [`advance`](Session::advance) while [`is_due`](Session::is_due). Fulfil the requests of
+/// [`next_request`](Session::next_request) in order, then send the packets of [`next_packet`](Session::next_packet).
 ///
 /// Times are microseconds since any fixed moment and never decrease.
 ///
@@ -95,7 +93,6 @@ pub struct Session {
     pub(super) pace: Pace,
     pub(super) role: Role,
     pub(super) wants: Wants,
-    /// Number of ticks after which this peer wants the match to end.
     pub(super) end_at: Option<Tick>,
     pub(super) paused: bool,
     pub(super) lifecycle: Lifecycle,
@@ -108,11 +105,11 @@ pub struct Session {
 pub(super) struct Clock {
     /// The latest time passed by the caller.
     pub(super) now: u64,
-    /// Time for which the process was running: between two calls at most [`Timing::step_max`](super::Timing) counts.
+    /// Running time: at most [`Timing::step_max`](super::Timing) counts between two calls.
     pub(super) active: u64,
 }
 
-/// Pseudo-random numbers (SplitMix64), used only to spread ballots in time.
+/// Pseudo-random numbers (SplitMix64) that spread ballots in time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Random(u64);
 
@@ -122,7 +119,6 @@ impl Random {
         Random(seed)
     }
 
-    /// Returns a random number below `bound`; 0 if `bound` is 0.
     pub(super) fn below(&mut self, bound: u64) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mixed = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -131,7 +127,7 @@ impl Random {
     }
 }
 
-/// The decided changes, kept for peers that missed some of them.
+/// Decided changes, kept for peers that missed some.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Changes {
     /// Number of the view that the first change leads to.
@@ -140,7 +136,6 @@ pub(super) struct Changes {
 }
 
 impl Changes {
-    /// The changes that lead to views `number` and later.
     pub(super) fn since(&self, number: u32) -> &[Change] {
         let skipped = number.checked_sub(self.first).and_then(|skipped| usize::try_from(skipped).ok());
         skipped.and_then(|skipped| self.list.get(skipped..)).unwrap_or_default()
@@ -148,8 +143,8 @@ impl Changes {
 }
 
 impl Session {
-    /// Creates the session of a match whose first view is known. The peer is one of its voters, or follows the match
-    /// from the first tick on. `me` has to be a random number, different for each process; `seed` may be any number.
+    /// Creates a session from the first view of a match. The peer is one of its voters, or follows the match from the
+    /// first tick on. `me` must be random and new for each process. `seed` may be any number.
     ///
     /// # Errors
     /// [`ConfigError`] if a parameter is out of its range.
@@ -194,7 +189,7 @@ impl Session {
         Ok(session)
     }
 
-    /// Creates a session that follows a match from the state after `tick` ticks, all of which are final.
+    /// Creates a session that continues from the state after `tick` final ticks.
     pub(super) fn resume(
         config: Config,
         me: PeerId,
@@ -212,13 +207,12 @@ impl Session {
         Ok(session)
     }
 
-    /// Whether a row of a peer has arrived.
     pub(super) fn has_row(&self, id: PeerId) -> bool {
         self.peers.find(id).is_some_and(|remote| remote.row.is_some())
     }
 
-    /// Serves a peer that has no vote: sends it the decided changes and the inputs of the match. A joining peer also
-    /// calls this for the peers that it knows.
+    /// Serves a peer without a vote: sends it changes and inputs. A joining peer calls this for the peers that it
+    /// knows.
     pub fn attach(&mut self, id: PeerId, key: Option<Key>) {
         let active = self.clock.active;
         self.peers.add(id, key, active);
@@ -228,7 +222,7 @@ impl Session {
         self.peers.bound(&self.view);
     }
 
-    /// Stops serving a peer without a vote, for example because its transport reports that the connection is closed.
+    /// Stops serving a peer without a vote, for example when its connection is closed.
     pub fn detach(&mut self, id: PeerId) {
         if let Some(remote) = self.peers.find_mut(id) {
             remote.attached = false;
@@ -236,41 +230,41 @@ impl Session {
         }
     }
 
-    /// Leaves the match. The others agree on a tick from which they continue without this peer. Call
-    /// [`update`](Session::update) until the status is [`Status::Closed`].
+    /// Leaves the match: the others agree on a tick from which they continue without this peer. Call
+    /// [`update`](Session::update) until [`Status::Closed`].
     pub fn leave(&mut self) {
         self.wants.leave = true;
     }
 
-    /// Requests an end of the match after `ticks` ticks. If several peers request an end, the largest number counts.
-    /// The request is sent two seconds before the end, and not before the match begins. Until a majority has decided on
-    /// an end, peers can get seats. After that no peer gets a seat, and the end does not change any more.
+    /// Requests an end of the match after `ticks` ticks. The request is sent two seconds before that tick. If several
+    /// requests are known when a majority decides, the largest number counts. After the decision no peer gets a seat,
+    /// and the end does not change.
     pub fn end_at(&mut self, ticks: Tick) {
         self.end_at = Some(ticks);
     }
 
-    /// Requests a pause from all others, or withdraws the request. Each game decides how to react to [`Event::Pause`];
-    /// the session itself does not stop.
+    /// Requests a pause, or withdraws the request. Games decide how to react to [`Event::Pause`]. The session does not
+    /// stop.
     pub fn pause(&mut self, paused: bool) {
         self.paused = paused;
     }
 
-    /// Votes for continuing without a missing peer, which may return later. The vote of the
-    /// [tie-holder](View::tie_holder) is sufficient.
+    /// Votes to continue without a missing peer, which may return. The vote of the [tie-holder](View::tie_holder) is
+    /// sufficient.
     pub fn go_on_without(&mut self, peer: PeerId) {
         if self.view.voter(peer).is_some() {
             self.remove(Removal::Without(peer));
         }
     }
 
-    /// Votes for removing a peer permanently. The vote of the [tie-holder](View::tie_holder) is sufficient.
+    /// Votes to remove a peer permanently. The vote of the [tie-holder](View::tie_holder) is sufficient.
     pub fn kick(&mut self, key: Key) {
         self.remove(Removal::Kick(key));
     }
 
     fn remove(&mut self, removal: Removal) {
         if !self.wants.removals.contains(&removal) {
-            // The oldest vote is dropped. If the peer that it names has been removed already, that peer may return.
+            // The oldest vote is dropped. If its peer has been removed already, that peer may return.
             if self.wants.removals.len() == REMOVALS_MAX {
                 self.wants.removals.remove(0);
             }
@@ -278,20 +272,20 @@ impl Session {
         }
     }
 
-    /// Changes the role: a spectator starts to request seats, or a player without a seat stops requesting one.
+    /// Changes the role. A spectator starts to request seats; a player without a seat stops.
     pub fn set_role(&mut self, role: Role) {
         self.role = role;
     }
 
-    /// Sets the bounds of the delay of this peer's inputs, in ticks. `most` is reduced to
-    /// [`DELAY_MAX`](super::DELAY_MAX) if it is larger, and `least` to `most`.
+    /// Sets the bounds of the input delay in ticks. `most` is limited to [`DELAY_MAX`](super::DELAY_MAX), `least` to
+    /// `most`.
     pub fn set_delay(&mut self, least: u16, most: u16) {
         self.config.delay_max = most.min(super::config::DELAY_MAX);
         self.config.delay_min = least.min(self.config.delay_max);
     }
 
-    /// Sets how many ticks may be played with guessed inputs; 0 is lockstep. Values above
-    /// [`GUESS_MAX`](super::GUESS_MAX) are reduced to it.
+    /// Sets the number of ticks that may be played with guessed inputs, at most [`GUESS_MAX`](super::GUESS_MAX); 0 is
+    /// lockstep.
     pub fn set_guess(&mut self, ticks: u16) {
         self.config.guess = ticks.min(super::config::GUESS_MAX);
     }
@@ -301,7 +295,7 @@ impl Session {
         self.events.pop_front()
     }
 
-    /// Next request to the game. Requests have to be fulfilled in order.
+    /// Next request to the game, to be fulfilled in order.
     pub fn next_request(&mut self) -> Option<Request> {
         self.play.requests.pop_front()
     }
@@ -329,13 +323,13 @@ impl Session {
         self.me
     }
 
-    /// Number of ticks whose inputs are all known. Ticks beyond [`final_tick`](Session::final_tick) may still change.
+    /// Number of ticks whose inputs are known. Those beyond [`final_tick`](Session::final_tick) may still change.
     #[must_use]
     pub fn complete_tick(&self) -> Tick {
         self.progress.complete
     }
 
-    /// Number of final ticks. No rollback, departure or failure changes their inputs for any peer.
+    /// Number of final ticks. Their inputs do not change any more.
     #[must_use]
     pub fn final_tick(&self) -> Tick {
         self.progress.fin

@@ -1,5 +1,4 @@
-//! Encodings of packets, numbers and start states: decoding returns the encoded values. Damaged and forged packets
-//! cause no panic.
+//! Encodings of packets, numbers and start states; damaged and forged packets.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -66,8 +65,6 @@ fn what_is_written_is_read_again() {
     assert_eq!(&packet.inputs[..6], [1, 2, 1, 2, 3, 4]);
 }
 
-/// In a match of eight players, a row takes 21 bytes, and a packet with this row and one player's input, unchanged for
-/// eight ticks, takes 45 bytes.
 #[test]
 fn a_packet_of_eight_players_is_small() {
     let mut row = Row::new(7);
@@ -83,8 +80,7 @@ fn a_packet_of_eight_players_is_small() {
     assert_eq!(composer.finish(5).len(), 45);
 }
 
-/// Decoding a packet with a flipped bit, a prefix of a packet, or a packet with a byte after its end does not panic.
-/// Prefixes and longer packets are refused.
+/// Flipped bits, prefixes and additional bytes do not panic. Prefixes and additional bytes are refused.
 #[test]
 fn no_bytes_panic() {
     let bytes = packet_bytes();
@@ -105,7 +101,6 @@ fn no_bytes_panic() {
     assert!(Packet::read(&longer, 2).is_err(), "a byte after the end");
 }
 
-/// Packets with correct checksums and arbitrary flipped bits cause no panic in a session and no unbounded memory use.
 #[test]
 fn forged_packets_do_not_panic_and_do_not_fill_the_memory() {
     let mut random = random();
@@ -123,7 +118,6 @@ fn forged_packets_do_not_panic_and_do_not_fill_the_memory() {
                 let bit = usize::try_from(random.below(8 * bytes.len() as u64 - 32)).unwrap() + 32;
                 bytes[bit / 8] ^= 1 << (bit % 8);
             }
-            // The checksum is corrected after the flips, so that the session decodes the packet.
             let sum = checksum(5, &bytes[4..]);
             bytes[..4].copy_from_slice(&sum);
             session.receive(step * 16_000, &bytes);

@@ -1,6 +1,5 @@
-//! Transfer of states in chunks: [`Upload`] and [`Download`]. The receiver reports the chunks that it has and the
-//! window of chunks that may be in flight. The sender sends missing chunks, and resends chunks that may have been lost,
-//! at a rate set by congestion control.
+//! Transfer of states in chunks. The receiver reports its chunks and the window of chunks in flight. The sender sends
+//! missing chunks, again if need be, at a rate set by congestion control.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -16,12 +15,11 @@ const WINDOW_MIN: u32 = 56;
 const WINDOW_MAX: u32 = 960;
 /// Time between two requests in microseconds.
 const WANT_INTERVAL: u64 = 20_000;
-/// Number of received chunks after which a request is sent before its time.
+/// Received chunks after which a request is sent early.
 const WANT_CHUNKS: u32 = 16;
 /// Round trip that is assumed before one is measured, in microseconds.
 const ROUND_TRIP: u64 = 250_000;
 
-/// Hash that identifies a transferred state.
 pub(super) fn hash(bytes: &[u8]) -> u64 {
     let digest = twox_hash::XxHash3_128::oneshot(bytes).to_le_bytes();
     let [a, b, c, d, e, f, g, h, ..] = digest;
@@ -33,7 +31,6 @@ fn chunk_count(length: u64) -> u32 {
     u32::try_from(length.div_ceil(chunk)).unwrap_or(u32::MAX)
 }
 
-/// A state that is kept while a peer downloads it.
 #[derive(Debug)]
 pub(super) struct Pinned {
     pub(super) tick: Tick,
@@ -47,18 +44,17 @@ impl Pinned {
     }
 }
 
-/// Whether a request with these fields reports that a chunk was received.
+/// Whether a request with these fields reports a chunk as received.
 fn in_masks(masks: &[u64], next: u32, index: u32) -> bool {
     let Some(after) = index.checked_sub(next) else { return true };
     let word = usize::try_from(after / 64).ok().and_then(|word| masks.get(word));
     word.is_some_and(|&mask| has_bit(mask, usize::try_from(after % 64).unwrap_or(64)))
 }
 
-/// Sends a state to one receiver.
 #[derive(Clone, Debug)]
 pub(super) struct Upload {
     pub(super) state: Arc<Pinned>,
-    /// For each chunk, the time at which it was last sent and the number of times it was sent.
+    /// For each chunk: time of the last transmission, and number of transmissions.
     sent: Vec<(u64, u32)>,
     next: u32,
     window: u32,
@@ -81,7 +77,6 @@ impl Upload {
         in_masks(&self.masks, self.next, index)
     }
 
-    /// Processes a request of the receiver.
     pub(super) fn take(&mut self, now: u64, next: u32, window: u32, masks: Vec<u64>) {
         if next < self.next {
             return;
@@ -90,8 +85,7 @@ impl Upload {
         self.next = next;
         self.window = window.min(WINDOW_MAX);
         self.cursor = next;
-        // The highest-numbered chunk that has arrived since the previous request measures the round trip, if it was
-        // sent only once.
+        // The highest chunk since the previous request measures the round trip, if it was sent once.
         let end = next.saturating_add(self.window);
         let newest =
             (first..end).rev().find(|&index| self.has(index) && !in_masks(&masks_before, first, index));
@@ -103,7 +97,7 @@ impl Upload {
         }
     }
 
-    /// The next chunk to send, if a chunk in the window is missing and not in flight, and the rate allows another one.
+    /// The next chunk that is missing and not in flight, if the window and the rate allow one.
     pub(super) fn next_chunk(&mut self, now: u64) -> Option<JoinPacket> {
         let again = self.round_trip + self.round_trip / 4 + 2 * WANT_INTERVAL;
         let end = self.next.saturating_add(self.window);
@@ -131,13 +125,11 @@ impl Upload {
     }
 }
 
-/// Receives a state.
 #[derive(Clone, Debug)]
 pub(super) struct Download {
     pub(super) hash: u64,
     length: u64,
-    /// The bytes up to the end of the highest-numbered chunk that has arrived. They are not allocated in advance for
-    /// the announced length.
+    /// The bytes up to the highest received chunk, not allocated in advance for the announced length.
     bytes: Vec<u8>,
     have: Vec<bool>,
     next: u32,
@@ -146,12 +138,10 @@ pub(super) struct Download {
     want_at: u64,
     grow_at: u64,
     arrived: u32,
-    /// Time at which the last new chunk arrived.
     pub(super) moved_at: u64,
 }
 
 impl Download {
-    /// Prepares for a state of `length` bytes.
     pub(super) fn new(now: u64, hash: u64, length: u64) -> Option<Self> {
         let count = chunk_count(length);
         let have = alloc::vec![false; usize::try_from(count).ok()?];
@@ -170,14 +160,13 @@ impl Download {
         })
     }
 
-    /// Stores a chunk. Chunks of a wrong length, or beyond the largest possible window, are ignored.
+    /// Stores a chunk. Wrong lengths, and chunks beyond the largest window, are ignored.
     pub(super) fn take(&mut self, now: u64, index: u32, bytes: &[u8]) {
         let Ok(place) = usize::try_from(index) else { return };
         let Some(have) = self.have.get_mut(place).filter(|have| !**have) else { return };
         let Ok(length) = usize::try_from(self.length) else { return };
         let start = place * CHUNK_BYTES;
         let end = (start + CHUNK_BYTES).min(length);
-        // This peer never asks for chunks beyond the largest window.
         let is_wanted = index < self.next.saturating_add(WINDOW_MAX);
         if !is_wanted || end - start != bytes.len() {
             return;
@@ -196,7 +185,6 @@ impl Download {
         }
     }
 
-    /// The next request, if one is due.
     pub(super) fn want(&mut self, now: u64) -> Option<JoinPacket> {
         if now < self.want_at && self.arrived < WANT_CHUNKS {
             return None;
@@ -223,17 +211,14 @@ impl Download {
         Some(JoinPacket::Want { hash: self.hash, next: self.next, window: self.window, masks })
     }
 
-    /// Whether all chunks have arrived.
     pub(super) const fn is_complete(&self) -> bool {
         self.missing == 0
     }
 
-    /// The bytes, if they are complete and match the announced hash.
     pub(super) fn finish(self) -> Option<Vec<u8>> {
         (self.missing == 0 && hash(&self.bytes) == self.hash).then_some(self.bytes)
     }
 
-    /// Number of bytes received, and total number of bytes.
     pub(super) fn progress(&self) -> (u64, u64) {
         let here =
             u64::from(chunk_count(self.length) - self.missing) * u64::try_from(CHUNK_BYTES).unwrap_or(0);

@@ -1,5 +1,4 @@
-//! Outgoing packets: this peer's row to every peer that is served, with the decided changes, the inputs and the rows of
-//! other peers that the receiver lacks.
+//! Outgoing packets: this peer's row, and changes, inputs and rows of others that the receiver lacks.
 
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
@@ -13,35 +12,29 @@ use super::row::{Row, STRANGERS_MAX};
 use super::state::Session;
 use super::view::has_bit;
 
-/// Packets that wait to be sent.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Outbox {
     pub(super) packets: VecDeque<(PeerId, Vec<u8>)>,
-    /// Time at which the next transmission is due.
     next_at: u64,
-    /// Whether this peer has issued new inputs.
     pub(super) urgent: bool,
     version: u32,
 }
 
-/// Maximum number of packets waiting to be sent. Beyond it, the oldest ones are dropped.
+/// Maximum number of packets waiting to be sent. The oldest ones are dropped.
 const PACKETS_MAX: usize = 4096;
 /// Time for which a peer without a vote is served after its last packet, in microseconds.
 const SERVED: u64 = 5_000_000;
-/// If a receiver lacks more than this many ticks of inputs of a peer, other peers relay them, even if the receiver
-/// hears that peer.
+/// If a receiver lacks more ticks of a peer than this, others relay them even if it hears that peer.
 const HELP_TICKS: Tick = 20;
-/// Interval, in versions of the row, at which a peer that has no vote or has lost contact to a quorum sends its row to
-/// all peers that it knows.
+/// Interval, in row versions, at which a peer without a vote or a quorum sends to all peers that it knows.
 const TRY_ROWS: u32 = 8;
-/// Upper bound of [`Session::send_interval`] in microseconds, if at most 16 peers are known.
+/// Upper bound of [`Session::send_interval`] with up to 16 peers, in microseconds.
 const INTERVAL_MAX: u64 = 100_000;
-/// Interval, in versions of the row, at which the row contains a state hash.
+/// Interval, in row versions, at which the row contains a state hash.
 const HASH_ROWS: u32 = 4;
 
 impl Session {
-    /// Usual time between packets: the duration of a tick, but at most [`INTERVAL_MAX`]. It is twice as long if more
-    /// than 16 peers are known, and three times as long if more than 32 are known.
+    /// Usual time between packets: a tick, at most [`INTERVAL_MAX`]; doubled above 16 known peers, tripled above 32.
     pub(super) fn send_interval(&self) -> u64 {
         let many = match self.peers.list.len() {
             0..=16 => 1,
@@ -51,7 +44,7 @@ impl Session {
         many * u64::from(self.config.tick_micros).min(INTERVAL_MAX)
     }
 
-    /// Updates the parts of this peer's row that the agreement reads.
+    /// Updates the fields that the agreement reads.
     pub(super) fn refresh_row(&mut self) {
         let Some(own) = self.peers.list.first_mut() else { return };
         let row = own.row.get_or_insert_with(|| Row::new(0));
@@ -67,7 +60,6 @@ impl Session {
         own.contact = self.clock.active;
     }
 
-    /// Updates this peer's whole row and increments its version.
     fn renew_row(&mut self) {
         self.refresh_row();
         let version = self.outbox.version.saturating_add(1);
@@ -100,7 +92,6 @@ impl Session {
         }
     }
 
-    /// Sends packets to all served peers, if they are due.
     pub(super) fn transmit(&mut self) {
         let now = self.clock.now;
         let interval = self.send_interval();
@@ -109,7 +100,7 @@ impl Session {
         if now < self.outbox.next_at && !early {
             return;
         }
-        // The game is about to issue new inputs, so the packets wait for them, by at most one interval.
+        // New inputs are about to be issued: the packets wait for them, at most one interval.
         if !early && self.is_due(now) && self.issues() && now < self.outbox.next_at.saturating_add(interval) {
             return;
         }
@@ -127,8 +118,7 @@ impl Session {
         }
     }
 
-    /// Whether packets are sent to a peer. If this peer has lost contact to a quorum, or has no vote, it occasionally
-    /// sends to all peers that it knows.
+    /// Whether packets are sent to a peer. Without a vote or a quorum, this peer occasionally tries all that it knows.
     fn is_served(&self, remote: &Remote) -> bool {
         let tries = self.outbox.version.is_multiple_of(TRY_ROWS)
             && (self.view.voter(self.me).is_none() || !self.is_connected());
@@ -172,8 +162,7 @@ impl Session {
         self.outbox.packets.push_back((id, bytes));
     }
 
-    /// Whether the row of `receiver` states that it hears another peer. The row's bits of voters count only if the row
-    /// is in this view.
+    /// Whether `receiver` states that it hears another peer. Its bits of voters count if its row is in this view.
     fn hears(&self, receiver: &Remote, other: PeerId) -> bool {
         let Some(row) = receiver.row.as_ref() else { return false };
         let as_voter = self.view.voter(other).filter(|_| row.view == self.view.number);
@@ -193,8 +182,8 @@ impl Session {
         }
     }
 
-    /// The inputs of a span that the receiver lacks, oldest first. Inputs of another peer are relayed only if the
-    /// receiver does not hear that peer or lacks many of its ticks.
+    /// The oldest inputs of a span that the receiver lacks. Inputs of others are relayed if the receiver does not hear
+    /// them or lacks many ticks.
     fn run_for(&self, receiver: &Remote, index: usize) -> Option<(u16, Tick, &[u8])> {
         let span = self.view.spans.get(index)?;
         let start = self.lacks(receiver, index);
@@ -210,8 +199,7 @@ impl Session {
         Some((u16::try_from(index).ok()?, start, inputs))
     }
 
-    /// Rows of voters, and of peers that request seats, that the receiver does not hear. With each version of the own
-    /// row, another peer is first.
+    /// Rows of voters, and of peers that request seats, that the receiver does not hear, in changing order.
     fn foreign_rows(&self, receiver: &Remote) -> Vec<&Remote> {
         if self.config.has(Fault::NoRelay) {
             return Vec::new();

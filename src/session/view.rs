@@ -1,7 +1,7 @@
-//! [`View`]: the membership of a match: its voters, and which peer plays which seat in which ticks.
+//! [`View`]: the voters of a match, and which peer plays which seat in which ticks.
 //!
-//! Views are numbered. A [`Change`] leads from each view to the next one, and all peers apply the same changes
-//! (`agreement.rs`). Spans are never removed, so that the index of a span remains valid in all later views.
+//! A [`Change`] leads from each view to the next one (`agreement.rs`). Spans are never removed, so that their indices
+//! remain valid.
 
 use alloc::vec::Vec;
 
@@ -9,9 +9,8 @@ use super::id::{Key, NEVER, PeerId, Tick};
 
 /// Largest number of seats of a match, and of voters of a view.
 pub const SEATS_MAX: usize = 64;
-/// Largest number of spans of a match. Each join adds one for each of its seats.
+/// Largest number of spans of a match. A join adds one for each of its seats.
 pub const SPANS_MAX: usize = 1 << 14;
-/// Largest number of peers that join in one change.
 pub(super) const JOINS_MAX: usize = 8;
 
 /// A peer with a vote on changes of the view.
@@ -21,7 +20,7 @@ pub struct Voter {
     pub id: PeerId,
     /// Identity of the peer.
     pub key: Key,
-    /// Weight of the vote: 1, unless [`View::found`] sets another one. A voter that outweighs all others decides alone.
+    /// Weight of the vote: 1, unless [`View::found`] sets another one. A voter that outweighs the others decides alone.
     pub weight: u8,
 }
 
@@ -38,7 +37,7 @@ pub struct Span {
     pub since: u32,
     /// First tick of the span.
     pub from: Tick,
-    /// First tick after the span; [`NEVER`] while its owner plays.
+    /// First tick after the span; [`NEVER`] while its end is undecided.
     pub until: Tick,
 }
 
@@ -49,32 +48,30 @@ impl Span {
         self.from <= tick && tick < self.until
     }
 
-    /// Whether the end of the span is still undecided: its owner plays, or is going to play.
+    /// Whether the end of the span is undecided.
     #[must_use]
     pub const fn is_open(&self) -> bool {
         self.until == NEVER
     }
 }
 
-/// A peer that a [`Change`] makes a voter, with its seats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Join {
     pub(super) id: PeerId,
     pub(super) key: Key,
-    /// Bit for each seat.
     pub(super) seats: u64,
 }
 
 /// A decided step from one view to the next.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Change {
-    /// First tick that the change may affect: all ticks before it are final.
+    /// First tick that the change may affect. The ticks before it are final.
     pub(super) cut: Tick,
-    /// First tick that is not played, once the end of the match is decided.
+    /// First tick that is not played, once decided.
     pub(super) end: Option<Tick>,
     /// Whether the first tick may be played.
     pub(super) begun: bool,
-    /// Bit for each voter of the old view that has no vote in the new one.
+    /// Bit for each voter of the old view that leaves.
     pub(super) leaves: u64,
     pub(super) tie_holder: PeerId,
     pub(super) joins: Vec<Join>,
@@ -98,24 +95,24 @@ pub(super) struct Change {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct View {
-    /// Number of the view: 0 at the start, and one more after each change.
+    /// Number of the view, increased by 1 with each change.
     pub number: u32,
     /// Whether enough seats were taken to begin.
     pub begun: bool,
-    /// Cut of the last change: the ticks before it are final.
+    /// Cut of the last change. The ticks before it are final.
     pub cut: Tick,
-    /// First tick that is not played, once the end of the match is decided.
+    /// First tick that is not played, once decided.
     pub end: Option<Tick>,
     /// Voter with the casting vote.
     pub tie_holder: PeerId,
-    /// The voters, in the order in which they joined; at most [`SEATS_MAX`].
+    /// The voters in the order of joining, at most [`SEATS_MAX`].
     pub voters: Vec<Voter>,
     /// All spans of the match so far.
     pub spans: Vec<Span>,
 }
 
 impl View {
-    /// The first view of a match opened by one peer. `seats` has a bit for each of its own seats.
+    /// The first view of a match opened by one peer. `seats` has a bit for each of its seats.
     #[must_use]
     pub fn opened_by(id: PeerId, key: Key, seats: u64, begun: bool) -> Self {
         let mut view = View {
@@ -131,7 +128,7 @@ impl View {
         view
     }
 
-    /// Adds a voter to a view that is not in use yet. The voter gets those of the given seats that are free.
+    /// Adds a voter to a view that is not in use yet, with those of the given seats that are free.
     pub fn found(&mut self, id: PeerId, key: Key, weight: u8, seats: u64) {
         self.voters.push(Voter { id, key, weight });
         let seats = seats & self.free_seats();
@@ -151,19 +148,17 @@ impl View {
         self.voters.iter().position(|voter| voter.id == id)
     }
 
-    /// Twice the weight of a voter, plus 1 for the casting vote of the tie-holder.
+    /// Twice the weight of a voter, plus 1 for the tie-holder.
     fn weight(&self, voter: &Voter) -> u32 {
         2 * u32::from(voter.weight) + u32::from(voter.id == self.tie_holder)
     }
 
-    /// Sum of [`View::weight`] over the voters in a set, which has a bit for each index.
     pub(super) fn weight_of(&self, set: u64) -> u32 {
         let members = self.voters.iter().enumerate().filter(|(index, _)| has_bit(set, *index));
         members.map(|(_, voter)| self.weight(voter)).sum()
     }
 
-    /// Whether a set of voters (a bit for each index) is a quorum, with more than half of the total weight. The casting
-    /// vote excludes ties.
+    /// Whether a set of voters (a bit for each index) has more than half of the weight. The casting vote excludes ties.
     #[must_use]
     pub fn is_quorum(&self, set: u64) -> bool {
         2 * self.weight_of(set) > self.weight_of(u64::MAX)
@@ -189,7 +184,7 @@ impl View {
         own.fold(0, |set, span| set | bit(usize::from(span.seat)))
     }
 
-    /// The view after a change, or `None` if the change does not fit this view.
+    /// The view after a change, or `None` if the change does not fit.
     pub(super) fn changed_by(&self, change: &Change) -> Option<View> {
         let mut next = self.clone();
         next.number = self.number.checked_add(1)?;
@@ -229,17 +224,15 @@ impl View {
     }
 }
 
-/// Returns the set that contains only `index`; the empty set for an index above 63.
+/// The set of one index; empty for an index above 63.
 pub(super) const fn bit(index: usize) -> u64 {
     if index < 64 { 1 << index } else { 0 }
 }
 
-/// Whether a set contains `index`.
 pub(super) const fn has_bit(set: u64, index: usize) -> bool {
     set & bit(index) != 0
 }
 
-/// The members of a set, in ascending order.
 pub(super) fn bits(mut set: u64) -> impl Iterator<Item = u8> {
     core::iter::from_fn(move || {
         let [lowest, ..] = set.trailing_zeros().to_le_bytes();

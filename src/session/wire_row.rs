@@ -1,4 +1,4 @@
-//! Encoding of a [`Row`] and of a [`Change`]. `docs/PROTOCOL.md` specifies the layout in tables.
+//! Encoding of a [`Row`] and of a [`Change`]. `docs/PROTOCOL.md` specifies the layout.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -8,7 +8,6 @@ use super::id::{Key, PeerId};
 use super::row::{Ballot, REMOVALS_MAX, Removal, Row, STRANGERS_MAX, SeatWant, Wants};
 use super::view::{Change, JOINS_MAX, Join, SEATS_MAX, SPANS_MAX};
 
-/// Bits of the flags of a row.
 mod flag {
     pub(super) const CONNECTED: u32 = 1;
     pub(super) const OTHERS: u32 = 1 << 1;
@@ -120,7 +119,7 @@ impl Row {
     }
 }
 
-/// Reads the length of a list that is not empty: the flag of an empty list is not set.
+/// Reads the length of a list that is not empty: an empty one has no flag.
 fn read_positive(reader: &mut Reader, max: usize) -> Decoded<usize> {
     match reader.count(max)? {
         0 => Err(Malformed),

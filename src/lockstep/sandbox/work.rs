@@ -1,7 +1,7 @@
 //! [`Costs`]: work units of the commands of a tick or of a setup.
 //!
-//! All commands of a tick are charged before the first one is executed, and a command may refer to objects that an
-//! earlier command adds. Therefore all objects added in the tick count as existing from its start.
+//! All commands of a tick are charged before the first one is executed, and may refer to objects that earlier ones add.
+//! Objects added in the tick therefore count as existing.
 
 use crate::body::{BodyId, BodyKind};
 use crate::solver::SolverSettings;
@@ -9,34 +9,32 @@ use crate::world::{AddedWork, Command, World};
 
 /// Work units of a shape that is created or replaced.
 const SHAPE_WORK: u64 = 8;
-/// Work units of a body, of a joint, or of a shape that is only visited.
+/// Work units of a body, of a joint, or of visiting a shape.
 const VISIT_WORK: u64 = 4;
 
-/// The world that commands act on, with everything that the commands of the tick add.
 pub(super) struct Costs<'a> {
     world: &'a World,
     pub(super) added: AddedWork,
     /// Number of [`Command::AddShape`] commands of the tick.
     grown: u64,
-    /// Passes of the solver in a tick: sub-steps times iterations, the largest product of all settings of the tick.
+    /// Passes of the solver: the largest product of sub-steps and iterations in the tick.
     pub(super) rounds: u64,
 }
 
 impl<'a> Costs<'a> {
-    /// Returns the costs in a world to which no command has added objects yet.
     pub(super) fn of(world: &'a World) -> Self {
         let rounds = rounds(&world.config().solver);
         Costs { world, added: AddedWork::default(), grown: 0, rounds }
     }
 
-    /// Counts the objects that a command of the tick adds, and raises `rounds` to the passes that its settings need.
+    /// Counts what a command of the tick adds, and raises `rounds` for its settings.
     pub(super) fn add(&mut self, command: &Command) {
         self.added.bodies = self.added.bodies.saturating_add(bodies_added(command));
         self.added.shapes = self.added.shapes.saturating_add(shapes_added(command));
         self.added.joints = self.added.joints.saturating_add(joints_added(command));
         match command {
             Command::AddShape { .. } => self.grown = self.grown.saturating_add(1),
-            // Settings that are out of range are refused, so the solver never runs with them.
+            // The world refuses settings that are out of range.
             Command::SetConfig { config } if config.validate().is_ok() => {
                 self.rounds = self.rounds.max(rounds(&config.solver));
             }
@@ -44,8 +42,7 @@ impl<'a> Costs<'a> {
         }
     }
 
-    /// Returns the work units of a command. Many commands visit the shapes of their body, and a removal visits all
-    /// pairs and joints.
+    /// Work units of a command. Many visit the shapes of their body. A removal visits all pairs and joints.
     pub(super) fn command(&self, command: &Command) -> u64 {
         match command {
             Command::Spawn { .. } | Command::SpawnEach { .. } => {
@@ -80,8 +77,7 @@ impl<'a> Costs<'a> {
             Command::SetBody { body, .. } | Command::SetMass { body, .. } => {
                 VISIT_WORK + self.shapes_of(*body)
             }
-            // The joints of the body are visited to wake the joined bodies. The world itself counts its search for
-            // bodies that overlap.
+            // Visits the joints to wake the joined bodies. The world itself counts its search for overlaps.
             Command::SetTransform { body, .. } => VISIT_WORK + self.shapes_of(*body) + self.joints(),
             Command::SetVelocity { body, .. } | Command::MoveTo { body, .. } if self.is_kinematic(*body) => {
                 1 + self.joints()
@@ -89,7 +85,7 @@ impl<'a> Costs<'a> {
             Command::Sleep { .. } | Command::SetGravity { .. } | Command::SetConfig { .. } => {
                 1 + self.everything()
             }
-            // The world charges for each shape in reach when it executes the command.
+            // The world charges for each shape in reach.
             Command::Explode { .. } => VISIT_WORK,
             Command::Wake { body } if self.world.body(*body).is_none_or(|body| !body.is_dynamic()) => {
                 1 + self.everything()
@@ -106,7 +102,6 @@ impl<'a> Costs<'a> {
         count(self.world.shape_count()).saturating_add(self.added.shapes)
     }
 
-    /// Work units of a removal, which visits all pairs and joints.
     fn removal(&self) -> u64 {
         count(self.world.pair_count()).saturating_add(self.joints())
     }
@@ -116,7 +111,7 @@ impl<'a> Costs<'a> {
         bodies.saturating_add(self.shapes()).saturating_add(self.removal())
     }
 
-    /// Work units of visiting the shapes of a body. A body added in this tick may have all shapes added in this tick.
+    /// A body added in this tick may have all shapes added in it.
     fn shapes_of(&self, body: BodyId) -> u64 {
         let shapes = match self.world.body(body) {
             Some(body) => count(body.shapes().len()).saturating_add(self.grown),
@@ -132,7 +127,7 @@ impl<'a> Costs<'a> {
         }
     }
 
-    /// Work units of a change of a joint, after which the shapes of its bodies are compared again.
+    /// After a change of a joint, the shapes of its bodies are compared again.
     fn joined(&self, bodies: &[BodyId; 2]) -> u64 {
         bodies.iter().map(|body| self.shapes_of(*body) / VISIT_WORK).fold(0, u64::saturating_add)
     }

@@ -1,4 +1,4 @@
-//! Encoding of the keyframe file that is stored beside a replay. `docs/FORMAT.md` gives the layout.
+//! Encoding of keyframes in a file beside a replay. `docs/FORMAT.md` gives the layout.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -13,13 +13,13 @@ use crate::codec::DecodeError;
 use crate::hash::{Envelope, EnvelopeError, StateHash};
 use crate::lockstep::Game;
 
-/// The first eight bytes of a file of keyframes, modelled on those of a replay.
+/// The first eight bytes of a file of keyframes.
 pub const KEYFRAMES_MAGIC: [u8; 8] = *b"\x89L2K\r\n\x1a\n";
 
 /// Version of the layout.
 pub const KEYFRAMES_FORMAT_VERSION: u32 = 1;
 
-/// Maximum bytes of all keyframes together, small enough for their file to be decoded at once.
+/// Maximum bytes of all keyframes together, so that their file can be decoded at once.
 pub const KEYFRAMES_BYTES_MAX: usize = 192 << 20;
 
 const ENVELOPE: Envelope = Envelope { magic: KEYFRAMES_MAGIC, format: KEYFRAMES_FORMAT_VERSION };
@@ -40,14 +40,14 @@ const ENVELOPE: Envelope = Envelope { magic: KEYFRAMES_MAGIC, format: KEYFRAMES_
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum KeyframesError {
-    /// The bytes do not start with [`KEYFRAMES_MAGIC`], or are shorter than the header.
+    /// The bytes do not start with [`KEYFRAMES_MAGIC`], or are too short.
     NotKeyframes,
     /// The layout has another version.
     Format {
         /// The version found.
         found: u32,
     },
-    /// The keyframes were made by an engine with other semantics.
+    /// An engine with other semantics made the keyframes.
     Semantics {
         /// The semantics found.
         found: u32,
@@ -59,11 +59,11 @@ pub enum KeyframesError {
         /// The version found.
         version: u32,
     },
-    /// The keyframes belong to another replay, or to this replay before its bytes changed.
+    /// The keyframes belong to another replay, or its bytes have changed.
     OtherReplay,
-    /// The number of bytes is not the number announced in the header.
+    /// The number of bytes differs from the header.
     Length {
-        /// Length of the whole file according to its header, in bytes.
+        /// Length of the file according to its header, in bytes.
         announced: u64,
         /// Number of bytes found.
         found: u64,
@@ -81,7 +81,7 @@ pub enum KeyframesError {
 pub enum KeyframesFlaw {
     /// The interval is zero.
     Interval,
-    /// The ticks are not strictly ascending multiples of the interval from 1 to the end of the replay.
+    /// The ticks are not strictly ascending multiples of the interval, from 1 to the end of the replay.
     Ticks,
     /// The replay has no checkpoint at one of the ticks.
     Checkpoint,
@@ -138,19 +138,16 @@ impl From<EnvelopeError> for KeyframesError {
     }
 }
 
-/// The body, which follows the header.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Body {
     rules_name: String,
     rules_version: u32,
-    /// Hash of the replay's bytes.
     replay: StateHash,
     pub(super) interval: u64,
-    /// The saves in ascending order of ticks.
     saves: Vec<(u64, Save)>,
 }
 
-/// Canonical bytes of a save. Encoded like a list of u8, but read and written as one slice.
+/// Canonical bytes of a save, encoded like a list of u8 but processed as one slice.
 struct Save(Vec<u8>);
 
 impl Serialize for Save {
@@ -183,7 +180,6 @@ impl Visitor<'_> for SaveBytes {
     }
 }
 
-/// Encodes the keyframes as the bytes of a file.
 pub(super) fn encode<G: Game>(replay: &[u8], keyframes: &Keyframes<'_>) -> Vec<u8> {
     let at_checkpoints = keyframes.iter().filter(|frame| frame.position.inputs.finished_block().is_some());
     let body = Body {
@@ -196,7 +192,7 @@ pub(super) fn encode<G: Game>(replay: &[u8], keyframes: &Keyframes<'_>) -> Vec<u
     ENVELOPE.seal(crate::SEMANTICS, &body)
 }
 
-/// Decodes the body of a file of keyframes of this replay. The saves are not checked yet.
+/// Decodes the body, without checking the saves.
 pub(super) fn decode<G: Game>(replay: &[u8], bytes: &[u8]) -> Result<Body, KeyframesError> {
     let opened = ENVELOPE.open(bytes)?;
     if opened.semantics != crate::SEMANTICS {
@@ -220,7 +216,6 @@ pub(super) fn decode<G: Game>(replay: &[u8], bytes: &[u8]) -> Result<Body, Keyfr
     Ok(body)
 }
 
-/// Assigns the keyframes to their positions in a replay of `ticks` ticks that begins at `start`.
 pub(super) fn place<'a>(
     start: &ReplayPosition<'a>,
     ticks: u64,

@@ -5,7 +5,6 @@ use alloc::vec::Vec;
 
 use super::super::raw_replay::ReplayPosition;
 
-/// A saved state with its position in the replay.
 #[derive(Clone, Debug)]
 pub(super) struct Keyframe<'a> {
     pub(super) position: ReplayPosition<'a>,
@@ -14,13 +13,13 @@ pub(super) struct Keyframe<'a> {
 }
 
 impl Keyframe<'_> {
-    /// Memory in bytes, including the position; never 0.
+    /// Memory in bytes, including the position.
     pub(super) fn bytes(&self) -> usize {
         self.save.len() + size_of::<Self>()
     }
 }
 
-/// Keyframes by tick, at multiples of the interval. Some multiples may have no keyframe.
+/// Keyframes by tick, at multiples of the interval. Some may be missing.
 #[derive(Debug)]
 pub(super) struct Keyframes<'a> {
     /// Keyframe of tick 0, which is never removed.
@@ -52,17 +51,14 @@ impl<'a> Keyframes<'a> {
         core::iter::once(&self.first).chain(self.later.values())
     }
 
-    /// The last keyframe at or before a tick.
     pub(super) fn latest(&self, tick: u64) -> &Keyframe<'a> {
         self.later.range(..=tick).next_back().map_or(&self.first, |(_, frame)| frame)
     }
 
-    /// Whether this tick should have a keyframe and has none.
     pub(super) fn is_due(&self, tick: u64) -> bool {
         tick > 0 && tick.is_multiple_of(self.interval) && !self.later.contains_key(&tick)
     }
 
-    /// Inserts a keyframe if one is due at its tick, otherwise drops it.
     pub(super) fn insert(&mut self, frame: Keyframe<'a>) {
         if self.is_due(frame.position.tick) {
             self.bytes += frame.bytes();
@@ -73,7 +69,7 @@ impl<'a> Keyframes<'a> {
         }
     }
 
-    /// Doubles the interval and removes the keyframes whose ticks are not multiples of the new interval.
+    /// Doubles the interval and removes the keyframes at other ticks.
     fn thin_out(&mut self) {
         self.interval = self.interval.saturating_mul(2);
         let interval = self.interval;

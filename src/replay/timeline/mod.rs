@@ -1,17 +1,11 @@
 //! [`Timeline`]: a replay that can seek to any tick, forwards and backwards.
 //!
-//! A deterministic game cannot be run backwards, but it can be run forwards again from a saved state. Two kinds of
-//! saved states are kept:
+//! A seek simulates forwards from a saved state:
 //!
-//! - *Keyframes*, one every [`interval`](Timeline::interval) ticks, as the canonical bytes of the game's save. When
-//!   they exceed their memory budget, the interval doubles and every second keyframe is removed, so that the remaining
-//!   ones are evenly spaced. Seeking to a tick that has been played once therefore takes less than one interval of
-//!   simulation.
-//! - A *trail* of saves before the current tick while stepping backwards, so that the ticks between two keyframes are
+//! - *Keyframes*, one every [`interval`](Timeline::interval) ticks, as canonical bytes. When they exceed their memory
+//!   budget, the interval doubles and every second one is removed.
+//! - A *trail* of saves before the current tick while stepping backwards, so that the ticks between keyframes are
 //!   simulated once and not once per step.
-//!
-//! A keyframe is stored as bytes, although saves in memory may share most of their data. Bytes can be counted, whatever
-//! a game's saves consist of, and they can be written to a file unchanged.
 
 mod bytes;
 mod keyframes;
@@ -51,11 +45,11 @@ use crate::world::World;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimelineOptions {
-    /// Ticks between keyframes, at least 1. An interval longer than a block of the replay is rounded down to whole
-    /// blocks, because keyframes are compared with the replay's checkpoints, which are at the ends of blocks.
+    /// Ticks between keyframes, at least 1. More than a block of the replay is rounded down to whole blocks, whose
+    /// checkpoints are compared with keyframes.
     pub interval: u32,
-    /// Maximum bytes of all keyframes together, at most [`KEYFRAMES_BYTES_MAX`]. The trail may use about a quarter of
-    /// that in addition. The keyframe of tick 0 is always kept.
+    /// Maximum bytes of all keyframes, at most [`KEYFRAMES_BYTES_MAX`]. The trail may use about a quarter of that in
+    /// addition.
     pub bytes: usize,
 }
 
@@ -84,24 +78,24 @@ impl Default for TimelineOptions {
 pub enum SeekError {
     /// The replay ends before this tick.
     NoSuchTick {
-        /// The tick to seek to.
+        /// The requested tick.
         tick: u64,
         /// Number of ticks in the replay.
         ticks: u64,
     },
-    /// The replay cannot be played up to that tick: its inputs are not valid for this game, exceed a limit on work or
-    /// bodies, or lead to another state.
+    /// The replay cannot be played up to that tick: its inputs are not valid for this game, exceed a limit, or lead to
+    /// another state.
     Replay(Verdict),
-    /// The state of a keyframe does not belong to this replay. The keyframe comes from a wrong file of keyframes, or
-    /// saving and loading this game loses state.
+    /// The state of a keyframe does not match the replay. It comes from a wrong file, or saving and loading this game
+    /// loses state.
     Keyframe {
         /// Tick of the keyframe.
         tick: u64,
-        /// Reason why the keyframe cannot be used.
+        /// Reason.
         why: String,
     },
-    /// After seeking backwards, the game computed another state than when the tick was first played: saving and loading
-    /// the game loses state.
+    /// A tick that was played before has another state after seeking backwards: saving and loading this game loses
+    /// state.
     Forgetful {
         /// Tick of the first checkpoint that no longer matches.
         tick: u64,
@@ -156,10 +150,10 @@ pub struct Timeline<'a, G: Game> {
 }
 
 impl<'a, G: Game> Timeline<'a, G> {
-    /// Scans the whole file and starts the game; no tick is played.
+    /// Scans the whole file and starts the game.
     ///
     /// # Errors
-    /// Same as [`VerifiedReplay::open`].
+    /// As [`VerifiedReplay::open`].
     pub fn open(file: &'a [u8], options: &TimelineOptions, limits: &Limits) -> Result<Self, Verdict> {
         let replay = VerifiedReplay::<G>::open(file, limits)?;
         let position = replay.position().clone();
@@ -178,7 +172,7 @@ impl<'a, G: Game> Timeline<'a, G> {
         self.replay.game()
     }
 
-    /// The game's physics world at the current tick, if it has one, for inspection.
+    /// The world of the game, if it has one.
     pub fn world(&mut self) -> Option<&World> {
         self.replay.world()
     }
@@ -195,44 +189,41 @@ impl<'a, G: Game> Timeline<'a, G> {
         self.replay.ticks()
     }
 
-    /// The tick up to which the replay has been played without a gap, with all checkpoints equal.
+    /// The tick up to which the replay has been played without a gap, with equal checkpoints.
     #[must_use]
     pub fn played(&self) -> u64 {
         self.played
     }
 
-    /// Number of ticks simulated in total, including repeated ones: the cost of all seeking.
+    /// Number of simulated ticks, including repeated ones.
     #[must_use]
     pub fn simulated(&self) -> u64 {
         self.simulated
     }
 
-    /// Ticks between keyframes. The interval grows when the keyframes exceed their memory budget.
+    /// Ticks between keyframes, which grow when the keyframes exceed their memory budget.
     #[must_use]
     pub fn interval(&self) -> u64 {
         self.keyframes.interval()
     }
 
-    /// Ticks of the keyframes, in ascending order, including 0.
+    /// Ticks of the keyframes, ascending from 0.
     pub fn keyframes(&self) -> impl Iterator<Item = u64> {
         self.keyframes.iter().map(|frame| frame.position.tick)
     }
 
-    /// Seeks to a tick. Ticks that have been played before cost less than one [`interval`](Self::interval) of
-    /// simulation; others are played.
-    ///
-    /// Every checkpoint on the way is compared.
+    /// Seeks to a tick. A tick played before usually costs less than one [`interval`](Self::interval) of simulation.
+    /// Checkpoints on the way are compared.
     ///
     /// # Errors
-    /// [`SeekError`]. If playing fails, the game stays at the last tick that was played, and all earlier ticks remain
-    /// reachable. If there is no such tick, if it is known to be unreachable, or if its keyframe is wrong, the current
-    /// tick does not change.
+    /// [`SeekError`]. If playing fails, the game stays at the last tick played, otherwise at the current tick. Earlier
+    /// ticks remain reachable.
     pub fn seek(&mut self, tick: u64) -> Result<(), SeekError> {
         if tick > self.ticks() {
             return Err(SeekError::NoSuchTick { tick, ticks: self.ticks() });
         }
         self.check_reachable(tick)?;
-        // A short seek backwards is usually followed by others, so it leaves a trail.
+        // A short seek backwards is usually followed by others.
         let goes_back = self.tick().checked_sub(tick).is_some_and(|by| (1..self.interval()).contains(&by));
         self.go_to_latest_before(tick)?;
         while self.tick() < tick {
@@ -244,11 +235,10 @@ impl<'a, G: Game> Timeline<'a, G> {
         Ok(())
     }
 
-    /// Advances by one tick. The tick is always simulated, so that results of a step that are not state, such as
-    /// contact points, are available.
+    /// Advances by one tick, by simulation: contacts and other results that are not state are available.
     ///
     /// # Errors
-    /// Same as [`Timeline::seek`]. At the end the tick does not change and the result is [`Step::Ended`].
+    /// As [`Timeline::seek`]. At the end the result is [`Step::Ended`].
     pub fn step(&mut self) -> Result<Step, SeekError> {
         if self.tick() == self.ticks() {
             return Ok(Step::Ended);
@@ -257,11 +247,11 @@ impl<'a, G: Game> Timeline<'a, G> {
         self.play_tick().map(|()| Step::Ticked)
     }
 
-    /// Goes back by one tick. The first step back in an interval may cost one interval of simulation; given enough
-    /// memory, further steps back cost none.
+    /// Goes back by one tick. The first step back in an interval may cost an interval of simulation. Further ones cost
+    /// none, given enough memory.
     ///
     /// # Errors
-    /// Same as [`Timeline::seek`]. At the start the tick does not change and the result is [`Step::Ended`].
+    /// As [`Timeline::seek`]. At the start the result is [`Step::Ended`].
     pub fn step_back(&mut self) -> Result<Step, SeekError> {
         match self.tick().checked_sub(1) {
             Some(before) => self.seek(before).map(|()| Step::Ticked),
@@ -269,37 +259,33 @@ impl<'a, G: Game> Timeline<'a, G> {
         }
     }
 
-    /// Plays all ticks that have not been played, which creates all keyframes, and returns to the current tick.
+    /// Plays the ticks not played yet, which creates their keyframes, and returns to the current tick.
     ///
     /// # Errors
-    /// Same as [`Timeline::seek`].
+    /// As [`Timeline::seek`].
     pub fn play_all(&mut self) -> Result<(), SeekError> {
         let here = self.tick();
         self.seek(self.played)?;
-        // `seek` would skip ticks for which keyframes were loaded from a file.
+        // `seek` would skip ticks by keyframes from a file.
         while self.tick() < self.ticks() {
             self.play_tick()?;
         }
         self.seek(here)
     }
 
-    /// Encodes the keyframes as the bytes of a file, for a later [`Timeline::use_keyframes`]. Only keyframes at the end
-    /// of a block are included. If the interval is a multiple of the replay's checkpoint interval, these are all except
-    /// the keyframe of tick 0.
+    /// Encodes the keyframes at the ends of blocks as a file for [`Timeline::use_keyframes`].
     #[must_use]
     pub fn keyframes_to_bytes(&self) -> Vec<u8> {
         bytes::encode::<G>(self.file, &self.keyframes)
     }
 
-    /// Replaces the keyframes by those of a file written by [`Timeline::keyframes_to_bytes`].
+    /// Replaces the keyframes by those of [`Timeline::keyframes_to_bytes`].
     ///
-    /// The interval becomes a multiple of the file's. A keyframe is decoded when it is needed, and its state has to
-    /// match the replay's own checkpoint. This does not verify the replay, because it does not show that the inputs
-    /// lead to these states. [`Timeline::played`] returns how far the replay has been simulated.
+    /// The interval becomes a multiple of the file's. The state of a keyframe has to match the replay's checkpoint when
+    /// it is used. This does not verify that the inputs lead to these states: see [`Timeline::played`].
     ///
     /// # Errors
-    /// [`KeyframesError`] for any other bytes, and for keyframes of another replay. The current keyframes are then
-    /// unchanged.
+    /// [`KeyframesError`] for other bytes, and for keyframes of another replay. The current keyframes are unchanged.
     pub fn use_keyframes(&mut self, bytes: &[u8]) -> Result<(), KeyframesError> {
         let body = bytes::decode::<G>(self.file, bytes)?;
         let interval = body.interval.saturating_mul(self.interval().div_ceil(body.interval));
@@ -320,7 +306,7 @@ impl<'a, G: Game> Timeline<'a, G> {
         }
     }
 
-    /// Restores the latest saved state at or before `tick`, unless the current tick lies between that state and `tick`.
+    /// Restores the latest saved state up to `tick`, unless the current tick lies in between.
     fn go_to_latest_before(&mut self, tick: u64) -> Result<(), SeekError> {
         let frame = self.keyframes.latest(tick);
         let kept = self.trail.latest(tick);
@@ -351,8 +337,8 @@ impl<'a, G: Game> Timeline<'a, G> {
         Err(SeekError::Keyframe { tick, why: "its state does not match the replay's checkpoint".into() })
     }
 
-    /// Saves the current state for steps backwards: in every tick, or in every few ticks if a quarter of the memory for
-    /// keyframes has no room for as many states as an interval has ticks.
+    /// Saves the current state for steps backwards: in every tick, or less often if an interval would exceed a quarter
+    /// of the memory for keyframes.
     fn leave_trail(&mut self) {
         let length = (self.keyframes.bytes_max() / 4) / self.keyframes.latest(self.tick()).bytes();
         let length = u64::try_from(length).unwrap_or(u64::MAX).max(2);
