@@ -32,6 +32,8 @@ pub struct RawReplay<'a, G: Game> {
     encoded: Option<&'a [u8]>,
     inputs: Vec<G::Input>,
     length: u64,
+    /// The verdict that [`RawReplay::step`] has returned.
+    failed: Option<Verdict>,
 }
 
 #[derive(Clone, Debug)]
@@ -61,7 +63,10 @@ impl<'a, G: Game> RawReplay<'a, G> {
         check_bodies(&mut game, limits)?;
         let (limits, position) = (limits.clone(), ReplayPosition { inputs, tick: 0, work });
         let length = ending.ticks;
-        Ok((RawReplay { game, limits, position, encoded: None, inputs: Vec::new(), length }, ending))
+        Ok((
+            RawReplay { game, limits, position, encoded: None, inputs: Vec::new(), length, failed: None },
+            ending,
+        ))
     }
 
     /// The game at the current tick.
@@ -108,8 +113,17 @@ impl<'a, G: Game> RawReplay<'a, G> {
     /// Plays one tick.
     ///
     /// # Errors
-    /// The [`Verdict`] if the inputs are not valid for this game or exceed a limit on work or bodies.
+    /// The [`Verdict`] if the inputs are not valid for this game or exceed a limit on work or bodies. It is final.
     pub fn step(&mut self) -> Result<Step, Verdict> {
+        if let Some(verdict) = &self.failed {
+            return Err(verdict.clone());
+        }
+        let result = self.try_step();
+        self.failed = result.as_ref().err().cloned();
+        result
+    }
+
+    fn try_step(&mut self) -> Result<Step, Verdict> {
         if self.read_inputs()? == Step::Ended {
             return Ok(Step::Ended);
         }
@@ -171,5 +185,6 @@ impl<'a, G: Game> RawReplay<'a, G> {
         self.position = position;
         self.encoded = None;
         self.inputs.clear();
+        self.failed = None;
     }
 }

@@ -4,7 +4,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use lockstep2d::replay::{LimitKind, Limits, Verdict, verify};
+use lockstep2d::replay::{LimitKind, Limits, RawReplay, Step, Verdict, verify};
 
 use crate::counter::{Counter, add, inputs_at};
 use crate::forge::{Forged, forge};
@@ -39,6 +39,18 @@ fn each_limit_is_exact() {
     assert_exact(&file, LimitKind::TotalWork, 175, |limits, max| limits.total_work = max);
     let trailer = 24 + 16 + 1 + 13 + 12;
     assert_exact(&file, LimitKind::BlockBytes, trailer, |limits, max| limits.block_bytes = narrow(max));
+}
+
+#[test]
+fn a_replay_beyond_a_limit_stays_where_it_is() {
+    // Each tick costs 5 units of work. The 20th exceeds the limit.
+    let file = record(35, 10, |_| add(-3, 1));
+    let limits = Limits { total_work: 99, ..Limits::default() };
+    let mut replay = RawReplay::<Counter>::open(&file, &limits).unwrap();
+    let expected = Verdict::LimitExceeded { limit: LimitKind::TotalWork, value: 100, max: 99 };
+    assert!((0..19).all(|_| replay.step() == Ok(Step::Ticked)));
+    assert_eq!([replay.step(), replay.step()], [Err(expected.clone()), Err(expected)]);
+    assert_eq!(replay.tick(), 19);
 }
 
 #[test]
