@@ -9,22 +9,21 @@ use crate::measure::{EndState, Keeping, Times, end_state, keeping, run};
 use crate::script::Script;
 use crate::stats::{geometric_mean, median, quartiles};
 
-/// Largest number of steps of the run with which each engine is warmed up before the first round.
+/// Steps of the warm-up run of each engine.
 const WARM_UP: u64 = 20;
 
-/// Parameters of a comparison.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
-    /// Number of runs of each engine.
+    /// Runs of each engine.
     pub rounds: usize,
-    /// Number of threads of each engine.
+    /// Threads of each engine.
     pub threads: usize,
-    /// Largest number of steps; `None` for the full length of the scene.
+    /// Largest number of steps; `None` for the whole scene.
     pub steps: Option<u64>,
 }
 
 impl Plan {
-    /// Number of runs for a scene, warm-ups included. The progress bar counts runs.
+    /// Runs of a scene, warm-ups included, for the progress bar.
     pub fn runs(&self) -> u64 {
         ((self.rounds + 1) * Kind::ALL.len()) as u64
     }
@@ -33,44 +32,38 @@ impl Plan {
 /// A value for each engine.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Each<T> {
-    /// Value of lockstep2d.
     pub ours: T,
-    /// Value of Box2D.
     pub box2d: T,
-    /// Value of rapier2d.
     pub rapier: T,
 }
 
-/// Results of a scene: one line of JSON. Ratios are lockstep2d's time over the other engine's: less than 1 means that
-/// lockstep2d is faster.
+/// Results of a scene: one line of JSON. Ratios are lockstep2d's time over the other engine's.
 #[derive(Clone, Debug, Serialize)]
 pub struct SceneResult {
-    /// Name of the scene.
     pub scene: String,
-    /// Number of simulated steps. The first one is not timed.
+    /// Simulated steps, of which the first is not timed.
     pub steps: usize,
-    /// Number of runs of each engine.
+    /// Runs of each engine.
     pub rounds: usize,
-    /// Number of threads of each engine.
+    /// Threads of each engine.
     pub threads: usize,
-    /// Time per step of lockstep2d in ms, median of the rounds: CPU time with one thread, wall-clock time with more.
+    /// Time per step in ms, median of the rounds: CPU time with one thread, wall-clock time with more.
     pub ms: f64,
-    /// Time per step of Box2D in ms, measured like `ms`.
+    /// Time per step of Box2D, measured like `ms`.
     pub box2d_ms: f64,
-    /// Time per step of rapier2d in ms, measured like `ms`.
+    /// Time per step of rapier2d, measured like `ms`.
     pub rapier_ms: Option<f64>,
-    /// Median of the rounds' ratios to Box2D.
+    /// Median ratio to Box2D.
     pub vs_box2d: f64,
-    /// First and third quartile of the rounds' ratios to Box2D.
+    /// First and third quartile of the ratios to Box2D.
     pub vs_box2d_quartiles: [f64; 2],
-    /// Median of the rounds' ratios to rapier2d.
+    /// Median ratio to rapier2d.
     pub vs_rapier: Option<f64>,
-    /// First and third quartile of the rounds' ratios to rapier2d.
+    /// First and third quartile of the ratios to rapier2d.
     pub vs_rapier_quartiles: Option<[f64; 2]>,
-    /// Wall-clock time in ms per step.
+    /// Wall-clock time per step in ms.
     pub wall_ms: Each<Option<f64>>,
-    /// CPU time of the commands between steps, such as creating bodies and joints, in ms per step. No other value
-    /// includes it.
+    /// CPU time of the commands between steps, in ms per step, which no other value includes.
     pub commands_ms: Each<Option<f64>>,
     /// State after the last step.
     pub end: Each<Option<EndState>>,
@@ -81,22 +74,20 @@ pub struct SceneResult {
     pub missing: Vec<String>,
 }
 
-/// Summary of all scenes: the last line of JSON.
+/// Last line of JSON.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Summary {
-    /// Always true, to distinguish the summary from the line of a scene.
+    /// Always true: distinguishes the summary from a scene.
     pub summary: bool,
-    /// Number of scenes.
     pub scenes: usize,
-    /// Geometric mean of the scenes' median ratios to Box2D.
+    /// Geometric mean of the scenes' ratios to Box2D.
     pub geomean_vs_box2d: Option<f64>,
-    /// Geometric mean of the scenes' median ratios to rapier2d, over the scenes in which rapier2d runs.
+    /// Geometric mean of the scenes' ratios to rapier2d, where it runs.
     pub geomean_vs_rapier: Option<f64>,
-    /// Largest of the scenes' median ratios to Box2D.
+    /// Largest of the scenes' ratios to Box2D.
     pub worst_vs_box2d: Option<f64>,
 }
 
-/// Runs of one engine.
 #[derive(Default)]
 struct Runs {
     times: Vec<Times>,
@@ -105,7 +96,7 @@ struct Runs {
 }
 
 impl Runs {
-    /// Returns the times used for ratios: CPU times with one thread, wall-clock times with more.
+    /// CPU times with one thread, wall-clock times with more.
     fn compared(&self, threads: usize) -> Vec<f64> {
         self.times.iter().map(|times| if threads == 1 { times.cpu } else { times.wall }).collect()
     }
@@ -195,7 +186,6 @@ fn result(
     })
 }
 
-/// Summarises the results of all scenes.
 pub fn summary(results: &[SceneResult]) -> Summary {
     let to_box2d: Vec<_> = results.iter().map(|result| result.vs_box2d).collect();
     let to_rapier: Vec<_> = results.iter().filter_map(|result| result.vs_rapier).collect();
@@ -208,7 +198,6 @@ pub fn summary(results: &[SceneResult]) -> Summary {
     }
 }
 
-/// Formats a value as a line of JSON.
 pub fn line(value: &impl Serialize) -> Result<String> {
     serde_json::to_string(value).context("cannot write the result as JSON")
 }

@@ -1,4 +1,4 @@
-//! [`Engine`]: the interface that the benchmark uses to drive an engine and to read its state.
+//! [`Engine`]: the interface that drives an engine and reads its state.
 
 use anyhow::{Result, bail};
 use lockstep2d::body::{BodyDef, BodyId, Polygon, ShapeDef};
@@ -12,11 +12,10 @@ use crate::ours::Ours;
 use crate::rapier::Rapier;
 use crate::script::{Event, Script};
 
-/// The engines, in the order of a round.
+/// Engines, in the order of a round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
-    /// lockstep2d.
     Ours,
     /// Box2D 3.2 with AVX2.
     Box2d,
@@ -25,10 +24,8 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All engines, in the order of a round.
     pub const ALL: [Kind; 3] = [Kind::Ours, Kind::Box2d, Kind::Rapier];
 
-    /// Name of the engine.
     pub const fn name(self) -> &'static str {
         match self {
             Kind::Ours => "lockstep2d",
@@ -37,7 +34,6 @@ impl Kind {
         }
     }
 
-    /// Builds a world with the scene's setup.
     pub fn build(self, script: &Script, threads: usize) -> Result<Box<dyn Engine>> {
         let mut engine: Box<dyn Engine> = match self {
             Kind::Ours => Box::new(Ours::new(&script.config, threads)?),
@@ -51,10 +47,8 @@ impl Kind {
     }
 }
 
-/// State of a body that every engine can report.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyState {
-    /// Whether the body is dynamic.
     pub dynamic: bool,
     /// Whether the body is enabled and not asleep.
     pub awake: bool,
@@ -66,72 +60,62 @@ pub struct BodyState {
     pub velocity: [f64; 2],
 }
 
-/// Number of objects in a world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counts {
     /// Bodies of all kinds.
     pub bodies: usize,
-    /// Shapes; each link of a chain counts.
+    /// A chain counts once per link.
     pub shapes: usize,
-    /// Joints.
     pub joints: usize,
 }
 
-/// Contacts of a world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Contacts {
     /// Pairs of shapes with contact points.
     pub pairs: usize,
-    /// Deepest penetration in metres as found by the engine's last step, or 0.
+    /// Deepest penetration in metres in the engine's last step, or 0.
     pub deepest: f64,
 }
 
-/// Contents of a world, for checking that the engines simulate the same scene.
+/// Contents of a world, to check that the engines simulate the same scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Inventory {
-    /// Number of objects.
     pub counts: Counts,
     /// Total mass of all dynamic bodies, in kg.
     pub mass: f64,
 }
 
 impl Inventory {
-    /// Returns the inventory of a world.
     pub fn of(engine: &dyn Engine) -> Self {
         let bodies = engine.bodies();
         let mass = bodies.iter().filter(|body| body.dynamic).map(|body| body.mass).sum();
         Inventory { counts: engine.counts(), mass }
     }
 
-    /// Returns whether another world has the same counts, and the same mass within 0.5 %: engines approximate the mass
-    /// of rounded corners.
+    /// Whether the counts are equal, and the masses within 0.5 %: engines approximate rounded corners.
     pub fn is_like(&self, other: &Inventory) -> bool {
         self.counts == other.counts && (self.mass - other.mass).abs() <= 0.005 * self.mass
     }
 }
 
-/// The operations that build a scene in an engine other than lockstep2d.
+/// Builds a scene in an engine other than lockstep2d.
 pub trait Builder {
-    /// The engine's name.
     const NAME: &str;
 
-    /// Creates a body with its shapes at a pose, under the id that lockstep2d gave it.
+    /// Creates a body at a pose, under the id from lockstep2d.
     fn spawn(&mut self, id: BodyId, body: &BodyDef, shapes: &[ShapeDef], pose: BodyPose) -> Result<()>;
 
-    /// Creates a joint between two bodies, A first.
+    /// Joins two bodies, of which A comes first.
     fn join(&mut self, joint: &JointDef, bodies: (BodyId, BodyId)) -> Result<()>;
 
-    /// Removes a body.
     fn despawn(&mut self, body: BodyId) -> Result<()>;
 
-    /// Enables a body.
     fn enable(&mut self, body: BodyId) -> Result<()>;
 
     /// Gives a kinematic body the velocity that moves it to a pose within a tick.
     fn move_to(&mut self, body: BodyId, position: Vec2<Fx>, angle: Angle) -> Result<()>;
 }
 
-/// Executes a recorded command in another engine.
 pub fn build<B: Builder>(builder: &mut B, event: &Event) -> Result<()> {
     match event {
         (Command::Spawn { body, shapes }, Outcome::Body(id)) => {
@@ -151,83 +135,73 @@ pub fn build<B: Builder>(builder: &mut B, event: &Event) -> Result<()> {
     }
 }
 
-/// Number of saves that an engine keeps: the start of a rollback frame and its eight ticks.
+/// Saves of a rollback frame: its start and its eight ticks.
 pub const SAVES: usize = 9;
 
-/// World in one of the engines.
 pub trait Engine {
-    /// Executes a recorded command. Bodies that it creates are registered under the handles that lockstep2d gave them.
+    /// Executes a recorded command. New bodies are registered under the handles from lockstep2d.
     fn apply(&mut self, event: &Event) -> Result<()>;
 
-    /// Advances by one step with the scene's configuration: 1/60 s in 4 sub-steps.
+    /// Advances by one step with the scene's configuration.
     fn step(&mut self);
 
-    /// Returns every body that is not fixed, in the order of lockstep2d's slots.
+    /// Bodies that are not fixed, in the order of lockstep2d's slots.
     fn bodies(&self) -> Vec<BodyState>;
 
-    /// Returns the number of objects.
     fn counts(&self) -> Counts;
 
-    /// Returns the contacts.
     fn contacts(&self) -> Contacts;
 
-    /// Returns the largest distance between the two anchors of a joint, in metres; `None` without joints.
+    /// Largest distance between the anchors of a joint, in metres; `None` without joints.
     fn joint_gap(&self) -> Option<f64>;
 
-    /// Saves the world in one of [`SAVES`] slots, and reuses the memory of the save that was there.
+    /// Saves the world in one of [`SAVES`] slots, whose memory is reused.
     fn save(&mut self, slot: usize);
 
-    /// Size of the saved world as a file, in bytes.
+    /// Bytes of the saved world as a file.
     fn saved_bytes(&self, slot: usize) -> usize;
 
-    /// Memory of the save in a slot that is not shared with the world, in bytes. A save of Box2D or rapier2d shares
-    /// none: it has the size of the file.
+    /// Bytes of the save in a slot that are not shared with the world. Box2D and rapier2d share none.
     fn held_bytes(&self, slot: usize) -> usize {
         self.saved_bytes(slot)
     }
 
-    /// Restores the world saved in a slot.
     fn restore(&mut self, slot: usize) -> Result<()>;
 
-    /// Returns the checksum of a tick that has just been saved in a slot: the hash of the state if the engine has one,
-    /// otherwise the XXH3-128 of the save.
+    /// Checksum of a tick that was just saved in a slot: the hash of the state, or else the XXH3-128 of the save.
     fn checksum(&self, slot: usize) -> u128;
 
-    /// Returns a hash of all state that influences later steps; `None` if the engine has none.
+    /// Hash of all state that influences later steps; `None` if the engine has none.
     fn hash(&self) -> Option<u128>;
 }
 
-/// Converts a fixed-point number to a float.
 pub fn float(x: Fx) -> f64 {
     x.to_num()
 }
 
-/// Converts a vector to floats.
 pub fn floats(v: Vec2<Fx>) -> [f64; 2] {
     [float(v.x), float(v.y)]
 }
 
-/// Converts a vector to single precision, with which Box2D and rapier2d compute.
+/// Vector in single precision, as in Box2D and rapier2d.
 pub fn singles(v: Vec2<Fx>) -> [f32; 2] {
     [v.x.to_num(), v.y.to_num()]
 }
 
-/// Returns the corners of a polygon, moved by an offset.
+/// Corners of a polygon, moved by an offset.
 pub fn corners(polygon: &Polygon, offset: Vec2<Fx>) -> Vec<[f32; 2]> {
     let moved = |vertex: &Vec2<Length>| singles(vertex.widen() + offset);
     polygon.vertices().iter().map(moved).collect()
 }
 
-/// Map from lockstep2d's body handles, by slot, to the handles of another engine.
+/// Handles of another engine, by the slots of lockstep2d's bodies.
 pub struct Slots<T>(Vec<Option<T>>);
 
 impl<T: Copy> Slots<T> {
-    /// Creates an empty map.
     pub const fn new() -> Self {
         Slots(Vec::new())
     }
 
-    /// Sets the value of a body.
     pub fn insert(&mut self, id: BodyId, value: T) {
         let index = id.index() as usize;
         if self.0.len() <= index {
@@ -236,20 +210,18 @@ impl<T: Copy> Slots<T> {
         self.0[index] = Some(value);
     }
 
-    /// Returns the value of a body.
     pub fn get(&self, id: BodyId) -> Result<T> {
         let found = self.0.get(id.index() as usize).copied().flatten();
         found.ok_or_else(|| anyhow::anyhow!("no body {id}"))
     }
 
-    /// Removes and returns the value of a body.
     pub fn remove(&mut self, id: BodyId) -> Result<T> {
         let value = self.get(id)?;
         self.0[id.index() as usize] = None;
         Ok(value)
     }
 
-    /// Returns all values, in slot order.
+    /// Values in slot order.
     pub fn iter(&self) -> impl Iterator<Item = T> {
         self.0.iter().copied().flatten()
     }

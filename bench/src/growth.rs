@@ -1,5 +1,5 @@
-//! Measures how the time of a step grows with the number of bodies `n`: the exponent `p` of `n^p`, in worlds with a
-//! similar number of contacts per body at every size.
+//! Measures the exponent `p` of the step time `n^p` with `n` bodies, in worlds with a similar number of contacts per
+//! body.
 
 use anyhow::{Result, anyhow};
 use indicatif::ProgressBar;
@@ -19,57 +19,50 @@ use crate::stats::{median, power};
 /// World that can be built in any size.
 #[derive(Clone, Copy)]
 pub struct World {
-    /// Name of the world.
     pub name: &'static str,
-    /// Builds the world with about this number of bodies.
+    /// Setup for about this number of bodies.
     pub setup: fn(bodies: u32) -> Result<SandboxSetup, WorldError>,
 }
 
-/// All worlds.
 pub const WORLDS: [World; 3] = [
     World { name: "pyramids", setup: pyramids },
     World { name: "drums", setup: drums },
     World { name: "churn", setup: churn },
 ];
 
-/// Parameters of a measurement.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Approximate numbers of bodies; each is one measurement.
+    /// Approximate numbers of bodies.
     pub sizes: Vec<u32>,
-    /// Number of timed steps.
     pub steps: u64,
-    /// Number of steps before the timed ones.
+    /// Steps before the timed ones.
     pub untimed: u64,
-    /// Number of runs of each engine at each size.
+    /// Runs of each engine at each size.
     pub rounds: usize,
 }
 
-/// Results of a world in one engine, at every size.
+/// A world in one engine, at every size.
 #[derive(Clone, Debug, Serialize)]
 pub struct Growth {
-    /// Name of the world.
     pub world: &'static str,
-    /// Name of the engine.
     pub engine: &'static str,
-    /// Results in the order of the sizes.
+    /// Points in the order of the sizes.
     pub points: Vec<Point>,
     /// Exponent `p` of the fit `n^p`.
     pub p: f64,
 }
 
-/// Result of a world at one size.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Point {
-    /// Number of dynamic bodies.
+    /// Dynamic bodies.
     pub bodies: usize,
-    /// Number of pairs with contact points at the end.
+    /// Pairs with contact points at the end.
     pub contacts: usize,
     /// CPU time of a step, in ms.
     pub ms: f64,
 }
 
-/// Measures a world in every engine, in interleaved rounds.
+/// Measures every engine, in interleaved rounds.
 pub fn measure(world: World, plan: &Plan, progress: &ProgressBar) -> Result<Vec<Growth>> {
     let World { name, setup } = world;
     let mut growths =
@@ -104,7 +97,7 @@ fn config() -> Config {
     Config { sleeping: false, pair_limit: 1 << 20, ..Config::default() }
 }
 
-/// Pyramids of 55 boxes, 20 side by side on each shelf, like the pyramids of `many_pyramids`.
+/// Pyramids of 55 boxes, 20 side by side on each shelf, as in `many_pyramids`.
 fn pyramids(bodies: u32) -> Result<SandboxSetup, WorldError> {
     let pyramids = (bodies / 55).max(1);
     let mut scene = Builder::new(config());
@@ -135,22 +128,20 @@ fn drums(bodies: u32) -> Result<SandboxSetup, WorldError> {
     Ok(scene.finish())
 }
 
-/// Number of bodies in each drum of `drums`.
 const DRUM: u32 = 484;
 
-/// A single drum whose size depends on the number of bodies. Unlike many small drums, a larger drum has a deeper
-/// pile, and so a different mix of work.
+/// A single drum. Unlike many small ones, a larger drum has a deeper pile, and so another mix of work.
 fn churn(bodies: u32) -> Result<SandboxSetup, WorldError> {
     let mut scene = Builder::new(config());
     add_drum(&mut scene, Vec2::ZERO, bodies)?;
     Ok(scene.finish())
 }
 
-/// Adds a rotating square drum full of boxes and balls, initially turned by 30 degrees. Its angular velocity gives
-/// the same Froude number at any size.
+/// A square drum full of boxes and balls, turned by 30 degrees. Its angular velocity gives the same Froude number at
+/// any size.
 pub fn add_drum(scene: &mut Builder, centre: Vec2<Fx>, bodies: u32) -> Result<(), WorldError> {
     let side = bodies.isqrt().max(2);
-    // The upright grid of bodies fits into the drum, which is turned by 30 degrees at the start.
+    // The upright grid of bodies fits into the turned drum.
     let apart = fx!(0.255);
     let half_grid = apart * i64::from(side) / 2;
     let half = half_grid * fx!(1.45) + fx!(0.5);
@@ -176,7 +167,6 @@ pub fn add_drum(scene: &mut Builder, centre: Vec2<Fx>, bodies: u32) -> Result<()
     Ok(())
 }
 
-/// Formats the results as a table.
 pub fn table(growths: &[Growth]) -> String {
     let mut text = format!("{:9} {:10} {:>6}  ms per step (bodies, contacts)\n", "world", "engine", "p");
     for Growth { world, engine, points, p } in growths {

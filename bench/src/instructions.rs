@@ -1,5 +1,4 @@
-//! Counts the instructions of a step of lockstep2d at each size with callgrind. Unlike times, the counts do not
-//! depend on caches or on other load of the machine.
+//! Counts the instructions of a step with callgrind, independently of caches and of other load.
 
 use std::process::Command;
 
@@ -11,28 +10,24 @@ use crate::growth::{Plan, World};
 use crate::script::Script;
 use crate::stats::power;
 
-/// Results of a world at every size.
 #[derive(Clone, Debug, Serialize)]
 pub struct Growth {
-    /// Name of the world.
     pub world: &'static str,
-    /// Results in the order of the sizes.
+    /// Points in the order of the sizes.
     pub points: Vec<Point>,
     /// Exponent `p` of the fit `n^p`.
     pub p: f64,
 }
 
-/// Result of a world at one size.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Point {
-    /// Number of dynamic bodies.
+    /// Dynamic bodies.
     pub bodies: usize,
     /// Instructions of a step, in millions.
     pub millions: f64,
 }
 
-/// Counts the instructions of a world at every size, as the difference between a full run and a run that ends before
-/// the timed steps.
+/// The difference between a full run and one that ends before the timed steps.
 pub fn measure(world: World, plan: &Plan) -> Result<Growth> {
     let mut points = Vec::new();
     for &size in &plan.sizes {
@@ -44,7 +39,7 @@ pub fn measure(world: World, plan: &Plan) -> Result<Growth> {
     Ok(Growth { world: world.name, points, p })
 }
 
-/// Runs [`step`] in a process of its own under callgrind. Returns the numbers of dynamic bodies and of instructions.
+/// Runs [`step`] under callgrind. Returns the numbers of dynamic bodies and of instructions.
 fn count(world: World, size: u32, steps: u64) -> Result<(usize, f64)> {
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
@@ -61,7 +56,7 @@ fn count(world: World, size: u32, steps: u64) -> Result<(usize, f64)> {
     Ok((bodies, collected.trim().parse()?))
 }
 
-/// Builds a world, steps it, and returns its number of dynamic bodies.
+/// Steps a world, and returns its number of dynamic bodies.
 pub fn step(world: World, size: u32, steps: u64, kind: Kind) -> Result<usize> {
     let setup = (world.setup)(size).map_err(|error| anyhow!("{} of {size}: {error}", world.name))?;
     let mut engine = kind.build(&Script::of_setup(setup, 0)?, 1)?;
@@ -69,7 +64,6 @@ pub fn step(world: World, size: u32, steps: u64, kind: Kind) -> Result<usize> {
     Ok(engine.bodies().iter().filter(|body| body.dynamic).count())
 }
 
-/// Formats the results as a table.
 pub fn table(growths: &[Growth]) -> String {
     let mut text = format!("{:9} {:>6}  million instructions per step (bodies)\n", "world", "p");
     for Growth { world, points, p } in growths {

@@ -1,5 +1,5 @@
-//! Compares lockstep2d with Box2D 3.2 and rapier2d in the benchmark scenes. `README.md` describes the commands, and
-//! `docs/PERFORMANCE.md` of the repository the method and the results.
+//! Compares lockstep2d with Box2D 3.2 and rapier2d. `README.md` describes the commands, and `docs/PERFORMANCE.md` the
+//! method.
 
 mod box2d;
 mod compare;
@@ -138,7 +138,7 @@ fn main() -> Result<()> {
     }
 }
 
-/// Returns the named scenes, or all scenes if none is named.
+/// All scenes if none is named.
 fn names(some: &[String]) -> Vec<&str> {
     if some.is_empty() { script::SCENES.into() } else { some.iter().map(String::as_str).collect() }
 }
@@ -191,7 +191,7 @@ fn measure_growth(arguments: &GrowthArguments) -> Result<()> {
     print_growths(&growths, growth::table, arguments.json)
 }
 
-/// Prints results as lines of JSON or as a table.
+/// Prints lines of JSON or a table.
 fn print_growths<T: Serialize>(growths: &[T], table: fn(&[T]) -> String, json: bool) -> Result<()> {
     if !json {
         print!("{}", table(growths));
@@ -266,7 +266,7 @@ fn measure_rollback(arguments: &RollbackArguments) -> Result<()> {
     Ok(())
 }
 
-/// Creates a progress bar on stderr, visible only if stderr is a terminal.
+/// Progress bar on stderr, if it is a terminal.
 fn progress(length: u64) -> Result<ProgressBar> {
     let style = ProgressStyle::with_template("{bar:30} {pos}/{len} runs, {eta} left  {msg}")?;
     Ok(ProgressBar::new(length).with_style(style))

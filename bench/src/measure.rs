@@ -1,4 +1,4 @@
-//! Measures one run of one engine: the time of its steps, its end state, and the cost of saving.
+//! Measures a run of an engine: the time of its steps, its end state, and the cost of saving.
 
 use std::time::Instant;
 
@@ -9,54 +9,52 @@ use crate::engine::{Engine, Kind};
 use crate::script::Script;
 use crate::stats::median;
 
-/// Times of a run in ms per step, without the untimed first steps.
+/// Times in ms per step, without the untimed first steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Times {
     /// CPU time of the calling thread.
     pub cpu: f64,
-    /// Wall-clock time.
     pub wall: f64,
-    /// CPU time of the commands between steps, such as creating bodies and joints.
+    /// CPU time of the commands between steps.
     pub commands: f64,
 }
 
-/// State of a world after the last step.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct EndState {
-    /// Height of the highest dynamic body's centre of mass, in metres.
+    /// Height of the highest dynamic body, in metres.
     pub top: f64,
-    /// Height of the lowest dynamic body's centre of mass, in metres: shows bodies that fall through the floor.
+    /// Height of the lowest dynamic body, in metres: shows falls through the floor.
     pub bottom: f64,
-    /// Deepest penetration in mm, measured at the contacts of the last step.
+    /// Deepest penetration of the last step, in mm.
     pub deepest_mm: f64,
-    /// Mean speed over all dynamic bodies, in m/s; sleeping bodies count as 0.
+    /// Mean speed of dynamic bodies in m/s, 0 for sleeping ones.
     pub mean_speed: f64,
-    /// Largest speed of any dynamic body, in m/s.
+    /// Largest speed of a dynamic body, in m/s.
     pub max_speed: f64,
     /// Pairs of shapes with contact points.
     pub contacts: usize,
-    /// Largest distance between the two anchors of a joint, in mm.
+    /// Largest distance between the anchors of a joint, in mm.
     pub joint_gap_mm: Option<f64>,
-    /// Number of awake dynamic bodies.
+    /// Awake dynamic bodies.
     pub awake: usize,
 }
 
-/// Cost of saving, restoring and hashing a whole world in its end state.
+/// Cost of saving, restoring and hashing the end state.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Keeping {
     /// CPU time of a save, in ms.
     pub save_ms: f64,
     /// CPU time of a restore, in ms.
     pub restore_ms: f64,
-    /// CPU time of a hash, in ms, if the engine has a hash of the whole state.
+    /// CPU time of a hash, in ms, if the engine has one.
     pub hash_ms: Option<f64>,
-    /// Size of the world as a file, in bytes.
+    /// Bytes of the world as a file.
     pub bytes: usize,
     /// `bytes` per body that is not fixed.
     pub bytes_per_body: f64,
 }
 
-/// Returns the CPU time of the calling thread, in ms.
+/// CPU time of the calling thread, in ms.
 pub fn thread_ms() -> f64 {
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
     // SAFETY: the pointer is to a valid timespec.
@@ -64,14 +62,14 @@ pub fn thread_ms() -> f64 {
     time.tv_sec as f64 * 1e3 + time.tv_nsec as f64 * 1e-6
 }
 
-/// Runs a function; returns its CPU time in ms and its result.
+/// Returns the CPU time of a function in ms, and its result.
 pub fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
     let start = thread_ms();
     let result = work();
     (thread_ms() - start, result)
 }
 
-/// Builds a world and steps it to the end of the script.
+/// Steps a world to the end of the script.
 pub fn run(kind: Kind, script: &Script, threads: usize) -> Result<(Times, Box<dyn Engine>)> {
     let mut engine = kind.build(script, threads)?;
     let mut sum = Times { cpu: 0.0, wall: 0.0, commands: 0.0 };
@@ -90,7 +88,6 @@ pub fn run(kind: Kind, script: &Script, threads: usize) -> Result<(Times, Box<dy
     Ok((times, engine))
 }
 
-/// Measures the end state of a world.
 pub fn end_state(engine: &dyn Engine) -> EndState {
     let bodies = engine.bodies();
     let dynamic: Vec<_> = bodies.iter().filter(|body| body.dynamic).collect();
@@ -112,7 +109,7 @@ pub fn end_state(engine: &dyn Engine) -> EndState {
     }
 }
 
-/// Measures the median cost of a save, a restore and a hash over five repetitions.
+/// Medians of five repetitions.
 pub fn keeping(engine: &mut dyn Engine) -> Result<Keeping> {
     let (mut save, mut restore, mut hash) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..5 {

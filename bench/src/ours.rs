@@ -7,14 +7,12 @@ use lockstep2d::world::{Config, Snapshot, World};
 use crate::engine::{BodyState, Contacts, Counts, Engine, SAVES, float, floats};
 use crate::script::Event;
 
-/// World of lockstep2d.
 pub struct Ours {
     world: World,
     saves: [Option<Snapshot>; SAVES],
 }
 
 impl Ours {
-    /// Creates an empty world.
     pub fn new(config: &Config, threads: usize) -> Result<Self> {
         let mut world = World::new(*config).map_err(|error| anyhow!("{error}"))?;
         ensure!(world.set_threads(threads), "lockstep2d cannot use {threads} threads");

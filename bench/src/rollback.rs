@@ -1,5 +1,4 @@
-//! Measures the cost of rollback in lockstep2d: a save and a hash in every tick, and a restore followed by a
-//! resimulation of the last ticks.
+//! Measures the cost of rollback: a save and a hash in every tick, and a restore with a resimulation.
 
 use anyhow::{Result, anyhow};
 use lockstep2d::body::{BodyDef, Polygon, ShapeDef};
@@ -13,17 +12,14 @@ use crate::measure::timed;
 use crate::script::{Event, Script};
 use crate::stats::median;
 
-/// Number of ticks of a rollback.
+/// Ticks of a rollback.
 const TICKS: usize = 8;
-/// Repetitions of the measurement.
 const TIMES: usize = 5;
 
-/// Costs of a scene near its end.
 #[derive(Clone, Debug, Serialize)]
 pub struct Cost {
-    /// Name of the scene.
     pub scene: String,
-    /// CPU time of a step, in ms: mean over the ticks that are rolled back.
+    /// CPU time of a step in ms, mean over the ticks that are rolled back.
     pub step_ms: f64,
     /// CPU time of a save, in ms.
     pub save_ms: f64,
@@ -33,9 +29,9 @@ pub struct Cost {
     pub restore_ms: f64,
     /// CPU time of a save and a hash, in percent of a step.
     pub save_and_hash_percent: f64,
-    /// CPU time of a restore and a resimulation of 8 ticks with their saves and hashes, in units of a step.
+    /// CPU time of a restore and 8 ticks with saves and hashes, in units of a step.
     pub rollback_steps: f64,
-    /// Memory of a save that is not shared with the world, in bytes.
+    /// Bytes of a save that are not shared with the world.
     pub save_bytes: usize,
     /// `save_bytes` per dynamic body.
     pub save_bytes_per_body: f64,
@@ -54,7 +50,6 @@ pub struct Bytes {
     pub joint: f64,
 }
 
-/// Measures the costs of a scene near its end.
 pub fn cost(name: &str, steps: Option<u64>) -> Result<Cost> {
     let script = Script::of_scene(name, steps)?;
     let mut world = built(&script)?;
@@ -72,7 +67,7 @@ pub fn cost(name: &str, steps: Option<u64>) -> Result<Cost> {
         for (tick, events) in last.iter().enumerate() {
             execute(&mut world, events)?;
             let (stepping, ()) = timed(|| world.step());
-            // Like a game, this keeps one save per tick of the rollback window and reuses its memory.
+            // A game reuses one save per tick of the rollback window.
             let (saving, ()) = timed(|| world.save_into(&mut saves[tick]));
             let (hashing, _) = timed(|| world.state_hash());
             resimulating += stepping + saving + hashing;
@@ -82,7 +77,7 @@ pub fn cost(name: &str, steps: Option<u64>) -> Result<Cost> {
         }
         rollback.push(restoring + resimulating);
     }
-    // The median is taken per tick, because ticks differ: in some of them bodies or joints are created.
+    // Ticks differ: some create bodies or joints.
     let step_ms = steps.iter().map(|times| median(times)).sum::<f64>() / TICKS as f64;
     let [save_ms, hash_ms, restore_ms] = [&save, &hash, &restore].map(|times| median(times));
     let save_bytes = save_bytes(&world);
@@ -120,13 +115,12 @@ fn advance(world: &mut World, events: &[Event]) -> Result<()> {
     Ok(())
 }
 
-/// Returns the memory of a save that is not shared with the world, in bytes.
+/// Bytes that are not shared with the world.
 fn save_bytes(world: &World) -> usize {
     world.save().rollback_bytes()
 }
 
-/// Measures the memory of a body, a contact and a joint in a save, from worlds with bodies only, with contacts and with
-/// joints.
+/// Measures worlds with bodies only, with contacts and with joints.
 pub fn bytes() -> Result<Bytes> {
     let few = save_bytes(&scattered(1000)?) as f64;
     let many = save_bytes(&scattered(9000)?) as f64;
@@ -144,7 +138,7 @@ pub fn bytes() -> Result<Bytes> {
     Ok(Bytes { body, contact, joint: joints / world.joint_count() as f64 })
 }
 
-/// Returns a world of boxes 10 m apart, after one step.
+/// Boxes 10 m apart, after one step.
 fn scattered(count: u32) -> Result<World> {
     let mut scene = Builder::new(Config { gravity: Vec2::ZERO, ..Config::default() });
     let fill = |scene: &mut Builder| {
@@ -160,7 +154,6 @@ fn scattered(count: u32) -> Result<World> {
     Ok(world)
 }
 
-/// Returns the column heads of [`row`].
 pub fn head() -> String {
     format!(
         "{:14} {:>8} {:>8} {:>8} {:>10} {:>11} {:>14} {:>11} {:>11} {:>10}",
@@ -177,7 +170,6 @@ pub fn head() -> String {
     )
 }
 
-/// Formats the costs of a scene as a table row.
 pub fn row(cost: &Cost) -> String {
     format!(
         "{:14} {:8.2} {:8.3} {:8.3} {:10.3} {:11.1} {:14.2} {:11} {:11.0} {:10}",
@@ -209,9 +201,9 @@ mod tests {
     fn bytes_are_told_apart() {
         let bytes = bytes().unwrap();
         assert_eq!(bytes.body, 52.0);
-        // The average is above 88, because a save also has 8 bytes for each contact without points.
+        // A save also has 8 bytes for each contact without points.
         assert!((88.0..90.0).contains(&bytes.contact), "{bytes:?}");
-        // A joint takes a byte of flags, 4 bytes for its number of turns, and 4 bytes for each impulse that is not 0.
+        // A byte of flags, 4 bytes for the turns, and 4 bytes for each impulse that is not 0.
         assert!((5.0..=13.0).contains(&bytes.joint), "{bytes:?}");
     }
 }

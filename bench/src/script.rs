@@ -1,8 +1,8 @@
 //! [`Script`]: a scene as a list of recorded commands, from which every engine is built and driven.
 //!
-//! Commands refer to bodies by lockstep2d's handles, and commands that spawn bodies create new handles. So each command
-//! is executed once on a world that is never stepped, and stored together with its outcome. The commands of a scene
-//! depend only on which bodies exist, not on their positions, so the same list is valid for every engine.
+//! Commands refer to bodies by handles that earlier commands created. So each command is executed once, on a world that
+//! is never stepped, and stored with its outcome. The commands of the scenes in [`SCENES`] depend only on which bodies
+//! exist, so the list is valid for every engine.
 
 use anyhow::{Context, Result, anyhow};
 use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
@@ -23,23 +23,20 @@ pub const SCENES: [&str; 10] = [
     "compounds",
 ];
 
-/// Command and its outcome.
 pub type Event = (Command, Outcome);
 
-/// Recorded scene.
 pub struct Script {
-    /// Configuration of the world.
     pub config: Config,
     /// Commands that build the scene.
     pub setup: Vec<Event>,
     /// Commands before each step.
     pub ticks: Vec<Vec<Event>>,
-    /// Number of first steps that are not timed.
+    /// First steps that are not timed.
     pub untimed: usize,
 }
 
 impl Script {
-    /// Records a scene by name, for its full number of steps or at most `most_steps`.
+    /// Records a scene, for its full length or at most `most_steps`.
     pub fn of_scene(name: &str, most_steps: Option<u64>) -> Result<Self> {
         let scene = Scene::find(name).ok_or_else(|| anyhow!("no scene {name}"))?;
         let steps = most_steps.map_or(scene.ticks, |most| most.min(scene.ticks));
@@ -68,12 +65,10 @@ impl Script {
         Ok(Script { config: setup.config, setup: setup_events, ticks, untimed: 1 })
     }
 
-    /// Sets the number of first steps that are not timed.
     pub fn untimed(self, untimed: usize) -> Self {
         Script { untimed, ..self }
     }
 
-    /// Returns the number of steps.
     pub fn steps(&self) -> usize {
         self.ticks.len()
     }
@@ -82,8 +77,7 @@ impl Script {
 fn execute(game: &mut Sandbox, commands: Vec<Command>) -> Result<Vec<Event>> {
     let mut events = Vec::new();
     for command in commands {
-        // The world is never stepped, so a moved body is placed at its target at once. The next `MoveTo` starts from
-        // there.
+        // A moved body is placed at its target at once: the next `MoveTo` starts from there.
         let at_once = match command {
             Command::MoveTo { body, position, angle } => Command::SetTransform { body, position, angle },
             ref other => other.clone(),

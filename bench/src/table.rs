@@ -11,7 +11,6 @@ fn spread(quartiles: Option<[f64; 2]>) -> String {
     quartiles.map_or_else(|| "-".into(), |[low, high]| format!("{low:.2}-{high:.2}"))
 }
 
-/// Returns the column heads of [`times`].
 pub fn times_head() -> String {
     format!(
         "{:14} {:>9} {:>9} {:>9} {:>9} {:>11} {:>10} {:>11}",
@@ -19,7 +18,6 @@ pub fn times_head() -> String {
     )
 }
 
-/// Formats the times of a scene as a table row.
 pub fn times(result: &SceneResult) -> String {
     format!(
         "{:14} {:9.2} {:9.2} {:>9} {:9.2} {:>11} {:>10} {:>11}",
@@ -34,7 +32,6 @@ pub fn times(result: &SceneResult) -> String {
     )
 }
 
-/// Formats the summary as the last row of the times.
 pub fn summary(summary: &Summary) -> String {
     format!(
         "{:14} {:>39} {:>22}",
@@ -55,7 +52,6 @@ fn rows<T>(scene: &str, each: &Each<Option<T>>, row: impl Fn(&T) -> String) -> S
     text
 }
 
-/// Formats the end states as a table.
 pub fn ends(results: &[SceneResult]) -> String {
     let mut text = format!(
         "{:14} {:6} {:>8} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9} {:>7}\n",
@@ -89,7 +85,6 @@ pub fn ends(results: &[SceneResult]) -> String {
     text
 }
 
-/// Formats the costs of saving, restoring and hashing as a table.
 pub fn keeping(results: &[SceneResult]) -> String {
     let mut text = format!(
         "{:14} {:6} {:>9} {:>11} {:>9} {:>11}\n",

@@ -13,7 +13,6 @@ use xxhash_rust::xxh3::xxh3_128;
 use crate::engine::{BodyState, Builder, Contacts, Counts, Engine, SAVES, Slots, build};
 use crate::script::Event;
 
-/// World of Box2D.
 pub struct Box2d {
     world: b2WorldId,
     config: Config,
@@ -24,10 +23,9 @@ pub struct Box2d {
 }
 
 // Invariant of `Box2d`, named by the SAFETY comments: the world exists from `new` to `drop`, the handles in `bodies`
-// refer to bodies that exist in the world, and no other code has access to the world or its bodies.
+// refer to bodies in it, and no other code has access to them.
 
 impl Box2d {
-    /// Creates an empty world.
     pub fn new(config: &Config, threads: usize) -> Result<Self> {
         ensure!(config.solver.iterations == 1, "more than one solver iteration is not supported");
         let ContactTuning::Soft { hertz, damping_ratio, push_speed } = config.solver.contact else {
@@ -216,11 +214,10 @@ impl Engine for Box2d {
     }
 }
 
-/// Discards Box2D's log messages, which would mix with the results and distort the times.
+/// Box2D's log messages would mix with the results and distort the times.
 unsafe extern "C" fn quiet(_message: *const std::ffi::c_char) {}
 
-/// Returns whether a contact is counted for this body. A contact between two non-static bodies is reported by both of
-/// them, and is counted for body A only.
+/// A contact of two non-static bodies is reported by both, and counted for body A.
 fn counts_for(body: b2BodyId, contact: &b2ContactData) -> bool {
     // SAFETY: the shapes of a contact of the last step exist.
     unsafe {

@@ -9,18 +9,15 @@ use lockstep2d::world::{BodyPose, Config};
 
 use crate::engine::{corners, singles};
 
-/// Converts a vector.
 pub fn vector(v: Vec2<Fx>) -> b2Vec2 {
     let [x, y] = singles(v);
     b2Vec2 { x, y }
 }
 
-/// Converts a rotation.
 pub fn rotation(angle: Angle) -> b2Rot {
     b2Rot { c: angle.cos().to_num(), s: angle.sin().to_num() }
 }
 
-/// Converts a body with its pose.
 pub fn body_def(body: &BodyDef, pose: BodyPose) -> Result<b2BodyDef> {
     ensure!(matches!(body.mass, MassSource::Shapes), "explicit masses are not supported");
     let settings = &body.settings;
@@ -46,7 +43,7 @@ pub fn body_def(body: &BodyDef, pose: BodyPose) -> Result<b2BodyDef> {
     Ok(def)
 }
 
-/// Adds a shape. Events other than hit events stay off, which is the default of Box2D and makes it faster.
+/// Events other than hits stay off, which is the default and faster.
 pub fn add_shape(body: b2BodyId, shape: &ShapeDef) -> Result<()> {
     ensure!(!shape.sensor && shape.one_way.is_none(), "sensors and one-way shapes are not supported");
     // SAFETY: the function has no preconditions.
@@ -99,7 +96,7 @@ fn frame(frame: &JointFrame) -> b2Transform {
     b2Transform { p: vector(frame.anchor), q: rotation(frame.angle) }
 }
 
-/// Converts a joint between two bodies. The scenes contain only revolute joints.
+/// The scenes contain only revolute joints.
 pub fn joint_def(joint: &JointDef, ends: [b2BodyId; 2], config: &Config) -> Result<b2RevoluteJointDef> {
     let JointKind::Revolute(hinge) = &joint.kind else { bail!("only revolute joints are supported") };
     // SAFETY: the function has no preconditions.

@@ -16,21 +16,19 @@ use xxhash_rust::xxh3::xxh3_128;
 use crate::engine::{BodyState, Builder, Contacts, Counts, Engine, SAVES, Slots, build};
 use crate::script::Event;
 
-/// World of rapier2d.
 pub struct Rapier {
     world: PhysicsWorld,
     config: Config,
     threads: usize,
     bodies: Slots<RigidBodyHandle>,
-    /// Number of links beyond the first of each chain, because a chain is one collider.
+    /// Links beyond the first of each chain, which is one collider.
     extra_links: usize,
-    /// Bodies to put to sleep after the first step, because new contacts in that step wake them.
+    /// Bodies to put to sleep after the first step, whose new contacts wake them.
     to_sleep: Vec<RigidBodyHandle>,
     saves: [Vec<u8>; SAVES],
 }
 
 impl Rapier {
-    /// Creates an empty world.
     pub fn new(config: &Config, threads: usize) -> Result<Self> {
         ensure!(config.solver.iterations == 1, "more than one solver iteration is not supported");
         let ContactTuning::Soft { hertz, damping_ratio, push_speed } = config.solver.contact else {
@@ -46,7 +44,7 @@ impl Rapier {
         parameters.dt = 1.0 / config.tick_rate as f32;
         parameters.num_solver_iterations = usize::try_from(config.solver.sub_steps)?;
         parameters.contact_softness = softness(hertz.to_num());
-        // The frequency of contacts with static bodies is doubled, as in the other two engines.
+        // Contacts with static bodies have twice the frequency, as in the other engines.
         parameters.static_contact_softness = softness(2.0 * hertz.to_num::<f32>());
         parameters.normalized_max_corrective_velocity = push_speed.to_num();
         parameters.normalized_max_linear_velocity = config.solver.speed_max.to_num();

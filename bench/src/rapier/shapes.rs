@@ -11,7 +11,6 @@ use rapier2d::prelude::*;
 
 use crate::engine::{corners, singles};
 
-/// Converts a vector.
 pub fn vector(v: Vec2<Fx>) -> Vector {
     let [x, y] = singles(v);
     Vector::new(x, y)
@@ -21,8 +20,7 @@ fn radians(angle: Angle) -> f32 {
     angle.to_radians().to_num()
 }
 
-/// Converts a body with its pose. Sleeping is disabled per body, because rapier2d has no such switch for the whole
-/// world.
+/// Sleeping is disabled per body: rapier2d has no such switch for the world.
 pub fn body(def: &BodyDef, pose: BodyPose, config: &Config) -> Result<RigidBodyBuilder> {
     ensure!(matches!(def.mass, MassSource::Shapes), "explicit masses are not supported");
     let settings = &def.settings;
@@ -44,7 +42,7 @@ pub fn body(def: &BodyDef, pose: BodyPose, config: &Config) -> Result<RigidBodyB
         .enabled(def.enabled))
 }
 
-/// Converts the shapes of a body. The links of a chain become one polyline.
+/// The links of a chain become one polyline.
 pub fn colliders(shapes: &[ShapeDef]) -> Result<Vec<ColliderBuilder>> {
     let mut colliders = Vec::new();
     let is_link = |shape: &&ShapeDef| matches!(shape.geometry, Geometry::Link { .. });
@@ -92,7 +90,7 @@ fn collider(shape: &ShapeDef) -> Result<ColliderBuilder> {
         Geometry::Polygon(polygon) => {
             let points = corners(polygon, shape.offset);
             let radius = polygon.radius().to_num();
-            // rapier2d ignores the rounding radius in the mass.
+            // rapier2d ignores the rounding radius.
             let mass = density * rounded_area(&points, radius);
             let collider = match upright_box(&points) {
                 Some((centre, [hx, hy])) if radius == 0.0 => {
@@ -117,8 +115,7 @@ fn convex(points: Vec<[f32; 2]>, radius: f32) -> Option<ColliderBuilder> {
     }
 }
 
-/// Returns the area of a convex polygon rounded by a radius `r`: `A + P r + pi r^2`, with its area `A` and perimeter
-/// `P`.
+/// Area of a convex polygon rounded by `r`: `A + P r + pi r^2`, with its area `A` and perimeter `P`.
 fn rounded_area(points: &[[f32; 2]], radius: f32) -> f32 {
     let next = points.iter().cycle().skip(1);
     let sides = points.iter().zip(next).map(|(a, b)| {
@@ -128,8 +125,7 @@ fn rounded_area(points: &[[f32; 2]], radius: f32) -> f32 {
     sides.sum::<f32>() + std::f32::consts::PI * radius * radius
 }
 
-/// Returns the centre and half extents of a polygon that is an axis-aligned rectangle, for which rapier2d has a
-/// separate shape type.
+/// Centre and half extents of an axis-aligned rectangle, for which rapier2d has a shape type.
 fn upright_box(points: &[[f32; 2]]) -> Option<(Vector, [f32; 2])> {
     let [a, b, c, d] = points else { return None };
     let turned = |i: usize, j: usize| a[i] == b[i] && c[i] == d[i] && b[j] == c[j] && d[j] == a[j];
@@ -156,12 +152,11 @@ fn with_material(collider: ColliderBuilder, shape: &ShapeDef) -> Result<Collider
         .collision_groups(groups(&shape.filter)))
 }
 
-/// Bits used for categories in rapier2d; the other 28 bits stand for negative group numbers.
+/// Bits of categories in rapier2d; the other 28 stand for negative groups.
 const CATEGORY_BITS: u32 = 0xF;
 
-/// Converts a collision filter. rapier2d has no group numbers, only 32 categories. A negative group becomes one of 28
-/// categories, in rotation, that does not collide with itself. So ragdolls whose groups differ by a multiple of 28 pass
-/// through each other, unlike in the other engines.
+/// rapier2d has 32 categories and no group numbers. A negative group becomes one of 28 categories, in rotation, that
+/// does not collide with itself. So ragdolls whose groups differ by a multiple of 28 pass through each other.
 fn groups(filter: &Filter) -> InteractionGroups {
     let numbered = |bits: u64| (bits & u64::from(u32::MAX)) as u32;
     let (mut memberships, mut accepted) = (numbered(filter.category), numbered(filter.mask));
@@ -179,10 +174,9 @@ fn groups(filter: &Filter) -> InteractionGroups {
     InteractionGroups::new(memberships, accepted, InteractionTestMode::And)
 }
 
-/// Converts a joint. The stiffness is rapier2d's default. The other engines use 60 Hz and a damping ratio of 2: with
-/// these values the cloth of `joint_grid` moves at 13 m/s in rapier2d after 100 steps, and at 1.4 m/s in the other
-/// engines. rapier2d has one motor per axis, so a spring takes precedence over a motor. The hinges of a ragdoll have a
-/// spring and a motor that acts as friction, so their friction is left out.
+/// The stiffness is rapier2d's default. With the 60 Hz and the damping ratio of 2 of the other engines, the cloth of
+/// `joint_grid` moves at 13 m/s in rapier2d after 100 steps, instead of 1.4 m/s. rapier2d has one motor per axis, so a
+/// spring takes precedence, and the hinges of ragdolls lack their friction.
 pub fn joint(def: &JointDef) -> Result<GenericJoint> {
     let JointKind::Revolute(hinge) = &def.kind else { bail!("only revolute joints are supported") };
     let frame = |frame: &JointFrame| Pose::new(vector(frame.anchor), radians(frame.angle));
@@ -203,8 +197,7 @@ pub fn joint(def: &JointDef) -> Result<GenericJoint> {
             damping,
         );
     } else if let Some(motor) = hinge.motor {
-        // The factor 1e6 is so large that only the maximum torque limits the motor. Motors of the other engines work
-        // like this.
+        // Only the maximum torque limits the motor, as in the other engines.
         joint = joint
             .motor_model(JointAxis::AngX, MotorModel::AccelerationBased)
             .motor_velocity(JointAxis::AngX, motor.speed.to_num(), 1e6)

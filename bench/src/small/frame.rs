@@ -12,31 +12,26 @@ use crate::growth::World;
 use crate::measure::timed;
 use crate::stats::median;
 
-/// Number of rollback frames in a round.
+/// Frames in a round.
 const FRAMES: usize = 20;
 
-/// Cost of a rollback frame of a world.
 #[derive(Clone, Debug, Serialize)]
 pub struct Frame {
-    /// Name of the world.
     pub world: &'static str,
-    /// Number of dynamic bodies.
+    /// Dynamic bodies.
     pub bodies: usize,
     /// CPU time of a frame of lockstep2d in microseconds, median of the rounds.
     pub frame_us: f64,
-    /// Median of the rounds' ratios of the frame to Box2D's.
+    /// Median ratio to Box2D.
     pub vs_box2d: f64,
-    /// Median of the rounds' ratios of the frame to rapier2d's.
+    /// Median ratio to rapier2d.
     pub vs_rapier: f64,
-    /// Saves and hashes in lockstep2d.
     pub ours: Saving,
-    /// Saves and hashes in Box2D.
     pub box2d: Saving,
-    /// Saves and hashes in rapier2d.
     pub rapier: Saving,
 }
 
-/// Cost of the saves and hashes of an engine.
+/// Saves and hashes of an engine.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Saving {
     /// CPU time of a save and its hash in microseconds.
@@ -47,14 +42,12 @@ pub struct Saving {
     pub bytes: usize,
 }
 
-/// A frame of an engine in one round.
 struct Round {
-    /// CPU time of the frame in microseconds.
+    /// CPU time in microseconds.
     frame_us: f64,
     saving: Saving,
 }
 
-/// Measures the rollback frame of a world.
 pub fn frame(world: World, size: u32, rounds: usize, progress: &ProgressBar) -> Result<Frame> {
     let script = script(world, size)?;
     let mut engines = Vec::new();
@@ -89,7 +82,7 @@ pub fn frame(world: World, size: u32, rounds: usize, progress: &ProgressBar) -> 
     })
 }
 
-/// Returns the medians of the rounds. The bytes are from the last round, because all rounds save the same ticks.
+/// Medians of the rounds. All rounds save the same ticks.
 fn saving(rounds: &[Round]) -> Saving {
     let of = |part: fn(&Saving) -> f64| {
         median(&rounds.iter().map(|round| part(&round.saving)).collect::<Vec<_>>())
@@ -101,11 +94,8 @@ fn saving(rounds: &[Round]) -> Saving {
     }
 }
 
-/// Measures a frame, as the mean of [`FRAMES`].
-///
-/// Slot 0 holds the start of the frame, which all frames share, and the other slots hold the ticks of the frame. The
-/// time of the saves and hashes is the difference between frames with and without them, because reading the clock takes
-/// as long as saving a small world.
+/// Slot 0 holds the start of the frame, and the other slots hold its ticks. The time of saves and hashes is the
+/// difference between frames with and without them, because reading the clock takes as long as saving a small world.
 fn measure(engine: &mut dyn Engine) -> Result<Round> {
     engine.save(0);
     let (bare, done) = timed(|| frames(engine, |_, _| {}));
@@ -137,7 +127,6 @@ fn frames(engine: &mut dyn Engine, after_step: impl Fn(&mut dyn Engine, usize)) 
     Ok(())
 }
 
-/// Returns the column heads of [`frame_row`].
 pub fn frame_head() -> String {
     format!(
         "{:10} {:>6} {:>9} {:>9} {:>9}  a save and its hash: ours, Box2D, rapier\n{:47}  {:>20} {:>21} {:>24}",
@@ -145,7 +134,6 @@ pub fn frame_head() -> String {
     )
 }
 
-/// Formats the cost of a frame as a table row.
 pub fn frame_row(frame: &Frame) -> String {
     let [ours, box2d, rapier] = [frame.ours, frame.box2d, frame.rapier];
     format!(

@@ -35,22 +35,19 @@ pub const SINGLE: [(World, u32); 2] = [
 ];
 /// Approximate numbers of bodies.
 pub const SIZES: [u32; 4] = [6, 24, 96, 384];
-/// Number of steps before the timed ones.
+/// Steps before the timed ones.
 const UNTIMED: usize = 120;
-/// Number of timed steps.
 const TIMED: usize = 480;
 
-/// Settings of all small worlds: the default ones, without sleeping.
+/// Default settings, without sleeping.
 fn config() -> Config {
     Config { sleeping: false, ..Config::default() }
 }
 
-/// Result of a world at one size.
 #[derive(Clone, Debug, Serialize)]
 pub struct Cell {
-    /// Name of the world.
     pub world: &'static str,
-    /// Number of dynamic bodies.
+    /// Dynamic bodies.
     pub bodies: usize,
     /// CPU time of a step of lockstep2d in microseconds, median of the rounds.
     pub us: f64,
@@ -58,16 +55,15 @@ pub struct Cell {
     pub box2d_us: f64,
     /// CPU time of a step of rapier2d in microseconds.
     pub rapier_us: f64,
-    /// Median of the rounds' ratios to Box2D.
+    /// Median ratio to Box2D.
     pub vs_box2d: f64,
-    /// Median of the rounds' ratios to rapier2d.
+    /// Median ratio to rapier2d.
     pub vs_rapier: f64,
 }
 
-/// Geometric means and largest ratios of all cells.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Summary {
-    /// Always true, to distinguish the summary from a cell.
+    /// Always true: distinguishes the summary from a cell.
     pub summary: bool,
     /// Geometric mean of the ratios to Box2D.
     pub geomean_vs_box2d: Option<f64>,
@@ -79,18 +75,18 @@ pub struct Summary {
     pub worst_vs_rapier: Option<f64>,
 }
 
-/// Returns every world with its approximate number of bodies.
+/// Worlds and their approximate numbers of bodies.
 pub fn all() -> impl Iterator<Item = (World, u32)> {
     WORLDS.into_iter().flat_map(|world| SIZES.map(|size| (world, size))).chain(SINGLE)
 }
 
-/// Returns every world whose rollback frame is measured, with its approximate number of bodies.
+/// Worlds whose rollback frame is measured.
 pub fn frames() -> impl Iterator<Item = (World, u32)> {
     let [boxes, polygons, _, _, mixed, ragdolls, ..] = WORLDS;
     [boxes, polygons, mixed, ragdolls].into_iter().flat_map(|world| [24, 150, 400].map(|size| (world, size)))
 }
 
-/// Measures a world at one size, in interleaved rounds.
+/// Measures every engine, in interleaved rounds.
 pub fn cell(world: World, size: u32, rounds: usize, progress: &ProgressBar) -> Result<Cell> {
     let script = script(world, size)?;
     let mut times: [Vec<f64>; 3] = Default::default();
@@ -125,7 +121,6 @@ fn dynamic(engine: &dyn Engine) -> usize {
     engine.bodies().iter().filter(|body| body.dynamic).count()
 }
 
-/// Summarises all cells.
 pub fn summary(cells: &[Cell]) -> Summary {
     let of = |part: fn(&Cell) -> f64| cells.iter().map(part).collect::<Vec<_>>();
     let (box2d, rapier) = (of(|cell| cell.vs_box2d), of(|cell| cell.vs_rapier));
@@ -139,7 +134,6 @@ pub fn summary(cells: &[Cell]) -> Summary {
     }
 }
 
-/// Returns the column heads of [`row`].
 pub fn head() -> String {
     format!(
         "{:10} {:>6} {:>9} {:>9} {:>9} {:>9} {:>9}",
@@ -147,7 +141,6 @@ pub fn head() -> String {
     )
 }
 
-/// Formats a cell as a table row.
 pub fn row(cell: &Cell) -> String {
     format!(
         "{:10} {:6} {:9.1} {:9.1} {:9.1} {:9.2} {:9.2}",
@@ -155,7 +148,6 @@ pub fn row(cell: &Cell) -> String {
     )
 }
 
-/// Formats the summary as the last rows of the table.
 pub fn summary_rows(summary: &Summary) -> String {
     let optional = |value: Option<f64>| value.map_or_else(|| "-".into(), |value| format!("{value:.2}"));
     format!(

@@ -11,7 +11,7 @@ use super::config;
 
 type Setup = Result<SandboxSetup, WorldError>;
 
-/// Body and its position; the angle is zero.
+/// The angle is zero.
 type Placed = (BodyId, Vec2<Fx>);
 
 fn dynamic(scene: &mut Builder, at: Vec2<Fx>, shape: &ShapeDef) -> Result<Placed, WorldError> {
@@ -19,14 +19,13 @@ fn dynamic(scene: &mut Builder, at: Vec2<Fx>, shape: &ShapeDef) -> Result<Placed
     Ok((body, at))
 }
 
-/// Joins two bodies by a hinge at a point of the world.
 fn hinge(scene: &mut Builder, a: Placed, b: Placed, at: Vec2<Fx>, hinge: Revolute) -> Result<(), WorldError> {
     let joint = JointDef::new(a.0, b.0, hinge).anchor_a(at - a.1).anchor_b(at - b.1);
     scene.joint(joint)?;
     Ok(())
 }
 
-/// Adds a floor between two walls. The top of the floor is at y = 0.
+/// The top of the floor is at y = 0.
 fn room(scene: &mut Builder, half_width: Fx) -> Result<(), WorldError> {
     let wall =
         |x: Fx| Polygon::rectangle(fx!(0.5), fx!(60)).map(|wall| ShapeDef::new(wall).offset((x, fx!(60))));
@@ -40,27 +39,23 @@ fn room(scene: &mut Builder, half_width: Fx) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// Boxes in a pit.
 pub fn boxes(bodies: u32) -> Setup {
     pit(bodies, |_| Ok(Polygon::square(fx!(0.45))?.into()))
 }
 
-/// Regular polygons of five to seven corners in a pit.
+/// Polygons of five to seven corners.
 pub fn polygons(bodies: u32) -> Setup {
     pit(bodies, |index| regular(5 + index % 3))
 }
 
-/// Balls in a pit.
 pub fn balls(bodies: u32) -> Setup {
     pit(bodies, |_| Ok(Geometry::circle(fx!(0.48))?))
 }
 
-/// Capsules in a pit.
 pub fn capsules(bodies: u32) -> Setup {
     pit(bodies, |_| capsule())
 }
 
-/// Boxes, polygons, balls and capsules in a pit.
 pub fn mixed(bodies: u32) -> Setup {
     pit(bodies, |index| match index % 4 {
         0 => Ok(Polygon::square(fx!(0.45))?.into()),
@@ -74,7 +69,7 @@ fn capsule() -> Result<Geometry, WorldError> {
     Ok(Geometry::capsule(Vec2::new(fx!(-0.2), fx!(0)), Vec2::new(fx!(0.2), fx!(0)), fx!(0.25))?)
 }
 
-/// Returns a regular polygon with a circumradius of 0.48 m.
+/// Regular polygon with a circumradius of 0.48 m.
 fn regular(corners: u32) -> Result<Geometry, WorldError> {
     let corner = |index: u32| {
         let angle = Angle::from_turns(Fx::from_num(index) / i64::from(corners));
@@ -84,7 +79,7 @@ fn regular(corners: u32) -> Result<Geometry, WorldError> {
     Ok(Polygon::hull(&corners)?.into())
 }
 
-/// A pit with `isqrt(n)` columns, but at least two, filled with rows that are shifted by 0.1 and -0.13 m in turn.
+/// A pit of `isqrt(n)` columns, at least two, with rows shifted by 0.1 and -0.13 m in turn.
 fn pit(bodies: u32, shape: impl Fn(u32) -> Result<Geometry, WorldError>) -> Setup {
     let mut scene = Builder::new(config());
     let columns = (2 * bodies.isqrt() / 2).max(2);
@@ -99,7 +94,7 @@ fn pit(bodies: u32, shape: impl Fn(u32) -> Result<Geometry, WorldError>) -> Setu
     Ok(scene.finish())
 }
 
-/// Ragdolls of six capsules, joined by hinges with limits, that fall on a floor between two walls.
+/// Ragdolls of six capsules fall on a floor between two walls.
 pub fn ragdolls(bodies: u32) -> Setup {
     let mut scene = Builder::new(config());
     let count = (bodies / 6).max(1);
@@ -113,7 +108,7 @@ pub fn ragdolls(bodies: u32) -> Setup {
     Ok(scene.finish())
 }
 
-/// Adds a ragdoll: a torso with a head, two arms and two legs.
+/// A torso with a head, two arms and two legs.
 fn ragdoll(scene: &mut Builder, at: Vec2<Fx>, index: u32) -> Result<(), WorldError> {
     let group = -i32::try_from(index + 1).unwrap_or(i32::MAX);
     let mut limb = |x: Fx, y: Fx, half: Fx, radius: Fx| {
@@ -133,14 +128,12 @@ fn ragdoll(scene: &mut Builder, at: Vec2<Fx>, index: u32) -> Result<(), WorldErr
     parts.into_iter().try_for_each(|(part, x, y)| hinge(scene, torso, part, at + Vec2::new(x, y), limited))
 }
 
-/// A rotating square drum of boxes and balls.
 pub fn drum(bodies: u32) -> Setup {
     let mut scene = Builder::new(config());
     crate::growth::add_drum(&mut scene, Vec2::ZERO, bodies)?;
     Ok(scene.finish())
 }
 
-/// A single column of boxes.
 pub fn stack(bodies: u32) -> Setup {
     let mut scene = Builder::new(config());
     room(&mut scene, fx!(20))?;
@@ -150,7 +143,7 @@ pub fn stack(bodies: u32) -> Setup {
     Ok(scene.finish())
 }
 
-/// Bridges of 22 planks, fixed at both ends, with a box and a ball on each bridge.
+/// Bridges of 22 planks, with a box and a ball on each.
 pub fn bridges(bodies: u32) -> Setup {
     let mut scene = Builder::new(config());
     let post = (scene.spawn(BodyDef::fixed(), &[])?, Vec2::ZERO);
@@ -193,7 +186,7 @@ pub fn cars(bodies: u32) -> Setup {
     Ok(scene.finish())
 }
 
-/// Adds a closed chain: hills from x = -20 m to x = `width` - 1 m, and a bottom at y = -10 m.
+/// A closed chain: hills from x = -20 m to x = `width` - 1 m, and a bottom at y = -10 m.
 fn terrain(scene: &mut Builder, width: i64) -> Result<(), WorldError> {
     let heights = [fx!(0), fx!(0.3), fx!(0.6), fx!(0.3), fx!(0), fx!(-0.2)];
     let hills = (-20..width).zip(heights.into_iter().cycle());

@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Adds commands to the input of the next tick: an upward impulse for every dynamic body.
+/// Gives every dynamic body an upward impulse in the next tick.
 fn throw(
     keys: Res<ButtonInput<KeyCode>>,
     lockstep: Res<Lockstep<Sandbox>>,
@@ -45,7 +45,7 @@ fn throw(
     }
 }
 
-/// Prints the speeds of hits. Events of the world arrive as Bevy messages.
+/// Prints the speeds of hits.
 fn name_hits(mut events: MessageReader<ConfirmedEvent>) {
     for event in events.read() {
         if let WorldEvent::Hit(hit) = event.event {

@@ -1,5 +1,5 @@
-//! Measures what the plugin adds to a step: a pyramid of about 1000 boxes that stay awake, stepped by itself and in an
-//! app with views of all bodies, in turns. Run it with `--release`.
+//! Measures what the plugin adds to a step of a pyramid of about 1000 boxes that stay awake: by itself, and in an app
+//! with views. Run it with `--release`.
 
 use std::time::{Duration, Instant};
 
@@ -12,7 +12,6 @@ use lockstep2d::lockstep::{Game, Sandbox, SandboxSetup};
 use lockstep2d::math::{Angle, Fx, Vec2, fx_mul};
 use lockstep2d::world::{BodyPose, Command};
 
-/// Number of rows of the pyramid.
 const ROWS: i32 = 45;
 
 fn pyramid() -> Result<SandboxSetup, WorldError> {
@@ -35,7 +34,6 @@ fn pyramid() -> Result<SandboxSetup, WorldError> {
     Ok(SandboxSetup { commands, ..SandboxSetup::default() })
 }
 
-/// Time of a call.
 fn timed(mut call: impl FnMut()) -> Duration {
     let start = Instant::now();
     call();
@@ -47,7 +45,7 @@ fn median(mut times: Vec<Duration>) -> f64 {
     times[times.len() / 2].as_secs_f64() * 1e6
 }
 
-/// An app without a renderer, whose frames are a tick apart.
+/// App whose frames are a tick apart.
 fn app() -> App {
     let mut app = App::new();
     app.add_plugins(MinimalPlugins)

@@ -1,5 +1,4 @@
-//! A platformer: a character, a one-way platform, a lift, and coins that are sensors. Arrow keys or A, D and W;
-//! Space jumps, too.
+//! A platformer: a character, a one-way platform, a lift, and coins. Arrow keys or A, D and W; Space jumps.
 
 use bevy::prelude::*;
 use bevy_lockstep2d::prelude::*;
@@ -22,7 +21,6 @@ struct Platformer {
     state: State,
 }
 
-/// State of the rules beside the world.
 #[derive(Clone, Serialize, Deserialize)]
 struct State {
     hero: BodyId,
@@ -73,7 +71,7 @@ impl Platformer {
         Ok(())
     }
 
-    /// Moves the hero as the pad says, and collects the coins on the way.
+    /// Moves the hero, and collects coins.
     fn walk(&mut self, pad: u8) -> Result<(), WorldError> {
         let State { hero, walk, .. } = &mut self.state;
         let way = Fx::from_num(i32::from(pad & RIGHT != 0) - i32::from(pad & LEFT != 0));
@@ -117,7 +115,7 @@ impl Game for Platformer {
     }
     fn step(&mut self, inputs: &[u8]) {
         let driven = self.drive_lift();
-        // The world steps even if it has refused a command.
+        // The world steps even after a refused command.
         self.world.step();
         let walked = self.walk(inputs.first().copied().unwrap_or(0));
         if let Err(error) = driven.and(walked) {

@@ -1,5 +1,5 @@
-//! Plays a replay of the sandbox: `replay_player ../../replays/drum.replay`. Space pauses, the left and right arrow
-//! keys step by a tick, Home and End go to the ends, PageUp and PageDown jump by 60 ticks.
+//! Plays a replay of the sandbox: `replay_player ../../replays/drum.replay`. Space pauses, arrow keys step, Home and
+//! End go to the ends, PageUp and PageDown jump by 60 ticks.
 
 use bevy::prelude::*;
 use bevy_lockstep2d::LockstepError;
@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 fn control(keys: Res<ButtonInput<KeyCode>>, mut lockstep: ResMut<Lockstep<Sandbox>>) {
-    // Not every access changes the replay, so change detection is bypassed.
+    // Not every access is a change.
     let lockstep = lockstep.bypass_change_detection();
     let (tick, end) = (lockstep.tick(), lockstep.replay_ticks().unwrap_or(0));
     if keys.just_pressed(KeyCode::Space) {

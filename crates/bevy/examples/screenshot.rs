@@ -9,14 +9,14 @@ use bevy::time::TimeUpdateStrategy;
 use bevy_lockstep2d::prelude::LockstepStatus;
 use lockstep2d::draw::{PAPER, Style};
 
-/// Environment variable with the file for the picture.
+/// Variable with the file for the picture.
 const FILE: &str = "LOCKSTEP2D_SCREENSHOT";
-/// Environment variable with the number of frames before the picture is taken.
+/// Variable with the number of frames before the picture.
 const FRAMES: &str = "LOCKSTEP2D_FRAMES";
-/// Environment variable with the minimum number of pixels of each style, as in `fixed=1400 dynamic=400`.
+/// Variable with the least number of pixels of each style, as in `fixed=1400 dynamic=400`.
 const SHOWS: &str = "LOCKSTEP2D_SHOWS";
 
-/// Largest accepted difference of a colour channel, which is converted to a linear float and back with rounding.
+/// Largest accepted difference of a colour channel: it is rounded to a linear float and back.
 const TOLERANCE: u8 = 2;
 
 #[derive(Resource)]
@@ -26,16 +26,14 @@ struct Plan {
     shows: Vec<Expected>,
 }
 
-/// A style, and the least number of pixels in its colour.
 #[derive(Clone, Copy, Debug)]
 struct Expected {
     style: Style,
     pixels: usize,
 }
 
-/// With the environment variable `LOCKSTEP2D_SCREENSHOT=FILE.png` the app plays 240 frames (or `LOCKSTEP2D_FRAMES`) of
-/// a sixtieth of a second, saves a picture of its window, and ends. It panics if the picture has too few pixels of a
-/// style in `LOCKSTEP2D_SHOWS`.
+/// With `LOCKSTEP2D_SCREENSHOT=FILE.png` the app plays 240 frames (or `LOCKSTEP2D_FRAMES`), saves a picture of its
+/// window, and ends. It panics if a style in `LOCKSTEP2D_SHOWS` has too few pixels.
 pub(crate) fn take_when_asked(app: &mut App) {
     let Some(file) = std::env::var_os(FILE) else { return };
     let frames = std::env::var(FRAMES).ok().and_then(|frames| frames.parse().ok()).unwrap_or(240);
@@ -79,7 +77,7 @@ fn check(
     let picture = captured.image.clone().try_into_dynamic()?.into_rgb8();
     let (pixels, _) = picture.as_raw().as_chunks::<3>();
     compare(pixels, &plan.shows)?;
-    // A match needs some frames before its first tick.
+    // A match needs frames before its first tick.
     if status.tick < u64::from(plan.frames) / 2 {
         return Err(format!("only {} ticks in {} frames", status.tick, plan.frames).into());
     }
@@ -87,7 +85,7 @@ fn check(
     Ok(())
 }
 
-/// Checks that at least half of a picture, but not all of it, is background, and that it shows what is expected.
+/// At least half of a picture, but not all of it, must be background.
 fn compare(pixels: &[[u8; 3]], shows: &[Expected]) -> Result<(), String> {
     let of_colour = |colour: u32| pixels.iter().filter(|pixel| is_near(**pixel, colour)).count();
     let (background, total) = (of_colour(PAPER), pixels.len());
@@ -127,7 +125,7 @@ mod tests {
         let [fixed, dynamic] = [Style::Fixed, Style::Dynamic].map(|style| style.paint().stroke);
         let compare = |parts: &[(u32, usize)]| compare(&pixels(parts), &shows);
         assert_eq!(compare(&[(PAPER, 100), (fixed, 20), (dynamic, 10)]), Ok(()));
-        // A colour value that is off by one counts as the same colour.
+        // A value that is off by one counts as the same colour.
         assert_eq!(compare(&[(PAPER - 0x01_0101, 100), (fixed + 1, 20), (dynamic, 10)]), Ok(()));
         let refused: [&[(u32, usize)]; 7] = [
             &[],

@@ -9,7 +9,7 @@ use lockstep2d::lockstep::{Game, RulesId, SetupError};
 use lockstep2d::math::{Fx, Vec2 as FixedVec2, fx_mul};
 use lockstep2d::world::{Snapshot, World as Physics};
 
-/// Two balls on a platform. The input of a player is a direction: -1, 0 or 1.
+/// The input of a player is a direction: -1, 0 or 1.
 pub struct Versus {
     world: Physics,
     players: [BodyId; 2],
@@ -54,7 +54,7 @@ impl Game for Versus {
     }
     fn step(&mut self, inputs: &[i8]) {
         for (player, pad) in self.players.into_iter().zip(inputs) {
-            // A push that the world refuses has no effect.
+            // A refused push has no effect.
             let _ = self.push(player, *pad);
         }
         self.world.step();
@@ -81,7 +81,7 @@ pub const fn bot_pad(tick: u64) -> i8 {
     if tick % 90 < 50 { -1 } else { 1 }
 }
 
-/// The arrow keys as the input of the first player of this machine.
+/// Arrow keys of the first player of this machine.
 pub fn press(keys: Res<ButtonInput<KeyCode>>, mut inputs: ResMut<Inputs<Versus>>) {
     let pressed = |key| i8::from(keys.pressed(key));
     *inputs.held(0) = pressed(KeyCode::ArrowRight) - pressed(KeyCode::ArrowLeft);

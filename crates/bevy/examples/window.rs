@@ -1,4 +1,4 @@
-//! Shared by the examples: a window with a camera that draws the world as gizmos.
+//! Shared by the examples: a window that draws the world as gizmos.
 
 #[cfg(all(feature = "window", not(target_arch = "wasm32")))]
 mod screenshot;
@@ -9,7 +9,7 @@ use bevy::prelude::*;
 use bevy_lockstep2d::prelude::*;
 use bevy_lockstep2d::{LockstepGame, LockstepGizmosPlugin};
 
-/// Returns an app with a window and the plugin of a game. `metres` are visible from left to right, around `centre`.
+/// An app with a window and the plugin. `metres` are visible from left to right, around `centre`.
 pub fn app<G: LockstepGame>(title: &str, metres: f32, centre: Vec2) -> App {
     let (width, height) = (960_u16, 640_u16);
     let scale = f32::from(width) / metres;

@@ -11,7 +11,7 @@ use crate::game::LockstepGame;
 use crate::lockstep::Lockstep;
 use crate::plugin::LockstepStatus;
 
-/// Registers and measures the diagnostics that its constants name. `LogDiagnosticsPlugin` prints them, for example.
+/// Measures the diagnostics named by its constants, for example for `LogDiagnosticsPlugin`.
 #[derive(Clone, Copy, Debug)]
 pub struct LockstepDiagnosticsPlugin<G>(PhantomData<fn() -> G>);
 
@@ -22,9 +22,9 @@ impl<G> Default for LockstepDiagnosticsPlugin<G> {
 }
 
 impl<G> LockstepDiagnosticsPlugin<G> {
-    /// Time in milliseconds that the driver takes in a frame: [`LockstepStatus::step_time`].
+    /// Time of the driver in a frame, in milliseconds: [`LockstepStatus::step_time`].
     pub const STEP: DiagnosticPath = DiagnosticPath::const_new("lockstep/step");
-    /// Largest number of ticks by which a rollback in a frame went back.
+    /// Largest number of ticks that a rollback in a frame went back.
     pub const ROLLBACK: DiagnosticPath = DiagnosticPath::const_new("lockstep/rollback");
     /// Number of played ticks that are not confirmed.
     pub const PREDICTED: DiagnosticPath = DiagnosticPath::const_new("lockstep/predicted");
@@ -45,7 +45,7 @@ impl<G: LockstepGame> Plugin for LockstepDiagnosticsPlugin<G> {
     }
 }
 
-/// Frames between two measurements of the size of a save. Each measurement encodes a save.
+/// Frames between two measurements of a save, which encode it.
 const SAVE_INTERVAL: u32 = 64;
 
 fn measure<G: LockstepGame>(

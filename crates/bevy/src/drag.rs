@@ -13,20 +13,20 @@ use crate::inputs::Inputs;
 use crate::lockstep::Lockstep;
 use crate::plugin::{LockstepSettings, LockstepSystems};
 
-/// Drags the bodies of a [`Sandbox`] with a [`DragHand`]. The pull is a command in the input of a player, so that it is
+/// Drags the bodies of a [`Sandbox`] with a [`DragHand`]. The pull is a command in the input of a player, so it is
 /// recorded.
 ///
-/// The plugin needs no window: a system of the game passes the position, presses and releases of the pointer to the
-/// hand. With the feature `picking`, `PointerDragPlugin` does so for mouse and touch.
+/// A system of the game passes the pointer to the hand. With the feature `picking`, `PointerDragPlugin` does so for
+/// mouse and touch.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DragPlugin;
 
-/// The pointer that drags bodies. Positions are in units of `Transform`, as from `Camera::viewport_to_world_2d`.
+/// The pointer that drags bodies. Positions are in units of `Transform`.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default)]
 #[reflect(Resource)]
 pub struct DragHand {
     at: Option<FloatVec2>,
-    /// The body to hold; `None` for the first dynamic body at the position.
+    /// `None` for the first dynamic body at the position.
     #[reflect(ignore)]
     target: Option<BodyId>,
     #[reflect(ignore)]
@@ -41,18 +41,18 @@ struct Held {
 }
 
 impl DragHand {
-    /// Presses the pointer at a position. The first dynamic body there is held until [`DragHand::release`]. If there is
-    /// none, the first one that the pointer reaches is held.
+    /// Presses the pointer. Holds the first dynamic body there, or the first that the pointer reaches, until
+    /// [`DragHand::release`].
     pub fn hold(&mut self, at: FloatVec2) {
         self.at = Some(at);
     }
 
-    /// Presses the pointer at a position on a body. The body is held at this point until [`DragHand::release`].
+    /// Presses the pointer on a body, which is held at this point until [`DragHand::release`].
     pub fn hold_body(&mut self, body: BodyId, at: FloatVec2) {
         *self = DragHand { at: Some(at), target: Some(body), held: None };
     }
 
-    /// Moves the pressed pointer. Has no effect if the pointer is not pressed.
+    /// Moves the pointer, if it is pressed.
     pub fn move_to(&mut self, at: FloatVec2) {
         self.at = self.at.and(Some(at));
     }
@@ -78,8 +78,8 @@ impl Plugin for DragPlugin {
     }
 }
 
-/// Converts a position in units of `Transform` to metres, saturating at the range of [`Fx`]. A coordinate that is not
-/// finite becomes 0.
+/// Converts units of `Transform` to metres, saturating at the range of [`Fx`]. A coordinate that is not finite becomes
+/// 0.
 pub fn to_metres(at: FloatVec2, settings: &LockstepSettings) -> Vec2<Fx> {
     let metres = |value: f32| Fx::saturating_from_num(if value.is_finite() { value } else { 0.0 });
     let at = at / settings.pixels_per_metre;
@@ -101,8 +101,7 @@ pub(crate) fn pull(
         };
     }
     let Some(command) = hand.held.and_then(|held| pull_command(world, held, at)) else { return };
-    // After a frame without a tick, the force of that frame is still in the list, and is replaced. In a frame with two
-    // ticks only the first tick applies the force.
+    // Replaces the force of a frame without a tick. In a frame with two ticks, only the first applies it.
     let once = inputs.once(0);
     once.retain(|other| !is_same_pull(other, &command));
     once.push(command);
@@ -119,7 +118,6 @@ fn grab(world: &World, at: Vec2<Fx>) -> Option<Held> {
     bodies.find_map(|body| grip(world, body, at))
 }
 
-/// A dynamic body, held at a point.
 fn grip(world: &World, id: BodyId, at: Vec2<Fx>) -> Option<Held> {
     let body = world.body(id).filter(|body| body.is_dynamic())?;
     Some(Held { body: id, grip: body.transform().apply_inverse(at) })
@@ -132,7 +130,7 @@ const DAMPING: Fx = fx!(25);
 /// Largest acceleration along each axis, in m/s2.
 const ACCELERATION_MAX: Fx = fx!(500);
 
-/// The force of a damped spring from the grip to the pointer.
+/// Force of a damped spring from the grip to the pointer.
 fn pull_command(world: &World, held: Held, at: Vec2<Fx>) -> Option<Command> {
     let body = world.body(held.body)?;
     let grip = body.transform().apply(held.grip);

@@ -11,29 +11,28 @@ use lockstep2d::replay::{RecordError, SeekError, Verdict};
 /// Reason why a driver cannot start or continue.
 #[derive(Clone, Debug)]
 pub enum LockstepError {
-    /// The game of a sync test cannot start from its setup.
+    /// The game of a sync test refuses its setup.
     Setup(SetupError),
-    /// The inputs of a sync test cannot be encoded.
+    /// Inputs of a sync test cannot be encoded.
     Inputs(InputError),
     /// A local game cannot start from its setup, or cannot be recorded.
     Record(RecordError),
-    /// A match cannot start or continue, or its replay or a report of a desync cannot be made.
+    /// A match cannot start or continue, or its replay or report cannot be made.
     Match(PeerError),
     /// No tick of the replay can be played.
     Replay(Box<Verdict>),
     /// The replay cannot be played to a tick.
     Seek(SeekError),
-    /// A sync test found a state that depends on more than the inputs: saving and loading the game loses state, or a
-    /// step reads something that is not part of the game.
+    /// A sync test found a state that depends on more than the inputs: loading loses state, or a step reads other data.
     SyncTest {
-        /// Number of ticks after which the states differ.
+        /// Ticks after which the states differ.
         tick: u64,
         /// Hash when the tick was played first.
         first: StateHash,
         /// Hash when the tick was played again.
         again: StateHash,
     },
-    /// The driver does not support the named operation: only replays can seek, for example.
+    /// The driver does not support this operation: only replays can seek, for example.
     Unsupported(&'static str),
 }
 
@@ -86,8 +85,7 @@ impl From<SetupError> for LockstepError {
     }
 }
 
-/// The driver stopped and plays no more ticks. Only a replay can continue, after a
-/// [`Lockstep::seek`](crate::Lockstep::seek).
+/// The driver has stopped. Only a replay can continue, after a [`Lockstep::seek`](crate::Lockstep::seek).
 #[derive(Message, Clone, Debug)]
 pub struct LockstepFailed(
     /// Reason.

@@ -1,11 +1,10 @@
 //! Events of the simulation as Bevy messages, and for observers.
 //!
-//! With rollback a tick may be played several times. A [`ConfirmedEvent`] is sent when its tick is final, so that no
-//! rollback can change it: all peers have the same confirmed events, in the same order, each once. A peer that joins
-//! late or returns receives a state, and misses events before that state. A [`PredictedEvent`] is sent when the event
-//! occurs in a played tick for the first time, for sounds and particles; a [`RetractedEvent`] follows if a rollback
-//! removes the event. In a local game and in a replay, the predicted and the confirmed event are sent in the same
-//! frame.
+//! With rollback a tick may be played several times. A [`ConfirmedEvent`] is sent once, when its tick is final: peers
+//! have the same confirmed events in the same order, except those before a state that they received. A
+//! [`PredictedEvent`] is sent when an event first occurs in a played tick, for sounds and particles. A
+//! [`RetractedEvent`] follows if a rollback removes it. A local game and a replay send predicted and confirmed events
+//! in the same frame.
 
 use bevy::prelude::{Entity, EntityEvent, Message};
 use lockstep2d::body::{BodyId, ShapeId};
@@ -45,8 +44,7 @@ impl WorldEvent {
         }
     }
 
-    /// Whether both events are of the same kind and of the same shapes, joint or body. Their numbers, such as the speed
-    /// of a hit, may differ.
+    /// Whether both are of one kind and of the same shapes, joint or body. Numbers such as a speed may differ.
     fn is_alike(&self, other: &Self) -> bool {
         match (self, other) {
             (WorldEvent::ContactBegin(a), WorldEvent::ContactBegin(b))
@@ -61,13 +59,12 @@ impl WorldEvent {
     }
 }
 
-/// An event with its tick and the bodies that take part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LoggedEvent {
-    /// Number of ticks played, including the tick of the event.
+    /// Ticks played, including that of the event.
     pub(crate) tick: u64,
     pub(crate) event: WorldEvent,
-    /// Bodies of the shapes or of the joint, if the shape or joint exists after the tick; or the body that fell asleep.
+    /// Bodies of the shapes or joint, if they exist after the tick; or the body that fell asleep.
     pub(crate) bodies: [Option<BodyId>; 2],
 }
 
@@ -77,7 +74,7 @@ impl LoggedEvent {
     }
 }
 
-/// Passes the events of the last tick of a world to `found`, in their order: contacts, hits, sensors, joints, sleep.
+/// Passes on the events of the last tick of a world: contacts, hits, sensors, joints, sleep.
 pub(crate) fn each_event(world: &World, tick: u64, found: &mut impl FnMut(LoggedEvent)) {
     let events = world.events();
     let mut add = |event: WorldEvent| {
@@ -108,23 +105,23 @@ pub(crate) fn each_event(world: &World, tick: u64, found: &mut impl FnMut(Logged
     asleep.for_each(|moved| add(WorldEvent::FellAsleep(moved.body)));
 }
 
-/// An event of a final tick. Each event is sent once.
+/// An event of a final tick, sent once.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ConfirmedEvent {
-    /// Number of ticks played, including the tick of the event.
+    /// Ticks played, including that of the event.
     pub tick: u64,
     /// The event.
     pub event: WorldEvent,
-    /// Views of the bodies: of shapes A and B, of the sensor and the visitor, of the joint, or of the body that fell
-    /// asleep. `None` for a body or a shape that no longer exists, and for both bodies of a joint that broke.
+    /// Views of shapes A and B, of the sensor and the visitor, of the joint's bodies, or of the body that fell asleep.
+    /// `None` for a body or shape that no longer exists, and for the bodies of a joint that broke.
     pub views: [Option<Entity>; 2],
 }
 
-/// An event of a played tick. Until the tick is confirmed, a rollback may remove the event. Each event is sent once,
-/// when it first occurs. If a rollback moves the event by at most 16 ticks, it is not sent again.
+/// An event of a played tick, which a rollback may remove until the tick is confirmed. It is sent once, also if a
+/// rollback moves it by up to 16 ticks.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PredictedEvent {
-    /// Number of ticks played, including the tick of the event.
+    /// Ticks played, including that of the event.
     pub tick: u64,
     /// The event.
     pub event: WorldEvent,
@@ -132,30 +129,29 @@ pub struct PredictedEvent {
     pub views: [Option<Entity>; 2],
 }
 
-/// A [`PredictedEvent`] that a rollback has removed for good. A game can stop its sound, for example.
+/// A [`PredictedEvent`] that a rollback has removed, for example to stop its sound.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RetractedEvent {
-    /// Number of ticks played, including the tick of the predicted event.
+    /// Ticks played, including that of the event.
     pub tick: u64,
     /// The event that was predicted.
     pub event: WorldEvent,
 }
 
-/// A [`ConfirmedEvent`] for the observers of a view, once for each of its bodies:
-/// `commands.entity(view).observe(|on: On<BodyEvent>| ...)`.
+/// A [`ConfirmedEvent`] for the observers of a view: `commands.entity(view).observe(|on: On<BodyEvent>| ...)`.
 #[derive(EntityEvent, Clone, Copy, Debug)]
 pub struct BodyEvent {
     /// The view.
     pub entity: Entity,
     /// View of the other body, if there is one.
     pub other: Option<Entity>,
-    /// Number of ticks played, including the tick of the event.
+    /// Ticks played, including that of the event.
     pub tick: u64,
     /// The event.
     pub event: WorldEvent,
 }
 
-/// An event of a match: peers that join, leave or are waited for, and desyncs.
+/// An event of a match, such as a peer that joins or a desync.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MatchEvent(
     /// The event.

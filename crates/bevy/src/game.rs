@@ -2,8 +2,7 @@
 
 use lockstep2d::lockstep::Game;
 
-/// A [`Game`] that can be part of a Bevy resource: threads can share the game, its inputs and its saves. Implemented
-/// for every such game.
+/// A [`Game`] that can be part of a Bevy resource, because threads can share it, its inputs and its saves.
 pub trait LockstepGame:
     Game<Setup: Send + Sync, Input: Send + Sync + 'static, Save: Send + Sync + 'static> + Send + Sync + 'static
 {

@@ -15,8 +15,7 @@ use crate::game::LockstepGame;
 use crate::lockstep::Lockstep;
 use crate::plugin::LockstepSettings;
 
-/// Draws the state of the world: outlines, contacts, forces, joints, islands. Nothing is interpolated: the gizmos show
-/// the bodies, not their views.
+/// Draws the state of the world, without interpolation: the bodies, not their views.
 #[derive(Clone, Copy, Debug)]
 pub struct LockstepGizmosPlugin<G>(PhantomData<fn() -> G>);
 
@@ -26,14 +25,13 @@ impl<G> Default for LockstepGizmosPlugin<G> {
     }
 }
 
-/// The layers to draw, as a config group of `GizmoConfigStore`, which also turns the group on and off and sets its line
-/// width. The fields are those of [`Layers`].
+/// The layers to draw, as a config group of `GizmoConfigStore`. The fields are those of [`Layers`].
 #[derive(Reflect, GizmoConfigGroup, Clone, Copy, Debug, PartialEq, Eq)]
 #[reflect(Default)]
 pub struct LockstepGizmos {
     /// The shapes of all bodies.
     pub outlines: bool,
-    /// Outlines in the colours of their islands.
+    /// Outlines in colours of islands.
     pub islands: bool,
     /// Fat boxes of the broad phase.
     pub fat_boxes: bool,
@@ -45,7 +43,7 @@ pub struct LockstepGizmos {
     pub contact_normals: bool,
     /// Normal and friction forces.
     pub contact_forces: bool,
-    /// Contact points in the colours of the solver.
+    /// Contact points in colours of the solver.
     pub solver_colours: bool,
     /// Anchors and arms of joints.
     pub joints: bool,
@@ -163,7 +161,7 @@ fn draw(gizmos: &mut Gizmos<LockstepGizmos>, primitive: &Primitive, scale: f32) 
     }
 }
 
-/// Corners of an outline around a convex polygon at a distance, with an arc of four lines around each vertex.
+/// Outline around a convex polygon at a distance, with four lines around each vertex.
 fn rounded(vertices: &[Vec2], radius: f32) -> Vec<Vec2> {
     if radius <= 0.0 {
         return vertices.to_vec();
@@ -175,7 +173,7 @@ fn rounded(vertices: &[Vec2], radius: f32) -> Vec<Vec2> {
     };
     let arc = |index: usize| {
         let (before, after) = (normal(index + count - 1), normal(index));
-        // Between opposite normals, at the ends of a line, the arc leads around the end.
+        // At the ends of a line, the arc leads around the end.
         let turn = if before.dot(after) < -0.999 { core::f32::consts::PI } else { before.angle_to(after) };
         (0..=4_u8).map(move |part| before.rotate(Vec2::from_angle(turn * f32::from(part) / 4.0)))
     };

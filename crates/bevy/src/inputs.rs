@@ -1,4 +1,4 @@
-//! [`Inputs`]: the inputs of the local players, written by a system of the game.
+//! [`Inputs`]: the inputs of the local players.
 
 use bevy::prelude::Resource;
 
@@ -6,10 +6,9 @@ use crate::game::LockstepGame;
 
 /// Inputs of the local players for the coming ticks. Write them in [`LockstepSystems::Inputs`](crate::LockstepSystems).
 ///
-/// A frame may play no tick, one tick or several ticks. A *held* input is the input of every tick until it changes:
-/// directions, buttons that are down. A *once* input replaces the held input for exactly one tick, the next tick that
-/// is played: a jump, a list of commands. So a press is neither lost in a frame without a tick nor counted twice in a
-/// frame with two ticks.
+/// A frame may play no tick or several. A *held* input is the input of every tick until it changes: directions, buttons
+/// that are down. A *once* input replaces it for the next played tick alone: a jump, a list of commands. So a press
+/// counts once.
 ///
 /// ```
 /// # use bevy_lockstep2d::Inputs;
@@ -43,13 +42,13 @@ impl<G: LockstepGame> Default for Inputs<G> {
 const SEATS_MAX: u32 = 64;
 
 impl<G: LockstepGame> Inputs<G> {
-    /// The input that a local player holds. Local players are counted from 0: in a local game they are the players, in
-    /// a match your own seats in ascending order. Players above 63 share an input that is never used.
+    /// The held input of a local player. Local players are counted from 0: in a match, they are your own seats in
+    /// ascending order. Players above 63 share an input that is never used.
     pub fn held(&mut self, player: u32) -> &mut G::Input {
         &mut self.seat(player).held
     }
 
-    /// The input of a local player for the next tick alone. It begins as a copy of the held input.
+    /// The input of a local player for the next tick alone, which begins as a copy of the held input.
     pub fn once(&mut self, player: u32) -> &mut G::Input {
         let Seat { held, once } = self.seat(player);
         once.get_or_insert_with(|| held.clone())
@@ -68,7 +67,6 @@ impl<G: LockstepGame> Inputs<G> {
         &mut self.seats[index]
     }
 
-    /// The inputs of the next tick for a number of players.
     pub(crate) fn next(&self, players: usize) -> Vec<G::Input> {
         let of = |player: usize| match self.seats.get(player) {
             Some(Seat { once: Some(once), .. }) => once.clone(),

@@ -1,4 +1,4 @@
-//! Levels built from entities: [`SpawnBody`] and [`SpawnJoint`] become commands, before the first tick.
+//! Levels built from entities.
 
 use core::fmt;
 
@@ -11,10 +11,10 @@ use lockstep2d::world::{Command, Config, Outcome, World};
 
 use crate::views::BodyView;
 
-/// A body to be created by [`build_level`]. The entity becomes its view, with all its other components.
+/// A body for [`build_level`]. The entity becomes its view.
 #[derive(Component, Clone, Debug)]
 pub struct SpawnBody {
-    /// The body. Its position comes from this definition and not from the `Transform`, whose floats are rounded.
+    /// The body. The `Transform` does not give its position, because floats are rounded.
     pub body: BodyDef,
     /// Its shapes.
     pub shapes: Vec<ShapeDef>,
@@ -35,8 +35,8 @@ impl SpawnBody {
     }
 }
 
-/// A joint to be created by [`build_level`], between two entities with a [`SpawnBody`]. The component may be on an
-/// entity of its own, or on one of the two entities.
+/// A joint for [`build_level`] between two entities with a [`SpawnBody`]. It may be on an entity of its own, or on one
+/// of the two.
 #[derive(Component, Clone, Debug)]
 pub struct SpawnJoint {
     /// Entity of body A.
@@ -45,14 +45,14 @@ pub struct SpawnJoint {
     pub body_b: Entity,
     /// The joint.
     pub kind: JointKind,
-    /// Point at which the bodies are joined, in metres in the world.
+    /// Anchor, in metres in the world.
     pub anchor: Vec2<Fx>,
-    /// The x axis of the frames of the joint, as a direction in the world: a slider, wheel or rack moves along it.
+    /// Direction in the world of a slider, wheel or rack: the x axis of the joint's frames.
     pub axis: Vec2<Fx>,
 }
 
 impl SpawnJoint {
-    /// A joint at a point of the world. A slider, wheel or rack moves along the x axis.
+    /// A joint at a point of the world, with the x axis as its axis.
     #[must_use]
     pub fn new(
         [body_a, body_b]: [Entity; 2],
@@ -63,7 +63,7 @@ impl SpawnJoint {
         SpawnJoint { body_a, body_b, kind: kind.into(), anchor: anchor.into(), axis }
     }
 
-    /// Sets the direction of a slider, wheel or rack.
+    /// Sets the axis of a slider, wheel or rack.
     #[must_use]
     pub fn axis(mut self, axis: impl Into<Vec2<Fx>>) -> Self {
         self.axis = axis.into();
@@ -76,7 +76,7 @@ impl SpawnJoint {
 pub enum LevelError {
     /// The world refuses its settings, a body or a joint.
     Refused {
-        /// The entity; none for the settings.
+        /// `None` for the settings.
         entity: Option<Entity>,
         /// Reason.
         error: WorldError,
@@ -102,19 +102,18 @@ impl fmt::Display for LevelError {
 
 impl core::error::Error for LevelError {}
 
-/// Turns all [`SpawnBody`] and [`SpawnJoint`] components into the commands that build them, for the setup of a game:
-/// [`SandboxSetup::commands`](lockstep2d::lockstep::SandboxSetup), or a field of your own.
+/// Turns all [`SpawnBody`] and [`SpawnJoint`] components into commands for the setup of a game, such as
+/// [`SandboxSetup::commands`](lockstep2d::lockstep::SandboxSetup).
 ///
 /// The components are removed, and the entities of bodies get their [`BodyView`]. Bodies and joints are created in the
-/// order of the indices of their entities (the order of spawning, unless the indices of despawned entities are reused),
-/// so that the same program builds the same level everywhere. For a match, build the level on one machine and send the
-/// commands to the others: entities may differ between machines, commands do not.
+/// order of the indices of their entities. For a match, build the level on one machine and send the commands to the
+/// others: entities may differ between machines.
 ///
 /// # Errors
 /// [`LevelError`]. All entities are then unchanged.
 pub fn build_level(app: &mut BevyWorld, config: Config) -> Result<Vec<Command>, LevelError> {
     let refused = |entity: Entity| move |error| LevelError::Refused { entity: Some(entity), error };
-    // The commands are executed in a scratch world to find the ids of the bodies. In the game they give the same ids.
+    // A scratch world finds the ids of the bodies, which are the same in the game.
     let mut scratch = World::new(config).map_err(|error| LevelError::Refused { entity: None, error })?;
     let mut commands = Vec::new();
     let mut bodies = EntityHashMap::default();
@@ -147,7 +146,7 @@ pub fn build_level(app: &mut BevyWorld, config: Config) -> Result<Vec<Command>, 
     Ok(commands)
 }
 
-/// All components of a type, in the order of their entities' indices.
+/// Components, in the order of the indices of their entities.
 fn in_order<C: Component + Clone>(app: &mut BevyWorld) -> Vec<(Entity, C)> {
     let mut query = app.query::<(Entity, &C)>();
     let mut found: Vec<(Entity, C)> =

@@ -3,10 +3,10 @@
 //! The simulation is one resource, [`Lockstep<G>`](Lockstep), for any [`Game`](lockstep2d::lockstep::Game). A driver
 //! plays it: [local](Lockstep::local), a [replay](Lockstep::replay), a [match](Lockstep::host) over a network, or a
 //! [sync test](Lockstep::sync_test).
-//! Entities are *views* of the bodies in the game: they appear and disappear with the bodies, also through rollbacks,
-//! late joins and seeks. The plugin writes interpolated poses to their `Transform`s, and never reads a pose from
-//! there. So Bevy can change the simulation only through [`Inputs`], and no component needs to be registered for
-//! rollback.
+//!
+//! Entities are *views* of the bodies in the game. The plugin writes interpolated poses to their `Transform`s, and
+//! never reads a pose from there. Bevy changes the simulation only through [`Inputs`], and no component needs to be
+//! registered for rollback.
 //!
 //! ```
 //! use bevy::prelude::*;
@@ -30,10 +30,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Systems of [`LockstepPlugin`] run in the schedule `RunFixedMainLoop`, after `PreUpdate` and before `Update`, in the
-//! sets of [`LockstepSystems`]. Systems that read input and fill [`Inputs`] belong in [`LockstepSystems::Inputs`].
+//! The systems of [`LockstepPlugin`] run in the schedule `RunFixedMainLoop`, in the sets of [`LockstepSystems`].
+//! Systems that fill [`Inputs`] belong in [`LockstepSystems::Inputs`].
 
-// The library's ban on floats does not apply here: views are floats, and they affect a game only through its inputs.
+// Floats are not forbidden here: views affect a game only through its inputs.
 #![deny(missing_docs, clippy::iter_over_hash_type, clippy::unwrap_used)]
 #![warn(unreachable_pub)]
 

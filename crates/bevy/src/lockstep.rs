@@ -28,18 +28,15 @@ pub enum DriverKind {
     Match,
 }
 
-/// A game and its driver. Insert it as a resource to start, replace it to restart, and remove it to stop: the views of
-/// its bodies follow.
+/// A game and its driver. Insert it as a resource to start, replace it to restart, and remove it to stop.
 ///
-/// The game can be changed only through [`Inputs`]: a change that is not an input would be missing on other machines
-/// and in the replay.
+/// The game can be changed only through [`Inputs`]: other changes would be missing on other machines and in the replay.
 #[derive(Resource)]
 pub struct Lockstep<G: LockstepGame> {
     driver: Driver<G>,
     is_paused: bool,
     /// Ticks to be played although the game is paused.
     single_steps: u32,
-    /// Reason for which the driver has stopped.
     failure: Option<LockstepError>,
 }
 
@@ -50,7 +47,7 @@ impl<G: LockstepGame> Lockstep<G> {
         Lockstep { driver, is_paused: false, single_steps: 0, failure: None }
     }
 
-    /// A game whose players are all at this machine. It is recorded: see [`Lockstep::take_replay`].
+    /// A game whose players are all at this machine, recorded for [`Lockstep::take_replay`].
     ///
     /// # Errors
     /// [`LockstepError::Record`] when the setup cannot start a game.
@@ -58,8 +55,8 @@ impl<G: LockstepGame> Lockstep<G> {
         Ok(Self::new(Driver::Local(Box::new(LocalDriver::new(setup)?))))
     }
 
-    /// A local game for tests: after every tick, from tick `depth` on, it loads the state of `depth` ticks ago, plays
-    /// these ticks again, and compares all state hashes. It stops with [`LockstepError::SyncTest`] if they differ.
+    /// A local game for tests. From tick `depth` on, every tick loads the state of `depth` ticks ago, plays these ticks
+    /// again and compares the state hashes. It stops with [`LockstepError::SyncTest`] if they differ.
     ///
     /// # Errors
     /// [`LockstepError::Setup`] when the setup cannot start a game.
@@ -120,7 +117,7 @@ impl<G: LockstepGame> Lockstep<G> {
         Self::new(Driver::Match(Box::new(MatchDriver::new(peer))))
     }
 
-    /// The game. In a match it may depend on guessed inputs.
+    /// The game, which in a match may depend on guessed inputs.
     #[must_use]
     pub fn game(&self) -> &G {
         self.driver.game().game()
@@ -138,7 +135,7 @@ impl<G: LockstepGame> Lockstep<G> {
         self.driver.tick()
     }
 
-    /// Number of confirmed ticks, which no rollback can change.
+    /// Number of ticks that no rollback can change.
     #[must_use]
     pub fn confirmed(&self) -> u64 {
         self.driver.confirmed()
@@ -155,9 +152,8 @@ impl<G: LockstepGame> Lockstep<G> {
         }
     }
 
-    /// Stops the ticks. In a match the others are asked to stop, too ([`MatchEvent`](crate::MatchEvent)); their game
-    /// decides whether they do. Peers that do not stop have to wait for this one: [`PeerOptions::patience`] limits only
-    /// the wait for a peer that sends nothing, and a paused peer still sends packets.
+    /// Stops the ticks. In a match, the others receive a [`MatchEvent`](crate::MatchEvent) and decide whether they
+    /// stop, too. Otherwise they wait for this peer, without the limit of [`PeerOptions::patience`].
     pub fn pause(&mut self) {
         self.set_paused(true);
     }
@@ -185,15 +181,13 @@ impl<G: LockstepGame> Lockstep<G> {
         self.single_steps = self.single_steps.saturating_add(1);
     }
 
-    /// The reason why the driver has stopped, if it has. The plugin has also sent it as the message
-    /// [`LockstepFailed`](crate::LockstepFailed) and written it to the log.
+    /// Why the driver has stopped. The plugin also sends it as [`LockstepFailed`](crate::LockstepFailed) and logs it.
     #[must_use]
     pub const fn failure(&self) -> Option<&LockstepError> {
         self.failure.as_ref()
     }
 
-    /// Goes to a tick of a replay, forwards or backwards. The ticks between give no events. A replay that has
-    /// failed can still go back.
+    /// Goes to a tick of a replay, forwards or backwards, without events. A replay that has failed can go back.
     ///
     /// # Errors
     /// [`LockstepError::Seek`] when there is no such tick or the replay cannot be played so far.
@@ -222,8 +216,8 @@ impl<G: LockstepGame> Lockstep<G> {
         }
     }
 
-    /// Takes the finished bytes of the game's own replay, to be appended to its file. Every byte is returned once.
-    /// Empty for drivers that do not record, and for a peer that joined after the first tick.
+    /// Takes the finished bytes of the replay, each once, to be appended to its file. Empty for drivers that do not
+    /// record, and for a peer that joined after the first tick.
     pub fn take_replay(&mut self) -> Vec<u8> {
         match &mut self.driver {
             Driver::Local(local) => local.take_replay(),
@@ -232,8 +226,8 @@ impl<G: LockstepGame> Lockstep<G> {
         }
     }
 
-    /// Ends the game and returns the bytes of its replay that have not been taken yet; see [`Lockstep::take_replay`].
-    /// In a match, leave or end the match first; see [`Peer::finish`].
+    /// Ends the game and returns the rest of its replay: see [`Lockstep::take_replay`]. Leave or end a match first: see
+    /// [`Peer::finish`].
     ///
     /// # Errors
     /// [`LockstepError`] when the replay cannot be finished.
@@ -245,9 +239,8 @@ impl<G: LockstepGame> Lockstep<G> {
         }
     }
 
-    /// Numbers of the players at this machine, from 0: their places in the inputs of [`Game::step`]. All players in a
-    /// local game, none in a replay, for a spectator, and before a peer is seated. `Inputs::held(0)` is the input of
-    /// the first one of these.
+    /// Indices of the players at this machine in the inputs of [`Game::step`], ascending and counted from 0. Empty in a
+    /// replay, for a spectator, and before a peer is seated.
     #[must_use]
     pub fn seats(&self) -> Vec<u32> {
         match &self.driver {
@@ -257,7 +250,7 @@ impl<G: LockstepGame> Lockstep<G> {
         }
     }
 
-    /// The local peer of a match, with its seats, links, status and session.
+    /// The local peer of a match.
     #[must_use]
     pub fn peer(&self) -> Option<&AnyPeer<G>> {
         match &self.driver {
@@ -266,8 +259,8 @@ impl<G: LockstepGame> Lockstep<G> {
         }
     }
 
-    /// The local peer of a match, through which a game leaves or ends the match, or kicks a player. Do not call
-    /// `update` and `advance`: the plugin calls them. Use [`Lockstep::report`] to make a report.
+    /// The local peer of a match, to leave or end it or to kick a player. The plugin calls `update` and `advance`. Use
+    /// [`Lockstep::report`] for a report.
     pub fn peer_mut(&mut self) -> Option<&mut AnyPeer<G>> {
         match &mut self.driver {
             Driver::Match(network) => Some(network.peer_mut()),
@@ -275,11 +268,10 @@ impl<G: LockstepGame> Lockstep<G> {
         }
     }
 
-    /// This peer's report of a desync, as bytes for a file; see [`Peer::report`].
+    /// Report of a desync, as bytes for a file: see [`Peer::report`].
     ///
     /// # Errors
-    /// [`LockstepError::Match`] when the states that the report needs are not kept, [`LockstepError::Unsupported`] for
-    /// other drivers.
+    /// [`LockstepError::Match`] when the states for it are not kept, [`LockstepError::Unsupported`] for other drivers.
     pub fn report(&mut self, desync: &PeerDesync) -> Result<Vec<u8>, LockstepError> {
         match &mut self.driver {
             Driver::Match(network) => network.report(desync),
@@ -287,7 +279,6 @@ impl<G: LockstepGame> Lockstep<G> {
         }
     }
 
-    /// Plays the ticks of a frame.
     pub(crate) fn run(&mut self, time: FrameTime, inputs: &mut Inputs<G>) -> Result<(), LockstepError> {
         if self.failure.is_some() {
             return Ok(());
@@ -309,7 +300,6 @@ impl<G: LockstepGame> Lockstep<G> {
         Ok(())
     }
 
-    /// The next event of a match.
     pub(crate) fn next_event(&mut self) -> Option<PeerEvent> {
         self.peer_mut().and_then(Peer::next_event)
     }

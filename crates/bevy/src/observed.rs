@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use crate::step_log::{Stamp, StepLog};
 
-/// A game, and a log of its steps. Its rules, inputs, saves and hashes are those of `G`, byte for byte, so it works
-/// with peers and replays that do not use Bevy.
+/// A game, and a log of its steps. Rules, inputs, saves and hashes are those of `G`, so it works with peers and replays
+/// without Bevy.
 pub struct Observed<G> {
     game: G,
     log: Mutex<StepLog>,
@@ -26,7 +26,6 @@ pub struct ObservedSave<S> {
 }
 
 impl<G: Game> Observed<G> {
-    /// A game before its first tick.
     fn from_start(game: G) -> Self {
         let log = Mutex::new(StepLog::new(game.world()));
         Observed { game, log }
@@ -37,7 +36,6 @@ impl<G: Game> Observed<G> {
         &self.game
     }
 
-    /// The log.
     pub(crate) fn log(&self) -> MutexGuard<'_, StepLog> {
         self.log.lock().unwrap_or_else(PoisonError::into_inner)
     }

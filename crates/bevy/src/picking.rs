@@ -1,4 +1,4 @@
-//! [`LockstepPickingPlugin`]: bodies are targets of Bevy's pointer events. [`PointerDragPlugin`] drags them.
+//! [`LockstepPickingPlugin`] and [`PointerDragPlugin`]: bodies as targets of Bevy's pointer events.
 
 use core::marker::PhantomData;
 
@@ -23,11 +23,10 @@ use crate::lockstep::Lockstep;
 use crate::plugin::{LockstepSettings, LockstepSystems};
 use crate::views::{BodyView, BodyViews};
 
-/// A picking backend: views of bodies receive `Pointer<Click>`, `Pointer<Over>` and all other events of
-/// [`bevy::picking`], with the exact shapes of their bodies, except sensors, as hit areas. A view with
-/// [`Pickable::IGNORE`] is left out. Where bodies overlap, the view with the largest z is in front.
+/// A picking backend: views receive `Pointer<Click>` and the other events of [`bevy::picking`] at the shapes of their
+/// bodies, except sensors. A view with [`Pickable::IGNORE`] is left out. The view with the largest z is in front.
 ///
-/// The backend needs the plugins of `bevy::picking`, which `DefaultPlugins` contains.
+/// It needs the plugins of `bevy::picking`, which `DefaultPlugins` contains.
 ///
 /// ```
 /// # use bevy::picking::{InteractionPlugin, PickingPlugin};
@@ -62,8 +61,8 @@ impl<G: LockstepGame> Plugin for LockstepPickingPlugin<G> {
     }
 }
 
-/// Drags the dynamic bodies of a [`Sandbox`] with the primary button or a finger: [`LockstepPickingPlugin`] and
-/// [`DragPlugin`], connected. A body is not dragged where another entity that blocks pointers is in front of it.
+/// Drags the dynamic bodies of a [`Sandbox`] with the primary button or a finger, with [`LockstepPickingPlugin`] and
+/// [`DragPlugin`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PointerDragPlugin;
 
@@ -81,13 +80,12 @@ impl Plugin for PointerDragPlugin {
     }
 }
 
-/// The point of a ray on the plane of the views, and its distance.
+/// Point of a ray on the plane of the views, and its distance.
 fn on_plane(ray: Ray3d) -> Option<(Vec3, f32)> {
     let distance = ray.intersect_plane(Vec3::ZERO, InfinitePlane3d { normal: Dir3::Z })?;
     Some((ray.get_point(distance), distance))
 }
 
-/// Writes the views that each pointer hits.
 fn pick<G: LockstepGame>(
     lockstep: Res<Lockstep<G>>,
     (settings, views, rays): (Res<LockstepSettings>, Res<BodyViews>, Res<RayMap>),
@@ -111,7 +109,6 @@ fn pick<G: LockstepGame>(
     hits.write_batch(rays.iter().filter_map(hits_of));
 }
 
-/// The views of the bodies at a point.
 fn views_at<'a>(
     world: &'a World,
     views: &'a BodyViews,
@@ -121,17 +118,17 @@ fn views_at<'a>(
     let shapes = world.overlap_point(to_metres(at.xy(), settings), Default::default());
     let mut entities: Vec<Entity> =
         shapes.into_iter().filter_map(|shape| views.of_shape(world, shape)).collect();
-    // A body with several shapes at the point is one target.
+    // Several shapes of a body are one target.
     entities.sort_unstable();
     entities.dedup();
     entities.into_iter()
 }
 
-/// The pointer that holds a body, as seen by a camera.
+/// The pointer that holds a body, in the view of a camera.
 #[derive(Resource, Default)]
 struct HoldingPointer(Option<RayId>);
 
-/// Starts to drag the body of a view when the view or one of its children is pressed.
+/// Presses on a view or one of its children start to drag its body.
 fn grab(
     press: On<Pointer<Press>>,
     views: Query<&BodyView>,
@@ -152,7 +149,7 @@ fn grab(
     }
 }
 
-/// Moves the hand with its pointer, and releases the body when the button goes up or the pointer is cancelled.
+/// Moves the hand with its pointer. Releases the body when the button goes up or the pointer is cancelled.
 fn move_hand(
     rays: Res<RayMap>,
     mut inputs: MessageReader<PointerInput>,

@@ -17,9 +17,8 @@ use crate::lockstep::Lockstep;
 use crate::systems::{remove_views, send_events, step, write_views};
 use crate::views::{BodyView, BodyViews};
 
-/// Plays the games of one type: whenever there is a resource [`Lockstep<G>`], its ticks are played, its bodies have
-/// views, and its events are sent. An app must have only one such plugin, because [`BodyViews`] and [`LockstepStatus`]
-/// belong to a single game.
+/// Plays the resource [`Lockstep<G>`] while there is one, shows its bodies as views, and sends its events. An app can
+/// have one such plugin, because [`BodyViews`] and [`LockstepStatus`] belong to a single game.
 #[derive(Clone, Copy, Debug)]
 pub struct LockstepPlugin<G> {
     settings: LockstepSettings,
@@ -48,25 +47,23 @@ impl<G> LockstepPlugin<G> {
     }
 }
 
-/// Settings of the drawing of views. They can be changed at any time.
+/// Settings of views, which can be changed at any time.
 #[derive(Resource, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Resource)]
 pub struct LockstepSettings {
     /// Units of `Transform` per metre. A unit is a pixel in Bevy's default 2D camera.
     pub pixels_per_metre: f32,
-    /// Whether poses of views are interpolated between the last two ticks: motion is smooth at every frame rate, but
-    /// drawn up to a tick late. Otherwise views have the poses of the last tick.
+    /// Whether views are interpolated between the last two ticks. They are then up to a tick late.
     pub interpolate: bool,
-    /// When a rollback moves a body, its view approaches the new pose gradually: the remaining displacement halves in
-    /// this time. Zero moves the view at once.
+    /// Half-life of the displacement between a view and a body that a rollback has moved. Zero moves the view at once.
     pub smoothing_half_life: Duration,
-    /// Displacements longer than this, in metres, are shown as jumps, without smoothing or interpolation: after every
-    /// rollback, and in a tick if the body's velocity is too low for the displacement.
+    /// Displacements above this limit, in metres, are jumps without smoothing or interpolation: after a rollback, and
+    /// in a tick if the body's velocity does not explain them.
     pub smoothing_limit: f32,
 }
 
 impl Default for LockstepSettings {
-    /// 100 pixels per metre, interpolation, a half-life of 40 ms, and jumps for displacements above 2 m.
+    /// 100 pixels per metre, interpolation, a half-life of 40 ms, and jumps above 2 m.
     fn default() -> Self {
         LockstepSettings {
             pixels_per_metre: 100.0,
@@ -78,7 +75,7 @@ impl Default for LockstepSettings {
 }
 
 impl LockstepSettings {
-    /// Views are drawn exactly where the bodies are, for tests and screenshots.
+    /// Draws views exactly where the bodies are, for tests and screenshots.
     #[must_use]
     pub const fn exact(mut self) -> Self {
         self.interpolate = false;
@@ -87,7 +84,7 @@ impl LockstepSettings {
     }
 }
 
-/// Status of the game, updated in every frame in which there is one: for run conditions, diagnostics and inspectors.
+/// Status of the game, updated in each frame in which there is one.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Resource)]
 pub struct LockstepStatus {
@@ -97,18 +94,18 @@ pub struct LockstepStatus {
     pub confirmed: u64,
     /// Ticks played in this frame, including repeated ones.
     pub stepped: u32,
-    /// Largest number of ticks by which a rollback in this frame went back.
+    /// Largest number of ticks that a rollback in this frame went back.
     pub rolled_back: u32,
     /// Whether the game is paused.
     pub paused: bool,
-    /// Time that the ticks of this frame took, with everything that the driver does.
+    /// Time that the driver took in this frame.
     pub step_time: Duration,
 }
 
-/// The sets of the plugin, in the order in which they run, in `RunFixedMainLoop` beside `FixedUpdate`.
+/// Sets of the plugin, in their order, in `RunFixedMainLoop`.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LockstepSystems {
-    /// Systems of the game that fill [`Inputs`]. Runs once a frame.
+    /// Systems of the game that fill [`Inputs`], once a frame.
     Inputs,
     /// Ticks are played: none, one, or several.
     Step,

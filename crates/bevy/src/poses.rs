@@ -16,7 +16,7 @@ pub struct Pose {
 /// Poses of all bodies, by slot.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Poses {
-    /// Number of the last capture: an entry with another number belongs to a body that no longer exists.
+    /// Number of the last capture. An entry with another number is of a body that no longer exists.
     capture: u32,
     entries: Vec<Option<Entry>>,
 }
@@ -29,7 +29,6 @@ struct Entry {
 }
 
 impl Poses {
-    /// Replaces all poses by those of a world, or by none.
     pub(crate) fn capture(&mut self, world: Option<&World>) {
         self.capture = self.capture.wrapping_add(1);
         let Some(world) = world else { return self.entries.clear() };
@@ -43,13 +42,12 @@ impl Poses {
         }
     }
 
-    /// The pose of a body, if it exists.
     pub(crate) fn get(&self, body: BodyId) -> Option<Pose> {
         let entry = self.entries.get(body.index() as usize)?.as_ref()?;
         (entry.body == body && entry.capture == self.capture).then_some(entry.pose)
     }
 
-    /// All bodies, in slot order.
+    /// Poses in slot order.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (BodyId, Pose)> {
         let entries = self.entries.iter().flatten();
         entries.filter(|entry| entry.capture == self.capture).map(|entry| (entry.body, entry.pose))

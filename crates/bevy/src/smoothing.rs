@@ -1,5 +1,4 @@
-//! Poses of views: interpolated between two ticks, and displaced from the body for a moment after a rollback has moved
-//! it.
+//! Poses of views: interpolated between two ticks, and displaced for a moment after a rollback has moved the body.
 
 use core::f32::consts::TAU;
 use core::time::Duration;
@@ -17,13 +16,11 @@ pub(crate) struct DrawnPose {
 }
 
 impl DrawnPose {
-    /// Converts a pose without interpolation.
     pub(crate) fn at(pose: Pose) -> Self {
         DrawnPose { position: metres(pose.position), angle: radians(pose.angle) }
     }
 
-    /// Interpolates between two poses, with the rotation along the shorter arc. Fraction 0 is `previous`, 1 is
-    /// `current`.
+    /// Interpolates two poses, with the rotation along the shorter arc. Fraction 0 is `previous`.
     pub(crate) fn between(previous: Pose, current: Pose, fraction: f32) -> Self {
         let start = Self::at(previous);
         let way = Offset::between(previous, current);
@@ -38,7 +35,7 @@ impl DrawnPose {
     }
 }
 
-/// Converts a vector to floats: the result equals that of `draw::to_f32`, with fewer instructions.
+/// Converts like `draw::to_f32`, with fewer instructions.
 pub(crate) fn metres(vector: FixedVec2<Fx>) -> Vec2 {
     const UNIT: f32 = 1.0 / (1_u64 << Fx::FRAC_NBITS) as f32;
     Vec2::new(vector.x.to_bits() as f32 * UNIT, vector.y.to_bits() as f32 * UNIT)
@@ -50,29 +47,27 @@ fn radians(angle: Angle) -> f32 {
     signed as f32 * (TAU / 4_294_967_296.0)
 }
 
-/// A displacement of a view.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Offset {
     position: Vec2,
     angle: f32,
 }
 
-/// Displacement in metres below which an offset is dropped if its angle is also small. At the default scale it is a
-/// tenth of a pixel.
+/// Metres below which an offset is dropped if its angle is small, too: a tenth of a pixel at the default scale.
 const POSITION_MIN: f32 = 1e-3;
-/// Angle in radians below which an offset is dropped if its displacement is also small.
+/// Radians below which an offset is dropped if its displacement is small, too.
 const ANGLE_MIN: f32 = 1e-3;
 
 impl Offset {
     pub(crate) const ZERO: Self = Offset { position: Vec2::ZERO, angle: 0.0 };
 
-    /// The displacement from one pose to another, with the rotation along the shorter arc. The difference is computed
-    /// in fixed point, because floats are too coarse for it far from the origin.
+    /// The displacement between poses, along the shorter arc. Far from the origin, floats are too coarse for the
+    /// difference.
     pub(crate) fn between(from: Pose, to: Pose) -> Self {
         Offset { position: metres(to.position - from.position), angle: radians(to.angle - from.angle) }
     }
 
-    /// Adds a displacement. If the sum is longer than `limit` metres, the offset is dropped, so that the view jumps.
+    /// Adds a displacement. A sum longer than `limit` metres is dropped, so that the view jumps.
     pub(crate) fn add(&mut self, other: Self, limit: f32) {
         self.position += other.position;
         self.angle += other.angle;
@@ -81,13 +76,12 @@ impl Offset {
         }
     }
 
-    /// Halves the offset in every `half_life`.
     pub(crate) fn decay(&mut self, time: Duration, half_life: Duration) {
         if *self == Self::ZERO {
             return;
         }
         let half_lives = time.as_secs_f32() / half_life.as_secs_f32();
-        // Without a half-life the quotient is infinite, or not a number in a frame without time.
+        // Without a half-life, the quotient may be infinite or not a number.
         let factor = if half_life.is_zero() { 0.0 } else { (-half_lives).exp2() };
         self.position *= factor;
         self.angle *= factor;

@@ -1,7 +1,7 @@
 //! [`StepLog`]: a record of the steps of a game, from which its views and events are made.
 //!
-//! A driver may load states and play ticks again in any order. The game itself fills the log, so that views and events
-//! do not depend on the driver.
+//! Drivers load states and play ticks again in any order. The game itself fills the log, so views and events do not
+//! depend on the driver.
 
 use std::collections::VecDeque;
 
@@ -11,72 +11,63 @@ use lockstep2d::world::World;
 use crate::events::{LoggedEvent, each_event};
 use crate::poses::Poses;
 
-/// A tick, as a number of ticks since the start of an epoch. A new epoch begins with a seek, and when the loaded state
-/// belongs to an earlier epoch or was decoded from bytes, as a state of another peer is. The tick at which an epoch
-/// begins may be unknown until the driver sets it.
+/// A tick, as a number of ticks since the start of an epoch. A seek begins an epoch, and so does a loaded state of an
+/// earlier epoch or one that was decoded from bytes. The tick at its start may be unknown until the driver sets it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Stamp {
     epoch: u32,
     ticks: u64,
 }
 
-/// An event, and whether it was passed on as predicted.
+/// An event, and whether it was sent as predicted.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     event: LoggedEvent,
     announced: bool,
 }
 
-/// Largest number of ticks by which a rollback may move an event that still counts as the same one.
+/// Largest number of ticks by which a rollback may move an event that is not sent again.
 const SAME_EVENT_TICKS: u64 = 16;
 
 #[derive(Debug, Default)]
 pub(crate) struct StepLog {
     epoch: u32,
-    /// Ticks since the start of the epoch.
     ticks: u64,
-    /// Tick at which each epoch begins, once it is known.
+    /// Tick at which each epoch begins, if it is known.
     bases: Vec<Option<u64>>,
-    /// Events of the ticks that are not confirmed, in order. Their ticks are those since the start of the epoch.
+    /// Unconfirmed events, in order, with ticks since the start of the epoch.
     pending: VecDeque<Entry>,
-    /// Announced events whose ticks were rolled back, and that have not happened again.
+    /// Announced events of rolled back ticks, which have not happened again.
     withdrawn: Vec<LoggedEvent>,
-    /// Poses before the last step.
     pub(crate) before: Poses,
-    /// Poses after the last step.
     pub(crate) after: Poses,
     is_after_stale: bool,
-    /// Tick that the views show.
     shown: Option<Stamp>,
     /// Poses of the tick `shown` after it was played again.
     pub(crate) shown_again: Option<Poses>,
-    /// Bodies whose ids may now belong to other bodies: those that were missing in a loaded state, and all bodies that
-    /// existed before a seek.
+    /// Bodies whose ids may now belong to other bodies: missing in a loaded state, or of the time before a seek.
     pub(crate) missing: Vec<BodyId>,
-    /// Number of ticks played since the last frame, including those played again.
+    /// Ticks played since the last frame, including repeated ones.
     pub(crate) stepped: u32,
-    /// Largest number of ticks by which a load went back since the last frame.
+    /// Largest number of ticks that a load went back since the last frame.
     pub(crate) replayed: u32,
-    /// Tick at which [`StepLog::suspend`] was called; `None` while the log records.
+    /// `None` while the log records.
     suspended_at: Option<Stamp>,
     /// Tick of the world before the step.
     world_tick: Option<u64>,
 }
 
 impl StepLog {
-    /// A log of a game that begins with tick 0.
     pub(crate) fn new(world: Option<&World>) -> Self {
         let mut log = StepLog { bases: vec![Some(0)], ..StepLog::default() };
         log.refresh(world);
         log
     }
 
-    /// The current tick, for a save.
     pub(crate) const fn stamp(&self) -> Stamp {
         Stamp { epoch: self.epoch, ticks: self.ticks }
     }
 
-    /// To be called before a step.
     pub(crate) fn before_step(&mut self, world: Option<&World>) {
         self.world_tick = world.map(World::tick);
         if self.suspended_at.is_none() {
@@ -88,7 +79,6 @@ impl StepLog {
         }
     }
 
-    /// To be called after a step.
     pub(crate) fn after_step(&mut self, world: Option<&World>) {
         self.ticks += 1;
         if self.suspended_at.is_some() {
@@ -99,7 +89,7 @@ impl StepLog {
         if self.shown == Some(self.stamp()) {
             self.shown_again = Some(self.after.clone());
         }
-        // A tick in which the game does not step its world, as in a pause between rounds, has no events.
+        // In a pause between rounds, for example, a game does not step its world.
         let Some(world) = world.filter(|world| Some(world.tick()) != self.world_tick) else { return };
         let (pending, withdrawn) = (&mut self.pending, &mut self.withdrawn);
         each_event(world, self.ticks, &mut |event| {
@@ -111,7 +101,7 @@ impl StepLog {
         });
     }
 
-    /// To be called after a state was loaded.
+    /// To be called after a load.
     pub(crate) fn loaded(&mut self, stamp: Option<Stamp>, world: Option<&World>) {
         let known = stamp.filter(|stamp| stamp.epoch == self.epoch);
         let back = match known {
@@ -134,7 +124,7 @@ impl StepLog {
         self.is_after_stale = true;
     }
 
-    /// Begins an epoch. Returns 0: a load that begins an epoch does not count as a rollback.
+    /// Returns 0: this load does not count as a rollback.
     fn begin_epoch(&mut self, stamp: Option<Stamp>) -> u64 {
         let base = stamp.and_then(|stamp| Some(self.base_of(stamp.epoch)? + stamp.ticks));
         self.bases.push(base);
@@ -145,8 +135,7 @@ impl StepLog {
         for entry in self.pending.drain(..).filter(|entry| entry.announced) {
             self.withdrawn.push(entry.event);
         }
-        // The ticks of withdrawn events are numbered in the previous epoch. In the new one they count as events of
-        // tick 0.
+        // In the new epoch, withdrawn events count as events of tick 0.
         self.withdrawn.iter_mut().for_each(|event| event.tick = 0);
         (self.shown, self.shown_again) = (None, None);
         0
@@ -156,13 +145,13 @@ impl StepLog {
         self.bases.get(epoch as usize).copied().flatten()
     }
 
-    /// Sets the number of played ticks, unless it is known in this epoch.
+    /// Sets the tick, unless it is known in this epoch.
     pub(crate) fn set_tick(&mut self, tick: u64) {
         let base = self.bases.get_mut(self.epoch as usize);
         base.map(|base| base.get_or_insert(tick.saturating_sub(self.ticks)));
     }
 
-    /// Number of ticks at the start of the epoch.
+    /// Ticks at the start of the epoch.
     fn base(&self) -> u64 {
         self.base_of(self.epoch).unwrap_or(0)
     }
@@ -172,14 +161,14 @@ impl StepLog {
         self.suspended_at = Some(self.stamp());
     }
 
-    /// Continues at the tick at which the log was suspended. The driver has restored the state of that tick.
+    /// Continues where the log was suspended, after the driver has restored that state.
     pub(crate) fn resume(&mut self) {
         if let Some(Stamp { epoch, ticks }) = self.suspended_at.take() {
             (self.epoch, self.ticks) = (epoch, ticks);
         }
     }
 
-    /// Continues at another tick, as after a seek, without events. Views move there without interpolation.
+    /// Continues at another tick, without events. Views jump there.
     pub(crate) fn relocate(&mut self, tick: u64, world: Option<&World>) {
         self.suspended_at = None;
         self.bases.push(Some(tick));
@@ -190,8 +179,7 @@ impl StepLog {
         self.refresh(world);
     }
 
-    /// Captures the poses of a state that is not the result of a step, such as a loaded one. Views move there without
-    /// interpolation.
+    /// Captures the poses of a state that does not result from a step. Views jump there.
     fn refresh(&mut self, world: Option<&World>) {
         self.after.capture(world);
         self.before = self.after.clone();
@@ -199,7 +187,7 @@ impl StepLog {
         (self.shown, self.shown_again) = (None, None);
     }
 
-    /// Stores that the views show the current tick. If the game was loaded and not stepped since, captures its poses.
+    /// Notes that the views show the current tick. Captures the poses of a loaded state.
     pub(crate) fn show(&mut self, world: Option<&World>) {
         if self.is_after_stale {
             self.refresh(world);
@@ -208,7 +196,7 @@ impl StepLog {
         self.missing.clear();
     }
 
-    /// Returns the events that were not announced yet, and marks them as announced.
+    /// Returns the events that were not announced yet.
     pub(crate) fn announce(&mut self) -> Vec<LoggedEvent> {
         let base = self.base();
         let fresh = self.pending.iter_mut().filter(|entry| !entry.announced);
@@ -220,7 +208,7 @@ impl StepLog {
             .collect()
     }
 
-    /// Takes the withdrawn events that have not occurred again within [`SAME_EVENT_TICKS`] ticks.
+    /// Takes withdrawn events that have not occurred again within [`SAME_EVENT_TICKS`] ticks.
     pub(crate) fn retract(&mut self) -> Vec<LoggedEvent> {
         let (base, played) = (self.base(), self.ticks);
         let is_over = |event: &LoggedEvent| event.tick + SAME_EVENT_TICKS < played;
@@ -231,7 +219,7 @@ impl StepLog {
         over
     }
 
-    /// Takes the events of the ticks that are final.
+    /// Takes the events of final ticks.
     pub(crate) fn confirm(&mut self, ticks: u64) -> Vec<LoggedEvent> {
         let base = self.base();
         let is_final = |entry: &Entry| base + entry.event.tick <= ticks;

@@ -21,7 +21,6 @@ use crate::smoothing::{DrawnPose, Offset, metres};
 use crate::step_log::StepLog;
 use crate::views::{BodyView, BodyViews, View, identity_of};
 
-/// Plays the ticks of the frame.
 pub(crate) fn step<G: LockstepGame>(
     mut lockstep: ResMut<Lockstep<G>>,
     mut inputs: ResMut<Inputs<G>>,
@@ -48,7 +47,6 @@ pub(crate) fn step<G: LockstepGame>(
     *status = LockstepStatus { tick, confirmed, stepped, rolled_back, paused, step_time };
 }
 
-/// Lets the views follow the bodies.
 pub(crate) fn write_views<G: LockstepGame>(
     mut commands: Commands,
     lockstep: Res<Lockstep<G>>,
@@ -57,13 +55,12 @@ pub(crate) fn write_views<G: LockstepGame>(
     fresh: Query<(Entity, &BodyView), Added<BodyView>>,
     mut shown: Query<(&BodyView, Entity, &mut Transform)>,
 ) {
-    // Finds entities that the game has prepared as views. Entities that the plugin spawned in the last frame do not
-    // count.
+    // Entities that the game has prepared as views, not those that the plugin spawned in the last frame.
     let is_foreign = |(entity, view): &(Entity, &BodyView)| views.entity(view.body()) != Some(*entity);
     let prepared: HashMap<BodyId, Entity> =
         fresh.iter().filter(is_foreign).map(|(entity, view)| (view.body(), entity)).collect();
     if lockstep.is_added() {
-        // The game was replaced. Views that were prepared for the new game are not in the table.
+        // The game was replaced. Views prepared for the new game are not in the table.
         views.take_all().into_iter().for_each(|view| commands.entity(view).try_despawn());
     }
     let world = lockstep.world();
@@ -102,7 +99,7 @@ pub(crate) fn write_views<G: LockstepGame>(
     }
 }
 
-/// Despawns the views of bodies that a rollback or a seek has replaced by other bodies with the same ids.
+/// Despawns views of bodies that a rollback or a seek has replaced under the same ids.
 fn replace_strangers(commands: &mut Commands, views: &mut BodyViews, log: &StepLog, world: Option<&World>) {
     for &body in &log.missing {
         let is_same = |view: &View| view.identity == identity_of(world, body);
@@ -114,7 +111,6 @@ fn replace_strangers(commands: &mut Commands, views: &mut BodyViews, log: &StepL
     }
 }
 
-/// Spawns the views of new bodies, moves the views of existing bodies, and despawns the views of removed bodies.
 fn follow(
     commands: &mut Commands,
     views: &mut BodyViews,
@@ -141,8 +137,8 @@ fn follow(
     views.take_unseen().into_iter().for_each(|view| commands.entity(view).try_despawn());
 }
 
-/// Whether a body was placed elsewhere in a tick instead of moving by its velocity: further than `limit` metres, and
-/// further than twice the distance that its velocity covers in a tick.
+/// Whether a body was placed elsewhere: further than `limit` metres, and than twice the distance that its velocity
+/// covers.
 fn is_jump(world: Option<&World>, body: BodyId, previous: Pose, current: Pose, limit: f32) -> bool {
     if previous.position == current.position {
         return false;
@@ -161,18 +157,16 @@ fn spawn_view(commands: &mut Commands, body: BodyId, pose: Pose, scale: f32) -> 
     commands.spawn((BodyView::new(body), transform)).id()
 }
 
-/// Writes x, y and rotation, which belong to the body. Z and scale belong to the game.
+/// Z and scale belong to the game.
 fn write_transform(transform: &mut Transform, pose: DrawnPose, scale: f32) {
     (transform.translation.x, transform.translation.y) = (pose.position * scale).into();
     transform.rotation = Quat::from_rotation_z(pose.angle);
 }
 
-/// Despawns all views of a game that was removed.
 pub(crate) fn remove_views(mut commands: Commands, mut views: ResMut<BodyViews>) {
     views.take_all().into_iter().for_each(|view| commands.entity(view).try_despawn());
 }
 
-/// Sends the events of the frame: predicted, retracted and confirmed ones.
 pub(crate) fn send_events<G: LockstepGame>(
     mut commands: Commands,
     lockstep: Res<Lockstep<G>>,

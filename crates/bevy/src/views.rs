@@ -9,14 +9,13 @@ use crate::poses::Pose;
 use crate::smoothing::Offset;
 
 /// An entity that shows a body. The plugin spawns one for every body, with a [`Transform`], and despawns it with the
-/// body. Add components or children that draw the body, for example in an observer of `On<Add, BodyView>`.
+/// body. Add components or children that draw it, for example in an observer of `On<Add, BodyView>`.
 ///
-/// If this component is added to an entity in the frame in which the body appears, or before the game is inserted, that
-/// entity becomes the view, and the plugin spawns none.
+/// If a game adds this component to an entity in the frame in which the body appears, or before, that entity becomes
+/// the view.
 ///
-/// The plugin writes x, y and rotation of the `Transform`; z and scale belong to the game. Two bodies that exist one
-/// after the other have two views, except if a rollback or a seek gives them the same id and they are equal in kind,
-/// user data and shapes.
+/// The plugin writes x, y and rotation of the `Transform`; z and scale belong to the game. A body keeps its view if a
+/// rollback or a seek replaces it by one with the same id, kind, user data and shapes.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[component(immutable)]
 #[require(Transform)]
@@ -42,15 +41,14 @@ impl BodyView {
     }
 }
 
-/// The views of all bodies, each found by its body.
+/// The views of all bodies.
 #[derive(Resource, Debug, Default)]
 pub struct BodyViews {
-    /// The views, indexed by the slots of their bodies.
+    /// Indexed by the slots of their bodies.
     slots: Vec<Option<View>>,
     frame: u32,
 }
 
-/// A view and the poses from which it is drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     pub(crate) body: BodyId,
@@ -60,11 +58,10 @@ pub(crate) struct View {
     /// Pose after the last tick.
     pub(crate) current: Pose,
     pub(crate) offset: Offset,
-    /// Whether the `Transform` already shows `current`, so that nothing has to be written.
+    /// Whether the `Transform` already shows `current`.
     pub(crate) is_settled: bool,
-    /// Hash of what distinguishes the body from another one with the same id.
+    /// Distinguishes the body from another one with the same id.
     pub(crate) identity: StateHash,
-    /// Frame in which the body was seen last.
     frame: u32,
 }
 
@@ -81,7 +78,7 @@ impl BodyViews {
         self.entity(world.shape(shape)?.body())
     }
 
-    /// All bodies that have views, with these views, in slot order.
+    /// Bodies and their views, in slot order.
     pub fn iter(&self) -> impl Iterator<Item = (BodyId, Entity)> {
         self.slots.iter().flatten().map(|view| (view.body, view.entity))
     }
@@ -98,12 +95,12 @@ impl BodyViews {
         self.slots.iter_mut().flatten()
     }
 
-    /// Begins a frame: views that are not [seen](BodyViews::see) in it are taken by [`BodyViews::take_unseen`].
+    /// Views that are not [seen](BodyViews::see) in this frame are taken by [`BodyViews::take_unseen`].
     pub(crate) fn begin_frame(&mut self) {
         self.frame = self.frame.wrapping_add(1);
     }
 
-    /// Moves the view of a body that exists. Returns whether there is one.
+    /// Moves the view of a body, if there is one.
     pub(crate) fn see(&mut self, body: BodyId, previous: Pose, current: Pose) -> bool {
         let frame = self.frame;
         let Some(view) = self.view_mut(body) else { return false };
@@ -113,7 +110,7 @@ impl BodyViews {
         true
     }
 
-    /// Adds a view. Returns the view that had the slot before.
+    /// Returns the view that had the slot before.
     pub(crate) fn insert(
         &mut self,
         body: BodyId,
@@ -138,7 +135,6 @@ impl BodyViews {
         self.slots.get_mut(slot)?.replace(view).map(|old| old.entity)
     }
 
-    /// Removes the views whose bodies are gone.
     pub(crate) fn take_unseen(&mut self) -> Vec<Entity> {
         let frame = self.frame;
         let unseen = |slot: &mut Option<View>| {
@@ -148,19 +144,17 @@ impl BodyViews {
         self.slots.iter_mut().filter_map(unseen).collect()
     }
 
-    /// Removes a view.
     pub(crate) fn take(&mut self, body: BodyId) -> Option<Entity> {
         let slot = self.slots.get_mut(body.index() as usize)?;
         slot.take_if(|view| view.body == body).map(|view| view.entity)
     }
 
-    /// Removes all views.
     pub(crate) fn take_all(&mut self) -> Vec<Entity> {
         self.slots.drain(..).flatten().map(|view| view.entity).collect()
     }
 }
 
-/// Hash of what distinguishes a body from another one that has the same id after a rollback: kind, user data, shapes.
+/// Hash that distinguishes bodies of the same id after a rollback: kind, user data, shapes.
 pub(crate) fn identity_of(world: Option<&World>, body: BodyId) -> StateHash {
     let Some((world, state)) = world.and_then(|world| Some((world, world.body(body)?))) else {
         return StateHash(0);

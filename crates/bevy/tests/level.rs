@@ -128,13 +128,12 @@ fn diagnostics_are_measured() {
     assert!((value(Paths::SAVE).unwrap() - bytes).abs() < 200.0);
 }
 
-/// The entity of a resource.
 fn entity_of<R: Resource>(world: &World) -> Entity {
     let id = world.component_id::<R>().unwrap();
     world.resource_entities().get(id).unwrap()
 }
 
-/// An inspector finds the values by the names of their fields, without knowing the types.
+/// Finds values by the names of their fields.
 #[test]
 fn an_inspector_can_read_and_change_what_is_shown() {
     let mut app = sandbox_app();

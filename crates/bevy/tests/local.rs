@@ -1,5 +1,4 @@
-//! A local game: its ticks come at its rate, its views follow the bodies, and its events are those of a game that is
-//! stepped without Bevy. A sync test is a local game that is rolled back after every tick.
+//! A local game: its ticks come at its rate, its views follow the bodies, and its events are those without Bevy.
 
 mod common;
 
@@ -23,7 +22,7 @@ fn tick(app: &App) -> u64 {
 
 #[test]
 fn ticks_come_at_the_rate_of_the_game() {
-    // 1000 frames of 7 ms are 420 ticks. The first frame has a duration of zero.
+    // 1000 frames of 7 ms are 420 ticks. The first frame has no duration.
     let mut app = app(local(), 1, Duration::from_millis(7));
     let first = tick(&app);
     (0..1001).for_each(|_| app.update());
@@ -82,7 +81,7 @@ fn a_rollback_without_a_difference_moves_no_view() {
 
 #[test]
 fn the_views_of_bodies_are_kept_through_rollbacks() {
-    // Bodies that a rollback removes for a moment within a frame keep their entities.
+    // Bodies that a rollback removes for a moment keep their entities.
     let run = |game: Lockstep<Arena>| {
         let mut app = app(game, 3, TICK);
         app.init_resource::<Births>()
@@ -153,7 +152,7 @@ fn views_are_drawn_between_two_ticks() {
     // The player's positions by tick.
     let mut places = std::collections::BTreeMap::new();
     let mut moved = 0.0_f32;
-    // The first frame has a duration of zero.
+    // The first frame has no duration.
     let mut clock = FixedTimestep::new(60);
     app.update();
     for _ in 0..200 {

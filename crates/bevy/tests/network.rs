@@ -1,6 +1,5 @@
-//! Two apps play over a network that drops, duplicates, delays and reorders packets, and a third app watches from the
-//! middle of the match on. All three have the same states and the same confirmed events, and their views follow the
-//! bodies.
+//! Two apps play over a bad network, and a third app watches from the middle on. They have the same states and
+//! confirmed events, and their views follow the bodies.
 
 mod common;
 
@@ -20,7 +19,6 @@ fn identity(number: u64) -> PeerIdentity {
     PeerIdentity::new([number, number * 77 + 1, number * 91 + 5, number * 13 + 7])
 }
 
-/// A network that drops, duplicates, delays and reorders packets.
 fn bad_network() -> Network {
     let ms = Duration::from_millis;
     let conditions =
@@ -28,7 +26,6 @@ fn bad_network() -> Network {
     Network::new(conditions, 1)
 }
 
-/// An app and the hashes of its confirmed ticks.
 struct Player {
     app: App,
     hashes: BTreeMap<u64, StateHash>,
@@ -67,7 +64,6 @@ impl Player {
         self.app.world().resource::<Heard>()
     }
 
-    /// The confirmed events of some ticks.
     fn events(&self, from: u64, to: u64) -> BTreeMap<u64, Vec<WorldEvent>> {
         self.heard().confirmed.range(from..=to).map(|(tick, events)| (*tick, events.clone())).collect()
     }
@@ -114,20 +110,19 @@ fn two_apps_and_a_late_spectator_have_the_same_match() {
     check_replay(players, end);
 }
 
-/// All players have the same confirmed events, and each predicted event is sent once.
+/// Players have the same confirmed events, and each predicted event is sent once.
 fn check_events(players: &[Player], end: u64) {
     let all = players[0].events(1, end);
     assert!(all.values().map(Vec::len).sum::<usize>() > 500);
     assert_eq!(players[1].events(1, end), all);
-    // The spectator has joined in the middle.
+    // The spectator joined in the middle.
     let from = players[2].heard().confirmed.keys().next().copied().unwrap() + 1;
     assert!(from > 300, "{from}");
     assert_eq!(players[2].events(from, end), players[0].events(from, end));
     let retracted: usize = players.iter().map(|player| player.heard().retracted.len()).sum();
     assert!(retracted > 0, "no prediction was wrong");
     for player in &players[..2] {
-        // The predicted events that were not retracted equal the confirmed events. Exceptions: the last ticks, and
-        // events that a rollback moves across the end of the compared ticks.
+        // Predicted events that were not retracted are confirmed, except near the end of the compared ticks.
         let heard = player.heard();
         let confirmed: usize = heard.confirmed.values().map(Vec::len).sum();
         let predicted = heard.predicted.len() - heard.retracted.len();
@@ -135,7 +130,7 @@ fn check_events(players: &[Player], end: u64) {
     }
 }
 
-/// The replay of the host verifies for the game itself, and has the same events when it is played without Bevy.
+/// The replay of the host verifies for the game itself, and has the same events without Bevy.
 fn check_replay(mut players: Vec<Player>, end: u64) {
     let events = players[0].events(1, end);
     let world = players[0].app.world_mut();
@@ -155,8 +150,7 @@ fn check_replay(mut players: Vec<Player>, end: u64) {
     assert_eq!(played, events);
 }
 
-/// Plays a match and returns the largest distance that the host's view of the guest's body moves in one frame, in
-/// metres, once the match runs.
+/// Largest movement of the host's view of the guest's body in a frame, in metres.
 fn largest_jump(settings: LockstepSettings) -> f32 {
     let network = bad_network();
     let setup = Setup::default();
@@ -172,7 +166,7 @@ fn largest_jump(settings: LockstepSettings) -> f32 {
         network.set_time(network.time() + TICK);
         apps.iter_mut().for_each(App::update);
         let world = apps[0].world();
-        // The guest, whose inputs are guessed: the sixth body of the arena.
+        // The guest, whose inputs are guessed.
         let Some((_, view)) = world.resource::<BodyViews>().iter().nth(5) else { continue };
         let place = world.get::<Transform>(view).unwrap().translation.truncate() / settings.pixels_per_metre;
         if let Some(last) = last.replace(place).filter(|_| world.resource::<LockstepStatus>().tick > 60) {

@@ -16,11 +16,10 @@ use lockstep2d::fx;
 use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 use lockstep2d::world::Command;
 
-/// The bodies that were clicked, in order.
 #[derive(Resource, Default)]
 struct Clicked(Vec<BodyId>);
 
-/// An app with a platform below a ball, 10 units per metre, and a pointer whose ray is set by the test.
+/// A platform below a ball, 10 units per metre, and a pointer whose ray is set by the test.
 struct Screen {
     app: App,
     camera: Entity,
@@ -37,7 +36,7 @@ impl Screen {
         let setup = SandboxSetup { commands, ..SandboxSetup::default() };
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, PickingPlugin, InteractionPlugin))
-            // The test supplies the rays, not a window.
+            // The test supplies the rays.
             .insert_resource(PickingSettings { is_input_enabled: false, ..PickingSettings::default() })
             .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_nanos(16_666_667)))
             .add_plugins((LockstepPlugin::<Sandbox>::default().pixels_per_metre(10.0), PointerDragPlugin))
@@ -52,7 +51,7 @@ impl Screen {
         Screen { app, camera, bodies }
     }
 
-    /// Moves the pointer to a point of the world, in units of `Transform`.
+    /// Moves the pointer, in units of `Transform`.
     fn point_at(&mut self, x: f32, y: f32) {
         let ray = Ray3d::new(Vec3::new(x, y, 100.0), Dir3::NEG_Z);
         let id = RayId::new(self.camera, PointerId::Mouse);
@@ -115,7 +114,7 @@ fn a_click_finds_the_body_below_the_pointer() {
 fn the_view_with_the_larger_z_is_in_front() {
     let mut screen = Screen::new();
     for (z, front) in [(1.0, 1), (-1.0, 0)] {
-        // A command moves the ball into the platform, so that only z decides which view is in front.
+        // The ball is in the platform: z decides which view is in front.
         let ball = screen.app.world().resource::<BodyViews>().entity(screen.bodies[1]).unwrap();
         screen.app.world_mut().get_mut::<Transform>(ball).unwrap().translation.z = z;
         screen.app.world_mut().resource_mut::<Lockstep<Sandbox>>().resume();

@@ -59,7 +59,7 @@ fn other_bytes_are_refused() {
 
 #[test]
 fn a_setup_may_not_cost_more_than_its_budget() {
-    // The game itself checks the work budget, so `Observed` has to pass the budget to it.
+    // `Observed` has to pass the work budget to the game.
     let setup = SandboxSetup::default();
     let (_, work) = Sandbox::new_within(&setup, u64::MAX).unwrap();
     assert_eq!(Observed::<Sandbox>::new_within(&setup, u64::MAX).map(|(_, work)| work), Ok(work));

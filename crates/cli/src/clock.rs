@@ -4,7 +4,6 @@
 
 use std::time::Duration;
 
-/// Measures the elapsed time. The time never reaches a simulation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clock(std::time::Instant);
 

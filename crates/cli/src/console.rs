@@ -12,46 +12,43 @@ pub(crate) const GOOD: Style = AnsiColor::Green.on_default().bold();
 pub(crate) const DOUBTFUL: Style = AnsiColor::Yellow.on_default().bold();
 pub(crate) const BAD: Style = AnsiColor::Red.on_default().bold();
 
-/// The two output streams of a command. Both are written with ANSI colours. The streams of
-/// [`Tool::run`](crate::Tool::run) strip them where colours are not supported.
+/// Both streams are written with ANSI colours, which [`Tool::run`](crate::Tool::run) strips where they are not
+/// supported.
 pub(crate) struct Console<'a> {
     pub(crate) out: &'a mut dyn Write,
     pub(crate) err: &'a mut dyn Write,
-    /// Whether messages go to a terminal, so that progress can be shown there.
+    /// Whether messages go to a terminal.
     pub(crate) is_terminal: bool,
-    /// Whether the process runs only this command, so that the command handles signals to the process.
+    /// Whether the process runs only this command, which then handles its signals.
     pub(crate) owns_process: bool,
 }
 
 impl Console<'_> {
-    /// Writes a line of results with one write call, so that output of the game cannot split it.
+    /// Writes a line with one write call, so that output of the game cannot split it.
     pub(crate) fn line(&mut self, line: impl fmt::Display) -> Result<(), CommandError> {
         self.out.write_all(format!("{line}\n").as_bytes()).map_err(CommandError::Output)
     }
 
-    /// Writes a result as one JSON document.
     pub(crate) fn json(&mut self, document: &impl Serialize) -> Result<(), CommandError> {
         self.line(json_text(document))
     }
 
-    /// Writes a line to the message stream, such as a summary beside machine-readable output.
+    /// Writes a line to the message stream.
     pub(crate) fn note(&mut self, note: impl fmt::Display) {
         // A failure of the message stream cannot be reported anywhere.
         let _ = writeln!(self.err, "{note}");
     }
 
-    /// Writes a warning about a problem that does not change any result.
+    /// Warns of a problem that does not change any result.
     pub(crate) fn warning(&mut self, warning: impl fmt::Display) {
         self.note(format_args!("{DOUBTFUL}warning:{DOUBTFUL:#} {warning}"));
     }
 
-    /// Writes an error message.
     pub(crate) fn error(&mut self, error: impl fmt::Display) {
         self.note(format_args!("{BAD}error:{BAD:#} {error}"));
     }
 }
 
-/// Encodes a value of strings and numbers as JSON.
 pub(crate) fn json_text(value: &impl Serialize) -> String {
     serde_json::to_string(value).expect("strings and numbers have a JSON form")
 }

@@ -5,7 +5,6 @@ use std::fmt;
 use lockstep2d::world::World;
 use serde::Serialize;
 
-/// Numbers of bodies, shapes, joints and pairs in a world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Counts {
     pub(crate) bodies: usize,
@@ -14,7 +13,6 @@ pub(crate) struct Counts {
     pub(crate) asleep: usize,
     pub(crate) shapes: usize,
     pub(crate) joints: usize,
-    /// [`World::pair_count`].
     pub(crate) pairs: usize,
 }
 

@@ -1,7 +1,7 @@
 //! [`Measures`]: the energies of a world, and errors that should stay small.
 //!
-//! They are floats because they are only drawn. Only correctly rounded operations of IEEE 754 are used, so that the
-//! same replay gives the same plot on every machine.
+//! They are floats because they are only drawn. Correctly rounded operations of IEEE 754 give the same plot on every
+//! machine.
 #![expect(
     clippy::disallowed_types,
     clippy::float_arithmetic,
@@ -11,12 +11,11 @@
 use lockstep2d::math::Fx;
 use lockstep2d::world::World;
 
-/// The energies of a world, and errors that should stay small.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Measures {
     /// Kinetic energy of all enabled dynamic bodies, in J.
     pub(crate) kinetic: f64,
-    /// Potential energy of all enabled dynamic bodies in the world's gravity, in J; 0 at the origin.
+    /// Potential energy of these bodies in the world's gravity, in J; 0 at the origin.
     pub(crate) potential: f64,
     /// [`World::deepest_overlap`], in metres.
     pub(crate) overlap: f64,

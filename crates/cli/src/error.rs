@@ -13,103 +13,150 @@ use crate::files::{EXTENSION, OneLine, Shown};
 use crate::panics::{Panic, PanicText};
 use crate::signature::{LineError, RandomError};
 
-/// An error that stops a command.
 #[derive(Debug)]
 pub(crate) enum CommandError {
-    /// The standard output cannot be written.
     Output(io::Error),
-    /// A file cannot be read.
-    Read { path: PathBuf, error: io::Error },
-    /// A folder contains no replays.
-    NothingToVerify { path: PathBuf },
-    /// The standard input is named more than once.
+    Read {
+        path: PathBuf,
+        error: io::Error,
+    },
+    NothingToVerify {
+        path: PathBuf,
+    },
     InputTwice,
-    /// A file cannot be written.
-    Write { path: PathBuf, error: io::Error },
-    /// The output file exists, and the option `--force` is not given.
-    Exists { path: PathBuf },
-    /// Another process is writing the output file.
-    Busy { path: PathBuf },
-    /// There is no scene of this name.
-    UnknownScene { name: String, known: Vec<&'static str> },
-    /// A replay cannot be recorded.
+    Write {
+        path: PathBuf,
+        error: io::Error,
+    },
+    Exists {
+        path: PathBuf,
+    },
+    Busy {
+        path: PathBuf,
+    },
+    UnknownScene {
+        name: String,
+        known: Vec<&'static str>,
+    },
     Record(RecordError),
-    /// A replay ends before the requested tick.
-    NoSuchTick { path: PathBuf, tick: u64, ticks: u64 },
-    /// A replay cannot be played as far as requested.
-    Replay { path: PathBuf, verdict: Verdict },
+    NoSuchTick {
+        path: PathBuf,
+        tick: u64,
+        ticks: u64,
+    },
+    Replay {
+        path: PathBuf,
+        verdict: Verdict,
+    },
     /// The game panics while a replay is played.
-    Panicked { path: PathBuf, panic: Panic, ticks: Option<u64> },
+    Panicked {
+        path: PathBuf,
+        panic: Panic,
+        ticks: Option<u64>,
+    },
     /// The first tick of a range is after the last.
-    Reversed { from: u64, to: u64 },
+    Reversed {
+        from: u64,
+        to: u64,
+    },
     /// A keyframe does not belong to the replay, or the game does not restore it exactly.
-    Keyframe { path: PathBuf, error: SeekError },
-    /// A keyframe file is damaged or belongs to another replay.
-    Keyframes { path: PathBuf, error: KeyframesError },
+    Keyframe {
+        path: PathBuf,
+        error: SeekError,
+    },
+    Keyframes {
+        path: PathBuf,
+        error: KeyframesError,
+    },
     /// A line of inputs does not have one valid input for each player.
-    Inputs { path: PathBuf, line: u64, why: String },
+    Inputs {
+        path: PathBuf,
+        line: u64,
+        why: String,
+    },
     /// A state cannot be decoded, or has no human-readable or JSON form.
-    State { why: String },
-    /// The state has no such body.
-    NoBody { id: String },
+    State {
+        why: String,
+    },
+    NoBody {
+        id: String,
+    },
     /// A file has no such state, or a state has no such field.
-    NothingThere { what: String },
+    NothingThere {
+        what: String,
+    },
     /// The game does not expose its world, so it cannot be drawn.
     NoPictures,
-    /// Neither an option nor a file extension selects an output format.
     NoFormat,
     /// The extension of the output file belongs to another format than the one that an option selects.
-    Extension { path: PathBuf, option: &'static str, other: &'static str },
+    Extension {
+        path: PathBuf,
+        option: &'static str,
+        other: &'static str,
+    },
     /// The file is a report or a save, which cannot be exported.
-    NoReplay { path: PathBuf, kind: &'static str },
-    /// A binary format needs an output file.
-    NoOutput { format: &'static str },
-    /// An option does not apply to the output format.
-    Useless { option: &'static str, format: &'static str },
-    /// A file has only one state, and the format needs several.
-    OneState { path: PathBuf, format: &'static str },
+    NoReplay {
+        path: PathBuf,
+        kind: &'static str,
+    },
+    NoOutput {
+        format: &'static str,
+    },
+    Useless {
+        option: &'static str,
+        format: &'static str,
+    },
+    OneState {
+        path: PathBuf,
+        format: &'static str,
+    },
     /// A file is not a replay, report or snapshot, or a report or snapshot is damaged or of another version.
-    Evidence { path: PathBuf, error: EvidenceError },
+    Evidence {
+        path: PathBuf,
+        error: EvidenceError,
+    },
     /// A replay cannot be traced.
-    Trace { path: PathBuf, error: TraceError },
-    /// A file of keys or signatures is damaged.
-    Line { path: PathBuf, error: LineError },
+    Trace {
+        path: PathBuf,
+        error: TraceError,
+    },
+    Line {
+        path: PathBuf,
+        error: LineError,
+    },
     /// A file of keys or signatures is too large or not text, or a signature file is not a regular file.
-    NoText { path: PathBuf },
-    /// The system has no random numbers for a key.
+    NoText {
+        path: PathBuf,
+    },
     Random(RandomError),
-    /// A name is not allowed for a key.
-    KeyName { name: String },
-    /// More signatures are required than there are names.
-    Require { required: usize, names: usize },
-    /// The standard input has no signature file beside it.
+    KeyName {
+        name: String,
+    },
+    Require {
+        required: usize,
+        names: usize,
+    },
     InputSignatures,
-    /// Two files cannot be compared with each other.
     Compare(CompareError),
 }
 
 impl CommandError {
-    /// Returns a function that wraps an error of reading the file at `path`.
     pub(crate) fn read(path: &Path) -> impl Fn(io::Error) -> Self {
         move |error| CommandError::Read { path: path.to_path_buf(), error }
     }
 
-    /// Returns a function that wraps an error of writing the file at `path`.
     pub(crate) fn write(path: &Path) -> impl Fn(io::Error) -> Self {
         move |error| CommandError::Write { path: path.to_path_buf(), error }
     }
 
-    /// Returns a function that wraps an error in the keys or signatures at `path`.
     pub(crate) fn line(path: &Path) -> impl Fn(LineError) -> Self {
         move |error| CommandError::Line { path: path.to_path_buf(), error }
     }
 
-    /// Returns a function that wraps a verdict on the replay at `path`.
     pub(crate) fn replay<V: Into<Verdict>>(path: &Path) -> impl Fn(V) -> Self {
         move |verdict| CommandError::Replay { path: path.to_path_buf(), verdict: verdict.into() }
     }
 
-    /// The exit code of a command that stops with this error.
     pub(crate) fn exit(&self) -> Exit {
         match self {
             CommandError::Replay { .. } | CommandError::Trace { .. } | CommandError::Panicked { .. } => {
@@ -119,7 +166,7 @@ impl CommandError {
         }
     }
 
-    /// Whether the reader of the output has closed the pipe, as `head` does. Such an error is not printed.
+    /// Whether the reader of the output has closed the pipe, as `head` does.
     pub(crate) fn is_reader_gone(&self) -> bool {
         matches!(self, CommandError::Output(error) if error.kind() == io::ErrorKind::BrokenPipe)
     }

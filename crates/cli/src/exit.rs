@@ -2,8 +2,8 @@
 
 use std::process::ExitCode;
 
-/// The outcome of a command, which scripts receive as the exit code. The outcome of several files is the largest of
-/// their outcomes in the order of the variants.
+/// The outcome of a command, as an exit code. The outcome of several files is the largest, in the order of the
+/// variants.
 ///
 /// ```
 /// use lockstep2d_cli::Exit;
@@ -13,19 +13,18 @@ use std::process::ExitCode;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Exit {
-    /// The command succeeded; all files match, or nothing differs. Exit code 0.
+    /// The command succeeded. Exit code 0.
     Success,
     /// All files match, but a required signature is missing or not valid. Exit code 3.
     Unsigned,
     /// A file does not match, something differs, or a replay is damaged or cannot be played. Exit code 1.
     NoMatch,
-    /// Any other failure, such as wrong usage, a path that cannot be read or written, or files that cannot be compared.
-    /// Exit code 2.
+    /// Another failure, such as wrong usage or a path that cannot be read or written. Exit code 2.
     Trouble,
 }
 
 impl Exit {
-    /// The exit code of the process.
+    /// Exit code of the process.
     #[must_use]
     pub fn code(self) -> u8 {
         match self {

@@ -4,7 +4,6 @@ use lockstep2d::world::World;
 
 use crate::counts::Counts;
 
-/// The counts of a world and the statistics of its last tick, by name.
 pub(crate) fn of(world: &World) -> [(&'static str, u64); 13] {
     let Counts { bodies, awake, asleep, shapes, joints, pairs } = Counts::of(world);
     let stats = world.stats();

@@ -11,7 +11,7 @@ use lockstep2d::lockstep::Game;
 /// The extension of replay files in folders.
 pub(crate) const EXTENSION: &str = "replay";
 
-/// Reads at most `bytes_max + 1` bytes of a file. The additional byte shows that the file is too large.
+/// Reads at most `bytes_max + 1` bytes of a file. The last one shows that the file is too large.
 pub(crate) fn read(path: &Path, bytes_max: u64) -> io::Result<Vec<u8>> {
     let file = File::open(path)?;
     let expected = file.metadata()?.len();
@@ -21,7 +21,7 @@ pub(crate) fn read(path: &Path, bytes_max: u64) -> io::Result<Vec<u8>> {
 /// Reads at most `bytes_max + 1` bytes of a stream. `expected` is an estimate of its length.
 pub(crate) fn read_from(stream: impl Read, expected: u64, bytes_max: u64) -> io::Result<Vec<u8>> {
     let end = bytes_max.saturating_add(1);
-    // One byte of capacity more than expected: without it, the read that finds the end would double the capacity.
+    // One byte more, so that the read that finds the end does not double the capacity.
     let expected = expected.min(bytes_max).saturating_add(1);
     let mut bytes = Vec::new();
     if usize::try_from(expected).map_or(true, |expected| bytes.try_reserve_exact(expected).is_err()) {
@@ -36,7 +36,7 @@ pub(crate) fn is_save<G: Game>(bytes: &[u8]) -> bool {
     codec::decode::<G::Save>(bytes).is_ok_and(|save| codec::encode(&save) == bytes)
 }
 
-/// Shows a path on one line: see [`OneLine`].
+/// A path on one line: see [`OneLine`].
 pub(crate) struct Shown<'a>(pub(crate) &'a Path);
 
 impl fmt::Display for Shown<'_> {
@@ -45,8 +45,7 @@ impl fmt::Display for Shown<'_> {
     }
 }
 
-/// Shows untrusted text on one line. Line breaks and other control characters are escaped, and so are the characters of
-/// [`is_invisible`], because they could make one name look like another.
+/// Untrusted text on one line. Control characters and those of [`is_invisible`] are escaped.
 pub(crate) struct OneLine<'a>(pub(crate) &'a str);
 
 impl fmt::Display for OneLine<'_> {

@@ -7,15 +7,13 @@ use lockstep2d::SEMANTICS;
 use lockstep2d::lockstep::Game;
 use lockstep2d::replay::{Limits, Mismatch, Part, ReadError, Reader, Verdict};
 
-/// Prefix of the hashed data, so that no other use of BLAKE3 gives the same digest.
+/// Separates the digest from other uses of BLAKE3.
 const DOMAIN: &[u8] = b"lockstep2d game 1";
 
-/// The BLAKE3 digest of the engine semantics, rules, setup and inputs of a game, defined in FORMAT.md. `verify --json`
-/// prints it as `game`.
+/// The BLAKE3 digest of the engine semantics, rules, setup and inputs of a game, defined in FORMAT.md.
 ///
-/// The digest does not depend on block boundaries, checkpoints or the trailer. It covers the inputs of the complete
-/// blocks, so an incomplete file has the digest of the game up to its last complete block.
-/// [`Signatures`](crate::signature::Signatures) has an example.
+/// It does not depend on block boundaries, checkpoints or the trailer. An incomplete file has the digest of the game up
+/// to its last complete block. [`Signatures`](crate::signature::Signatures) has an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GameDigest(blake3::Hash);
 
@@ -35,9 +33,6 @@ impl GameDigest {
     }
 
     /// Computes the digest of a replay of any game.
-    ///
-    /// # Errors
-    /// [`ReadError`] for a file that is damaged, too large, or has another format version.
     pub(crate) fn of_any(replay: &[u8], limits: &Limits) -> Result<Self, ReadError> {
         let mut reader = Reader::open(replay, limits)?;
         let mut hasher = Hasher::new();
@@ -47,7 +42,7 @@ impl GameDigest {
         hasher.update(&header.rules_version.to_le_bytes());
         add_bytes(&mut hasher, header.rules_name.as_bytes());
         add_bytes(&mut hasher, header.setup);
-        // Runs that were split at the end of a block are joined again.
+        // Joins runs that were split at the end of a block.
         let mut run: Option<(u64, &[u8])> = None;
         while let Some(part) = reader.next_part()? {
             let Part::Inputs(block) = part else { break };
@@ -81,7 +76,7 @@ impl fmt::Display for GameDigest {
     }
 }
 
-/// Reason why a program for the game `G` cannot verify a file with these semantics and rules; `None` if it can.
+/// Why a program for the game `G` cannot verify these semantics and rules.
 pub(crate) fn mismatch<G: Game>(semantics: u32, name: &str, version: u32) -> Option<Mismatch> {
     if semantics != SEMANTICS {
         return Some(Mismatch::Semantics { file: semantics, here: SEMANTICS });
@@ -97,7 +92,7 @@ fn add_run(hasher: &mut Hasher, run: Option<(u64, &[u8])>) {
     }
 }
 
-/// Hashes bytes preceded by their length, so that two different sequences of parts never hash the same bytes.
+/// Hashes the length first: different sequences of parts hash different bytes.
 fn add_bytes(hasher: &mut Hasher, bytes: &[u8]) {
     let length = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
     hasher.update(&length.to_le_bytes()).update(bytes);

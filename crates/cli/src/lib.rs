@@ -26,8 +26,8 @@
 //! ```
 //!
 //! This gives `verify`, `diff`, `bisect`, `trace`, `stress-saves`, `inspect`, `seek`, `fork`, `trim`, `stats`,
-//! `export`, `keygen` and `sign`. [`Tool::with_scenes`] adds `scenes` and `record`; [`Tool::with_view`] sets how
-//! pictures show the game. With the feature `view`, `Tool::with_viewer` adds `view`, which opens a window.
+//! `export`, `keygen` and `sign`. [`Tool::with_scenes`] adds `scenes` and `record`. With the feature `view`,
+//! `Tool::with_viewer` adds `view`, which opens a window.
 
 mod clock;
 mod commands;
@@ -67,7 +67,7 @@ pub use scenes::{Catalogue, Scene, SceneInfo, Script};
 pub use tool::Tool;
 pub use walk::{Walk, WalkError};
 
-/// Runs the tools of a game without scenes and with the default view, with the arguments of this process.
+/// Runs the tools of a game without scenes, with the arguments of this process.
 #[must_use]
 pub fn run<G: Game>() -> ExitCode {
     Tool::<G>::new().run()

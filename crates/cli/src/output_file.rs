@@ -2,14 +2,12 @@
 //!
 //! Invariants, for a target that is a regular file or does not exist:
 //! - The target has either its old contents or all of the new ones, also after a full disk, a panic or a kill.
-//! - An existing file is replaced only with `--force` or [`Overwrite::ALWAYS`]. On a file system without hard links, a
-//!   file that another program creates just before [`OutputFile::publish`] can still be replaced.
-//! - On a file system with locks, at most one process writes a target at a time. The others fail and leave the target
-//!   unchanged.
-//! - On Unix, a private file can be read only by its owner, from its creation on.
+//! - An existing file is replaced only with `--force` or [`Overwrite::ALWAYS`]. Without hard links, a file that another
+//!   program creates just before [`OutputFile::publish`] can still be replaced.
+//! - With file locks, one process writes a target at a time. The others fail.
+//! - On Unix, only its owner can read a private file.
 //!
-//! A process that is killed leaves its temporary file behind. The lock on it ends with the process, so the next writer
-//! of the same target reuses the file.
+//! A killed process leaves its temporary file, which the next writer of the target reuses.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
@@ -20,14 +18,13 @@ use same_file::Handle;
 
 use crate::error::CommandError;
 
-/// End of the name of the temporary file that is written before it replaces the target.
+/// Suffix of the temporary file.
 const SUFFIX: &str = ".unfinished";
 
-/// Permissions of a private file.
 #[cfg(unix)]
 const OWNER_ONLY: u32 = 0o600;
 
-/// Maximum number of attempts to lock a temporary file that other processes keep renaming or deleting.
+/// Maximum number of attempts to lock a file that other processes keep renaming or deleting.
 const ATTEMPTS_MAX: u32 = 100;
 
 /// Whether an existing file is replaced.
@@ -39,49 +36,39 @@ pub(crate) struct Overwrite {
 }
 
 impl Overwrite {
-    /// Replaces an existing file: for files that only the tool writes, such as keyframes.
+    /// Replaces files that only the tool writes, such as keyframes.
     pub(crate) const ALWAYS: Overwrite = Overwrite { force: true };
 }
 
-/// Permissions of a new file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Readers {
-    /// The system's default permissions.
     Default,
-    /// Readable and writable by the owner only.
     Owner,
 }
 
-/// A file that is being written. Unless it is published, its temporary file is deleted when the value is dropped.
+/// Unless it is published, its temporary file is deleted on drop.
 pub(crate) struct OutputFile {
-    /// The path that the user gave, for messages.
+    /// Path given by the user, for messages.
     name: PathBuf,
-    /// The path to replace: `name` with its links resolved.
+    /// `name` with its links resolved.
     target: PathBuf,
-    /// The temporary file, or `None` if the target is written directly.
+    /// `None` if the target is written directly.
     temporary: Option<PathBuf>,
-    /// Locked while it is open, unless the target is written directly or the file system has no locks.
+    /// The file is locked, unless the target is written directly or the file system has no locks.
     file: File,
     overwrite: Overwrite,
 }
 
 impl OutputFile {
-    /// Creates the temporary file of the target at `path`. Call it before long computations, so that errors are
-    /// reported early.
+    /// Creates the temporary file of a target. To be called before long computations, to report errors early: an
+    /// existing file without `--force`, or another process that writes the target.
     ///
-    /// A target that is not a regular file, such as `/dev/stdout` or a pipe, is written directly.
-    ///
-    /// # Errors
-    /// [`CommandError::Exists`] for an existing file without `--force`, [`CommandError::Busy`] if another process
-    /// writes the same target, and [`CommandError::Write`] if the file cannot be created or opened.
+    /// A target that is not a regular file, such as `/dev/stdout`, is written directly.
     pub(crate) fn create(path: &Path, overwrite: Overwrite) -> Result<Self, CommandError> {
         Self::create_for(path, overwrite, Readers::Default)
     }
 
-    /// Same as [`OutputFile::create`], with a file that only its owner can read, on systems that support this.
-    ///
-    /// # Errors
-    /// Same as [`OutputFile::create`].
+    /// Creates a file that only its owner can read, on Unix: see [`OutputFile::create`].
     pub(crate) fn create_private(path: &Path, overwrite: Overwrite) -> Result<Self, CommandError> {
         Self::create_for(path, overwrite, Readers::Owner)
     }
@@ -90,7 +77,7 @@ impl OutputFile {
         let failed = CommandError::write(path);
         check(path, overwrite)?;
         let name = path.to_path_buf();
-        // A link is preserved: the file that it refers to is replaced.
+        // A link is preserved, and the file that it refers to replaced.
         let target = fs::canonicalize(path).unwrap_or_else(|_| name.clone());
         match fs::metadata(&target) {
             Ok(metadata) if !metadata.is_file() => {
@@ -112,19 +99,12 @@ impl OutputFile {
         Ok(output)
     }
 
-    /// Appends bytes.
-    ///
-    /// # Errors
-    /// [`CommandError::Write`], for example on a full disk.
     pub(crate) fn append(&mut self, bytes: &[u8]) -> Result<(), CommandError> {
         self.file.write_all(bytes).map_err(CommandError::write(&self.name))
     }
 
-    /// Makes the file appear under the name of the target, after its bytes have reached the disk.
-    ///
-    /// # Errors
-    /// [`CommandError::Write`], or [`CommandError::Exists`] if another program has created the target meanwhile. A
-    /// target that is not written directly is then unchanged.
+    /// Makes the file appear under its name, after its bytes have reached the disk. Fails if another program has
+    /// created the target meanwhile.
     pub(crate) fn publish(mut self) -> Result<(), CommandError> {
         let failed = CommandError::write(&self.name);
         let Some(temporary) = &self.temporary else {
@@ -160,17 +140,14 @@ impl Write for OutputFile {
 
 impl Drop for OutputFile {
     fn drop(&mut self) {
-        // The file is deleted while it is still locked, so no other process can have begun to write it.
+        // The file is deleted while it is locked: no other process can have begun to write it.
         if let Some(temporary) = &self.temporary {
             let _ = fs::remove_file(temporary);
         }
     }
 }
 
-/// Checks that no file would be replaced without permission. Creates nothing.
-///
-/// # Errors
-/// [`CommandError::Exists`] for an existing regular file without `--force`.
+/// Refuses an existing regular file without `--force`.
 pub(crate) fn check(path: &Path, overwrite: Overwrite) -> Result<(), CommandError> {
     if !overwrite.force && fs::metadata(path).is_ok_and(|metadata| metadata.is_file()) {
         return Err(CommandError::Exists { path: path.to_path_buf() });
@@ -178,11 +155,11 @@ pub(crate) fn check(path: &Path, overwrite: Overwrite) -> Result<(), CommandErro
     Ok(())
 }
 
-/// Opens and locks the temporary file. `name` is the target's name for messages.
+/// Opens and locks the temporary file. `name` is for messages.
 fn lock(temporary: &Path, name: &Path, readers: Readers) -> Result<File, CommandError> {
     let failed = CommandError::write(name);
     for _ in 0..ATTEMPTS_MAX {
-        // Opening a link or a pipe of this name could change another file, or block.
+        // A link or a pipe of this name could change another file, or block.
         if fs::symlink_metadata(temporary).is_ok_and(|metadata| !metadata.is_file()) {
             return Err(failed(io::ErrorKind::AlreadyExists.into()));
         }
@@ -190,11 +167,11 @@ fn lock(temporary: &Path, name: &Path, readers: Readers) -> Result<File, Command
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Err(CommandError::Busy { path: name.to_path_buf() }),
-            // The file system does not support locks: two writers of one target are not detected.
+            // Without locks, two writers of one target are not detected.
             Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {}
             Err(TryLockError::Error(error)) => return Err(failed(error)),
         }
-        // The previous writer may have renamed or deleted the file after it was opened and before it was locked.
+        // The previous writer may have renamed or deleted the file before it was locked.
         if is_at(&file, temporary) {
             return Ok(file);
         }
@@ -202,7 +179,6 @@ fn lock(temporary: &Path, name: &Path, readers: Readers) -> Result<File, Command
     Err(CommandError::Busy { path: name.to_path_buf() })
 }
 
-/// Opens the temporary file, or creates it.
 fn open(temporary: &Path, readers: Readers) -> io::Result<File> {
     let mut options = File::options();
     options.write(true).create(true).truncate(false);
@@ -223,10 +199,6 @@ fn is_at(file: &File, path: &Path) -> bool {
     matches!((open, Handle::from_path(path)), (Ok(open), Ok(named)) if open == named)
 }
 
-/// Writes a whole file.
-///
-/// # Errors
-/// The errors of [`OutputFile::create`], [`OutputFile::append`] and [`OutputFile::publish`].
 pub(crate) fn save(path: &Path, bytes: &[u8], overwrite: Overwrite) -> Result<(), CommandError> {
     let mut output = OutputFile::create(path, overwrite)?;
     output.append(bytes)?;

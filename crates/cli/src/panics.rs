@@ -14,18 +14,16 @@ use crate::error::CommandError;
 /// Maximum number of characters kept from a panic message, which may quote the file.
 const MESSAGE_CHARS_MAX: usize = 400;
 
-/// A panic that was caught.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Panic {
     pub(crate) message: String,
-    /// File, line and column in the source, if the panic started on this thread.
+    /// File, line and column, if the panic started on this thread.
     pub(crate) location: Option<String>,
 }
 
-/// The verdict on a file that made the game panic. The library has no such verdict: there, a panic reaches the caller.
+/// The verdict on a file that made the game panic. The library has no such verdict.
 pub(crate) const PANICKED: &str = "panicked";
 
-/// Text of a panic of the game.
 pub(crate) struct PanicText<'a> {
     pub(crate) panic: &'a Panic,
     /// Number of ticks that were played, if the command counts them.
@@ -47,7 +45,7 @@ impl fmt::Display for PanicText<'_> {
 }
 
 thread_local! {
-    /// Whether a panic on this thread will be caught.
+    /// Whether panics on this thread are caught.
     static IS_CAUGHT: Cell<bool> = const { Cell::new(false) };
     /// Location of the last caught panic on this thread.
     static LOCATION: RefCell<Option<String>> = const { RefCell::new(None) };
@@ -55,12 +53,12 @@ thread_local! {
     static TICKS: Cell<Option<u64>> = const { Cell::new(None) };
 }
 
-/// Notes the number of ticks that the command on this thread has played, for [`guard`].
+/// Notes the played ticks, for [`guard`].
 pub(crate) fn played(ticks: u64) {
     TICKS.set(Some(ticks));
 }
 
-/// Runs `work`. A panic is returned instead of printed. Data that `work` was changing must not be used afterwards.
+/// Returns a panic instead of printing it. Data that `work` was changing must not be used afterwards.
 pub(crate) fn catch<T>(work: impl FnOnce() -> T) -> Result<T, Panic> {
     listen();
     IS_CAUGHT.set(true);
@@ -69,7 +67,7 @@ pub(crate) fn catch<T>(work: impl FnOnce() -> T) -> Result<T, Panic> {
     result.map_err(|payload| Panic { message: message(payload.as_ref()), location: LOCATION.take() })
 }
 
-/// Installs a panic hook that records the location of caught panics and passes all others to the previous hook.
+/// Installs a hook that records the location of caught panics and passes on others.
 fn listen() {
     static LISTENING: Once = Once::new();
     LISTENING.call_once(|| {
@@ -84,7 +82,7 @@ fn listen() {
     });
 }
 
-/// Runs a command that plays the replay at `path`. A panic of the game stops the command with an error.
+/// A panic of the game stops the command with an error.
 pub(crate) fn guard(path: &Path, command: impl FnOnce() -> CommandResult) -> CommandResult {
     TICKS.set(None);
     catch(command).unwrap_or_else(|panic| {

@@ -1,4 +1,4 @@
-//! [`Copy`]: a replay that is recorded again from the beginning of another replay. Shared by `fork` and `trim`.
+//! [`Copy`]: a replay that is recorded again from the beginning of another one, for `fork` and `trim`.
 
 use std::path::Path;
 
@@ -9,13 +9,11 @@ use lockstep2d::replay::{Limits, Reader, RecordError, Recorder, Step, Verdict, V
 
 use crate::error::CommandError;
 
-/// A game that was played up to some tick of a replay, and the recorder of its new replay.
 pub(crate) struct Copy<G: Game> {
     game: G,
     recorder: Recorder<G>,
 }
 
-/// Reason why a replay cannot be copied.
 pub(crate) enum CopyError {
     /// The replay cannot be played as far as requested. Its first `ticks` ticks, if any, can be copied.
     Replay { ticks: u64, verdict: Verdict },
@@ -53,17 +51,14 @@ impl<G: Game> Copy<G> {
         Ok(Copy { game: replay.into_game(), recorder })
     }
 
-    /// Number of recorded ticks.
     pub(crate) fn ticks(&self) -> u64 {
         self.recorder.ticks()
     }
 
-    /// The number of players.
     pub(crate) fn players(&self) -> u32 {
         self.game.players()
     }
 
-    /// Records and plays one more tick.
     pub(crate) fn step(&mut self, inputs: &[G::Input]) -> Result<(), RecordError> {
         self.game.step(self.recorder.record(inputs)?);
         if self.recorder.is_checkpoint_due() {
@@ -72,8 +67,7 @@ impl<G: Game> Copy<G> {
         Ok(())
     }
 
-    /// Completes and verifies the replay. Returns its bytes and the hash of its last state. `output` is the path for
-    /// error messages.
+    /// Completes and verifies the replay. Returns its bytes and final hash. `output` is for messages.
     pub(crate) fn finish(self, output: &Path, limits: &Limits) -> Result<(Vec<u8>, StateHash), CommandError> {
         let bytes = self.recorder.finish(&self.game)?;
         match verify::<G>(&bytes, limits) {
@@ -84,7 +78,6 @@ impl<G: Game> Copy<G> {
 }
 
 impl CopyError {
-    /// Converts this error to the error of a command that copies the replay at `path`.
     pub(crate) fn of_file(self, path: &Path) -> CommandError {
         match self {
             CopyError::Replay { verdict, .. } => CommandError::Replay { path: path.to_path_buf(), verdict },

@@ -2,7 +2,7 @@
 
 use lockstep2d::lockstep::Game;
 
-/// Returns the inputs of all players for a tick. Its arguments are the number of the tick and the game before the tick.
+/// Returns the inputs of all players for a tick, from its number and the game before it.
 pub type Script<G> = Box<dyn FnMut(u64, &G) -> Vec<<G as Game>::Input>>;
 
 /// The scenes of a game.
@@ -36,7 +36,7 @@ pub trait Catalogue<G: Game> {
     /// All scenes, in the order in which to list them.
     fn scenes(&self) -> Vec<SceneInfo>;
 
-    /// Opens the scene of this name, or returns `None` if there is none. The same name and seed give the same scene.
+    /// Opens the scene of this name, if there is one. Calls with equal names and seeds must return equal scenes.
     fn open(&self, name: &str, seed: u64) -> Option<Scene<G>>;
 }
 
@@ -47,7 +47,7 @@ pub struct SceneInfo {
     pub name: &'static str,
     /// One-line description.
     pub about: &'static str,
-    /// The default number of ticks to record, as the list shows it: that of [`Scene::ticks`].
+    /// The default number of ticks to record: [`Scene::ticks`].
     pub ticks: u64,
 }
 

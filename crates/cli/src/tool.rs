@@ -39,11 +39,10 @@ pub struct Tool<G: Game> {
     pub(crate) limits: Limits,
     pub(crate) catalogue: Option<Box<dyn Catalogue<G>>>,
     pub(crate) view: Option<fn(&G) -> View>,
-    /// Commands added by [`Tool::with_command`] and `Tool::with_viewer`.
+    /// Commands added by methods.
     own: Vec<(Command, OwnCommand)>,
 }
 
-/// Function that runs an added command.
 type OwnCommand = Box<dyn Fn(&ArgMatches) -> Exit>;
 
 impl<G: Game> Default for Tool<G> {
@@ -72,24 +71,22 @@ impl<G: Game> Tool<G> {
         Tool { catalogue: Some(Box::new(catalogue)), ..self }
     }
 
-    /// Sets the default view of `export` on the game's world ([`Game::world`]): window, layers, size and title.
-    /// Animations use only the aspect ratio of the size. Arguments of the command override window, layers and size. If
-    /// no view is set, [`View::default`] applies.
+    /// Sets the default view of `export` on the game's world ([`Game::world`]), instead of [`View::default`].
+    /// Animations use only the aspect ratio of its size. Arguments override window, layers and size.
     #[must_use]
     pub fn with_view(self, view: fn(&G) -> View) -> Self {
         Tool { view: Some(view), ..self }
     }
 
-    /// Adds a command of the game's own. `run` receives the arguments of the command and prints its output.
+    /// Adds a command of the game's own, which prints its output itself.
     #[must_use]
     pub fn with_command(mut self, command: Command, run: fn(&ArgMatches) -> Exit) -> Self {
         self.own.push((command, Box::new(run)));
         self
     }
 
-    /// Adds the command `view`, which shows replays, snapshots and divergence reports in a window, or plays a scene of
-    /// the viewer. `viewer` is called when the command is run. The arguments of `view` are those of
-    /// [`Viewer::run`](lockstep2d_viewer::Viewer::run).
+    /// Adds the command `view`, which opens the viewer of the game. Its arguments are those of
+    /// [`Viewer::run`](lockstep2d_viewer::Viewer::run). `viewer` is called when the command runs.
     ///
     /// ```no_run
     /// use lockstep2d::lockstep::Sandbox;
@@ -111,14 +108,14 @@ impl<G: Game> Tool<G> {
     /// Runs the command that the arguments of this process select, with colours on terminals.
     #[must_use]
     pub fn run(&self) -> ExitCode {
-        // The streams are not locked, because a game that prints or panics on another thread would deadlock.
+        // Locked streams would deadlock a game that prints or panics on another thread.
         let (mut out, mut err) = (anstream::stdout(), anstream::stderr());
         let is_terminal = std::io::stderr().is_terminal();
         let console = Console { out: &mut out, err: &mut err, is_terminal, owns_process: true };
         self.run_on(std::env::args_os(), console).into()
     }
 
-    /// Runs the command that `arguments` select. The first argument is the program's name. Results go to `out`,
+    /// Runs the command that `arguments` select, of which the first is the program's name. Results go to `out`,
     /// messages to `err`, both with ANSI colours.
     pub fn run_with<A>(
         &self,

@@ -1,4 +1,4 @@
-//! [`Walk`]: iterates over the replays in a folder tree, in order and with bounded memory.
+//! [`Walk`]: iterates over the replays in a folder tree, with bounded memory.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -8,16 +8,13 @@ use std::path::{Path, PathBuf};
 
 use crate::files::EXTENSION;
 
-/// Maximum number of names of one folder that are held at a time. A larger folder is listed again for each batch of
-/// this size.
+/// Maximum number of names of a folder in memory. A larger folder is listed again for each batch.
 const NAMES_MAX: usize = 4096;
 
 /// The replays in a folder and its subfolders, in the order of their paths, compared component by component.
 ///
-/// Links to folders are not followed, because they may form cycles. Only regular files and links to them count as
-/// replays: reading a pipe with the name of a replay would block for ever.
-///
-/// A file that is created during the walk may be found or not, but is never found twice.
+/// Links to folders are not followed, because they may form cycles. Only regular files and links to them count: reading
+/// a pipe would block. A file that is created during the walk is found once or not at all.
 ///
 /// ```
 /// use lockstep2d_cli::{Walk, WalkError};
@@ -37,12 +34,11 @@ const NAMES_MAX: usize = 4096;
 /// # Ok::<(), std::io::Error>(())
 /// ```
 pub struct Walk {
-    /// The ancestors of the current folder, followed by the current folder.
+    /// The path to the current folder.
     folders: Vec<Folder>,
     names_max: usize,
 }
 
-/// The remaining entries of one folder.
 struct Folder {
     path: PathBuf,
     /// The next names in order, and whether each is a folder.
@@ -105,7 +101,6 @@ impl Folder {
         Folder { path, names: BTreeMap::new(), last: None, is_listed: false }
     }
 
-    /// Returns the next path, and whether it is a folder.
     fn next(&mut self, names_max: usize) -> io::Result<Option<(PathBuf, bool)>> {
         if self.names.is_empty() && !self.is_listed {
             self.list(names_max)?;
@@ -118,7 +113,7 @@ impl Folder {
         Ok(Some((path, is_folder)))
     }
 
-    /// Lists the folder and keeps the first `names_max` names after the last one that was returned.
+    /// Keeps the first `names_max` names after the last one that was returned.
     fn list(&mut self, names_max: usize) -> io::Result<()> {
         self.is_listed = true;
         for entry in fs::read_dir(&self.path)? {

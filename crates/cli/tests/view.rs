@@ -1,4 +1,4 @@
-//! The command `view` hands its arguments to the viewer. An error of the viewer is exit code 2.
+//! The command `view` hands its arguments to the viewer, and its errors become exit code 2.
 
 use std::path::Path;
 use std::process::{Command, Output};

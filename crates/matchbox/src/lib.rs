@@ -9,13 +9,13 @@ pub use matchbox_socket;
 use matchbox_socket::{ChannelConfig, MessageLoopFuture, PeerId, WebRtcSocket, WebRtcSocketBuilder};
 use uuid::Uuid;
 
-/// Index of the data channel that carries the packets.
+/// Data channel of the packets.
 const CHANNEL: usize = 0;
 
 /// A member of a room of a matchbox signalling server, with a WebRTC data channel to each other member.
 ///
-/// The channels are unordered and unreliable, as UDP is. A member that connects again has another address: the session
-/// recognises the peer by its key.
+/// The channels are unordered and unreliable, as UDP is. A member that connects again has another address, and the
+/// session recognises it by its key.
 pub struct Matchbox {
     socket: WebRtcSocket,
     received: VecDeque<(Address, Vec<u8>)>,
@@ -33,14 +33,14 @@ impl fmt::Debug for Matchbox {
 }
 
 impl Matchbox {
-    /// Enters the room `ws://HOST:PORT/ROOM`, with the ICE servers that matchbox has by default. Returns at once; the
-    /// connections are made in the background, natively in a thread.
+    /// Enters the room `ws://HOST:PORT/ROOM`, with the default ICE servers of matchbox. Returns at once, and connects
+    /// in the background.
     #[must_use]
     pub fn connect(room_url: &str) -> Self {
         Self::with_builder(WebRtcSocket::builder(room_url))
     }
 
-    /// Enters a room with custom settings: ICE servers, attempts, intervals. The channel is added here.
+    /// Enters a room with custom settings, such as ICE servers. The channel is added here.
     ///
     /// ```no_run
     /// use lockstep2d_matchbox::Matchbox;
@@ -57,14 +57,13 @@ impl Matchbox {
         Matchbox { socket, received: VecDeque::new(), others: Vec::new(), is_closed: false }
     }
 
-    /// Updates [`Matchbox::others`] with the members that have come and gone. [`Transport::receive`] calls this method
-    /// when no received packet is left.
+    /// Updates [`Matchbox::others`]. [`Transport::receive`] does this when no received packet is left.
     pub fn update(&mut self) {
         match self.socket.try_update_peers() {
             Ok(changes) if changes.is_empty() => {}
             Ok(_) => {
                 self.others = self.socket.connected_peers().map(address_of).collect();
-                // The socket returns peers in no particular order.
+                // The socket returns peers in any order.
                 self.others.sort_unstable_by(|a, b| a.bytes().cmp(b.bytes()));
             }
             Err(_) => {
@@ -74,19 +73,19 @@ impl Matchbox {
         }
     }
 
-    /// This peer's own address. `None` until the signalling server has assigned it.
+    /// This peer's own address, once the signalling server has assigned it.
     pub fn own(&mut self) -> Option<Address> {
         self.socket.id().map(address_of)
     }
 
-    /// Addresses of the members with an open channel, in ascending order.
+    /// Addresses of members with an open channel, ascending.
     #[must_use]
     pub fn others(&self) -> &[Address] {
         &self.others
     }
 
-    /// Whether the room is lost: the signalling server could not be reached, or has ended. The match is over for this
-    /// peer unless it enters the room again.
+    /// Whether the room is lost: the signalling server was not reached, or has ended. This peer would have to enter
+    /// again.
     #[must_use]
     pub const fn is_closed(&self) -> bool {
         self.is_closed
@@ -97,7 +96,7 @@ impl Transport for Matchbox {
     fn send(&mut self, packet: &[u8], to: &Address) {
         let Some(peer) = peer_of(to) else { return };
         let Ok(channel) = self.socket.get_channel_mut(CHANNEL) else { return };
-        // An error means that the room is lost, which `update` detects as well. Packets may be lost in any case.
+        // `update` also detects a lost room.
         let _lost = channel.try_send(packet.to_vec().into(), peer);
     }
 
@@ -112,7 +111,7 @@ impl Transport for Matchbox {
     }
 }
 
-/// The address is the id that the signalling server has given a peer.
+/// The id from the signalling server.
 fn address_of(peer: PeerId) -> Address {
     Address::new(peer.0.as_bytes()).unwrap_or_else(Address::nowhere)
 }
@@ -121,7 +120,7 @@ fn peer_of(address: &Address) -> Option<PeerId> {
     Uuid::from_slice(address.bytes()).ok().map(PeerId)
 }
 
-/// Runs the connections until the socket is dropped. [`Matchbox::is_closed`] reports when they have ended.
+/// Runs the connections until the socket is dropped.
 #[cfg(not(target_arch = "wasm32"))]
 fn spawn(message_loop: MessageLoopFuture) {
     std::thread::spawn(move || _ = pollster::block_on(message_loop));

@@ -13,11 +13,10 @@ use lockstep2d_matchbox::Matchbox;
 use lockstep2d_matchbox::matchbox_socket::{RtcIceServerConfig, WebRtcSocket};
 use matchbox_signaling::SignalingServer;
 
-/// Timeout of each wait.
+/// Longest wait.
 const PATIENCE: Duration = Duration::from_secs(30);
 const STEP: Duration = Duration::from_millis(2);
 
-/// A signalling server, with its threads.
 struct Server {
     runtime: Option<tokio::runtime::Runtime>,
     address: SocketAddr,
@@ -56,7 +55,6 @@ impl Drop for Server {
     }
 }
 
-/// Repeats `attempt` until it has a result.
 fn until<T>(what: &str, mut attempt: impl FnMut() -> Option<T>) -> T {
     let start = Instant::now();
     while start.elapsed() < PATIENCE {
@@ -95,7 +93,7 @@ fn packets_reach_the_member_they_are_for_and_name_their_sender() {
     });
     assert_eq!(found, (addresses[0], b"to b".to_vec()));
     assert_eq!(c.receive(), None, "a packet for b");
-    // Members of other rooms, and addresses without a member, get nothing.
+    // Other rooms, and addresses without a member, get nothing.
     stranger.send(b"from outside", &addresses[2]);
     a.send(b"nowhere", &Address::nowhere());
     a.send(b"nowhere", &Address::new(&[1, 2, 3]).expect("a short address"));
@@ -187,7 +185,7 @@ impl Game for Sum {
     }
 }
 
-/// Plays a match of two peers in one thread, and returns their replays.
+/// Plays a match in one thread, and returns the replays.
 fn play<T: Transport>(peers: [Peer<Sum, T>; 2], ticks: u64) -> Vec<Vec<u8>> {
     let start = Instant::now();
     let mut peers = peers;

@@ -2,9 +2,9 @@
 //!
 //! `cargo run -p lockstep2d-relay --example push -- ws://127.0.0.1:7010 CODE [--ticks 3000] [-o FILE]`
 //!
-//! The first player in the room opens the match. A bot provides the inputs. FILE is a replay of the sandbox, which
-//! `lockstep2d verify` verifies; web pages write the same bytes. The program prints a line of JSON when it is in the
-//! room, and one at the end. Exit codes: 0 the match has ended, 1 an error or a desync, 2 wrong arguments.
+//! The first player in the room opens the match, and a bot provides the inputs. FILE is a replay of the sandbox, equal
+//! to that of a web page. The program prints a line of JSON when it is in the room, and one at the end. Exit codes: 0
+//! the match has ended, 1 an error or a desync, 2 wrong arguments.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -26,13 +26,13 @@ use serde_json::json;
 
 const SEATS: u8 = 4;
 
-/// Players push crates. The whole state is the world.
+/// The whole state is the world.
 struct Push {
     world: World,
     players: Vec<BodyId>,
 }
 
-/// Commands that set up the world: the ground, the players, the crates.
+/// The ground, the players, the crates.
 fn setup() -> Result<Vec<Command>, WorldError> {
     let ground = ShapeDef::new(Polygon::rectangle(fx!(8), fx!(1))?).friction(fx!(0.8));
     let ball = ShapeDef::new(Geometry::circle(fx!(0.6))?).density(fx!(3));
@@ -48,7 +48,7 @@ fn setup() -> Result<Vec<Command>, WorldError> {
 }
 
 impl Push {
-    /// Commands for the inputs of a tick. Bits of an input: left, right, up.
+    /// Bits of an input: left, right, up.
     fn commands(&self, inputs: &[u8]) -> Vec<Command> {
         let command = |(&body, &input): (&BodyId, &u8)| {
             let state = self.world.body(body)?;
@@ -86,7 +86,7 @@ impl Game for Push {
     }
     fn step(&mut self, inputs: &[u8]) {
         for command in self.commands(inputs) {
-            // The players are never removed, so no command is refused.
+            // Players are never removed, so no command is refused.
             let _ = self.world.execute(&command);
         }
         self.world.step();
@@ -120,7 +120,7 @@ struct Arguments {
     output: Option<PathBuf>,
 }
 
-/// Returns the secret of an identity as 16 bytes, from which the relay makes the address in the room.
+/// The secret of an identity as bytes, from which the relay makes the address.
 fn secret(me: &PeerIdentity) -> [u8; 16] {
     let mut bytes = [0; 16];
     for (to, from) in bytes.chunks_mut(8).zip(me.secret) {
@@ -141,8 +141,7 @@ fn enter(arguments: &Arguments) -> Result<Peer<Push, Relay>, Box<dyn Error>> {
     })
 }
 
-/// Converts a replay of `Push` to a replay of the sandbox, which needs no rules: its inputs are the commands of each
-/// tick.
+/// Converts a replay of `Push` to one of the sandbox, whose inputs are commands.
 fn as_sandbox(file: &[u8]) -> Result<Vec<u8>, Box<dyn Error>> {
     let refused = |verdict: lockstep2d::replay::Verdict| verdict.to_string();
     let mut inputs = RawReplay::<Push>::open(file, &Limits::default()).map_err(refused)?;

@@ -14,17 +14,17 @@ use tungstenite::{Message, WebSocket, client::client_with_config};
 
 use crate::frame::{ADDRESS_BYTES, Members, SECRET_BYTES, frame, of_text, unframe};
 
-/// Maximum time for an attempt to connect to an address, and for each read and write of the handshake.
+/// Longest attempt to connect to an address, and longest read or write of the handshake.
 const CONNECT_MAX: Duration = Duration::from_secs(5);
-/// First pause before connecting again. The pause doubles with each failure.
+/// First pause before connecting again, which doubles with each failure.
 const PAUSE_MIN: Duration = Duration::from_millis(250);
 /// Longest pause before connecting again.
 const PAUSE_MAX: Duration = Duration::from_secs(8);
-/// Size of the largest frame from the relay in bytes.
+/// Largest frame from the relay in bytes.
 const FRAME_MAX: usize = 64 * 1024;
-/// Close code: another connection of the same member has replaced this one.
+/// Close code: another connection of this member has replaced this one.
 const REPLACED: u16 = 4003;
-/// Largest number of bytes that wait to be sent. Further datagrams are dropped.
+/// Bytes that may wait to be sent. Further datagrams are dropped.
 const WRITE_MAX: usize = 512 * 1024;
 
 /// Reason why a relay cannot be used.
@@ -35,8 +35,7 @@ pub enum RelayError {
         /// The URL.
         url: String,
     },
-    /// The port is missing or invalid, the host is unknown, the relay cannot be reached, or it has refused the
-    /// connection.
+    /// The host is unknown, the port is invalid, or the relay cannot be reached or has refused the connection.
     Refused {
         /// Message of the system or of the relay.
         why: String,
@@ -56,7 +55,6 @@ impl core::error::Error for RelayError {}
 
 type Socket = WebSocket<TcpStream>;
 
-/// The relay and room to connect to.
 #[derive(Clone)]
 struct Target {
     /// URL with the code of the room.
@@ -106,9 +104,9 @@ impl fmt::Debug for Relay {
 }
 
 impl Relay {
-    /// Enters a room, which is created if it does not exist. `url` is `ws://HOST:PORT`, `code` 1 to 32 letters, digits
-    /// and `-`, and `secret` 16 random bytes. A member that returns with the same secret has the same address. Blocks
-    /// until the relay has answered; each attempt to connect to an address, and each read and write, takes at most 5 s.
+    /// Enters a room, and creates it if needed. `url` is `ws://HOST:PORT`, `code` 1 to 32 letters, digits and `-`, and
+    /// `secret` 16 random bytes, which determine the address. Blocks until the relay has answered; each attempt to
+    /// connect, read or write takes at most 5 s.
     ///
     /// # Errors
     /// [`RelayError`] when the URL is invalid, or the relay cannot be reached or refuses.
@@ -143,8 +141,7 @@ impl Relay {
         matches!(self.state, State::Open(_))
     }
 
-    /// Whether another connection with the same secret has replaced this one. A replaced connection is not opened
-    /// again.
+    /// Whether another connection with this secret has replaced this one, which is then not opened again.
     #[must_use]
     pub const fn is_closed(&self) -> bool {
         matches!(self.state, State::Closed)
@@ -172,7 +169,7 @@ impl Relay {
                 thread::sleep(pause);
                 let opened = open(&target);
                 if let Ok(opened) = opened {
-                    // If there is no receiver, the member was dropped, and the socket is closed.
+                    // Without a receiver, the member was dropped.
                     let _ = sender.send(opened);
                     return;
                 }
@@ -182,7 +179,7 @@ impl Relay {
         self.state = State::Connecting(receiver);
     }
 
-    /// The socket, if there is a connection.
+    /// The socket, if connected.
     fn socket(&mut self) -> Option<&mut Socket> {
         if let State::Connecting(receiver) = &self.state {
             match receiver.try_recv() {
@@ -201,7 +198,7 @@ impl Relay {
     }
 }
 
-/// Opens a connection and waits for the members of the room.
+/// Opens a connection, and waits for the members of the room.
 fn open(target: &Target) -> Result<(Socket, Members), String> {
     let stream = connect(&target.host).map_err(|error| error.to_string())?;
     let config = WebSocketConfig::default()
@@ -244,7 +241,7 @@ fn connect(host: &str) -> io::Result<TcpStream> {
     Err(last)
 }
 
-/// Whether the connection can be used after an error.
+/// Whether the connection survives an error.
 fn is_passing(error: &tungstenite::Error) -> bool {
     match error {
         tungstenite::Error::Io(error) => {

@@ -1,17 +1,17 @@
-//! Frames: what client and server send to each other.
+//! Frames between client and server.
 
 use serde::{Deserialize, Serialize};
 
 /// Bytes of the address of a member.
 pub const ADDRESS_BYTES: usize = 8;
 
-/// Bytes of the secret that a client begins with.
+/// Bytes of the secret that a client sends first.
 pub(crate) const SECRET_BYTES: usize = 16;
 
 /// Address of a member of a room.
 pub(crate) type Member = [u8; ADDRESS_BYTES];
 
-/// Appends a datagram to the address of its receiver (on the way to the relay) or sender (on the way from it).
+/// A datagram after the address of its receiver (to the relay) or sender (from it).
 pub(crate) fn frame(member: Member, datagram: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(ADDRESS_BYTES + datagram.len());
     bytes.extend_from_slice(&member);
@@ -19,17 +19,16 @@ pub(crate) fn frame(member: Member, datagram: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// The address and the datagram of a frame.
 pub(crate) fn unframe(bytes: &[u8]) -> Option<(Member, &[u8])> {
     bytes.split_first_chunk::<ADDRESS_BYTES>().map(|(member, datagram)| (*member, datagram))
 }
 
-/// The text frame of the relay: the members of the room. It is sent at the beginning and after every change.
+/// Text frame with the members of the room, sent at the beginning and after every change.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Members {
-    /// Address of the receiver of this frame.
+    /// Receiver of this frame.
     pub(crate) you: String,
-    /// Addresses of the others, in order of arrival.
+    /// Other members in order of arrival.
     pub(crate) others: Vec<String>,
 }
 
@@ -39,7 +38,6 @@ pub(crate) fn to_text(member: Member) -> String {
     format!("{:016x}", u64::from_be_bytes(member))
 }
 
-/// Parses an address written by [`to_text`].
 pub(crate) fn of_text(text: &str) -> Option<Member> {
     if text.len() != 2 * ADDRESS_BYTES {
         return None;

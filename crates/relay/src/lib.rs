@@ -1,11 +1,10 @@
 //! A WebSocket relay for matches of lockstep2d.
 //!
-//! Browsers cannot open UDP sockets, and some networks block everything but HTTP. The relay has rooms, and forwards
-//! datagrams between the members of a room without reading their contents. [`Relay`] is the transport of native peers;
-//! web pages use `Relay` of the npm package. `README.md` has the protocol.
+//! Browsers cannot open UDP sockets, and some networks allow only HTTP. The relay forwards datagrams between the
+//! members of a room without reading their contents. `README.md` has the protocol.
 //!
 //! - [`Server`] is the relay, which the binary `lockstep2d-relay` runs.
-//! - [`Relay`] is a member of a room: a [`Transport`](lockstep2d::peer::Transport).
+//! - [`Relay`] is a member of a room: a [`Transport`](lockstep2d::peer::Transport) for native peers.
 
 mod client;
 mod frame;

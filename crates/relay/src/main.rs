@@ -93,7 +93,6 @@ async fn serve(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Waits for Ctrl-C or SIGTERM.
 async fn terminated() -> std::io::Result<()> {
     #[cfg(unix)]
     {

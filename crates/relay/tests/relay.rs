@@ -10,11 +10,11 @@ use lockstep2d::session::Address;
 use lockstep2d_relay::{Limits, Relay, RelayError, Server};
 use tungstenite::Message;
 
-/// Timeout of each wait.
+/// Longest wait.
 const PATIENCE: Duration = Duration::from_secs(20);
 const STEP: Duration = Duration::from_millis(2);
 
-/// A relay in a thread that ends when this value is dropped.
+/// A relay in a thread that ends on drop.
 struct Running {
     address: SocketAddr,
     stop: Option<tokio::sync::oneshot::Sender<()>>,
@@ -55,7 +55,6 @@ impl Drop for Running {
     }
 }
 
-/// Repeats `attempt` until it has a result.
 fn until<T>(what: &str, mut attempt: impl FnMut() -> Option<T>) -> T {
     for _ in 0..PATIENCE.as_millis() / STEP.as_millis() {
         if let Some(found) = attempt() {
@@ -70,7 +69,7 @@ fn receive(relay: &mut Relay) -> (Address, Vec<u8>) {
     until("a datagram", || relay.receive())
 }
 
-/// Reads messages of the relay until the other members of the room are `others`.
+/// Reads until the other members of the room are `others`.
 fn until_others(relay: &mut Relay, others: &[Address]) {
     until("the members", || {
         assert_eq!(relay.receive(), None);
@@ -94,7 +93,7 @@ fn datagrams_reach_the_member_they_are_for_and_name_their_sender() {
     let mut found = [receive(&mut b), receive(&mut b)];
     found.sort_by_key(|(_, bytes)| bytes.clone());
     assert_eq!(found, [(*c.own(), b"also".to_vec()), (*a.own(), b"to b".to_vec())]);
-    // Members of other rooms, and addresses without a member, get nothing.
+    // Other rooms, and addresses without a member, get nothing.
     stranger.send(b"from outside", &to);
     a.send(b"nowhere", &Address::new(&[1, 2, 3]).unwrap());
     a.send(b"last", &to);
@@ -147,9 +146,9 @@ fn members_find_each_other_after_a_restart_of_the_relay() {
         b.receive()
     });
     assert_eq!(found, (*a.own(), b"again".to_vec()));
-    // The member that did not return is no longer listed.
+    // The member that did not return is not listed.
     until("the members", || {
-        // The datagram may have been sent more than once.
+        // The datagram may have been sent repeatedly.
         let _ = (a.receive(), b.receive());
         (a.others() == [to] && b.others() == [*a.own()]).then_some(())
     });
@@ -167,7 +166,7 @@ fn a_member_that_does_not_read_loses_the_oldest_datagrams() {
     let server = Running::start(limits);
     let (mut a, mut b) = (server.enter("room", 1), server.enter("room", 2));
     let to = *b.own();
-    // More datagrams than the buffers of the system and the queue hold.
+    // More than the system's buffers and the queue hold.
     let count = 20_000_u32;
     for number in 0..count {
         let mut datagram = vec![0; 1000];
@@ -178,10 +177,10 @@ fn a_member_that_does_not_read_loses_the_oldest_datagrams() {
             thread::sleep(STEP);
         }
     }
-    // The last datagram sent arrives, although b has not read any before.
+    // The last datagram arrives, although b has not read before.
     let mut numbers = Vec::new();
     until("the newest datagram", || {
-        // Sent repeatedly, because a datagram is also lost if the sender's buffer is full.
+        // A datagram is also lost if the sender's buffer is full.
         a.send(&u32::MAX.to_le_bytes(), &to);
         while let Some((_, bytes)) = b.receive() {
             numbers.push(u32::from_le_bytes(*bytes.first_chunk().unwrap()));
@@ -240,7 +239,7 @@ fn limits_close_connections() {
 fn a_silent_member_is_disconnected_and_one_that_answers_pings_is_not() {
     let server = Running::start(Limits { idle: Duration::from_millis(300), ..Limits::default() });
     let mut a = server.enter("room", 1);
-    // This member does not read, so it answers no ping.
+    // This member answers no ping.
     let silent = server.enter("room", 2);
     until_others(&mut a, std::slice::from_ref(silent.own()));
     until_others(&mut a, &[]);

@@ -1,4 +1,4 @@
-//! [`Camera`]: transforms world coordinates to screen coordinates and back.
+//! [`Camera`]: transforms between world and screen coordinates.
 
 use lockstep2d::math::{Aabb, Fx, Vec2};
 
@@ -7,7 +7,7 @@ const SCALE_MIN: f64 = 1e-8;
 /// Largest scale, in pixels per metre: a micrometre per pixel.
 const SCALE_MAX: f64 = 1e6;
 
-/// Clipping happens this far outside the visible area, in pixels, because strokes have a width.
+/// Distance of clipping from the visible area, in pixels: strokes have a width.
 const MARGIN: f64 = 16.0;
 
 /// Visible part of a world, without rotation: y points up in the world and down on the screen.
@@ -27,8 +27,7 @@ const MARGIN: f64 = 16.0;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// World point in the middle of the area. Fixed-point, so that a world far from its origin is drawn with the same
-    /// precision.
+    /// World point in the middle of the area, in fixed point for precision far from the origin.
     pub centre: Vec2<Fx>,
     /// Pixels per metre.
     pub scale: f64,
@@ -39,7 +38,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Fits a window of the world into an area of the screen, given by its upper left corner and size in pixels.
+    /// Fits a window of the world into an area of the screen, with its upper left corner and size in pixels.
     #[must_use]
     pub fn new(window: Aabb, corner: [f32; 2], size: [f32; 2]) -> Self {
         let [width, height] = size.map(|side| f64::from(side.max(1.0)));
@@ -53,7 +52,7 @@ impl Camera {
     /// Converts a world point to screen coordinates.
     #[must_use]
     pub fn place(&self, point: Vec2<Fx>) -> [f32; 2] {
-        // The difference is taken in fixed point, before rounding to the 24 bits of an `f32`.
+        // The difference needs more than the 24 bits of an `f32`.
         let x = difference(point.x, self.centre.x) * self.scale;
         let y = difference(point.y, self.centre.y) * self.scale;
         [(self.middle[0] + x) as f32, (self.middle[1] - y) as f32]
@@ -65,7 +64,7 @@ impl Camera {
         (metres(length) * self.scale) as f32
     }
 
-    /// Converts screen coordinates to a world point, saturating at the range of `Fx`.
+    /// Converts screen coordinates to a world point, saturating.
     #[must_use]
     pub fn point(&self, [x, y]: [f32; 2]) -> Vec2<Fx> {
         let x = (f64::from(x) - self.middle[0]) / self.scale;
@@ -82,7 +81,7 @@ impl Camera {
         self.centre = self.point([left as f32, up as f32]);
     }
 
-    /// Multiplies the scale by a factor. The world point at `about`, in screen coordinates, stays in place.
+    /// Multiplies the scale by a factor, about a screen position.
     pub fn zoom(&mut self, factor: f32, about: [f32; 2]) {
         let fixed = self.point(about);
         self.scale = (self.scale * f64::from(factor)).clamp(SCALE_MIN, SCALE_MAX);
@@ -90,7 +89,7 @@ impl Camera {
         self.pan([about[0] - now[0], about[1] - now[1]]);
     }
 
-    /// Returns whether a mark of this size, in pixels, at a screen position is visible.
+    /// Whether a mark of this size, in pixels, is visible at a screen position.
     #[must_use]
     pub fn sees(&self, [x, y]: [f32; 2], size: f32) -> bool {
         let beside =
@@ -98,8 +97,7 @@ impl Camera {
         beside(x, self.middle[0], self.half[0]) && beside(y, self.middle[1], self.half[1])
     }
 
-    /// Returns whether the bounding box of some screen positions is visible, or at most 16 pixels outside the visible
-    /// area.
+    /// Whether the bounding box of screen positions is visible, or at most 16 pixels outside.
     #[must_use]
     pub fn sees_any(&self, points: &[[f32; 2]]) -> bool {
         let beyond = |axis: usize| {
@@ -113,8 +111,7 @@ impl Camera {
     }
 
     /// Clips a line to the visible area and 16 pixels around it (Liang and Barsky, "A New Concept and Method for Line
-    /// Clipping", 1984), because the coordinates of a line across the whole world are too large for a rasteriser.
-    /// Returns `None` if the line lies outside.
+    /// Clipping", 1984): other coordinates may be too large for a rasteriser. Returns `None` if it lies outside.
     #[must_use]
     pub fn clipped(&self, [from, to]: [[f32; 2]; 2]) -> Option<[[f32; 2]; 2]> {
         if self.sees(from, MARGIN as f32) && self.sees(to, MARGIN as f32) {
@@ -147,7 +144,7 @@ fn metres(length: Fx) -> f64 {
 fn difference(a: Fx, b: Fx) -> f64 {
     let difference = match a.to_bits().checked_sub(b.to_bits()) {
         Some(bits) => bits as f64,
-        // The distance of two points may exceed the range of the fixed-point format.
+        // The distance of two points may exceed the fixed-point range.
         None => a.to_bits() as f64 - b.to_bits() as f64,
     };
     difference / (1i64 << Fx::FRAC_NBITS) as f64

@@ -22,20 +22,20 @@ impl Colour {
     /// Fully transparent black.
     pub const NONE: Self = Colour { rgb: [0; 3], opacity: 0 };
 
-    /// Returns an opaque colour from the HTML notation `0xRRGGBB`.
+    /// Opaque colour in the HTML notation `0xRRGGBB`.
     #[must_use]
     pub const fn hex(rgb: u32) -> Self {
         let [_, red, green, blue] = rgb.to_be_bytes();
         Colour { rgb: [red, green, blue], opacity: 255 }
     }
 
-    /// Returns the colour with another opacity.
+    /// The colour with another opacity.
     #[must_use]
     pub const fn with_opacity(self, opacity: u8) -> Self {
         Colour { opacity, ..self }
     }
 
-    /// Returns whether the colour is fully transparent.
+    /// Whether the colour is fully transparent.
     #[must_use]
     pub const fn is_none(self) -> bool {
         self.opacity == 0

@@ -1,8 +1,7 @@
 //! [`glyph`]: the glyphs of a bitmap font.
 //!
-//! The font is Noto Sans Mono with the characters of Latin-1, 7 x 16 pixels each. A few other characters that are
-//! common in English text are replaced by the most similar one. Any further character is drawn as a hollow box, so
-//! that its absence is visible.
+//! The font is Noto Sans Mono with the characters of Latin-1, 7 x 16 pixels each. Some others are replaced by similar
+//! ones, and the rest is drawn as a hollow box.
 
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 
@@ -11,17 +10,17 @@ use crate::text::{CELL_HEIGHT, CELL_WIDTH};
 const WEIGHT: FontWeight = FontWeight::Regular;
 const SIZE: RasterHeight = RasterHeight::Size16;
 
-/// Width of every glyph in pixels, equal to the width of a text cell at scale 1.
+/// Width of a glyph in pixels: a text cell at scale 1.
 pub const GLYPH_WIDTH: usize = get_raster_width(WEIGHT, SIZE);
-/// Height of every glyph in pixels, equal to the height of a text cell at scale 1.
+/// Height of a glyph in pixels: a text cell at scale 1.
 pub const GLYPH_HEIGHT: usize = SIZE.val();
 
 const _: () = assert!(GLYPH_WIDTH as f32 == CELL_WIDTH && GLYPH_HEIGHT as f32 == CELL_HEIGHT);
 
-/// Coverage of each pixel by a character, from 0 to 255: rows from top to bottom, each from left to right.
+/// Coverage of each pixel, from 0 to 255, in rows from top to bottom.
 pub type Glyph = [[u8; GLYPH_WIDTH]; GLYPH_HEIGHT];
 
-/// Returns the glyph of a character.
+/// Glyph of a character.
 #[must_use]
 pub fn glyph(character: char) -> Glyph {
     let Some(raster) = get_raster(nearest(character), WEIGHT, SIZE) else { return MISSING };
@@ -32,8 +31,7 @@ pub fn glyph(character: char) -> Glyph {
     glyph
 }
 
-/// Returns a substitute from the font for a character that the font lacks, if there is a similar one; otherwise the
-/// character itself.
+/// Replaces a character that the font lacks by a similar one, if there is one.
 fn nearest(character: char) -> char {
     match character {
         '\u{2010}'..='\u{2015}' | '\u{2212}' => '-',
@@ -46,7 +44,6 @@ fn nearest(character: char) -> char {
     }
 }
 
-/// Glyph of a missing character: a hollow box.
 const MISSING: Glyph = {
     let mut glyph = [[0; GLYPH_WIDTH]; GLYPH_HEIGHT];
     let mut y = 2;

@@ -1,10 +1,8 @@
 //! Renders a world into a draw list of pixels and colours, for any renderer.
 //!
-//! `lockstep2d::draw` produces primitives and their meaning. This crate gives them a position on the screen
-//! ([`Camera`]) and a colour ([`paint`]), and turns them into polygons, lines and text ([`DrawList`]). A window, a
-//! web page and a picture file show the same list.
-//!
-//! This crate uses floating-point numbers. No result of drawing flows back into a simulation.
+//! `lockstep2d::draw` produces primitives. This crate places them on the screen ([`Camera`]), gives them a colour
+//! ([`paint`]), and turns them into polygons, lines and text ([`DrawList`]). It uses floats, which never flow back into
+//! a simulation.
 #![expect(clippy::disallowed_types, reason = "drawing uses floats")]
 
 mod camera;

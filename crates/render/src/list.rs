@@ -2,7 +2,7 @@
 
 use crate::colour::Colour;
 
-/// Range of the points of an [`Item`] in the list's point array, read by [`DrawList::points`].
+/// Range of the points of an [`Item`], read by [`DrawList::points`].
 ///
 /// ```
 /// use lockstep2d_render::{Colour, DrawList, Points};
@@ -23,22 +23,22 @@ pub struct Points {
 /// Convex polygon or line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Item {
-    /// Corners, as a range of the points in the list.
+    /// Corners.
     pub points: Points,
-    /// Colour of the inside; [`Colour::NONE`] for lines.
+    /// Colour of the inside.
     pub fill: Colour,
     /// Colour of the border or line.
     pub stroke: Colour,
     /// Width of the border or line, in pixels.
     pub width: f32,
-    /// Whether the border is closed by an edge from the last point to the first.
+    /// Whether an edge leads from the last point to the first.
     pub closed: bool,
 }
 
-/// Line of text, in the cells of a monospaced font (see [`CELL_WIDTH`](crate::CELL_WIDTH)).
+/// Line of text, in cells of [`CELL_WIDTH`](crate::CELL_WIDTH).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
-    /// Number of items that are drawn before the text.
+    /// Number of items drawn before the text.
     pub after: u32,
     /// Upper left corner, in pixels.
     pub at: [f32; 2],
@@ -50,10 +50,7 @@ pub struct Text {
     pub text: String,
 }
 
-/// List of items and texts to draw, in pixels from the upper left corner with y pointing down. Later entries are drawn
-/// on top of earlier ones.
-///
-/// [`DrawList::clear`] keeps the memory, so that one list can be filled again in each frame.
+/// Items and texts to draw, in pixels from the upper left corner with y pointing down. Later entries lie on top.
 ///
 /// ```
 /// use lockstep2d_render::{Colour, DrawList, Item, Text};
@@ -75,26 +72,26 @@ pub struct DrawList {
 }
 
 impl DrawList {
-    /// Removes all items and texts, and keeps the memory.
+    /// Removes all entries, and keeps the memory.
     pub fn clear(&mut self) {
         self.points.clear();
         self.items.clear();
         self.texts.clear();
     }
 
-    /// Returns all polygons and lines.
+    /// Polygons and lines.
     #[must_use]
     pub fn items(&self) -> &[Item] {
         &self.items
     }
 
-    /// Returns all lines of text, in the order of [`Text::after`].
+    /// Lines of text, in the order of [`Text::after`].
     #[must_use]
     pub fn texts(&self) -> &[Text] {
         &self.texts
     }
 
-    /// Returns the corners of an item.
+    /// Corners of an item.
     #[must_use]
     pub fn points(&self, item: &Item) -> &[[f32; 2]] {
         let first = item.points.first as usize;
@@ -131,7 +128,6 @@ impl DrawList {
         self.texts.push(Text { after, at, scale, colour, text: text.into() });
     }
 
-    /// Removes the last polygon or line.
     pub(crate) fn undo(&mut self) {
         if let Some(item) = self.items.pop() {
             self.points.truncate(item.points.first as usize);

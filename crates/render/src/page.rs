@@ -1,4 +1,4 @@
-//! [`page`]: a picture of a world with a legend and a scale bar, in the same layout as `lockstep2d::draw::svg`.
+//! [`page`]: a picture of a world with a legend and a scale bar, like `lockstep2d::draw::svg`.
 
 use lockstep2d::draw::{Bar, Frame, Legend, PAPER, Style, View, fit, primitives};
 use lockstep2d::world::World;
@@ -9,7 +9,7 @@ use crate::list::DrawList;
 use crate::paint::{Brush, paint};
 use crate::text::{CELL_WIDTH, width_of};
 
-/// Colour of the legend, except the names of styles, and of the scale bar.
+/// Colour of the scale bar, and of the legend except names of styles.
 const INK: Colour = Colour::hex(0x222222);
 /// Background colour of the legend.
 const WHITE: Colour = Colour::hex(0xffffff);
@@ -17,15 +17,15 @@ const WHITE: Colour = Colour::hex(0xffffff);
 const LINE: f32 = 17.0;
 /// Margin around the legend, in pixels.
 const MARGIN: f32 = 8.0;
-/// Typical length of the figures without the title, in characters.
+/// Typical length of the figures, in characters.
 const FIGURES: usize = 100;
-/// Room for the hash, in characters.
+/// Length of the hash, in characters.
 const HASH: usize = 34;
-/// Typical length of the name of a style, in characters.
+/// Typical length of a style's name, in characters.
 const NAME: usize = 12;
 
-/// Draws a world like `lockstep2d::draw::svg`, with the same size and the same words: the visible part of the world, a
-/// scale bar, and above them the legend, wrapped to the width.
+/// Draws a world like `lockstep2d::draw::svg`: its visible part, a scale bar, and above them the legend, wrapped to the
+/// width.
 pub fn page(list: &mut DrawList, world: &World, view: &View) {
     let size = [view.width.clamp(64, 16384) as f32, view.height.clamp(64, 16384) as f32];
     let window = match view.frame {
@@ -48,13 +48,12 @@ pub fn page(list: &mut DrawList, world: &World, view: &View) {
         }
     }
     add_bar(list, &camera, size);
-    // Covers primitives that extend above the picture area.
+    // Covers primitives above the picture area.
     list.rectangle([0.0, 0.0], [size[0], top], WHITE);
     add_legend(list, &Legend::of(world, styles), &view.title, size[0]);
 }
 
-/// Height of the legend, from typical lengths instead of the figures of this tick, so that it stays the same in all
-/// frames of an animation.
+/// Height of the legend, from typical lengths: it is equal in all frames of an animation.
 fn height_of_legend(view: &View, width: f32) -> f32 {
     let columns = ((width - 2.0 * MARGIN) / CELL_WIDTH).max(1.0) as usize;
     let title = view.title.chars().count().next_multiple_of(8);
@@ -63,11 +62,11 @@ fn height_of_legend(view: &View, width: f32) -> f32 {
     lines as f32 * LINE + MARGIN
 }
 
-/// Adds the title with the figures, and below them the hash with the names of the visible styles.
+/// Title and figures, and below them the hash with the names of the visible styles.
 fn add_legend(list: &mut DrawList, legend: &Legend, title: &str, width: f32) {
     let mut pen = Pen { at: [MARGIN, 2.0], width };
     if !title.is_empty() {
-        // The font has one weight: drawing the title twice with a small offset makes it bold.
+        // Two offset copies look bold: the font has one weight.
         let title = format!("{title} · ");
         list.text([pen.at[0] + 0.6, pen.at[1]], 1.0, INK, title.clone());
         pen.write(list, &title, INK);
@@ -82,7 +81,7 @@ fn add_legend(list: &mut DrawList, legend: &Legend, title: &str, width: f32) {
     }
 }
 
-/// Writes text from left to right and wraps at the width.
+/// Text from left to right, wrapped at the width.
 struct Pen {
     at: [f32; 2],
     width: f32,
@@ -103,7 +102,7 @@ impl Pen {
     }
 }
 
-/// Adds a scale bar of up to a quarter of the picture's width, in its lower left corner.
+/// A scale bar of up to a quarter of the width, in the lower left corner.
 fn add_bar(list: &mut DrawList, camera: &Camera, [width, height]: [f32; 2]) {
     let Some(Bar { length, label }) = Bar::up_to(|length| camera.length(length) <= width / 4.0) else {
         return;

@@ -1,4 +1,4 @@
-//! Paints the primitives of `lockstep2d::draw` into a draw list, in the colours of their styles.
+//! Paints the primitives of `lockstep2d::draw` into a draw list.
 
 use std::f32::consts::TAU;
 
@@ -10,17 +10,16 @@ use crate::camera::Camera;
 use crate::colour::Colour;
 use crate::list::DrawList;
 
-/// Length of the line that shows a direction, in pixels, if marks have their full size.
+/// Length of a direction, in pixels, for marks of full size.
 const DIRECTION_LENGTH: f32 = 18.0;
-/// Mean half size of the shapes, in pixels, above which marks have their full size. If the shapes are smaller, marks
-/// shrink, so that a mark stays smaller than a typical body.
+/// Mean half size of shapes, in pixels, below which marks shrink, to stay smaller than a typical body.
 const LARGE: f32 = 24.0;
-/// Smallest scale factor of marks.
+/// Smallest scale of marks.
 const SCALE_MIN: f32 = 1.0 / 6.0;
-/// Mean half size of the shapes, in pixels, below which labels are left out, because they would overlap.
+/// Mean half size of shapes, in pixels, below which labels would overlap and are left out.
 const TEXT_SIZE_MIN: f32 = 7.0;
 
-/// Corners of a point mark. At this size an octagon is not distinguishable from a disc.
+/// Corners of a point mark, which looks like a disc.
 const OCTAGON: [[f32; 2]; 8] = {
     let (far, near) = (0.923_879_5, 0.382_683_43);
     [
@@ -35,7 +34,7 @@ const OCTAGON: [[f32; 2]; 8] = {
     ]
 };
 
-/// Radius, in pixels, below which a mark is drawn with only every other corner.
+/// Radius, in pixels, below which a mark has every other corner.
 const TINY: f32 = 1.5;
 
 /// Settings for painting a picture.
@@ -59,9 +58,9 @@ const TINY: f32 = 1.5;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Brush {
-    /// Scale factor of marks and line widths, from 1/6 to 1, smaller for small bodies.
+    /// Scale of marks and line widths, from 1/6 to 1, smaller for small bodies.
     pub marks: f32,
-    /// Single colour that replaces all others, for a world that is drawn over another one.
+    /// Colour that replaces all others, for a world over another one.
     pub tint: Option<Colour>,
 }
 
@@ -72,7 +71,7 @@ impl Default for Brush {
 }
 
 impl Brush {
-    /// Returns a brush whose marks fit the mean size, in pixels, of the shapes of all dynamic bodies.
+    /// Returns a brush whose marks suit the mean size of the shapes of dynamic bodies.
     #[must_use]
     pub fn suiting(world: &World, camera: &Camera) -> Self {
         let moving = world.bodies().filter(|(_, body)| body.is_dynamic());
@@ -87,19 +86,19 @@ impl Brush {
     }
 }
 
-/// Draws some layers of a world on top of each other.
+/// Draws layers of a world on top of each other.
 pub fn world(list: &mut DrawList, world: &World, layers: Layers, camera: &Camera, brush: &Brush) {
     for layers in layers.stacked() {
         each_primitive(world, layers, &mut |primitive| paint(list, &primitive, camera, brush));
     }
 }
 
-/// Draws one primitive, if it is visible.
+/// Draws a primitive.
 pub fn paint(list: &mut DrawList, primitive: &Primitive, camera: &Camera, brush: &Brush) {
     painted(list, primitive, camera, brush, Look::of(primitive.style, brush));
 }
 
-/// Draws one primitive in the given colours, if it is visible: its inside, if its style has one, and its lines.
+/// Draws a primitive in the given colours: its inside, if its style has one, and its lines.
 pub fn filled(list: &mut DrawList, primitive: &Primitive, camera: &Camera, inside: Colour, lines: Colour) {
     let brush = Brush::default();
     let look = Look::of(primitive.style, &brush);
@@ -161,7 +160,7 @@ fn painted(list: &mut DrawList, primitive: &Primitive, camera: &Camera, brush: &
     }
 }
 
-/// Colours and line width of a style, as painted by a brush.
+/// A style, as painted by a brush.
 struct Look {
     stroke: Colour,
     fill: Colour,
@@ -172,7 +171,7 @@ impl Look {
     fn of(style: Style, brush: &Brush) -> Self {
         let Paint { stroke, fill, width, .. } = style.paint();
         let width = f32::from(width) / 100.0;
-        // Small bodies have thin lines. The outlines of fixed shapes keep one pixel, to remain visible.
+        // Small bodies have thin lines. The outlines of fixed shapes stay visible.
         let width_min = if style == Style::Fixed { 1.0 } else { 0.4 };
         let width = (width * brush.marks).max(width.min(width_min));
         let fill = fill.map_or(Colour::NONE, |Fill { colour, opacity }| {
@@ -213,18 +212,17 @@ fn disc([x, y]: [f32; 2], radius: f32, sides: u32) -> impl Iterator<Item = [f32;
     })
 }
 
-/// Number of sides with which a circle looks round: up to a radius of 1000 pixels, the chords are at most a third of a
-/// pixel off the circle.
+/// Sides of a circle that looks round: up to a radius of 1000 pixels, chords are at most a third of a pixel off.
 fn sides_of(radius: f32) -> u32 {
     (radius.max(0.0).sqrt() * 4.5).clamp(8.0, 128.0) as u32
 }
 
-/// Returns the outline of a polygon, or a capsule, with rounded corners.
+/// Outline of a polygon or capsule with rounded corners.
 fn rounded(vertices: &[Vec2<Fx>], radius: Fx, camera: &Camera) -> Vec<[f32; 2]> {
     let radius = camera.length(radius);
     let corners: Vec<[f32; 2]> = vertices.iter().map(|&vertex| camera.place(vertex)).collect();
     let count = corners.len();
-    // Angles are measured with y pointing up, so that a counter-clockwise polygon in the world stays counter-clockwise.
+    // With y pointing up, a counter-clockwise polygon stays counter-clockwise.
     let direction = |from: [f32; 2], to: [f32; 2]| (from[1] - to[1]).atan2(to[0] - from[0]);
     let sides = sides_of(radius) as f32;
     let mut outline = Vec::new();

@@ -1,5 +1,4 @@
-//! Written pictures and animations decode to the same pixels with the right frame durations; misuse and write errors
-//! are reported.
+//! Written pictures and animations decode to the same pixels and durations, and errors are reported.
 #![expect(clippy::unwrap_used, reason = "a failed unwrap in a helper fails the test")]
 #![expect(clippy::disallowed_types, reason = "drawing uses floats")]
 
@@ -15,7 +14,7 @@ const SIZE: (u32, u32) = (120, 80);
 const WHITE: Colour = Colour::hex(0xffffff);
 const THIRTY: Pace = Pace { ticks: 2, tick_rate: 60 };
 
-/// Square that moves by whole pixels, and text that changes: few colours.
+/// Few colours: a moving square, and text.
 fn flat(frame: u32) -> Image {
     let mut list = DrawList::default();
     list.rectangle([0.0, 60.0], [120.0, 20.0], Colour::hex(0xdddcd6));
@@ -39,7 +38,7 @@ fn a_png_is_the_image() {
     }
 }
 
-/// Returns the picture that a decoder shows after each frame, and its duration in hundredths of a second.
+/// Pictures that a decoder shows, and durations in hundredths of a second.
 fn decoded_gif(bytes: &[u8]) -> Vec<(Vec<[u8; 3]>, u16)> {
     let mut options = DecodeOptions::new();
     options.set_color_output(ColorOutput::RGBA);
@@ -76,7 +75,7 @@ fn rgb(image: &Image) -> Vec<[u8; 3]> {
 
 #[test]
 fn a_gif_of_few_colours_is_exact() {
-    // The last frame appears twice, so that one frame has no change.
+    // The last frame has no change.
     let images: Vec<Image> = (0..30).map(|frame| flat(frame.min(28))).collect();
     let bytes = gif_of(&images, THIRTY);
     let frames = decoded_gif(&bytes);
@@ -148,7 +147,7 @@ fn a_gif_of_many_colours_is_close() {
     }
 }
 
-/// Returns the picture that a decoder shows after each frame, and its duration in seconds as a fraction.
+/// Pictures that a decoder shows, and durations in seconds as fractions.
 fn decoded_apng(bytes: &[u8]) -> Vec<(Vec<u8>, (u16, u16))> {
     let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().unwrap();
     let count = reader.info().animation_control().unwrap().num_frames;
@@ -211,7 +210,7 @@ fn what_is_no_animation_is_refused() {
     assert!(Animation::apng(Vec::new(), THIRTY, 0).finish().is_err());
 }
 
-/// Writer that accepts this number of bytes and then fails as a full disk.
+/// A full disk after this number of bytes.
 struct Full(usize);
 
 impl std::io::Write for Full {

@@ -1,5 +1,4 @@
-//! The memory for writing an animation does not grow with its length. This is a separate test binary, so that no
-//! other test adds to the peak memory of the process.
+//! Writing an animation takes bounded memory. In a separate binary, no other test adds to the peak of the process.
 #![cfg(target_os = "linux")]
 #![expect(clippy::unwrap_used, reason = "a failed unwrap in a helper fails the test")]
 #![expect(clippy::disallowed_types, reason = "drawing uses floats")]
@@ -9,7 +8,7 @@ mod common;
 use common::colourful;
 use lockstep2d_render::{Animation, Pace};
 
-/// Returns the peak memory of this process, in KiB.
+/// Peak memory of this process, in KiB.
 fn memory_peak() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap();
     let line = status.lines().find(|line| line.starts_with("VmHWM:")).unwrap();

@@ -1,4 +1,4 @@
-//! A rendered world shows its bodies at their positions, and only the background elsewhere.
+//! A rendered world shows its bodies at their positions.
 #![expect(clippy::unwrap_used, reason = "a failed unwrap in a helper fails the test")]
 #![expect(clippy::disallowed_types, reason = "drawing uses floats")]
 
@@ -10,7 +10,7 @@ use lockstep2d_scenes::Scene;
 
 const SIZE: (u32, u32) = (400, 300);
 
-/// Returns a scene after this number of ticks.
+/// A scene after this number of ticks.
 fn played(name: &str, ticks: u64) -> Sandbox {
     let scene = Scene::find(name).unwrap();
     let mut game = Sandbox::new(&scene.setup(1)).unwrap();
@@ -21,7 +21,7 @@ fn played(name: &str, ticks: u64) -> Sandbox {
     game
 }
 
-/// Returns whether a colour is the blend of two others, up to a rounding error of 2 per channel.
+/// Whether a colour is the blend of two others, up to 2 per channel.
 fn is_mixed(found: Colour, above: Colour, below: Colour) -> bool {
     let share = f32::from(above.opacity) / 255.0;
     (0..3).all(|channel| {
@@ -30,7 +30,7 @@ fn is_mixed(found: Colour, above: Colour, below: Colour) -> bool {
     })
 }
 
-/// Returns whether a point lies inside a polygon by more than `margin` pixels, for either orientation of the polygon.
+/// Whether a point is inside a polygon by more than `margin` pixels.
 fn is_inside(corners: &[[f32; 2]], [x, y]: [f32; 2], margin: f32) -> bool {
     let sides = corners.iter().zip(corners.iter().cycle().skip(1));
     let distances: Vec<f32> = sides
@@ -43,9 +43,8 @@ fn is_inside(corners: &[[f32; 2]], [x, y]: [f32; 2], margin: f32) -> bool {
         || distances.iter().all(|&distance| distance < -margin)
 }
 
-/// Compares a grid of pixels (every third in each direction) with the primitives, transformed by the camera. A pixel
-/// inside exactly one polygon or circle has its fill colour; a pixel outside all of them has the colour of the paper.
-/// Returns the numbers of pixels checked outside and inside.
+/// Compares every third pixel in each direction with the primitives: inside exactly one polygon or circle it has its
+/// fill colour, outside all of them that of the paper. Returns the numbers of pixels outside and inside.
 fn check(image: &Image, game: &Sandbox, camera: &Camera, paper: Colour, top: u32) -> [u32; 2] {
     let outlines = primitives(game.world(), Layers { outlines: true, ..Layers::NONE });
     let mut counts = [0, 0];
@@ -71,7 +70,7 @@ fn check(image: &Image, game: &Sandbox, camera: &Camera, paper: Colour, top: u32
                         let distance = (at[0] - centre[0]).hypot(at[1] - centre[1]);
                         cover(&|margin| distance < radius - margin);
                     }
-                    // Pixels near a line, such as the radius marks of circles, are not checked.
+                    // Pixels near a line are not checked.
                     Form::Line { from, to } => {
                         let (from, to) = (camera.place(*from), camera.place(*to));
                         let along = [to[0] - from[0], to[1] - from[1]];
@@ -141,7 +140,7 @@ fn a_page_shows_the_same_below_its_legend() {
     for word in ["pyramid", "tick 60 ", "deepest overlap", &hash, "fixed", "asleep"] {
         assert!(words.contains(word), "{word:?} should be in {words:?}");
     }
-    // Leaves out the scale bar, which lies on the picture.
+    // The scale bar lies on the picture.
     let mut bare = DrawList::default();
     for item in list.items().iter().filter(|item| item.stroke != Colour::hex(0x222222)) {
         bare.polygon(list.points(item).to_vec(), item.fill, item.stroke, item.width);
@@ -151,7 +150,7 @@ fn a_page_shows_the_same_below_its_legend() {
     assert!(outside > 1000 && inside > 100, "checked only {outside} pixels outside and {inside} inside");
 }
 
-/// Shapes that extend far beyond the window must not overflow the rasteriser's coordinates.
+/// Wide shapes must not overflow the rasteriser.
 #[test]
 fn a_narrow_window_of_a_wide_world_is_drawn() {
     let game = played("box_stack", 1);

@@ -1,5 +1,4 @@
-//! Builds a setup command by command. Commands refer to bodies by handles, so the builder executes each command on a
-//! world of its own to obtain the handles.
+//! Builds a setup command by command, and executes each on a world to obtain the handles of bodies.
 
 use alloc::vec::Vec;
 
@@ -29,7 +28,7 @@ pub struct Builder {
 }
 
 impl Builder {
-    /// Creates an empty setup. Invalid settings are reported when a game is created from it.
+    /// Creates an empty setup. A game reports invalid settings.
     #[must_use]
     pub fn new(config: Config) -> Self {
         let world = World::new(config).unwrap_or_default();
@@ -68,7 +67,7 @@ impl Builder {
         }
     }
 
-    /// Adds a body of the same definition at every position, with the angle of the definition.
+    /// Adds a body at every position, with the angle of the definition.
     ///
     /// # Errors
     /// [`WorldError`] when the world refuses a body.
@@ -85,7 +84,7 @@ impl Builder {
         }
     }
 
-    /// Adds a joint of the same definition between the two bodies of each pair in `ends`.
+    /// Adds a joint between the bodies of each pair in `ends`.
     ///
     /// # Errors
     /// [`WorldError`] when the world refuses a joint.
@@ -107,8 +106,7 @@ impl Builder {
     }
 }
 
-/// Builds a scene of this crate. All these scenes are valid: a failure is a programming error, found by the test that
-/// builds all of them.
+/// Builds a scene of this crate, all of which are valid.
 pub(super) fn build(
     config: Config,
     fill: impl FnOnce(&mut Builder) -> Result<(), WorldError>,
@@ -128,12 +126,11 @@ pub(super) fn floor(scene: &mut Builder, half_width: Fx) -> Result<BodyId, World
     scene.spawn(BodyDef::fixed().position((fx!(0), fx!(-1))), &[rectangle(half_width, fx!(1))?])
 }
 
-/// Settings without gravity.
 pub(super) fn weightless() -> Config {
     Config { gravity: Vec2::ZERO, ..Config::default() }
 }
 
-/// Settings of scenes that measure performance: sleeping is off.
+/// Settings for measuring performance.
 pub(super) fn sleepless() -> Config {
     Config { sleeping: false, ..Config::default() }
 }

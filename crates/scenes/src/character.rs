@@ -1,4 +1,4 @@
-//! A character that moves through a level by queries. A kinematic body follows it.
+//! A character that moves by queries, followed by a kinematic body.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -40,20 +40,18 @@ fn level() -> Vec<Vec2<Fx>> {
     points.into_iter().map(|(x, y)| Vec2::new(x, y)).collect()
 }
 
-/// The character: a capsule 1.4 m high.
+/// A capsule 1.4 m high.
 fn pill() -> Result<Geometry, WorldError> {
     Ok(Geometry::capsule(Vec2::new(fx!(0), fx!(-0.4)), Vec2::new(fx!(0), fx!(0.4)), fx!(0.3))?)
 }
 
-/// Horizontal speed in m/s to the right, from the given tick on.
+/// Horizontal speed in m/s, from the given tick on.
 const SPEEDS: [(u64, Fx); 6] =
     [(0, fx!(0)), (60, fx!(-8)), (120, fx!(3)), (300, fx!(6)), (600, fx!(-6)), (880, fx!(0))];
 
-/// Ticks in which the character jumps: against the wall, on the slope, under the ceiling, at the steep slope, up the
-/// steps.
+/// Jumps: against the wall, on the slope, under the ceiling, at the steep slope, up the steps.
 const JUMPS: [u64; 5] = [100, 330, 440, 520, 700];
 
-/// The script: the commands that move the character.
 fn play(tick: u64, game: &Sandbox) -> Option<Vec<Command>> {
     let world = game.world();
     let (id, body) = world.bodies().next()?;
@@ -74,10 +72,10 @@ fn play(tick: u64, game: &Sandbox) -> Option<Vec<Command>> {
 }
 
 /// Lowest bit of the body's user data: whether the character is on ground. The other bits are those of the upward
-/// speed, whose own lowest bit is dropped.
+/// speed.
 const ON_GROUND: u64 = 1;
 
-/// Reads the state of the character from its body and the body's user data.
+/// Reads the state from the body and its user data.
 fn recall(body: &Body) -> MoverState {
     let upwards = Fx::from_ne_bytes((body.user_data() & !ON_GROUND).to_ne_bytes());
     MoverState { velocity: Vec2::new(Fx::ZERO, upwards), ..MoverState::at(body.position()) }

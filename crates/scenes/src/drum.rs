@@ -1,4 +1,4 @@
-//! Scenes that never come to rest: a rotating drum, and bodies that are spawned and despawned.
+//! Scenes that never come to rest.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -34,8 +34,7 @@ pub(super) const DRUM: Scene =
     })
     .golden(300);
 
-/// A ring of 36 plates between 10 and 11 m, and 4 paddles inside. Each plate spans 11 degrees and overlaps the next
-/// one by one degree.
+/// A ring of 36 plates between 10 and 11 m, which overlap by one degree, and 4 paddles inside.
 fn drum_shapes() -> Result<Vec<ShapeDef>, WorldError> {
     let mut shapes = Vec::new();
     for i in 0..36 {
@@ -48,7 +47,7 @@ fn drum_shapes() -> Result<Vec<ShapeDef>, WorldError> {
     Ok(shapes)
 }
 
-/// A segment of a ring with straight sides, between two angles in degrees and two radii.
+/// A ring segment with straight sides, between two angles in degrees and two radii.
 pub(super) fn plate(degrees: (Fx, Fx), radii: (Fx, Fx)) -> Result<ShapeDef, WorldError> {
     let corner = |degrees: Fx, radius: Fx| {
         Rot::from_angle(Angle::from_degrees(degrees)).apply_wide(Vec2::new(radius, Fx::ZERO))
@@ -72,8 +71,8 @@ pub(super) const SPAWNING: Scene = Scene {
     script: spawn_kick_despawn,
 };
 
-/// Every 6th tick a body is spawned. If there are at least 40 dynamic bodies, one of them is despawned every 6th tick.
-/// Every 50th tick the first dynamic body is kicked.
+/// Every 6 ticks a body is spawned and, with at least 40 dynamic ones, one despawned. Every 50th tick the first one is
+/// kicked.
 fn spawn_kick_despawn(tick: u64, game: &Sandbox) -> Vec<Command> {
     let mut rng = Rng::new(tick);
     let dynamic: Vec<_> = game.world().bodies().filter(|(_, body)| body.is_dynamic()).collect();

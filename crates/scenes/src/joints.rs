@@ -10,7 +10,7 @@ use lockstep2d::math::{Angle, Fx, Rot, Vec2, fx_mul};
 use lockstep2d::solver::{JointDef, Revolute};
 use lockstep2d::world::Config;
 
-/// Makes a shape collide with nothing.
+/// Returns the shape with a filter by which it collides with nothing.
 fn ghost(shape: ShapeDef) -> ShapeDef {
     shape.filter(Filter { category: 2, mask: 0, group: 0 })
 }
@@ -40,7 +40,7 @@ pub(super) const LONG_ARM: Scene = Scene::new(
     |_| rod(fx!(4.618802153517)),
 );
 
-/// A rod of 1 m and 1 kg, pinned `arm` metres from its centre, at 20 rad/s, without gravity.
+/// A rod of 1 m and 1 kg, pinned `arm` metres from its centre, at 20 rad/s.
 fn rod(arm: Fx) -> lockstep2d::lockstep::SandboxSetup {
     build(weightless(), |scene| {
         let pivot = scene.spawn(BodyDef::fixed(), &[])?;
@@ -61,7 +61,7 @@ pub(super) const CHAIN: Scene =
             let anchor = scene.spawn(BodyDef::fixed(), &[])?;
             let link = ghost(rectangle(fx!(0.5), fx!(0.125))?);
             let last = row(scene, anchor, link, fx!(0), 100)?;
-            // A link weighs 0.25 kg. This weight is 25 kg: a square of 5 m x 5 m, pinned at the middle of a side.
+            // A link weighs 0.25 kg, and this square 25 kg.
             let weight = ghost(rectangle(fx!(2.5), fx!(2.5))?);
             let body = scene.spawn(BodyDef::dynamic().position((fx!(102.5), fx!(0))), &[weight])?;
             scene.joint(pin(last, body).anchor_a((fx!(0.5), fx!(0))).anchor_b((fx!(-2.5), fx!(0))))?;
@@ -90,7 +90,7 @@ fn pin(a: BodyId, b: BodyId) -> JointDef {
     JointDef::new(a, b, Revolute::new())
 }
 
-/// Adds a row of pieces of 1 m from `x` on, the first pinned to the origin of the body `start`. Returns the last piece.
+/// Adds a row of pieces of 1 m from `x` on, pinned to the origin of `start`. Returns the last one.
 fn row(scene: &mut Builder, start: BodyId, piece: ShapeDef, x: Fx, count: i32) -> Result<BodyId, WorldError> {
     let places = (0..count).map(|i| Vec2::new(x + Fx::from_num(i) + fx!(0.5), fx!(0)));
     let pieces = scene.spawn_each(BodyDef::dynamic(), &[piece], places)?;
@@ -129,7 +129,7 @@ fn fill_grid(scene: &mut Builder) -> Result<(), WorldError> {
     scene.joint_each(joint, down)?;
     let mut across = Vec::new();
     for (k, pair) in (1..).zip(columns.windows(2)) {
-        // Two fixed discs side by side need no joint.
+        // Two fixed discs need no joint.
         let from = usize::from(is_held(k) && is_held(k - 1));
         across.extend(pair[0].iter().copied().zip(pair[1].iter().copied()).skip(from));
     }

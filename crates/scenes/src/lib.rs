@@ -28,7 +28,7 @@ pub use builder::Builder;
 use lockstep2d::lockstep::{Sandbox, SandboxSetup};
 use lockstep2d::world::Command;
 
-/// A scene: a setup, and a script of the player's commands.
+/// A scene: a setup, and a script of commands.
 ///
 /// ```
 /// use lockstep2d::lockstep::{Game, Sandbox};
@@ -50,14 +50,13 @@ pub struct Scene {
     pub about: &'static str,
     /// Length in ticks.
     pub ticks: u64,
-    /// Length of its golden replay in ticks, short enough to be verified in a second or two.
+    /// Length of its golden replay in ticks.
     pub golden_ticks: u64,
     setup: fn(seed: u64) -> SandboxSetup,
     script: fn(tick: u64, game: &Sandbox) -> Vec<Command>,
 }
 
 impl Scene {
-    /// Creates a scene without commands.
     const fn new(
         name: &'static str,
         ticks: u64,
@@ -67,7 +66,6 @@ impl Scene {
         Scene { name, about, ticks, golden_ticks: ticks, setup, script: |_, _| Vec::new() }
     }
 
-    /// Sets a shorter length for the golden replay.
     const fn golden(self, ticks: u64) -> Self {
         Scene { golden_ticks: ticks, ..self }
     }
@@ -84,7 +82,7 @@ impl Scene {
         (self.setup)(seed)
     }
 
-    /// The player's commands in a tick, given the game before it.
+    /// The commands in a tick, given the game before it.
     #[must_use]
     pub fn commands(&self, tick: u64, game: &Sandbox) -> Vec<Command> {
         (self.script)(tick, game)

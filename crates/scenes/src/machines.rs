@@ -21,7 +21,7 @@ pub(super) const SPINNER: Scene = Scene::new(
     "a rotor of 40 m stirs 6076 bodies in a ring that overlap at the start",
     |_| {
         build(Config::default(), |scene| {
-            // Clockwise, so that the one-sided chain is solid from the inside.
+            // The one-sided chain is clockwise: it is solid from the inside.
             let point = |i: i32| {
                 let direction = Rot::from_angle(Angle::from_degrees(Fx::from_num(-i)));
                 Vec2::new(fx!(0), fx!(32)) + direction.apply_wide(Vec2::new(fx!(40), fx!(0)))
@@ -42,7 +42,7 @@ pub(super) const SPINNER: Scene = Scene::new(
 )
 .golden(20);
 
-/// Fills the ring in rows of 92 from the bottom up, with capsules, discs and squares in turn.
+/// Rows of 92 from the bottom up, with capsules, discs and squares in turn.
 fn fill_ring(scene: &mut Builder) -> Result<(), WorldError> {
     let (a, b) = (Vec2::new(fx!(-0.25), fx!(0)), Vec2::new(fx!(0.25), fx!(0)));
     let capsule = Geometry::capsule(a, b, fx!(0.25))?;
@@ -93,8 +93,7 @@ pub(super) const WASHER: Scene =
     })
     .golden(20);
 
-/// A ring of 36 plates between 16 and 18 m, and 4 paddles inside. Each plate spans 12 degrees and overlaps each of its
-/// neighbours by two degrees.
+/// A ring of 36 plates between 16 and 18 m, which overlap by two degrees, and 4 paddles inside.
 fn washer_shapes() -> Result<Vec<ShapeDef>, WorldError> {
     let mut shapes = Vec::new();
     for i in 0..36 {

@@ -16,32 +16,30 @@ const GROUND: u64 = 1;
 /// Collision category of ragdolls.
 const RAGDOLL_CATEGORY: u64 = 2;
 
-/// A part of a ragdoll: a vertical capsule, and the hinge that connects it to its parent. Heights are in metres above
-/// the origin of the ragdoll.
+/// A vertical capsule, and the hinge to its parent. Heights are in metres above the origin of the ragdoll.
 pub(super) struct Bone {
     /// Index of the parent bone.
     pub(super) parent: usize,
     height: Fx,
-    /// Lower and upper end of the capsule's segment, relative to `height`.
+    /// Ends of the capsule's segment, relative to `height`.
     ends: (Fx, Fx),
     radius: Fx,
     /// Height of the hinge.
     pivot: Fx,
-    /// Hinge limits in units of pi.
+    /// Limits of the hinge in units of pi.
     limit: (Fx, Fx),
     /// Scale of the maximum friction torque.
     strength: Fx,
     extra: Extra,
 }
 
-/// Additional properties of some bones.
 enum Extra {
     None,
-    /// The bone has linear damping.
+    /// Bone with linear damping.
     Damped,
-    /// A foot: an additional shape with little friction, which collides only with the ground.
+    /// Foot: an additional shape with little friction, which collides only with the ground.
     Foot,
-    /// The bone has linear damping, and its hinge measures angles from a bend of an eighth of a turn.
+    /// Bone with linear damping, whose hinge measures angles from a bend of an eighth of a turn.
     Bent,
 }
 
@@ -88,7 +86,7 @@ const fn lower_arm(upper: usize) -> Bone {
     )
 }
 
-/// The bones. Parents come before their children.
+/// Bones of a ragdoll, with parents before children.
 pub(super) const BONES: [Bone; 11] = [
     HIP,
     TORSO,
@@ -111,7 +109,7 @@ impl Bone {
         self
     }
 
-    /// Body definition, without a position.
+    /// Body definition without a position.
     pub(super) fn body(&self) -> BodyDef {
         let damping = match self.extra {
             Extra::Damped | Extra::Bent => fx!(0.1),
@@ -125,7 +123,7 @@ impl Bone {
         place + Vec2::new(fx!(0), self.height)
     }
 
-    /// Shapes of the bone. The shapes of one ragdoll share a group and do not collide with each other.
+    /// The shapes of a ragdoll do not collide with each other.
     pub(super) fn shapes(&self, ragdoll: i32) -> Result<Vec<ShapeDef>, WorldError> {
         let filter = Filter { category: RAGDOLL_CATEGORY, mask: GROUND | RAGDOLL_CATEGORY, group: -ragdoll };
         let (low, high) = (Vec2::new(fx!(0), self.ends.0), Vec2::new(fx!(0), self.ends.1));
@@ -145,7 +143,6 @@ impl Bone {
         Ok(vec![capsule, foot])
     }
 
-    /// Joint to the parent.
     pub(super) fn joint(&self, parent: BodyId, own: BodyId) -> JointDef {
         let (lower, upper) = self.limit;
         let hinge = Revolute::new()

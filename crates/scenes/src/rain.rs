@@ -1,4 +1,4 @@
-//! Ragdolls rain on five floors and are removed again: bodies and joints are created and destroyed all the time.
+//! Ragdolls rain on five floors and are removed again.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -12,12 +12,12 @@ use lockstep2d::lockstep::Sandbox;
 use lockstep2d::math::{Angle, Fx, Vec2};
 use lockstep2d::world::{BodyPose, Command, Config};
 
-/// Number of columns that exist at a time.
+/// Columns that exist at a time.
 const COLUMNS: u64 = 40;
 const FLOORS: u32 = 5;
-/// Number of ragdolls that fall on a floor in one column.
+/// Ragdolls that fall on a floor in a column.
 const GROUP: u32 = 5;
-/// Interval in ticks at which columns are added.
+/// Interval of new columns, in ticks.
 const INTERVAL: u64 = 8;
 
 pub(super) const RAIN: Scene = Scene {
@@ -47,18 +47,18 @@ pub(super) const RAIN: Scene = Scene {
     },
 };
 
-/// Numbers of the ragdolls of a column, counted over all columns. Each number is used once on every floor.
+/// Numbers of the ragdolls of a column, each used once on every floor.
 const fn ragdolls(column: u32) -> core::ops::Range<u32> {
     column * GROUP..(column + 1) * GROUP
 }
 
-/// User data of a body: number of its ragdoll and index of its bone. The floor has 0.
+/// User data: number of the ragdoll and index of the bone. The floor has 0.
 fn mark(ragdoll: u32, bone: usize) -> u64 {
     u64::from(ragdoll) * BONES.len() as u64 + bone as u64 + 1
 }
 
-/// Spawns the ragdolls of a column, disabled and without joints. The handles of new bodies are known one tick later,
-/// when [`release`] joins and enables them.
+/// Spawns the ragdolls of a column, disabled. Their handles are known one tick later, when [`release`] joins and
+/// enables them.
 fn announce(column: u32) -> Result<Vec<Command>, WorldError> {
     let mut commands = Vec::new();
     for (ragdoll, i) in ragdolls(column).zip(0..) {
@@ -77,7 +77,7 @@ fn announce(column: u32) -> Result<Vec<Command>, WorldError> {
     Ok(commands)
 }
 
-/// Removes the ragdolls of the previous round in this column, and joins and enables the new ones.
+/// Removes the previous ragdolls of this column, and joins and enables the new ones.
 fn release(column: u32, game: &Sandbox) -> Vec<Command> {
     let marks = mark(column * GROUP, 0)..mark((column + 1) * GROUP, 0);
     let of_column = game.world().bodies().filter(|(_, body)| marks.contains(&body.user_data()));
@@ -88,7 +88,7 @@ fn release(column: u32, game: &Sandbox) -> Vec<Command> {
         new.into_iter().map(|(id, body)| (body.user_data(), body.position().y, id)).collect();
     waiting.sort_unstable();
     let bodies: Vec<BodyId> = waiting.into_iter().map(|(_, _, id)| id).collect();
-    // The bodies of one ragdoll and bone are now adjacent, from the lowest floor to the highest.
+    // The bodies of a ragdoll and bone are adjacent, from the lowest floor up.
     let floors = FLOORS as usize;
     for (index, bone) in BONES.iter().enumerate().skip(1) {
         let mut ends = Vec::new();

@@ -1,4 +1,4 @@
-//! Tests that the scenes start, and that some of them have the documented sizes.
+//! Tests that the scenes start and have their documented sizes.
 
 use super::{ALL, Scene};
 use lockstep2d::fx;
@@ -41,7 +41,7 @@ fn benchmarks_have_the_size_that_they_have_elsewhere() {
     }
 }
 
-/// Executes the script without stepping: complete ragdolls are added, and old ones are removed.
+/// Executes the script without stepping.
 #[test]
 fn forty_columns_of_ragdolls_stand_at_a_time() {
     let mut game = open("rain");

@@ -38,14 +38,14 @@ pub(super) fn grid(
     (0..columns).flat_map(move |column| (0..rows).map(move |row| place(column, row)))
 }
 
-/// Shifts the x coordinates alternately by `first` and by `-first`.
+/// Shifts x alternately by `first` and `-first`.
 fn staggered(places: impl Iterator<Item = Vec2<Fx>>, first: Fx) -> impl Iterator<Item = Vec2<Fx>> {
     places
         .enumerate()
         .map(move |(index, place)| place + Vec2::new(if index % 2 == 0 { first } else { -first }, Fx::ZERO))
 }
 
-/// A ground of slightly overlapping boxes, with walls of the same boxes at its ends.
+/// A ground of slightly overlapping boxes, with walls at its ends.
 fn yard(half_width: i32, wall_height: i32) -> Result<Vec<ShapeDef>, WorldError> {
     let (flat, upright) = (rectangle(fx!(0.55), fx!(0.5))?, rectangle(fx!(0.5), fx!(0.55))?);
     let ground = (-half_width..=half_width).map(|x| flat.offset((Fx::from_num(x), fx!(0))));
@@ -71,9 +71,9 @@ fn fill_junkyard(scene: &mut Builder) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// Five points on a circle, each a turn divided by the golden ratio after the previous one: an irregular pentagon.
+/// Five points on a circle, each a turn divided by the golden ratio after the previous one.
 fn golden_pentagon() -> Result<Polygon, WorldError> {
-    // A turn divided by the golden ratio: pi (sqrt(5) - 1).
+    // pi (sqrt(5) - 1).
     let step = Angle::from_radians(fx!(3.883222077451));
     let mut angle = Angle::ZERO;
     let mut points = Vec::new();
@@ -84,11 +84,11 @@ fn golden_pentagon() -> Result<Polygon, WorldError> {
     Ok(Polygon::hull(&points)?)
 }
 
-/// The script: moves the pusher to `x = 60 sin(t / 5)` metres at the time `t` in seconds.
+/// The pusher is at `x = 60 sin(t / 5)` metres at the time `t` in seconds.
 fn push_junk(tick: u64, game: &Sandbox) -> Vec<Command> {
     let pusher = game.world().bodies().find(|(_, body)| body.kind() == BodyKind::Kinematic);
     let Some((body, _)) = pusher else { return vec![] };
-    // 300 ticks are 5 s, which is one radian.
+    // 300 ticks are one radian.
     let phase = Angle::from_radians(lockstep2d::math::ratio(i64::try_from(tick).unwrap_or(i64::MAX), 300));
     let position = Vec2::new(fx_mul(fx!(60), widen(phase.sin())), fx!(0));
     vec![Command::MoveTo { body, position, angle: Angle::ZERO }]

@@ -1,5 +1,5 @@
-//! Measures the cost of a frame in the scene `large_pyramid` with 5051 bodies: the mean CPU time of filling the draw
-//! list and of building its triangles, with the initial layers, with each layer alone, and with all layers.
+//! Measures the mean CPU time of a frame of the scene `large_pyramid` (5051 bodies): filling the draw list and building
+//! its triangles, for several sets of layers.
 //!
 //! ```text
 //! cargo run --release -p lockstep2d-viewer --example frame_cost
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     measure(&mut app, "initial layers");
     let mut layers = Layers::NONE;
     let names = layers.named().map(|(name, _)| name);
-    // Turns the initial layers off, measures each layer alone, and then all layers together.
+    // Turns the initial layers off.
     press(&mut app, &AT_FIRST);
     for (name, key) in names.into_iter().zip(LAYER_KEYS) {
         press(&mut app, &[key]);
@@ -57,7 +57,7 @@ fn measure(app: &mut App, what: &str) {
     println!("{what:32} {:6} items  list {list:5.2} ms  triangles {triangles:5.2} ms", items.items().len());
 }
 
-/// Returns the mean time of a function, in milliseconds.
+/// Mean time of a call, in milliseconds.
 fn mean_of(mut make: impl FnMut()) -> f64 {
     let (start, wall) = (cpu_time(), Instant::now());
     (0..FRAMES).for_each(|_| make());
@@ -65,7 +65,7 @@ fn mean_of(mut make: impl FnMut()) -> f64 {
     time.as_secs_f64() * 1e3 / f64::from(FRAMES)
 }
 
-/// Returns the CPU time of this thread if the system provides it: on Linux, with a resolution of a few milliseconds.
+/// CPU time of this thread: on Linux, with a resolution of a few milliseconds.
 fn cpu_time() -> Option<Duration> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     text.split(' ').next()?.parse().ok().map(Duration::from_nanos)

@@ -1,4 +1,4 @@
-//! [`Canvas`]: the drawing interface with which a game draws over its world.
+//! [`Canvas`]: draws over the world of a game.
 
 use std::f32::consts::TAU;
 
@@ -12,14 +12,12 @@ use lockstep2d_render::{Brush, CELL_HEIGHT, Camera, Colour, DrawList, filled, pa
 const CORNERS: u16 = 48;
 /// Background of a headline.
 const PLATE: Colour = Colour::hex(0x14_181d);
-/// Opacity of the inside of a body that is painted in a colour of its own.
+/// Opacity of the inside of a coloured body.
 const INSIDE: u8 = 150;
 
-/// Draws over the world, in world coordinates: metres, with y upwards. Later shapes lie on top.
+/// Draws over the world, in metres with y upwards. Later shapes lie on top.
 ///
-/// [`Canvas::list`] and [`Canvas::camera`] give access to pixels.
-///
-/// [`Viewer::draw`](crate::Viewer::draw) passes a canvas to the game. A canvas can also draw into any other list:
+/// [`Viewer::draw`](crate::Viewer::draw) passes a canvas to the game. A canvas can also draw into another list:
 ///
 /// ```
 /// use lockstep2d::{fx, math::{Aabb, Vec2}};
@@ -39,18 +37,18 @@ pub struct Canvas<'a> {
 }
 
 impl<'a> Canvas<'a> {
-    /// Creates a canvas that draws into a list, with the transformation of this camera.
+    /// Creates a canvas that draws into a list.
     #[must_use]
     pub fn new(list: &'a mut DrawList, camera: &'a Camera) -> Self {
         Canvas { list, camera }
     }
 
-    /// The list that the canvas draws into, in pixels.
+    /// Draw list, in pixels.
     pub fn list(&mut self) -> &mut DrawList {
         self.list
     }
 
-    /// The camera, which converts between metres and pixels.
+    /// Camera, which converts between metres and pixels.
     #[must_use]
     pub const fn camera(&self) -> &Camera {
         self.camera
@@ -93,7 +91,7 @@ impl<'a> Canvas<'a> {
         self.list.text(corner, 1.0, colour, text);
     }
 
-    /// Writes a line of text at the top of the picture, such as a score or a time.
+    /// Writes a line of text at the top of the picture.
     pub fn headline(&mut self, colour: Colour, text: impl Into<String>) {
         let text = text.into();
         let (width, middle) = (width_of(&text, 1.0), self.camera.middle[0] as f32);
@@ -112,8 +110,7 @@ impl<'a> Canvas<'a> {
         self.bodies(world, |other| (other == id).then_some(colour));
     }
 
-    /// Paints the shapes of all bodies for which `colour` returns a colour. This is faster than repeated calls of
-    /// [`Canvas::body`], because it reads the world only once.
+    /// Paints the shapes of all bodies for which `colour` returns a colour, faster than repeated [`Canvas::body`].
     pub fn bodies(&mut self, world: &World, colour: impl Fn(BodyId) -> Option<Colour>) {
         let outlines = Layers { outlines: true, ..Layers::NONE };
         for primitive in primitives(world, outlines) {
@@ -125,7 +122,7 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Paints a primitive of `lockstep2d::draw` in the colours of its style, or in one colour.
+    /// Paints a primitive of `lockstep2d::draw`, in the colours of its style by default.
     pub fn primitive(&mut self, primitive: &Primitive, colour: Option<Colour>) {
         paint(self.list, primitive, self.camera, &Brush { tint: colour, ..Brush::default() });
     }

@@ -1,4 +1,4 @@
-//! [`Content`]: the scenes and the kinds of files that an app can show, without the type of their game.
+//! [`Content`]: scenes and files that an app can show, without the type of their game.
 
 use std::rc::Rc;
 
@@ -8,21 +8,18 @@ use lockstep2d::report::Evidence;
 
 use crate::source::{OpenError, Snapshot, Source, SourceError};
 
-/// The scenes, replays and layers that an app can show.
 #[derive(Clone)]
 pub(crate) struct Content {
     pub(crate) scenes: Vec<Scene>,
-    /// Name of the scene that is shown at the start; `None` for the first scene of the list.
+    /// Scene shown at the start; by default, the first.
     pub(crate) first: Option<String>,
     /// Name of the rules of the game.
     pub(crate) rules: &'static str,
     pub(crate) open: OpenReplay,
     pub(crate) limits: Limits,
-    /// Layers that are on at the start.
     pub(crate) layers: Layers,
 }
 
-/// A scene, which is opened by its name.
 #[derive(Clone)]
 pub(crate) struct Scene {
     pub(crate) name: String,
@@ -37,26 +34,18 @@ pub(crate) type OpenScene = Rc<dyn Fn(u64) -> Result<Box<dyn Source>, SourceErro
 pub(crate) type OpenReplay = Rc<dyn Fn(&str, &'static [u8], &Limits) -> Result<Box<dyn Source>, Verdict>>;
 
 impl Content {
-    /// Finds a scene by its name.
     pub(crate) fn scene(&self, name: &str) -> Option<&Scene> {
         self.scenes.iter().find(|scene| scene.name == name)
     }
 
-    /// Name of the scene that is shown at first.
     pub(crate) fn first_scene(&self) -> Option<&str> {
         let first = self.first.as_deref().filter(|first| self.scene(first).is_some());
         first.or_else(|| self.scenes.first().map(|scene| scene.name.as_str()))
     }
 
-    /// Opens a replay, a divergence report (the replay in it) or a snapshot. The first bytes of the file determine its
-    /// kind.
+    /// Opens a replay, the replay in a divergence report, or a snapshot. Their first bytes tell them apart.
     ///
-    /// The bytes stay allocated until the program ends, because the source borrows them; a user does not open enough
-    /// files for this to matter.
-    ///
-    /// # Errors
-    /// [`OpenError`] for other kinds of files, for files of which nothing can be played, for replays of other games,
-    /// and for reports without a replay.
+    /// The source borrows the bytes, which stay allocated until the program ends.
     pub(crate) fn open(&self, name: &str, bytes: &'static [u8]) -> Result<Box<dyn Source>, OpenError> {
         match Evidence::read(bytes.to_vec(), &self.limits).map_err(OpenError::File)? {
             Evidence::Replay(_) => self.open_replay(name, bytes),

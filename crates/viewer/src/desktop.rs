@@ -59,7 +59,7 @@ pub(crate) fn run<G: Game + 'static>(viewer: Viewer<G>, arguments: Vec<OsString>
     let matches = match command(&viewer).try_get_matches_from(arguments) {
         Ok(matches) => matches,
         Err(usage) => {
-            // An error of printing the text is ignored, because an error message could not be printed, either.
+            // If printing fails, an error message could not be printed, either.
             let _printed = usage.print();
             return if usage.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
         }
@@ -82,7 +82,6 @@ fn command<G: Game>(viewer: &Viewer<G>) -> clap::Command {
     if viewer.online.is_some() { command } else { online::without(command) }
 }
 
-/// Error message for the user.
 struct Trouble(String);
 
 impl fmt::Display for Trouble {
@@ -150,7 +149,7 @@ fn trouble(path: &Path, error: &dyn fmt::Display) -> Trouble {
 
 #[cfg(test)]
 mod tests {
-    /// clap checks the arguments with debug assertions, so this tests nothing in a build without them.
+    /// clap checks the arguments only with debug assertions.
     #[test]
     fn the_arguments_go_together() {
         super::command(&crate::sandbox()).debug_assert();

@@ -1,10 +1,10 @@
 //! [`Event`]: input from the user.
 
-/// Input event, from the user or from a script. Positions are measured from the upper left corner of the window, in the
-/// units of the draw list: screen pixels divided by the scale factor of the screen.
+/// Input event. Positions are in units of the draw list (screen pixels divided by the scale factor), from the upper
+/// left corner.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
-    /// The window was resized to this width and height, in the units of the draw list.
+    /// New width and height of the window, in units of the draw list.
     Resized([f32; 2]),
     /// A key went down.
     Pressed(Key),
@@ -16,7 +16,7 @@ pub enum Event {
     Down(Button),
     /// A pointer button went up.
     Up(Button),
-    /// The wheel was turned by this number of notches: positive is away from the user.
+    /// Notches that the wheel was turned: positive is away from the user.
     Wheel(f32),
     /// A file was dropped on the window.
     Dropped {
@@ -27,10 +27,10 @@ pub enum Event {
     },
 }
 
-/// Key of the keyboard: a lower-case character for a key that prints one, other keys by name.
+/// Key of the keyboard. A key that prints a character has the character in lower case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
-    /// Letter, digit or other printed character that the key produces without Shift.
+    /// Character that the key produces without Shift.
     Character(char),
     /// The space bar.
     Space,
@@ -50,7 +50,7 @@ pub enum Key {
     PageUp,
     /// The Page Down key.
     PageDown,
-    /// The Enter key, also that of the number pad.
+    /// The Enter key, or that of the number pad.
     Enter,
     /// The Escape key.
     Escape,

@@ -1,7 +1,7 @@
-//! A viewer for any game on lockstep2d, in a window or on a web page: live play, replays, two replays drawn over each
-//! other, and the state of bodies and of the game itself.
+//! A viewer for games on lockstep2d, in a window or on a web page: live play, replays, comparisons and the state of
+//! bodies.
 //!
-//! [`Viewer`] builds the program, with one line for each scene, player or drawing that the game adds:
+//! [`Viewer`] builds the program:
 //!
 //! ```no_run
 //! use lockstep2d_viewer::{Colour, Controls, Key, Viewer};
@@ -42,8 +42,8 @@
 //! }
 //! ```
 //!
-//! [`App`] is the viewer without its window: it receives [`Event`]s and elapsed time, and fills a [`DrawList`]. It does
-//! not depend on a window, a clock or files, so a window, a web page, a script and a test all drive it in the same way.
+//! [`App`] is the viewer without a window, clock or files: it receives [`Event`]s and elapsed time, and fills a
+//! [`DrawList`].
 #![expect(clippy::disallowed_types, reason = "drawing uses floats")]
 
 mod app;

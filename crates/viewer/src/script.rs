@@ -11,7 +11,7 @@
 //! | `click X Y` | moves the pointer and clicks with the left button |
 //! | `wheel NOTCHES` | turns the wheel, away from the user if positive |
 //! | `drop PATH` | drops a file on the window |
-//! | `frames COUNT` | runs this number of frames of 1/60 s each, however long they take in real time |
+//! | `frames COUNT` | runs this number of frames of 1/60 s each |
 //! | `screenshot PATH` | writes the current picture to a PNG file |
 //! | `report` | prints a line that describes what is shown |
 //! | `quit` | ends the program |
@@ -31,7 +31,7 @@ pub const FRAME: Duration = Duration::from_nanos(16_666_667);
 /// Maximum number of frames of one instruction: an hour.
 const FRAMES_MAX: u32 = 216_000;
 
-/// List of instructions that replaces user input.
+/// Instructions that replace user input.
 ///
 /// ```
 /// use lockstep2d_viewer::script::{Script, ScriptError, ScriptFlaw, Step};
@@ -54,11 +54,11 @@ pub struct Script {
 pub enum Step {
     /// Sends an event to the viewer.
     Event(Event),
-    /// Drops the file with this path on the window.
+    /// Drops this file on the window.
     Drop(String),
     /// Runs this number of frames, [`FRAME`] each.
     Frames(u32),
-    /// Writes a picture to the file with this path.
+    /// Writes a picture to this file.
     Screenshot(String),
     /// Prints a line that describes what is shown.
     Report,
@@ -82,7 +82,7 @@ impl Script {
         Ok(Script { steps })
     }
 
-    /// Returns the instructions, in order.
+    /// Instructions, in order.
     #[must_use]
     pub fn steps(&self) -> &[Step] {
         &self.steps
@@ -178,7 +178,7 @@ fn one(rest: &str) -> Result<&str, ScriptFlaw> {
     if is_one { Ok(rest) } else { Err(ScriptFlaw::WrongCount(1)) }
 }
 
-/// Takes the rest of the line as a path, which may contain spaces.
+/// Path, which may contain spaces.
 fn path(rest: &str) -> Result<String, ScriptFlaw> {
     if rest.is_empty() { Err(ScriptFlaw::WrongCount(1)) } else { Ok(rest.to_owned()) }
 }

@@ -21,14 +21,14 @@ use crate::source::{Replay, Source, SourceError};
 #[cfg(target_arch = "wasm32")]
 use crate::window;
 
-/// The viewer program of a game: a window, or a web page, with live play, replays, and the state of bodies and rules.
+/// The viewer program of a game, in a window or on a web page.
 ///
 /// ```text
 /// Viewer::<MyGame>::new().scene("hill", "a car on a hill", |seed| seed).keys(keys).run()
 /// ```
 ///
-/// `Viewer::<MyGame>::new().run()` alone shows replays, divergence reports and snapshots. Scenes can be played live;
-/// players take the seats of a scene in the order in which they are added.
+/// Without scenes it shows replays, divergence reports and snapshots. Players take the seats of a scene in the order in
+/// which they are added.
 pub struct Viewer<G: Game> {
     pub(crate) name: String,
     pub(crate) about: String,
@@ -42,7 +42,6 @@ pub struct Viewer<G: Game> {
     layers: Layers,
 }
 
-/// A scene of a game.
 pub(crate) struct SceneOf<G: Game> {
     pub(crate) name: String,
     about: String,
@@ -50,7 +49,6 @@ pub(crate) struct SceneOf<G: Game> {
 }
 
 pub(crate) enum SceneKind<G: Game> {
-    /// A setup of the game, made from a random seed.
     Setup(Rc<dyn Fn(u64) -> G::Setup>),
     /// A [`Source`] implemented by the game.
     Source(OpenScene),
@@ -92,8 +90,8 @@ impl<G: Game + 'static> Viewer<G> {
         Viewer { about: about.into(), ..self }
     }
 
-    /// Adds a scene that can be played: its name, a line that describes it, and its setup for a random seed. The first
-    /// scene is shown at the start, unless [`Viewer::first`] names another. The keys `[` and `]` switch between scenes.
+    /// Adds a playable scene: its name, its description, and its setup for a random seed. The first scene is shown at
+    /// the start, unless [`Viewer::first`] names another.
     #[must_use]
     pub fn scene(
         mut self,
@@ -106,7 +104,7 @@ impl<G: Game + 'static> Viewer<G> {
         self
     }
 
-    /// Adds a scene that is shown through a custom [`Source`], without the players of the viewer.
+    /// Adds a scene with its own [`Source`], without the players of the viewer.
     #[must_use]
     pub fn source(
         mut self,
@@ -132,14 +130,14 @@ impl<G: Game + 'static> Viewer<G> {
         self
     }
 
-    /// Adds a bot: `bot` receives the random seed of the scene and the number of the bot's seat, counted from 0.
+    /// Adds a bot, made from the scene's random seed and the seat number, counted from 0.
     #[must_use]
     pub fn bot(mut self, bot: impl Fn(u64, usize) -> Bot<G> + 'static) -> Self {
         self.players.push(Player::Bot(Rc::new(bot)));
         self
     }
 
-    /// Sets a function that draws over the world, such as colours of players, scores and goals.
+    /// Sets a function that draws over the world.
     #[must_use]
     pub fn draw(mut self, draw: impl Fn(&G, &mut Canvas<'_>) + 'static) -> Self {
         self.presentation.draw = Rc::new(draw);
@@ -153,8 +151,8 @@ impl<G: Game + 'static> Viewer<G> {
         self
     }
 
-    /// Sets a function that returns the game's own state for the inspector. By default the inspector, while it shows
-    /// this state, makes a save in every frame and lists all fields of [`Game::Save`] except those of the world.
+    /// Sets a function that returns the game's own state for the inspector. By default, the inspector saves the game in
+    /// every frame and lists the fields of [`Game::Save`] except those of the world.
     #[must_use]
     pub fn state<S: Serialize>(mut self, state: impl Fn(&G) -> S + 'static) -> Self {
         let list = move |game: &G| listed(&fields(&state(game)).unwrap_or_default());
@@ -174,19 +172,17 @@ impl<G: Game + 'static> Viewer<G> {
         Viewer { limits, ..self }
     }
 
-    /// Adds network matches over UDP, with the arguments `--host`, `--join` and `--watch`. They play the scene that
-    /// `--scene` names, or else the first scene that has a setup. `options` are the defaults, which `--lockstep`,
-    /// `--rollback` and `--players` override.
+    /// Adds network matches over UDP, with the arguments `--host`, `--join` and `--watch`. They play the scene of
+    /// `--scene`, or else the first with a setup. `--lockstep`, `--rollback` and `--players` override `options`.
     #[cfg(not(target_arch = "wasm32"))]
     #[must_use]
     pub fn online(self, options: PeerOptions) -> Self {
         Viewer { online: Some(options), ..self }
     }
 
-    /// Runs the program with the arguments of this process, until its window is closed. On a web page this returns at
-    /// once, and the viewer keeps running.
+    /// Runs the program with the arguments of this process, until its window is closed. On a web page, returns at once.
     ///
-    /// The exit code is 0 for success and 2 for an error, which is printed.
+    /// The exit code is 0, or 2 for an error, which is printed.
     #[must_use]
     pub fn run(self) -> ExitCode {
         #[cfg(not(target_arch = "wasm32"))]
@@ -195,7 +191,7 @@ impl<G: Game + 'static> Viewer<G> {
         return self.run_on_page();
     }
 
-    /// Runs the program with these arguments. The first argument is the program's name.
+    /// Runs the program with these arguments, of which the first is the program's name.
     #[cfg(not(target_arch = "wasm32"))]
     #[must_use]
     pub fn run_with<A>(self, arguments: impl IntoIterator<Item = A>) -> ExitCode
@@ -221,7 +217,7 @@ impl<G: Game + 'static> Viewer<G> {
         }
     }
 
-    /// Returns the viewer without a window and without a source, for tests and for custom windows.
+    /// Returns the viewer without a window and a source, for tests and custom windows.
     #[must_use]
     pub fn app(&self) -> App {
         App::new(self.content())

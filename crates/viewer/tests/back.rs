@@ -8,8 +8,7 @@ use lockstep2d_viewer::{App, Event, Key, LAYER_KEYS};
 
 const TICKS: usize = 100;
 
-/// Returns the drawing of the world, without panels, the timeline and texts of full size, which show the progress of
-/// verification.
+/// The drawing of the world, without panels, the timeline and texts of full size, which show the verification.
 fn world(app: &mut App) -> DrawList {
     let list = app.draw();
     let mut world = DrawList::default();
@@ -32,10 +31,8 @@ fn press(app: &mut App, key: Key) {
     (0..200).for_each(|_| app.advance(FRAME));
 }
 
-/// Checks all layers except the broad phase, whose tree is not part of the state: it depends on how the tick was
-/// reached.
-///
-/// Steps forwards tick by tick, then back, then seeks to the start and forwards again.
+/// Steps forwards, back, and forwards again from the start. Leaves out the broad phase, whose tree depends on how a
+/// tick was reached.
 fn goes_back(mut app: App) {
     app.handle(Event::Resized([900.0, 700.0]));
     LAYER_KEYS

@@ -40,7 +40,7 @@ fn check_replay(live: &mut Live, what: &str) {
     live.seek(here).unwrap();
 }
 
-/// Returns a random point: mostly within 0.5 m of a body on each axis, else within 30 m of the origin on each axis.
+/// A random point, mostly near a body.
 fn somewhere(rng: &mut Rng, world: &World) -> Vec2<Fx> {
     let count = u32::try_from(world.body_count()).unwrap();
     let offset = |rng: &mut Rng, by: Fx| Vec2::new(rng.range(-by, by), rng.range(-by, by));
@@ -68,8 +68,7 @@ fn random_act(rng: &mut Rng, world: &World) -> Act {
     }
 }
 
-/// Plays, acts, seeks and saves at random. Returns how often recorded ticks were dropped, and how often a body was
-/// held.
+/// Plays, acts, seeks and saves at random. Returns how often recorded ticks were dropped and how often a body was held.
 fn play_about(live: &mut Live, seed: u64, ticks: u64) -> (usize, usize) {
     let rng = &mut Rng::new(seed);
     let (mut played, mut cuts, mut held) = (0, 0, 0);
@@ -109,7 +108,7 @@ fn a_hundred_random_sessions_verify() {
     assert!(cuts > 100 && held > 100, "recording cut {cuts} times, body held {held} times");
 }
 
-/// Every tick that is sought again has the hash that it had when it was played.
+/// A tick that is sought again has its earlier hash.
 #[test]
 fn going_back_shows_what_was_there() {
     for seed in 0..6 {
@@ -135,7 +134,7 @@ fn going_back_shows_what_was_there() {
     }
 }
 
-/// Live world without gravity that contains only a circle of radius 0.5 m at (0, 2).
+/// A circle of radius 0.5 m at (0, 2), without gravity.
 fn one_disc() -> (Live, BodyId) {
     let disc = ShapeDef::new(Geometry::circle(fx!(0.5)).unwrap());
     let spawn = Command::Spawn { body: BodyDef::dynamic().position((fx!(0), fx!(2))), shapes: vec![disc] };
@@ -205,7 +204,6 @@ fn the_hand_is_empty_when_what_it_held_is_gone() {
     live.act(Act::Delete(Aim::at(MIDDLE)));
     play(&mut live, 2);
     assert_eq!((live.held(), live.world().body_count(), live.world().joint_count()), (None, 0, 0));
-    // The body is grabbed and deleted in the same tick.
     let (mut live, _) = one_disc();
     live.act(Act::Grab(Aim::at(MIDDLE)));
     live.act(Act::Delete(Aim::at(MIDDLE)));
@@ -224,13 +222,13 @@ fn who_goes_back_lets_go() {
         (None, 1),
         "the anchor of that tick should still be there, and nothing held"
     );
-    // The recorded ticks play unchanged; in the first live tick the abandoned anchor is removed.
+    // The recorded ticks play unchanged. The first live tick removes the abandoned anchor.
     live.act(Act::DragTo(ELSEWHERE));
     play(&mut live, 10);
     assert_eq!((live.recorded(), anchors(&mut live)), (20, 1));
     play(&mut live, 1);
     assert_eq!((live.recorded(), anchors(&mut live)), (21, 0));
-    // If an act at an earlier tick cuts the recording, the abandoned anchor is removed as well.
+    // An act that cuts the recording removes it, too.
     live.seek(10).unwrap();
     live.act(Act::Gravity(Vec2::new(fx!(0), fx!(-1))));
     play(&mut live, 2);

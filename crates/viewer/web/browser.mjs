@@ -1,4 +1,4 @@
-// Drives a headless Chromium over a pipe, without npm packages and without an open port.
+// Drives a headless Chromium over a pipe, without npm packages.
 import { spawn } from "node:child_process";
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -81,7 +81,7 @@ export class Browser {
         return this.#send(method, params, this.#session);
     }
 
-    // Evaluates a JavaScript expression in the page.
+    // Evaluates an expression in the page.
     async evaluate(expression) {
         const options = { expression, awaitPromise: true, returnByValue: true };
         const { result, exceptionDetails } = await this.send("Runtime.evaluate", options);
@@ -91,7 +91,7 @@ export class Browser {
         return result.value;
     }
 
-    // Evaluates an expression in the page repeatedly until `holds` is true of its value, and returns the value.
+    // Evaluates an expression in the page until `holds` is true of its value, and returns the value.
     async until(expression, holds, what) {
         const end = Date.now() + TIMEOUT;
         let value;

@@ -1,11 +1,11 @@
-// Connects the page with the viewer: passes files in, and displays the report lines that the viewer logs.
+// Connects the page with the viewer: passes files in, and displays the reports that it logs.
 //
 // ?file=URL opens a file, ?scene=NAME opens a scene.
 "use strict";
 
 const element = (id) => document.getElementById(id);
 
-// Verdict names, whose first letter is shown as a capital.
+// Verdicts, which are shown with a capital.
 const VERDICTS = /\b(match|claim mismatch|diverged|incomplete|malformed|limit exceeded|unverifiable)\b/;
 
 function report([name, tick, ticks, hash, status]) {
@@ -30,7 +30,7 @@ function fail(message) {
     element("verdict").textContent = message;
 }
 
-// Copies bytes into the viewer's memory, as miniquad does with a dropped file.
+// Copies bytes into the viewer's memory, like a dropped file in miniquad.
 function give(bytes) {
     const start = wasm_exports.allocate_vec_u8(bytes.length);
     new Uint8Array(wasm_memory.buffer, start, bytes.length).set(bytes);
@@ -59,7 +59,7 @@ async function showUrl(url) {
     show(url.split("/").pop(), new Uint8Array(await answer.arrayBuffer()));
 }
 
-// Replaces miniquad's drop handler, which assumes that a file name has as many bytes as characters.
+// miniquad's drop handler assumes that a file name has as many bytes as characters.
 window.addEventListener("drop", (event) => {
     event.preventDefault();
     event.stopImmediatePropagation();
@@ -67,7 +67,7 @@ window.addEventListener("drop", (event) => {
 }, { capture: true });
 element("file").addEventListener("change", (event) => showFiles(Array.from(event.target.files)));
 
-// Opens the file or scene of the URL, once, after the viewer's first report. Before that, the viewer accepts no files.
+// Opens the file or scene of the URL after the viewer's first report: before, it accepts no files.
 let started = false;
 function start() {
     if (started) {
@@ -94,7 +94,7 @@ miniquad_add_plugin({
                 return info(text);
             }
             LINES[kind](fields);
-            // Deferred: this runs inside a call from the viewer, which cannot be re-entered.
+            // This runs inside a call from the viewer, which cannot be re-entered.
             setTimeout(start);
         };
         imports.env.console_error = (text) => fail(UTF8ToString(text));

@@ -2,8 +2,7 @@
 //
 //     node crates/viewer/web/test.mjs PAGE_DIRECTORY COMMAND SCREENSHOT_DIRECTORY
 //
-// Drops a golden replay on the page and compares its verdict and hashes with the command's output; then damaged
-// replays.
+// Compares verdicts and hashes of a golden replay and of damaged replays with the command's output.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { createServer } from "node:http";
@@ -47,7 +46,7 @@ function serve() {
     return new Promise((done) => server.listen(0, "127.0.0.1", () => done(server)));
 }
 
-// Drops a file on the page, as a drag from outside the browser.
+// Drops a file on the page.
 async function drop(browser, file) {
     const data = { items: [], files: [file], dragOperationsMask: 1 };
     for (const type of ["dragEnter", "dragOver", "drop"]) {
@@ -100,7 +99,7 @@ async function scrubsAndMatches(browser) {
     console.log(`scrubbed to tick ${state.tick}: ${state.hash}, equal to the command's`);
 }
 
-// Takes a screenshot and checks that it is not blank: it has many colours, and none fills almost all of the picture.
+// Takes a screenshot and checks that it is not blank.
 async function look(browser, name) {
     const bytes = await browser.screenshot();
     writeFileSync(join(pictures, name), bytes);
@@ -132,7 +131,7 @@ async function refuses(browser) {
         try {
             return native("verify", "--json", file);
         } catch (error) {
-            // The replay does not match: the command exits with code 1 and prints the verdict.
+            // The command exits with code 1 and prints the verdict.
             return JSON.parse(error.stdout);
         }
     };
@@ -152,7 +151,7 @@ async function refuses(browser) {
     for (const [name, bytes] of Object.entries(cases)) {
         const file = write(name, bytes);
         const { verdict, why } = verdictOf(file);
-        // Reports and snapshots can be dropped too, so the message for an unknown file names all three kinds.
+        // The message for an unknown file names all three kinds.
         const reasons = name === "garbage.replay" ? ["neither a report nor a replay nor a snapshot"]
             : [verdict, why ?? ""];
         await drop(browser, file);

@@ -1,4 +1,4 @@
-//! The worker of a game that ends the process on some inputs, for the tests.
+//! The worker of a game that ends the process on some inputs.
 
 use std::process::ExitCode;
 
@@ -8,7 +8,6 @@ use lockstep2d::lockstep::{Game, RulesId, SetupError};
 /// Input that ends the process.
 const FATAL: u8 = 13;
 
-/// A game that adds up its inputs.
 struct Fragile(u64);
 
 impl Game for Fragile {
@@ -53,7 +52,7 @@ impl Game for Fragile {
     }
 }
 
-/// With `record INPUT`, prints a replay of one tick instead of running the worker.
+/// With `record INPUT`, prints a replay of one tick.
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().collect();
     let Some([_, input]) = arguments.get(1..3).filter(|words| words[0] == "record") else {

@@ -15,10 +15,10 @@ use url::Url;
 use crate::error::WorkerError;
 use crate::{results, submit, work};
 
-/// Stack size of a thread in bytes. It equals the usual size for a main thread, which a game may rely on.
+/// Stack size of a thread in bytes: as usual for a main thread, which a game may rely on.
 const STACK_BYTES: usize = 8 << 20;
 
-/// Exit code for an error, and for wrong usage.
+/// Exit code for an error.
 const TROUBLE: u8 = 2;
 
 /// The worker of a game.
@@ -50,13 +50,13 @@ impl<G: Game + 'static> Worker<G> {
         Worker { limits: Limits::default(), game: PhantomData }
     }
 
-    /// Sets the limits of the cost of a replay. Arguments override them.
+    /// Sets the limits of a replay. Arguments override them.
     #[must_use]
     pub fn with_limits(self, limits: Limits) -> Self {
         Worker { limits, ..self }
     }
 
-    /// Runs the command that the arguments of this process select. Exit code 0 is success, 2 wrong usage or an error.
+    /// Runs the command of this process's arguments. Exit code 0 is success, 2 wrong usage or an error.
     #[must_use]
     pub fn run(&self) -> ExitCode {
         match self.start() {
@@ -80,7 +80,7 @@ impl<G: Game + 'static> Worker<G> {
             .mut_subcommand("work", |work| with_defaults(work, &self.limits));
         let arguments =
             Arguments::from_arg_matches(&command.get_matches()).unwrap_or_else(|usage| usage.exit());
-        // Cryptography provider for TLS. If the program has installed another provider, that one is kept.
+        // TLS provider, unless the program has installed one.
         let _ = rustls::crypto::ring::default_provider().install_default();
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(2)
@@ -95,7 +95,7 @@ impl<G: Game + 'static> Worker<G> {
                 Command::Results { connection, follow } => results::run(connection, rules, *follow).await,
             }
         });
-        // A file that is being read from a hanging file system must not delay the end of the process.
+        // A hanging file system must not delay the end of the process.
         runtime.shutdown_background();
         result
     }

@@ -14,10 +14,9 @@ use url::Url;
 use crate::error::WorkerError;
 use crate::submit::Names;
 
-/// Time for which a failing request is repeated. Requests to NATS are repeated for about this time, too.
+/// Time for which a failing request is repeated, about as long as for NATS.
 const RETRY: Duration = Duration::from_secs(60);
 
-/// A folder of a bucket.
 #[derive(Clone, Debug)]
 pub(crate) struct Bucket {
     url: Url,
@@ -25,8 +24,7 @@ pub(crate) struct Bucket {
 }
 
 impl Bucket {
-    /// The bucket that `url` names, and the folder in it. Credentials, region and endpoint come from the environment
-    /// variables `AWS_*`.
+    /// Credentials, region and endpoint come from the environment variables `AWS_*`.
     pub(crate) fn open(url: &Url) -> Result<Self, WorkerError> {
         let failed = WorkerError::bucket(url);
         let (_, folder) = ObjectStoreScheme::parse(url).map_err(|error| failed(error.into()))?;
@@ -46,8 +44,7 @@ impl Bucket {
         if Pin::new(&mut found).peek().await.is_some() {
             return Ok(found.boxed());
         }
-        // The folder is looked up first, because some services return an error when the name of a folder is looked up
-        // as an object.
+        // The folder comes first, because some services fail when the name of a folder is looked up as an object.
         match self.store.head(&path).await {
             Ok(_) if !name.is_empty() => Ok(stream::iter([Ok(path.into())]).boxed()),
             Ok(_) | Err(object_store::Error::NotFound { .. }) => {
@@ -57,7 +54,7 @@ impl Bucket {
         }
     }
 
-    /// BLAKE3 of an object: 64 hexadecimal digits.
+    /// BLAKE3 of an object, in 64 hexadecimal digits.
     pub(crate) async fn blake3(&self, name: &str) -> Result<String, WorkerError> {
         let failed = WorkerError::bucket(&self.url);
         let mut bytes = self.store.get(&self.path(name)?).await.map_err(&failed)?.into_stream();
@@ -68,7 +65,7 @@ impl Bucket {
         Ok(hasher.finalize().to_hex().to_string())
     }
 
-    /// Reads an object, but at most `bytes_max + 1` bytes.
+    /// Reads at most `bytes_max + 1` bytes of an object.
     pub(crate) async fn read(&self, name: &str, bytes_max: u64) -> Result<Vec<u8>, WorkerError> {
         let failed = WorkerError::bucket(&self.url);
         let mut stream = self.store.get(&self.path(name)?).await.map_err(&failed)?.into_stream();

@@ -7,37 +7,27 @@ use std::path::{Path, PathBuf};
 
 use url::Url;
 
-/// An error that stops a command.
 #[derive(Debug)]
 pub(crate) enum WorkerError {
-    /// The runtime, the metrics or the signals cannot be set up.
     Start { what: &'static str, error: io::Error },
-    /// NATS refuses an operation, or does not answer.
     Nats { what: &'static str, why: String },
-    /// A bucket cannot be opened or read.
     Bucket { url: Box<str>, error: Box<object_store::Error> },
-    /// A file cannot be read.
     Read { path: PathBuf, error: io::Error },
-    /// A job cannot name this path: it is not relative, leads out of the folder, or is not UTF-8.
+    /// The path is not relative, leads out of the folder, or is not UTF-8.
     Path { path: PathBuf },
-    /// A folder contains no replays, or a bucket contains no object and no replays under a name.
     NothingToSubmit { path: PathBuf },
-    /// The standard output cannot be written.
     Output(io::Error),
 }
 
 impl WorkerError {
-    /// Returns a function that wraps an error of an operation of NATS.
     pub(crate) fn nats<E: Error>(what: &'static str) -> impl Fn(E) -> Self {
         move |error| WorkerError::Nats { what, why: error.to_string() }
     }
 
-    /// Returns a function that wraps an error of the bucket at `url`.
     pub(crate) fn bucket(url: &Url) -> impl Fn(object_store::Error) -> Self {
         move |error| WorkerError::Bucket { url: url.as_str().into(), error: error.into() }
     }
 
-    /// Returns a function that wraps an error of reading the file at `path`.
     pub(crate) fn read(path: &Path) -> impl Fn(io::Error) -> Self {
         move |error| WorkerError::Read { path: path.to_path_buf(), error }
     }

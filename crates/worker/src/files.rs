@@ -1,4 +1,4 @@
-//! Reading the bytes of a job, from a folder or from the object store.
+//! Reading the bytes of a job.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -9,7 +9,7 @@ use tokio::io::AsyncReadExt;
 
 use crate::job::Job;
 
-/// Reads a file below `folder`, but at most `bytes_max + 1` bytes.
+/// Reads at most `bytes_max + 1` bytes of a file below `folder`.
 pub(crate) fn read_path(folder: &Path, file: &str, bytes_max: u64) -> io::Result<Vec<u8>> {
     let path = inside(Path::new(file)).ok_or(io::Error::other("the path leads out of the folder"))?;
     let path = folder.join(path);
@@ -22,7 +22,7 @@ pub(crate) fn read_path(folder: &Path, file: &str, bytes_max: u64) -> io::Result
     Ok(bytes)
 }
 
-/// Reads an object of the store, but at most `bytes_max + 1` bytes.
+/// Reads at most `bytes_max + 1` bytes of an object.
 pub(crate) async fn read_object(store: &ObjectStore, name: &str, bytes_max: u64) -> io::Result<Vec<u8>> {
     let object = store.get(name).await.map_err(io::Error::other)?;
     let mut bytes = Vec::new();
@@ -30,8 +30,7 @@ pub(crate) async fn read_object(store: &ObjectStore, name: &str, bytes_max: u64)
     Ok(bytes)
 }
 
-/// Compares the digest of the bytes with the job. A file that is too large is not compared, because only its beginning
-/// was read.
+/// Compares the digest with the job. Only the beginning of a file that is too large was read, so it is not compared.
 pub(crate) fn check(job: &Job, bytes: Vec<u8>, bytes_max: u64) -> io::Result<Vec<u8>> {
     let is_whole = u64::try_from(bytes.len()).is_ok_and(|length| length <= bytes_max);
     if is_whole && blake3::hash(&bytes).to_hex().as_str() != job.blake3 {
@@ -40,7 +39,7 @@ pub(crate) fn check(job: &Job, bytes: Vec<u8>, bytes_max: u64) -> io::Result<Vec
     Ok(bytes)
 }
 
-/// Returns the path if it is relative and does not lead out of its folder.
+/// The path, if it is relative and stays in its folder.
 pub(crate) fn inside(path: &Path) -> Option<PathBuf> {
     let is_inside = |component| matches!(component, Component::Normal(_) | Component::CurDir);
     (path.components().all(is_inside) && path.file_name().is_some()).then(|| path.to_path_buf())

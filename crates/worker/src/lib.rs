@@ -1,5 +1,5 @@
-//! Verifies replays on many machines: `submit` puts jobs into a queue, workers take them, and results are the lines of
-//! `verify --json` in a stream. The queue is NATS JetStream.
+//! Verifies replays on many machines: `submit` puts jobs into a queue in NATS JetStream, workers take them, and results
+//! are the lines of `verify --json` in a stream.
 //!
 //! A game gets the program with one line in `main`:
 //!
@@ -35,7 +35,7 @@ use lockstep2d::lockstep::Game;
 
 pub use app::Worker;
 
-/// Runs the worker of a game with the default limits, with the arguments of this process.
+/// Runs the worker of a game with the default limits and the arguments of this process.
 #[must_use]
 pub fn run<G: Game + 'static>() -> ExitCode {
     Worker::<G>::new().run()

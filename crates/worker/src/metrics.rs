@@ -9,13 +9,12 @@ use std::time::Duration;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpStream};
 
-/// Maximum time for reading a request and sending the answer.
+/// Longest time for a request and its answer.
 const REQUEST_MAX: Duration = Duration::from_secs(5);
 
-/// Counters of a worker since its start.
 #[derive(Debug, Default)]
 pub(crate) struct Metrics {
-    /// Results that were added, by verdict.
+    /// Added results, by verdict.
     results: Mutex<BTreeMap<String, u64>>,
     /// Jobs that already had a result.
     pub(crate) known: AtomicU64,
@@ -31,7 +30,7 @@ impl Metrics {
         *results.entry(verdict.into()).or_default() += 1;
     }
 
-    /// All counters as text. `ticks` is the number of ticks that were simulated.
+    /// `ticks` is the number of simulated ticks.
     fn text(&self, ticks: u64) -> String {
         let mut text = String::from("# TYPE lockstep2d_worker_results_total counter\n");
         for (verdict, count) in self.results.lock().unwrap_or_else(PoisonError::into_inner).iter() {
@@ -50,7 +49,7 @@ impl Metrics {
         text
     }
 
-    /// Answers requests for `/metrics`, one at a time.
+    /// Answers requests, one at a time.
     pub(crate) async fn serve(self: Arc<Self>, listener: TcpListener, ticks: impl Fn() -> u64) {
         loop {
             let Ok((stream, _)) = listener.accept().await else {
@@ -63,7 +62,6 @@ impl Metrics {
     }
 }
 
-/// Reads the first line of a request and answers it.
 async fn answer(mut stream: TcpStream, text: String) -> std::io::Result<()> {
     let (mut request, mut length) = ([0; 1024], 0);
     while !request[..length].contains(&b'\n') && length < request.len() {

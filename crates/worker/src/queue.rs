@@ -17,13 +17,13 @@ use crate::app::Connection;
 use crate::error::WorkerError;
 use crate::job::Job;
 
-/// Time for which a job is recognised when it is submitted again.
+/// Time for which a job is recognised when submitted again.
 const DUPLICATE_WINDOW: Duration = Duration::from_secs(3600);
 
-/// Name of the consumer that all workers share.
+/// Consumer that all workers share.
 const CONSUMER: &str = "workers";
 
-/// Pauses between attempts of an operation. They add up to about a minute, in which a server can restart.
+/// Pauses between attempts, together about a minute, in which a server can restart.
 const PAUSES: [Duration; 8] = [
     Duration::from_millis(100),
     Duration::from_millis(400),
@@ -35,7 +35,6 @@ const PAUSES: [Duration; 8] = [
     Duration::from_secs(20),
 ];
 
-/// The queue of one version of a game.
 #[derive(Clone, Debug)]
 pub(crate) struct Queue {
     context: Context,
@@ -44,16 +43,13 @@ pub(crate) struct Queue {
     replicas: usize,
 }
 
-/// Whether a message was added to a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Added {
     New,
-    /// The stream already has the message.
     Known,
 }
 
-/// The default name of a queue: the rules, the semantics id and the version of the rules. So programs of different
-/// versions do not take each other's jobs.
+/// Rules, semantics id and version of the rules: programs of different versions do not share jobs.
 pub(crate) fn default_name(rules: RulesId) -> String {
     let name: String =
         rules.name.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '_' }).collect();
@@ -61,7 +57,7 @@ pub(crate) fn default_name(rules: RulesId) -> String {
 }
 
 impl Queue {
-    /// Connects, and creates the streams that do not exist.
+    /// Connects, and creates missing streams.
     pub(crate) async fn open(connection: &Connection, rules: RulesId) -> Result<Self, WorkerError> {
         let options = match &connection.credentials {
             Some(path) => {
@@ -95,7 +91,7 @@ impl Queue {
         Ok(Queue { context, name, results, replicas })
     }
 
-    /// Adds a job, unless a job for the same bytes was added within the last hour.
+    /// Adds a job, unless one for the same bytes was added within the last hour.
     pub(crate) async fn submit(&self, job: &Job) -> Result<Added, WorkerError> {
         let payload = json(job);
         let publish = || async {
@@ -107,16 +103,15 @@ impl Queue {
         Ok(if ack.duplicate { Added::Known } else { Added::New })
     }
 
-    /// The consumer from which all workers take jobs. A job that is not acknowledged within `ack_wait` is delivered
-    /// again.
+    /// The consumer of all workers. A job that is not acknowledged within `ack_wait` is delivered again.
     pub(crate) async fn jobs(&self, ack_wait: Duration) -> Result<PullConsumer, WorkerError> {
         let config = pull::Config {
             durable_name: Some(CONSUMER.into()),
             ack_policy: AckPolicy::Explicit,
             ack_wait,
-            // No limit, because the workers check the number of deliveries: a file that kills workers gets a result.
+            // Workers check the number of deliveries: a file that kills workers gets a result.
             max_deliver: -1,
-            // No limit, because each worker has at most one unacknowledged job.
+            // Each worker has at most one unacknowledged job.
             max_ack_pending: -1,
             ..Default::default()
         };
@@ -125,7 +120,6 @@ impl Queue {
         retry("open the queue of jobs", open).await
     }
 
-    /// Whether there is a result for a key.
     pub(crate) async fn has_result(&self, key: &str) -> Result<bool, WorkerError> {
         let subject = results_subject(&self.name, key);
         let look = || async {
@@ -138,7 +132,7 @@ impl Queue {
         retry("look up a result", look).await
     }
 
-    /// Adds a result, unless there is one for the same key.
+    /// Adds a result, unless its key has one.
     pub(crate) async fn add_result(&self, key: &str, line: &str) -> Result<Added, WorkerError> {
         let publish = || async {
             let message = PublishMessage::build()
@@ -155,13 +149,12 @@ impl Queue {
         retry("add a result", publish).await
     }
 
-    /// A consumer of all results, from the first on.
+    /// All results from the first on.
     pub(crate) async fn results(&self) -> Result<PullConsumer, WorkerError> {
         let config = pull::Config { ack_policy: AckPolicy::None, ..Default::default() };
         retry("read the results", || self.results.create_consumer(config.clone())).await
     }
 
-    /// The object store for files.
     pub(crate) async fn files(&self) -> Result<ObjectStore, WorkerError> {
         let bucket = format!("{}_files", self.name);
         let config = object_store::Config {
@@ -187,15 +180,11 @@ fn results_subject(name: &str, key: &str) -> String {
     format!("lockstep2d.{name}.results.{key}")
 }
 
-/// Encodes a value of strings and numbers as JSON.
 pub(crate) fn json(value: &impl serde::Serialize) -> String {
     serde_json::to_string(value).expect("strings and numbers have a JSON form")
 }
 
-/// Repeats an operation that fails, for about a minute.
-///
-/// # Errors
-/// The last error.
+/// Repeats a failing operation for about a minute, and returns the last error.
 pub(crate) async fn retry<T, E, F>(
     what: &'static str,
     mut attempt: impl FnMut() -> F,

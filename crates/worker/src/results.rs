@@ -11,13 +11,13 @@ use crate::error::WorkerError;
 use crate::queue::Queue;
 use crate::shutdown::Shutdown;
 
-/// Longest time for which the server holds a request while there are no results.
+/// Longest time for which the server holds a request.
 const EXPIRES: Duration = Duration::from_secs(2);
 
-/// Maximum number of results per request.
+/// Results per request.
 const BATCH: usize = 500;
 
-/// Prints the results of a queue. With `follow`, also those that come later, until a signal.
+/// Prints the results. With `follow`, also prints later ones, until a signal.
 pub(crate) async fn run(connection: &Connection, rules: RulesId, follow: bool) -> Result<(), WorkerError> {
     let shutdown = Shutdown::listen(Duration::ZERO)?;
     let queue = Queue::open(connection, rules).await?;

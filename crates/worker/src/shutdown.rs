@@ -6,24 +6,21 @@ use tokio::sync::watch;
 
 use crate::error::WorkerError;
 
-/// Phase of the shutdown of the process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Phase {
-    /// The process takes jobs.
+    /// The worker takes jobs.
     Running,
-    /// The process completes its file and takes no other.
+    /// The worker completes its file.
     Draining,
-    /// The process gives its file back to the queue.
+    /// The worker gives its file back to the queue.
     Stopping,
 }
 
-/// The phase of the process, for all its tasks.
 #[derive(Clone, Debug)]
 pub(crate) struct Shutdown(watch::Receiver<Phase>);
 
 impl Shutdown {
-    /// Listens for signals. The first signal starts `Draining`; a second signal, or `grace` after the first, starts
-    /// `Stopping`.
+    /// The first signal starts `Draining`. A second signal, or the end of `grace`, starts `Stopping`.
     pub(crate) fn listen(grace: Duration) -> Result<Self, WorkerError> {
         let (phase, shutdown) = watch::channel(Phase::Running);
         let mut signals = Signals::new().map_err(|error| WorkerError::Start { what: "signals", error })?;
@@ -41,16 +38,14 @@ impl Shutdown {
         *self.0.borrow() == Phase::Running
     }
 
-    /// Waits until at least this phase is reached.
     pub(crate) async fn reached(&mut self, phase: Phase) {
         if self.0.wait_for(|now| *now >= phase).await.is_err() {
-            // The listener ends only with the process.
+            // The listener ends with the process.
             std::future::pending::<()>().await;
         }
     }
 }
 
-/// The signals that end a process.
 #[cfg(unix)]
 struct Signals {
     terminate: tokio::signal::unix::Signal,

@@ -17,13 +17,12 @@ use crate::files::inside;
 use crate::job::{Job, Source};
 use crate::queue::{Added, Queue, json, retry};
 
-/// Maximum number of files that are submitted at the same time. The acknowledgements of the queue limit the rate.
+/// Files that are submitted at the same time: acknowledgements limit the rate.
 const AT_ONCE: usize = 16;
 
-/// Names of files, in the form that jobs and results contain.
+/// Names of files, as in jobs and results.
 pub(crate) type Names<'a> = BoxStream<'a, Result<String, WorkerError>>;
 
-/// The line of a file that was submitted.
 #[derive(Serialize)]
 struct Line<'a> {
     file: &'a str,
@@ -32,16 +31,15 @@ struct Line<'a> {
     queued: bool,
 }
 
-/// Location of the submitted files, for this command and for the workers.
 enum Files {
-    /// In the folders of the workers, at the paths that the files have in the folder of this command.
+    /// The folders of the workers, which have the files at the same paths.
     Folder,
-    /// In the file system of this command; workers find them in the object store of the queue.
+    /// The file system of this command. Workers use the object store of the queue.
     Objects(Box<ObjectStore>),
     Bucket(Bucket),
 }
 
-/// Submits files, and the replays in folders. Prints a line for each.
+/// Prints a line for each file.
 pub(crate) async fn run(arguments: &SubmitArguments, rules: RulesId) -> Result<(), WorkerError> {
     let queue = Queue::open(&arguments.connection, rules).await?;
     let files = match &arguments.bucket {
@@ -60,7 +58,7 @@ fn print(line: &str) -> Result<(), WorkerError> {
     std::io::stdout().write_all(format!("{line}\n").as_bytes()).map_err(WorkerError::Output)
 }
 
-/// The name of the file at `path`, or the names of the replays in that folder.
+/// The file at `path`, or the replays in that folder.
 async fn replays<'a>(files: &'a Files, path: &'a Path) -> Result<Names<'a>, WorkerError> {
     if let Files::Bucket(bucket) = files {
         return bucket.replays(path.to_str().ok_or_else(|| no_name(path))?).await;
@@ -109,7 +107,7 @@ async fn submit(
     Ok(json(&Line { file: &job.file, blake3: &job.blake3, queued }))
 }
 
-/// BLAKE3 of a file: 64 hexadecimal digits.
+/// BLAKE3 of a file, in 64 hexadecimal digits.
 fn blake3_of(path: &Path) -> Result<String, WorkerError> {
     let failed = WorkerError::read(path);
     let mut hasher = blake3::Hasher::new();
@@ -117,7 +115,7 @@ fn blake3_of(path: &Path) -> Result<String, WorkerError> {
     Ok(hasher.finalize().to_hex().to_string())
 }
 
-/// Adds a file to the object store, unless the store already has it.
+/// Adds a file that the object store does not have.
 async fn upload(store: &ObjectStore, path: &Path, blake3: &str) -> Result<(), WorkerError> {
     if store.info(blake3).await.is_ok() {
         return Ok(());

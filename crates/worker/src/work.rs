@@ -25,22 +25,20 @@ use crate::metrics::Metrics;
 use crate::queue::{Added, Queue, json};
 use crate::shutdown::{Phase, Shutdown};
 
-/// Longest time for which the server holds a request for a job. If the server answers, an idle worker takes at most
-/// this long to end.
+/// Longest time for which the server holds a request for a job, and which an idle worker takes to end.
 const EXPIRES: Duration = Duration::from_secs(2);
 
-/// Time after [`EXPIRES`] at which a request counts as lost, because the server has gone.
+/// Time after [`EXPIRES`] at which a request counts as lost.
 const LOST: Duration = Duration::from_secs(5);
 
-/// Pause before another attempt to read a file, multiplied by the number of deliveries so far.
+/// Pause before another attempt to read a file, multiplied by the deliveries so far.
 const READ_AGAIN: Duration = Duration::from_secs(1);
 
-/// The verdict on a file that was delivered the maximum number of times, each time without a result.
+/// Verdict on a file whose deliveries all ended without a result.
 const CRASHED: &str = "crashed";
-/// Name, in the metrics, for the result of a file that cannot be read.
+/// Name, in the metrics, of a file that cannot be read.
 const UNREAD: &str = "unread";
 
-/// A worker of the game `G`.
 struct Work<G: Game + 'static> {
     queue: Queue,
     judge: Arc<Judge<G>>,
@@ -48,20 +46,17 @@ struct Work<G: Game + 'static> {
     store: ObjectStore,
     bucket: Option<Bucket>,
     max_deliver: u64,
-    /// Interval at which the server is told that work on a job continues.
+    /// Interval of progress messages to the server.
     progress: Duration,
     metrics: Arc<Metrics>,
 }
 
-/// Outcome of a job.
 enum Done {
-    /// The job has a result, with this verdict.
     Result(Judged),
-    /// The job goes back to the queue, to be delivered again after this pause.
+    /// Return the job to the queue, for another delivery after this pause.
     Again(Duration),
 }
 
-/// Takes jobs until a signal.
 pub(crate) async fn run<G: Game + 'static>(
     arguments: &WorkArguments,
     limits: &Limits,
@@ -111,14 +106,14 @@ pub(crate) async fn run<G: Game + 'static>(
     Ok(())
 }
 
-/// Waits for the next job. Returns `None` if none arrives in time, also while the server is restarting.
+/// The next job; `None` if none arrives in time.
 async fn next(jobs: &PullConsumer) -> Option<Message> {
     let request = async {
         let mut batch = jobs.fetch().max_messages(1).expires(EXPIRES).messages().await.ok()?;
         match batch.next().await? {
             Ok(message) => Some(message),
             Err(_) => {
-                // Some errors are returned at once, and the pause avoids a busy loop.
+                // Some errors return at once.
                 tokio::time::sleep(Duration::from_millis(100)).await;
                 None
             }
@@ -128,7 +123,6 @@ async fn next(jobs: &PullConsumer) -> Option<Message> {
 }
 
 impl<G: Game + 'static> Work<G> {
-    /// Works on one job to its end.
     async fn take(&self, message: &Message) -> Result<(), WorkerError> {
         let job = serde_json::from_slice::<Job>(&message.payload).ok();
         let Some((job, digest)) = job.and_then(|job| job.digest().map(|digest| (job, digest))) else {
@@ -149,7 +143,7 @@ impl<G: Game + 'static> Work<G> {
         match self.done(message, &job, delivered).await {
             Done::Again(pause) => acknowledge(message, AckKind::Nak(Some(pause))).await,
             Done::Result(Judged { verdict, line }) => {
-                // The job leaves the queue after its result has arrived, so that none is lost.
+                // The job leaves the queue after its result has arrived.
                 match self.queue.add_result(&key, &line).await? {
                     Added::New => self.metrics.add_result(&verdict),
                     Added::Known => drop(self.metrics.known.fetch_add(1, Ordering::Relaxed)),
@@ -160,7 +154,7 @@ impl<G: Game + 'static> Work<G> {
         Ok(())
     }
 
-    /// Verifies the file of a job, and meanwhile tells the server that work on the job continues.
+    /// Verifies the file of a job, and tells the server meanwhile that work continues.
     async fn done(&self, message: &Message, job: &Job, delivered: u64) -> Done {
         if delivered > self.max_deliver {
             return Done::Result(crashed(job, self.max_deliver));
@@ -171,7 +165,7 @@ impl<G: Game + 'static> Work<G> {
             tokio::select! {
                 done = &mut verify => return done,
                 () = tokio::time::sleep(self.progress) => {
-                    // If this message is lost, another worker may verify the file as well; the later result is refused.
+                    // If the message is lost, another worker may verify the file, too. The later result is refused.
                     let _ = message.ack_with(AckKind::Progress).await;
                 }
             }
@@ -186,7 +180,7 @@ impl<G: Game + 'static> Work<G> {
         };
         let (judge, file) = (Arc::clone(&self.judge), job.file.clone());
         let judged = tokio::task::spawn_blocking(move || judge.judge(&file, &bytes)).await;
-        // `judge` returns `None` after a signal: the file goes to another worker at once.
+        // After a signal, the file goes to another worker at once.
         judged.ok().flatten().map_or(Done::Again(Duration::ZERO), Done::Result)
     }
 
@@ -208,13 +202,13 @@ impl<G: Game + 'static> Work<G> {
     }
 }
 
-/// Sends an acknowledgement of a job and waits until the server has confirmed it. If the acknowledgement of a job with
-/// a result is lost, the job is delivered again, and dropped because it has a result.
+/// Waits until the server has confirmed the acknowledgement. If it is lost, the job is delivered again, and dropped
+/// because it has a result.
 async fn acknowledge(message: &Message, kind: AckKind) {
     let _ = message.double_ack_with(kind).await;
 }
 
-/// The result of a file all of whose deliveries ended without a result. The file is not read again.
+/// Result for a file that is not read again.
 fn crashed(job: &Job, deliveries: u64) -> Judged {
     #[derive(Serialize)]
     struct Line<'a> {
@@ -228,7 +222,6 @@ fn crashed(job: &Job, deliveries: u64) -> Judged {
     Judged { verdict: CRASHED.into(), line: json(&line) }
 }
 
-/// The result of a file that cannot be read.
 fn unread(job: &Job, error: &io::Error) -> Judged {
     #[derive(Serialize)]
     struct Line<'a> {

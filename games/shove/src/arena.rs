@@ -1,8 +1,8 @@
-//! Builds the arena: platform, mill, bumpers, plates and crates, and places the players in it.
+//! Builds the arena, and places the players in it.
 //!
-//! Distances from the centre, in metres: the mill's flails reach to 4.4, bumpers stand at 5.4, the inner crates lie
-//! at 6.2, plates at 7.2, players start at 8.1, the outer crates lie at 10. The platform initially ends at 12. When it
-//! has crumbled completely, its edge is at 4.5, and the mill reaches every player on it.
+//! Distances from the centre, in metres: the mill's flails reach to 4.4, bumpers stand at 5.4, inner crates lie at 6.2,
+//! plates at 7.2, players start at 8.1, outer crates lie at 10. The platform ends at 12, and at 4.5 when it has
+//! crumbled.
 
 use lockstep2d::body::{
     Body, BodyDef, BodyId, EventSwitches, Filter, Geometry, Polygon, ShapeDef, WorldError,
@@ -16,12 +16,12 @@ use lockstep2d::world::{Config, World};
 pub(crate) const TICK_RATE: u32 = 60;
 /// Radius of the whole platform, in metres.
 pub const START_RADIUS: Fx = fx!(12);
-/// Width of the ring that crumbles at a time, in metres.
+/// Width of a ring that crumbles, in metres.
 const RING: Fx = fx!(0.5);
-/// Largest number of rings of the platform that crumble in a round.
+/// Rings of the platform that crumble in a round.
 pub(crate) const RINGS: u8 = 15;
 
-/// Distance of the players' start positions from the centre, in metres.
+/// Distance of the start positions from the centre, in metres.
 const START_RING: Fx = fx!(8.1);
 /// Radius of a player, in metres.
 const PLAYER_RADIUS: Fx = fx!(0.5);
@@ -30,14 +30,14 @@ const MILL_SPEED: Fx = fx!(2);
 /// Largest torque of the mill's motor, in N m.
 const MILL_TORQUE: Fx = fx!(400);
 
-/// Role of a body in the game, stored in its user data.
+/// Role of a body, stored in its user data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// The floor, which is drawn but collides with nothing.
+    /// The floor, which collides with nothing.
     Platform,
-    /// A player on the seat of this index.
+    /// A player, with its seat.
     Player(u8),
-    /// A crate, which can be pushed around and falls like a player.
+    /// A crate, which can be pushed around.
     Crate,
     /// A bumper, which kicks bodies that hit it.
     Bumper,
@@ -61,7 +61,7 @@ impl Role {
         }
     }
 
-    /// Returns the role of a body of the game.
+    /// Role of a body of the game.
     #[must_use]
     pub fn of(body: &Body) -> Role {
         match body.user_data() {
@@ -77,17 +77,16 @@ impl Role {
     }
 }
 
-/// Returns the radius in metres that the platform has after it has lost `rings_lost` rings.
+/// Radius in metres after the loss of `rings_lost` rings.
 pub(crate) fn radius(rings_lost: u8) -> Fx {
     START_RADIUS.saturating_sub(RING.saturating_mul_int(rings_lost.into()))
 }
 
-/// Converts polar coordinates to a point.
 fn polar(radius: Fx, angle: Angle) -> Vec2<Fx> {
     Rot::from_angle(angle).apply_wide(Vec2::new(radius, Fx::ZERO))
 }
 
-/// Returns the angle `index / count` of a full turn.
+/// `index / count` of a full turn.
 fn part(index: u8, count: u8) -> Angle {
     Angle::from_turns(Fx::from_num(index) / i64::from(count))
 }
@@ -96,7 +95,7 @@ fn at(def: BodyDef, place: Vec2<Fx>, role: Role) -> BodyDef {
     def.position(place).user_data(role.user_data())
 }
 
-/// Builds the world before the first round: everything except players and crates.
+/// The world before the first round, without players and crates.
 pub(crate) fn build() -> Result<World, WorldError> {
     let mut world = World::new(Config {
         tick_rate: TICK_RATE,
@@ -123,7 +122,7 @@ pub(crate) fn build() -> Result<World, WorldError> {
     Ok(world)
 }
 
-/// Adds a bar that a motor turns about the origin, with a flail at each end.
+/// A motor turns a bar about the origin, with a flail at each end.
 fn build_mill(world: &mut World) -> Result<(), WorldError> {
     let axle = world.spawn(&at(BodyDef::fixed(), Vec2::ZERO, Role::Mill), &[])?;
     let bar = ShapeDef::new(Polygon::rectangle(fx!(2.2), fx!(0.2))?).density(fx!(4));
@@ -136,7 +135,7 @@ fn build_mill(world: &mut World) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// Adds a flail, initially pointing straight outwards: three links of 0.5 m and a ball.
+/// A flail that points outwards: three links of 0.5 m and a ball.
 fn hang_flail(world: &mut World, bar: BodyId, side: Fx) -> Result<(), WorldError> {
     let link = Geometry::capsule(Vec2::new(fx!(-0.2), fx!(0)), Vec2::new(fx!(0.2), fx!(0)), fx!(0.08))?;
     let link = ShapeDef::new(link).density(fx!(6));
@@ -155,7 +154,7 @@ fn hang_flail(world: &mut World, bar: BodyId, side: Fx) -> Result<(), WorldError
     Ok(())
 }
 
-/// Removes the old crates and places new ones: 8 between the bumpers and 12 near the edge.
+/// Replaces the crates: 8 between the bumpers and 12 near the edge.
 pub(crate) fn lay_crates(world: &mut World, rng: &mut Rng) -> Result<(), WorldError> {
     let found = world.bodies().filter(|(_, body)| Role::of(body) == Role::Crate);
     let old: Vec<_> = found.map(|(id, _)| id).collect();
@@ -173,7 +172,7 @@ pub(crate) fn lay_crates(world: &mut World, rng: &mut Rng) -> Result<(), WorldEr
     Ok(())
 }
 
-/// Creates a player's body at one of `count` evenly spaced start positions, counted from the angle `first`.
+/// Places a player at one of `count` evenly spaced positions from the angle `first`.
 pub(crate) fn place_player(
     world: &mut World,
     seat: u8,
@@ -185,14 +184,13 @@ pub(crate) fn place_player(
     world.spawn(&at(def, polar(START_RING, first + part(place, count)), Role::Player(seat)), &[disc])
 }
 
-/// Sets the drawn radius of the platform.
 pub(crate) fn draw_platform(world: &mut World, radius: Fx) -> Result<(), WorldError> {
     let shape = world.bodies().find(|(_, body)| Role::of(body) == Role::Platform);
     let Some(&shape) = shape.and_then(|(_, body)| body.shapes().first()) else { return Ok(()) };
     world.set_geometry(shape, Geometry::circle(radius)?)
 }
 
-/// Removes players and crates that have left the platform, and returns the seats of the removed players.
+/// Removes players and crates outside of the platform. Returns the seats of the players.
 pub(crate) fn drop_outside(world: &mut World, radius: Fx) -> Vec<u8> {
     let falls = |body: &Body| {
         matches!(Role::of(body), Role::Player(_) | Role::Crate) && body.centre_of_mass().length() > radius
@@ -201,7 +199,7 @@ pub(crate) fn drop_outside(world: &mut World, radius: Fx) -> Vec<u8> {
     let outside: Vec<_> = found.map(|(id, body)| (id, Role::of(body))).collect();
     let mut seats = Vec::new();
     for (id, role) in outside {
-        // Cannot fail: the body has just been found in the world.
+        // The body was just found in the world.
         let _ = world.despawn(id);
         if let Role::Player(seat) = role {
             seats.push(seat);

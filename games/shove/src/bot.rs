@@ -10,16 +10,15 @@ use crate::view::Player;
 
 /// Computer player. Its pads depend only on its seed, its seat and the states of the match.
 ///
-/// The bot tries to be closer to the centre than its opponent, pushes the opponent outwards, and turns back before the
-/// edge.
+/// The bot tries to be closer to the centre than its opponent, and pushes the opponent outwards.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bot {
     seat: usize,
     rng: Rng,
-    /// The bot turns back if its predicted distance from the edge is less than this, in metres.
+    /// Predicted distance from the edge at which the bot turns back, in metres.
     caution: Fx,
     pad: Pad,
-    /// Ticks for which the bot keeps the current pad, so that it does not decide anew in every tick.
+    /// Ticks for which the bot keeps its pad.
     hold: u32,
 }
 
@@ -32,13 +31,13 @@ impl Bot {
         Bot { seat: seat.into(), rng, caution, pad: Pad::default(), hold: 0 }
     }
 
-    /// Creates a bot for each seat of a match, with the seed of the match.
+    /// Creates a bot for each seat, with the seed of the match.
     #[must_use]
     pub fn each(setup: &Setup) -> Vec<Bot> {
         (0..setup.seats).map(|seat| Bot::new(setup.seed, seat)).collect()
     }
 
-    /// Returns the pad for the next tick. To be called once per tick.
+    /// The pad for the next tick. To be called once per tick.
     pub fn pad(&mut self, game: &Shove) -> Pad {
         if self.hold > 0 {
             self.hold -= 1;
@@ -53,7 +52,7 @@ impl Bot {
     }
 
     fn decide(&mut self, game: &Shove, me: &Player) -> Pad {
-        // Position that is predicted for 0.3 s from now.
+        // Predicted position in 0.3 s.
         let soon = me.position + me.velocity.scale(fx!(0.3));
         let margin = game.radius().saturating_sub(soon.length());
         if margin < self.caution {
@@ -61,8 +60,7 @@ impl Bot {
             return if margin < Fx::ZERO { back.with(Pad::DASH) } else { back };
         }
         let distance = |other: &Player| other.position.distance(me.position);
-        // Among equally close opponents the bot takes the next seat after its own, so that not all bots attack the
-        // first seat.
+        // Among equally close opponents, the next seat after its own: otherwise all bots would attack the first.
         let others = (1..game.seats()).filter_map(|next| game.player((self.seat + next) % game.seats()));
         let others = others.filter(Player::is_alive);
         let Some(other) = others.min_by_key(distance) else {
@@ -79,7 +77,7 @@ impl Bot {
         let way = there - me.position;
         let distance = way.length();
         let outwards = other.position.normalized().map_or(Vec2::ZERO, Vec2::widen);
-        // Component of the way to the opponent that points outwards, away from the centre.
+        // Outward component of the way to the opponent.
         let inside = way.dot(outwards);
         if inside > fx_mul(distance, fx!(0.4)) {
             let push = Pad::towards(way);

@@ -13,11 +13,11 @@ use crate::pad::Pad;
 use crate::rules::Rules;
 use crate::setup::Setup;
 
-/// Acceleration of a player, in m/s²; damping limits the speed to 7.5 m/s.
+/// Acceleration of a player, in m/s².
 const ACCELERATION: Fx = fx!(9);
 /// Velocity change of a dash, in m/s.
 const DASH: Fx = fx!(8);
-/// Number of ticks from a dash until the next one is possible.
+/// Ticks between two dashes.
 const RECHARGE: u8 = 75;
 /// Velocity change by a bumper, in m/s.
 const KICK: Fx = fx!(5);
@@ -38,7 +38,7 @@ pub struct Save {
 }
 
 impl Save {
-    /// Returns the memory of this save in bytes, without the memory that it shares with other saves.
+    /// Bytes of this save that it does not share with others.
     #[must_use]
     pub fn rollback_bytes(&self) -> usize {
         self.world.rollback_bytes() + size_of::<Rules>()
@@ -46,7 +46,7 @@ impl Save {
 }
 
 impl Shove {
-    /// Applies a pad to the player of a seat: acceleration and dash.
+    /// Accelerates the player of a seat.
     fn drive(&mut self, seat: usize, pad: Pad) -> Result<(), WorldError> {
         let Some(seat) = self.rules.seats.get_mut(seat) else { return Ok(()) };
         seat.recharge = seat.recharge.saturating_sub(1);
@@ -61,13 +61,12 @@ impl Shove {
         Ok(())
     }
 
-    /// Returns the body of a shape, and its role.
     fn owner(&self, shape: ShapeId) -> Option<(BodyId, Role)> {
         let id = self.world.shape(shape)?.body();
         Some((id, Role::of(self.world.body(id)?)))
     }
 
-    /// Applies the kick of bumpers to the bodies that have hit them.
+    /// Bumpers kick the bodies that have hit them.
     fn kick(&mut self) -> Result<(), WorldError> {
         let kicked = |shape, bumper, away: Vec2<Unit>| {
             let ((body, _), (_, role)) = (self.owner(shape)?, self.owner(bumper)?);
@@ -87,7 +86,7 @@ impl Shove {
         Ok(())
     }
 
-    /// Recharges the dash of players that have just entered a plate.
+    /// Recharges the dash of players that have entered a plate.
     fn charge(&mut self) {
         for event in &self.world.events().sensor_begin {
             if let Some((_, Role::Player(seat))) = self.owner(event.visitor)
@@ -98,8 +97,7 @@ impl Shove {
         }
     }
 
-    /// Advances the rules and applies the pads, up to the first change that the world refuses. The world refuses a
-    /// change only if the state was loaded from an untrusted save.
+    /// Stops at the first change that the world refuses, as after loading an untrusted save.
     fn try_step(&mut self, pads: &[Pad]) -> Result<(), WorldError> {
         self.rules.advance(&mut self.world, self.setup.rounds)?;
         if self.rules.is_on() {
@@ -138,8 +136,7 @@ impl Game for Shove {
             self.rules.seat(&mut self.world, seat, present);
         }
         let pads = &inputs[..inputs.len().min(self.seats())];
-        // A world from an untrusted save may refuse these changes. The tick then continues without them, in the same
-        // way on every machine.
+        // Refused changes are skipped, as on every machine.
         let _ = self.try_step(pads);
         self.world.step();
         self.charge();
@@ -169,9 +166,8 @@ impl Game for Shove {
         Some(&mut self.world)
     }
 
-    /// Estimated work of a tick: the limits of bodies and shapes plus the numbers of pairs and joints, all times the
-    /// iterations of the solver in a tick, plus the square of the limit of shapes for new pairs. The limits replace the
-    /// current numbers, because a new round may add all players and crates.
+    /// Limits of bodies and shapes and numbers of pairs and joints, times the iterations of the solver, plus the square
+    /// of the limit of shapes for new pairs. The limits count because a new round may add all players and crates.
     fn work(&self, _: &[Pad]) -> u64 {
         let count = |n: usize| u64::try_from(n).unwrap_or(u64::MAX);
         let limits = self.world.config();

@@ -1,12 +1,11 @@
 //! Shove: two to four players push each other off a platform that crumbles.
 //!
-//! The view is from above. A player is a disc, controlled by a [`Pad`] of one byte; it can dash when the dash is
-//! recharged. In the centre a mill swings two flails, bumpers kick bodies that hit them, plates recharge the dash of
-//! players that enter them, and crates lie around. A player whose centre leaves the platform has fallen, and during a
-//! round each player still standing gets a point. The last player standing wins the round, unless the time runs out
-//! first.
+//! The view is from above. A player is a disc, controlled by a [`Pad`] of one byte, that can dash when the dash is
+//! recharged. A mill in the centre swings two flails, bumpers kick bodies, plates recharge the dash, and crates lie
+//! around. A player whose centre leaves the platform falls, and in a round each player still standing gets a point. The
+//! last one standing wins the round, unless the time runs out first.
 //!
-//! The game is deliberately small. It is the example for lockstep, rollback, late join and the viewer.
+//! The game is the example for lockstep, rollback, late join and the viewer.
 //!
 //! ```
 //! use lockstep2d::lockstep::Game;
@@ -40,5 +39,5 @@ pub use rules::Phase;
 pub use setup::{Setup, UnplayableSetup};
 pub use view::Player;
 
-/// Maximum number of players of a match.
+/// Maximum number of players.
 pub const SEATS_MAX: usize = 4;

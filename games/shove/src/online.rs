@@ -1,4 +1,4 @@
-//! Network matches: entering a match, and the functions for a running match that `shove play` and the viewer share.
+//! Network matches, for `shove play` and the viewer.
 
 use std::fmt;
 use std::io;
@@ -40,7 +40,7 @@ pub enum OnlineError {
     Address {
         /// The address as given.
         address: String,
-        /// Error of the system; `None` if the lookup succeeded without a result.
+        /// Error of the system; `None` if the lookup had no result.
         why: Option<io::Error>,
     },
     /// The socket cannot be opened.
@@ -63,7 +63,7 @@ impl fmt::Display for OnlineError {
 impl std::error::Error for OnlineError {}
 
 impl Participation<Address> {
-    /// Enters a match in this way.
+    /// Enters a match.
     ///
     /// # Errors
     /// [`PeerError`] if the setup or an option is invalid.
@@ -83,7 +83,7 @@ impl Participation<Address> {
 }
 
 impl Participation<&str> {
-    /// Enters a match over UDP. The socket is bound to the address `bind`, or to any free port if it is `None`.
+    /// Enters a match over UDP, at the address `bind` or a free port.
     ///
     /// # Errors
     /// [`OnlineError`] if an address cannot be resolved, the socket cannot be opened, or the setup or an option is
@@ -117,7 +117,7 @@ fn resolve(address: &str) -> Result<SocketAddr, OnlineError> {
     found.next().ok_or_else(|| error(None))
 }
 
-/// Plays all ticks that are due. `pad` returns the local player's pad for a game state and the local seat.
+/// Plays all ticks that are due. `pad` returns the local player's pad for a game and the local seat.
 ///
 /// # Errors
 /// [`PeerError`] if the match cannot continue.
@@ -134,7 +134,7 @@ pub fn play_due<T: Transport>(
     Ok(())
 }
 
-/// Describes an event in a line for the user, with seats numbered from 0.
+/// Describes an event in a line, with seats from 0.
 #[must_use]
 pub fn describe<T: Transport>(peer: &Peer<Shove, T>, event: &PeerEvent) -> String {
     let name = |id: PeerId| match peer.seats_of(id)[..] {

@@ -1,9 +1,9 @@
-//! [`Pad`]: the input of one player for one tick, in one byte.
+//! [`Pad`]: the input of a player for a tick, in one byte.
 
 use lockstep2d::math::{Angle, Fx, Unit, Vec2};
 use serde::{Deserialize, Serialize};
 
-/// Buttons that are down, one bit each. Bits 5 and 6 are ignored, and two opposite directions cancel each other.
+/// Buttons that are down, one bit each. Bits 5 and 6 are ignored, and opposite directions cancel each other.
 ///
 /// ```
 /// use lockstep2d::math::Vec2;
@@ -26,7 +26,7 @@ impl Pad {
     pub const DOWN: Pad = Pad(1 << 3);
     /// Dash: an impulse in the held direction.
     pub const DASH: Pad = Pad(1 << 4);
-    /// The input of an empty seat. Bit 7 together with any other bit is ignored.
+    /// The input of an empty seat. Bit 7 with any other bit is ignored.
     pub const ABSENT: Pad = Pad(1 << 7);
 
     /// Pads of the eight directions, counter-clockwise from +x.
@@ -41,38 +41,38 @@ impl Pad {
         Pad::DOWN.with(Pad::RIGHT),
     ];
 
-    /// Returns the union of two sets of buttons.
+    /// Union of two sets of buttons.
     #[must_use]
     pub const fn with(self, other: Pad) -> Pad {
         Pad(self.0 | other.0)
     }
 
-    /// Returns whether all of these buttons are down.
+    /// Whether all of these buttons are down.
     #[must_use]
     pub const fn has(self, buttons: Pad) -> bool {
         self.0 & buttons.0 == buttons.0
     }
 
-    /// Returns whether the seat is empty.
+    /// Whether the seat is empty.
     #[must_use]
     pub const fn is_absent(self) -> bool {
         self.0 == Pad::ABSENT.0
     }
 
-    /// Returns the direction as a unit vector; `None` if no direction is held or opposite ones cancel.
+    /// Direction as a unit vector; `None` if none is held or opposite ones cancel.
     #[must_use]
     pub fn direction(self) -> Option<Vec2<Unit>> {
         let axis = |plus, minus| Fx::from_num(i32::from(self.has(plus)) - i32::from(self.has(minus)));
         Vec2::new(axis(Pad::RIGHT, Pad::LEFT), axis(Pad::UP, Pad::DOWN)).normalized()
     }
 
-    /// Returns the pad closest to a direction; no direction for the zero vector.
+    /// Pad closest to a direction; no direction for the zero vector.
     #[must_use]
     pub fn towards(direction: Vec2<Fx>) -> Pad {
         if direction == Vec2::ZERO {
             return Pad::default();
         }
-        // Adding a sixteenth of a turn aligns the boundaries between pads with multiples of an eighth of a turn.
+        // The boundaries between pads are then at multiples of an eighth of a turn.
         let sixteenth = Angle::from_bits(1 << 28);
         let eighth = (Angle::of(direction) + sixteenth).to_bits() >> 29;
         Pad::COMPASS[eighth as usize]

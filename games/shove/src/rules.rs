@@ -1,4 +1,4 @@
-//! [`Rules`]: the state of a match besides the world, and the sequence of rounds and phases.
+//! [`Rules`]: the state of a match besides the world.
 
 use lockstep2d::body::{BodyId, WorldError};
 use lockstep2d::math::Rng;
@@ -8,42 +8,41 @@ use serde::{Deserialize, Serialize};
 use crate::SEATS_MAX;
 use crate::arena;
 
-/// Number of ticks before a round, in which players cannot move.
+/// Ticks before a round, in which players cannot move.
 const READY: u16 = 60;
-/// Maximum number of ticks of a round.
+/// Longest round, in ticks.
 const FIGHT: u16 = 1200;
-/// Number of ticks of the pause after a round.
+/// Pause after a round, in ticks.
 const PAUSE: u16 = 75;
-/// Number of ticks from the start of a round until the first ring of the platform crumbles.
+/// Ticks of a round until the first ring crumbles.
 const FIRST_RING: u16 = 180;
-/// Number of ticks from the crumbling of one ring to that of the next.
+/// Ticks between two rings.
 const RING: u16 = 60;
 
 /// Phase of a match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Phase {
-    /// A round is about to begin; players cannot move.
+    /// A round is about to begin, and players cannot move.
     Ready,
     /// A round is being played.
     Fight,
     /// A round has ended.
     Pause,
-    /// The match has ended. The world runs on, but players cannot move.
+    /// The match has ended, and players cannot move.
     Over,
 }
 
-/// Seat of the match, taken or empty. Seats beyond the number of seats of the match stay empty.
+/// Seat, taken or empty. Seats beyond those of the match stay empty.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Seat {
-    /// Whether the seat is taken.
     pub(crate) present: bool,
     /// Body of the player, until it falls.
     pub(crate) body: Option<BodyId>,
-    /// Number of ticks until the player can dash again.
+    /// Ticks until the player can dash again.
     pub(crate) recharge: u8,
-    /// Score: one point for each player that fell in [`Phase::Fight`] while this player was standing.
+    /// One point for each player that fell in [`Phase::Fight`] while this player was standing.
     pub(crate) score: u32,
-    /// Number of rounds that the player has won.
+    /// Rounds won.
     pub(crate) won: u32,
 }
 
@@ -51,20 +50,20 @@ pub(crate) struct Seat {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Rules {
     pub(crate) seats: [Seat; SEATS_MAX],
-    /// Number of the round, counted from 1; 0 before the first round that counts.
+    /// Number of the round, from 1; 0 before the first round that counts.
     pub(crate) round: u8,
     pub(crate) phase: Phase,
     /// Ticks until the phase ends by time.
     pub(crate) ticks_left: u16,
-    /// Number of rings that have crumbled.
+    /// Rings that have crumbled.
     pub(crate) rings: u8,
-    /// Number of players at the start of the round. With fewer than two, the round is practice and does not count.
+    /// Players at the start of the round. With fewer than two, it is practice and does not count.
     starters: u8,
     rng: Rng,
 }
 
 impl Rules {
-    /// State before the first tick. The first tick begins a round with the players that are present.
+    /// The first tick begins a round with the players that are present.
     pub(crate) fn new(seed: u64) -> Self {
         Rules {
             seats: [Seat::default(); SEATS_MAX],
@@ -85,24 +84,24 @@ impl Rules {
         self.starters < 2
     }
 
-    /// Returns whether players can move.
+    /// Whether players can move.
     pub(crate) fn is_on(&self) -> bool {
         matches!(self.phase, Phase::Fight | Phase::Pause)
     }
 
-    /// Updates the presence of a player. The body of a player who leaves is removed, which does not count as a fall. A
-    /// player who joins gets a body in the next round. If the current round is practice, the next round begins at once.
+    /// A player who leaves loses its body, which is not a fall. A player who joins gets one in the next round, which
+    /// begins at once after practice.
     pub(crate) fn seat(&mut self, world: &mut World, seat: usize, present: bool) {
         let Some(seat) = self.seats.get_mut(seat) else { return };
         seat.present = present;
         if let Some(body) = seat.body.filter(|_| !present) {
-            // Fails only if the body no longer exists.
+            // This fails only if the body does not exist.
             let _ = world.despawn(body);
             seat.body = None;
         }
     }
 
-    /// Counts down a tick, and enters the next phase when it is due.
+    /// Counts down a tick, and enters the next phase when due.
     pub(crate) fn advance(&mut self, world: &mut World, rounds: u8) -> Result<(), WorldError> {
         self.ticks_left = self.ticks_left.saturating_sub(1);
         let (present, standing) = (self.count(|seat| seat.present), self.count(|seat| seat.body.is_some()));
@@ -129,7 +128,7 @@ impl Rules {
         }
     }
 
-    /// Resets the arena, and gives each present player a new body.
+    /// Resets the arena, and places the players that are present.
     fn begin_round(&mut self, world: &mut World) -> Result<(), WorldError> {
         self.starters = self.count(|seat| seat.present);
         self.round = self.round.saturating_add(u8::from(!self.is_practice()));
@@ -163,7 +162,7 @@ impl Rules {
         }
     }
 
-    /// Removes the next ring of the platform when it is due.
+    /// Removes a ring of the platform when due.
     fn crumble(&mut self, world: &mut World) -> Result<(), WorldError> {
         let elapsed = FIGHT.saturating_sub(self.ticks_left);
         let due = elapsed >= FIRST_RING && (elapsed - FIRST_RING).is_multiple_of(RING);
@@ -174,7 +173,7 @@ impl Rules {
         Ok(())
     }
 
-    /// Records players that have fallen. During a round, each player still standing gets a point per fallen player.
+    /// Players that fall lose their bodies, and in a round each player still standing gets a point for each.
     pub(crate) fn fall(&mut self, fallen: &[u8]) {
         for &seat in fallen {
             if let Some(seat) = self.seats.get_mut(usize::from(seat)) {

@@ -3,7 +3,7 @@
 use lockstep2d_cli::{Catalogue, Scene, SceneInfo};
 use lockstep2d_shove::{Bot, Pad, Setup, Shove};
 
-/// Catalogue of the matches for the command `record`.
+/// Matches for the command `record`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Matches;
 
@@ -39,8 +39,7 @@ impl Catalogue<Shove> for Matches {
     }
 }
 
-/// Returns whether a bot is in the match: each joins 200 ticks after the previous one, and leaves for the last 300 of
-/// every 1500 ticks.
+/// Each bot joins 200 ticks after the previous one, and leaves for the last 300 of every 1500 ticks.
 fn guest_is_there(seat: u64, tick: u64) -> bool {
     let arrival = 200 * seat;
     tick >= arrival && (tick - arrival) % 1500 < 1200

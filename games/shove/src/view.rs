@@ -1,4 +1,4 @@
-//! Read access to a match, for bots, windows and score tables.
+//! Read access to a match.
 
 use lockstep2d::body::{Body, BodyId};
 use lockstep2d::math::{Fx, Vec2};
@@ -14,22 +14,22 @@ use crate::setup::Setup;
 pub struct Player {
     /// Whether the seat is taken.
     pub present: bool,
-    /// Body of the player, while it stands on the platform.
+    /// Body of the player, until it falls.
     pub body: Option<BodyId>,
     /// Position in metres; zero without a body.
     pub position: Vec2<Fx>,
     /// Velocity in m/s; zero without a body.
     pub velocity: Vec2<Fx>,
-    /// Number of ticks until the player can dash again.
+    /// Ticks until the player can dash again.
     pub recharge: u32,
-    /// Score: one point for each player that fell in [`Phase::Fight`] while this player was standing.
+    /// One point for each player that fell in [`Phase::Fight`] while this player was standing.
     pub score: u32,
-    /// Number of rounds that the player has won.
+    /// Rounds won.
     pub won: u32,
 }
 
 impl Player {
-    /// Returns whether the player stands on the platform.
+    /// Whether the player stands on the platform.
     #[must_use]
     pub fn is_alive(&self) -> bool {
         self.body.is_some()
@@ -37,25 +37,25 @@ impl Player {
 }
 
 impl Shove {
-    /// Returns the parameters of the match.
+    /// Parameters of the match.
     #[must_use]
     pub const fn setup(&self) -> &Setup {
         &self.setup
     }
 
-    /// Returns the world; [`Role::of`](crate::Role::of) gives the roles of its bodies.
+    /// The world. [`Role::of`](crate::Role::of) gives the roles of its bodies.
     #[must_use]
     pub const fn world(&self) -> &World {
         &self.world
     }
 
-    /// Returns the number of seats.
+    /// Number of seats.
     #[must_use]
     pub fn seats(&self) -> usize {
         self.setup.seats.into()
     }
 
-    /// Returns the player on a seat, counted from 0; `None` if there is no such seat.
+    /// Player on a seat, from 0, if there is such a seat.
     #[must_use]
     pub fn player(&self, seat: usize) -> Option<Player> {
         let seat = self.rules.seats.get(seat).filter(|_| seat < self.seats())?;
@@ -71,30 +71,30 @@ impl Shove {
         })
     }
 
-    /// Returns the players of all seats, in seat order.
+    /// Players of all seats, in order.
     pub fn players_in_order(&self) -> impl Iterator<Item = Player> {
         (0..self.seats()).filter_map(|seat| self.player(seat))
     }
 
-    /// Returns the current radius of the platform, in metres.
+    /// Current radius of the platform, in metres.
     #[must_use]
     pub fn radius(&self) -> Fx {
         arena::radius(self.rules.rings)
     }
 
-    /// Returns the number of the round, counted from 1; 0 before the first round that counts.
+    /// Number of the round, from 1; 0 before the first round that counts.
     #[must_use]
     pub const fn round(&self) -> u8 {
         self.rules.round
     }
 
-    /// Returns the current phase.
+    /// Current phase.
     #[must_use]
     pub const fn phase(&self) -> Phase {
         self.rules.phase
     }
 
-    /// Returns the ticks until the phase ends by time.
+    /// Ticks until the phase ends by time.
     #[must_use]
     pub const fn ticks_left(&self) -> u16 {
         self.rules.ticks_left

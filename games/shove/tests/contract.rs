@@ -1,5 +1,4 @@
-//! The contract of [`Game`], tested with this game: the same pads give the same hashes, for any pads, and with any
-//! saves, loads and encodings in between.
+//! The contract of [`Game`]: the same pads give the same hashes, whatever saves, loads and encodings come in between.
 
 use lockstep2d::check::{self, CheckOptions, Phases};
 use lockstep2d::codec::{decode, encode};
@@ -8,7 +7,7 @@ use lockstep2d::lockstep::Game;
 use lockstep2d::math::Rng;
 use lockstep2d_shove::{Bot, Pad, Save, Setup, Shove};
 
-/// Plays a match of bots; returns the pads and the hash of each tick.
+/// Pads of bots, and the hash of each tick.
 fn played(setup: &Setup, ticks: u64) -> Vec<(Vec<Pad>, StateHash)> {
     let mut bots = Bot::each(setup);
     played_by(setup, ticks, |_, game| bots.iter_mut().map(|bot| bot.pad(game)).collect())
@@ -29,7 +28,7 @@ fn played_by(
     log
 }
 
-/// Plays a log again, calls `before` with the game before each tick, and checks every hash.
+/// Plays a log again, with `before` called before each tick, and checks every hash.
 fn play_again(
     setup: &Setup,
     log: &[(Vec<Pad>, StateHash)],
@@ -44,7 +43,6 @@ fn play_again(
     game
 }
 
-/// Returns a random byte as a pad.
 fn hostile(rng: &mut Rng) -> Pad {
     Pad(u8::try_from(rng.below(256)).expect("below 256"))
 }
@@ -54,7 +52,7 @@ fn hostile_log(setup: &Setup, ticks: u64) -> Vec<(Vec<Pad>, StateHash)> {
     played_by(setup, ticks, |_, _| (0..setup.seats).map(|_| hostile(&mut rng)).collect())
 }
 
-/// Plays a match in which bots join and leave at random ticks, sometimes all at once.
+/// Bots join and leave at random ticks, sometimes all at once.
 fn restless_log(setup: &Setup, ticks: u64) -> Vec<(Vec<Pad>, StateHash)> {
     let mut rng = Rng::new(setup.seed);
     let mut bots = Bot::each(setup);
@@ -93,7 +91,7 @@ fn the_same_pads_give_the_same_hashes() {
 fn caches_do_not_matter() {
     for (setup, log) in logs() {
         let mut saved = None;
-        // Loading a save of the current state must not change later ticks.
+        // Loading the current state must not change later ticks.
         play_again(&setup, &log, |tick, game| {
             let save = game.save();
             if tick % 7 == 0 {
@@ -131,7 +129,7 @@ fn damaged_saves_are_refused_or_played_without_panic() {
     let mut played = 0;
     for _ in 0..2000 {
         let mut bytes = bytes.clone();
-        // Most of the damage is in the rules, which follow the world in the save.
+        // Most of the damage is in the rules, at the end of the save.
         let back = if rng.chance(3, 4) { 80 } else { bytes.len() };
         let at = bytes.len()
             - 1
@@ -151,8 +149,7 @@ fn damaged_saves_are_refused_or_played_without_panic() {
     assert!(played > 100, "{played}");
 }
 
-/// Simulates rollback: plays some ticks with mispredicted pads, loads the save, and plays them again with the right
-/// pads.
+/// Plays mispredicted pads, loads the save, and plays the right pads.
 #[test]
 fn rolling_back_leaves_no_trace() {
     for (setup, log) in logs() {
@@ -190,7 +187,7 @@ fn missing_and_surplus_pads_are_no_trouble() {
     assert_eq!(game.state_hash(), other.state_hash());
 }
 
-/// The determinism checker passes for pads of bots and for random pads.
+/// Checks pads of bots and random pads.
 #[test]
 fn every_way_to_play_comes_to_the_same() {
     for setup in setups() {

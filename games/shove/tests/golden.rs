@@ -1,4 +1,4 @@
-//! The committed matches verify, end in the committed hashes, and equal a new recording of their bots.
+//! The committed matches verify, end in their hashes, and equal a new recording of their bots.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use std::process::Command;
 use lockstep2d::replay::{Limits, Verdict, verify};
 use lockstep2d_shove::Shove;
 
-/// Scene, and state hash after 3000 ticks with seed 1, for the current semantics and version of the rules.
+/// Scene, and hash after 3000 ticks with seed 1.
 const GOLDENS: [(&str, &str); 3] = [
     ("duel", "beb2260c5fc5270b8515672a1a9cb758"),
     ("match", "b4d013dd5baafe9507b6310257b4c461"),

@@ -1,4 +1,4 @@
-//! A damaged or forged replay of this game never verifies as another match: see `tests/mutated` of the engine.
+//! A damaged replay never verifies as another match: see `tests/mutated` of the engine.
 #![expect(clippy::unwrap_used, reason = "the files of this repository are valid")]
 
 #[path = "../../../tests/mutated/judge.rs"]
@@ -10,7 +10,7 @@ mod mutation;
 
 use lockstep2d_shove::Shove;
 
-/// Default number of mutated files. It is small because the matches are long.
+/// Few files, because the matches are long.
 const FILES: u64 = 300;
 
 #[test]

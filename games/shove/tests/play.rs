@@ -1,6 +1,5 @@
-//! Matches between processes, over UDP on the loopback interface: all peers end in the same state, and their replays
-//! verify. Whole matches take their real time and need a machine that keeps up, so `cargo test` leaves them out;
-//! `.ci/run` runs them.
+//! Matches between processes over UDP: all peers end in the same state, and their replays verify. Whole matches take
+//! their real time on a machine that keeps up, so only `.ci/run` runs them.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -15,10 +14,10 @@ use lockstep2d::replay::{Limits, Part, Reader, Verdict, verify};
 use lockstep2d_shove::{Pad, Shove};
 use lockstep2d_tests::sweep;
 
-/// Seconds for which all peers wait for a silent player: long enough for a process without CPU time on a busy machine.
+/// Seconds that peers wait for a silent player: enough for a process without CPU time.
 const PATIENCE: &str = "8";
 
-/// Temporary folder of a test, removed on drop.
+/// Folder that is removed on drop.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -39,7 +38,7 @@ impl Drop for Folder {
     }
 }
 
-/// Returns an address with a free port.
+/// A free port.
 fn free_address() -> String {
     UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string()
 }
@@ -60,7 +59,6 @@ fn text(output: &Output) -> String {
     format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
 }
 
-/// The events of a process.
 fn events(output: &Output) -> Vec<serde_json::Value> {
     let lines = output.stdout.split(|byte| *byte == b'\n').filter(|line| !line.is_empty());
     lines.map(|line| serde_json::from_slice(line).unwrap_or_else(|_| panic!("{}", text(output)))).collect()
@@ -72,7 +70,7 @@ fn hash_of(output: &Output) -> String {
     end["hash"].as_str().unwrap_or_else(|| panic!("{}", text(output))).to_owned()
 }
 
-/// Starts a host and three joining players of a match.
+/// A host and three joining players.
 fn four(folder: &Folder, modes: &[&str], ticks: &str) -> Vec<Child> {
     let address = free_address();
     let common = [modes, &["--players", "4", "--ticks", ticks]].concat();
@@ -83,7 +81,7 @@ fn four(folder: &Folder, modes: &[&str], ticks: &str) -> Vec<Child> {
     children
 }
 
-/// Returns the pads of each tick of a replay, which may be truncated.
+/// Pads of each tick of a replay, which may be cut.
 fn pads(replay: &[u8]) -> Vec<Vec<u8>> {
     let mut pads = Vec::new();
     let mut reader = Reader::open(replay, &Limits::default()).unwrap();
@@ -96,7 +94,7 @@ fn pads(replay: &[u8]) -> Vec<Vec<u8>> {
     pads
 }
 
-/// Waits until a replay that is being written has this number of ticks.
+/// Waits for a replay that is being written.
 fn wait_for_ticks(replay: &Path, ticks: usize) {
     let has_them =
         |replay: Vec<u8>| Reader::open(&replay, &Limits::default()).is_ok() && pads(&replay).len() >= ticks;
@@ -153,7 +151,7 @@ fn a_killed_process_leaves_a_valid_replay_and_the_others_agree_when() {
             assert!(matches!(verdict, Verdict::Match { ticks: 600, .. }), "{name}: {verdict}");
             assert_eq!(pads(replay), all);
         }
-        // The replay of the killed process is a prefix of the others' replays.
+        // The replay of the killed process is a prefix of the others.
         let seen = pads(&cut);
         assert!(seen.len() >= 120 && all.starts_with(&seen), "{name}: {} ticks", seen.len());
         let absent = lockstep2d::codec::encode(&Pad::ABSENT)[0];
@@ -175,7 +173,7 @@ fn another_seed_is_another_match() {
     assert!(text(&output).contains("number of seats 2 here and 4 there"), "{}", text(&output));
 }
 
-/// A seat that does not exist or is taken is refused, and so is a number of players that no match can have.
+/// A missing or taken seat is refused, and so is an impossible number of players.
 #[test]
 fn wrong_seats_are_refused() {
     let folder = Folder::new("seats");
@@ -195,7 +193,7 @@ fn wrong_seats_are_refused() {
     host.wait().unwrap();
 }
 
-/// An interrupted process leaves the match: the others continue without waiting for it, and its replay has an end.
+/// The others continue without waiting, and the replay has an end.
 #[cfg(unix)]
 #[test]
 #[ignore = "plays in real time: run by .ci/run"]
@@ -223,7 +221,7 @@ fn an_interrupted_process_leaves_and_its_replay_verifies() {
     }
 }
 
-/// An existing replay is not replaced, and the error message names the reason.
+/// The error message names the reason.
 #[test]
 fn an_earlier_replay_is_not_replaced() {
     let folder = Folder::new("earlier");

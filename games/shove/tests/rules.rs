@@ -1,4 +1,4 @@
-//! The rules of the game, tested through its public interface.
+//! The rules, through the public interface.
 
 use lockstep2d::lockstep::Game;
 use lockstep2d_shove::{Bot, Pad, Phase, Setup, Shove, UnplayableSetup};
@@ -7,7 +7,7 @@ fn game(seats: u8, rounds: u8) -> Shove {
     Shove::new(&Setup { seats, rounds, seed: 3 }).expect("the setup should be valid")
 }
 
-/// Steps with the same pads until `done` holds, at most for one minute of game time.
+/// Steps until `done` holds, at most for a minute of game time.
 fn step_until(game: &mut Shove, pads: &[Pad], done: impl Fn(&Shove) -> bool) {
     for _ in 0..3600 {
         if done(game) {
@@ -45,7 +45,7 @@ fn setups_out_of_range_are_refused() {
 fn who_runs_off_the_platform_falls_and_the_others_score() {
     let mut game = game(3, 99);
     step_until(&mut game, &[NONE; 3], |game| game.phase() == Phase::Fight);
-    // The pad points straight outwards.
+    // This pad pushes the player straight outwards.
     let out = Pad::towards(game.player(1).expect("the seat should exist").position);
     step_until(&mut game, &[NONE, out, NONE], |game| alive(game) == 2);
     assert_eq!(scores(&game), [1, 0, 1]);

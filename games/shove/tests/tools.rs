@@ -1,4 +1,4 @@
-//! The replay commands work with this game: tested on a committed match with four players and claims.
+//! The replay commands, on a match with four players and claims.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ fn replay() -> String {
     format!("{}/replays/match.replay", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Runs the command, which should succeed, and returns its output.
+/// Runs a command that should succeed, and returns its output.
 fn shove(arguments: &[&str]) -> String {
     let outcome =
         Command::new(env!("CARGO_BIN_EXE_shove")).args(arguments).output().expect("the binary should run");
@@ -21,7 +21,7 @@ fn shove(arguments: &[&str]) -> String {
     String::from_utf8(outcome.stdout).expect("the output should be UTF-8")
 }
 
-/// Returns a path for a test at which no file exists.
+/// A path without a file.
 fn path(name: &str) -> PathBuf {
     let path = std::env::temp_dir().join(format!("shove-{}-{name}", std::process::id()));
     let _ = fs::remove_file(&path);

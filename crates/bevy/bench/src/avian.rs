@@ -1,4 +1,4 @@
-//! Avian: a save contains its components of bodies and colliders, and its resources that last longer than a tick.
+//! Avian: saves its components of bodies and colliders, and its resources that last longer than a tick.
 
 use avian2d::collider_tree::{ColliderTreeOptimization, ColliderTrees, MovedProxies};
 use avian2d::collision::collider::EnlargedAabb;

@@ -8,12 +8,12 @@ pub trait Engine {
     /// Plays a tick.
     fn step(&mut self);
 
-    /// Saves the state after the tick. Drops the oldest save if there are more than [`DEPTH`].
+    /// Saves the state after the tick, and drops the oldest of more than [`DEPTH`] saves.
     fn save(&mut self);
 
-    /// Returns to the oldest save that is kept, and drops the later saves.
+    /// Returns to the oldest save, and drops the later ones.
     fn load(&mut self);
 
-    /// The state for comparison after a rollback: bits of all positions, rotations and velocities, or a hash.
+    /// State to compare after a rollback: bits of positions, rotations and velocities, or a hash.
     fn state(&mut self) -> Vec<u64>;
 }

@@ -1,5 +1,4 @@
-//! An app whose physics is saved by bevy_ggrs. A session of bevy_ggrs would run the same schedules; without a session,
-//! every save and load can be timed.
+//! An app whose physics is saved by the schedules of bevy_ggrs, without a session, to time each save and load.
 
 use std::time::Duration;
 
@@ -15,7 +14,7 @@ use crate::engine::{DEPTH, Engine};
 #[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Tick;
 
-/// An app, and the part of its state that is compared.
+/// An app, and its compared state.
 pub struct GgrsApp {
     app: App,
     state: fn(&mut World) -> Vec<u64>,
@@ -67,7 +66,7 @@ impl Engine for GgrsApp {
     }
 }
 
-/// Returns the bits of floats, which can be compared exactly.
+/// Bits of floats, for exact comparison.
 pub fn bits<const N: usize>(values: [f32; N]) -> [u64; N] {
     values.map(|value| u64::from(value.to_bits()))
 }

@@ -1,6 +1,5 @@
-//! Measures saves and rollbacks of piles of boxes in three engines, with a save in every tick as in a rollback game:
-//! this plugin, bevy_rapier2d and Avian. The latter two use the snapshots of bevy_ggrs. `cargo run --release` prints a
-//! table.
+//! Measures saves and rollbacks of piles of boxes: this plugin, and bevy_rapier2d and Avian with the snapshots of
+//! bevy_ggrs. Prints a table.
 
 mod avian;
 mod engine;
@@ -16,7 +15,7 @@ use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
 use crate::engine::{DEPTH, Engine};
 
-/// Counts allocated bytes. This adds a few nanoseconds to each allocation, in all engines alike.
+/// Counts allocated bytes, in a few nanoseconds per allocation.
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
@@ -37,7 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for engine in &mut engines {
             engine.settle();
         }
-        // Interleaved, so that other load on the machine affects all engines alike.
+        // Interleaved: other load on the machine affects all engines alike.
         for _ in 0..ROLLBACKS {
             engines.iter_mut().for_each(Measured::roll_back);
         }
@@ -46,7 +45,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// An engine and its measurements.
 struct Measured {
     name: &'static str,
     engine: Box<dyn Engine>,
@@ -54,7 +52,7 @@ struct Measured {
     saves: Vec<Duration>,
     loads: Vec<Duration>,
     rollbacks: Vec<Duration>,
-    /// Number of rollbacks that reproduced the state before them.
+    /// Rollbacks that reproduced the state before them.
     equal: usize,
 }
 
@@ -64,8 +62,8 @@ impl Measured {
         Measured { name, engine, bytes: 0, saves, loads, rollbacks, equal: 0 }
     }
 
-    /// Plays until the pile rests, then fills the buffer of saves and counts the memory that it takes. The ticks
-    /// between the saves are included, because the next tick copies data that a save shares with the world.
+    /// Plays until the pile rests, then counts the memory of the saves, including data that a tick copies because a
+    /// save shares it.
     fn settle(&mut self) {
         (0..SETTLING).for_each(|_| self.engine.step());
         let region = Region::new(ALLOCATOR);
@@ -77,7 +75,7 @@ impl Measured {
         self.bytes = change.bytes_allocated.saturating_sub(change.bytes_deallocated) / DEPTH;
     }
 
-    /// Plays a tick, then returns to the oldest save, `DEPTH - 1` ticks before, and plays these ticks again.
+    /// Plays a tick, and the last `DEPTH - 1` ticks again from the oldest save.
     fn roll_back(&mut self) {
         self.tick();
         let before = self.engine.state();
@@ -106,7 +104,7 @@ impl Measured {
     }
 }
 
-/// The 10th percentile of the times in microseconds: other programs on the machine lengthen some calls.
+/// The 10th percentile in microseconds: other programs lengthen some calls.
 fn lowest_tenth(times: &[Duration]) -> f64 {
     let mut times = times.to_vec();
     times.sort();

@@ -1,5 +1,4 @@
-//! bevy_rapier2d: a save contains the components of its context entity, and the transforms of the bodies, because
-//! bevy_rapier2d reads transforms.
+//! bevy_rapier2d: saves the components of its context entity, and the transforms, which it reads.
 
 use bevy::prelude::*;
 use bevy_ggrs::{ComponentSnapshotPlugin, RollbackApp, Strategy};
@@ -12,11 +11,10 @@ use bevy_rapier2d::rapier::geometry::{DefaultBroadPhase, NarrowPhase};
 use crate::ggrs::{self, GgrsApp, Tick};
 use crate::scene;
 
-/// `RapierContextSimulation` cannot be cloned as a whole: its state is copied field by field. The pipeline
-/// is not copied, because it holds only working memory.
+/// `RapierContextSimulation` cannot be cloned: its fields are copied, except the pipeline, which holds only working
+/// memory.
 struct Simulation;
 
-/// The state in a `RapierContextSimulation`.
 struct SimulationState {
     islands: IslandManager,
     broad_phase: DefaultBroadPhase,

@@ -1,6 +1,6 @@
-//! The scene: a wall of boxes on a floor, with every second row shifted by half a box. Bodies do not sleep.
+//! A wall of boxes that do not sleep, with every second row shifted by half a box.
 
-/// Number of columns of the wall.
+/// Columns of the wall.
 const COLUMNS: usize = 20;
 
 /// Half the width and height of a box.
@@ -8,7 +8,7 @@ pub const HALF: f32 = 0.5;
 /// Half the width and height of the floor, whose top is at height 0.
 pub const FLOOR: (f32, f32) = (60.0, 1.0);
 
-/// Centre of a box in 64ths of a metre: the same number in fixed point and floats.
+/// Centre of a box in 64ths of a metre, which fixed point and floats represent exactly.
 pub fn place(number: usize) -> (i16, i16) {
     let (row, column) = (number / COLUMNS, number % COLUMNS);
     let x = 66 * column + 32 * (row % 2);
@@ -17,7 +17,7 @@ pub fn place(number: usize) -> (i16, i16) {
     (bits(x) - 640, bits(y))
 }
 
-/// Position of a body in metres.
+/// Centre of a box in metres.
 pub fn metres(number: usize) -> (f32, f32) {
     let (x, y) = place(number);
     (f32::from(x) / 64.0, f32::from(y) / 64.0)

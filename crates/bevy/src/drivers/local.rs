@@ -12,8 +12,7 @@ use crate::game::LockstepGame;
 use crate::inputs::Inputs;
 use crate::observed::Observed;
 
-/// Plays ticks at the rate of the game, without drift, and records them. In a long frame, ticks beyond
-/// [`FixedTimestep::DEFAULT_TICKS_MAX`] are dropped.
+/// Plays and records ticks at the rate of the game. A frame drops ticks beyond [`FixedTimestep::DEFAULT_TICKS_MAX`].
 pub(crate) struct LocalDriver<G: LockstepGame> {
     recording: Recording<Observed<G>>,
     timestep: FixedTimestep,
@@ -33,7 +32,6 @@ impl<G: LockstepGame> LocalDriver<G> {
         Ok(())
     }
 
-    /// Plays one tick.
     pub(crate) fn step(&mut self, inputs: &mut Inputs<G>) -> Result<(), LockstepError> {
         let players = self.recording.game().players() as usize;
         self.recording.step(&inputs.next(players))?;

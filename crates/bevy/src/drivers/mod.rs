@@ -18,10 +18,10 @@ use crate::game::LockstepGame;
 use crate::inputs::Inputs;
 use crate::observed::Observed;
 
-/// Times that a driver needs to play a frame.
+/// Times of a frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FrameTime {
-    /// Game time since the last frame: it can be paused and scaled.
+    /// Game time since the last frame, which can be paused and scaled.
     pub(crate) delta: Duration,
     /// Real time since the last frame.
     pub(crate) real_delta: Duration,
@@ -29,7 +29,6 @@ pub(crate) struct FrameTime {
     pub(crate) real_elapsed: Duration,
 }
 
-/// Driver of a game: local, sync test, replay or match.
 pub(crate) enum Driver<G: LockstepGame> {
     Local(Box<LocalDriver<G>>),
     SyncTest(Box<SyncTestDriver<G>>),
@@ -38,7 +37,6 @@ pub(crate) enum Driver<G: LockstepGame> {
 }
 
 impl<G: LockstepGame> Driver<G> {
-    /// Plays the ticks that are due.
     pub(crate) fn run(
         &mut self,
         time: FrameTime,
@@ -50,7 +48,7 @@ impl<G: LockstepGame> Driver<G> {
             Driver::SyncTest(test) if !is_paused => test.run(time.delta, inputs),
             Driver::Replay(replay) if !is_paused => replay.run(time.delta),
             Driver::Local(_) | Driver::SyncTest(_) | Driver::Replay(_) => Ok(()),
-            // Packets have to be received during a pause, too.
+            // Packets arrive during a pause, too.
             Driver::Match(network) => network.run(time, is_paused, inputs),
         }
     }
@@ -64,7 +62,6 @@ impl<G: LockstepGame> Driver<G> {
         }
     }
 
-    /// Number of ticks played.
     pub(crate) fn tick(&self) -> u64 {
         match self {
             Driver::Local(local) => local.tick(),
@@ -74,7 +71,7 @@ impl<G: LockstepGame> Driver<G> {
         }
     }
 
-    /// Number of confirmed ticks, which no rollback can change.
+    /// Confirmed ticks, which no rollback can change.
     pub(crate) fn confirmed(&self) -> u64 {
         match self {
             Driver::Local(local) => local.tick(),
@@ -95,12 +92,10 @@ impl<G: LockstepGame> Driver<G> {
     }
 }
 
-/// The fraction of a fixed time step, as a float.
 fn fraction_of(timestep: &lockstep2d::world::FixedTimestep) -> f32 {
     timestep.interpolation_billionths() as f32 * 1e-9
 }
 
-/// Nanoseconds of a duration.
 fn nanoseconds(time: Duration) -> u64 {
     u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
 }

@@ -38,12 +38,12 @@ impl Transport for AnyTransport {
     }
 }
 
-/// Largest number of due ticks that one frame plays. It bounds the frames of a peer that catches up.
+/// Largest number of ticks in a frame of a peer that catches up.
 const TICKS_PER_FRAME: u32 = 64;
 
 pub(crate) struct MatchDriver<G: LockstepGame> {
     peer: Peer<Observed<G>, AnyTransport>,
-    /// Time since the last tick, in ticks. The session stretches its ticks, so this is an estimate.
+    /// Estimated time since the last tick, in ticks: the session stretches its ticks.
     phase: f32,
 }
 
@@ -66,7 +66,7 @@ impl<G: LockstepGame> MatchDriver<G> {
                 break;
             }
             let own = self.peer.session().map_or(0, |session| session.seats().count_ones());
-            // Inputs that were not issued are kept for the next attempt.
+            // Inputs that were not issued are kept.
             if !self.peer.advance(&inputs.next(own as usize))? {
                 break;
             }
@@ -80,7 +80,7 @@ impl<G: LockstepGame> MatchDriver<G> {
         Ok(())
     }
 
-    /// Sets the tick of the log, because a received state does not contain its tick.
+    /// Sets the tick of the log: a received state does not contain it.
     fn synchronise(&self) {
         self.peer.game().log().set_tick(self.peer.tick());
     }
@@ -93,9 +93,8 @@ impl<G: LockstepGame> MatchDriver<G> {
         &mut self.peer
     }
 
-    /// This peer's report of a desync.
     pub(crate) fn report(&mut self, desync: &PeerDesync) -> Result<Vec<u8>, LockstepError> {
-        // The report plays the last ticks again. Their events are already in the log.
+        // The report plays ticks again whose events are already in the log.
         self.peer.game().log().suspend();
         let report = self.peer.report(desync);
         self.peer.game().log().resume();

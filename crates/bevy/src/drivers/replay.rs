@@ -44,13 +44,12 @@ impl<G: LockstepGame> ReplayDriver<G> {
         Ok(())
     }
 
-    /// Plays one tick. Returns `false` if the replay has ended.
+    /// Returns `false` if the replay has ended.
     pub(crate) fn step(&mut self) -> Result<bool, LockstepError> {
         let step = self.film.with_timeline_mut(|timeline| timeline.step())?;
         Ok(matches!(step, Step::Ticked))
     }
 
-    /// Goes to a tick.
     pub(crate) fn seek(&mut self, tick: u64) -> Result<(), LockstepError> {
         self.film.with_timeline_mut(|timeline| {
             timeline.game().log().suspend();
@@ -70,13 +69,12 @@ impl<G: LockstepGame> ReplayDriver<G> {
         self.film.with_timeline(|timeline| timeline.tick())
     }
 
-    /// Length of the replay in ticks.
     pub(crate) fn ticks(&self) -> u64 {
         self.ticks
     }
 
     pub(crate) fn fraction(&self) -> f32 {
-        // At the end there is no next tick to interpolate to.
+        // There is no next tick to interpolate to.
         if self.tick() == self.ticks { 1.0 } else { fraction_of(&self.timestep) }
     }
 }

@@ -1,4 +1,4 @@
-//! [`SyncTestDriver`]: a local game that is rolled back after every tick.
+//! [`SyncTestDriver`]: a local game with a rollback after each tick from tick `depth` on.
 
 use core::time::Duration;
 use std::collections::VecDeque;
@@ -12,16 +12,15 @@ use crate::game::LockstepGame;
 use crate::inputs::Inputs;
 use crate::observed::Observed;
 
-/// Plays every tick. From tick `depth` on, it then loads the state of `depth` ticks ago and plays these ticks again.
-/// The states after each tick have to be equal both times.
+/// After each tick from `depth` on, loads the state of `depth` ticks ago, plays the ticks again, and compares the
+/// states.
 pub(crate) struct SyncTestDriver<G: LockstepGame> {
     game: Observed<G>,
     timestep: FixedTimestep,
     tick: u64,
-    /// Number of ticks by which a rollback goes back.
     depth: u32,
     history: History<Observed<G>>,
-    /// Inputs of the last ticks, at most `depth`.
+    /// Inputs of the last `depth` ticks.
     inputs: VecDeque<EncodedInputs<G::Input>>,
 }
 
@@ -41,7 +40,6 @@ impl<G: LockstepGame> SyncTestDriver<G> {
         Ok(())
     }
 
-    /// Plays one tick. From tick `depth` on, then plays the last `depth` ticks again.
     pub(crate) fn step(&mut self, inputs: &mut Inputs<G>) -> Result<(), LockstepError> {
         let players = self.game.players();
         let encoded = EncodedInputs::new(&inputs.next(players as usize), players)?;

@@ -1,5 +1,4 @@
-//! A game for two players with bodies that come and go, a sensor, and bodies that fall asleep, which views and events
-//! have to follow.
+//! A game for two players with bodies that come and go, a sensor, and bodies that fall asleep.
 
 use lockstep2d::body::{BodyDef, BodyId, Geometry, Polygon, ShapeDef, WorldError};
 use lockstep2d::hash::StateHash;
@@ -14,7 +13,7 @@ pub const RIGHT: u8 = 2;
 pub const JUMP: u8 = 4;
 pub const SHOOT: u8 = 8;
 
-/// Number of ticks for which a shot exists.
+/// Lifetime of a shot.
 const SHOT_TICKS: u64 = 45;
 
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -106,7 +105,6 @@ impl Game for Arena {
             self.shots.remove(0);
         }
         for (player, pad) in inputs.iter().take(2).enumerate() {
-            // A refused action has no effect.
             let _ = self.act(player, *pad);
         }
         self.world.step();
@@ -134,7 +132,7 @@ impl Game for Arena {
     }
 }
 
-/// The input of a player at a tick: directions change every quarter of a second, shots and jumps come now and then.
+/// Directions change every quarter of a second, shots and jumps come now and then.
 pub fn pad_at(seed: u64, tick: u64) -> u8 {
     let mix = |n: u64| {
         let n = n.wrapping_add(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -1,4 +1,4 @@
-//! Shared by the tests: a small game for two players, and apps without a window.
+//! Shared by the tests: apps without a window.
 #![allow(dead_code, reason = "each test uses a part of it")]
 
 pub mod arena;
@@ -17,10 +17,9 @@ use lockstep2d::world::{SensorChange, World as Physics};
 
 use arena::Arena;
 
-/// Time of a tick of the arena.
 pub const TICK: Duration = Duration::from_nanos(16_666_667);
 
-/// All events that an app has sent, by tick.
+/// Events sent by an app, by tick.
 #[derive(Resource, Default, Clone, Debug, PartialEq)]
 pub struct Heard {
     pub confirmed: BTreeMap<u64, Vec<WorldEvent>>,
@@ -28,11 +27,10 @@ pub struct Heard {
     pub retracted: Vec<(u64, WorldEvent)>,
 }
 
-/// Seed of the inputs of an app.
 #[derive(Resource)]
 pub struct Seed(pub u64);
 
-/// An app that plays a game with inputs that follow from the tick and a seed, in frames of a given length.
+/// An app whose inputs follow from the tick and a seed.
 pub fn app(game: Lockstep<Arena>, seed: u64, frame: Duration) -> App {
     let mut app = App::new();
     app.add_plugins((
@@ -71,7 +69,7 @@ fn listen(
     assert_eq!(failure, None, "the driver has stopped");
 }
 
-/// Checks that there is a view for every body and no other, at the pose of its body.
+/// There is one view for every body, at its pose.
 pub fn check_views(app: &mut App) {
     let mut query = app.world_mut().query::<(Entity, &BodyView, &Transform)>();
     let scale = app.world().resource::<LockstepSettings>().pixels_per_metre;
@@ -94,7 +92,7 @@ pub fn check_views(app: &mut App) {
     assert_eq!(views.iter().count(), count);
 }
 
-/// The events of the last tick of a world, in the order of the messages, collected independently of the plugin.
+/// Events of the last tick, in the order of the messages, independently of the plugin.
 pub fn events_of(world: &Physics) -> Vec<WorldEvent> {
     let events = world.events();
     let mut found = Vec::new();
@@ -110,7 +108,7 @@ pub fn events_of(world: &Physics) -> Vec<WorldEvent> {
     found
 }
 
-/// The events of a game that is stepped without Bevy, by tick; ticks without events are missing.
+/// Events of a game without Bevy, by tick.
 pub fn reference(
     ticks: u64,
     mut inputs: impl FnMut(u64) -> [u8; 2],

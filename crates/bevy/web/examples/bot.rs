@@ -1,8 +1,7 @@
-//! Runs a signalling server and a headless player that hosts the room `bot`. Open the page at `index.html#bot` to play
-//! against it.
+//! Runs a signalling server and a headless player that hosts the room `bot`, for the page `index.html#bot`.
 //!
 //! `bot [PORT [TICKS]]`: the server listens on `PORT` (3536 by default). With `TICKS` the match ends after that many
-//! ticks. At the end of the match its replay is verified, and the hash of its last state printed.
+//! ticks, its replay is verified, and the hash of its last state printed.
 
 use std::net::Ipv4Addr;
 use std::thread::sleep;

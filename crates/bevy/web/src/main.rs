@@ -1,8 +1,8 @@
-//! `versus` over WebRTC, for web pages and native programs, which can play against each other. Arrow keys.
+//! `versus` over WebRTC, for web pages and native programs. Arrow keys.
 //!
-//! A page without a room in its address creates a room and opens a match. Every other page that is opened with `#ROOM`
-//! joins the match. Natively: `bevy_lockstep2d_web [ROOM [SERVER]]`. Needs a signalling server of matchbox: `cargo run
-//! --example bot` starts one, and an opponent.
+//! A page without a room in its address opens a match in a new room. Pages with `#ROOM` join it. Natively:
+//! `bevy_lockstep2d_web [ROOM [SERVER]]`. Needs a signalling server of matchbox: `cargo run --example bot` starts one,
+//! and an opponent.
 
 #[cfg_attr(target_arch = "wasm32", path = "page.rs")]
 #[cfg_attr(not(target_arch = "wasm32"), path = "native.rs")]
@@ -17,22 +17,21 @@ use lockstep2d::peer::{PeerEvent, PeerIdentity, PeerOptions};
 use lockstep2d::session::Status;
 use lockstep2d_matchbox::Matchbox;
 
-/// The signalling server, the room and the identity of a player.
 struct Arguments {
-    /// The signalling server: `ws://HOST:PORT`.
+    /// `ws://HOST:PORT`.
     server: String,
     /// The room of a match that another player has opened.
     room: Option<String>,
-    /// Identity of the player. A player whose identity the match already knows gets its seat back.
+    /// A known identity gets its seat back.
     me: PeerIdentity,
-    /// Name of the room that is created if `room` is `None`.
+    /// Room that is created if `room` is `None`.
     new_room: String,
 }
 
 #[derive(Resource)]
 struct Room(String);
 
-/// A room without other members so far.
+/// A room without other members.
 #[derive(Resource)]
 struct Empty(Option<Matchbox>, PeerIdentity);
 
@@ -57,7 +56,6 @@ fn join(mut commands: Commands, mut empty: ResMut<Empty>) -> Result {
     Ok(())
 }
 
-/// Shows the state of the match.
 fn tell(lockstep: Option<Res<Lockstep<Versus>>>, room: Res<Room>, mut windows: Query<&mut Window>) {
     let name = &room.0;
     let peer = lockstep.as_ref().and_then(|lockstep| lockstep.peer());
@@ -75,8 +73,7 @@ fn tell(lockstep: Option<Res<Lockstep<Versus>>>, room: Res<Room>, mut windows: Q
     platform::show(&text, &mut windows);
 }
 
-/// At an event of the match, puts the room into the address of the page, so that a page that is loaded again comes
-/// back. A desync is an error.
+/// Puts the room into the address of the page, so that a reloaded page returns. A desync is an error.
 fn enter(mut events: MessageReader<MatchEvent>, room: Res<Room>) -> Result {
     for MatchEvent(event) in events.read() {
         if let PeerEvent::Desync(desync) = event {

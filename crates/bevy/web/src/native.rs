@@ -1,4 +1,4 @@
-//! The native program: arguments come from the command line, and the window title shows the state of the match.
+//! The native program, with arguments and the state of the match in its window title.
 
 use bevy::prelude::*;
 use lockstep2d::peer::PeerIdentity;
@@ -21,5 +21,5 @@ pub fn show(text: &str, windows: &mut Query<&mut Window>) {
     }
 }
 
-/// Does nothing: a page keeps the room in its address, but a program gets it as an argument.
+/// A program gets the room as an argument.
 pub const fn enter(_room: &str) {}

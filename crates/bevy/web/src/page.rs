@@ -1,11 +1,11 @@
-//! A web page: the room is in its address, `?server=ws://HOST:PORT#ROOM`, and the state in its element `status`.
+//! A web page with the address `?server=ws://HOST:PORT#ROOM`, and the state in its element `status`.
 
 use bevy::prelude::*;
 use lockstep2d::peer::PeerIdentity;
 
 use crate::Arguments;
 
-/// Name of the identity in the storage of the tab.
+/// Key in the storage of the tab.
 const IDENTITY: &str = "identity";
 
 pub fn arguments() -> Arguments {
@@ -34,15 +34,14 @@ fn random_numbers() -> [u64; 4] {
     core::array::from_fn(|index| u64::from_le_bytes(numbers[index]))
 }
 
-/// Returns the stored key of this tab, so that a page that is loaded again gets its seat back. A new tab stores the key
-/// `new`.
+/// The key of this tab, by which a reloaded page gets its seat back. A new tab stores `new`.
 fn kept_key(new: u64) -> u64 {
     let Some(storage) = web_sys::window().and_then(|window| window.session_storage().ok().flatten()) else {
         return new;
     };
     let kept = storage.get_item(IDENTITY).ok().flatten().and_then(|text| text.parse().ok());
     let key = kept.unwrap_or(new);
-    // Without storage a page that is loaded again is another player.
+    // Without storage, a reloaded page is another player.
     let _ = storage.set_item(IDENTITY, &key.to_string());
     key
 }
@@ -54,7 +53,6 @@ pub fn show(text: &str, _: &mut Query<&mut Window>) {
     }
 }
 
-/// Puts the room into the address.
 pub fn enter(room: &str) {
     let location = web_sys::window().map(|window| window.location());
     let _ = location.map(|location| location.set_hash(room));

@@ -42,7 +42,6 @@ pub(super) struct Printed {
 }
 
 impl Printed {
-    /// Prints a comparison of two files, A first.
     pub(super) fn print(
         &self,
         found: &Comparison,
@@ -64,7 +63,6 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     arguments.printed.print(&found, [&arguments.a, &arguments.b], &mut context.console)
 }
 
-/// Reads a replay, report or snapshot to compare.
 pub(super) fn read<G: Game>(path: &Path, context: &Context<'_, G>) -> Result<Evidence, CommandError> {
     let bytes = context.load(path)?;
     Evidence::read(bytes, context.limits())

@@ -161,7 +161,7 @@ impl Arguments {
         }
     }
 
-    /// The game's own view, with the overrides of the arguments applied.
+    /// The game's own view, overridden by the arguments.
     fn view(&self, game: View) -> View {
         let (width, height) = (self.width.unwrap_or(game.width), self.height.unwrap_or(game.height));
         let frame = self.window.map_or(game.frame, lockstep2d::draw::Frame::Window);
@@ -169,7 +169,7 @@ impl Arguments {
     }
 }
 
-/// A replay that is played on demand up to a tick.
+/// A replay that is played on demand.
 struct Replay<'a, G: Game> {
     verified: VerifiedReplay<'a, G>,
     path: &'a PathBuf,
@@ -184,7 +184,6 @@ impl<'a, G: Game> Replay<'a, G> {
         })
     }
 
-    /// The first and the last requested tick.
     fn range(&self, arguments: &Arguments) -> Result<(u64, u64), CommandError> {
         let first = arguments.tick.or(arguments.from).unwrap_or(0);
         let last = arguments.tick.or(arguments.to).unwrap_or(self.verified.ticks());
@@ -203,7 +202,6 @@ impl<'a, G: Game> Replay<'a, G> {
         if tick > ticks { Err(CommandError::NoSuchTick { path: path(), tick, ticks }) } else { Ok(()) }
     }
 
-    /// Plays on up to tick `tick`.
     fn play_to(&mut self, tick: u64) -> Result<(), CommandError> {
         while self.verified.tick() < tick {
             self.verified.step().map_err(CommandError::replay(self.path))?;

@@ -61,7 +61,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
         play_lines(&mut copy, path, limits)?;
     }
     let idle = vec![G::Input::default(); usize::try_from(copy.players()).unwrap_or(0)];
-    // One tick beyond the limit is enough for the verification of the result to fail.
+    // One tick beyond the limit is enough to fail the verification.
     let idle_ticks = arguments.idle.min(limits.ticks.saturating_sub(copy.ticks()).saturating_add(1));
     for _ in 0..idle_ticks {
         copy.step(&idle)?;
@@ -94,7 +94,6 @@ struct Line {
     hash: String,
 }
 
-/// Plays one tick for each line of inputs.
 fn play_lines<G: Game>(copy: &mut Copy<G>, path: &Path, limits: &Limits) -> Result<(), CommandError> {
     let read_error = CommandError::read(path);
     let source: Box<dyn Read> = if path == Path::new("-") {
@@ -102,7 +101,7 @@ fn play_lines<G: Game>(copy: &mut Copy<G>, path: &Path, limits: &Limits) -> Resu
     } else {
         Box::new(File::open(path).map_err(&read_error)?)
     };
-    // Inputs take more bytes in JSON than in a replay, so the limit is larger than that of a replay.
+    // Inputs take more bytes in JSON than in a replay.
     let lines = BufReader::new(source.take(limits.file_bytes.saturating_mul(16))).lines();
     for (number, line) in (1..).zip(lines) {
         let line = line.map_err(&read_error)?;

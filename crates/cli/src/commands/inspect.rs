@@ -106,8 +106,8 @@ fn state_of_replay<G: Game>(
     Ok(State { tick: Some(tick), hash: Some(replay.game().state_hash()), fields })
 }
 
-/// The state of the peer that wrote the report, at a tick. It may differ from the state that the report's replay leads
-/// to. If the report has no save of that tick, the state is computed from the replay.
+/// The state of the report's writer, which may differ from that of the report's replay. Without a save of the tick, it
+/// is computed from the replay.
 fn state_of_report<G: Game>(
     report: &DesyncReport,
     arguments: &Arguments,

@@ -1,5 +1,5 @@
-//! The commands that a tool has without the viewer, one module each. In each module, `Arguments` declares the arguments
-//! of the command and `run` executes it. [`table`] has a row for each command.
+//! The commands of a tool without the viewer, one module each: `Arguments` declares the arguments, `run` executes the
+//! command. [`table`] lists them.
 
 mod bisect;
 mod diff;
@@ -23,7 +23,7 @@ use lockstep2d::lockstep::Game;
 use crate::context::{CommandResult, Context};
 use crate::panics;
 
-/// A command: its clap definition (name, help and arguments), and the function that executes it.
+/// A command: its clap definition, and the function that executes it.
 pub(crate) struct Row<G: Game> {
     pub(crate) command: Command,
     pub(crate) run: fn(&ArgMatches, &mut Context<'_, G>) -> CommandResult,
@@ -44,7 +44,7 @@ macro_rules! rows {
     };
 }
 
-/// The commands of this module, in the order in which the help lists them.
+/// The commands, in the order of the help.
 pub(crate) fn table<G: Game>(has_scenes: bool) -> Vec<Row<G>> {
     let mut table = rows![
         "verify" => verify,

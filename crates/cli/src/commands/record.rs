@@ -51,7 +51,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     Ok(Exit::Success)
 }
 
-/// Appends to the temporary file while the game runs, so that a killed process leaves a valid incomplete replay in it.
+/// Appends while the game runs: a killed process leaves a valid incomplete replay in the temporary file.
 fn write<G: Game>(
     mut recording: Recording<G>,
     mut scene: Scene<G>,

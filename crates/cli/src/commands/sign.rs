@@ -46,8 +46,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
         .map_err(CommandError::replay(&arguments.file))?;
 
     let beside = path_beside(&arguments.file);
-    // The output file is locked before the signatures are read, so that no signature is lost when several processes
-    // sign at the same time.
+    // The file is locked before the signatures are read: simultaneous processes lose no signature.
     let mut output = OutputFile::create(&beside, Overwrite::ALWAYS)?;
     let mut signatures = match read_signatures(&beside) {
         Err(CommandError::Read { error, .. }) if error.kind() == io::ErrorKind::NotFound => {
@@ -79,24 +78,15 @@ struct Line {
     game: String,
 }
 
-/// Reads a signature file.
-///
-/// # Errors
-/// [`CommandError::Read`] if it cannot be read, [`CommandError::NoText`] if it is not a regular file, too large or not
-/// UTF-8, and [`CommandError::Line`] if it cannot be parsed.
 pub(crate) fn read_signatures(path: &Path) -> Result<Signatures, CommandError> {
-    // If the path is a pipe, reading it would block.
+    // Reading a pipe would block.
     if !fs::metadata(path).map_err(CommandError::read(path))?.is_file() {
         return Err(CommandError::NoText { path: path.to_path_buf() });
     }
     read_text(path, FILE_BYTES_MAX)?.parse().map_err(CommandError::line(path))
 }
 
-/// Reads a text file.
-///
-/// # Errors
-/// [`CommandError::Read`] if it cannot be read, and [`CommandError::NoText`] if it is larger than `bytes_max` or not
-/// UTF-8.
+/// Reads a text file of at most `bytes_max` bytes.
 pub(crate) fn read_text(path: &Path, bytes_max: u64) -> Result<String, CommandError> {
     let no_text = || CommandError::NoText { path: path.to_path_buf() };
     let bytes = files::read(path, bytes_max).map_err(CommandError::read(path))?;

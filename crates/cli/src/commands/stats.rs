@@ -59,14 +59,13 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
     failed.map_or(Ok(Exit::Success), |verdict| Err(refused(verdict)))
 }
 
-/// The figures of a tick as a line of JSON. The names are fixed and need no escapes.
+/// The names need no escapes.
 fn line(tick: u64, hash: StateHash, figures: &[(&str, u64)]) -> String {
     let mut line = format!("{{\"tick\":{tick},\"hash\":\"{hash}\"");
     line.extend(figures.iter().map(|(name, value)| format!(",\"{name}\":{value}")));
     line + "}"
 }
 
-/// Summary of the figures of all ticks.
 #[derive(Default)]
 struct Summary {
     ticks: u64,

@@ -1,5 +1,4 @@
-//! `stress-saves`: plays a replay and, at every tick, saves the game to bytes and restores it into a new game that
-//! plays on beside the first one.
+//! `stress-saves`: plays a replay, and saves and restores the game at every tick.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -88,7 +87,7 @@ pub(crate) fn run<G: Game>(arguments: &Arguments, context: &mut Context<'_, G>) 
 fn options(arguments: &Arguments, limits: &Limits) -> CheckOptions {
     let mut options = CheckOptions::default();
     if !arguments.all {
-        // `Variant::Again` distinguishes a nondeterministic game from a save that loses state.
+        // `Variant::Again` tells a nondeterministic game from a save that loses state.
         options.variants = vec![Variant::Again, Variant::Reloaded];
         options.variants.extend(arguments.rollback.then_some(Variant::RolledBack));
     }
@@ -114,7 +113,6 @@ fn ticks(file: &[u8], limits: &Limits) -> u64 {
     ticks
 }
 
-/// The result of the check, for printing.
 struct Outcome<'a> {
     arguments: &'a Arguments,
     result: Result<&'a Checked, &'a Failure>,
@@ -143,7 +141,7 @@ impl fmt::Display for Outcome<'_> {
     }
 }
 
-/// A finding with each of its lines escaped, since its texts may come from an untrusted file.
+/// A finding, with each line escaped: its texts may come from an untrusted file.
 struct Lines<'a>(&'a Finding);
 
 impl fmt::Display for Lines<'_> {

@@ -81,7 +81,7 @@ struct Line {
     left_out: Option<String>,
 }
 
-/// The bytes of the header and the intact blocks, and the error in the part after them if it is damaged.
+/// The header and the intact blocks, and the error of the part after them if it is damaged.
 fn whole_part<'a>(bytes: &'a [u8], limits: &Limits) -> Result<(&'a [u8], Option<Verdict>), ReadError> {
     let mut reader = Reader::open(bytes, limits)?;
     let mut end = reader.offset();

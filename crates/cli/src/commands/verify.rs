@@ -105,7 +105,7 @@ pub struct LimitArguments {
 }
 
 impl LimitArguments {
-    /// Returns `limits`, overridden by the limits that the arguments give.
+    /// Returns `limits`, overridden by the arguments.
     ///
     /// ```
     /// use lockstep2d::replay::Limits;
@@ -133,8 +133,7 @@ impl LimitArguments {
     }
 }
 
-/// Adds the limits of the tool to the help of the arguments that override them. `command` must have the arguments of
-/// [`LimitArguments`].
+/// Adds the limits of the tool to the help of the arguments of [`LimitArguments`], which `command` must have.
 pub fn with_defaults(command: Command, limits: &Limits) -> Command {
     let defaults = [
         ("max_bytes", limits.file_bytes),

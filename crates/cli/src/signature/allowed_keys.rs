@@ -16,8 +16,8 @@ const NAME_BYTES_MAX: usize = 64;
 
 /// Public keys and the names of their owners. A name may have several keys.
 ///
-/// The text has one line for each key: 64 hexadecimal digits, a space, the name. Empty lines and lines that begin with
-/// `#` are comments. The module [`signature`](crate::signature) has an example.
+/// The text has a line for each key: 64 hexadecimal digits, a space, the name. Empty lines and lines that begin with
+/// `#` are ignored. The module [`signature`](crate::signature) has an example.
 #[derive(Clone, Debug, Default)]
 pub struct AllowedKeys(BTreeMap<PublicKey, Owner>);
 
@@ -62,7 +62,7 @@ impl AllowedKeys {
         for signature in signatures.all() {
             let Some(Owner { key, name }) = self.0.get(&signature.key) else { continue };
             let bytes = ed25519_dalek::Signature::from_bytes(&signature.bytes);
-            // Strict verification: nobody can derive a second valid signature from a valid one.
+            // Strict: nobody can derive a second valid signature from a valid one.
             let is_valid = key.verify_strict(&message, &bytes).is_ok();
             if is_valid { &mut valid } else { &mut forged }.insert(name.clone());
         }
@@ -96,7 +96,6 @@ impl FromStr for AllowedKeys {
     }
 }
 
-/// Whether a key may have this name.
 pub(crate) fn is_name(name: &str) -> bool {
     !name.is_empty() && name.len() <= NAME_BYTES_MAX && !name.chars().any(char::is_control)
 }

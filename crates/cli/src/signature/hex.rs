@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-/// Shows bytes as hexadecimal digits.
 pub(super) struct Hex<'a>(pub(super) &'a [u8]);
 
 impl fmt::Display for Hex<'_> {

@@ -13,12 +13,12 @@ use crate::identity::GameDigest;
 /// Beginning of the line of a secret key file.
 const PREFIX: &str = "lockstep2d secret key 1 ";
 
-/// A key to sign games with. [`SecretKey::text`] returns the contents of its file, and `str::parse` reads them.
+/// A key to sign games with. `str::parse` reads [`SecretKey::text`].
 ///
 /// The module [`signature`](crate::signature) has an example.
 pub struct SecretKey(SigningKey);
 
-/// Error: the system provides no random numbers.
+/// The system provides no random numbers.
 #[derive(Debug)]
 pub struct RandomError(getrandom::Error);
 
@@ -39,13 +39,13 @@ impl SecretKey {
         PublicKey(self.0.verifying_key().to_bytes())
     }
 
-    /// Signs a game. The same key and game always give the same signature.
+    /// Signs a game. Signing it again gives the same signature.
     #[must_use]
     pub fn sign(&self, game: &GameDigest) -> Signature {
         Signature { key: self.public_key(), bytes: self.0.sign(&message(game)).to_bytes() }
     }
 
-    /// The text of a secret key file: one line. Anyone who can read it can sign in the name of its owner.
+    /// The text of a secret key file. Anyone who reads it can sign in the name of its owner.
     #[must_use]
     pub fn text(&self) -> String {
         format!("{PREFIX}{}\n", Hex(self.0.as_bytes()))
@@ -75,8 +75,7 @@ impl FromStr for SecretKey {
 pub struct PublicKey(pub [u8; 32]);
 
 impl PublicKey {
-    /// The verification key; `None` if the bytes are not a key, or are a weak key, for which anyone can forge
-    /// signatures.
+    /// `None` for an invalid key, or for a weak one, for which anyone can forge signatures.
     pub(super) fn decode(self) -> Option<VerifyingKey> {
         VerifyingKey::from_bytes(&self.0).ok().filter(|key| !key.is_weak())
     }

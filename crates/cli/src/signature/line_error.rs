@@ -1,4 +1,4 @@
-//! [`LineError`]: the reason why a file of keys or signatures cannot be read.
+//! [`LineError`]: why a file of keys or signatures cannot be read.
 
 use std::fmt;
 
@@ -29,7 +29,7 @@ pub enum Flaw {
     NoSecretKey,
     /// The line is not an allowed key: `KEY NAME`.
     NoAllowedKey,
-    /// The digits are not a public key of Ed25519, or are a weak key, for which anyone can forge signatures.
+    /// The digits are not a public key of Ed25519, or are a weak one.
     InvalidKey,
     /// An earlier line has the same key.
     KeyTwice,

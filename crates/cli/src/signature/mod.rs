@@ -1,8 +1,7 @@
 //! Ed25519 signatures of games, with which key owners vouch for a replay.
 //!
-//! A signature covers the [`GameDigest`]. Therefore it is valid for exactly one combination of engine semantics, rules,
-//! setup and inputs, whatever blocks, checkpoints and trailer the file has. FORMAT.md gives the layout of the files,
-//! and VERIFYING.md explains what a signature does not prove.
+//! A signature covers the [`GameDigest`]: one combination of engine semantics, rules, setup and inputs. FORMAT.md gives
+//! the layout of the files, and VERIFYING.md what a signature does not prove.
 //!
 //! A server checks the signatures of an upload:
 //!

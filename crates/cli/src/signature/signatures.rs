@@ -9,19 +9,19 @@ use super::key::PublicKey;
 use super::line_error::{Flaw, LineError};
 use crate::identity::GameDigest;
 
-/// Maximum number of signatures in a file: enough for all players of a match, and servers.
+/// Maximum number of signatures in a file.
 pub const SIGNATURES_MAX: usize = 256;
 
-/// Maximum size of a signature file in bytes, more than [`SIGNATURES_MAX`] signatures take.
+/// Maximum size of a signature file in bytes, enough for [`SIGNATURES_MAX`] signatures.
 pub const FILE_BYTES_MAX: u64 = 64 << 10;
 
-/// Appended to the name of a replay for the name of its signature file.
+/// Suffix of a signature file.
 const SUFFIX: &str = ".sig";
 
 /// Beginning of every line of a signature file.
 const PREFIX: &str = "lockstep2d signature 1 ";
 
-/// Prefix of the digest in the signed message, so that no other use of a key gives the same signature.
+/// Separates the signed message from other uses of a key.
 const DOMAIN: &[u8; 22] = b"lockstep2d signature 1";
 
 /// The signature of one key.
@@ -33,10 +33,7 @@ pub struct Signature {
     pub bytes: [u8; 64],
 }
 
-/// The signatures of a replay: at most one by each key, in the order of the file.
-///
-/// The text is canonical: a file that differs in any byte from the result of `to_string` cannot be parsed, or has other
-/// signatures. The module [`signature`](crate::signature) has an example.
+/// The signatures of a replay: at most one by each key, in the order of the file. Their text is canonical.
 ///
 /// ```
 /// use lockstep2d::{lockstep::Sandbox, replay::{Limits, Recording}};
@@ -60,7 +57,7 @@ pub struct Signature {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Signatures(Vec<Signature>);
 
-/// The path of the signature file of a replay: `.sig` is appended to its name.
+/// Path of the signature file of a replay, with `.sig` appended.
 #[must_use]
 pub fn path_beside(replay: &Path) -> PathBuf {
     let mut path = replay.as_os_str().to_os_string();
@@ -68,7 +65,6 @@ pub fn path_beside(replay: &Path) -> PathBuf {
     path.into()
 }
 
-/// The bytes that are signed.
 pub(super) fn message(game: &GameDigest) -> Vec<u8> {
     [DOMAIN.as_slice(), game.as_bytes()].concat()
 }
@@ -120,7 +116,6 @@ fn parse_line(text: &str) -> Option<Signature> {
     Some(Signature { key: PublicKey(hex::parse(key)?), bytes: hex::parse(bytes)? })
 }
 
-/// The text of a signature file.
 impl fmt::Display for Signatures {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0

@@ -23,7 +23,7 @@ fn explode(now: bool) {
     assert!(!now, "in a setup");
 }
 
-/// A counter that panics at the input [`FUSE`] and at a setup that starts with this number. It is not `Send`.
+/// A counter that panics at [`FUSE`], as an input or as the start of a setup. It is not `Send`.
 pub(crate) struct Bomb(Rc<Cell<Counter>>);
 
 impl Bomb {
@@ -233,12 +233,12 @@ fn a_part_does_not_depend_on_where_the_folder_is_or_what_else_is_there() {
     assert!(taken(&folder, "").is_superset(&before));
 }
 
-/// Runs the sandbox's command with `input` as its standard input. Returns its output and exit code.
+/// Runs the sandbox's command with this standard input.
 fn with_input(arguments: &[&str], input: &[u8]) -> (String, Option<i32>) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lockstep2d"));
     command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
     let mut child = command.spawn().unwrap();
-    // The command may exit before it has read everything, so a write error is ignored.
+    // The command may exit before it has read everything.
     let _ = child.stdin.take().unwrap().write_all(input);
     let output = child.wait_with_output().unwrap();
     (String::from_utf8(output.stdout).unwrap(), output.status.code())

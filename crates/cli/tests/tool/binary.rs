@@ -1,4 +1,4 @@
-//! The `lockstep2d` binary as a process: exit codes, and the separation of results and messages on its two streams.
+//! The `lockstep2d` binary as a process: exit codes and streams.
 
 use std::process::{Command, Output};
 

@@ -13,7 +13,7 @@ fn ragdoll() -> SandboxSetup {
     Scene::find("ragdoll").unwrap().setup(0)
 }
 
-/// A replay of 50 ticks. After `kicked` ticks, if given, a command stops the rotation of a body.
+/// A replay of 50 ticks. At tick `kicked`, a command stops the rotation of a body.
 fn replay(kicked: Option<u64>) -> Vec<u8> {
     let mut recording = Recording::<Sandbox>::start(&ragdoll(), 20).unwrap();
     for tick in 0..50 {

@@ -120,7 +120,7 @@ fn other_limits_are_other_questions() {
         assert_eq!(with(&[&flag, number]), (limited, 5), "{flag}");
     }
     assert!(entries(&folder).len() > 5 * same - 5);
-    // A flag that repeats the default has the same cache key. Limits of the tool are part of the key, too.
+    // A flag that repeats the default has the same key. The key contains the limits of the tool.
     let default = Limits::default().ticks.to_string();
     assert_eq!(with(&["--max-ticks", &default]).1, 5);
     let tool = Tool::<Counter>::new().with_limits(Limits { players: 3, ..Limits::default() });

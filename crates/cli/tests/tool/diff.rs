@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::counter::{Counter, inputs_at, setup};
 use crate::{Folder, golden, replay, run, run_sandbox};
 
-/// The report of the peer on `seat`. If `wrong` is given, the peer's sum is off by one from that tick on.
+/// Report of the peer on `seat`. The sum of the peer is off by one from tick `wrong` on.
 fn report(seat: u32, wrong: Option<u64>) -> DesyncReport {
     let (mut recorder, mut game) = Recorder::<Counter>::start(&setup(), 10).unwrap();
     let mut history = History::new(&game);

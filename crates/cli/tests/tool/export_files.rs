@@ -29,7 +29,7 @@ fn pictures(file: &[u8], ticks: &[u64], view: &View) -> Vec<Image> {
     pictures
 }
 
-/// The window that fits the world at up to 101 sampled ticks of a range and at its last tick.
+/// The window that fits the world at up to 101 ticks of a range and its last tick.
 fn window(file: &[u8], mut ticks: RangeInclusive<u64>) -> Aabb {
     let step = usize::try_from((ticks.end() - ticks.start()).div_ceil(100).max(1)).unwrap();
     let last = *ticks.end();
@@ -182,7 +182,7 @@ fn a_damaged_replay_leaves_no_file() {
     assert_eq!(fs::read_dir(folder.path("")).unwrap().count(), 1, "no unfinished file is left");
 }
 
-/// Runs the tool as its own process, so that memory of other tests does not count.
+/// A process of its own: memory of other tests does not count.
 #[cfg(target_os = "linux")]
 #[test]
 fn memory_does_not_grow_with_the_frames() {
@@ -197,7 +197,7 @@ fn memory_does_not_grow_with_the_frames() {
     };
     let frames = crate::sweep::size(500, 150);
     let (few, many) = (peak_of(50), peak_of(frames));
-    // The pixels of the additional frames are 120 MB for 100 frames, or 550 MB for 450 frames in the full sweep.
+    // The pixels of the additional frames are 120 MB for 100 frames.
     assert!(many < few + 10_000, "{few} KiB for 50 frames, {many} KiB for {frames}");
 }
 

@@ -11,8 +11,7 @@ use lockstep2d_cli::Exit;
 
 use crate::{golden, run_sandbox};
 
-/// The names of all start tags, in order. Checks that every element is closed and that the quotes of every tag are
-/// balanced.
+/// Names of all start tags. Checks that elements are closed and quotes balanced.
 fn elements(xml: &str) -> Vec<&str> {
     let (mut open, mut found, mut rest) = (Vec::new(), Vec::new(), xml);
     while let Some((before, after)) = rest.split_once('<') {
@@ -34,7 +33,7 @@ fn elements(xml: &str) -> Vec<&str> {
     found
 }
 
-/// The values of a curve in time order, in its own unit: computed from its pixels and the labels of its axis.
+/// Values of a curve in its unit, from its pixels and the labels of its axis.
 fn curve(svg: &str, name: &str) -> Vec<f64> {
     let panels = svg.split("<g>").skip(1);
     let panel = panels.into_iter().find(|panel| panel.contains(&format!("class=\"{name}\""))).unwrap();
@@ -85,7 +84,6 @@ fn it_is_xml_with_a_curve_for_everything() {
     elements(&plot("free_fall", &["--from", "7", "--to", "7"]));
 }
 
-/// Curves are compared with the values of the played worlds.
 #[test]
 fn curves_have_the_extremes_of_what_they_show() {
     let file = std::fs::read(golden("ragdoll")).unwrap();
@@ -118,8 +116,7 @@ fn curves_have_the_extremes_of_what_they_show() {
     }
 }
 
-/// A body in free fall keeps its energy up to the error of the integrator, which is `m g² t h / 2` over a time t with
-/// time step h.
+/// The error of the integrator is `m g² t h / 2` over a time t with time step h.
 #[test]
 fn energy_in_free_fall_is_constant() {
     let svg = plot("free_fall", &[]);
@@ -131,8 +128,7 @@ fn energy_in_free_fall_is_constant() {
     assert!(still < fast / 100.0, "kinetic from {still} to {fast}");
 }
 
-/// A pendulum turns potential energy into kinetic energy and back with small losses. At its turning points its kinetic
-/// energy is nearly 0.
+/// At its turning points, the kinetic energy of a pendulum is nearly 0.
 #[test]
 fn energy_of_a_pendulum_goes_back_and_forth() {
     let svg = plot("pendulum", &[]);
@@ -155,7 +151,7 @@ fn the_same_replay_gives_the_same_plot() {
     assert!(plot("bridge", &[]) == plot("bridge", &[]));
 }
 
-/// `docs/pictures/make` reproduces all pictures of the documentation, the SVGs byte for byte.
+/// `docs/pictures/make` reproduces the SVGs byte for byte.
 #[cfg(unix)]
 #[test]
 fn the_pictures_of_the_documentation_can_be_made_anew() {
@@ -180,7 +176,7 @@ fn the_pictures_of_the_documentation_can_be_made_anew() {
         if name.ends_with(".svg") {
             assert!(kept == anew, "{name} is not what docs/pictures/make makes: run it");
         } else {
-            // Raster pictures are drawn with floats: only their header and approximate size are compared.
+            // Raster pictures are drawn with floats.
             assert_eq!(kept[..10], anew[..10], "{name}");
             assert!(kept.len().abs_diff(anew.len()) < kept.len() / 5, "{name}");
         }

@@ -1,5 +1,4 @@
-//! End-to-end tests of the command-line tools, run for the test game `Counter`, for the sandbox and for games of single
-//! tests: arguments in; files, output and exit codes out.
+//! End-to-end tests of the tools: arguments in; files, output and exit codes out.
 #![expect(clippy::unwrap_used, reason = "a failure in a helper fails the test")]
 
 #[path = "../../../../tests/replay/counter.rs"]
@@ -43,19 +42,17 @@ use lockstep2d_tests::sweep;
 
 use counter::{Counter, Setup, inputs_at, setup};
 
-/// The exit and the output of a command.
 struct Outcome {
     exit: Exit,
     out: String,
     err: String,
 }
 
-/// Runs the tools of the counter, with output that is not a terminal.
+/// Runs the tools of the counter, without a terminal.
 fn run(arguments: &[&str]) -> Outcome {
     run_tool(&Tool::new().with_scenes(Scenes), arguments)
 }
 
-/// Runs the tools of the sandbox.
 fn run_sandbox(arguments: &[&str]) -> Outcome {
     run_tool_of(&Tool::<Sandbox>::new(), arguments)
 }
@@ -64,7 +61,6 @@ fn run_tool(tool: &Tool<Counter>, arguments: &[&str]) -> Outcome {
     run_tool_of(tool, arguments)
 }
 
-/// Runs the tools of any game.
 fn run_tool_of<G: Game>(tool: &Tool<G>, arguments: &[&str]) -> Outcome {
     let (mut out, mut err) = (anstream::StripStream::new(Vec::new()), anstream::StripStream::new(Vec::new()));
     let arguments = ["counter"].into_iter().chain(arguments.iter().copied());
@@ -73,7 +69,6 @@ fn run_tool_of<G: Game>(tool: &Tool<G>, arguments: &[&str]) -> Outcome {
     Outcome { exit, out: text(out.into_inner()), err: text(err.into_inner()) }
 }
 
-/// The scenes of the counter.
 struct Scenes;
 
 impl Catalogue<Counter> for Scenes {
@@ -104,12 +99,12 @@ fn replay(ticks: u64) -> Vec<u8> {
     recording.finish().unwrap()
 }
 
-/// The path of one of the replays of this repository.
+/// Path of a replay of this repository.
 fn golden(scene: &str) -> String {
     format!("{}/../../replays/{scene}.replay", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// A temporary folder for one test. It is deleted when the value is dropped.
+/// A folder that is deleted on drop.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -119,12 +114,11 @@ impl Folder {
         Folder(path)
     }
 
-    /// The path of an entry of the folder.
     fn path(&self, name: &str) -> String {
         self.0.join(name).to_str().unwrap().to_string()
     }
 
-    /// Writes a file in the folder, creates its parent folders, and returns its path.
+    /// Creates parent folders, and returns the path of the file.
     fn write(&self, name: &str, bytes: &[u8]) -> String {
         let path = self.path(name);
         fs::create_dir_all(Path::new(&path).parent().unwrap()).unwrap();

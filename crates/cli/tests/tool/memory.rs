@@ -1,4 +1,4 @@
-//! Peak memory of the commands for files that need much memory, compared with the table of docs/VERIFYING.md.
+//! Peak memory of the commands, compared with the table of docs/VERIFYING.md.
 
 use std::process::{Command, Stdio};
 use std::time::Duration;
@@ -15,7 +15,7 @@ use lockstep2d::world::{BodyPose, Command as Edit, Config};
 
 use crate::{Folder, golden, sweep};
 
-/// Peak resident memory in KiB of the tool as its own process, so that memory of other tests does not count.
+/// Peak resident memory in KiB of the tool as its own process.
 pub(crate) fn peak(arguments: &[&str]) -> u64 {
     let mut child = Command::new(env!("CARGO_BIN_EXE_lockstep2d"))
         .args(arguments)
@@ -65,7 +65,7 @@ fn joints(count: usize, kind: impl Into<JointKind>) -> Vec<Edit> {
     commands
 }
 
-/// Returns a motor joint without springs. If all joints are of this kind, the solver solves no joints in blocks.
+/// A motor joint without springs. The solver solves no such joints in blocks.
 fn motor() -> Motor {
     Motor::new().linear(Vec2::ZERO, fx!(1)).angular(fx!(0), fx!(1))
 }
@@ -80,13 +80,13 @@ fn replay_of(commands: Vec<Edit>, ticks: u32) -> Vec<u8> {
     recording.finish().unwrap()
 }
 
-/// Measures the rows of the table. Without the full sweep, only the first row is measured.
+/// Measures the rows of the table, or without the full sweep only the first.
 #[test]
 fn verify_takes_no_more_memory_than_is_documented() {
     type Row = (&'static str, fn() -> Vec<Edit>, u32, &'static str, u64);
     const DEFAULT: &str = "10000000";
-    // The last three columns are the number of ticks, the limit of work units for a tick, and the memory in KB. A tick
-    // of a million joints is slow to record, so these replays have one tick.
+    // The last columns: ticks, limit of work units for a tick, memory in KB. A tick of a million joints is slow to
+    // record.
     let rows: [Row; 8] = [
         ("200 squares on one spot", || pile(200), 10, "110000", 25_000),
         ("50 000 separate bodies", || field(50_000), 10, DEFAULT, 130_000),
@@ -111,11 +111,10 @@ fn verify_takes_no_more_memory_than_is_documented() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Additional memory in KB of the tool without optimisation, because its code is larger.
+/// Additional memory in KB of unoptimised code.
 const UNOPTIMISED: u64 = if cfg!(debug_assertions) { 3_000 } else { 0 };
 
-/// Runs nine commands on three files, or on two without the full sweep. `verify` may take the memory in KB that the
-/// table states for such a file, and some commands a multiple of it.
+/// Commands may take a multiple of the memory in KB that the table states for `verify`.
 #[test]
 fn no_tool_takes_more_memory_than_is_documented() {
     let folder = Folder::new("memory");

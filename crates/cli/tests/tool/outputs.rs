@@ -1,5 +1,4 @@
-//! Commands that write a file lose no data: an existing file is replaced only on request, and either by all of the new
-//! bytes or not at all. This holds with a full disk, a killed process and two writers of the same file.
+//! Commands that write a file lose no data with a full disk, a killed process and two writers of the same file.
 #![cfg(unix)]
 
 use std::fs;
@@ -12,7 +11,7 @@ use crate::{Folder, golden};
 
 pub(crate) const TOOL: &str = env!("CARGO_BIN_EXE_lockstep2d");
 
-/// The contents of a file that exists already.
+/// Contents of an existing file.
 pub(crate) const OLD: &[u8] = b"what was there before";
 
 /// Commands that write more than 512 bytes to the file `to`.
@@ -102,7 +101,7 @@ fn a_full_disk_leaves_the_old_file() {
             if has_old {
                 fs::write(&to, OLD).unwrap();
             }
-            // A limit of 512 bytes for each file; without the signal, writes fail as on a full disk.
+            // A limit of 512 bytes for each file. Without the signal, writes fail as on a full disk.
             let script = "trap '' XFSZ; ulimit -f 1; exec \"$@\"";
             let failed =
                 Command::new("sh").args(["-c", script, "sh", TOOL]).args(forced(&writer)).output().unwrap();
@@ -115,7 +114,7 @@ fn a_full_disk_leaves_the_old_file() {
             assert!(names(&folder).is_empty(), "{writer:?} left {:?}", names(&folder));
         }
     }
-    // The input file of `trim x -o x` stays unchanged as well.
+    // The input file of `trim x -o x` stays unchanged.
     let bytes = fs::read(golden("box_stack")).unwrap();
     let same = folder.write("same.replay", &bytes);
     let script = "trap '' XFSZ; ulimit -f 1; exec \"$0\" trim \"$1\" -o \"$1\" --force";
@@ -136,7 +135,7 @@ fn a_device_is_written_directly() {
     assert!(piped.status.success() && piped.stdout.starts_with(b"<svg"), "{}", message(&piped));
 }
 
-/// Starts a recorder that would write for minutes, and waits until its temporary file has 4000 bytes.
+/// Starts a long recording, and waits until its temporary file has 4000 bytes.
 fn long_recorder(to: &str, extra: &[&str]) -> Child {
     let arguments = ["record", "box_stack", "--ticks", "10000000", "-o", to];
     let child = Command::new(TOOL).args(arguments).args(extra).stdout(Stdio::null()).spawn().unwrap();

@@ -1,5 +1,4 @@
-//! `keygen`, `sign` and `verify --keys`: a signature holds for one game, however its replay is encoded, and nothing
-//! else is accepted.
+//! `keygen`, `sign` and `verify --keys`: a signature holds for one game, however its replay is encoded.
 
 use std::fs;
 
@@ -30,14 +29,14 @@ fn sign(folder: &Folder, file: &str, name: &str) {
     assert_eq!((signed.exit, signed.err.as_str()), (Exit::Success, ""), "{}", signed.out);
 }
 
-/// The exit code and the lines of `verify --keys`, with more arguments.
+/// Exit code and lines of `verify --keys`.
 fn check(folder: &Folder, path: &str, more: &[&str]) -> (Exit, Vec<Value>) {
     let (path, keys) = (folder.path(path), folder.path("keys"));
     let checked = run(&[&["verify", "--json", &path, "--keys", &keys], more].concat());
     (checked.exit, checked.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect())
 }
 
-/// The exit code, and for one file the state of its signatures and the names of the signers.
+/// Exit code, and for one file the state of its signatures and the signers.
 fn signers(folder: &Folder, file: &str, more: &[&str]) -> (Exit, String, Vec<String>) {
     let (exit, lines) = check(folder, file, more);
     let names = lines[0]["signed_by"].as_array().unwrap().iter().map(|name| name.as_str().unwrap().into());
@@ -279,7 +278,7 @@ fn mutate(bytes: &mut Vec<u8>, state: &mut u64) {
 
 #[test]
 fn no_mutated_signature_is_accepted() {
-    // Fixed keys, so that `parsed` and `forged` are the same in every run.
+    // Fixed keys make `parsed` and `forged` reproducible.
     let key = |digits: &str| format!("lockstep2d secret key 1 {}", digits.repeat(32)).parse::<SecretKey>();
     let (secret, other) = (key("a1").unwrap(), key("b2").unwrap());
     let game = GameDigest::of_replay::<Counter>(&replay(12), &Limits::default()).unwrap();

@@ -1,5 +1,4 @@
-//! Keys, signature files and cache entries lose no data with a full disk, a killed process and two writers. `outputs`
-//! tests the commands with one large output.
+//! Keys, signature files and cache entries lose no data with a full disk, a killed process and two writers.
 #![cfg(unix)]
 #![expect(clippy::disallowed_types, reason = "kills come at moments of a run whose length is measured")]
 
@@ -22,7 +21,7 @@ fn start(arguments: &[&str]) -> Child {
     command.args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-/// Runs the tool with a file size limit of 0 bytes, so that writes fail as on a full disk.
+/// Runs the tool with a file size limit of 0 bytes: writes fail as on a full disk.
 fn tool_without_space(arguments: &[&str]) -> Output {
     let script = "trap '' XFSZ; ulimit -f 0; exec \"$@\"";
     Command::new("sh").args(["-c", script, "sh", TOOL]).args(arguments).output().unwrap()
@@ -41,8 +40,8 @@ fn shuffled(round: u64, range: u64) -> u64 {
     round * 7919 % range
 }
 
-/// Kills the tool at random moments, until both the old and the new output were found, and at least `rounds` times.
-/// `prepare` restores the old output; `is_new` returns whether the output is the new one.
+/// Kills the tool at random moments, until both outputs were found, and at least `rounds` times. `prepare` restores the
+/// old output.
 fn kill_often(arguments: &[&str], rounds: u64, prepare: impl Fn(), is_new: impl Fn() -> bool) {
     let start = Instant::now();
     prepare();
@@ -176,13 +175,13 @@ fn whoever_signs_at_the_same_time_is_in_the_file_or_is_told() {
     assert!(told > 0, "no signer has found the file locked by another");
 }
 
-/// The lines of `verify --json`, without their field `cached`, and the text of standard error.
+/// Lines of `verify --json` as if nothing were cached, and the standard error.
 fn verify(output: &Output) -> (Vec<String>, String) {
     let lines = String::from_utf8(output.stdout.clone()).unwrap();
     (lines.lines().map(|line| line.replace("\"cached\":true", "\"cached\":false")).collect(), message(output))
 }
 
-/// A folder of files with the extension of replays, most of which match.
+/// A folder of replays, most of which match.
 fn uploads(folder: &Folder) -> String {
     let bytes = fs::read(golden("box_stack")).unwrap();
     for number in 0..24 {
@@ -224,7 +223,7 @@ fn kills_and_other_writers_leave_whole_entries_in_a_cache() {
         }
         let [.., survivor] = writers;
         assert_eq!(verify(&survivor.wait_with_output().unwrap()).0, expected);
-        // Every entry is used: without its entry, a file would be simulated again and not be marked as cached.
+        // A file without an entry would not be marked as cached.
         let again = tool(&arguments);
         assert_eq!(verify(&again).0, expected);
         assert_eq!(String::from_utf8_lossy(&again.stdout).matches("\"cached\":true").count(), expected.len());
@@ -264,8 +263,7 @@ fn the_shortest_failing_replay_is_written_as_a_whole() {
             assert_eq!(told, "");
             return;
         }
-        // The second process has locked the file after the first process created it and before the first process locked
-        // it.
+        // The second process has locked the file between its creation and its lock by the first.
         assert!(told.contains("another process is writing it"), "{told}");
     }
     panic!("the first process should usually lock the file first");

@@ -1,5 +1,4 @@
-//! `stress-saves`: a correct game passes, and for a game with an incomplete save the tick of the first difference is
-//! reported.
+//! `stress-saves`: a correct game passes, and the first difference of an incomplete save is reported.
 
 use std::fs;
 
@@ -11,7 +10,7 @@ use serde_json::Value as Json;
 
 use super::{Folder, Outcome, run, run_tool_of};
 
-/// A game that counts ticks, bonuses and points, and leaves its bonuses out of its save.
+/// A game whose save lacks its bonuses.
 struct Forgetful {
     tick: u64,
     bonus: u64,
@@ -64,7 +63,7 @@ impl Game for Forgetful {
     }
 }
 
-/// The replay of a game whose player gets a bonus in tick 20 and scores with it in tick 71.
+/// The player gets a bonus in tick 20 and scores with it in tick 71.
 fn forgetful() -> Vec<u8> {
     let mut recording = Recording::<Forgetful>::start(&(), 10).unwrap();
     for tick in 1..=90 {
@@ -117,7 +116,7 @@ fn the_tick_of_a_fault_is_said() {
     );
     assert_eq!(document["minimised"], Json::Null);
 
-    // No difference up to tick 70, nor if comparing starts at tick 71, after the bonus.
+    // No difference before the bonus counts, nor without it.
     for more in [["--to", "70"], ["--from", "71"]] {
         assert_eq!(stress_saves(&folder, &forgetful(), &more).exit, Exit::Success, "{more:?}");
     }

@@ -10,8 +10,7 @@ use serde_json::Value;
 use crate::counter::{Counter, inputs_at, setup};
 use crate::{Folder, golden, replay, run, run_sandbox};
 
-/// Trims a file and verifies the result. Returns its ticks and the text of the error stream, or `None` if nothing could
-/// be kept.
+/// Ticks of the trimmed file and the text of the error stream; `None` if nothing could be kept.
 fn trimmed(folder: &Folder, bytes: &[u8], more: &[&str]) -> Option<(u64, String)> {
     let (file, new) = (folder.write("a.replay", bytes), folder.path("new.replay"));
     let outcome = run(&[&["trim", &file, "-o", &new], more].concat());
@@ -59,7 +58,7 @@ fn in_front_of_damage_it_is_kept() {
         let mut damaged = whole.clone();
         damaged[at] ^= 1;
         if let Some((ticks, message)) = trimmed(&folder, &damaged, &[]) {
-            // A damaged length that points beyond the end makes the file look cut.
+            // A damaged length beyond the end makes the file look cut.
             assert!(message.is_empty() || message.contains("left out:"), "{message}");
             kept.push(ticks);
         }

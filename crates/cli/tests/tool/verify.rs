@@ -113,7 +113,7 @@ fn every_verdict_has_its_json() {
 
 #[test]
 fn a_file_that_diverges_says_where() {
-    // The hashes of a changed state simulate a machine that has diverged.
+    // Simulates a machine that has diverged.
     let folder = Folder::new("diverged");
     let (mut recorder, mut game) = Recorder::<Counter>::start(&setup(), 2).unwrap();
     for tick in 0..6 {
@@ -135,7 +135,7 @@ fn a_file_that_diverges_says_where() {
     assert!(outcome.out.contains("diverged: equal at tick 2, different at tick 4"), "{}", outcome.out);
 }
 
-/// A [`Counter`] whose only difference is that it claims a wrong sum.
+/// A [`Counter`] that claims a wrong sum.
 struct Liar(Counter);
 
 impl Game for Liar {
@@ -241,7 +241,7 @@ fn links_that_lead_in_circles_are_not_followed() {
     assert_eq!(exit, Exit::Success);
 }
 
-/// The digest of a game, or null, as `verify --json` and `inspect --json` print it.
+/// The digest of a game, from `verify --json` and `inspect --json`.
 fn game_of(folder: &Folder, bytes: &[u8]) -> Value {
     let file = folder.write("game", bytes);
     let (mut lines, _) = verify_json(&[&file]);

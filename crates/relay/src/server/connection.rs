@@ -19,11 +19,11 @@ use super::queue::{Next, Queue};
 use super::rooms::Full;
 use crate::frame::{ADDRESS_BYTES, Member, SECRET_BYTES, frame, unframe};
 
-/// Maximum time for the handshake, and for the wait for the first frame after it.
+/// Longest handshake, and longest wait for the first frame after it.
 const HANDSHAKE_MAX: Duration = Duration::from_secs(5);
 /// Largest number of characters of a room code.
 const CODE_MAX: usize = 32;
-/// Number of pings within the idle time.
+/// Pings within the idle time.
 const PINGS: u32 = 3;
 
 // Reasons to close a connection: code and text.
@@ -35,7 +35,6 @@ const CLOSE_FLOOD: (u16, &str) = (4004, "too many datagrams");
 
 type Socket = WebSocketStream<TcpStream>;
 
-/// Serves a connection until it ends.
 pub(super) async fn serve(shared: &Shared, stream: TcpStream) -> Result<(), Error> {
     stream.set_nodelay(true)?;
     let mut code = String::new();
@@ -89,7 +88,7 @@ fn refusal(status: StatusCode) -> ErrorResponse {
     response
 }
 
-/// Waits for the first binary frame. Returns `None` if the connection ends before.
+/// The first binary frame; `None` if the connection ends before.
 async fn first_frame(socket: &mut Socket) -> Result<Option<Vec<u8>>, Error> {
     while let Some(message) = socket.next().await {
         if let Message::Binary(bytes) = message? {
@@ -99,8 +98,8 @@ async fn first_frame(socket: &mut Socket) -> Result<Option<Vec<u8>>, Error> {
     Ok(None)
 }
 
-/// The address of the member with this secret: a hash, which does not reveal the secret. The address follows from the
-/// secret alone, so a member keeps it after a lost connection or a restart of the relay, and the relay stores nothing.
+/// A hash does not reveal the secret. Since the address follows from the secret, it survives a lost connection or a
+/// restart of the relay, and the relay stores nothing.
 fn member_of(secret: &[u8]) -> Option<Member> {
     let valid = secret.len() == SECRET_BYTES;
     valid.then(|| blake3::hash(secret).as_bytes().first_chunk().copied()).flatten()
@@ -112,7 +111,6 @@ async fn close(socket: &mut Socket, (code, reason): (u16, &'static str)) -> Resu
     Ok(())
 }
 
-/// A member's connection.
 struct Connection<'a> {
     shared: &'a Shared,
     socket: Socket,
@@ -149,7 +147,7 @@ impl Connection<'_> {
                         Next::Members => self.members(),
                         Next::Replaced => return close(&mut self.socket, CLOSE_REPLACED).await,
                     };
-                    // A member that does not read for the idle time counts as gone.
+                    // A member that does not read counts as gone.
                     let Ok(sent) = timeout(idle, self.socket.send(message)).await else { return Ok(()) };
                     sent?;
                 }
@@ -165,7 +163,7 @@ impl Connection<'_> {
         }
     }
 
-    /// Forwards a datagram, and replaces the receiver's address by the sender's address.
+    /// Forwards a datagram with the sender's address in place of the receiver's.
     fn forward(&self, message: &Message) {
         if let Message::Binary(bytes) = message
             && let Some((to, datagram)) = unframe(bytes)

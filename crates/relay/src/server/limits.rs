@@ -2,28 +2,29 @@
 
 use core::time::Duration;
 
-/// Limits of a relay. The frames that wait for members contain at most `connections` times `queue_bytes` bytes.
+/// Limits of a relay. Waiting frames take at most `connections` times `queue_bytes` bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Largest number of connections at the same time.
+    /// Largest number of connections.
     pub connections: usize,
-    /// Largest number of rooms at the same time.
+    /// Largest number of rooms.
     pub rooms: usize,
     /// Largest number of members of a room.
     pub members: usize,
     /// Largest datagram in bytes. A larger one closes the connection.
     pub datagram_bytes: usize,
-    /// Largest number of bytes that wait for one member. When there are more, the oldest datagrams are dropped.
+    /// Bytes that may wait for a member. Beyond them, the oldest datagrams are dropped.
     pub queue_bytes: usize,
-    /// Largest number of bytes per second from one member, with bursts of one second. Datagrams above this rate are
-    /// dropped; a member that sends eight times as much is disconnected.
+    /// Bytes per second from a member, with bursts of one second. Further datagrams are dropped, and eight times as
+    /// many bytes close the connection.
     pub bytes_per_second: u32,
-    /// Largest number of datagrams per second from one member, with bursts of one second. Datagrams above this rate are
-    /// dropped; a member that sends eight times as many is disconnected.
+    /// Datagrams per second from a member, with bursts of one second. Further ones are dropped, and eight times as many
+    /// close the connection.
     pub datagrams_per_second: u32,
-    /// Time without any frame after which a member is disconnected. The member is pinged three times within this time.
+    /// Silence after which a member, pinged three times meanwhile, is disconnected.
     pub idle: Duration,
-    /// Origins of web pages that may connect. Empty: all. Clients that send no origin, as native ones do, are admitted.
+    /// Origins of web pages that may connect; empty for all. Clients without an origin, such as native ones, are
+    /// admitted.
     pub origins: Vec<String>,
 }
 

@@ -2,27 +2,26 @@
 
 use core::time::Duration;
 
-/// Multiple of the allowed rate above which a connection is closed.
+/// Multiple of the allowed rate that closes a connection.
 const EXCESS: u64 = 8;
 
 const MICROS: u64 = 1_000_000;
 
-/// Verdict about a datagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pace {
     /// Within the rate.
     Fine,
-    /// Above the rate: the datagram is dropped.
+    /// The datagram is dropped.
     Fast,
-    /// Far above the rate: the connection is closed.
+    /// The connection is closed.
     Flood,
 }
 
-/// A token bucket that holds the units of one second.
+/// A token bucket of one second.
 #[derive(Clone, Debug)]
 struct Bucket {
     per_second: u64,
-    /// Remaining units of the bucket, in millionths.
+    /// Remaining units, in millionths.
     tokens: u64,
 }
 
@@ -43,19 +42,16 @@ impl Bucket {
     }
 }
 
-/// Measures bytes and datagrams of a member. Time is an argument.
 #[derive(Clone, Debug)]
 pub(super) struct Meter {
-    /// Buckets of bytes and of datagrams. A datagram that exceeds one of them is dropped.
+    /// Buckets of bytes and of datagrams. Beyond them, a datagram is dropped.
     allowed: [Bucket; 2],
-    /// Buckets whose rates are [`EXCESS`] times those of `allowed`. A datagram that exceeds one of them closes the
-    /// connection.
+    /// [`EXCESS`] times the rates of `allowed`. Beyond them, the connection is closed.
     tolerated: [Bucket; 2],
     last: Duration,
 }
 
 impl Meter {
-    /// A meter that starts at time zero.
     pub(super) fn new(bytes_per_second: u32, datagrams_per_second: u32) -> Self {
         let rates = [bytes_per_second, datagrams_per_second].map(u64::from);
         Meter {
@@ -65,7 +61,6 @@ impl Meter {
         }
     }
 
-    /// Counts a datagram that arrives at a time.
     pub(super) fn count(&mut self, now: Duration, bytes: usize) -> Pace {
         let passed = now.saturating_sub(self.last);
         self.last = self.last.max(now);
@@ -89,7 +84,6 @@ impl Meter {
 mod tests {
     use super::*;
 
-    /// Verdicts about datagrams at a constant interval.
     fn run(interval_micros: u64, bytes: usize, count: u64) -> Vec<Pace> {
         let mut meter = Meter::new(10_000, 100);
         (0..count).map(|number| meter.count(Duration::from_micros(number * interval_micros), bytes)).collect()
@@ -102,7 +96,7 @@ mod tests {
 
     #[test]
     fn above_the_rate_a_part_is_dropped() {
-        // Twice as many bytes as are allowed: after the burst, every second datagram is lost.
+        // After the burst, every second datagram is lost.
         let paces = run(10_000, 200, 1000);
         let lost = paces.iter().filter(|pace| **pace == Pace::Fast).count();
         assert!((440..=460).contains(&lost), "{lost}");

@@ -15,7 +15,6 @@ use tokio::sync::Semaphore;
 
 pub use limits::Limits;
 
-/// State that all connections share.
 struct Shared {
     limits: Limits,
     rooms: rooms::Rooms,
@@ -54,13 +53,13 @@ impl Server {
         self.listener.local_addr()
     }
 
-    /// Accepts connections until the future is dropped. Accepted connections then go on until they end, or until the
-    /// runtime is dropped.
+    /// Accepts connections until the future is dropped. Accepted ones then go on until they end or the runtime is
+    /// dropped.
     pub async fn run(self) {
         let places = Arc::new(Semaphore::new(self.limits.connections));
         let shared = Arc::new(Shared { limits: self.limits, rooms: rooms::Rooms::default() });
         loop {
-            // When no place is free, new connections wait in the backlog of the system.
+            // Without a free place, connections wait in the backlog of the system.
             let Ok(place) = Arc::clone(&places).acquire_owned().await else { return };
             let Ok((stream, _)) = self.listener.accept().await else {
                 // The error may be temporary, such as too many open files.
@@ -69,7 +68,7 @@ impl Server {
             };
             let shared = Arc::clone(&shared);
             tokio::spawn(async move {
-                // An error of a connection affects that member alone, and the member notices it.
+                // An error affects this member alone.
                 let _ = connection::serve(&shared, stream).await;
                 drop(place);
             });

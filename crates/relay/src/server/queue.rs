@@ -16,13 +16,12 @@ pub(super) struct Queue {
 struct State {
     frames: VecDeque<Vec<u8>>,
     bytes: usize,
-    /// The members of the room have changed since the last message about them.
+    /// The members have changed since the last message about them.
     room_changed: bool,
-    /// A newer connection of the same member takes the place of this one.
+    /// A newer connection of this member replaces this one.
     replaced: bool,
 }
 
-/// The next message to a member.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Next {
     Frame(Vec<u8>),
@@ -39,7 +38,7 @@ impl Queue {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Appends a frame, and drops the oldest frames beyond the limit of bytes.
+    /// Appends a frame, and drops the oldest ones beyond the limit.
     pub(super) fn push(&self, frame: Vec<u8>) {
         let mut state = self.state();
         state.bytes += frame.len();
@@ -75,7 +74,7 @@ impl Queue {
         Some(Next::Frame(frame))
     }
 
-    /// Waits for the next message. Cancel-safe: no message is lost if the future is dropped.
+    /// Waits for the next message. No message is lost if the future is dropped.
     pub(super) async fn next(&self) -> Next {
         loop {
             if let Some(next) = self.pop() {

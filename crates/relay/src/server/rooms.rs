@@ -7,14 +7,13 @@ use super::limits::Limits;
 use super::queue::Queue;
 use crate::frame::{Member, Members, to_text};
 
-/// Reason why no further member is admitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Full {
     Room,
     Relay,
 }
 
-/// All rooms by their code. A room exists while it has members.
+/// Rooms by code. A room exists while it has members.
 #[derive(Default)]
 pub(super) struct Rooms(Mutex<BTreeMap<String, Room>>);
 
@@ -26,7 +25,7 @@ impl Rooms {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Admits a member. An existing connection of the same member is replaced.
+    /// Replaces an existing connection of this member.
     pub(super) fn enter(
         &self,
         code: &str,
@@ -51,7 +50,7 @@ impl Rooms {
         Ok(())
     }
 
-    /// Removes a connection, unless a newer one has taken its place.
+    /// Removes a connection, unless a newer one has its place.
     pub(super) fn leave(&self, code: &str, queue: &Arc<Queue>) {
         let mut rooms = self.rooms();
         let Some(room) = rooms.get_mut(code) else { return };
@@ -62,7 +61,7 @@ impl Rooms {
         }
     }
 
-    /// Hands a frame to a member. A frame for an address without a member is dropped: datagrams may be lost.
+    /// Drops a frame for an address without a member.
     pub(super) fn forward(&self, code: &str, to: Member, frame: Vec<u8>) {
         let queue = {
             let rooms = self.rooms();
@@ -74,7 +73,7 @@ impl Rooms {
         }
     }
 
-    /// The message about the members of a room, for the member `you`.
+    /// The members of a room, as seen by `you`.
     pub(super) fn members(&self, code: &str, you: Member) -> Members {
         let rooms = self.rooms();
         let room = rooms.get(code).map_or(&[][..], Vec::as_slice);

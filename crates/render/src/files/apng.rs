@@ -9,16 +9,15 @@ use super::region::Region;
 use super::{failed, invalid};
 use crate::raster::Image;
 
-/// Writer of an animated PNG.
 pub(super) struct Apng<W: Write> {
     pace: Pace,
-    /// Number of remaining frames.
+    /// Remaining frames.
     frames: u32,
     state: State<W>,
 }
 
 enum State<W: Write> {
-    /// Nothing has been written yet, because the header needs the size of the first frame.
+    /// The header needs the size of the first frame.
     Empty(Option<W>),
     Begun {
         writer: Writer<W>,
@@ -73,8 +72,8 @@ fn begin<W: Write>(writer: W, pace: Pace, frames: u32, frame: &Image) -> io::Res
     Ok(writer)
 }
 
-/// Writes the bounding rectangle of the changed pixels. In an opaque frame, unchanged pixels inside it are transparent,
-/// which compresses best; a frame with transparency replaces all pixels of the rectangle.
+/// Writes the bounding rectangle of the changed pixels. In an opaque frame, unchanged pixels are transparent, which
+/// compresses best. Another frame replaces the rectangle.
 fn write_changes<W: Write>(writer: &mut Writer<W>, shown: &Image, frame: &Image) -> io::Result<()> {
     let has_changed = |pixel: usize| colour(shown, pixel) != colour(frame, pixel);
     let region = Region::around((frame.width(), frame.height()), has_changed);
@@ -84,7 +83,7 @@ fn write_changes<W: Write>(writer: &mut Writer<W>, shown: &Image, frame: &Image)
         .pixels(frame.width())
         .flat_map(|pixel| if is_opaque && !has_changed(pixel) { &nothing[..] } else { colour(frame, pixel) });
     let changes: Vec<u8> = changes.copied().collect();
-    // Without this reset, the encoder would check the new dimension against the old position.
+    // Otherwise the encoder would check the new dimension against the old position.
     writer.reset_frame_position().map_err(failed)?;
     writer.set_frame_dimension(region.width, region.height).map_err(failed)?;
     writer.set_frame_position(region.left, region.top).map_err(failed)?;
@@ -92,7 +91,7 @@ fn write_changes<W: Write>(writer: &mut Writer<W>, shown: &Image, frame: &Image)
     writer.write_image_data(&changes).map_err(failed)
 }
 
-/// Returns red, green, blue and opacity of a pixel.
+/// Red, green, blue and opacity.
 fn colour(image: &Image, pixel: usize) -> &[u8] {
     &image.rgba()[pixel * 4..pixel * 4 + 4]
 }

@@ -11,17 +11,16 @@ use super::palette::{Counts, Palette};
 use super::region::Region;
 use crate::raster::Image;
 
-/// Writer of a GIF.
 pub(super) struct Gif<W: Write> {
     pace: Pace,
     frames: u64,
-    /// Colours of the frames that were announced with [`Gif::expect`].
+    /// Colours of announced frames.
     samples: Counts,
     state: State<W>,
 }
 
 enum State<W: Write> {
-    /// Nothing has been written yet, because the header needs the size and the colours of the first frame.
+    /// The header needs the size and colours of the first frame.
     Empty(Option<W>),
     Begun(Box<Begun<W>>),
 }
@@ -30,9 +29,9 @@ struct Begun<W: Write> {
     encoder: Encoder<W>,
     size: (u32, u32),
     palette: Palette,
-    /// Whether the palette differs from the global one in the header, so that each frame has to contain it.
+    /// Whether each frame contains the palette, because it differs from the global one.
     is_local: bool,
-    /// Picture that a decoder shows after the last frame.
+    /// Picture after the last frame.
     shown: Vec<[u8; 3]>,
 }
 

@@ -13,10 +13,9 @@ use crate::raster::Image;
 
 pub use pace::Pace;
 
-/// Animation that repeats forever, written frame by frame. The memory does not grow with the number of frames.
+/// Animation that repeats forever, written frame by frame with bounded memory.
 ///
-/// Each frame after the first contains only the bounding rectangle of the changed pixels. Unchanged pixels inside it
-/// are transparent, except in an APNG frame that is not opaque.
+/// Frames after the first contain only the bounding rectangle of the changed pixels.
 ///
 /// ```
 /// use lockstep2d_render::{Animation, Colour, DrawList, Pace, raster};
@@ -41,20 +40,18 @@ enum Format<W: Write> {
 
 impl<W: Write> Animation<W> {
     /// Starts a GIF. Frames with up to 255 colours are exact, except the first one if it and the announced frames have
-    /// more colours together. The colours of the other frames are replaced by the nearest of at most 255. GIF has no
-    /// partial opacity: translucent pixels become opaque.
+    /// more. Others use the nearest of up to 255 colours. Translucent pixels become opaque.
     pub fn gif(writer: W, pace: Pace) -> Self {
         Animation(Format::Gif(gif::Gif::new(writer, pace)))
     }
 
-    /// Starts an animated PNG with this number of frames, with exact colours.
+    /// Starts an animated PNG of this number of frames, with exact colours.
     pub fn apng(writer: W, pace: Pace, frames: u32) -> Self {
         Animation(Format::Apng(Box::new(apng::Apng::new(writer, pace, frames))))
     }
 
-    /// Announces the colours of a later frame, of any size. A GIF has a global palette for the first frame and the
-    /// frames announced before it. As soon as a frame has colours that this palette does not represent well, that frame
-    /// and all later ones contain palettes of their own.
+    /// Announces the colours of a later frame. A GIF has a global palette for the first frame and the announced ones. A
+    /// frame that it does not suit, and all later ones, have palettes of their own.
     pub fn expect(&mut self, frame: &Image) {
         match &mut self.0 {
             Format::Gif(gif) => gif.expect(frame),
@@ -62,12 +59,12 @@ impl<W: Write> Animation<W> {
         }
     }
 
-    /// Adds a frame. All frames must have the size of the first.
+    /// Adds a frame, of the size of the first.
     ///
     /// # Errors
     ///
-    /// Errors of the writer; [`io::ErrorKind::InvalidInput`] for a frame of another size, for a side too long for a
-    /// GIF, or for more frames than announced for an APNG.
+    /// Errors of the writer; [`io::ErrorKind::InvalidInput`] for another size, a side too long for a GIF, or more
+    /// frames than announced for an APNG.
     pub fn add(&mut self, frame: &Image) -> io::Result<()> {
         match &mut self.0 {
             Format::Gif(gif) => gif.add(frame),
@@ -75,12 +72,11 @@ impl<W: Write> Animation<W> {
         }
     }
 
-    /// Writes the end of the file. Without this call the file is incomplete.
+    /// Writes the end of the file, which is incomplete without it.
     ///
     /// # Errors
     ///
-    /// Errors of the writer; [`io::ErrorKind::InvalidInput`] if there is no frame, or fewer frames than announced for
-    /// an APNG.
+    /// Errors of the writer; [`io::ErrorKind::InvalidInput`] without a frame, or with fewer than announced for an APNG.
     pub fn finish(self) -> io::Result<()> {
         match self.0 {
             Format::Gif(gif) => gif.finish(),
@@ -93,7 +89,7 @@ fn invalid(why: &str) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidInput, why)
 }
 
-/// Converts an error of the PNG encoder; an I/O error of the writer is passed on unchanged.
+/// Passes on an I/O error of the writer unchanged.
 fn failed(error: png::EncodingError) -> io::Error {
     match error {
         png::EncodingError::IoError(error) => error,

@@ -1,26 +1,25 @@
 //! [`Palette`]: at most 255 colours for a frame, and a transparent one.
 //!
-//! Pictures of a world have few colours, plus the shades of antialiased edges. Up to 255 colours are kept exactly. If
-//! there are more, the most frequent ones are kept, because a shift in the shade of a large area is visible. The
-//! others are divided into boxes, each with one mean colour: the box with the largest sum of squared errors in one
-//! channel is split at the mean of that channel, until there are enough boxes.
+//! Up to 255 colours are kept exactly. If there are more, the most frequent ones are kept, because shifts in large
+//! areas are visible. The others are divided into boxes with a mean colour each: the box with the largest sum of
+//! squared errors in a channel is split at the mean of that channel, until there are enough.
 
 use std::collections::BTreeMap;
 
 type Rgb = [u8; 3];
 
-/// Maximum number of colours. The remaining index is for pixels that do not change.
+/// Colours of a palette. The remaining index is for pixels that do not change.
 const COLOURS_MAX: usize = 255;
-/// Number of the most frequent colours that are kept exactly if there are too many colours.
+/// Most frequent colours that are kept exactly if there are too many.
 const KEPT: usize = 96;
-/// Largest error per channel at which a frame uses an existing palette. Stray colours are not compared.
+/// Largest error per channel at which a frame uses an existing palette, except for stray colours.
 const ERROR_MAX: u8 = 24;
-/// A colour is stray if it has at most one pixel per this number of pixels of the frame.
+/// A stray colour has at most one pixel per this number of pixels.
 const PIXELS_OF_A_STRAY: u64 = 20_000;
-/// Maximum number of colours in the cache of nearest colours.
+/// Largest cache of nearest colours.
 const REMEMBERED_MAX: usize = 1 << 16;
 
-/// Number of pixels of each colour.
+/// Pixels of each colour.
 #[derive(Default)]
 pub(super) struct Counts {
     counts: BTreeMap<Rgb, u64>,
@@ -54,10 +53,9 @@ impl Counts {
     }
 }
 
-/// Colours and their indices.
 pub(super) struct Palette {
     colours: Vec<Rgb>,
-    /// Index of each colour of the palette, and cached index of the nearest one for other colours.
+    /// Index of the nearest colour, cached for colours outside of the palette.
     nearest: BTreeMap<Rgb, u8>,
 }
 
@@ -78,7 +76,7 @@ impl Palette {
         palette
     }
 
-    /// Returns whether the palette represents a frame well enough. A frame with at most 255 colours must be exact.
+    /// Whether the palette suits a frame. A frame of at most 255 colours has to fit exactly.
     pub(super) fn suits(&mut self, counts: &Counts) -> bool {
         let is_exact = counts.counts.len() <= COLOURS_MAX;
         let stray = counts.pixels / PIXELS_OF_A_STRAY;
@@ -90,7 +88,6 @@ impl Palette {
         })
     }
 
-    /// Returns the index of the nearest colour.
     pub(super) fn index(&mut self, colour: Rgb) -> u8 {
         if let Some(&index) = self.nearest.get(&colour) {
             return index;
@@ -111,23 +108,23 @@ impl Palette {
         self.colours.get(usize::from(index)).copied().unwrap_or_default()
     }
 
-    /// Returns the transparent index, for pixels that do not change.
+    /// Index of pixels that do not change.
     pub(super) fn transparent(&self) -> u8 {
         u8::try_from(self.colours.len()).unwrap_or(u8::MAX)
     }
 
-    /// Returns red, green and blue of all indices.
+    /// Red, green and blue of all indices.
     pub(super) fn table(&self) -> Vec<u8> {
         self.colours.iter().chain(&[[0; 3]]).flatten().copied().collect()
     }
 
-    /// Resets the cache to the palette's own colours.
+    /// Resets the cache.
     fn remember(&mut self) {
         self.nearest = self.colours.iter().copied().zip(0..=u8::MAX).collect();
     }
 }
 
-/// Divides colours into at most `count` boxes. Returns the mean colour and the number of pixels of each box.
+/// Divides colours into at most `count` boxes. Returns their mean colours and numbers of pixels.
 fn boxes(colours: Vec<(Rgb, u64)>, count: usize) -> Vec<(Rgb, u64)> {
     let mut boxes = vec![Box::of(colours)];
     while boxes.len() < count {
@@ -146,7 +143,7 @@ struct Box {
     mean: Rgb,
     /// Channel with the largest sum of squared errors.
     channel: usize,
-    /// Sum of squared errors of that channel.
+    /// Sum of squared errors of this channel.
     error: u64,
 }
 
@@ -155,7 +152,7 @@ impl Box {
         let pixels: u64 = colours.iter().map(|(_, count)| count).sum();
         let sum =
             |channel: usize| colours.iter().map(|(colour, count)| u64::from(colour[channel]) * count).sum();
-        // Rounded down, so that splitting at the mean leaves no side empty if the box has an error.
+        // Rounding down leaves no side empty after a split at the mean.
         let mean = [0, 1, 2].map(|channel| u64::checked_div(sum(channel), pixels).unwrap_or(0) as u8);
         let error = |channel: usize| -> u64 {
             let errors = colours
@@ -203,7 +200,7 @@ mod tests {
             let index = palette.index(colour);
             assert_eq!(palette.colour(index), colour);
         }
-        // 159 boxes for 4096 colours: about 3 colours of the grid per box in each direction.
+        // 159 boxes for 4096 colours: about 3 per box in each direction.
         for colour in edges {
             let index = palette.index(colour);
             let found = palette.colour(index);

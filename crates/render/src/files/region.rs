@@ -1,6 +1,5 @@
 //! [`Region`]: bounding rectangle of the changed pixels.
 
-/// Rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Region {
     pub(super) left: u32,
@@ -10,9 +9,8 @@ pub(super) struct Region {
 }
 
 impl Region {
-    /// Returns the bounding rectangle of all pixels of an image for which `has_changed` is true. Its argument is the
-    /// index of a pixel in row order. If nothing has changed, the result is the first pixel, because a frame cannot
-    /// be empty.
+    /// Bounding rectangle of the pixels for whose index in row order `has_changed` is true. If there are none, the
+    /// first pixel, because a frame cannot be empty.
     pub(super) fn around((width, height): (u32, u32), has_changed: impl Fn(usize) -> bool) -> Self {
         let columns = width as usize;
         let row = |y: u32| y as usize * columns..(y as usize + 1) * columns;
@@ -24,7 +22,7 @@ impl Region {
         let (mut left, mut right) = (columns, 0);
         for y in top..=bottom {
             let start = row(y).start;
-            // Only columns outside the current range can widen the rectangle.
+            // Only columns outside can widen the rectangle.
             left = (0..left).find(|x| has_changed(start + x)).unwrap_or(left);
             right = (right..columns).rfind(|x| has_changed(start + x)).unwrap_or(right);
         }
@@ -32,7 +30,7 @@ impl Region {
         Region { left, top, width: right + 1 - left, height: bottom + 1 - top }
     }
 
-    /// Returns the indices of its pixels in an image of this width.
+    /// Indices of its pixels in an image of this width.
     pub(super) fn pixels(self, width: u32) -> impl Iterator<Item = usize> {
         let rows = self.top..self.top + self.height;
         rows.flat_map(move |y| {

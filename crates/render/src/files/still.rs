@@ -8,7 +8,7 @@ use super::failed;
 use crate::raster::Image;
 
 impl Image {
-    /// Writes a PNG file: in RGB, or in RGBA if the image is not opaque.
+    /// Writes a PNG file, in RGBA if the image is not opaque.
     ///
     /// # Errors
     ///
@@ -29,7 +29,7 @@ impl Image {
         png.finish().map_err(failed)
     }
 
-    /// Returns the bytes of a PNG file.
+    /// Bytes of a PNG file.
     #[must_use]
     pub fn to_png(&self) -> Vec<u8> {
         let mut bytes = Vec::new();

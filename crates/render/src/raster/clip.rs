@@ -1,15 +1,13 @@
 //! Clips polygons and lines to the surroundings of the image.
 //!
-//! The rasteriser uses fixed-point pixel coordinates, which overflow for points a billion pixels away. A floor or a
-//! chain of a world easily extends that far when the camera is zoomed in.
+//! The rasteriser's fixed-point coordinates overflow for points a billion pixels away, to which a floor easily extends
+//! when the camera is zoomed in.
 
 use tiny_skia::{Path, PathBuilder};
 
-/// Distance from the image at which shapes are clipped, in pixels: far enough that the clipped border stays invisible
-/// for strokes up to this width.
+/// Distance of clipping from the image, in pixels: the border is invisible for strokes up to this width.
 const MARGIN: f32 = 2048.0;
 
-/// The image and the margin around it.
 pub(super) struct Area {
     size: [f32; 2],
 }
@@ -19,8 +17,7 @@ impl Area {
         Area { size: [width as f32, height as f32] }
     }
 
-    /// Returns whether the bounding box of points, extended by a margin, overlaps the image. Returns `false` if a
-    /// coordinate is not finite.
+    /// Whether the bounding box of points, with a margin, overlaps the image; `false` if a coordinate is not finite.
     pub(super) fn is_touched(&self, points: &[[f32; 2]], margin: f32) -> bool {
         let margin = margin.min(MARGIN);
         !points.is_empty()
@@ -32,17 +29,17 @@ impl Area {
             })
     }
 
-    /// Returns whether some of the points lie outside the area, which includes the margin.
+    /// Whether points lie outside the margin.
     pub(super) fn is_exceeded(&self, points: &[[f32; 2]]) -> bool {
         points.iter().any(|&point| self.sides().iter().any(|side| !side.has(point)))
     }
 
-    /// Clips a convex polygon to the area, one side after the other (Sutherland and Hodgman).
+    /// Clips a convex polygon (Sutherland and Hodgman).
     pub(super) fn polygon(&self, points: &[[f32; 2]]) -> Vec<[f32; 2]> {
         self.sides().iter().fold(points.to_vec(), |points, side| side.cut(&points))
     }
 
-    /// Clips a line through points to the area; the result may consist of several parts.
+    /// Clips a line through points, possibly into several parts.
     pub(super) fn lines(&self, points: &[[f32; 2]], closed: bool) -> Option<Path> {
         let mut path = PathBuilder::new();
         let back = closed.then(|| points.first()).flatten();
@@ -55,7 +52,6 @@ impl Area {
         path.finish()
     }
 
-    /// Clips a line segment to the area, one side after the other.
     fn segment(&self, mut from: [f32; 2], mut to: [f32; 2]) -> Option<[[f32; 2]; 2]> {
         for side in self.sides() {
             match (side.has(from), side.has(to)) {
@@ -68,7 +64,7 @@ impl Area {
         Some([from, to])
     }
 
-    /// Returns the four half planes whose intersection is the area.
+    /// The area is the intersection of four half planes.
     fn sides(&self) -> [Side; 4] {
         let [width, height] = self.size;
         let low = |axis| Side { axis, sign: -1.0, bound: -MARGIN };
@@ -77,7 +73,7 @@ impl Area {
     }
 }
 
-/// Half plane in which a coordinate is at most the bound, or at least the bound if the sign is negative.
+/// A coordinate is at most the bound, or at least the bound if the sign is negative.
 struct Side {
     axis: usize,
     sign: f32,
@@ -89,8 +85,7 @@ impl Side {
         (point[self.axis] - self.bound) * self.sign <= 0.0
     }
 
-    /// Returns the point where a line crosses the bound. Its coordinate on that axis is exact, however long the line
-    /// is.
+    /// The crossing of a line and the bound, exact on that axis for any length.
     fn crossing(&self, from: [f32; 2], to: [f32; 2]) -> [f32; 2] {
         let (a, b) = (from.map(f64::from), to.map(f64::from));
         let share = (f64::from(self.bound) - a[self.axis]) / (b[self.axis] - a[self.axis]);
@@ -99,7 +94,7 @@ impl Side {
         crossing
     }
 
-    /// Returns the part of a convex polygon inside the half plane.
+    /// The part of a convex polygon inside.
     fn cut(&self, points: &[[f32; 2]]) -> Vec<[f32; 2]> {
         let mut kept = Vec::with_capacity(points.len() + 2);
         for (i, &to) in points.iter().enumerate() {

@@ -4,7 +4,7 @@ use tiny_skia::Pixmap;
 
 use crate::colour::Colour;
 
-/// Image of 8-bit RGBA pixels, in rows from top to bottom, each from left to right.
+/// Image of 8-bit RGBA pixels, in rows from top to bottom.
 ///
 /// ```
 /// use lockstep2d::{draw::View, world::World};
@@ -47,13 +47,13 @@ impl Image {
         self.height
     }
 
-    /// Returns red, green, blue and opacity of each pixel in turn, not premultiplied.
+    /// Red, green, blue and opacity of each pixel, not premultiplied.
     #[must_use]
     pub fn rgba(&self) -> &[u8] {
         &self.rgba
     }
 
-    /// Returns a pixel, or `None` outside the image.
+    /// A pixel; `None` outside the image.
     #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> Option<Colour> {
         if x >= self.width || y >= self.height {
@@ -64,7 +64,7 @@ impl Image {
         Some(Colour { rgb: [red, green, blue], opacity })
     }
 
-    /// Returns whether every pixel is opaque.
+    /// Whether every pixel is opaque.
     #[must_use]
     pub fn is_opaque(&self) -> bool {
         self.rgba.chunks_exact(4).all(|pixel| pixel[3] == 255)

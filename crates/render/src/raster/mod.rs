@@ -1,4 +1,4 @@
-//! [`raster`]: renders a list into pixels in memory, without a screen.
+//! [`raster`]: renders a list into pixels in memory.
 
 mod clip;
 mod image;
@@ -15,7 +15,7 @@ pub use image::Image;
 /// Maximum side length of an image, in pixels.
 pub const SIDE_MAX: u32 = 16384;
 
-/// Draws a list on a background, with antialiased edges. The sides of the image are clamped to 1 to [`SIDE_MAX`].
+/// Draws a list on a background, antialiased. Sides are clamped to 1 to [`SIDE_MAX`].
 #[must_use]
 pub fn raster(list: &DrawList, (width, height): (u32, u32), background: Colour) -> Image {
     let (width, height) = (width.clamp(1, SIDE_MAX), height.clamp(1, SIDE_MAX));
@@ -35,7 +35,6 @@ pub fn raster(list: &DrawList, (width, height): (u32, u32), background: Colour) 
     Image::of(&pixels)
 }
 
-/// Fills an item and strokes its border.
 fn draw(pixels: &mut Pixmap, item: &Item, points: &[[f32; 2]], area: &Area) {
     let has_stroke = !item.stroke.is_none() && item.width > 0.0;
     let margin = if has_stroke { item.width } else { 0.0 };
@@ -67,7 +66,7 @@ fn draw(pixels: &mut Pixmap, item: &Item, points: &[[f32; 2]], area: &Area) {
     }
 }
 
-/// Whether a line is closed from its last point to the first.
+/// Whether the last point is connected with the first.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Ends {
     Loose,
@@ -157,8 +156,7 @@ mod tests {
         assert!(image.is_opaque() && !clear.is_opaque());
     }
 
-    /// Shapes that extend a billion pixels and more to either side look the same as shapes that end just outside the
-    /// image.
+    /// Shapes may extend a billion pixels and more.
     #[test]
     fn far_corners_change_nothing_that_is_seen() {
         let wide = |reach: f32| {

@@ -1,8 +1,8 @@
-//! Pictures with many colours, as a hard case for the file writers.
+//! Pictures with many colours.
 
 use lockstep2d_render::{Colour, DrawList, Image, raster};
 
-/// Rotating polygons, each with its own colour and antialiased edges: far more colours than a GIF can have.
+/// Far more colours than a GIF can have.
 pub(crate) fn colourful(frame: u32, size: (u32, u32)) -> Image {
     let mut list = DrawList::default();
     for i in 0..40u32 {

@@ -11,7 +11,6 @@ use lockstep2d::solver::{JointDef, Revolute, Threshold, ThresholdAction, Wheel};
 use lockstep2d::world::{Snapshot, World};
 use serde::{Deserialize, Serialize};
 
-/// Input for a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Drive {
     /// Direction of the drive: -1, 0 or 1.
@@ -19,7 +18,6 @@ pub(crate) struct Drive {
     pub(crate) fire: bool,
 }
 
-/// A car on a hill.
 pub(crate) struct Hill {
     world: World,
     pub(crate) goals: u32,
@@ -38,7 +36,7 @@ pub(crate) struct Save {
 const PLANKS: i32 = 10;
 /// x coordinates of the ends of the bridge, in metres.
 const BRIDGE: (i32, i32) = (12, 12 + PLANKS);
-/// Force at which a joint of the bridge breaks, in N. The bridge bears the car, but not every shell.
+/// Force at which a joint of the bridge breaks, in N.
 const STRENGTH: Fx = fx!(200);
 const RELOAD: u32 = 30;
 /// Ticks after which a shell is removed.
@@ -97,7 +95,7 @@ impl Hill {
             let place = self.world.body(car).map_or(Vec2::ZERO, |body| body.position());
             let shell = ShapeDef::new(Geometry::circle(fx!(0.12))?).density(fx!(8));
             let def = BodyDef::dynamic().position(place + Vec2::new(fx!(0.6), fx!(0.9))).bullet();
-            // User data of a body is state: here it is the tick at which the shell is removed.
+            // User data of a body is state: here, the tick at which the shell is removed.
             let def = def.velocity((fx!(16), fx!(6))).user_data(self.world.tick() + SHELL_TIME);
             self.world.spawn(&named(def, "shell")?, &[shell])?;
             self.reload = RELOAD;
@@ -105,7 +103,7 @@ impl Hill {
         Ok(())
     }
 
-    /// Counts the goals that the car has reached, and removes old shells and bodies that have fallen out of the world.
+    /// Counts reached goals, and removes old shells and fallen bodies.
     fn judge(&mut self) -> Result<(), WorldError> {
         let reached = self.world.events().sensor_begin.iter().filter(|event| {
             let visitor = self.world.shape(event.visitor).map(|shape| shape.body());
@@ -191,7 +189,7 @@ impl Game for Hill {
     }
 
     fn step(&mut self, inputs: &[Drive]) {
-        // Commands that the world refuses have no effect, in the same way on every machine.
+        // Refused commands have no effect.
         let _driven = self.drive(inputs.first().copied().unwrap_or_default());
         self.world.step();
         let _judged = self.judge();

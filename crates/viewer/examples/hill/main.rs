@@ -1,5 +1,4 @@
-//! The viewer of a small game: a car on a hill, shells, a bridge that breaks, and goals. The rules in `game.rs` contain
-//! no code for the viewer.
+//! The viewer of a small game: a car on a hill, shells, a bridge and goals. The rules are in `game.rs`.
 //!
 //! `cargo run --release -p lockstep2d-viewer --example hill`
 

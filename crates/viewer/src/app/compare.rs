@@ -7,24 +7,21 @@ use lockstep2d::world::World;
 use super::player::slice_of;
 use crate::source::Source;
 
-/// The second of two sources that are shown at the same tick.
+/// Source that is compared with the shown one, at the same tick.
 pub(super) struct Comparison {
     pub(super) other: Box<dyn Source>,
-    /// Second copies of both sources, which search for the first differing tick independently of the shown tick.
-    /// `None` when the search has ended.
+    /// Further copies of both sources, for the search; `None` when it has ended.
     scouts: Option<[Box<dyn Source>; 2]>,
     pub(super) first: Option<First>,
     searched: u64,
 }
 
-/// First difference between two sources.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct First {
     pub(super) tick: u64,
-    /// The first body that differs, in slot order; `None` if no body differs but other state does.
+    /// `None` if only other state differs.
     pub(super) body: Option<BodyId>,
-    /// Description of the difference: the first differing field of `body` with both values, or which source alone has
-    /// the body. If no body differs: the first differing field of the game's own state, if there is one.
+    /// First differing field of `body`, or of the game's own state if no body differs.
     pub(super) field: String,
 }
 
@@ -33,7 +30,7 @@ impl Comparison {
         Comparison { other, scouts: Some(scouts), first: None, searched: 0 }
     }
 
-    /// Continues the search for the first difference, by a limited number of ticks per call.
+    /// Continues the search by a limited number of ticks.
     pub(super) fn think(&mut self) {
         let Some([a, b]) = &mut self.scouts else { return };
         let (mut left, first) = (slice_of(a.world()), a.first());
@@ -56,7 +53,6 @@ impl Comparison {
         self.searched = a.tick().max(first);
     }
 
-    /// Result of the search so far, as text.
     pub(super) fn status(&self) -> String {
         let name = self.other.name();
         match (&self.first, &self.scouts) {
@@ -83,7 +79,7 @@ impl First {
     }
 }
 
-/// Returns the bodies that differ between two worlds, in slot order.
+/// Bodies that differ between two worlds, in slot order.
 pub(super) fn differing<'a>(a: &'a World, b: &'a World) -> impl Iterator<Item = BodyId> + 'a {
     let not_in_b = a.bodies().filter(|&(id, body)| b.body(id) != Some(body)).map(|(id, _)| id);
     let only_in_b = b.bodies().filter(|&(id, _)| a.body(id).is_none()).map(|(id, _)| id);
@@ -92,7 +88,7 @@ pub(super) fn differing<'a>(a: &'a World, b: &'a World) -> impl Iterator<Item = 
     ids.into_iter()
 }
 
-/// The first field of the game's own state that differs, with both values.
+/// First differing field of the game's own state, with both values.
 fn first_of_own(a: &[(String, String)], b: &[(String, String)]) -> Option<String> {
     let (ours, theirs) = a.iter().zip(b).find(|(ours, theirs)| ours != theirs)?;
     Some(format!("{}: {} | {}", ours.0, ours.1, theirs.1))

@@ -15,11 +15,10 @@ const REACH: f32 = 6.0;
 /// Magnitude of gravity, in m/s².
 const GRAVITY: Fx = fx!(10);
 
-/// Directions of gravity, in the order in which the key `g` steps through them; y points up.
+/// Directions of gravity, in the order of the key `g`; y points up.
 const GRAVITIES: [(Fx, Fx); 5] =
     [(fx!(0), fx!(-1)), (fx!(0), fx!(0)), (fx!(0), fx!(1)), (fx!(-1), fx!(0)), (fx!(1), fx!(0))];
 
-/// Selected form and gravity, and the body that is being drawn.
 #[derive(Debug, Default)]
 pub(super) struct Hand {
     form: usize,
@@ -46,19 +45,19 @@ impl Hand {
         playground.act(Act::DragTo(camera.point(at)));
     }
 
-    /// Starts drawing a new body at this screen position.
+    /// Starts drawing a new body.
     pub(super) fn begin(&mut self, camera: &Camera, at: [f32; 2]) {
         self.begun = Some(camera.point(at));
     }
 
-    /// Creates the body: the drag from its start point to `at` gives its size.
+    /// Creates the body that was drawn.
     pub(super) fn put(&mut self, playground: &mut dyn Playground, camera: &Camera, at: [f32; 2]) {
         if let Some(begun) = self.begun.take() {
             playground.act(Act::Spawn { form: self.form(), at: begun, to: camera.point(at) });
         }
     }
 
-    /// Performs the action of a key. Returns `false` if the key has none here.
+    /// Returns `false` if the key has no action here.
     pub(super) fn press(
         &mut self,
         key: Key,
@@ -80,7 +79,6 @@ impl Hand {
         true
     }
 
-    /// Draws the line from the grabbed body to the pointer, and the line of the drag that adds a body.
     pub(super) fn draw(&self, list: &mut DrawList, source: &mut dyn Source, camera: &Camera, at: [f32; 2]) {
         let Some(held) = source.playground().map(|playground| playground.held()) else { return };
         if let Some(held) = held

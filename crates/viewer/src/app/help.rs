@@ -5,8 +5,7 @@ use lockstep2d_render::{CELL_HEIGHT, DrawList, width_of};
 use super::theme;
 use crate::event::Key;
 
-/// A row of the help: keys as text, keys as values, and their effect. The row is left out if the game uses one of the
-/// values as a key of a player.
+/// Row of the help: keys as text, keys as values, effect. Left out if a player of the game uses one of the keys.
 type Line = (&'static str, &'static [Key], &'static str);
 
 const LINES: &[Line] = &[
@@ -42,7 +41,6 @@ const LIVE: &[Line] = &[
     ("g", &[], "gravity: down, none, up, left, right"),
 ];
 
-/// Draws the help, without the keys that a game's players use.
 pub(super) fn draw(list: &mut DrawList, [width, height]: [f32; 2], is_live: bool, players: &[Key]) {
     let is_free = |line: &&Line| line.1.iter().all(|key| !players.contains(key));
     let live = if is_live { LIVE } else { &[] };

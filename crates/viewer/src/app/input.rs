@@ -12,7 +12,6 @@ use super::timeline::Bar;
 /// Largest distance between press and release of a button that still counts as a click, in pixels.
 const CLICK: f32 = 4.0;
 
-/// Position of the pointer and the drag in progress.
 #[derive(Debug, Default)]
 pub(super) struct Pointer {
     pub(super) at: [f32; 2],
@@ -24,16 +23,13 @@ pub(super) struct Pointer {
 enum Doing {
     #[default]
     Nothing,
-    /// The button went down at this position. It is a click unless the pointer moves further than [`CLICK`].
+    /// The button went down at this position. Moving further than [`CLICK`] pans.
     Pressing([f32; 2]),
-    /// Moves the view.
     Panning,
     /// Moves along the timeline.
     Scrubbing,
-    /// Drags a body. The button went down at this position. The press is also a click if the button goes up within
-    /// [`CLICK`] of it.
+    /// Drags a body from this position. A release within [`CLICK`] is also a click.
     Dragging([f32; 2]),
-    /// Draws a new body.
     Spawning,
 }
 
@@ -42,7 +38,7 @@ fn is_click(from: [f32; 2], to: [f32; 2]) -> bool {
 }
 
 impl App {
-    /// Handles an input event. The source receives the event first, so that a game can consume its players' keys.
+    /// Handles an input event. The source receives it first, so that a game can consume its players' keys.
     pub fn handle(&mut self, event: Event) {
         if self.source.as_mut().is_some_and(|source| source.handle(&event)) {
             return;
@@ -56,7 +52,7 @@ impl App {
             Event::Up(_) => self.up(),
             Event::Wheel(notches) => self.turn(notches),
             Event::Dropped { name, bytes } => {
-                // Both functions show the error themselves.
+                // Both functions show their errors as messages.
                 let _shown = match self.pointer.shift {
                     true => self.compare_with(&name, bytes),
                     false => self.show_file(&name, bytes),
@@ -66,7 +62,7 @@ impl App {
     }
 
     fn press(&mut self, key: Key) {
-        // A key press dismisses the message, so that the status of the source shows again.
+        // Dismisses the message, so that the status of the source shows again.
         self.message = None;
         if layers::switch(&mut self.layers, key) {
             return;
@@ -93,14 +89,13 @@ impl App {
         }
     }
 
-    /// Performs the action of a key in a live world. Returns `false` if there is none.
+    /// Returns `false` if the key has no action in a live world.
     fn act(&mut self, key: Key) -> bool {
         let App { source: Some(source), view, hand, pointer, size, .. } = self else { return false };
         let camera = view.camera(source.world(), *size);
         source.playground().is_some_and(|playground| hand.press(key, playground, &camera, pointer.at))
     }
 
-    /// Handles the keys that play, pause or go to another tick.
     fn travel(&mut self, key: Key) {
         let App { source: Some(source), player, pointer, comparison, .. } = self else { return };
         let second = i64::from(source.tick_rate());
@@ -210,7 +205,6 @@ impl App {
         player.go_to(Bar::new(*size, source.as_ref()).tick_at(pointer.at[0]));
     }
 
-    /// Selects the body under the pointer; clears the selection if there is none.
     fn select(&mut self) {
         let App { source: Some(source), view, size, pointer, inspector, .. } = self else { return };
         let camera = view.camera(source.world(), *size);

@@ -14,17 +14,16 @@ const COLUMNS: usize = 58;
 /// Largest distance from a click to the body that it selects, in pixels.
 const REACH: f32 = 6.0;
 
-/// Selected body, whether the game's own state is shown, and scroll position.
 #[derive(Debug, Default)]
 pub(super) struct Inspector {
     pub(super) body: Option<BodyId>,
     pub(super) shows_state: bool,
-    /// Number of lines scrolled off the top of the panel.
+    /// Lines scrolled off the top.
     scrolled: usize,
 }
 
-/// Returns the body at a screen position or, if there is none, the closest one within [`REACH`]. Sensors are left out.
-/// If bodies overlap, it returns the one whose shape is in the last slot, which is usually painted on top.
+/// Returns the body at a screen position, or else the closest one within [`REACH`], without sensors. If bodies overlap,
+/// the one in the last shape slot is taken, which is usually painted on top.
 pub(super) fn body_at(world: &World, camera: &Camera, at: [f32; 2]) -> Option<BodyId> {
     let point = camera.point(at);
     let beside = {
@@ -45,19 +44,17 @@ impl Inspector {
         }
     }
 
-    /// Shows the game's own state, or hides it.
     pub(super) fn toggle_state(&mut self) {
         (self.shows_state, self.scrolled) = (!self.shows_state, 0);
     }
 
-    /// Upper left corner and size of the panel, in pixels; `None` if there is nothing to show.
+    /// Upper left corner and size, in pixels; `None` if there is nothing to show.
     pub(super) fn area(&self, [width, height]: [f32; 2]) -> Option<([f32; 2], [f32; 2])> {
         let wide = width_of("x", 1.0) * COLUMNS as f32;
         let is_open = self.body.is_some() || self.shows_state;
         is_open.then(|| ([(width - wide - 12.0).max(0.0), 12.0], [wide, (height - 90.0).max(CELL_HEIGHT)]))
     }
 
-    /// Returns whether a screen position is on the panel.
     pub(super) fn holds(&self, at: [f32; 2], size: [f32; 2]) -> bool {
         self.area(size).is_some_and(|([x, y], [width, height])| {
             (x..x + width).contains(&at[0]) && (y..y + height).contains(&at[1])
@@ -97,16 +94,14 @@ impl Inspector {
     }
 }
 
-/// Lists every field of a body and of its shapes, then its contacts and joints. Each line is a name and a value; a line
-/// with an empty value is a heading.
+/// Lists the fields of a body and its shapes, then its contacts and joints. A heading has an empty value.
 pub(super) fn describe(world: &World, id: BodyId) -> Vec<(String, String)> {
     let Some(body) = world.body(id) else {
         return vec![(format!("body {id} does not exist at this tick"), String::new())];
     };
     let mut lines = vec![(format!("body {}", world.body_label(id)), String::new())];
     add_fields(&mut lines, body);
-    // The fields contain the scaled angular velocity (a speed at the radius of gyration), not the angular velocity
-    // itself.
+    // The fields only contain a scaled angular velocity: the speed at the radius of gyration.
     let bits = body.angular_velocity().to_bits().into();
     lines.push(("angular_velocity".into(), Value::Fixed { bits, fraction_bits: Some(32) }.to_string()));
     for &shape in body.shapes() {

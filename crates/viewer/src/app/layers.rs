@@ -9,12 +9,12 @@ use crate::event::Key;
 /// Key of each layer, in the order of [`Layers::named`].
 pub const LAYER_KEYS: [char; 13] = ['1', '2', '3', '4', '5', '6', '7', '8', '9', '0', 'c', 'v', 'i'];
 
-/// Default layers at the start, which show the world as a game would. The debug layers are off.
+/// Initial layers, which show the world as a game would.
 pub(crate) const fn layers_at_first() -> Layers {
     Layers { outlines: true, joints: true, ..Layers::NONE }
 }
 
-/// Toggles the layer of a key. Returns `false` if the key has no layer.
+/// Toggles the layer of a key. Returns `false` if there is none.
 pub(super) fn switch(layers: &mut Layers, key: Key) -> bool {
     let place = LAYER_KEYS.iter().position(|&of_layer| key == Key::Character(of_layer));
     let named = layers.named();
@@ -27,7 +27,7 @@ pub(super) fn switch(layers: &mut Layers, key: Key) -> bool {
     }
 }
 
-/// List of layers on the screen, which can be clicked.
+/// Clickable list of layers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LayerList {
     /// Upper left corner, in pixels.
@@ -51,7 +51,6 @@ impl LayerList {
         }
     }
 
-    /// Returns the key of the layer at a screen position.
     pub(super) fn key_at(self, [x, y]: [f32; 2]) -> Option<Key> {
         let [width, height] = Self::size();
         let (x, y) = (x - self.corner[0], y - self.corner[1]);

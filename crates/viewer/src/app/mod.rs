@@ -50,14 +50,13 @@ pub struct App {
     content: Content,
     source: Option<Box<dyn Source>>,
     comparison: Option<Comparison>,
-    /// Name and contents of the shown file, kept to open the file again for a comparison.
+    /// Name and contents of the shown file, for a comparison.
     file: Option<(String, &'static [u8])>,
-    /// Message about the last error or the last save.
     message: Option<String>,
     player: Player,
     view: View,
     layers: Layers,
-    /// Layer list as last drawn, for hit tests; `None` if it was not drawn.
+    /// Layer list as last drawn, for hit tests.
     layer_list: Option<LayerList>,
     inspector: Inspector,
     hand: Hand,
@@ -95,7 +94,7 @@ pub enum Request {
     },
 }
 
-/// Description of what is shown, for a line of text beside the picture and for tests.
+/// Description of what is shown.
 ///
 /// ```
 /// use lockstep2d_viewer::{App, Report};
@@ -130,7 +129,7 @@ impl fmt::Display for Report {
 }
 
 impl Default for App {
-    /// The app of the [sandbox](crate::sandbox), without a source.
+    /// The [sandbox](crate::sandbox) without a source.
     fn default() -> Self {
         crate::sandbox().app()
     }
@@ -159,7 +158,7 @@ impl App {
         }
     }
 
-    /// Shows a source instead of the current one and its comparison. Resets the view, the selection and the player.
+    /// Shows a source. Resets the comparison, the view, the selection and the player.
     pub fn show(&mut self, source: Box<dyn Source>) {
         self.source = Some(source);
         (self.comparison, self.file, self.message) = (None, None, None);
@@ -170,9 +169,9 @@ impl App {
     /// Shows a file: a replay, a divergence report or a snapshot.
     ///
     /// # Errors
-    /// [`OpenError`], which is also shown as a message. The previous source then stays.
+    /// [`OpenError`], also shown as a message. The previous source then stays.
     pub fn show_file(&mut self, name: &str, bytes: Vec<u8>) -> Result<(), OpenError> {
-        // A source borrows its file for `'static`: the bytes stay allocated until the program ends.
+        // A source borrows its file for `'static`.
         let bytes: &'static [u8] = bytes.leak();
         let source = self.noted(name, self.content.open(name, bytes))?;
         self.show(source);
@@ -180,11 +179,11 @@ impl App {
         Ok(())
     }
 
-    /// Shows a second file over the current one, at the same ticks, and searches for the first difference. Without a
-    /// current file, the file is shown alone.
+    /// Shows a second file over the current one and searches for their first difference. Without a current file, the
+    /// file is shown alone.
     ///
     /// # Errors
-    /// [`OpenError`], which is also shown as a message. The previous source then stays.
+    /// [`OpenError`], also shown as a message. The previous source then stays.
     pub fn compare_with(&mut self, name: &str, bytes: Vec<u8>) -> Result<(), OpenError> {
         let Some((first, first_bytes)) = self.file.clone() else { return self.show_file(name, bytes) };
         let bytes: &'static [u8] = bytes.leak();
@@ -203,8 +202,7 @@ impl App {
         Ok(())
     }
 
-    /// Shows a scene. If it cannot be opened, shows a message instead. Returns `false` if there is no scene of this
-    /// name.
+    /// Shows a scene, or a message if it cannot be opened. Returns `false` if no scene has this name.
     pub fn show_scene(&mut self, name: &str, seed: u64) -> bool {
         let Some(scene) = self.content.scene(name) else { return false };
         match (scene.open)(seed) {
@@ -219,13 +217,13 @@ impl App {
         self.content.scenes.iter().map(|scene| (scene.name.as_str(), scene.about.as_str()))
     }
 
-    /// Name of the scene that is shown at first, if there is one.
+    /// Name of the scene that is shown at the start.
     #[must_use]
     pub fn first_scene(&self) -> Option<String> {
         self.content.first_scene().map(str::to_owned)
     }
 
-    /// Advances by elapsed real time: plays the source and continues background work.
+    /// Plays the source by elapsed real time, and continues background work.
     pub fn advance(&mut self, time: Duration) {
         let Some(source) = &mut self.source else { return };
         source.think();
@@ -257,8 +255,8 @@ impl App {
             tick: source.tick(),
             ticks: source.ticks(),
             hash: Some(source.hash()),
-            // A message replaces the remarks: beside an error about another file, the verdict on the shown file would
-            // seem to refer to that other file.
+            // A message replaces the remarks: beside an error about another file, the verdict would seem to refer to
+            // it.
             status: self.message.clone().unwrap_or_else(|| self.remarks().join(" · ")),
         }
     }
@@ -268,12 +266,11 @@ impl App {
         std::mem::take(&mut self.requests)
     }
 
-    /// Shows a message, such as an error while saving a file.
+    /// Shows a message.
     pub fn tell(&mut self, message: String) {
         self.message = Some(message);
     }
 
-    /// Status of the source, status of the comparison and the current message, without empty ones.
     fn remarks(&self) -> Vec<String> {
         let source = self.source.as_ref().map(|source| source.status());
         let comparison = self.comparison.as_ref().map(Comparison::status);
@@ -281,7 +278,7 @@ impl App {
         all.into_iter().flatten().filter(|remark| !remark.is_empty()).collect()
     }
 
-    /// Shows the error, if there is one, as a message about the file `name`.
+    /// Shows an error as a message about `name`.
     fn noted<T>(&mut self, name: &str, result: Result<T, OpenError>) -> Result<T, OpenError> {
         result.inspect_err(|error| self.message = Some(format!("{name}: {error}")))
     }
@@ -294,7 +291,7 @@ impl App {
         }
     }
 
-    /// Shows the scene `by` places further in the list, which wraps around.
+    /// Shows the scene `by` places further in the list, cyclically.
     fn show_neighbour(&mut self, by: usize) {
         let name = self.source.as_ref().map_or("", |source| source.name());
         let scenes = &self.content.scenes;
@@ -305,14 +302,14 @@ impl App {
         }
     }
 
-    /// Closes the source before the program ends: it leaves a network match, for example.
+    /// Closes the source, for example a network match, before the program ends.
     pub fn close(&mut self) {
         if let Some(source) = &mut self.source {
             source.close();
         }
     }
 
-    /// Requests that the recording of the source is saved as a replay; shows a message if the source records nothing.
+    /// Requests that the recording is saved as a replay. Shows a message if there is none.
     pub fn save(&mut self) {
         let Some(source) = &mut self.source else { return };
         let name = format!("{}.replay", source.name());

@@ -6,21 +6,20 @@ use lockstep2d::world::World;
 
 use crate::source::{Source, SourceError};
 
-/// Slowest and fastest playback speed, as exponents of two.
+/// Exponents of two of the slowest and the fastest playback speed.
 const SPEEDS: std::ops::RangeInclusive<i32> = -5..=5;
 
-/// Budget of work per frame, in the unit of the costs in [`slice_of`].
+/// Budget of a frame, in the unit of [`slice_of`].
 const SLICE: u64 = 60_000;
 
-/// Plays a source, or seeks to a tick.
 #[derive(Debug)]
 pub(super) struct Player {
     pub(super) playing: bool,
     /// Playback speed as an exponent of two.
     speed: i32,
-    /// Ticks that are due; the fraction is carried over to the next frame.
+    /// Ticks that are due, with the fraction from earlier frames.
     due: f64,
-    /// Tick to seek to; a distant one takes several frames.
+    /// Tick to seek to, over several frames if it is far.
     goal: Option<u64>,
 }
 
@@ -31,7 +30,7 @@ impl Default for Player {
 }
 
 impl Player {
-    /// Toggles between playing and paused; seeks to `from` first if it is given.
+    /// Toggles between playing and paused. Seeks to `from` if given.
     pub(super) fn toggle(&mut self, from: Option<u64>) {
         self.playing = !self.playing;
         self.goal = from;
@@ -41,7 +40,7 @@ impl Player {
         self.speed = (self.speed + by).clamp(*SPEEDS.start(), *SPEEDS.end());
     }
 
-    /// Playback speed as text, such as `2x` or `1/4x`.
+    /// Speed as text, such as `2x` or `1/4x`.
     pub(super) fn speed(&self) -> String {
         match self.speed {
             speed @ 0.. => format!("{}x", 1 << speed),
@@ -49,24 +48,22 @@ impl Player {
         }
     }
 
-    /// Pauses, and seeks to a tick.
     pub(super) fn go_to(&mut self, tick: u64) {
         (self.playing, self.goal) = (false, Some(tick));
     }
 
-    /// Pauses, and seeks by a number of ticks, relative to the current goal if there is one. Stays within the source.
+    /// Pauses, and seeks relative to the current goal or tick, within the source.
     pub(super) fn go_by(&mut self, ticks: i64, source: &dyn Source) {
         let from = self.goal.unwrap_or(source.tick());
         let end = source.ticks().unwrap_or(u64::MAX);
         self.go_to(from.saturating_add_signed(ticks).clamp(source.first(), end));
     }
 
-    /// Tick that is being sought, if any.
     pub(super) fn goal(&self) -> Option<u64> {
         self.goal
     }
 
-    /// Plays the ticks that are due after `time`, or continues to seek. Pauses after an error.
+    /// Plays the due ticks, or continues to seek. Pauses after an error.
     pub(super) fn advance(&mut self, time: Duration, source: &mut dyn Source) -> Result<(), SourceError> {
         let result = self.try_advance(time, source);
         if result.is_err() {
@@ -86,7 +83,7 @@ impl Player {
         } else if self.playing {
             self.due += time.as_secs_f64() * f64::from(source.tick_rate()) * f64::from(self.speed).exp2();
             let due = (self.due as u64).min(slice);
-            // Ticks that exceed the budget of a frame are dropped, so that playback slows down instead of catching up.
+            // Ticks beyond the budget are dropped, so that playback slows down instead of catching up.
             self.due = self.due.fract();
             let end = source.ticks().unwrap_or(u64::MAX);
             source.seek(source.tick().saturating_add(due).min(end))?;
@@ -96,8 +93,7 @@ impl Player {
     }
 }
 
-/// Maximum number of ticks of a world that are played in a frame, at least one. The cost of a tick is estimated as 100
-/// plus one per body plus two per pair.
+/// Largest number of ticks to play in a frame, at least 1. A tick costs 100 plus 1 per body plus 2 per pair.
 pub(super) fn slice_of(world: &World) -> u64 {
     SLICE / (100 + world.body_count() as u64 + 2 * world.pair_count() as u64).min(SLICE)
 }

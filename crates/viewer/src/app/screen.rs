@@ -12,13 +12,12 @@ use super::{App, help, theme};
 
 const LEFT: f32 = 12.0;
 const TOP: f32 = 8.0;
-/// Maximum number of characters in a row of text. A longer status is wrapped.
+/// Longest row of text, in characters.
 const COLUMNS_MAX: usize = 120;
 
-/// Top of the layer list, in pixels, unless the lines of text above it end lower.
+/// Top of the layer list, in pixels, unless the text above it ends lower.
 const LAYERS_TOP: f32 = 136.0;
 
-/// Fills the draw list.
 pub(super) fn draw(app: &mut App) {
     let (report, remarks) = (app.report(), app.remarks());
     let App { source, comparison, player, view, layers, inspector, hand, pointer, help, size, list, .. } =
@@ -61,8 +60,7 @@ pub(super) fn draw(app: &mut App) {
     let bottom = draw_lines(list, &lines, *size);
     let layer_list = LayerList { corner: [LEFT, LAYERS_TOP.max(bottom + CELL_HEIGHT / 2.0)] };
     let players = source.as_ref().map_or(Vec::new(), |source| source.keys());
-    // The layer list is omitted in a small window, and while people play, because it would cover their game. Its keys
-    // still work.
+    // The list is omitted in a small window, and while people play, because it would cover their game.
     let fits = source.is_some() && layer_list.corner[1] + LayerList::size()[1] < size[1] - CELL_HEIGHT * 3.0;
     let is_in_the_way = player.playing && !players.is_empty() && !*help;
     app.layer_list = (fits && !is_in_the_way).then_some(layer_list);
@@ -75,7 +73,7 @@ pub(super) fn draw(app: &mut App) {
     }
 }
 
-/// Colour of a status line: a verdict is recognised by its name.
+/// A verdict is recognised by its text.
 fn colour_of(status: &str) -> Colour {
     let bad = ["diverged", "malformed", "incomplete", "claim mismatch", "limit exceeded", "unverifiable"];
     match status {
@@ -85,7 +83,7 @@ fn colour_of(status: &str) -> Colour {
     }
 }
 
-/// Draws lines of text, and returns the y coordinate of their lower edge.
+/// Returns the y coordinate of the lower edge.
 fn draw_lines(list: &mut DrawList, lines: &[(Colour, String)], [width, _]: [f32; 2]) -> f32 {
     let columns = (((width - 2.0 * LEFT) / width_of("x", 1.0)) as usize).clamp(1, COLUMNS_MAX);
     let rows: Vec<_> = lines
@@ -101,14 +99,12 @@ fn draw_lines(list: &mut DrawList, lines: &[(Colour, String)], [width, _]: [f32;
     TOP + height
 }
 
-/// Splits a line into rows of at most `columns` characters.
 fn wrapped(line: &str, columns: usize) -> Vec<String> {
     let characters: Vec<char> = line.chars().collect();
     characters.chunks(columns.max(1)).map(|row| row.iter().collect()).collect()
 }
 
-/// Draws the second world over the first, and circles the bodies that differ; the first difference gets a thicker
-/// circle.
+/// Draws the second world over the first, and circles the bodies that differ, the first with a thicker line.
 fn draw_other(
     list: &mut DrawList,
     shown: &World,

@@ -1,4 +1,4 @@
-//! Timeline bar: shows the current tick, and is clicked or dragged to seek.
+//! Timeline bar, which is clicked or dragged to seek.
 
 use lockstep2d_render::DrawList;
 
@@ -10,7 +10,6 @@ const MARGIN: f32 = 12.0;
 /// Height of the bar, in pixels.
 const HEIGHT: f32 = 14.0;
 
-/// Position of the bar in pixels, and the range of ticks that it spans.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bar {
     left: f32,
@@ -28,18 +27,17 @@ impl Bar {
     }
 
     pub(super) fn holds(self, [x, y]: [f32; 2]) -> bool {
-        // The clickable area is larger than the drawn bar, which is thin.
+        // Clicks slightly beside the thin bar count, too.
         (self.left - 4.0..=self.left + self.width + 4.0).contains(&x)
             && (self.top - 6.0..=self.top + HEIGHT + MARGIN).contains(&y)
     }
 
-    /// Returns the tick at an x coordinate, clamped to the range of the bar.
+    /// Tick at an x coordinate, clamped to the range of the bar.
     pub(super) fn tick_at(self, x: f32) -> u64 {
         let part = (f64::from((x - self.left) / self.width)).clamp(0.0, 1.0);
         self.first + (part * self.ticks() + 0.5) as u64
     }
 
-    /// Returns the x coordinate of a tick.
     fn place_of(self, tick: u64) -> f32 {
         let part = tick.saturating_sub(self.first) as f64 / self.ticks().max(1.0);
         self.left + self.width * part.min(1.0) as f32

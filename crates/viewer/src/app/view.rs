@@ -9,7 +9,6 @@ use lockstep2d_render::Camera;
 /// Zoom factor of one notch of the wheel or one key press.
 const ZOOM: f32 = 1.2;
 
-/// The camera, and the body that it follows.
 #[derive(Debug, Default)]
 pub(super) struct View {
     camera: Option<Camera>,
@@ -19,7 +18,7 @@ pub(super) struct View {
 }
 
 impl View {
-    /// Returns the current camera. The first camera shows the whole world.
+    /// Returns the camera, which at first shows the whole world.
     pub(super) fn camera(&mut self, world: &World, size: [f32; 2]) -> Camera {
         if self.size != size {
             self.resize(size);
@@ -31,7 +30,7 @@ impl View {
         *self.camera.insert(camera)
     }
 
-    /// Returns to a view of the whole world, and stops following a body.
+    /// Shows the whole world again, and follows no body.
     pub(super) fn reset(&mut self) {
         (self.camera, self.followed) = (None, None);
     }
@@ -41,12 +40,11 @@ impl View {
         self.camera.iter_mut().for_each(|camera| camera.pan(by));
     }
 
-    /// Zooms about a point of the screen.
     pub(super) fn zoom(&mut self, notches: f32, about: [f32; 2]) {
         self.camera.iter_mut().for_each(|camera| camera.zoom(ZOOM.powf(notches), about));
     }
 
-    /// Adapts the camera to a new window size. The centre and the scale stay the same.
+    /// Keeps the centre and the scale.
     fn resize(&mut self, size: [f32; 2]) {
         self.size = size;
         let fresh = Camera::new(Aabb::default(), [0.0; 2], size);

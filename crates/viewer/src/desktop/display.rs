@@ -1,15 +1,12 @@
-//! Checks for a display before a window is opened: without a display, the windowing library aborts the program.
+//! Checks for a display, without which the windowing library aborts the program.
 
 use std::env;
 use std::os::linux::net::SocketAddrExt;
 use std::os::unix::net::{SocketAddr, UnixStream};
 use std::path::PathBuf;
 
-/// Checks that `DISPLAY` or `WAYLAND_DISPLAY` is set. If only `DISPLAY` is set and it names a local X server, checks
-/// that the server accepts connections.
-///
-/// # Errors
-/// A message for the user that says what is missing.
+/// Checks that `DISPLAY` or `WAYLAND_DISPLAY` is set. With `DISPLAY` alone, a local X server must accept connections.
+/// The error is a message for the user.
 pub(super) fn check() -> Result<(), String> {
     let set = |name: &str| env::var(name).ok().filter(|value| !value.is_empty());
     match (set("DISPLAY"), set("WAYLAND_DISPLAY")) {
@@ -23,8 +20,7 @@ pub(super) fn check() -> Result<(), String> {
     }
 }
 
-/// Returns whether an X server listens at `display`. Displays on other hosts are not contacted: any well-formed name
-/// passes.
+/// Whether an X server listens at `display`. Displays on other hosts are not contacted.
 fn answers(display: &str) -> bool {
     let Some(number) = display.strip_prefix(':').or_else(|| display.strip_prefix("unix:")) else {
         return !display.starts_with('/') && display.contains(':');

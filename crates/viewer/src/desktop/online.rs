@@ -11,7 +11,6 @@ use crate::play::{Controls, Online, Player};
 use crate::source::Source;
 use crate::viewer::{SceneKind, Viewer};
 
-/// Ids of the arguments.
 const IDS: [&str; 6] = ["host", "join", "watch", "players", "lockstep", "rollback"];
 
 #[derive(Debug, Args)]
@@ -41,7 +40,6 @@ pub(super) fn without(command: clap::Command) -> clap::Command {
     IDS.iter().fold(command, |command, id| command.mut_arg(id, |argument| argument.hide(true)))
 }
 
-/// Way to enter a match.
 pub(super) enum Entry {
     Host(String),
     Join(String),
@@ -49,14 +47,13 @@ pub(super) enum Entry {
 }
 
 impl OnlineArgs {
-    /// Way to enter a match, if the arguments select one.
     pub(super) fn entry(&self) -> Option<Entry> {
         let host = self.host.clone().map(Entry::Host);
         let join = self.join.clone().map(Entry::Join);
         host.or(join).or_else(|| self.watch.clone().map(Entry::Watch))
     }
 
-    /// Enters a match of a scene, by default the first that has a setup.
+    /// Enters a match of a scene, by default the first with a setup.
     pub(super) fn open<G: Game + 'static>(
         &self,
         viewer: &Viewer<G>,
@@ -121,7 +118,7 @@ impl OnlineArgs {
     }
 }
 
-/// A socket at any free port, and the resolved address of a contact.
+/// Socket at a free port, and the resolved address.
 fn towards(contact: &str) -> Result<(Udp, SocketAddr), Trouble> {
     let contact = resolve(contact)?;
     let udp = bind(if contact.is_ipv6() { "[::]:0" } else { "0.0.0.0:0" })?;

@@ -1,4 +1,4 @@
-//! [`Act`]: user actions in a live world, with the pointer and with keys.
+//! [`Act`]: user actions in a live world.
 
 use lockstep2d::body::BodyId;
 use lockstep2d::fx;
@@ -13,17 +13,17 @@ pub enum Form {
     Circle,
     /// Rectangle.
     Box,
-    /// Random convex polygon, a new one for each spawn.
+    /// Random convex polygon.
     Polygon,
     /// Capsule: a rod with round ends.
     Capsule,
 }
 
 impl Form {
-    /// All forms, in the order in which the key `b` steps through them.
+    /// All forms, in the order of the key `b`.
     pub const ALL: [Form; 4] = [Form::Circle, Form::Box, Form::Polygon, Form::Capsule];
 
-    /// Returns the name for display.
+    /// Name for display.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -35,12 +35,12 @@ impl Form {
     }
 }
 
-/// Point that the user points at, in metres in world coordinates.
+/// Point that the user points at, in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Aim {
-    /// The point.
+    /// The point, in metres.
     pub at: Vec2<Fx>,
-    /// Largest distance of a body that is picked if none contains the point, in metres: a few pixels on the screen.
+    /// Largest distance of a picked body that does not contain the point, in metres.
     pub within: Fx,
 }
 
@@ -52,10 +52,9 @@ impl Aim {
     }
 }
 
-/// User action in a live world. Points are in metres in world coordinates.
+/// User action in a live world. Points are in metres, in world coordinates.
 ///
-/// Acts take effect in the next tick, in their order. An act has no effect if it makes no sense in that tick, such as
-/// dragging without a grabbed body, or if the world refuses it.
+/// Acts take effect in the next tick, in order. An act that makes no sense or that the world refuses has no effect.
 ///
 /// ```
 /// use lockstep2d::{body::BodyKind, fx, math::Vec2};
@@ -84,34 +83,32 @@ impl Aim {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Act {
-    /// Grabs the dynamic body at this point, if there is one. A body that was held before is released.
+    /// Grabs the dynamic body at this point. Releases the held body first.
     Grab(Aim),
-    /// Pulls the held body towards a point, by the point at which it was grabbed.
+    /// Pulls the held body towards this point, by its grabbed point.
     DragTo(Vec2<Fx>),
-    /// Releases the held body, which keeps its velocity, so that it can be thrown.
+    /// Releases the held body, which keeps its velocity.
     Release,
-    /// Adds a dynamic body. The drag from `at` to `to` gives the radius of a circle or polygon, half the width and
-    /// half the height of a box, or the two ends of a capsule's segment. Sizes are limited to 50 m. A drag shorter than
-    /// 0.05 m gives the default size of 0.5 m.
+    /// Adds a dynamic body. The drag gives the radius of a circle or polygon, the half extents of a box, or the segment
+    /// of a capsule, up to 50 m. A drag shorter than 0.05 m gives a size of 0.5 m.
     Spawn {
         /// Form of the body.
         form: Form,
-        /// Centre of the body; for a capsule with a longer drag, one end of its segment.
+        /// Centre of the body, or start of the segment of a drawn capsule.
         at: Vec2<Fx>,
         /// End of the drag.
         to: Vec2<Fx>,
     },
-    /// Removes the body at this point, of any kind.
+    /// Removes the body at this point, whatever its kind.
     Delete(Aim),
     /// Sets gravity, in m/s².
     Gravity(Vec2<Fx>),
-    /// Sets off an explosion. [`Act::explode`] has settings that suit most scenes.
+    /// Sets off an explosion, for example [`Act::explode`].
     Explode(Explosion),
 }
 
 impl Act {
-    /// Explosion at a point with a range of 8 m. Up to 4 m away it gives a resting block of 1 kg and 1 m width a speed
-    /// of 10 m/s, beyond that a lower speed.
+    /// Explosion with a range of 8 m, and full strength within 4 m.
     #[must_use]
     pub const fn explode(at: Vec2<Fx>) -> Self {
         Act::Explode(Explosion { radius: fx!(4), falloff: fx!(4), ..Explosion::new(at, fx!(10)) })
@@ -123,25 +120,23 @@ impl Act {
 pub struct Held {
     /// The body.
     pub body: BodyId,
-    /// Point at which the body was grabbed, in the body's frame, in metres.
+    /// Grabbed point, in the body's frame, in metres.
     pub point: Vec2<Fx>,
-    /// Target point of the pointer, in world coordinates, in metres.
+    /// Target of the drag, in world coordinates, in metres.
     pub towards: Vec2<Fx>,
 }
 
 /// World that the user can act in.
 pub trait Playground {
-    /// Queues an act for the next tick. Several acts may be queued.
+    /// Queues an act for the next tick.
     ///
-    /// If the next tick is already recorded, because the user went back, and the queued acts issue commands, it is
-    /// played again with these acts in place of the recorded ones, and all later ticks are dropped. A seek to an
-    /// earlier tick drops queued acts and releases the held body.
+    /// After a seek to an earlier tick, an act that issues commands drops the recorded ticks from there on. Such a seek
+    /// itself drops queued acts and releases the held body.
     fn act(&mut self, act: Act);
 
-    /// Returns the held body; `None` also before the second tick after the grab, which attaches the body to the
-    /// pointer.
+    /// Returns the held body; `None` until the second tick after the grab.
     fn held(&self) -> Option<Held>;
 
-    /// Number of queued acts. Acts remain queued while the world is paused.
+    /// Number of queued acts.
     fn waiting(&self) -> usize;
 }

@@ -1,11 +1,10 @@
 //! [`Hand`]: turns user actions into commands.
 //!
-//! A spring joint connects a dragged body to an anchor: a kinematic body without shapes that follows the pointer,
-//! like Box2D's mouse joint. All steps are commands, so that the input log contains them. A command does not
-//! return the handle of the body that it creates. The anchor is therefore found by its user data one tick later, and
-//! the joint is added then.
+//! A spring joint connects a dragged body to an anchor: a kinematic body without shapes that follows the pointer, like
+//! Box2D's mouse joint. A command returns no handle, so the anchor is found by its user data one tick later, and the
+//! joint is added then.
 //!
-//! A seek to an earlier tick forgets the held body. Anchors left in the world are then removed in the next live tick.
+//! A seek to an earlier tick forgets the held body. The next live tick removes the anchors left in the world.
 
 use lockstep2d::body::{Body, BodyDef, BodyId, BodyKind};
 use lockstep2d::fx;
@@ -25,15 +24,14 @@ const HERTZ: Fx = fx!(5);
 const DAMPING_RATIO: Fx = fx!(1);
 /// Largest force of the drag spring per kilogram of the body, in m/s².
 const STRENGTH: i64 = 1000;
-/// Friction torque that damps the rotation of a dragged body, per kilogram and metre of radius of gyration, in m/s². It
-/// equals the torque of a quarter of the body's weight at that radius.
+/// Friction torque against rotation of a dragged body, per kilogram and metre of radius of gyration, in m/s²: a quarter
+/// of its weight at that radius.
 const GRIP: Fx = fx!(2.5);
 
-/// Grab state of the pointer.
 #[derive(Debug)]
 pub(super) struct Hand {
     hold: Hold,
-    /// Number of grabs so far, used to number anchors.
+    /// Number of grabs so far.
     grabs: u32,
     /// Whether the world may contain anchors that are no longer held.
     litter: bool,
@@ -43,9 +41,9 @@ pub(super) struct Hand {
 #[derive(Clone, Copy, Debug)]
 enum Hold {
     Nothing,
-    /// The command that creates the anchor has been issued.
+    /// The spawn command of the anchor has been issued.
     Reaching(Grab),
-    /// The anchor exists, and the command that creates its joint has been issued.
+    /// The anchor exists, and the command of its joint has been issued.
     Holding(Grab, BodyId),
 }
 
@@ -65,7 +63,6 @@ impl Hand {
         Hand { hold: Hold::Nothing, grabs: 0, litter: false, rng: Rng::new(seed) }
     }
 
-    /// Returns the held body.
     pub(super) fn held(&self) -> Option<Held> {
         match self.hold {
             Hold::Holding(grab, _) => {
@@ -75,13 +72,12 @@ impl Hand {
         }
     }
 
-    /// Releases the held body without a command, after a seek to an earlier tick or after commands were dropped.
+    /// Forgets the held body without a command, after a seek backwards or after commands were dropped.
     pub(super) fn forget(&mut self) {
         self.hold = Hold::Nothing;
         self.litter = true;
     }
 
-    /// Appends the commands that carry out an act in the next tick.
     pub(super) fn act(&mut self, act: Act, world: &World, commands: &mut Vec<Command>) {
         match act {
             Act::Grab(aim) => {
@@ -104,7 +100,7 @@ impl Hand {
         }
     }
 
-    /// Continues grabs begun in earlier ticks. To be called in every live tick, before its acts.
+    /// Continues earlier grabs. To be called in every live tick, before its acts.
     pub(super) fn follow(&mut self, world: &World, commands: &mut Vec<Command>) {
         match self.hold {
             Hold::Nothing => {}
@@ -113,7 +109,7 @@ impl Hand {
                 // The world had no room for the anchor.
                 None => self.hold = Hold::Nothing,
             },
-            // The joint disappears with the body, and other code may remove it too.
+            // The joint disappears with its body, for example.
             Hold::Holding(grab, anchor) => {
                 if !world.joints().any(|(_, joint)| joint.def().user_data == grab.mark) {
                     self.drop_anchor(anchor, commands);
@@ -136,7 +132,7 @@ impl Hand {
         let Some(anchor) = world.body(id) else { return };
         let config = world.config();
         let way = grab.towards - anchor.position();
-        // At most half the distance that a kinematic body can move in a tick, which leaves room for rounding.
+        // Half the distance that a kinematic body can move in a tick leaves room for rounding.
         let reach = config.solver.speed_max / (2 * i64::from(config.tick_rate));
         let way = match way.normalized_with_length() {
             Some((direction, length)) if length > reach => direction.widen().scale(reach),
@@ -190,7 +186,7 @@ fn find_anchor(world: &World, mark: u64) -> Option<BodyId> {
     world.bodies().find(|(_, body)| body.user_data() == mark && is_anchor(body)).map(|(id, _)| id)
 }
 
-/// Returns whether a body is an anchor, of this hand or of an earlier one.
+/// Whether a body is an anchor, of this hand or of an earlier one.
 fn is_anchor(body: &Body) -> bool {
     body.kind() == BodyKind::Kinematic && body.shapes().is_empty() && body.user_data() >> 32 == MARK >> 32
 }

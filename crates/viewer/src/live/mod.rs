@@ -19,10 +19,9 @@ use hand::Hand;
 
 /// Sandbox that the user acts in, and its recording.
 ///
-/// Every tick is recorded, so that the user can pause, step back and go to any tick since the start. Playing on from
-/// an earlier tick shows the recorded ticks again. An [`Act`] that issues commands there cuts the recording and drops
-/// the later ticks. The recording can be saved as a replay at any time, and that replay verifies. If the work
-/// of its ticks exceeds the default limit of a verifier, the status shows it as a value for `--max-work`.
+/// Every tick is recorded, so the user can go to any tick since the start. Playing on from an earlier tick shows the
+/// recorded ticks again. An [`Act`] that issues commands there drops them. If the work of the replay exceeds the
+/// default limit of a verifier, the status shows it as a value for `--max-work`.
 ///
 /// ```
 /// use lockstep2d_scenes::Scene;
@@ -50,7 +49,7 @@ pub struct Live {
 }
 
 impl Live {
-    /// Starts a scene. Its scripted commands run in every tick.
+    /// Starts a scene, whose scripted commands run in every tick.
     ///
     /// # Errors
     /// [`RecordError`] if a replay cannot hold the scene.
@@ -81,8 +80,7 @@ impl Live {
         self.recording.game()
     }
 
-    /// Plays one tick: a live tick with the queued acts, or the recorded tick if there is one and the acts issue no
-    /// commands.
+    /// Plays the recorded tick if there is one and the acts issue no commands, otherwise a live tick.
     fn step(&mut self) -> Result<(), RecordingError> {
         let world = self.recording.game().world();
         let goes_on = self.recording.is_at_end();
@@ -106,7 +104,7 @@ impl Live {
         let all = [[script.clone(), done].concat()];
         self.note = None;
         match self.recording.play(&all) {
-            // A replay cannot hold all these commands: drop those of the user.
+            // A replay cannot hold all commands: the user's are dropped.
             Err(RecordingError::TooMuch | RecordingError::Record(_)) if all[0].len() > script.len() => {
                 self.hand.forget();
                 self.note = Some("too many commands in one tick: they were dropped");
@@ -123,7 +121,7 @@ impl Live {
 
 impl Playground for Live {
     fn act(&mut self, act: Act) {
-        // Consecutive drag targets are merged: only the last one has an effect.
+        // The last of consecutive drag targets replaces the others.
         if let (Act::DragTo(_), Some(Act::DragTo(_))) = (act, self.acts.last()) {
             self.acts.pop();
         }
@@ -156,7 +154,6 @@ impl Source for Live {
         self.recording.tick()
     }
 
-    /// Always `None`: a live world has no last tick.
     fn ticks(&self) -> Option<u64> {
         None
     }
@@ -169,8 +166,8 @@ impl Source for Live {
         self.recording.game().tick_rate()
     }
 
-    /// Seeking forwards plays: queued acts are carried out in the next tick, and the world runs on beyond the recorded
-    /// ticks. Seeking backwards drops queued acts and releases the held body.
+    /// Seeking forwards plays, also beyond the recorded ticks. Seeking backwards drops queued acts and releases the
+    /// held body.
     fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
         if tick < self.tick() {
             self.acts.clear();

@@ -6,7 +6,6 @@ use lockstep2d::world::{Probe, QueryFilter, World};
 
 use super::act::Aim;
 
-/// Picked body and the picked point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Picked {
     pub(super) body: BodyId,
@@ -14,8 +13,8 @@ pub(super) struct Picked {
     pub(super) point: Vec2<Fx>,
 }
 
-/// Picks the body at `aim` among those for which `wanted` holds: the one that contains the point, with its shape in the
-/// last slot, or, if none contains it, the nearest one within `aim.within`. Solid shapes take precedence over sensors.
+/// Picks the `wanted` body that contains the point, with its shape in the last slot, or else the nearest one within
+/// `aim.within`. Solid shapes take precedence over sensors.
 pub(super) fn pick(world: &World, aim: Aim, wanted: impl Fn(&Body) -> bool) -> Option<Picked> {
     let solid = QueryFilter::default();
     let all = QueryFilter { sensors: true, ..solid };
@@ -49,7 +48,7 @@ mod tests {
 
     use super::*;
 
-    /// Two circles of 1 m radius at the origin, one drawn above the other, inside a larger sensor.
+    /// Two circles of 1 m radius at the origin, inside a larger sensor.
     fn world() -> Result<(World, [BodyId; 3]), WorldError> {
         let mut world = World::default();
         let disc = ShapeDef::new(Geometry::circle(fx!(1))?);

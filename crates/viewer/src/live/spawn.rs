@@ -7,7 +7,7 @@ use lockstep2d::world::Command;
 
 use super::act::Form;
 
-/// Radius, half width or, for a capsule, length of the segment of a body placed by a click, in metres.
+/// Size of a body placed by a click, in metres: radius, half width or length of a capsule's segment.
 const SIZE: Fx = fx!(0.5);
 /// Drags shorter than this, in metres, count as clicks.
 const CLICK: Fx = fx!(0.05);
@@ -16,7 +16,7 @@ const HALF_MIN: Fx = fx!(0.02);
 /// Largest size, in metres.
 const SIZE_MAX: Fx = fx!(50);
 
-/// Returns the command that spawns a body drawn from `at` to `to`; `None` if no valid shape has that size.
+/// Returns the spawn command of a body drawn from `at` to `to`, if it has a valid shape.
 pub(super) fn spawn(form: Form, at: Vec2<Fx>, to: Vec2<Fx>, rng: &mut Rng) -> Option<Command> {
     let way = to - at;
     let size = way.length();
@@ -52,11 +52,11 @@ fn polygon(radius: Fx, rng: &mut Rng) -> Result<Polygon, GeometryError> {
             Rot::from_angle(Angle::from_turns(part)).apply_wide(Vec2::new(distance, Fx::ZERO))
         })
         .collect();
-    // If the points have no valid hull, a regular polygon replaces it.
+    // Points without a valid hull are replaced by a regular polygon.
     Polygon::hull(&points).or_else(|_| Polygon::regular(corners, radius))
 }
 
-/// Capsule along the drag, with a radius of a fifth of the length of the drag, but at least [`HALF_MIN`].
+/// Capsule along the drag. Its radius is a fifth of the drag, and at least [`HALF_MIN`].
 fn capsule(at: Vec2<Fx>, way: Option<Vec2<Fx>>, length: Fx) -> (BodyDef, Result<Geometry, GeometryError>) {
     let half = (length / 2).max(HALF_MIN);
     let radius = (length / 5).max(HALF_MIN);

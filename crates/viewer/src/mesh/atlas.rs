@@ -2,13 +2,13 @@
 
 use lockstep2d_render::{GLYPH_HEIGHT, GLYPH_WIDTH, glyph};
 
-/// Size of a slot: a glyph with one empty pixel on its right and one below, so that neighbouring glyphs do not bleed
-/// into it when text is magnified.
+/// Size of a slot: a glyph with an empty pixel on its right and below, so that magnified neighbours do not bleed into
+/// it.
 const SLOT: [usize; 2] = [GLYPH_WIDTH + 1, GLYPH_HEIGHT + 1];
 const COLUMNS: usize = 16;
-/// Number of Latin-1 characters, which come first.
+/// Number of Latin-1 characters, which have the first slots.
 const LATIN: usize = 0x100;
-/// First of the 64 characters that follow: the dashes, quotes and spaces of U+2000 to U+203F.
+/// First of the 64 characters that follow: dashes, quotes and spaces.
 const PUNCTUATION: u32 = 0x2000;
 const SLOTS: usize = LATIN + 0x40;
 
@@ -41,7 +41,7 @@ impl Atlas {
     /// Height in pixels.
     pub const HEIGHT: usize = SLOTS.div_ceil(COLUMNS) * SLOT[1];
 
-    /// Returns the upper left and lower right corners of a character, as fractions of the image.
+    /// Upper left and lower right corner of a character, as fractions of the image.
     pub(super) fn place(character: char) -> [[f32; 2]; 2] {
         let [left, top] = corner(slot(character));
         let fraction = |x: usize, y: usize| [x as f32 / Atlas::WIDTH as f32, y as f32 / Atlas::HEIGHT as f32];
@@ -53,7 +53,7 @@ fn corner(slot: usize) -> [usize; 2] {
     [slot % COLUMNS * SLOT[0], slot / COLUMNS * SLOT[1]]
 }
 
-/// Slot of a character. A character that the atlas lacks gets slot 0, the glyph for missing characters.
+/// Slot of a character; slot 0 is the glyph for missing characters.
 fn slot(character: char) -> usize {
     let code = u32::from(character);
     match character {

@@ -7,9 +7,9 @@ use super::{Atlas, Chunk, Mesh, Screen, Vertex};
 
 type Point = [f32; 2];
 
-/// Value of [`Vertex::sample`](super::Vertex::sample) for full coverage: distance 0, reach 1.
+/// Sample for full coverage: distance 0, reach 1.
 const WHOLE: [f32; 3] = [0.0, 1.0, 0.0];
-/// Maximum number of points of a line in one strip. Each point becomes at most four vertices.
+/// Maximum number of points of a strip. Each becomes at most four vertices.
 const RUN: usize = Chunk::VERTICES / 4 - 2;
 
 impl Mesh {
@@ -62,8 +62,7 @@ impl Mesh {
         chunk.indices.extend(fan.flatten().map(|index| first + index));
     }
 
-    /// Adds a regular polygon as a fan around its centre. The depth of a pixel inside the polygon, and so the
-    /// antialiasing, is interpolated linearly from the edge to the centre.
+    /// Adds a regular polygon as a fan around its centre. The sampled depth grows linearly from the edge to the centre.
     fn disc(&mut self, points: &[Point], disc: Disc, fill: Colour, pixel: f32) {
         let [x, y] = disc.middle;
         let scale = 1.0 + pixel / 2.0 / disc.inner;
@@ -106,7 +105,7 @@ impl Mesh {
         self.strip.corners = corners;
     }
 
-    /// Adds a single segment. Most lines are single segments; this avoids the detour over a strip.
+    /// Adds a single segment, the most common kind of line, without the detour over a strip.
     fn segment(&mut self, [a, b]: [Point; 2], item: &Item, pixel: f32) {
         let [x, y] = [b[0] - a[0], b[1] - a[1]];
         let length = (x * x + y * y).sqrt();
@@ -145,7 +144,7 @@ impl Mesh {
         self.strip.corners = corners;
     }
 
-    /// Adds, in pieces, a line with more than [`RUN`] points.
+    /// Adds a line with more than [`RUN`] points in pieces.
     fn long_stroke(&mut self, points: &[Point], item: &Item, pixel: f32) {
         let mut from = 0;
         while from + 1 < points.len() {
@@ -188,24 +187,23 @@ impl Mesh {
     }
 }
 
-/// Returns the colour of a line, and half its width plus half a pixel, in screen pixels.
+/// Colour of a line, and half its width plus half a pixel, in screen pixels.
 fn pen(item: &Item, pixel: f32) -> ([u8; 4], f32) {
-    // A line thinner than a pixel is drawn one pixel wide, with its opacity reduced in proportion.
+    // A line thinner than a pixel is drawn one pixel wide, with its opacity reduced.
     let width = item.width / pixel;
     let mut colour = bytes(item.stroke);
     colour[3] = (f32::from(colour[3]) * width.min(1.0)).round() as u8;
     (colour, width.max(1.0) / 2.0 + 0.5)
 }
 
-/// Regular polygon, the form in which marks and circles are drawn.
+/// Regular polygon: a mark or a circle.
 struct Disc {
     middle: Point,
     /// Distance of the edges from the centre.
     inner: f32,
 }
 
-/// Recognises a regular polygon of 5 to 64 corners: all corners on a circle and all edges of the same length, to
-/// about a hundredth of the edge length.
+/// Recognises a regular polygon of 5 to 64 corners, to about a hundredth of the edge length.
 fn regular(points: &[Point]) -> Option<Disc> {
     if !(5..=64).contains(&points.len()) {
         return None;
@@ -228,8 +226,7 @@ fn regular(points: &[Point]) -> Option<Disc> {
     (inner > 0.0).then_some(Disc { middle, inner })
 }
 
-/// Returns whether the bounds of a shape overlap the screen. A shape with a coordinate that is not finite is not
-/// visible.
+/// Whether a shape overlaps the screen; `false` if a coordinate is not finite.
 fn is_visible(points: &[Point], width: f32, screen: &Screen) -> bool {
     // A mitre extends at most 2.2 half-widths of the line.
     let margin = 1.1 * width + 2.0 * screen.pixel;
@@ -246,16 +243,16 @@ fn is_visible(points: &[Point], width: f32, screen: &Screen) -> bool {
     seen == [[true; 2]; 2]
 }
 
-/// Triangle fan of a convex polygon; `None` if it has no corners or more than fit in a chunk.
+/// Triangle fan of a convex polygon; `None` if it is empty or does not fit in a chunk.
 fn fan(corners: usize) -> Option<impl Iterator<Item = [u16; 3]>> {
     let last =
         u16::try_from(corners.checked_sub(1)?).ok().filter(|&last| usize::from(last) < Chunk::VERTICES)?;
     Some((1..last).map(|corner| [0, corner, corner + 1]))
 }
 
-/// Appends the triangles between the two sides of a strip, whose corners alternate between the sides.
+/// Appends the triangles of a strip, whose corners alternate between its sides.
 fn ribbon(indices: &mut Vec<u16>, first: u16, pairs: usize, closed: bool) {
-    // The corners fit in a chunk, so their number fits in 16 bits.
+    // The corners fit in a chunk.
     let pairs = pairs as u16;
     let mut quad = |a: u16, b: u16| {
         let [a, b] = [first + 2 * a, first + 2 * b];

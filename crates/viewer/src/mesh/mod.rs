@@ -1,16 +1,14 @@
 //! [`Mesh`]: a draw list as triangles, for the GPU.
 //!
-//! All items use the same vertex format and are drawn in list order, so that text, outlines and areas can overlap in
-//! any order. The fragment shader computes the coverage of a pixel from the interpolated [`Vertex::sample`]. For lines
-//! and areas it is
+//! All items share a vertex format and are drawn in list order. The fragment shader computes the coverage of a pixel
+//! from [`Vertex::sample`]. For shapes it is
 //!
 //! ```text
 //! coverage = clamp(reach - |distance|, 0, 1)
 //! ```
 //!
 //! where, for a line, `distance` is the distance from the centre line in screen pixels, and `reach` is half the line
-//! width plus half a pixel. So edges are antialiased over one pixel, and a line takes two triangles per segment and two
-//! more at a sharp corner. For text, the coverage is the opacity of the glyph's pixel in the [`Atlas`].
+//! width plus half a pixel. This antialiases edges over one pixel. For text, it is the opacity of the [`Atlas`].
 //!
 //! ```
 //! use lockstep2d_viewer::mesh::{Atlas, Chunk, Mesh, Screen, Vertex};
@@ -63,8 +61,7 @@ pub struct Chunk {
 impl Chunk {
     /// Maximum number of vertices of a chunk.
     pub const VERTICES: usize = 1 << 15;
-    /// Maximum number of indices of a chunk. The shape with the most indices per vertex is an area without a border,
-    /// with fewer than 4.5.
+    /// Maximum number of indices of a chunk: an area without a border has most per vertex, fewer than 4.5.
     pub const INDICES: usize = 5 * Chunk::VERTICES;
 }
 
@@ -73,13 +70,11 @@ impl Chunk {
 pub struct Screen {
     /// Width and height, in the units of the draw list.
     pub size: [f32; 2],
-    /// Size of a screen pixel in these units, such as 0.5 on a high-DPI screen with a scale factor of 2.
+    /// Size of a screen pixel in these units, such as 0.5 for a scale factor of 2.
     pub pixel: f32,
 }
 
-/// Draw list as triangles, in drawing order.
-///
-/// The memory is reused from frame to frame.
+/// Draw list as triangles, in drawing order. Memory is reused between frames.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     chunks: Vec<Chunk>,
@@ -89,7 +84,7 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Returns the chunks, in drawing order.
+    /// Chunks, in drawing order.
     #[must_use]
     pub fn chunks(&self) -> &[Chunk] {
         &self.chunks[..self.used]
@@ -103,8 +98,7 @@ impl Mesh {
         self.used = 0;
     }
 
-    /// Returns a chunk with room for this number of vertices, at most [`Chunk::VERTICES`], and the number of vertices
-    /// that it already has.
+    /// Returns a chunk with room for `vertices` (at most [`Chunk::VERTICES`]), and its number of vertices.
     fn room(&mut self, vertices: usize) -> (&mut Chunk, u16) {
         let full = |chunk: &Chunk| chunk.vertices.len() + vertices > Chunk::VERTICES;
         if self.used == 0 || full(&self.chunks[self.used - 1]) {

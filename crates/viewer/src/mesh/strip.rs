@@ -2,15 +2,14 @@
 
 type Point = [f32; 2];
 
-/// Mitre limit, as 1 + the cosine of the angle by which a line turns; corners with a smaller value get no mitre. At the
-/// limit, a turn by 127 degrees, a mitre extends 2.2 half-widths; at sharper corners it would be a long spike.
+/// Mitre limit, as 1 + the cosine of the turning angle. At the limit (127 degrees) a mitre extends 2.2 half-widths;
+/// sharper corners get none.
 const SHARP: f32 = 0.4;
 
-/// Segments up to this length, in the units of the draw list, are skipped because they have no reliable direction.
+/// Segments up to this length, in units of the draw list, are skipped: they have no reliable direction.
 pub(super) const SHORTEST: f32 = 1e-3;
 
-/// Corners of a line, each with the offset from the centre line to the left side for a half-width of 1. The offset is
-/// longer where the line turns, so that the line keeps its width.
+/// Corners of a line, each with the mitre offset to its left side for a half-width of 1.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Strip {
     /// Points of the line, without those closer than [`SHORTEST`] to their predecessor.
@@ -33,7 +32,7 @@ impl Strip {
         let Some(&first) = self.points.first() else { return false };
         if closed {
             self.add(first);
-            // The segment back to the first point is the last one; the duplicate of the first point is removed.
+            // The duplicate of the first point is removed.
             if self.points.len() > 1 {
                 self.points.pop();
             }

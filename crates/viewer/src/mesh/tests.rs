@@ -19,8 +19,7 @@ fn mesh_of(list: &DrawList, screen: &Screen) -> Mesh {
     mesh
 }
 
-/// Renders a list in white on a black screen and returns the brightness of each pixel. Evaluates the same formula as
-/// the shader, near the centre of each pixel.
+/// Brightness of each pixel of a list in white on black, by the formula of the shader.
 fn drawn(list: &DrawList) -> Vec<f32> {
     let mesh = mesh_of(list, &SCREEN);
     let atlas = Atlas::default();
@@ -45,8 +44,7 @@ fn sample(corners: [&Vertex; 3], point: [f32; 2]) -> Option<[f32; 3]> {
     let cross =
         |a: [f32; 2], b: [f32; 2], c: [f32; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     let area = cross(a, b, c);
-    // A point on a shared edge must count for one triangle only: sampling slightly off the pixel centre keeps all
-    // points of these tests off the edges.
+    // Slightly off the pixel centre: a point on a shared edge would count for two triangles.
     let point = [point[0] + 1.3e-3, point[1] + 2.7e-3];
     let weights = [cross(point, b, c), cross(a, point, c), cross(a, b, point)].map(|part| part / area);
     let inside = area != 0.0 && weights.iter().all(|&weight| weight >= 0.0);
@@ -140,7 +138,6 @@ fn an_area_with_a_border_and_one_without() {
     }
 }
 
-/// Corners of a regular polygon.
 fn disc([x, y]: [f32; 2], radius: f32, corners: u32) -> impl Iterator<Item = [f32; 2]> {
     (0..corners).map(move |corner| {
         let (sin, cos) = (std::f32::consts::TAU * corner as f32 / corners as f32).sin_cos();

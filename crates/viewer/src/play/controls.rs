@@ -5,13 +5,12 @@ use std::rc::Rc;
 
 use crate::event::{Event, Key};
 
-/// Changes the input of a tick while a key is down.
 type Change<I> = Rc<dyn Fn(&mut I)>;
 
-/// Keys of a player, and the change that each of them makes to the player's input for a tick.
+/// Keys of a player, each with its change to the player's input for a tick.
 ///
-/// The input of a tick starts as the default, and every key that is down changes it, in the order in which the keys
-/// were added. A key that goes down and up between two ticks counts for one tick.
+/// The input of a tick starts as the default. Every key that is down changes it, in the order in which the keys were
+/// added. A key that goes down and up between two ticks counts for one tick.
 ///
 /// ```
 /// use lockstep2d_viewer::{Controls, Event, Key};
@@ -26,7 +25,6 @@ type Change<I> = Rc<dyn Fn(&mut I)>;
 /// ```
 pub struct Controls<I> {
     bindings: Vec<(Key, Change<I>)>,
-    /// Keys that are down.
     down: Vec<Key>,
     /// Keys that went down since the last tick.
     tapped: Vec<Key>,
@@ -58,22 +56,21 @@ impl<I: Default> Controls<I> {
         Controls { bindings: Vec::new(), down: Vec::new(), tapped: Vec::new() }
     }
 
-    /// Adds a key, and the change that it makes to the input of a tick while it is down. The key loses its function in
-    /// the viewer: the space bar, for example, no longer pauses.
+    /// Adds a key that changes the input of a tick while it is down. The key loses its function in the viewer.
     #[must_use]
     pub fn key(mut self, key: impl Into<Key>, change: impl Fn(&mut I) + 'static) -> Self {
         self.bindings.push((key.into(), Rc::new(change)));
         self
     }
 
-    /// Adds all keys of another player, for one person who may use either set.
+    /// Adds all keys of another player.
     #[must_use]
     pub fn with(mut self, other: &Self) -> Self {
         self.bindings.extend(other.bindings.iter().cloned());
         self
     }
 
-    /// Returns the keys, in the order in which they were added.
+    /// Keys, in the order in which they were added.
     pub fn keys(&self) -> impl Iterator<Item = Key> {
         self.bindings.iter().map(|(key, _)| *key)
     }
@@ -107,14 +104,13 @@ impl<I: Default> Controls<I> {
         input
     }
 
-    /// Returns the input for the next tick, which is about to be played.
+    /// Returns the input for the next tick, and forgets taps.
     pub(super) fn take(&mut self) -> I {
         let input = self.input();
         self.tapped.clear();
         input
     }
 
-    /// Whether a key counts for the next tick.
     pub(super) fn is_pressed(&self) -> bool {
         !self.down.is_empty() || !self.tapped.is_empty()
     }

@@ -14,9 +14,8 @@ use crate::source::{Source, SourceError};
 
 /// Game of people at one keyboard and bots.
 ///
-/// As in a live sandbox, every tick is recorded and any tick can be sought. Recorded ticks are played again until a
-/// person presses one of the players' keys: the game then continues live from there, and the later recorded ticks are
-/// dropped.
+/// Every tick is recorded and can be sought. Recorded ticks are played again until a person presses a player's key. The
+/// game then continues from there and drops the later recorded ticks.
 pub struct LocalMatch<G: Game> {
     name: String,
     recording: Recording<G>,
@@ -26,14 +25,13 @@ pub struct LocalMatch<G: Game> {
     nothing: World,
 }
 
-/// Memory in bytes that a save does not share with other saves. The memory of the game's own rules is unknown and
-/// counts as a kilobyte.
+/// Unshared bytes of a save, with a kilobyte for the game's own rules.
 fn bytes_of<G: Game>(game: &G, _: &G::Save) -> usize {
     1024 + game.world().map_or(0, |world| world.save().rollback_bytes())
 }
 
 impl<G: Game + 'static> LocalMatch<G> {
-    /// Starts a game. The players take its seats in order; further seats are absent, and further players are left out.
+    /// Starts a game. The players take its seats in order. Further seats are absent, and further players are left out.
     /// Bots are created from `seed`.
     ///
     /// # Errors
@@ -93,7 +91,6 @@ impl<G: Game + 'static> Source for LocalMatch<G> {
         self.recording.tick()
     }
 
-    /// Always `None`: a live game has no last tick.
     fn ticks(&self) -> Option<u64> {
         None
     }
@@ -122,7 +119,7 @@ impl<G: Game + 'static> Source for LocalMatch<G> {
     }
 
     fn handle(&mut self, event: &Event) -> bool {
-        // All players get the event, so that none misses the release of a key.
+        // No player may miss the release of a key.
         let taken = self.players.iter_mut().map(|player| player.handle(event));
         taken.fold(false, |any, taken| any | taken)
     }

@@ -15,15 +15,15 @@ use super::presentation::Presentation;
 use crate::event::{Event, Key};
 use crate::source::{Source, SourceError};
 
-/// Maximum time for which closing waits until this peer has left the match.
+/// Longest wait for leaving the match when closing.
 const LEAVE_TIME: Duration = Duration::from_millis(500);
-/// Time between two updates while closing waits.
+/// Interval of updates during this wait.
 const LEAVE_STEP: Duration = Duration::from_millis(5);
 
-/// Participant of a network match: its host, another player or a spectator.
+/// Participant of a network match: host, player or spectator.
 ///
-/// The match runs by the clock that all participants share, so it can neither be paused nor sought. The last few ticks
-/// shown may be played with guessed inputs. The replay contains only final ticks.
+/// The match follows a shared clock, so it can neither be paused nor sought. The last ticks shown may contain guessed
+/// inputs. The replay contains only final ticks.
 ///
 /// ```
 /// use std::time::Duration;
@@ -52,7 +52,7 @@ pub struct Online<G: Game, T: Transport> {
     now: Duration,
     controls: Controls<G::Input>,
     presentation: Presentation<G>,
-    /// Part of the replay that has been taken from the peer so far.
+    /// Replay taken from the peer so far.
     replay: Vec<u8>,
     desync: Option<PeerDesync>,
     /// Text of the peer's last event.
@@ -66,8 +66,7 @@ pub struct Online<G: Game, T: Transport> {
 }
 
 impl<G: Game + 'static, T: Transport> Online<G, T> {
-    /// Shows the match of a new peer, which was made from this setup. All seats of this peer are controlled by the same
-    /// keys.
+    /// Shows the match of a new peer, made from this setup. `controls` apply to all seats of the peer.
     #[must_use]
     pub fn new(
         name: impl Into<String>,
@@ -95,13 +94,13 @@ impl<G: Game + 'static, T: Transport> Online<G, T> {
         Online { presentation, ..self }
     }
 
-    /// Returns the peer.
+    /// The peer.
     #[must_use]
     pub const fn peer(&self) -> &Peer<G, T> {
         &self.peer
     }
 
-    /// Returns the first desync, if there was one.
+    /// The first desync.
     #[must_use]
     pub const fn desync(&self) -> Option<&PeerDesync> {
         self.desync.as_ref()
@@ -138,8 +137,8 @@ impl<G: Game + 'static, T: Transport> Online<G, T> {
         }
     }
 
-    /// Returns a complete replay of the ticks in the blocks that were taken from the peer so far. The match is still
-    /// being recorded, so the ticks are played again into a second recording.
+    /// Returns a replay of the blocks taken from the peer so far. The match is still being recorded, so its ticks are
+    /// played again into a second recording.
     fn replay_so_far(&self) -> Result<Vec<u8>, SourceError> {
         if self.replay.is_empty() {
             return Err(SourceError("this peer has no replay of the match, or not yet".into()));
@@ -154,7 +153,6 @@ impl<G: Game + 'static, T: Transport> Online<G, T> {
         recording.finish().map_err(SourceError::of)
     }
 
-    /// A line about the match for the player: errors, a desync, the status.
     fn news(&self) -> String {
         match (&self.ended, &self.desync, self.peer.status()) {
             (Some(error), ..) => return error.to_string(),
@@ -228,7 +226,7 @@ impl<G: Game + 'static, T: Transport> Source for Online<G, T> {
         Ok(true)
     }
 
-    /// Leaves the match; the others continue at once.
+    /// Leaves the match.
     fn close(&mut self) {
         self.peer.leave();
         for _ in 0..LEAVE_TIME.as_millis() / LEAVE_STEP.as_millis() {

@@ -8,15 +8,13 @@ use lockstep2d::lockstep::Game;
 use super::controls::Controls;
 use crate::event::{Event, Key};
 
-/// A computer player: returns the input for the next tick of a game. It is called for each tick that is
-/// not played from the recording.
+/// A computer player: returns the input for the next tick that is not played from the recording.
 pub type Bot<G> = Box<dyn FnMut(&G) -> <G as Game>::Input>;
 
-/// Creates a bot from the random seed of the scene and the number of the seat.
+/// Creates a bot from the scene's random seed and the seat number.
 type MakeBot<G> = Rc<dyn Fn(u64, usize) -> Bot<G>>;
 
-/// Control of a seat: keys, a bot or no player. [`Viewer::keys`](crate::Viewer::keys) and
-/// [`Viewer::bot`](crate::Viewer::bot) create players; tests pass them to a [`LocalMatch`](crate::LocalMatch).
+/// Control of a seat: keys, a bot or no player. Tests pass players to a [`LocalMatch`](crate::LocalMatch).
 ///
 /// ```
 /// use std::rc::Rc;
@@ -43,7 +41,7 @@ type MakeBot<G> = Rc<dyn Fn(u64, usize) -> Bot<G>>;
 pub enum Player<G: Game> {
     /// A person at the keyboard.
     Keys(Controls<G::Input>),
-    /// A bot, created from the random seed of the scene and the number of its seat.
+    /// A bot, created from the scene's random seed and the seat number.
     Bot(MakeBot<G>),
     /// No player: the seat's input is [`Game::absent`].
     Absent,
@@ -69,7 +67,6 @@ impl<G: Game> fmt::Debug for Player<G> {
     }
 }
 
-/// A player in a match.
 pub(super) enum Seated<G: Game> {
     Keys(Controls<G::Input>),
     Bot(Bot<G>),
@@ -85,7 +82,6 @@ impl<G: Game> Seated<G> {
         }
     }
 
-    /// The input for the next tick.
     pub(super) fn input(&mut self, game: &G) -> G::Input {
         match self {
             Seated::Keys(controls) => controls.take(),
@@ -94,12 +90,10 @@ impl<G: Game> Seated<G> {
         }
     }
 
-    /// Whether the seat is played with keys, and one of them is pressed.
     pub(super) fn presses(&self) -> bool {
         matches!(self, Seated::Keys(controls) if controls.is_pressed())
     }
 
-    /// The keys of the seat's player; none for a bot or an empty seat.
     pub(super) fn keys(&self) -> impl Iterator<Item = Key> {
         let controls = match self {
             Seated::Keys(controls) => Some(controls),
@@ -108,7 +102,6 @@ impl<G: Game> Seated<G> {
         controls.into_iter().flat_map(Controls::keys)
     }
 
-    /// Handles a key. Returns `true` if it is one of this player.
     pub(super) fn handle(&mut self, event: &Event) -> bool {
         match self {
             Seated::Keys(controls) => controls.handle(event),

@@ -9,17 +9,14 @@ use lockstep2d_render::{Camera, DrawList};
 
 use crate::canvas::Canvas;
 
-/// Names and values of the fields of a state.
+/// Names and values.
 pub(crate) type Fields = Vec<(String, String)>;
 
-/// Draws over the world of a game.
 pub(crate) type Draw<G> = dyn Fn(&G, &mut Canvas<'_>);
 
-/// The parts of a game that are shown besides its world: drawing, status line, state of the rules.
 pub(crate) struct Presentation<G: Game> {
-    /// Draws over the world.
     pub(crate) draw: Rc<Draw<G>>,
-    /// One line of text, such as the score; may be empty.
+    /// One line, such as the score; may be empty.
     pub(crate) status: Rc<dyn Fn(&G) -> String>,
     /// The state of the game's own rules.
     pub(crate) state: Rc<dyn Fn(&G) -> Fields>,
@@ -33,7 +30,7 @@ impl<G: Game> Clone for Presentation<G> {
 }
 
 impl<G: Game + 'static> Default for Presentation<G> {
-    /// No drawing and no status line. The state consists of all fields of a save except those of the world.
+    /// No drawing, no status line, and all fields of a save except those of the world.
     fn default() -> Self {
         Presentation {
             draw: Rc::new(|_, _| {}),
@@ -49,12 +46,10 @@ impl<G: Game> Presentation<G> {
     }
 }
 
-/// Lists fields by path and value.
 pub(crate) fn listed(fields: &[Field]) -> Fields {
     fields.iter().map(|field| (field.path().to_owned(), field.value.to_string())).collect()
 }
 
-/// All fields of a save, except those of the world in it.
 fn own_state<G: Game>(game: &G) -> Fields {
     let all = fields(&game.save()).unwrap_or_default();
     let world = game.world().and_then(|world| fields(&world.save()).ok()).unwrap_or_default();

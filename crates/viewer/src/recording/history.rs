@@ -2,17 +2,16 @@
 
 use std::collections::BTreeMap;
 
-/// Maximum number of saves of any size, because adding a save may scan all of them.
+/// Maximum number of saves, because adding one may scan all.
 const FRAMES_MAX: usize = 2048;
-/// Number of ticks added to the distance of a save from the current tick: ten seconds at 60 Hz. Within this distance,
-/// saves are about equally dense.
+/// Ticks added to the distance of a save from the current tick (ten seconds at 60 Hz). Within this distance, saves are
+/// about equally dense.
 const NEAR: u64 = 600;
 
 /// Saves of a game at some ticks, within a memory budget.
 ///
-/// When the budget is used up, the least useful saves are dropped: the gap between saves may grow in proportion to
-/// their distance from the current tick. Therefore a single step back is cheap, and the cost of a seek far back is
-/// proportional to the distance.
+/// When the budget is used up, the least useful saves are dropped: gaps may grow in proportion to their distance from
+/// the current tick. So a step back is cheap, and the cost of a seek is proportional to its distance.
 pub(super) struct History<S> {
     frames: BTreeMap<u64, Frame<S>>,
     bytes: usize,
@@ -31,7 +30,7 @@ impl<S> History<S> {
         History { frames, bytes: 0, bytes_max }
     }
 
-    /// Returns the last save at or before a tick.
+    /// The last save at or before a tick.
     pub(super) fn latest(&self, tick: u64) -> Option<(u64, &S)> {
         self.frames.range(..=tick).next_back().map(|(tick, frame)| (*tick, &frame.save))
     }
@@ -40,8 +39,8 @@ impl<S> History<S> {
         self.frames.contains_key(&tick)
     }
 
-    /// Adds a save that takes `bytes` of unshared memory. Drops the saves that are least useful from tick `here`, until
-    /// the rest fits in the budget or only the first and the last save are left.
+    /// Adds a save of `bytes` unshared memory. Drops the saves least useful at tick `here`, until the rest fits in the
+    /// budget or only the first and the last are left.
     pub(super) fn keep(&mut self, tick: u64, save: S, bytes: usize, here: u64) {
         if self.has(tick) {
             return;
@@ -54,7 +53,6 @@ impl<S> History<S> {
         }
     }
 
-    /// Drops all saves after a tick.
     pub(super) fn truncate(&mut self, tick: u64) {
         if let Some(next) = tick.checked_add(1) {
             let cut = self.frames.split_off(&next);
@@ -68,8 +66,8 @@ impl<S> History<S> {
         }
     }
 
-    /// Returns the save to drop, never the first or the last: the one whose removal leaves the smallest gap relative
-    /// to its distance from tick `here` plus [`NEAR`].
+    /// Returns the save to drop, never the first or the last: its removal leaves the smallest gap relative to its
+    /// distance from `here` plus [`NEAR`].
     fn least_useful(&self, here: u64) -> Option<u64> {
         let (before, at, after) =
             (self.frames.keys(), self.frames.keys().skip(1), self.frames.keys().skip(2));

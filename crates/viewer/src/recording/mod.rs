@@ -1,4 +1,4 @@
-//! [`Recording`]: a game that is recorded while it is played, and can be continued differently from any recorded tick.
+//! [`Recording`]: a game recorded while it is played, which can continue differently from any recorded tick.
 
 mod history;
 
@@ -17,44 +17,44 @@ const SAVES_BYTES: usize = 256 << 20;
 
 /// Game and the recording of all its inputs. *Tick t* is the state after *t* ticks.
 ///
-/// Every tick up to the last recorded one can be sought. [`Recording::replay_tick`] plays on with the recorded inputs.
-/// [`Recording::play`] plays on with new inputs and drops the recorded ones that follow.
+/// [`Recording::replay_tick`] plays on with the recorded inputs. [`Recording::play`] plays on with new inputs and drops
+/// the recorded ones that follow.
 pub(crate) struct Recording<G: Game> {
     game: G,
     tick: u64,
-    /// Recorder before the first tick, for recording the remaining ticks again after a cut.
+    /// Recorder before the first tick, for recording again after a cut.
     blank: Recorder<G>,
-    /// Recorder that has recorded all ticks of the log.
     recorder: Recorder<G>,
     log: InputLog<G::Input>,
-    /// State hashes of all checkpoints given to the recorder.
+    /// State hashes at the checkpoints.
     checkpoints: Vec<StateHash>,
-    /// Cumulative work units up to each tick.
+    /// Cumulative work units at each tick.
     work: Vec<u64>,
     history: History<G::Save>,
-    /// Returns the unshared memory of a save of a game in its current state, in bytes.
+    /// Unshared bytes of a save of a game in its current state.
     weigh: fn(&G, &G::Save) -> usize,
-    /// State after the last recorded tick, while the game is at an earlier tick.
+    /// Last recorded state, while the game is at an earlier tick.
     end: Option<G::Save>,
 }
 
-/// Error of a recording.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum RecordingError {
-    /// The tick has not been recorded.
-    NoSuchTick { tick: u64, ticks: u64 },
-    /// The inputs cost more work in a tick than the default limits of a verifier allow.
+    NoSuchTick {
+        tick: u64,
+        ticks: u64,
+    },
+    /// A tick costs more work than the default limit of a verifier.
     TooMuch,
-    /// The inputs cannot be recorded.
     Record(RecordError),
-    /// The input log refuses the inputs.
     Log(InputError),
-    /// Playing a recorded tick again gave another hash: saving and loading this game loses state.
-    Forgetful { tick: u64 },
+    /// Replaying a tick gave another hash: saving and loading this game loses state.
+    Forgetful {
+        tick: u64,
+    },
 }
 
 impl<G: Game> Recording<G> {
-    /// Starts a game. `weigh` returns the memory that a save does not share with other saves, in bytes.
+    /// Starts a game. `weigh` returns the bytes that a save does not share with other saves.
     pub(crate) fn start(setup: &G::Setup, weigh: fn(&G, &G::Save) -> usize) -> Result<Self, RecordError> {
         let (recorder, game) = Recorder::<G>::start(setup, CHECKPOINT_INTERVAL)?;
         Ok(Recording {
@@ -71,12 +71,10 @@ impl<G: Game> Recording<G> {
         })
     }
 
-    /// Returns the game at the current tick.
     pub(crate) fn game(&self) -> &G {
         &self.game
     }
 
-    /// The current tick.
     pub(crate) fn tick(&self) -> u64 {
         self.tick
     }
@@ -86,17 +84,16 @@ impl<G: Game> Recording<G> {
         self.log.ticks()
     }
 
-    /// Returns whether the current tick is the last recorded one.
     pub(crate) fn is_at_end(&self) -> bool {
         self.tick == self.ticks()
     }
 
-    /// Work units of all recorded ticks, as counted by [`Game::work`]. A verifier counts those of the setup, too.
+    /// Work units of all recorded ticks, without those of the setup.
     pub(crate) fn work(&self) -> u64 {
         self.work.last().copied().unwrap_or(0)
     }
 
-    /// Plays and records the next tick. If it is already recorded, it and all later ticks are dropped first.
+    /// Plays and records the next tick. Drops recorded ticks from there on first.
     pub(crate) fn play(&mut self, inputs: &[G::Input]) -> Result<(), RecordingError> {
         let work = self.game.work(inputs);
         if work > Limits::default().tick_work {
@@ -121,18 +118,15 @@ impl<G: Game> Recording<G> {
         Ok(())
     }
 
-    /// Plays the next tick with its recorded inputs.
     pub(crate) fn replay_tick(&mut self) -> Result<(), RecordingError> {
         self.replay_towards(self.tick + 1)
     }
 
-    /// Seeks to a recorded tick.
     pub(crate) fn seek(&mut self, tick: u64) -> Result<(), RecordingError> {
         if tick > self.ticks() {
             return Err(RecordingError::NoSuchTick { tick, ticks: self.ticks() });
         }
-        // Starts from an earlier tick, so that derived data outside the state, such as contact points and events, is
-        // available.
+        // Starts from an earlier tick, so that derived data such as contact points and events is available.
         let latest = self.history.latest(tick.saturating_sub(1));
         let elsewhere = latest.filter(|(from, _)| !(*from..=tick).contains(&self.tick));
         if let Some((from, save)) = elsewhere.map(|(from, save)| (from, save.clone())) {
@@ -148,7 +142,7 @@ impl<G: Game> Recording<G> {
         Ok(())
     }
 
-    /// Returns a replay file of all recorded ticks, whatever the current tick is.
+    /// Returns a replay file of all recorded ticks.
     pub(crate) fn replay_file(&mut self) -> Result<Vec<u8>, RecordingError> {
         let recorder = self.recorder.clone();
         let Some(end) = &self.end else {

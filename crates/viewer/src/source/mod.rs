@@ -1,4 +1,4 @@
-//! [`Source`]: the interface of everything that the viewer can show.
+//! [`Source`]: the interface of what the viewer can show.
 
 mod open;
 mod replay;
@@ -18,9 +18,7 @@ use lockstep2d_render::{Camera, DrawList};
 use crate::event::{Event, Key};
 use crate::live::Playground;
 
-/// A sequence of worlds, one for each tick, that the viewer can show: a replay, a snapshot or a live game.
-///
-/// *Tick t* is the state after *t* ticks.
+/// A sequence of worlds, one per tick: a replay, a snapshot or a live game. *Tick t* is the state after *t* ticks.
 ///
 /// ```
 /// use lockstep2d::{hash::StateHash, world::World};
@@ -66,7 +64,7 @@ pub trait Source {
     /// The last tick that can be sought; `None` if the source has no end.
     fn ticks(&self) -> Option<u64>;
 
-    /// The last tick on the timeline: for a source without an end, the last tick played so far.
+    /// Last tick on the timeline: for a source without an end, the last one played so far.
     fn recorded(&self) -> u64 {
         self.ticks().unwrap_or_else(|| self.tick())
     }
@@ -80,29 +78,28 @@ pub trait Source {
     /// [`SourceError`] if the tick cannot be reached.
     fn seek(&mut self, tick: u64) -> Result<(), SourceError>;
 
-    /// Status text, such as the verdict of a replay or the scores of a match; may be empty.
+    /// Status, such as the verdict of a replay or the scores of a match; may be empty.
     fn status(&self) -> String {
         String::new()
     }
 
-    /// Returns the interface for user actions, if the source is a live sandbox.
+    /// Interface for user actions, if the source is a live sandbox.
     fn playground(&mut self) -> Option<&mut dyn Playground> {
         None
     }
 
-    /// Handles an input event before the viewer does. Returns `true` if the source consumed the event, such as a key
-    /// of a game's player.
+    /// Handles an input event before the viewer does. Returns `true` if the source consumed it.
     fn handle(&mut self, _event: &Event) -> bool {
         false
     }
 
-    /// The keys that [`Source::handle`] consumes: those of a game's players.
+    /// Keys that [`Source::handle`] consumes.
     fn keys(&self) -> Vec<Key> {
         Vec::new()
     }
 
-    /// Advances a source that runs by its own clock, such as a network match. Returns `true` if the source runs by its
-    /// own clock; the viewer then does not play it, and it cannot be paused.
+    /// Advances a source with its own clock, such as a network match, and returns `true` for one. The viewer cannot
+    /// play or pause it.
     ///
     /// # Errors
     /// [`SourceError`] if the source cannot continue.
@@ -110,10 +107,10 @@ pub trait Source {
         Ok(false)
     }
 
-    /// Draws the game's own graphics on top of the world: scores, colours of players.
+    /// Draws the game's own graphics over the world.
     fn decorate(&mut self, _list: &mut DrawList, _camera: &Camera) {}
 
-    /// Returns a replay file of the ticks recorded so far; `None` if the source is not recorded.
+    /// Returns a replay of the ticks recorded so far; `None` if the source is not recorded.
     ///
     /// # Errors
     /// [`SourceError`] if no replay can be made.
@@ -121,16 +118,15 @@ pub trait Source {
         None
     }
 
-    /// Closes the source: it leaves a network match, for example. Called before the program ends; should take at most a
-    /// second.
+    /// Closes the source before the program ends, for example leaves a network match. Should take at most a second.
     fn close(&mut self) {}
 
-    /// Returns names and values of the state besides the world, which is the state of the game's own rules.
+    /// Names and values of the state of the game's own rules, besides the world.
     fn state(&self) -> Vec<(String, String)> {
         Vec::new()
     }
 
-    /// Does a small amount of background work, such as verifying a replay. Returns `true` while work remains.
+    /// Does some background work, such as verifying a replay. Returns `true` while work remains.
     fn think(&mut self) -> bool {
         false
     }
@@ -144,7 +140,6 @@ pub struct SourceError(
 );
 
 impl SourceError {
-    /// Takes over the message of another error.
     pub(crate) fn of(error: impl fmt::Display) -> Self {
         SourceError(error.to_string())
     }

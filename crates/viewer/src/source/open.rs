@@ -1,4 +1,4 @@
-//! [`OpenError`]: the reason why a file cannot be shown.
+//! [`OpenError`]: why a file cannot be shown.
 
 use std::fmt;
 
@@ -15,7 +15,7 @@ use lockstep2d::report::EvidenceError;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OpenError {
-    /// The file is a replay, and none of its ticks can be played.
+    /// No tick of the replay can be played.
     Replay(Verdict),
     /// The file is a replay of another game.
     OtherGame {
@@ -26,7 +26,7 @@ pub enum OpenError {
     },
     /// The file is damaged or of an unknown kind.
     File(EvidenceError),
-    /// The file is a divergence report that contains no replay.
+    /// The divergence report contains no replay.
     EmptyReport,
 }
 

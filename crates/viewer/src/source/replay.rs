@@ -9,14 +9,13 @@ use lockstep2d_render::{Camera, DrawList};
 use super::{Source, SourceError};
 use crate::play::Presentation;
 
-/// Initial interval between keyframes, in ticks. A shorter one makes seeking backwards faster and takes more memory.
+/// Initial interval between keyframes, in ticks: a shorter one makes seeking faster and takes more memory.
 const INTERVAL: u32 = 60;
 
 /// Work units after which a call of [`Source::think`] stops verifying.
 const THINK_WORK: u64 = 100_000;
 
-/// Replay of a game. It is verified in the background while it is shown. If the game has no world, an empty world is
-/// shown.
+/// Replay of a game, verified in the background while it is shown.
 ///
 /// ```
 /// use lockstep2d::lockstep::{Sandbox, SandboxSetup};
@@ -80,7 +79,7 @@ impl<G: Game + 'static> Replay<G> {
         if tick == self.timeline.tick() {
             return Ok(());
         }
-        // Seeks to the previous tick and steps from it, so that derived data such as contact points is available.
+        // Steps to the tick, so that derived data such as contact points is available.
         let Some(before) = tick.checked_sub(1) else {
             return self.timeline.seek(tick).map_err(SourceError::of);
         };

@@ -12,9 +12,7 @@ const INTERVAL: u64 = 30;
 /// Maximum number of saves. Beyond it, every second save is dropped and the interval doubles.
 const SAVES_MAX: usize = 256;
 
-/// World of a snapshot, which runs on without any input.
-///
-/// *Tick t* is tick *t* of the world, so the first tick is the tick of the snapshot.
+/// World of a snapshot, which runs on without input. *Tick t* is tick *t* of the world.
 ///
 /// ```
 /// use lockstep2d::world::World;
@@ -96,8 +94,7 @@ impl Source for Snapshot {
     fn seek(&mut self, tick: u64) -> Result<(), SourceError> {
         let tick = tick.max(self.first);
         if tick < self.world.tick() {
-            // Restores a save before `tick` and steps to it, so that contact points are available, except at the first
-            // tick.
+            // Steps to `tick` from an earlier save, so that contact points are available.
             let before = tick.saturating_sub(1).max(self.first);
             if let Some((_, save)) = self.saves.range(..=before).next_back() {
                 self.world.restore(save);

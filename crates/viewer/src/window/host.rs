@@ -9,7 +9,6 @@ use crate::{App, Event, Request};
 
 use super::WindowError;
 
-/// Desktop environment of the window.
 pub(super) struct Host {
     output: Option<PathBuf>,
 }
@@ -19,8 +18,7 @@ impl Host {
         Host { output }
     }
 
-    /// Carries out the viewer's requests. A failed write is shown as a message and does not end the program, so that
-    /// a full disk does not cost the user the session.
+    /// Carries out requests. A failed write is shown as a message, so that a full disk does not end the session.
     pub(super) fn serve(&self, app: &mut App) -> Result<(), WindowError> {
         if let Err(error) = self.save(app) {
             app.tell(format!("not saved: {error}"));
@@ -28,7 +26,7 @@ impl Host {
         Ok(())
     }
 
-    /// Saves the recording at the end, if an output file was named on the command line.
+    /// Saves the recording if the command line names an output file.
     pub(super) fn finish(&self, app: &mut App) -> Result<(), WindowError> {
         if self.output.is_some() {
             app.save();
@@ -49,14 +47,13 @@ impl Host {
         Ok(())
     }
 
-    /// Opens a dropped file.
     pub(super) fn open(&self, app: &mut App, name: String, bytes: Vec<u8>) {
         app.handle(Event::Dropped { name, bytes });
     }
 
-    /// Sleeps if the display does not pace the frames, as with a virtual display. Times are in seconds.
+    /// Sleeps if the display does not pace the frames, as with a virtual display. `elapsed` is in seconds.
     pub(super) fn pace(&self, elapsed: f64) {
-        /// Smallest plausible frame time of a display, in seconds.
+        /// Smallest plausible frame time, in seconds.
         const HASTE: f64 = 1.0 / 250.0;
         if elapsed < HASTE {
             std::thread::sleep(Duration::from_secs_f64(1.0 / 60.0 - elapsed));
@@ -64,8 +61,7 @@ impl Host {
     }
 }
 
-/// Replaces a file atomically: after any failure, the path has either the old contents or all of the new ones. Pipes
-/// and devices are written directly.
+/// Replaces a file atomically. Pipes and devices are written directly.
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if path.exists() && !path.is_file() {
         return fs::write(path, bytes);
@@ -74,7 +70,7 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     fs::rename(beside, path)
 }
 
-/// Writes a file under the given name or, if that file exists, under a name with a number. No file is replaced.
+/// Writes a new file, under a name with a number if `name` exists.
 fn save_as_new(name: &str, bytes: &[u8]) -> io::Result<PathBuf> {
     let beside = write_beside(Path::new(name), bytes)?;
     let (stem, ending) = name.rsplit_once('.').unwrap_or((name, "replay"));
@@ -91,7 +87,7 @@ fn save_as_new(name: &str, bytes: &[u8]) -> io::Result<PathBuf> {
     outcome
 }
 
-/// Writes bytes to a temporary file beside a path. The file name contains the process id.
+/// Writes a temporary file beside a path.
 fn write_beside(path: &Path, bytes: &[u8]) -> io::Result<PathBuf> {
     let mut beside = path.to_path_buf().into_os_string();
     beside.push(format!(".{}.unfinished", std::process::id()));

@@ -3,14 +3,13 @@
 use crate::{Button, Key};
 use miniquad::{KeyCode, MouseButton};
 
-/// Keys that are down.
 #[derive(Debug, Default)]
 pub(super) struct Keyboard {
     down: Vec<KeyCode>,
 }
 
 impl Keyboard {
-    /// Handles a key that goes down or repeats. Returns the key if the viewer should get the event.
+    /// Handles a key that goes down or repeats. Returns it if the viewer should get the event.
     pub(super) fn down(&mut self, code: KeyCode, repeat: bool) -> Option<Key> {
         let key = key(code)?;
         if !self.down.contains(&code) {
@@ -19,8 +18,8 @@ impl Keyboard {
         (!repeat || repeats(key)).then_some(key)
     }
 
-    /// Handles a key that goes up. Returns the key, unless another key of the same meaning is still down (there are
-    /// two Shift keys).
+    /// Handles a key that goes up. Returns it unless another key of this meaning is still down, such as the other Shift
+    /// key.
     pub(super) fn up(&mut self, code: KeyCode) -> Option<Key> {
         self.down.retain(|&down| down != code);
         let key = key(code)?;
@@ -28,19 +27,17 @@ impl Keyboard {
         (!held).then_some(key)
     }
 
-    /// Releases all keys, and returns them.
     pub(super) fn release(&mut self) -> Vec<Key> {
         self.down.drain(..).filter_map(key).collect()
     }
 }
 
-/// Returns whether a held key repeats. Keys that step repeat; keys that toggle a setting do not.
+/// Keys that step repeat. Keys that toggle a setting do not.
 fn repeats(key: Key) -> bool {
     let steps = [Key::Left, Key::Right, Key::Up, Key::Down, Key::PageUp, Key::PageDown];
     steps.contains(&key) || matches!(key, Key::Character(',' | '.' | '+' | '-' | '='))
 }
 
-/// Translates a key; `None` for keys that the viewer does not use.
 fn key(code: KeyCode) -> Option<Key> {
     Some(match code {
         KeyCode::Space => Key::Space,
@@ -85,7 +82,6 @@ fn character(code: KeyCode) -> Option<char> {
     })
 }
 
-/// Translates a pointer button; `None` for buttons that the viewer does not use.
 pub(super) fn button(button: MouseButton) -> Option<Button> {
     match button {
         MouseButton::Left => Some(Button::Left),
@@ -95,7 +91,7 @@ pub(super) fn button(button: MouseButton) -> Option<Button> {
     }
 }
 
-/// Wheel movement that miniquad reports for one notch: one line, or the scroll distance of the platform.
+/// Wheel movement that miniquad reports for one notch: a line, or the scroll distance of the platform.
 const NOTCH: f32 = if cfg!(target_arch = "wasm32") {
     100.0
 } else if cfg!(target_os = "windows") {

@@ -1,4 +1,4 @@
-//! The window: passes miniquad's events to the viewer, and draws its draw list on the screen.
+//! The window: passes miniquad's events to the viewer and shows its picture.
 
 #[cfg_attr(target_arch = "wasm32", path = "page.rs")]
 mod host;
@@ -20,24 +20,18 @@ use crate::script::Script;
 use host::Host;
 use stage::Stage;
 
-/// Options of the window.
 pub(crate) struct Options {
-    /// Title.
     pub(crate) title: String,
-    /// Width and height.
     pub(crate) size: [u16; 2],
-    /// Script that replaces user input.
     pub(crate) script: Option<Script>,
     /// File to save the recording to.
     pub(crate) output: Option<PathBuf>,
 }
 
-/// Error that closed the window.
 #[derive(Debug)]
 pub(crate) enum WindowError {
     /// The graphics driver refuses the shader.
     Graphics(miniquad::ShaderError),
-    /// A file could not be read or written.
     #[cfg(not(target_arch = "wasm32"))]
     File { path: String, error: std::io::Error },
 }
@@ -57,7 +51,7 @@ impl std::error::Error for WindowError {}
 /// Result of the window, shared with the event handler.
 type Outcome = Rc<RefCell<Result<(), WindowError>>>;
 
-/// Shows the viewer in a window until it is closed. In a browser, this returns at once and the viewer keeps running.
+/// Shows the viewer in a window until it is closed. In a browser, returns at once.
 pub(crate) fn show(app: App, options: Options) -> Result<(), WindowError> {
     let [width, height] = options.size.map(i32::from);
     let conf = Conf {

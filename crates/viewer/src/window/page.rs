@@ -1,6 +1,6 @@
 //! [`Host`]: the web page around the viewer.
 //!
-//! The page reads lines from the log. Fields are separated by tabs, and the first field gives the kind of line:
+//! The page reads lines from the log, with fields separated by tabs:
 //!
 //! ```text
 //! lockstep2d.report  name  tick  last tick or nothing  hash or nothing  status
@@ -14,10 +14,9 @@ use crate::{App, Event, Report, Request};
 
 use super::WindowError;
 
-/// Extension of an empty file by which the page requests the scene of that name.
+/// Extension of the empty file by which the page requests a scene.
 const SCENE: &str = ".scene";
 
-/// The web page.
 pub(super) struct Host {
     last: std::cell::RefCell<Option<Report>>,
 }
@@ -27,7 +26,7 @@ impl Host {
         Host { last: None.into() }
     }
 
-    /// Carries out the viewer's requests, and sends a report of the viewer to the page when it has changed.
+    /// Carries out requests, and reports changes of the viewer to the page.
     pub(super) fn serve(&self, app: &mut App) -> Result<(), WindowError> {
         for Request::Save { name, bytes } in app.take_requests() {
             let digits = bytes.iter().fold(String::new(), |mut digits, byte| {
@@ -61,17 +60,16 @@ impl Host {
         }
     }
 
-    /// Does nothing: the browser paces the frames.
+    /// The browser paces the frames.
     pub(super) fn pace(&self, _elapsed: f64) {}
 }
 
-/// Writes a line to the log. The format string is needed because the macro does not format its text if that is the only
-/// argument.
+/// The macro does not format a sole argument.
 fn post_line(line: &str) {
     miniquad::info!("{}", line);
 }
 
-/// Replaces control characters, such as the tab that separates fields and the end of a line, by spaces.
+/// Replaces control characters, such as tabs and line ends, by spaces.
 fn field(text: &str) -> String {
     text.replace(char::is_control, " ")
 }

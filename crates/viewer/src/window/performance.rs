@@ -11,7 +11,6 @@ use super::WindowError;
 use super::renderer::Picture;
 use super::stage::Stage;
 
-/// A script that is running.
 pub(super) struct Performance {
     steps: std::vec::IntoIter<Step>,
     /// Remaining frames of the current `frames` instruction.

@@ -32,17 +32,14 @@ void main() {
     gl_FragColor = vec4(paint.rgb, paint.a * mix(shape, glyph, at.z));
 }";
 
-/// Clears the target to opaque black before drawing.
 const BACKGROUND: PassAction =
     PassAction::Clear { color: Some((0.0, 0.0, 0.0, 1.0)), depth: None, stencil: None };
 
-/// Draws meshes.
 pub(super) struct Renderer {
     context: Box<dyn RenderingBackend>,
     pipeline: Pipeline,
     atlas: TextureId,
-    /// Vertex and index buffers, one pair per chunk: a single pair would stall on each chunk until the GPU has read the
-    /// previous one.
+    /// A pair of buffers per chunk: a single pair would stall until the GPU has read the previous chunk.
     buffers: Vec<[BufferId; 2]>,
 }
 
@@ -81,7 +78,6 @@ impl Renderer {
         Ok(Renderer { context, pipeline, atlas, buffers: Vec::new() })
     }
 
-    /// Draws a mesh on the screen.
     pub(super) fn show(&mut self, mesh: &Mesh, screen: &Screen) {
         self.upload(mesh);
         self.context.begin_default_pass(BACKGROUND);
@@ -89,7 +85,7 @@ impl Renderer {
         self.context.commit_frame();
     }
 
-    /// Draws a mesh into a picture, with the same shader and the same pixels as on the screen.
+    /// Draws a mesh into a picture, with the shader of the screen.
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn picture(&mut self, mesh: &Mesh, screen: &Screen, [width, height]: [u32; 2]) -> Picture {
         self.upload(mesh);

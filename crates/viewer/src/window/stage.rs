@@ -14,17 +14,16 @@ use super::performance::Performance;
 use super::renderer::Renderer;
 use super::{Outcome, WindowError};
 
-/// Maximum time step between two frames, in seconds. After a longer pause, the world does not catch up.
+/// Longest time step of a frame, in seconds. After a longer pause, the world does not catch up.
 const PAUSE_MAX: f64 = 0.25;
 
-/// The viewer and its window.
 pub(super) struct Stage {
     pub(super) app: App,
     pub(super) renderer: Renderer,
     pub(super) mesh: Mesh,
     pub(super) screen: Screen,
     keyboard: Keyboard,
-    /// Time of the last frame, in seconds of the wall clock.
+    /// Wall clock at the last frame, in seconds.
     last: f64,
     #[cfg(not(target_arch = "wasm32"))]
     performance: Option<Performance>,
@@ -32,7 +31,7 @@ pub(super) struct Stage {
     outcome: Outcome,
 }
 
-/// Event handler that does nothing, used if the graphics driver refuses the shader.
+/// Replacement for the stage if the graphics driver refuses the shader.
 struct Nothing;
 
 impl EventHandler for Nothing {
@@ -76,7 +75,7 @@ impl Stage {
         Box::new(stage)
     }
 
-    /// Converts a position in screen pixels to the units of the draw list, which are larger on a high-DPI screen.
+    /// Converts screen pixels to units of the draw list.
     fn place(&self, x: f32, y: f32) -> [f32; 2] {
         [x, y].map(|at| at * self.screen.pixel)
     }
@@ -86,7 +85,7 @@ impl Stage {
         self.app.handle(Event::Moved(place));
     }
 
-    /// Updates the app before the next frame. Returns `false` at the end of a script.
+    /// Returns `false` at the end of a script.
     fn go_on(&mut self) -> Result<bool, WindowError> {
         #[cfg(not(target_arch = "wasm32"))]
         if let Some(mut performance) = self.performance.take() {
@@ -105,7 +104,6 @@ impl Stage {
         window::order_quit();
     }
 
-    /// Advances the app by the real time since the last frame.
     fn live(&mut self) {
         let now = date::now();
         let elapsed = (now - self.last).clamp(0.0, PAUSE_MAX);
@@ -173,7 +171,7 @@ impl EventHandler for Stage {
         }
     }
 
-    /// Releases all keys: another window has the keyboard focus now and receives the key releases.
+    /// Releases the keys: another window has the focus and receives the key releases.
     fn window_minimized_event(&mut self) {
         for key in self.keyboard.release() {
             self.app.handle(Event::Released(key));

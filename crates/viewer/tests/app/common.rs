@@ -48,7 +48,6 @@ pub(crate) fn click(app: &mut App, at: [f32; 2]) {
     app.handle(Event::Up(Button::Left));
 }
 
-/// Runs frames until the app shows a tick.
 pub(crate) fn wait_for(app: &mut App, tick: u64) {
     for _ in 0..10_000 {
         if app.report().tick == tick {
@@ -59,7 +58,6 @@ pub(crate) fn wait_for(app: &mut App, tick: u64) {
     panic!("tick {tick} should be reached: {}", app.report());
 }
 
-/// Runs frames until the status starts with `start`, and returns the status.
 pub(crate) fn wait_for_status(app: &mut App, start: &str) -> String {
     for _ in 0..10_000 {
         let status = app.report().status;
@@ -71,19 +69,17 @@ pub(crate) fn wait_for_status(app: &mut App, start: &str) -> String {
     panic!("the status should start with {start:?}: {}", app.report());
 }
 
-/// Returns the key that toggles the layer of this name.
 pub(crate) fn layer(name: &str) -> Key {
     let mut layers = Layers::NONE;
     let place = layers.named().iter().position(|(named, _)| *named == name).unwrap();
     Key::Character(LAYER_KEYS[place])
 }
 
-/// Returns all texts on the screen.
 pub(crate) fn texts(app: &mut App) -> Vec<String> {
     app.draw().texts().iter().map(|text| text.text.clone()).collect()
 }
 
-/// Returns the state hash at a tick of a sandbox replay.
+/// State hash at a tick of a sandbox replay.
 pub(crate) fn hash_at(file: &[u8], tick: u64) -> lockstep2d::hash::StateHash {
     let mut verified =
         lockstep2d::replay::VerifiedReplay::<Sandbox>::open(file, &Default::default()).unwrap();

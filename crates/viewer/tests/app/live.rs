@@ -26,7 +26,7 @@ fn saved(app: &mut App) -> Vec<u8> {
     }
 }
 
-/// Returns a random position in the part of the window where most bodies are, most often near the middle of that part.
+/// A random position in the part of the window where most bodies are.
 fn somewhere(rng: &mut Rng) -> [f32; 2] {
     let mut side = |size: f32| size * (rng.below(1000) + rng.below(1000)) as f32 / 2000.0;
     let x = side(SIZE[0]);

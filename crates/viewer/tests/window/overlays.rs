@@ -1,5 +1,4 @@
-//! Each layer changes the pixels that it changes in a software rendering of the draw list, and gives them about the
-//! same colours.
+//! Each layer changes the pixels as in a software rendering of the draw list.
 
 use std::collections::BTreeSet;
 
@@ -8,12 +7,11 @@ use lockstep2d_viewer::LAYER_KEYS;
 use super::picture::Picture;
 use super::run::{app, directory, golden, play, play_without_window};
 
-/// Replay that has something to show in every layer after [`SECONDS`] seconds.
+/// Replay that shows something in every layer after [`SECONDS`] seconds.
 const SCENE: &str = "bridge.replay";
 const SECONDS: usize = 2;
 
-/// Script that seeks to the tick after [`SECONDS`] seconds, turns the initial layers off, and takes a screenshot
-/// without layers, one with each layer alone, and one after that layer is turned off again.
+/// Takes a screenshot without layers, one with each layer alone, and one after it is turned off again.
 fn script() -> String {
     let forward = "key pagedown\n".repeat(SECONDS);
     let mut script =
@@ -47,7 +45,7 @@ fn each_overlay_is_what_the_draw_list_says() {
             a.differing(b, step).filter(in_world).collect()
         };
         let (seen, meant) = (changed(&on, &none, 24), changed(&drawn, &drawn_none, 24));
-        // A faint pixel may be fainter in one of the two pictures, so the match is made against a lower threshold.
+        // A faint pixel may be fainter in one picture.
         let (all_seen, all_meant) = (changed(&on, &none, 4), changed(&drawn, &drawn_none, 4));
         println!("layer {key}: {} pixels change, {} in the draw list", seen.len(), meant.len());
         assert!(seen.len() > 30, "layer {key}: only {} pixels change", seen.len());
@@ -64,10 +62,9 @@ fn is_near(places: &BTreeSet<[usize; 2]>, [x, y]: [usize; 2]) -> bool {
     (y.saturating_sub(1)..=y + 1).any(|y| (x.saturating_sub(1)..=x + 1).any(|x| places.contains(&[x, y])))
 }
 
-/// One pixel in this many may differ by a large amount, because of crossing lines.
+/// One pixel in this many may differ by much, because of crossing lines.
 const SHAPES: usize = 1000;
-/// One pixel in this many may differ in layers with small text, because only one of the two rasterisers aligns letters
-/// to whole pixels.
+/// One pixel in this many may differ in layers with small text, which only one rasteriser aligns to pixels.
 const LABELS: usize = 200;
 
 /// Asserts that the pictures of two rasterisers agree, apart from the antialiasing of edges.

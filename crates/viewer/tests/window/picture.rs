@@ -29,7 +29,7 @@ impl Picture {
         self.pixels[y * self.width + x]
     }
 
-    /// Returns the positions of the pixels that differ from the other picture by more than `step` in a channel.
+    /// Positions of the pixels that differ by more than `step` in a channel.
     pub(crate) fn differing<'a>(
         &'a self,
         other: &'a Self,
@@ -46,7 +46,7 @@ impl Picture {
     }
 }
 
-/// Returns the largest difference over the channels.
+/// Largest difference over the channels.
 pub(crate) fn distance(a: [u8; 3], b: [u8; 3]) -> u8 {
     (0..3).map(|channel| a[channel].abs_diff(b[channel])).max().unwrap()
 }

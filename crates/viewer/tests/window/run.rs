@@ -11,7 +11,6 @@ use super::picture::Picture;
 
 pub(crate) const SIZE: [usize; 2] = [960, 640];
 
-/// Creates a separate directory for a test.
 pub(crate) fn directory(test: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
     std::fs::create_dir_all(&path).unwrap();
@@ -31,14 +30,14 @@ pub(crate) fn command(directory: &Path, script: &str, args: &[&str]) -> Command 
     command
 }
 
-/// Runs a script in the window, and returns the lines that it reports.
+/// Runs a script in the window, and returns its reports.
 pub(crate) fn play(directory: &Path, script: &str, args: &[&str]) -> Vec<String> {
     let Output { status, stdout, stderr } = command(directory, script, args).output().unwrap();
     assert!(status.success(), "{status}: {}", String::from_utf8_lossy(&stderr));
     String::from_utf8(stdout).unwrap().lines().map(str::to_owned).collect()
 }
 
-/// Runs a script without a window, and returns each screenshot as drawn by the software rasteriser.
+/// Runs a script without a window, and returns its screenshots by the software rasteriser.
 pub(crate) fn play_without_window(mut app: App, script: &str) -> Vec<Picture> {
     play_without_window_in(&mut app, script)
 }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use super::picture::{Picture, distance};
 use super::run::{SIZE, command, directory, golden};
 
-/// Environment variable with the file in which Xvfb keeps its screen.
+/// File in which Xvfb keeps its screen.
 const SCREEN: &str = "LOCKSTEP2D_SCREEN";
 
 #[test]
@@ -15,11 +15,11 @@ fn a_screenshot_is_what_is_on_the_screen() {
     let screen = PathBuf::from(
         std::env::var_os(SCREEN).expect("LOCKSTEP2D_SCREEN should be set by crates/viewer/test-window"),
     );
-    // The scene has only edges along the axes: the blending of slanted edges may be rounded differently on the screen.
+    // The scene has only edges along the axes: the screen may round the blending of slanted edges differently.
     let (directory, replay) = (directory("screen"), golden("box_stack.replay"));
     let shot = directory.join("shot.png");
     let _none = std::fs::remove_file(&shot);
-    // 300 frames complete the verification, whose progress would change the picture.
+    // 300 frames complete the verification, which would change the picture.
     let script = "key space\nkey home\nkey pagedown\nframes 300\nscreenshot shot.png\nframes 100000\n";
     let mut window = command(&directory, script, &[replay.to_str().unwrap()]).spawn().unwrap();
     let alike = wait_for(Duration::from_secs(60), || shot.exists() && is_on(&screen, &shot));
@@ -39,7 +39,7 @@ fn wait_for(time: Duration, mut holds: impl FnMut() -> bool) -> bool {
     false
 }
 
-/// Returns whether a picture is somewhere on the screen, up to a rounding difference of 1 per channel.
+/// Whether a picture is on the screen, up to a difference of 1 per channel.
 fn is_on(screen: &Path, shot: &Path) -> bool {
     // The file may be incomplete while it is being written.
     let Ok(file) = std::fs::File::open(shot) else { return false };

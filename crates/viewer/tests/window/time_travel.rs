@@ -6,7 +6,7 @@ use lockstep2d_viewer::App;
 use super::picture::{Picture, distance};
 use super::run::{app, directory, golden, play};
 
-/// Keys of all compared layers. The broad phase is left out, because its tree is not part of the state and may differ.
+/// Keys of all layers except the broad phase, whose tree is not part of the state.
 const ALL: &str = "key 2\nkey 4\nkey 6\nkey 7\nkey 8\nkey 9\nkey 0\nkey c\nkey v\nkey i\n";
 
 #[test]
@@ -16,8 +16,7 @@ fn ten_ticks_back_is_pixel_for_pixel_what_it_was() {
         let (directory, replay) = (directory("back"), golden(replay));
         let ten = |key: &str| format!("key {key}\nframes 2\n").repeat(10);
         let (right, left) = (ten("right"), ten("left"));
-        // The first 400 frames complete the verification, whose progress would change the picture. The next 100 frames
-        // play 100 ticks. Single steps then go ten ticks forwards and back.
+        // 400 frames complete the verification, which would change the picture. 100 frames play 100 ticks.
         let script = format!(
             "{ALL}key space\nkey home\nframes 400\nkey space\nframes 100\nkey space\nscreenshot played.png\nreport\n\
              {right}screenshot further.png\nreport\n{left}screenshot back.png\nreport\n\
@@ -46,7 +45,7 @@ fn the_hash_is_on_the_screen() {
     let hash = reports[0].split(" · ").nth(2).unwrap();
     assert_eq!(hash, hash_at(app(&replay), 60), "the hash should equal that of a run without a window");
 
-    // Checks every pixel of every digit at the position in the draw list.
+    // Checks the pixels of every digit.
     let mut app = app(&replay);
     app.handle(lockstep2d_viewer::Event::Resized(super::run::SIZE.map(|side| side as f32)));
     let place = app.draw().texts().iter().find(|text| text.text.len() == 32).unwrap().clone();

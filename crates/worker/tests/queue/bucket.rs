@@ -1,5 +1,4 @@
-//! Files in a bucket of a server with the protocol of S3 that checks signatures: `s3s-fs`, which has a folder for each
-//! bucket.
+//! Files in a bucket of `s3s-fs`, a server with the protocol of S3 that checks signatures.
 
 use std::process::Command;
 
@@ -8,21 +7,19 @@ use serde_json::Value;
 use super::{replay, verified, worker, write_files};
 use crate::server::{Folder, Process, Program, Server, free_port, serve, wait_until};
 
-/// A server of buckets.
 struct Buckets {
     port: u16,
     _process: Process,
 }
 
 impl Buckets {
-    /// Serves the files in the folder's subfolder `in` as the bucket `uploads`. `None` if the environment variable
-    /// `LOCKSTEP2D_S3`, the path of the server program `s3s-fs`, is not set.
+    /// Serves the subfolder `in` as the bucket `uploads`, if `LOCKSTEP2D_S3` is the path of `s3s-fs`.
     fn start(folder: &Folder) -> Option<Self> {
         let Ok(program) = std::env::var("LOCKSTEP2D_S3") else {
             eprintln!("skipped: LOCKSTEP2D_S3 does not name a server");
             return None;
         };
-        // A bucket name needs at least three characters, so the folder `in` is served under another name.
+        // A bucket name needs at least three characters.
         std::os::unix::fs::symlink("in", folder.0.join("uploads")).unwrap();
         let port = free_port();
         let mut command = Command::new(program);
@@ -31,7 +28,7 @@ impl Buckets {
         Some(Buckets { port, _process: serve(&mut command, port) })
     }
 
-    /// Returns the program with environment variables that give it this key for the buckets.
+    /// The program with this key in its environment.
     fn with_key(&self, program: Program, key: &'static str) -> Program {
         let endpoint = format!("http://127.0.0.1:{}", self.port);
         let variables = [
@@ -53,12 +50,12 @@ fn files_of_a_bucket_have_the_results_of_files() {
     write_files(&folder, 30);
     folder.write("in/notes.txt", b"not a replay");
     let expected = verified(&folder);
-    // `submit` and `work` both run in a folder without the files.
+    // The folder does not have the files.
     let elsewhere = Folder::new("bucket-elsewhere");
     let program = Program { folder: elsewhere.0.clone(), ..worker(&server, &folder) };
     let program = buckets.with_key(program, "secret");
 
-    // One file is submitted by its name, and then all files of the bucket: the first file is already known.
+    // The file that is submitted first is known later.
     let one = program.submit(&["--bucket", "s3://uploads", "00007.replay"]);
     assert_eq!(one.len(), 1, "{one:?}");
     let all = program.submit(&["--bucket", "s3://uploads/"]);
@@ -97,7 +94,7 @@ fn a_folder_of_a_bucket_holds_what_is_in_it() {
     assert_eq!(names(&["s3://uploads", "day"]), ["day/b.replay", "day/night/c.replay"]);
     assert_eq!(names(&["s3://uploads/day"]), ["b.replay", "night/c.replay"]);
     assert_eq!(names(&["s3://uploads/day", "night", "b.replay"]), ["b.replay", "night/c.replay"]);
-    // Files with the same bytes are one job. The job has the name of the file that was submitted first.
+    // Files with the same bytes are one job, with the first name.
     let mut child = program.work(&["--bucket", "s3://uploads"]);
     wait_until("all results are there", || program.results().len() == 2);
     assert_eq!(child.terminate(), Some(0));
@@ -128,7 +125,7 @@ fn a_bucket_that_cannot_be_read_is_an_error() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
         assert!(error.contains(expected), "{arguments:?}: {error}");
     }
-    // A worker without the bucket, or without the right key, reports the file as unreadable.
+    // A worker without the right key reports the file as unreadable.
     allowed.submit(&["--bucket", "s3://uploads"]);
     let mut child = forged.work(&["--bucket", "s3://uploads", "--max-deliver", "1"]);
     wait_until("there is a result", || forged.results().len() == 1);

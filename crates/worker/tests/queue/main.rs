@@ -1,7 +1,7 @@
-//! The queue with a real server: every file has exactly one result, equal to the line of `verify --json`, also if
-//! workers or the server are killed.
+//! The queue with a real server: every file has one result, equal to the line of `verify --json`, also if workers or
+//! the server are killed.
 //!
-//! `LOCKSTEP2D_WORKER_FILES` is the number of files of the largest test, 300 by default.
+//! `LOCKSTEP2D_WORKER_FILES`: files of the largest test, 300 by default.
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "a failure in a helper fails the test")]
 
@@ -25,17 +25,17 @@ use serde_json::{Value, json};
 
 use server::{Folder, PATIENCE, Process, Program, Server, free_port, wait_until};
 
-/// Number of workers that are killed and started again.
+/// Workers that are killed and started again.
 const WORKERS: usize = 4;
 
-/// The next number of a SplitMix64 generator.
+/// SplitMix64.
 fn random(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let value = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     value ^ (value >> 27)
 }
 
-/// A replay of squares that fall on the ground. Each `number` is another game.
+/// Squares fall on the ground. Each `number` is another game.
 fn replay(number: u64, squares: i64, ticks: u64) -> Vec<u8> {
     let square = |side: Fx| ShapeDef::new(Polygon::square(side).unwrap());
     let aside = fx!(0.0001) * i64::try_from(number).unwrap();
@@ -55,7 +55,7 @@ fn record(commands: Vec<Command>, ticks: u64) -> Vec<u8> {
     recording.finish().unwrap()
 }
 
-/// Writes files of different contents and lengths. Some are damaged, some cut.
+/// Some files are damaged, some cut.
 fn write_files(folder: &Folder, count: u64) {
     for number in 0..count {
         let (squares, ticks) = if number % 20 == 0 { (50, 120) } else { (1, number % 97) };
@@ -70,14 +70,14 @@ fn write_files(folder: &Folder, count: u64) {
     }
 }
 
-/// The sorted lines of `verify --json`.
+/// Sorted lines of `verify --json`.
 fn verified(folder: &Folder) -> Vec<String> {
     let (mut out, mut err) = (Vec::new(), Vec::new());
     let path = folder.0.join("in");
     let arguments = ["verify", "--json"].map(String::from);
     let arguments = ["lockstep2d".into()].into_iter().chain(arguments).chain([path.display().to_string()]);
     Tool::<Sandbox>::new().run_with(arguments, &mut out, &mut err);
-    // Results have the submitted path, which is relative to the folder.
+    // Paths of results are relative to the folder.
     let below = format!("{}/", folder.0.display());
     let mut lines: Vec<String> =
         String::from_utf8(out).unwrap().lines().map(|line| line.replacen(&below, "", 1)).collect();
@@ -106,7 +106,7 @@ fn every_file_has_one_result_though_workers_and_the_server_are_killed() {
     assert_eq!(submitted.len() as u64, count);
     assert!(submitted.iter().all(|line| line.ends_with("\"queued\":true}")), "{}", submitted[0]);
 
-    // The test kills workers at random, so many deliveries are allowed before a file counts as the cause.
+    // Workers are killed at random, so many deliveries are allowed.
     let arguments = ["--ack-seconds", "1", "--max-deliver", "1000"];
     let mut workers: Vec<Process> = (0..WORKERS).map(|_| program.work(&arguments)).collect();
     let (mut state, mut kills, mut restarts) = (7, 0, 0);
@@ -116,7 +116,7 @@ fn every_file_has_one_result_though_workers_and_the_server_are_killed() {
             server.restart();
             restarts += 1;
         }
-        // One kill for each 30 results. The last results come without a kill.
+        // One kill for each 30 results, except the last.
         while kills < found / 30 && found < count {
             let victim = usize::try_from(random(&mut state) % WORKERS as u64).unwrap();
             workers[victim].kill();
@@ -133,7 +133,7 @@ fn every_file_has_one_result_though_workers_and_the_server_are_killed() {
     assert_eq!(program.results(), expected);
 }
 
-/// The time in which some workers verify all submitted files.
+/// Time in which workers verify all submitted files.
 fn time_of(workers: usize, program: &Program, queue: &str, count: usize) -> Duration {
     program.submit(&["--queue", queue, "in"]);
     let start = Instant::now();
@@ -169,13 +169,12 @@ fn two_workers_do_almost_twice_as_much_as_one() {
         println!("{count} files: {one:?} with one worker, {two:?} with two");
         one.as_millis() * 100 / two.as_millis()
     };
-    // The best of three: other programs on the machine can only make the gain smaller.
+    // The best of three: other programs can only reduce the gain.
     let best = (0..3).map(gain).max().unwrap();
     assert!(best >= 180, "two workers have only {best} % of the throughput of one");
 }
 
-/// Checks the peak memory of a worker. One of the files has 400 squares on one spot, for which docs/VERIFYING.md states
-/// a peak of 75 MB with `verify`.
+/// A file has 400 squares on one spot, for which docs/VERIFYING.md states 75 MB with `verify`.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_worker_takes_little_more_memory_than_verify() {
@@ -212,8 +211,7 @@ fn the_same_bytes_have_one_result_and_are_not_simulated_again() {
     assert_eq!(queued, [true, false]);
     assert_eq!(submitted[0]["blake3"], submitted[1]["blake3"]);
 
-    // The second worker has other limits, so that its results have other keys. The second worker adds no result,
-    // because the queue has no second job for these bytes.
+    // Other limits give other keys. The second worker adds no result: the queue has one job for these bytes.
     for (arguments, count) in [(&["--max-ticks", "30"][..], 1), (&["--max-ticks", "29"], 1)] {
         let mut child = program.work(arguments);
         wait_until("there is a result", || program.results().len() == count);
@@ -229,7 +227,7 @@ fn files_of_the_object_store_and_metrics() {
     let expected = verified(&folder);
     let program = worker(&server, &folder);
     program.submit(&["--objects", "in"]);
-    // The workers run in a folder without the files.
+    // The folder does not have the files.
     let elsewhere = Folder::new("objects-elsewhere");
     let away = Program { folder: elsewhere.0.clone(), ..worker(&server, &folder) };
     let address = format!("127.0.0.1:{}", free_port());

@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// Longest time that a test waits for something.
+/// Longest wait.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(300);
 
-/// Names of the server program. The second is its path in Debian, whose folder many search paths do not contain.
+/// Commands of the server. The second is its path in Debian, outside of many search paths.
 const PROGRAMS: [&str; 2] = ["nats-server", "/usr/sbin/nats-server"];
 
-/// A process that is killed when the value is dropped.
+/// Process that is killed on drop.
 pub(crate) struct Process(pub(crate) Child);
 
 impl Drop for Process {
@@ -22,20 +22,19 @@ impl Drop for Process {
 }
 
 impl Process {
-    /// Kills the process by SIGKILL.
     pub(crate) fn kill(&mut self) {
         let _ = self.0.kill();
         self.0.wait().unwrap();
     }
 
-    /// Ends the process by SIGTERM. Returns its exit code.
+    /// Ends the process by SIGTERM, and returns its exit code.
     pub(crate) fn terminate(&mut self) -> Option<i32> {
         assert!(Command::new("kill").arg(self.0.id().to_string()).status().unwrap().success());
         self.0.wait().unwrap().code()
     }
 }
 
-/// A server with JetStream on a port of its own.
+/// Server on a port of its own.
 pub(crate) struct Server {
     program: &'static str,
     port: u16,
@@ -44,7 +43,7 @@ pub(crate) struct Server {
 }
 
 impl Server {
-    /// Starts a server. `None` if it is not installed; with `LOCKSTEP2D_NATS=required` that is an error.
+    /// `None` if it is not installed, which is an error with `LOCKSTEP2D_NATS=required`.
     pub(crate) fn start(folder: &Folder) -> Option<Self> {
         let is_there = |program: &&&str| Command::new(program).arg("--version").output().is_ok();
         let Some(program) = PROGRAMS.iter().find(is_there) else {
@@ -59,7 +58,7 @@ impl Server {
         Some(Server { program, port, store, process })
     }
 
-    /// Kills the server without warning and starts it again.
+    /// Kills the server and starts it again.
     pub(crate) fn restart(&mut self) {
         self.process.kill();
         self.process = spawn(self.program, self.port, &self.store);
@@ -77,19 +76,17 @@ fn spawn(program: &str, port: u16, store: &Path) -> Process {
     serve(&mut command, port)
 }
 
-/// Starts a server, and waits until it listens.
+/// Waits until the server listens.
 pub(crate) fn serve(command: &mut Command, port: u16) -> Process {
     let child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     wait_until("the server listens", || TcpStream::connect(("127.0.0.1", port)).is_ok());
     Process(child)
 }
 
-/// A port that nobody listens on.
 pub(crate) fn free_port() -> u16 {
     TcpListener::bind(("127.0.0.1", 0)).unwrap().local_addr().unwrap().port()
 }
 
-/// Polls until a condition holds.
 pub(crate) fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
     let start = Instant::now();
     while !is_so() {
@@ -98,22 +95,19 @@ pub(crate) fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
     }
 }
 
-/// The worker program, or another program with the commands of a worker.
+/// A worker, or a program with its commands.
 pub(crate) struct Program {
     pub(crate) path: PathBuf,
     pub(crate) url: String,
     pub(crate) folder: PathBuf,
-    /// Environment variables and their values.
     pub(crate) variables: Vec<(String, String)>,
 }
 
 impl Program {
-    /// Runs a command to its end.
     pub(crate) fn run(&self, arguments: &[&str]) -> Output {
         self.command().args(arguments).args(["--nats", &self.url]).output().unwrap()
     }
 
-    /// Starts a worker.
     pub(crate) fn work(&self, arguments: &[&str]) -> Process {
         let mut command = self.command();
         command.arg("work").args(["--nats", &self.url]).args(arguments);
@@ -126,14 +120,14 @@ impl Program {
         command
     }
 
-    /// Adds files to the queue. Returns the lines about them.
+    /// Returns the lines about the added files.
     pub(crate) fn submit(&self, arguments: &[&str]) -> Vec<String> {
         let output = self.run(&[&["submit"], arguments].concat());
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         lines(&output)
     }
 
-    /// The results so far, sorted. Results that cannot be read because the server is restarting are missing.
+    /// Sorted results. They may be missing while the server restarts.
     pub(crate) fn results(&self) -> Vec<String> {
         let mut lines = lines(&self.run(&["results"]));
         lines.sort();
@@ -145,7 +139,7 @@ fn lines(output: &Output) -> Vec<String> {
     String::from_utf8(output.stdout.clone()).unwrap().lines().map(String::from).collect()
 }
 
-/// A temporary folder for one test. It is deleted when the value is dropped.
+/// Folder that is deleted on drop.
 pub(crate) struct Folder(pub(crate) PathBuf);
 
 impl Folder {

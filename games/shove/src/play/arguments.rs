@@ -88,12 +88,10 @@ struct Participation {
 }
 
 impl Arguments {
-    /// Time without packets of other peers after which this peer gives up.
     pub(super) const fn give_up(&self) -> Duration {
         Duration::from_secs(self.give_up)
     }
 
-    /// Opens the socket and enters the match.
     pub(super) fn enter(&self) -> Result<UdpPeer, Box<dyn Error>> {
         let setup = Setup { seats: self.seats, seed: self.seed, ..Setup::default() };
         if !(1..=self.seats).contains(&self.players) {

@@ -11,17 +11,17 @@ use lockstep2d_shove::Shove;
 use lockstep2d_shove::online::{UdpPeer, describe};
 use serde_json::{Value, json};
 
-/// Writes a line for each event, and keeps the figures for the last line.
+/// Writes a line for each event.
 #[derive(Debug)]
 pub(super) struct Log {
     json: bool,
-    /// Number of ticks played, and the time at which it last grew.
+    /// Played ticks, and when their number last grew.
     tick: Option<(u64, Duration)>,
-    /// Longest time without a tick, and the time at its end.
+    /// Longest time without a tick, and its end.
     stall: (Duration, Duration),
     delay: Option<u16>,
     desync: Option<u64>,
-    /// Whether this peer has left, or all peers have finished. No more ticks are played then.
+    /// This peer has left, or all have finished: no more ticks are played.
     is_over: bool,
 }
 
@@ -31,7 +31,7 @@ impl Log {
         Log { json, tick: None, stall, delay: None, desync: None, is_over: false }
     }
 
-    /// Writes the address of this peer, if the output is JSON.
+    /// Writes the address of this peer in JSON only.
     pub(super) fn say_bound(&self, peer: &mut UdpPeer) -> std::io::Result<()> {
         let address = peer.transport_mut().local_address()?.to_string();
         if self.json {
@@ -40,7 +40,6 @@ impl Log {
         Ok(())
     }
 
-    /// Writes an event.
     pub(super) fn say(&mut self, peer: &UdpPeer, now: Duration, event: &PeerEvent) {
         match event {
             PeerEvent::Desync(found) => {
@@ -59,7 +58,7 @@ impl Log {
         }
     }
 
-    /// Tracks progress. Writes the first tick and changes of the delay, if the output is JSON.
+    /// Tracks progress. In JSON, writes the first tick and changes of the delay.
     pub(super) fn watch(&mut self, peer: &UdpPeer, now: Duration) {
         let tick = peer.tick();
         match &mut self.tick {
@@ -84,7 +83,7 @@ impl Log {
         }
     }
 
-    /// The figures of this peer, for the last line.
+    /// Figures for the last line.
     pub(super) fn summary(&self, peer: &UdpPeer) -> Value {
         let statistics = peer.session().map(|session| session.statistics());
         let replayed = statistics.map(|statistics| (statistics.replayed, statistics.replayed_max));
@@ -105,7 +104,6 @@ impl Log {
         })
     }
 
-    /// Writes the result.
     pub(super) fn say_end(&self, mut summary: Value, end: &PeerEnd<Shove>) {
         let hash = end.game.state_hash();
         if self.json {
@@ -129,7 +127,6 @@ impl Log {
     }
 }
 
-/// Writes an error that ends the command.
 pub(super) fn say_error(json: bool, error: &dyn Error) {
     if json {
         print(&json!({ "event": "error", "error": error.to_string() }));
@@ -137,7 +134,7 @@ pub(super) fn say_error(json: bool, error: &dyn Error) {
     eprintln!("error: {error}");
 }
 
-/// Writes a line. Errors are ignored, so that the match continues if the reader of the output has gone.
+/// Ignores errors: the match continues if the reader of the output has gone.
 fn print(line: &dyn std::fmt::Display) {
     let _ = writeln!(std::io::stdout().lock(), "{line}");
 }
@@ -154,7 +151,6 @@ fn name_of(peer: &UdpPeer) -> String {
     }
 }
 
-/// Name and fields of an event in JSON.
 fn fields(peer: &UdpPeer, event: &PeerEvent) -> (&'static str, Value) {
     let seats = |id: PeerId| peer.seats_of(id);
     match *event {

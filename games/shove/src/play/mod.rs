@@ -1,4 +1,4 @@
-//! `shove play`: a match over UDP, in which a bot controls the local player.
+//! `shove play`: a match over UDP, in which a bot is the local player.
 
 mod arguments;
 mod log;
@@ -22,15 +22,13 @@ use lockstep2d_shove::online::{self, UdpPeer};
 use arguments::Arguments;
 use log::Log;
 
-/// Time between two updates, and maximum time for which received packets wait.
+/// Interval of updates, for which received packets may wait.
 const UPDATE_INTERVAL: Duration = Duration::from_millis(1);
 
-/// Returns the definition of the subcommand.
 pub(crate) fn command() -> Command {
     Arguments::augment_args(Command::new("play"))
 }
 
-/// Runs the subcommand.
 pub(crate) fn run(matches: &ArgMatches) -> Exit {
     let arguments = match Arguments::from_arg_matches(matches) {
         Ok(arguments) => arguments,
@@ -46,7 +44,7 @@ pub(crate) fn run(matches: &ArgMatches) -> Exit {
     }
 }
 
-/// Plays the match and returns the first desync.
+/// Returns the first desync.
 fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
     for path in arguments.output.iter().chain(&arguments.report) {
         check_absent(path)?;
@@ -60,7 +58,7 @@ fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
         peer.end_at(ticks);
     }
     let played = take_part(arguments, &mut peer, &interrupts, &mut log, file.as_mut());
-    // The replay is completed however the match has ended.
+    // The match is summarised even after an error.
     let summary = log.summary(&peer);
     let end = peer.finish()?;
     if let (Some(file), Some(path)) = (&mut file, &arguments.output) {
@@ -78,8 +76,8 @@ fn play(arguments: &Arguments) -> Result<Option<PeerDesync>, Box<dyn Error>> {
     played
 }
 
-/// Creates a file that is written during the match, so that a killed process leaves a replay without its end. An
-/// existing file is not replaced. If two processes create the same file, one of them gets an error.
+/// The file is written during the match, so a killed process leaves a replay without its end. Two processes cannot
+/// create the same file.
 fn create(path: &Path) -> Result<File, Box<dyn Error>> {
     let file = match File::create_new(path) {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {
@@ -91,7 +89,7 @@ fn create(path: &Path) -> Result<File, Box<dyn Error>> {
     file.map_err(|error| format!("cannot write {}: {error}", path.display()).into())
 }
 
-/// Returns an error if a regular file of this name exists. Pipes and devices are accepted.
+/// Refuses an existing regular file.
 fn check_absent(path: &Path) -> Result<(), Box<dyn Error>> {
     if path.is_file() {
         return Err(format!("cannot write {}: it exists; name another file", path.display()).into());
@@ -99,7 +97,6 @@ fn check_absent(path: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Plays until the match has ended or was left.
 fn take_part(
     arguments: &Arguments,
     peer: &mut UdpPeer,
@@ -137,10 +134,10 @@ fn take_part(
             }
             (0, None | Some(Status::Paused)) => {}
             (0, Some(_)) => heard_at = now,
-            // The peer is not in a match yet, so it can leave at once.
+            // The peer is not in a match yet.
             (_, None) => break,
             (1, Some(_)) => peer.leave(),
-            // After a second interrupt, the peer does not wait until the others have received its departure.
+            // Leaves without waiting for the others.
             (_, Some(_)) => break,
         }
         thread::sleep(UPDATE_INTERVAL);
@@ -161,7 +158,7 @@ fn pad_of_bot(
     bots[place].1.pad(game)
 }
 
-/// Counts interrupts by Ctrl-C and termination signals of the system.
+/// Counts Ctrl-C and termination signals.
 fn interrupts() -> Result<Arc<AtomicUsize>, ctrlc::Error> {
     let count = Arc::new(AtomicUsize::new(0));
     let counted = Arc::clone(&count);
@@ -171,7 +168,6 @@ fn interrupts() -> Result<Arc<AtomicUsize>, ctrlc::Error> {
     Ok(count)
 }
 
-/// Time since the match was entered.
 struct Clock(#[expect(clippy::disallowed_types, reason = "the clock of this process")] std::time::Instant);
 
 impl Clock {

@@ -1,5 +1,4 @@
-//! Draws the parts of the game that are not physics: seat colours, scores, the recharge of dashes, the edge of the
-//! platform.
+//! Draws seat colours, scores, the recharge of dashes, and the edge of the platform.
 
 use std::f32::consts::TAU;
 
@@ -16,17 +15,16 @@ pub const SEAT_COLOURS: [Colour; 4] =
 
 /// Neutral grey, visible on light and dark backgrounds.
 const NEUTRAL: Colour = Colour::hex(0x8a_8f98);
-/// Background of the scores, whose colours are too bright for a light background.
+/// Background of the scores, whose colours are bright.
 const PLATE: Colour = Colour::hex(0x14_181d);
-/// Colour of the headline above the scores.
+/// Colour of the headline.
 const TITLE: Colour = Colour::hex(0xe4_e7eb);
-/// Number of segments of a circle.
+/// Segments of a circle.
 const CORNERS: u16 = 48;
 /// Recharge time of a dash, in ticks.
 const RECHARGE: f32 = 75.0;
 
-/// Draws the edge of the platform, the players in the colours of their seats with the recharge of their dashes, and the
-/// scores.
+/// Draws the edge of the platform, the players with the recharge of their dashes, and the scores.
 pub fn decorate(game: &Shove, list: &mut DrawList, camera: &Camera) {
     draw_platform(game, list, camera);
     for (seat, player) in game.players_in_order().enumerate() {
@@ -35,7 +33,7 @@ pub fn decorate(game: &Shove, list: &mut DrawList, camera: &Camera) {
     draw_scores(game, list, camera);
 }
 
-/// Returns a line with the round and its phase.
+/// The round and its phase.
 pub(crate) fn headline(game: &Shove) -> String {
     let seconds = u32::from(game.ticks_left()).div_ceil(game.tick_rate());
     let present = game.players_in_order().filter(|player| player.present).count();
@@ -52,7 +50,7 @@ pub(crate) fn headline(game: &Shove) -> String {
     }
 }
 
-/// Draws the original edge of the platform and the current one.
+/// The original edge and the current one.
 fn draw_platform(game: &Shove, list: &mut DrawList, camera: &Camera) {
     let ring = |radius| arc(camera, Vec2::ZERO, camera.length(radius), 1.0);
     list.line(ring(START_RADIUS), NEUTRAL.with_opacity(90), 1.0);
@@ -67,7 +65,7 @@ fn draw_player(world: &World, seat: usize, player: &Player, list: &mut DrawList,
     let radius = camera.length(radius_of(world, body));
     let disc = arc(camera, player.position, radius, 1.0);
     list.polygon(disc.skip(1), colour, Colour::hex(0x00_0000).with_opacity(160), 1.5);
-    // The arc is a full circle when the dash is ready.
+    // A full circle when the dash is ready.
     let charge = 1.0 - (player.recharge as f32 / RECHARGE).min(1.0);
     if charge > 0.0 {
         let width = if player.recharge == 0 { 3.0 } else { 1.5 };
@@ -88,7 +86,7 @@ fn radius_of(world: &World, body: &Body) -> Fx {
     }
 }
 
-/// Draws the scores above the platform, or at the upper edge of the window if there is no room above the platform.
+/// Draws the scores above the platform, or at the upper edge of the window if there is no room.
 fn draw_scores(game: &Shove, list: &mut DrawList, camera: &Camera) {
     let [middle, top] = camera.place(Vec2::new(Fx::ZERO, START_RADIUS));
     let top = (top - 3.0 * CELL_HEIGHT).max(2.0 * CELL_HEIGHT);
@@ -108,8 +106,8 @@ fn draw_scores(game: &Shove, list: &mut DrawList, camera: &Camera) {
     }
 }
 
-/// Returns the colour and the score text of a seat: its number and points, with the points in brackets if the player
-/// has fallen, and a dash if the seat is empty.
+/// Colour and text of a seat: its number and points, in brackets if the player has fallen, or a dash if the seat is
+/// empty.
 fn score((seat, player): (usize, Player)) -> (Colour, String) {
     let points = match player {
         Player { present: false, .. } => "-".into(),
@@ -119,7 +117,7 @@ fn score((seat, player): (usize, Player)) -> (Colour, String) {
     (SEAT_COLOURS[seat % SEAT_COLOURS.len()], format!("{}: {points}", seat + 1))
 }
 
-/// Returns an arc of `part` of a full circle, clockwise from the top, with the radius in pixels.
+/// Part of a circle, clockwise from the top, with the radius in pixels.
 fn arc(camera: &Camera, centre: Vec2<Fx>, radius: f32, part: f32) -> impl Iterator<Item = [f32; 2]> {
     let [x, y] = camera.place(centre);
     (0..=CORNERS).map(move |corner| {

@@ -8,7 +8,7 @@ use lockstep2d_viewer::{Controls, Key, Viewer};
 
 pub use decorate::{SEAT_COLOURS, decorate};
 
-/// Returns the viewer: two people at the keyboard, and a bot on each further seat of a scene.
+/// The viewer: two people at the keyboard, and bots on further seats.
 #[must_use]
 pub fn viewer() -> Viewer<Shove> {
     let seats = |seats| move |seed| Setup { seats, seed, ..Setup::default() };
@@ -39,7 +39,7 @@ pub fn bot(seed: u64, seat: usize) -> lockstep2d_viewer::Bot<Shove> {
     Box::new(move |game| bot.pad(game))
 }
 
-/// The keys of one person: W, A, S and D, and Shift or F to dash.
+/// Keys of one person: W, A, S and D, and Shift or F to dash.
 #[must_use]
 pub fn left() -> Controls<Pad> {
     let keys = [('w', Pad::UP), ('a', Pad::LEFT), ('s', Pad::DOWN), ('d', Pad::RIGHT), ('f', Pad::DASH)];
@@ -47,7 +47,7 @@ pub fn left() -> Controls<Pad> {
     button(controls, Key::Shift, Pad::DASH)
 }
 
-/// The keys of the other person: the arrows, and Enter or Control to dash.
+/// Keys of the other person: the arrows, and Enter or Control to dash.
 #[must_use]
 pub fn right() -> Controls<Pad> {
     let keys = [

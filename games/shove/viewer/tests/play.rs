@@ -1,5 +1,5 @@
-//! Shove with human players: keys are converted to pad inputs, every match gives a replay that verifies, and the peers
-//! of a network match stay equal.
+//! Shove with human players: keys become pads, matches give replays that verify, and peers of a network match stay
+//! equal.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 #![expect(clippy::disallowed_types, reason = "drawing uses floats")]
@@ -32,7 +32,7 @@ fn for_two(seed: u64, bots: u8) -> Netplay {
     Netplay::new("shove", &setup, &players, seed).unwrap()
 }
 
-/// Returns the pads of every tick of a replay.
+/// Pads of every tick of a replay.
 fn pads(replay: &[u8]) -> Vec<Vec<Pad>> {
     let mut raw = RawReplay::<Shove>::open(replay, &Limits::default()).unwrap();
     let mut pads = vec![];
@@ -139,7 +139,7 @@ fn bots_and_empty_chairs_fill_the_table() {
     assert!(Netplay::new("shove", &alone, &players, 2).is_err(), "a match with one seat should be refused");
 }
 
-/// The overlay has a disc in the seat's colour for each player who has not fallen, and a score for each seat.
+/// A disc in the seat's colour for each player who has not fallen, and a score for each seat.
 #[test]
 fn players_and_scores_are_seen() {
     let mut netplay = for_two(1, 2);
@@ -168,9 +168,8 @@ fn players_and_scores_are_seen() {
 
 type Guest = Online<Shove, Port>;
 
-/// A host and a joining peer, with their setups.
 fn host_and_guest([ours, theirs]: [Setup; 2]) -> [Guest; 2] {
-    // The time of the network does not advance, and all packets arrive at once.
+    // All packets arrive at once.
     let network = Network::new(LinkConditions::default(), 1);
     let (options, me) = (PeerOptions::rollback(), |number: u64| PeerIdentity::new([number; 4]));
     let host = Peer::host(&ours, options, me(1), network.port(0)).unwrap();
@@ -212,7 +211,7 @@ fn two_keyboards_far_apart_play_the_same_match() {
         let pressed = ours.iter().filter(|pads| pads[seat] != Pad::default()).count();
         assert!(pressed > 20, "seat {seat} pressed buttons in only {pressed} ticks");
     }
-    // No peer reads the packets of the leaving peer, which waits for an answer for at most half a second.
+    // No peer answers the leaving one, which waits for at most half a second.
     let [host, _] = &mut guests;
     host.close();
     assert!(host.status().ends_with("out of the match"), "{}", host.status());
@@ -248,7 +247,7 @@ fn the_viewer_has_scenes_and_opens_replays_of_this_game_only() {
         app.draw().texts().iter().map(|text| text.text.clone()).collect::<Vec<_>>()
     };
     assert!(texts(&mut app).iter().any(|text| text.starts_with("1: ")), "{:?}", texts(&mut app));
-    // The state of the game's own rules, without the world.
+    // The state has no world.
     app.handle(Event::Pressed(Key::Character('t')));
     let state = texts(&mut app);
     assert!(state.iter().any(|text| text.starts_with("rules.seats[0].score")), "{state:?}");

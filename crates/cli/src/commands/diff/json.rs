@@ -67,7 +67,6 @@ fn blame(blame: Blame) -> &'static str {
     }
 }
 
-/// Differing fields, each with both values.
 pub(in crate::commands) fn fields(differences: &[Difference]) -> Vec<Json> {
     let field = |difference: &Difference| {
         json!({
@@ -80,8 +79,8 @@ pub(in crate::commands) fn fields(differences: &[Difference]) -> Vec<Json> {
     differences.iter().map(field).collect()
 }
 
-/// A value as readable text. A number, an angle or a boolean also has its bits, as text, since they may exceed the
-/// range of JSON numbers.
+/// A value as text. Numbers, angles and booleans also have bits, as text since they may exceed the range of JSON
+/// numbers.
 fn value(value: Option<&Value>) -> Json {
     value.map_or(
         Json::Null,

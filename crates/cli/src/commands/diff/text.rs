@@ -106,7 +106,7 @@ impl Text<'_> {
         self.lines(&input.differences, f)
     }
 
-    /// At most `subjects` differing fields, and the number of the others.
+    /// At most `subjects` fields, and the number of the others.
     fn lines(&self, differences: &[Difference], f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut shown = differences.iter().take(self.subjects);
         shown.try_for_each(|difference| write!(f, "\n    {}", Line(difference)))?;
@@ -156,7 +156,6 @@ impl Text<'_> {
     }
 }
 
-/// The name of a differing field and both values.
 struct Line<'a>(&'a Difference);
 
 impl fmt::Display for Line<'_> {
@@ -170,7 +169,7 @@ impl fmt::Display for Line<'_> {
             "" => "value",
             name => name,
         };
-        // Names and texts of an untrusted file are escaped before they reach the terminal.
+        // Texts of an untrusted file are escaped.
         let text = format!("{name}: {} | {}", value(&difference.a), value(&difference.b));
         write!(f, "{}", Shown(Path::new(&text)))
     }

@@ -14,19 +14,16 @@ use crate::error::CommandError;
 
 /// Largest default frame rate in frames per second.
 const FRAME_RATE_MAX: u32 = 30;
-/// Default width of an animation in pixels, smaller than for pictures to keep files small.
+/// Default width in pixels, smaller than for pictures to keep files small.
 const WIDTH: u32 = 640;
-/// Highest frame rate at which most programs show a GIF: their shortest frame time is 2/100 s.
+/// Highest frame rate of a GIF in most programs: their shortest frame time is 2/100 s.
 const GIF_RATE_MAX: u32 = 50;
-/// Maximum number of ticks, besides the last one, that are sampled to find a window that fits the world at all of them.
+/// Maximum number of ticks, besides the last one, that are sampled for a fitting window.
 const SAMPLES: u64 = 100;
-/// Number of sampled ticks for each sample picture. The palette is computed from the sample pictures.
+/// Number of sampled ticks for each sample picture of the palette.
 const SAMPLES_OF_A_PICTURE: usize = 10;
 
-/// Writes a range of ticks as an animation.
-///
-/// The replay is played twice. The first pass finds the window and the colours, and checks that the replay can be
-/// played before anything is written.
+/// Plays the replay twice. The first pass finds the window and the colours, and fails before anything is written.
 pub(super) fn write<G: Game>(
     bytes: &[u8],
     mut replay: Replay<'_, G>,
@@ -59,12 +56,10 @@ pub(super) fn write<G: Game>(
     })
 }
 
-/// The ticks that are shown, and the duration of each.
 struct Frames {
     first: u64,
     last: u64,
     pace: Pace,
-    /// Number of frames.
     count: u32,
 }
 
@@ -81,7 +76,7 @@ impl Frames {
         (0..u64::from(self.count)).map(|frame| self.first + frame * u64::from(self.pace.ticks))
     }
 
-    /// Selects at most `SAMPLES` + 1 ticks, including the first and the last.
+    /// At most `SAMPLES` + 1 ticks, including the first and the last.
     fn samples(&self) -> impl Iterator<Item = u64> {
         let step = (self.last - self.first).div_ceil(SAMPLES).max(1);
         (0..SAMPLES)
@@ -91,18 +86,17 @@ impl Frames {
     }
 }
 
-/// The part of the world that is shown, and the size of the picture.
 struct Camera<'a, G: Game> {
     view: Option<fn(&G) -> View>,
     arguments: &'a Arguments,
     size: (u32, u32),
-    /// The fitted window, which is the same for all frames. It applies unless the game or the arguments set one.
+    /// Window of all frames, unless the game or the arguments set one.
     window: Option<Aabb>,
 }
 
 impl<'a, G: Game> Camera<'a, G> {
-    /// All frames have the same size. They have the aspect ratio of the game's own view, unless the arguments set both
-    /// width and height, or a side would be outside of 64 to 16384 pixels.
+    /// All frames have one size. Its aspect ratio is that of the game's view, unless the arguments set both sides or a
+    /// side would be outside of 64 to 16384 pixels.
     fn new(
         replay: &mut Replay<'_, G>,
         view: Option<fn(&G) -> View>,
@@ -123,7 +117,7 @@ impl<'a, G: Game> Camera<'a, G> {
         Ok(Camera { view, arguments, size, window: None })
     }
 
-    /// Finds a window that fits the world at all sampled ticks. Returns the sample pictures for the palette.
+    /// Finds a window that fits the world at all sampled ticks. Returns sample pictures for the palette.
     fn look_at(&mut self, replay: &mut Replay<'_, G>, frames: &Frames) -> Result<Vec<Image>, CommandError> {
         let mut window: Option<Aabb> = None;
         let mut pictures = Vec::new();
@@ -139,7 +133,6 @@ impl<'a, G: Game> Camera<'a, G> {
         Ok(pictures)
     }
 
-    /// The picture of the current tick of a replay.
     fn picture(&self, replay: &mut Replay<'_, G>, list: &mut DrawList) -> Result<Image, CommandError> {
         let (width, height) = self.size;
         let mut view = View { width, height, ..self.arguments.view(replay.view(self.view)) };
@@ -150,7 +143,6 @@ impl<'a, G: Game> Camera<'a, G> {
     }
 }
 
-/// A progress bar on a terminal.
 struct Progress(Option<ProgressBar>);
 
 impl Progress {

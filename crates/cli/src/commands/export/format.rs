@@ -6,7 +6,6 @@ use clap::Args;
 
 use crate::error::CommandError;
 
-/// An output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     Svg,
@@ -42,7 +41,7 @@ pub(super) struct Formats {
 }
 
 impl Formats {
-    /// The format selected by an option or, without an option, by the extension of the output file.
+    /// The format of an option or, without an option, of the extension of the output file.
     pub(super) fn chosen(&self, output: Option<&Path>) -> Result<Format, CommandError> {
         let Formats { svg, png, gif, apng, json, plot } = *self;
         let asked = [
@@ -77,8 +76,7 @@ fn by_extension(output: Option<&Path>) -> Option<Format> {
 }
 
 impl Format {
-    /// Returns the format, unless the extension of the output file belongs to another one. A plot may have the
-    /// extension of an SVG, and an animated PNG that of a PNG.
+    /// Refuses the extension of another format. A plot may end in .svg, and an animated PNG in .png.
     fn checked(self, output: Option<&Path>) -> Result<Self, CommandError> {
         let (Some(other), Some(path)) = (by_extension(output), output) else { return Ok(self) };
         let fits = match self {
@@ -91,7 +89,6 @@ impl Format {
         if fits { Ok(self) } else { Err(error()) }
     }
 
-    /// The option that selects the format.
     pub(super) fn option(self) -> &'static str {
         match self {
             Format::Svg => "--svg",

@@ -9,7 +9,6 @@ use serde_json::Value;
 use super::{Output, Replay};
 use crate::error::CommandError;
 
-/// Writes one line for each of `ticks`.
 pub(super) fn write<G: Game>(
     mut replay: Replay<'_, G>,
     ticks: impl Iterator<Item = u64>,
@@ -23,7 +22,7 @@ pub(super) fn write<G: Game>(
     Ok(())
 }
 
-/// A line of JSON. The tick comes first, so that the beginning of a long line identifies it.
+/// The tick comes first, so that the beginning of a long line identifies it.
 pub(super) fn line<S: Serialize>(tick: u64, hash: StateHash, save: &S) -> Result<String, CommandError> {
     let mut state =
         serde_json::to_value(save).map_err(|error| CommandError::State { why: error.to_string() })?;
@@ -34,7 +33,7 @@ pub(super) fn line<S: Serialize>(tick: u64, hash: StateHash, save: &S) -> Result
     Ok(format!("{{\"tick\":{tick},\"hash\":\"{hash}\",\"state\":{state}}}"))
 }
 
-/// Adds a decimal beside the bits of each fixed-point number. `numbers` are sorted by their paths.
+/// Adds a decimal beside the bits of each fixed-point number. `numbers` are sorted by path.
 fn add_decimals(value: &mut Value, path: &mut String, numbers: &[Field]) {
     let length = path.len();
     match value {
@@ -50,7 +49,7 @@ fn add_decimals(value: &mut Value, path: &mut String, numbers: &[Field]) {
             let is_single = entries.len() == 1;
             for (name, entry) in entries {
                 push_name(path, name);
-                // JSON nests the fields of an enum variant under its name; paths do not contain that name.
+                // JSON nests the fields of an enum variant under its name, which paths do not contain.
                 if is_single && !is_beginning(path, numbers) {
                     path.truncate(length);
                 }

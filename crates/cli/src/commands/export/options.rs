@@ -3,7 +3,7 @@
 use lockstep2d::draw::Layers;
 use lockstep2d::math::{Aabb, Fx, Vec2};
 
-/// Parses layers: names of fields of [`Layers`] separated by commas, `all` or `none`.
+/// Parses names of fields of [`Layers`] separated by commas, `all` or `none`.
 pub(super) fn layers(text: &str) -> Result<Layers, String> {
     match text {
         "all" => return Ok(Layers::ALL),
@@ -24,7 +24,7 @@ pub(super) fn layers(text: &str) -> Result<Layers, String> {
     Ok(layers)
 }
 
-/// Parses a window: the coordinates of two opposite corners, separated by commas.
+/// Parses the coordinates of two opposite corners, separated by commas.
 pub(super) fn window(text: &str) -> Result<Aabb, String> {
     let numbers: Vec<Fx> = text
         .split(',')

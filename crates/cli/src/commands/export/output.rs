@@ -10,16 +10,14 @@ use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::output_file::OutputFile;
 
-/// The destination of an export: a file or the standard output.
 pub(super) struct Output<'a> {
     to: &'a mut dyn Write,
     path: Option<&'a Path>,
 }
 
 impl Output<'_> {
-    /// Calls `write` with the output file of the arguments as destination, or with the standard output if there is no
-    /// output file. The file appears when all of it is written: a run that fails or is interrupted leaves the old file
-    /// unchanged.
+    /// Calls `write` with the output file or, if there is none, the standard output. The file appears when all of it is
+    /// written, so a failed run leaves the old file unchanged.
     pub(super) fn write(
         arguments: &Arguments,
         console: &mut Console<'_>,
@@ -40,7 +38,7 @@ impl Output<'_> {
         writeln!(self.to, "{line}").map_err(|error| explain(self.path, error))
     }
 
-    /// The stream to write bytes to, and a function that wraps its errors.
+    /// The stream, and a function that wraps its errors.
     pub(super) fn parts(&mut self) -> (&mut dyn Write, impl Fn(io::Error) -> CommandError) {
         let path = self.path;
         (self.to, move |error| explain(path, error))

@@ -33,7 +33,7 @@ pub(super) fn print<G: Game>(
     Ok(summary.exit())
 }
 
-/// Properties of a replay that can be determined without playing it.
+/// Properties of a replay that is not played.
 pub(super) struct Summary {
     semantics: u32,
     rules: (String, u32),
@@ -57,7 +57,7 @@ struct Bytes {
     setup: u64,
     inputs: u64,
     trailer: u64,
-    /// Number of bytes after the intact part.
+    /// Bytes after the intact part.
     rest: u64,
 }
 

@@ -10,7 +10,6 @@ use crate::context::CommandResult;
 use crate::error::CommandError;
 use crate::exit::Exit;
 
-/// The fields of a state, with its tick and hash if they are known.
 pub(super) struct State {
     pub(super) tick: Option<u64>,
     pub(super) hash: Option<StateHash>,
@@ -46,7 +45,7 @@ fn is_wanted(field: &Field, arguments: &Arguments) -> bool {
     let is_body = |id: &str| {
         let name = field.subject().and_then(|subject| subject.rsplit('.').next());
         let found = name.and_then(|name| name.strip_prefix("body "));
-        // The text of a body is its handle, followed by its name if it has one.
+        // The text of a body is its handle, then its name.
         let mut words = found.into_iter().flat_map(|found| found.split(' '));
         words.next().is_some_and(|handle| handle == id || handle.split('v').next() == Some(id))
             || words.next() == Some(id)
@@ -64,14 +63,14 @@ fn nothing(arguments: &Arguments) -> CommandError {
     CommandError::NothingThere { what }
 }
 
-/// A field on one line, escaped, since names and texts may come from an untrusted file.
+/// A field on one line, escaped: it may come from an untrusted file.
 pub(super) fn field_text(field: &Field) -> String {
     let path = if field.path().is_empty() { "value" } else { field.path() };
     shown(&format!("{path}: {}", field.value))
 }
 
-/// A field's path, and its value as readable text. A number, an angle or a boolean also has its bits, as text, since
-/// they may exceed the range of JSON numbers.
+/// Path and value. Numbers, angles and booleans also have bits, as text since they may exceed the range of JSON
+/// numbers.
 pub(super) fn field_json(field: &Field) -> Json {
     let bits = field.value.bits().map(|bits| bits.to_string());
     json!({"path": field.path(), "text": field.value.to_string(), "bits": bits})

@@ -19,7 +19,6 @@ use crate::error::CommandError;
 use crate::exit::Exit;
 use crate::files::{OneLine, Shown};
 
-/// Prints the results line by line, and the summary.
 pub(super) struct Display<'a, 'c> {
     json: bool,
     /// Time limit of a file in seconds, for messages.
@@ -46,7 +45,7 @@ impl Sink<Result<Verified, CommandError>> for Display<'_, '_> {
         Ok(())
     }
 
-    /// Prints the names of files that take long, and updates the progress line.
+    /// Prints files that take long, and updates the progress line.
     fn pause(&mut self) -> Result<Pause, CommandError> {
         for work in self.shared.watch.overdue() {
             self.progress.aside(|| self.console.note(work));
@@ -55,8 +54,7 @@ impl Sink<Result<Verified, CommandError>> for Display<'_, '_> {
         Ok(if self.interrupt.caught().is_some() { Pause::End } else { Pause::Continue })
     }
 
-    /// Prints the names of the signal and of the files that are being verified, and ends the process without waiting
-    /// for these files.
+    /// Prints the signal and the unfinished files, and ends the process without waiting for them.
     fn end(&mut self) {
         let Some((name, signal)) = self.interrupt.caught() else { return };
         self.totals.elapsed = self.clock.elapsed();
@@ -89,7 +87,7 @@ impl<'a, 'c> Display<'a, 'c> {
         }
     }
 
-    /// Prints an error. With `--json`, a path that cannot be read also gets a line among the results.
+    /// With `--json`, a path that cannot be read also gets a line among the results.
     fn trouble(&mut self, error: &CommandError) -> Result<(), CommandError> {
         self.exit = Exit::Trouble;
         if let (true, CommandError::Read { path, error }) = (self.json, error) {
@@ -113,7 +111,7 @@ impl<'a, 'c> Display<'a, 'c> {
         }
         self.count_signed(signed);
         if let Some(error) = unkept.as_ref().filter(|_| !self.is_cache_failing) {
-            // Warn only once: the cause is usually the same for all files.
+            // Warns once: the cause is usually the same for all files.
             self.is_cache_failing = true;
             let warning = format!("verdicts cannot be cached: {error}");
             self.progress.aside(|| self.console.warning(warning));
@@ -124,7 +122,7 @@ impl<'a, 'c> Display<'a, 'c> {
         })
     }
 
-    /// Prints the line of a file that has exceeded its time limit. The exit code is that of a file that cannot be read.
+    /// The exit code is that of a file that cannot be read.
     fn out_of_time(
         &mut self,
         path: &Path,
@@ -164,7 +162,6 @@ impl<'a, 'c> Display<'a, 'c> {
     }
 }
 
-/// A file and its verdict as readable text.
 struct Line<'a> {
     path: &'a Path,
     report: &'a Report,

@@ -1,5 +1,4 @@
-//! [`Interrupt`]: catches SIGINT and SIGTERM, so that the names of unfinished files are printed before the process
-//! ends.
+//! [`Interrupt`]: catches SIGINT and SIGTERM, to print the unfinished files before the process ends.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -7,11 +6,10 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::{SigId, flag, low_level};
 
-/// Each signal, the number that [`Interrupt`] stores when it arrives, and its name.
+/// Signal, its number in [`Interrupt`], and its name.
 const SIGNALS: [(i32, usize, &str); 2] = [(SIGINT, 1, "SIGINT"), (SIGTERM, 2, "SIGTERM")];
 
-/// Catches the signals while the value exists. A second signal ends the process at once, even while the output is
-/// blocked.
+/// Catches the signals while it exists. A second signal ends the process at once, even while the output is blocked.
 pub(super) struct Interrupt {
     /// Number of the signal that arrived, as in [`SIGNALS`]; 0 before.
     caught: Arc<AtomicUsize>,
@@ -19,14 +17,13 @@ pub(super) struct Interrupt {
 }
 
 impl Interrupt {
-    /// Starts to catch the signals. Does nothing without `owns_process`, because a program that uses the tool as a
-    /// library handles signals itself.
+    /// Does nothing without `owns_process`: a program that uses the tool as a library handles signals itself.
     pub(super) fn listen(owns_process: bool) -> Self {
         let (caught, again) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicBool::new(false)));
         let mut ids = Vec::new();
         for (signal, number, _) in SIGNALS.into_iter().filter(|_| owns_process) {
-            // Handlers run in the order of registration, so `again` is still false when the first handler runs at the
-            // first signal. Errors are ignored: a signal that cannot be registered is not caught.
+            // Handlers run in the order of registration, so `again` is still false for the first handler at the first
+            // signal. A signal that cannot be registered is not caught.
             ids.extend(flag::register_conditional_default(signal, Arc::clone(&again)));
             ids.extend(flag::register(signal, Arc::clone(&again)));
             ids.extend(flag::register_usize(signal, Arc::clone(&caught), number));
@@ -34,7 +31,6 @@ impl Interrupt {
         Interrupt { caught, ids }
     }
 
-    /// Name and number of the signal that arrived.
     pub(super) fn caught(&self) -> Option<(&'static str, i32)> {
         let caught = self.caught.load(Ordering::Relaxed);
         SIGNALS.iter().find(|(_, number, _)| *number == caught).map(|(signal, _, name)| (*name, *signal))
@@ -49,7 +45,7 @@ impl Drop for Interrupt {
     }
 }
 
-/// Ends the process as the signal would have done, so that the caller sees the same status.
+/// Ends the process as the signal would have done.
 pub(super) fn end_process(signal: i32) {
     let _ = low_level::emulate_default_handler(signal);
 }

@@ -14,27 +14,23 @@ use crate::panics;
 pub(super) struct Shared {
     /// Set when no more results are needed.
     pub(super) stop: AtomicBool,
-    /// Number of ticks of all files played so far.
+    /// Ticks of all files played so far.
     pub(super) ticks: AtomicU64,
-    /// The files that are being verified.
     pub(super) watch: Watch,
 }
 
-/// The outcome of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Outcome {
-    /// A verdict.
     Report(Report),
-    /// No verdict: the file has exceeded its time limit.
+    /// The file has exceeded its time limit.
     OutOfTime {
-        /// Number of ticks that were played.
+        /// Ticks that were played.
         ticks: u64,
     },
-    /// No verdict: no more results are needed.
+    /// No more results are needed.
     Stopped,
 }
 
-/// Plays a file.
 pub(super) fn judge<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared, work: &Work) -> Outcome {
     let length = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
     let result = panics::catch(|| play::<G>(bytes, limits, shared, work));
@@ -58,7 +54,7 @@ fn play<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared, work: &Work) ->
     let report =
         |verdict: &Verdict, claims: &[_]| Outcome::Report(Report::new(length, verdict, claims, None));
     loop {
-        // A single tick may take long, so these conditions are checked before every tick.
+        // A single tick may take long.
         if shared.stop.load(Ordering::Relaxed) {
             return Outcome::Stopped;
         }
@@ -75,7 +71,7 @@ fn play<G: Game>(bytes: &[u8], limits: &Limits, shared: &Shared, work: &Work) ->
     }
 }
 
-/// The versions required by a file that this program cannot verify.
+/// Versions required by a file that this program cannot verify.
 fn needs(bytes: &[u8], limits: &Limits, verdict: &Verdict) -> Option<Needs> {
     match verdict {
         Verdict::Unverifiable { why: Mismatch::Format { file, .. } } => {

@@ -11,8 +11,8 @@ use super::cache;
 use super::judge::{Outcome, Shared, judge};
 use super::report::Digests;
 
-/// Verifies files of the game `G` one by one, on any thread, and returns the lines that `verify --json` prints for them
-/// without `--cache` and `--keys`.
+/// Verifies files of the game `G`, on any thread, and returns the lines of `verify --json` without `--cache` and
+/// `--keys`.
 ///
 /// ```
 /// use lockstep2d::lockstep::Sandbox;
@@ -66,10 +66,9 @@ impl<G: Game> Judge<G> {
         &self.limits
     }
 
-    /// Verifies the bytes of a file. A panic of the game is a verdict. Returns `None` if [`Judge::stop`] has ended the
-    /// verification.
+    /// Verifies the bytes of a file. A panic of the game is a verdict. Returns `None` if [`Judge::stop`] has ended it.
     ///
-    /// `bytes` may be truncated to one byte more than the size limit; the verdict is the same.
+    /// `bytes` may be truncated to one byte more than the size limit.
     #[must_use]
     pub fn judge(&self, name: &str, bytes: &[u8]) -> Option<Judged> {
         let path = Path::new(name);
@@ -83,21 +82,20 @@ impl<G: Game> Judge<G> {
         }
     }
 
-    /// Stops the verification of all files, including later ones, before their next tick and without a verdict. A later
-    /// file that cannot be opened, such as one with a malformed header, still gets a verdict.
+    /// Stops the verification of all files, including later ones, before their next tick. They get no verdict, unless
+    /// they cannot be opened.
     pub fn stop(&self) {
         self.shared.stop.store(true, Ordering::Relaxed);
     }
 
-    /// Number of ticks that this judge has simulated, in all files together.
+    /// Number of ticks simulated so far, in all files together.
     #[must_use]
     pub fn ticks(&self) -> u64 {
         self.shared.ticks.load(Ordering::Relaxed)
     }
 
     /// Hash of everything that the verdict depends on, as 64 hexadecimal digits: the file with this BLAKE3 digest, the
-    /// rules, the limits, and the versions of the engine's semantics, of the replay format and of the cache. The
-    /// entries of `verify --cache` are named by the same hash.
+    /// rules, the limits and versions. It names the entries of `verify --cache`.
     #[must_use]
     pub fn key(&self, blake3: &[u8; 32]) -> String {
         cache::key(&cache::context(G::RULES, &self.limits), blake3).to_string()

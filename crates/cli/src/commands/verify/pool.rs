@@ -6,42 +6,35 @@ use std::sync::{Mutex, mpsc};
 use std::thread;
 use std::time::Duration;
 
-/// Maximum number of started tasks whose results are not yet shown. With [`Order::Tasks`], results are held in memory
-/// while an earlier task runs.
+/// Maximum number of started tasks whose results are not yet shown: with [`Order::Tasks`], results wait in memory.
 const AHEAD_MAX: u64 = 1024;
 
 /// Longest wait for a result before [`Sink::pause`] is called.
 const MOMENT: Duration = Duration::from_millis(100);
 
-/// Stack size of a thread in bytes. It equals the usual size for a main thread, which a game may rely on. Untouched
-/// pages take no memory.
+/// Stack size of a thread in bytes: as usual for a main thread, which a game may rely on.
 const STACK_BYTES: usize = 8 << 20;
 
-/// The order in which results are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
-    /// The order of the tasks: a long task delays the results of those after it.
+    /// A long task delays the results of later ones.
     Tasks,
-    /// The order in which the tasks are completed.
     Completion,
 }
 
-/// Shows results.
 pub(super) trait Sink<R> {
     /// An error that ends the run.
     type Error;
 
-    /// Shows one result.
     fn result(&mut self, result: R) -> Result<(), Self::Error>;
 
     /// Called repeatedly, also while no result arrives. [`Pause::End`] ends the run.
     fn pause(&mut self) -> Result<Pause, Self::Error>;
 
-    /// Called after [`Pause::End`], when all held results have been shown. Tasks may still be running.
+    /// Called after [`Pause::End`] and all held results. Tasks may still be running.
     fn end(&mut self);
 }
 
-/// Whether a run continues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pause {
     Continue,
@@ -49,13 +42,9 @@ pub(super) enum Pause {
 }
 
 /// Calls `work` with each of `tasks` on `jobs` threads, and `sink` with the results. If the system refuses threads,
-/// there are fewer; without any, the tasks run on this thread and [`Sink::pause`] is not called.
+/// there are fewer. Without any, the tasks run on this thread and [`Sink::pause`] is not called.
 ///
-/// After an error of `sink` or a [`Pause::End`], no more tasks are started, and `stop` is set for the tasks that are
-/// running. Long-running work should check `stop`.
-///
-/// # Errors
-/// The error of `sink`.
+/// After an error of `sink` or a [`Pause::End`], no more tasks are started, and `stop` is set for running ones.
 pub(super) fn run<T: Send, R: Send, S: Sink<R>>(
     jobs: usize,
     order: Order,
@@ -81,7 +70,7 @@ pub(super) fn run<T: Send, R: Send, S: Sink<R>>(
             let builder = thread::Builder::new().stack_size(STACK_BYTES);
             match builder.spawn_scoped(scope, move || worker(results)) {
                 Ok(handle) => workers.push(handle),
-                // The system refuses more threads: continue with fewer.
+                // Continue with fewer.
                 Err(_) => break,
             }
         }
@@ -102,13 +91,12 @@ pub(super) fn run<T: Send, R: Send, S: Sink<R>>(
     })
 }
 
-/// Waits for the next task. Returns `None` when there are no more tasks, or after `stop`.
+/// Waits for the next task; `None` if there are no more, or after `stop`.
 fn next<T>(tasks: &Mutex<mpsc::Receiver<T>>, stop: &AtomicBool) -> Option<T> {
     let task = tasks.lock().ok()?.recv().ok()?;
     (!stop.load(Ordering::Relaxed)).then_some(task)
 }
 
-/// The progress of the work, and results that are not yet shown.
 struct Run<I, R> {
     tasks: I,
     order: Order,
@@ -127,7 +115,7 @@ impl<T, R, I: Iterator<Item = T>> Run<I, R> {
         sink: &mut S,
     ) -> Result<Pause, S::Error> {
         loop {
-            // Start one task per iteration, so that listing a large folder does not delay results.
+            // Starts one task per iteration, so that listing a large folder does not delay results.
             let room = self.begun - self.shown < AHEAD_MAX;
             let is_begun = room && self.begin(tasks);
             if !is_begun && self.begun == self.shown {
@@ -142,7 +130,7 @@ impl<T, R, I: Iterator<Item = T>> Run<I, R> {
                 Ok((number, result)) => {
                     self.waiting.insert(number, result);
                 }
-                // A worker ends early only because of a bug. Its result would never arrive.
+                // A worker ends early only because of a bug: its result would never arrive.
                 Err(_) if !is_begun && is_any_gone() => return Ok(Pause::Continue),
                 Err(_) => {}
             }
@@ -159,7 +147,7 @@ impl<T, R, I: Iterator<Item = T>> Run<I, R> {
         }
     }
 
-    /// Starts one more task. Returns false if there is none.
+    /// Starts one more task. Returns `false` if there is none.
     fn begin(&mut self, tasks: &mpsc::Sender<(u64, T)>) -> bool {
         let Some(task) = self.tasks.next() else {
             return false;
@@ -185,7 +173,6 @@ mod tests {
         number * number
     }
 
-    /// Collects numbers.
     #[derive(Default)]
     struct Shown {
         numbers: Vec<u64>,
@@ -284,7 +271,7 @@ mod tests {
 
     #[test]
     fn results_that_were_held_are_shown_at_the_end() {
-        // The first task runs until it is stopped: all results after it are held.
+        // The first task runs until it is stopped: all later results are held.
         let stop = AtomicBool::new(false);
         let done = AtomicU64::new(0);
         struct EndWhenHeld<'a>(Shown, &'a AtomicU64);
@@ -310,7 +297,7 @@ mod tests {
         };
         let mut shown = EndWhenHeld(Shown::default(), &done);
         run(2, Order::Tasks, 0.., task, &stop, &mut shown).unwrap();
-        // A task that has counted itself as done may not have sent its result yet.
+        // A task counts itself as done before it sends its result.
         assert!(
             shown.0.is_ended && shown.0.numbers.len() as u64 >= AHEAD_MAX - 2,
             "{}",

@@ -11,11 +11,10 @@ use super::totals::{Totals, rate};
 /// Highest redraw rate in Hz.
 const PER_SECOND: u8 = 10;
 
-/// A progress line below the results. The total is unknown, because folders are listed during verification.
+/// The total is unknown, because folders are listed during verification.
 pub(super) struct Progress(Option<ProgressBar>);
 
 impl Progress {
-    /// Creates the line; nothing is drawn unless `is_shown`.
     pub(super) fn new(is_shown: bool) -> Self {
         Progress(is_shown.then(|| {
             let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(PER_SECOND));

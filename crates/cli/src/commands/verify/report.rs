@@ -12,8 +12,7 @@ use crate::console::json_text;
 use crate::identity::GameDigest;
 use crate::panics::{PANICKED, Panic, PanicText};
 
-/// The verdict on a file's bytes with its details. Except for a panic, it depends on nothing but the bytes, the limits
-/// and the program.
+/// The verdict on a file's bytes. Unless it is a panic, it depends only on the bytes, the limits and the program.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Report {
     /// Readable text: the verdict, a colon, the details.
@@ -21,24 +20,21 @@ pub(super) struct Report {
     pub(super) verdict: String,
     pub(super) ticks: u64,
     hash: Option<String>,
-    /// Number of bytes read from the file: at most one more than the limit.
+    /// Bytes read from the file: at most one more than the limit.
     bytes: u64,
-    /// Further fields of the JSON line, by name; the verdict determines which there are.
+    /// Further fields of the JSON line, which depend on the verdict.
     details: Map<String, Value>,
 }
 
-/// The digests of a file, which identify it and its game.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Digests {
     /// Digest of the bytes that were judged.
     pub(super) blake3: blake3::Hash,
-    /// Digest of the game: see [`GameDigest`].
     pub(super) game: Option<GameDigest>,
 }
 
 impl Digests {
-    /// The digests of a file. A file that is damaged, has another format version or exceeds a limit before the
-    /// simulation has no digest of its game.
+    /// A file that is damaged, has another format version or exceeds a limit has no digest of its game.
     pub(super) fn of(bytes: &[u8], limits: &Limits) -> Self {
         Digests { blake3: blake3::hash(bytes), game: GameDigest::of_any(bytes, limits).ok() }
     }
@@ -48,7 +44,7 @@ impl Digests {
     }
 }
 
-/// The versions that a file requires. If this program cannot read the format, the other fields are `None`.
+/// The versions that a file requires. In an unknown format, only `format` is known.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(super) struct Needs {
     pub(super) format: u32,
@@ -58,7 +54,7 @@ pub(super) struct Needs {
 }
 
 impl Report {
-    /// `claims` are the claims of the trailer. `needs` are the versions that an unverifiable file requires.
+    /// `claims` are those of the trailer. `needs` are the versions that an unverifiable file requires.
     pub(super) fn new(bytes: u64, verdict: &Verdict, claims: &[(String, i64)], needs: Option<Needs>) -> Self {
         let mut text = verdict.to_string();
         if verdict.is_match() && !claims.is_empty() {
@@ -91,13 +87,11 @@ impl Report {
         matches!(self.verdict.as_str(), "incomplete" | "unverifiable")
     }
 
-    /// Whether every other run gives the same report. A panic is not final: the machine may have caused it, or a later
-    /// fix may not change the version of the rules.
+    /// Whether other runs give this report. A panic may be caused by the machine, or be fixed later.
     pub(super) fn is_final(&self) -> bool {
         self.verdict != PANICKED
     }
 
-    /// The report as one line of JSON.
     pub(super) fn json(
         &self,
         file: &Path,

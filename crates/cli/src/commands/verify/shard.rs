@@ -4,13 +4,11 @@ use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
 
-/// One part of `count`, numbered from 1, as test runners do.
+/// One part of `count`, numbered from 1.
 ///
-/// The part of a file depends only on a hash of its path below the argument through which it was found, and not on
-/// other files. Processes that list a changing folder at different times therefore never take the same file, and skip
-/// no file that all of them find. A file also stays in its part, where its verdict may be cached, when other files are
-/// added. The disadvantage is imbalance: with many parts of about 1000 files, their sizes have a standard deviation of
-/// about 30.
+/// The part of a file depends only on a hash of its path below the argument. Processes that list a changing folder at
+/// different times take no file twice and skip no file that all of them find. A file keeps its part when others are
+/// added. The parts differ in size: for about 1000 files each, by a standard deviation of about 30.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Shard {
     index: u32,
@@ -20,14 +18,13 @@ pub(super) struct Shard {
 impl Shard {
     pub(super) const WHOLE: Shard = Shard { index: 1, count: 1 };
 
-    /// Whether a file belongs to this part.
     pub(super) fn takes(self, below: &Path) -> bool {
         part(below, self.count) == u64::from(self.index) - 1
     }
 }
 
-/// The part, counted from 0, of the file at a path: the first eight bytes of the path's BLAKE3 hash as a little-endian
-/// number, modulo `count`. The components of the path are joined by `/` on every system.
+/// Part of a path, from 0: the first eight bytes of its BLAKE3 hash, little-endian, modulo `count`. Components are
+/// joined by `/` on every system.
 fn part(below: &Path, count: u32) -> u64 {
     let mut hasher = blake3::Hasher::new();
     for (position, component) in below.components().enumerate() {
@@ -81,7 +78,7 @@ mod tests {
                 assert_eq!(takers.len(), 1, "{path} of {count}");
                 files[takers[0].index as usize - 1] += 1;
             }
-            // Each part has the fair number of files, within ten standard deviations.
+            // The fair number of files, within ten standard deviations.
             let (fair, spread) = (2000 / count, 10 * (2000 / count).isqrt().max(1));
             let parts = &files[..count as usize];
             assert!(parts.iter().all(|files| files.abs_diff(fair) <= spread), "{count}: {parts:?}");

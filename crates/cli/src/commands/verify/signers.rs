@@ -11,14 +11,13 @@ use crate::commands::sign;
 use crate::error::CommandError;
 use crate::signature::{AllowedKeys, Check, GameDigest, path_beside};
 
-/// The keys that may sign, and the number of required signers.
 pub(super) struct Signers {
     keys: AllowedKeys,
-    /// Number of different names that have to sign each file.
+    /// Names that have to sign each file.
     required: usize,
 }
 
-/// Result of the signature check, as fields of the JSON line. It is independent of the verdict.
+/// Result of the signature check, as fields of the JSON line.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(super) struct Signed {
     signature: State,
@@ -27,12 +26,10 @@ pub(super) struct Signed {
     /// Names with a signature that is not valid.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     forged: Vec<String>,
-    /// Why the signature file is malformed.
     #[serde(skip_serializing_if = "Option::is_none")]
     signature_error: Option<String>,
 }
 
-/// Whether a file is signed as required.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 enum State {
@@ -50,10 +47,7 @@ enum State {
 const KEYS_BYTES_MAX: u64 = 16 << 20;
 
 impl Signers {
-    /// Reads the file of public keys.
-    ///
-    /// # Errors
-    /// When the file cannot be read or parsed, or has fewer than `required` names.
+    /// Fails for a file with fewer than `required` names.
     pub(super) fn read(path: &Path, required: usize) -> Result<Self, CommandError> {
         let text = sign::read_text(path, KEYS_BYTES_MAX)?;
         let keys: AllowedKeys = text.parse().map_err(CommandError::line(path))?;
@@ -64,10 +58,8 @@ impl Signers {
         Ok(Signers { keys, required })
     }
 
-    /// Checks the signatures beside a replay. `game` is `None` for a damaged replay, which cannot be signed.
-    ///
-    /// # Errors
-    /// When there is a signature file that cannot be read, or the replay comes from the standard input.
+    /// Checks the signatures beside a replay. `game` is `None` for a damaged replay, which cannot be signed. Fails for
+    /// the standard input, and for a signature file that cannot be read.
     pub(super) fn check(&self, replay: &Path, game: Option<&GameDigest>) -> Result<Signed, CommandError> {
         if replay.as_os_str() == tasks::INPUT {
             return Err(CommandError::InputSignatures);

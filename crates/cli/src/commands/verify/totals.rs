@@ -6,7 +6,6 @@ use std::time::Duration;
 
 use super::report::Report;
 
-/// The summary of all files.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Totals {
     pub(super) files: u64,
@@ -15,24 +14,21 @@ pub(super) struct Totals {
     others: BTreeMap<String, u64>,
     /// Files without a verdict because of `--max-seconds`.
     undecided: u64,
-    /// Files that are not signed as required.
     unsigned: u64,
-    /// Files whose report came from the cache.
     cached: u64,
-    /// Ticks of the reports that did not come from the cache, and of undecided files.
+    /// Ticks of undecided files and of reports that were not cached.
     ticks: u64,
     pub(super) elapsed: Duration,
 }
 
 impl Totals {
-    /// Counts a file that has exceeded its time limit.
     pub(super) fn add_undecided(&mut self, ticks: u64) {
         self.files += 1;
         self.undecided += 1;
         self.ticks = self.ticks.saturating_add(ticks);
     }
 
-    /// Counts a file that is not signed as required, in addition to its verdict.
+    /// The file is also counted by its verdict.
     pub(super) fn add_unsigned(&mut self) {
         self.unsigned += 1;
     }

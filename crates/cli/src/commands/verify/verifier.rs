@@ -15,7 +15,6 @@ use super::watch::Work;
 use crate::error::CommandError;
 use crate::files;
 
-/// Verifies one file, on any thread.
 pub(super) struct Verifier {
     pub(super) judge: fn(&[u8], &Limits, &Shared, &Work) -> Outcome,
     pub(super) limits: Limits,
@@ -25,7 +24,6 @@ pub(super) struct Verifier {
     pub(super) shared: Shared,
 }
 
-/// A file and its outcome.
 pub(super) struct Verified {
     pub(super) path: PathBuf,
     pub(super) outcome: Outcome,
@@ -33,7 +31,7 @@ pub(super) struct Verified {
     pub(super) cached: bool,
     /// Error in writing the report to the cache.
     pub(super) unkept: Option<io::Error>,
-    /// Result of the signature check, if signatures are required. It is never cached.
+    /// Result of the signature check, which is never cached.
     pub(super) signed: Option<Signed>,
 }
 

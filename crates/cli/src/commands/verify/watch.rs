@@ -11,22 +11,20 @@ use super::totals::rate;
 use crate::clock::Clock;
 use crate::files::Shown;
 
-/// Seconds after which a file is reported for the first time. The interval then doubles up to [`NAMED_AGAIN_MAX`].
+/// Seconds until a file is reported for the first time. The interval then doubles up to [`NAMED_AGAIN_MAX`].
 const NAMED_AFTER: u64 = 5;
-/// Longest interval in seconds at which a file is reported again.
+/// Longest interval of reports, in seconds.
 const NAMED_AGAIN_MAX: u64 = 60;
 
 /// Value of [`Work::ticks`] before the file is opened.
 const UNKNOWN: u64 = u64::MAX;
 
-/// The files that are being verified on all threads.
 #[derive(Debug, Default)]
 pub(super) struct Watch {
     works: Mutex<BTreeMap<u64, Arc<Work>>>,
     begun: AtomicU64,
 }
 
-/// A file that is being verified, and its progress.
 #[derive(Debug)]
 pub(super) struct Work {
     path: PathBuf,
@@ -35,11 +33,11 @@ pub(super) struct Work {
     tick: AtomicU64,
     /// Ticks in the file, or [`UNKNOWN`].
     ticks: AtomicU64,
-    /// Second at which the file is reported next.
+    /// Elapsed seconds of the next report.
     named_at: AtomicU64,
 }
 
-/// Guard of a file in the [`Watch`]. Dropping the guard removes the file from the watch.
+/// Dropping it removes the file from the [`Watch`].
 pub(super) struct AtWork<'a> {
     watch: &'a Watch,
     number: u64,
@@ -47,7 +45,7 @@ pub(super) struct AtWork<'a> {
 }
 
 impl Watch {
-    /// Adds a file. `time_max` is the longest time that it may take.
+    /// `time_max` is the longest time that the file may take.
     pub(super) fn begin(&self, path: PathBuf, time_max: Option<Duration>) -> AtWork<'_> {
         let number = self.begun.fetch_add(1, Ordering::Relaxed);
         let work = Arc::new(Work {
@@ -62,12 +60,11 @@ impl Watch {
         AtWork { watch: self, number, work }
     }
 
-    /// All files that are being verified, in the order in which they began.
+    /// Files in the order in which they began.
     pub(super) fn at_work(&self) -> Vec<Arc<Work>> {
         self.works().values().map(Arc::clone).collect()
     }
 
-    /// The files that are due to be reported.
     pub(super) fn overdue(&self) -> Vec<Arc<Work>> {
         self.works().values().filter(|work| work.is_overdue()).map(Arc::clone).collect()
     }
@@ -78,22 +75,19 @@ impl Watch {
 }
 
 impl Work {
-    /// Stores the number of ticks in the file, which is known when the game has been set up.
+    /// Stores the number of ticks, which is known when the game has been set up.
     pub(super) fn set_ticks(&self, ticks: u64) {
         self.ticks.store(ticks, Ordering::Relaxed);
     }
 
-    /// Stores the number of ticks that were played.
     pub(super) fn set_tick(&self, tick: u64) {
         self.tick.store(tick, Ordering::Relaxed);
     }
 
-    /// Number of ticks that were played.
     pub(super) fn tick(&self) -> u64 {
         self.tick.load(Ordering::Relaxed)
     }
 
-    /// Whether the file has exceeded its time limit.
     pub(super) fn is_out_of_time(&self) -> bool {
         self.time_max.is_some_and(|most| self.clock.elapsed() >= most)
     }

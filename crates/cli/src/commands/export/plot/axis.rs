@@ -7,13 +7,11 @@ pub(super) enum Unit {
     Energy,
     /// A length in metres.
     Length,
-    /// A number without a unit.
     Count,
 }
 
 impl Unit {
-    /// Size and name of the largest unit that is not larger than the absolute value. A value below the smallest unit
-    /// gets the smallest unit, and an energy of 0 gets the joule.
+    /// Size and name of the largest unit up to the absolute value, or else the smallest. An energy of 0 is in J.
     pub(super) fn fitting(self, value: f64) -> (f64, &'static str) {
         let units: &[(f64, &str)] = match self {
             Unit::Energy => &[(0.001, "mJ"), (1.0, "J"), (1e3, "kJ"), (1e6, "MJ"), (1e9, "GJ")],
@@ -28,19 +26,16 @@ impl Unit {
 /// Round numbers that enclose a range. Their step is 1, 2 or 5 times a power of ten.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Axis {
-    /// Difference between neighbouring numbers.
     pub(super) step: f64,
     /// The first number, in steps from 0.
     first: i64,
     /// The last number, in steps from 0.
     last: i64,
-    /// Digits after the decimal point.
     digits: usize,
 }
 
 impl Axis {
-    /// An axis around a range, with 1 to `steps_max` steps. A range of a single value is extended to
-    /// include 0, and the range of 0 alone to 0 to 1.
+    /// An axis with 1 to `steps_max` steps. A range of one value is extended to 0, and the range of 0 alone to 0 to 1.
     pub(super) fn around(low: f64, high: f64, steps_max: i64) -> Self {
         Self::with_power(-15, low, high, steps_max)
     }
@@ -60,9 +55,9 @@ impl Axis {
         let powers = power_min..=30;
         let rounds = powers.flat_map(|power| [1, 2, 5].map(|digit| (digit, power)));
         let mut axes = rounds.map(|(digit, power)| {
-            // Parsing gives the nearest float. A product of powers of ten may differ from it.
+            // Parsing gives the nearest float, unlike a product of powers of ten.
             let step: f64 = format!("{digit}e{power}").parse().unwrap_or(1.0);
-            // A cast saturates if the step is far too small.
+            // The casts saturate if the step is far too small.
             let (first, last) = ((low / step).floor() as i64, (high / step).ceil() as i64);
             Axis { step, first, last, digits: usize::try_from(-power).unwrap_or(0) }
         });
@@ -73,17 +68,14 @@ impl Axis {
         fitting.unwrap_or(Axis { step: 1.0, first: 0, last: 1, digits: 0 })
     }
 
-    /// The lower end.
     pub(super) fn low(&self) -> f64 {
         self.first as f64 * self.step
     }
 
-    /// The upper end.
     pub(super) fn high(&self) -> f64 {
         self.last as f64 * self.step
     }
 
-    /// The numbers and their labels.
     pub(super) fn numbers(&self) -> impl Iterator<Item = (f64, String)> {
         (self.first..=self.last).map(|steps| {
             let value = steps as f64 * self.step;

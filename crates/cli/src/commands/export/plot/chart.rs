@@ -7,7 +7,7 @@ use super::curve::Curve;
 
 /// Default width in pixels.
 pub(super) const WIDTH: u32 = 960;
-/// Default height of a panel in pixels, its title included.
+/// Default height of a panel with its title, in pixels.
 const PANEL: u32 = 150;
 /// Space above the panels in pixels.
 const TOP: u32 = 30;
@@ -30,9 +30,7 @@ const STEPS_ALONG: i64 = 10;
 pub(super) struct Chart {
     pub(super) title: String,
     pub(super) panels: Vec<Panel>,
-    /// The first tick.
     pub(super) first: u64,
-    /// The last tick.
     pub(super) last: u64,
     /// Ticks per second.
     pub(super) rate: u32,
@@ -47,7 +45,7 @@ pub(super) struct Panel {
     pub(super) curves: Vec<Curve>,
 }
 
-/// The rectangle of a panel's curves, in pixels.
+/// Rectangle of a panel's curves, in pixels.
 struct Area {
     left: f64,
     right: f64,
@@ -133,7 +131,6 @@ impl Chart {
         text.push_str("</g>\n");
     }
 
-    /// Adds a panel's title and unit, and for each curve its colour and maximum.
     fn add_title(&self, text: &mut String, panel: &Panel, area: &Area, (size, unit): (f64, &str)) {
         let in_unit = if unit.is_empty() { String::new() } else { format!(" in {unit}") };
         push(
@@ -162,7 +159,6 @@ impl Chart {
         text.push_str("</text>\n");
     }
 
-    /// Adds the time axis below all panels.
     fn add_time(&self, text: &mut String, area: &Area) {
         let rate = f64::from(self.rate);
         let axis = Axis::around(self.first as f64 / rate, self.last as f64 / rate, STEPS_ALONG);
@@ -202,8 +198,7 @@ fn push(text: &mut String, arguments: std::fmt::Arguments<'_>) {
     text.write_fmt(arguments).expect("a String takes any text");
 }
 
-/// Escapes text for the content of an XML element. U+FFFE, U+FFFF and the characters below U+0020, most of which XML
-/// does not allow, become U+FFFD.
+/// Escapes text for XML. Characters below U+0020, U+FFFE and U+FFFF become U+FFFD.
 fn escaped(raw: &str) -> String {
     let mut text = String::new();
     for character in raw.chars() {

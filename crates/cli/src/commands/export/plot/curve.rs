@@ -1,10 +1,9 @@
 //! [`Curve`]: values over ticks, reduced to the number of points that a plot can show.
 
-/// Maximum number of columns. A column holds consecutive ticks.
+/// Maximum number of columns of consecutive ticks.
 const COLUMNS: u64 = 1000;
 
-/// Values over any number of ticks. Each column keeps its first, lowest, highest and last value, so that no extreme is
-/// lost.
+/// Values over ticks. Each column keeps its first, lowest, highest and last value.
 pub(super) struct Curve {
     pub(super) name: &'static str,
     pub(super) colour: &'static str,
@@ -13,7 +12,6 @@ pub(super) struct Curve {
     columns: Vec<Column>,
 }
 
-/// The kept points of one column, as ticks and values.
 struct Column {
     at: u64,
     first: (u64, f64),
@@ -27,7 +25,6 @@ impl Curve {
         Curve { name, colour, first, last, columns: Vec::new() }
     }
 
-    /// Adds the value of the next tick.
     pub(super) fn add(&mut self, tick: u64, value: f64) {
         let ticks = u128::from(self.last - self.first) + 1;
         let at = u128::from(tick - self.first) * u128::from(COLUMNS.min(ticks as u64)) / ticks;
@@ -48,14 +45,12 @@ impl Curve {
         }
     }
 
-    /// Adds `by` to all values.
     pub(super) fn shift(&mut self, by: f64) {
         for Column { first, lowest, highest, last, .. } in &mut self.columns {
             [first, lowest, highest, last].into_iter().for_each(|point| point.1 += by);
         }
     }
 
-    /// The points to draw, in time order.
     pub(super) fn points(&self) -> Vec<(u64, f64)> {
         let mut points = Vec::new();
         for Column { first, lowest, highest, last, .. } in &self.columns {
@@ -67,13 +62,12 @@ impl Curve {
         points
     }
 
-    /// The first tick with the highest value, and that value.
+    /// The first tick with the highest value, and this value.
     pub(super) fn highest(&self) -> (u64, f64) {
         let highest = self.columns.iter().map(|column| column.highest);
         highest.reduce(|a, b| if b.1 > a.1 { b } else { a }).unwrap_or((self.first, 0.0))
     }
 
-    /// The lowest value.
     pub(super) fn lowest(&self) -> f64 {
         self.columns.iter().map(|column| column.lowest.1).reduce(f64::min).unwrap_or(0.0)
     }

@@ -23,7 +23,7 @@ use axis::Unit;
 use chart::{Chart, Panel};
 use curve::Curve;
 
-/// Colours of the curves. Those of the energy panel can be told apart with red-green colour blindness.
+/// Colours of curves. The colours of the energy panel can be told apart with red-green colour blindness.
 const BLUE: &str = "#1f5f9e";
 const ORANGE: &str = "#d95f0e";
 const INK: &str = "#333333";
@@ -31,7 +31,6 @@ const RED: &str = "#c62828";
 const GREEN: &str = "#2e7d32";
 const PURPLE: &str = "#8e24aa";
 
-/// Writes the curves of a range of ticks as an SVG document.
 pub(super) fn write<G: Game>(
     mut replay: Replay<'_, G>,
     arguments: &Arguments,
@@ -49,7 +48,7 @@ pub(super) fn write<G: Game>(
             curve.add(tick, value);
         }
     };
-    // Only differences of potential energy are meaningful: its lowest value is drawn as 0.
+    // Only differences of potential energy matter: its lowest value is drawn as 0.
     if let [potential, _, total] = &mut panels[0].curves[..] {
         let lowest = potential.lowest();
         [potential, total].into_iter().for_each(|curve| curve.shift(-lowest));
@@ -65,7 +64,7 @@ pub(super) fn write<G: Game>(
     Output::write(arguments, console, |output| output.line(document.trim_end()))
 }
 
-/// The panel of joints comes last: it is removed for worlds without joints.
+/// The panel of joints comes last, to be removed for worlds without joints.
 fn panels(first: u64, last: u64) -> Vec<Panel> {
     let curve = |name, colour| Curve::new(name, colour, first, last);
     let panel = |title, unit, curves| Panel { title, unit, curves };
@@ -82,7 +81,7 @@ fn panels(first: u64, last: u64) -> Vec<Panel> {
     ]
 }
 
-/// The values of all curves at the current tick, in the order of the curves.
+/// Values of all curves, in their order.
 fn values(world: &World) -> [f64; 7] {
     let Measures { kinetic, potential, overlap, gap } = Measures::of(world);
     let figures = figures::of(world);
